@@ -1,0 +1,487 @@
+"""Pictures: what a file can show, and that the figure holds the file's numbers."""
+
+import subprocess
+import sys
+
+import h5py
+import matplotlib.pyplot
+import numpy as np
+import pytest
+from matplotlib.collections import PatchCollection
+from matplotlib.colors import LogNorm
+
+from vibro_sweep import plotting
+from vibro_sweep.plotting import PlotError, density, sweeps
+from vibro_sweep.plotting.breaks import break_at_impacts
+from vibro_sweep.plotting.style import edges, limits
+
+SCENE = """
+system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6, tau: grazing, stops: both}
+orbit: {transient: 300, record: 20}
+"""
+OWN = {"lyapunov": ("exponent",), "x1": ("sample",), "v1": ("sample",), "phase": ("sample",)}
+OWN |= {f"trajectory_{name}": ("time",) for name in ("x1", "v1", "x2", "v2")}
+
+
+def write(path, coordinates, quantities, done=None, scene=SCENE, time=()):
+    """A result file by the contract: `coordinates` in order, then each quantity's own dimensions (OWN)."""
+    shape = tuple(len(values) for values in coordinates.values())
+    quantities = {"status": np.where(np.ones(shape, bool) if done is None else done, 0, -1), **quantities}
+    with h5py.File(path, "w") as file:
+        file.attrs["scene"] = scene
+        known = dict(coordinates)
+        for name, values in quantities.items():
+            data = file.create_dataset(name, data=values)
+            for i, dim in enumerate((*coordinates, *OWN.get(name, ()))):
+                known.setdefault(dim, time if dim == "time" else np.arange(np.shape(values)[i]))
+                if dim not in file:
+                    file[dim] = known[dim]
+                    file[dim].make_scale(dim)
+                data.dims[i].attach_scale(file[dim])
+    return path
+
+
+def exponents(*shape):
+    """A spectrum that is chaotic in the last quarter of the first dimension."""
+    spectrum = np.tile([-0.01, -0.02, -0.05, -0.1], (*shape, 1))
+    spectrum[3 * shape[0] // 4 :, ..., 0] = 0.004
+    return spectrum
+
+
+@pytest.fixture
+def sweep(tmp_path):
+    b = np.linspace(6.5, 6.9, 40)
+    x1 = b[:, None] - np.random.default_rng(0).uniform(0, 1, (40, 20))
+    counts = {"impacts_right": np.full(40, 10), "impacts_left": np.full(40, 5)}
+    return write(tmp_path / "sweep.h5", {"b": b}, {"x1": x1, "lyapunov": exponents(40), **counts})
+
+
+@pytest.fixture
+def branches(tmp_path):
+    b = np.linspace(6.6, 6.8, 30)
+    x1 = np.stack([np.tile(b[:, None], 20) - 1, np.tile(b[:, None], 20) - 2], axis=1)
+    coordinates = {"b": b, "start": np.array([b"up", b"down"], dtype=object)}
+    return write(tmp_path / "follow.h5", coordinates, {"x1": x1, "lyapunov": exponents(30, 2)})
+
+
+@pytest.fixture
+def trajectory(tmp_path):
+    """Bounces between walls at +-2 with speed 1: period 8, impacts at t = 2, 6, 10, .."""
+    time = np.linspace(0, 16, 1601)
+    x1 = np.abs((time - 2) % 8 - 4) - 2
+    v1 = np.where((time - 2) % 8 < 4, -1.0, 1.0)
+    scene = "system: {b: 2, omega: 0.7853981633974483, R: 1}"
+    quantities = {"trajectory_x1": x1, "trajectory_v1": v1, "trajectory_x2": x1 / 2, "x1": x1[::800]}
+    return write(tmp_path / "one.h5", {}, quantities, scene=scene, time=time)
+
+
+def drawn(ax):
+    """All points drawn as single dots."""
+    return np.concatenate([line.get_xydata() for line in ax.lines if line.get_linestyle() == "None"])
+
+
+def image(ax):
+    (only,) = ax.images
+    return only
+
+
+# --- kinds, outputs, errors
+
+
+def test_kinds_follow_from_what_the_file_holds(tmp_path, sweep, branches, trajectory):
+    assert plotting.kinds(sweep) == ["bifurcation", "lyapunov", "impacts", "iteration"]
+    assert plotting.kinds(branches) == ["bifurcation", "lyapunov", "iteration"]
+    assert plotting.kinds(trajectory) == ["phase-portrait", "history", "iteration"]
+    b = np.arange(1.0, 4)
+    only = write(tmp_path / "only.h5", {"b": b}, {"lyapunov": exponents(3)})
+    assert plotting.kinds(only) == ["lyapunov"]
+    plane = write(tmp_path / "plane.h5", {"b": b, "R": b / 10}, {"period": np.ones((3, 3), int)})
+    assert plotting.kinds(plane) == ["plane"]
+
+
+@pytest.mark.parametrize(("suffix", "magic"), [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")])
+def test_the_suffix_is_the_format(sweep, tmp_path, suffix, magic):
+    output = tmp_path / f"figure{suffix}"
+    assert plotting.plot(sweep, output) == [output]
+    assert output.read_bytes().startswith(magic)
+
+
+def test_the_picture_lies_beside_the_file_unless_told_otherwise(sweep, tmp_path):
+    assert plotting.plot(sweep) == [tmp_path / "sweep.png"]
+    part = sweep.rename(tmp_path / "other.h5.part")
+    assert plotting.plot(part) == [tmp_path / "other.png"]
+
+
+def test_kind_all_writes_each_kind(trajectory, tmp_path):
+    written = plotting.plot(trajectory, tmp_path / "fig.svg", kind="all")
+    assert [path.name for path in written] == [
+        "fig-phase-portrait.svg",
+        "fig-history.svg",
+        "fig-iteration.svg",
+    ]
+    assert all(path.stat().st_size > 1000 for path in written)
+
+
+@pytest.mark.parametrize("output", ["figure.jpg", "figure", "figure.h5"])
+def test_an_output_of_another_format_is_refused(sweep, tmp_path, output):
+    with pytest.raises(PlotError, match=r"\.png, \.svg, \.pdf"):
+        plotting.plot(sweep, tmp_path / output)
+    assert not (tmp_path / output).exists()
+
+
+def test_an_unknown_kind_names_the_ones_there_are(sweep):
+    with pytest.raises(PlotError, match=r"'plane'.*bifurcation, lyapunov, impacts, iteration"):
+        plotting.plot(sweep, kind="plane")
+
+
+def test_the_result_is_never_overwritten(sweep, tmp_path):
+    odd = sweep.rename(tmp_path / "result.png")
+    before = odd.read_bytes()
+    with pytest.raises(PlotError, match="the result file itself"):
+        plotting.plot(odd, odd)
+    assert odd.read_bytes() == before
+
+
+def test_a_folder_that_is_not_there(sweep, tmp_path):
+    with pytest.raises(PlotError, match="cannot be written"):
+        plotting.plot(sweep, tmp_path / "nowhere" / "figure.png")
+
+
+def test_files_that_are_no_results(tmp_path):
+    with pytest.raises(PlotError, match="no such file"):
+        plotting.kinds(tmp_path / "missing.h5")
+    text = tmp_path / "text.h5"
+    text.write_text("system: {}\n" * 100)
+    with pytest.raises(PlotError, match="not an HDF5 file"):
+        plotting.plot(text)
+    with h5py.File(tmp_path / "foreign.h5", "w") as file:
+        file["status"] = np.zeros(3)
+    with pytest.raises(PlotError, match="not a result of vibro-sweep"):
+        plotting.kinds(tmp_path / "foreign.h5")
+
+
+def test_nothing_to_show(tmp_path):
+    b = np.arange(1.0, 4)
+    none = write(tmp_path / "none.h5", {"b": b}, {"x1": np.full((3, 2), np.nan)}, done=np.zeros(3, bool))
+    assert plotting.kinds(none) == []
+    with pytest.raises(PlotError, match="no point is computed"):
+        plotting.plot(none)
+    numbers = write(tmp_path / "numbers.h5", {}, {"lyapunov": np.zeros(4)})
+    with pytest.raises(PlotError, match="lyapunov, status"):
+        plotting.figure(numbers)
+
+
+def test_drawing_needs_no_display_and_no_engine(sweep):
+    code = (
+        "import sys; from vibro_sweep import plotting; plotting.plot(sys.argv[1], kind='all');"
+        "heavy = {'numba', 'pydantic', 'matplotlib.pyplot', 'vibro_sweep.kernels', 'vibro_sweep.system',"
+        " 'vibro_sweep.scene', 'vibro_sweep.sweep', 'vibro_sweep.orbit'};"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code, sweep], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_a_figure_leaves_pyplot_alone(sweep):
+    plotting.figure(sweep)
+    assert matplotlib.pyplot.get_fignums() == []
+
+
+# --- one parameter
+
+
+def test_bifurcation_shows_every_point_over_the_spectrum(sweep):
+    section, spectrum, impacts = plotting.figure(sweep).axes
+    with h5py.File(sweep) as file:
+        expected = np.column_stack([np.repeat(file["b"], 20), np.ravel(file["x1"])])
+    np.testing.assert_array_equal(drawn(section), expected)
+    assert section.lines[0].get_rasterized()
+    assert section.get_shared_x_axes().joined(section, spectrum)
+    assert section.get_shared_x_axes().joined(section, impacts)
+    assert (section.get_ylabel(), spectrum.get_ylabel()) == (r"$x_1$ at $t = 0$ mod $T$", r"$\lambda_i$")
+    assert impacts.get_xlabel() == "clearance $b$"
+    assert r"\mu_m = 10" in section.figure.get_suptitle()
+    assert "b =" not in section.figure.get_suptitle()  # it is swept
+
+
+def test_spectrum_has_a_zero_line_names_and_a_tint_where_chaotic(sweep):
+    ax = plotting.figure(sweep, "lyapunov").axes[0]
+    curves = {line.get_label(): line.get_ydata() for line in ax.lines}
+    np.testing.assert_array_equal(curves[r"$\lambda_1$"], exponents(40)[:, 0])
+    np.testing.assert_array_equal(curves[r"$\lambda_4$"], exponents(40)[:, 3])
+    assert any(np.all(np.asarray(line.get_ydata()) == 0) for line in ax.lines)
+    assert [text.get_text() for text in ax.texts] == [rf"$\lambda_{i}$" for i in (1, 2, 3, 4)]
+    (tint,) = (artist for artist in ax.collections if isinstance(artist, PatchCollection))
+    left = min(path.vertices[:, 0].min() for path in tint.get_paths())
+    assert len(tint.get_paths()) == 10
+    assert left == pytest.approx(edges(np.linspace(6.5, 6.9, 40))[30])
+
+
+def test_lost_directions_leave_a_gap_and_do_not_stretch_the_axis(tmp_path):
+    spectrum = exponents(30)
+    spectrum[:, 2:] = -np.inf
+    file = write(tmp_path / "stick.h5", {"b": np.linspace(1, 2, 30)}, {"lyapunov": spectrum})
+    fig = plotting.figure(file)
+    fig.draw_without_rendering()
+    assert -0.03 < fig.axes[0].get_ylim()[0] < -0.02
+
+
+def test_impacts_are_counted_by_forcing_period(sweep):
+    ax = plotting.figure(sweep, "impacts").axes[0]
+    curves = {line.get_label(): line.get_ydata() for line in ax.lines}
+    assert np.all(curves["right"] == 10 / 20)
+    assert np.all(curves["left"] == 5 / 20)
+
+
+def test_an_impact_section_shows_velocities_and_skips_missing_samples(tmp_path):
+    v1 = np.full((5, 4), np.nan)
+    v1[2:, :2] = 1.5
+    quantities = {"x1": v1 * 0 + 3, "v1": v1, "phase": v1 * 0}
+    scene = SCENE + "section: {kind: impact, stop: left}"
+    file = write(tmp_path / "impact.h5", {"omega": np.linspace(0.5, 0.6, 5)}, quantities, scene=scene)
+    ax = plotting.figure(file).axes[0]
+    assert drawn(ax).shape == (6, 2)
+    assert ax.get_ylabel() == "$v_1$ before impact, left stop"
+    assert ax.get_xlabel() == r"forcing frequency $\omega$"
+
+
+def test_a_downward_sweep_is_drawn_upwards(tmp_path):
+    b = np.linspace(3, 1, 5)
+    file = write(tmp_path / "down.h5", {"b": b}, {"x1": b[:, None] / 2, "lyapunov": exponents(5)})
+    section, spectrum = plotting.figure(file).axes
+    np.testing.assert_array_equal(drawn(section), np.column_stack([b, b / 2])[::-1])
+    low, high = spectrum.get_xlim()
+    assert low < 1
+    assert 3 < high
+
+
+def test_many_points_become_a_density_that_counts_them_all(tmp_path, monkeypatch):
+    monkeypatch.setattr(sweeps, "MANY", 1000)
+    rng = np.random.default_rng(1)
+    x1 = rng.normal(size=(3000, 4))
+    x1[7] = np.nan
+    file = write(tmp_path / "many.h5", {"R": np.linspace(0, 1, 3000)}, {"x1": x1})
+    ax = plotting.figure(file).axes[0]
+    picture = image(ax)
+    assert isinstance(picture.norm, LogNorm)
+    assert picture.get_array().sum() == 2999 * 4
+    assert picture.get_array().shape == (
+        density.ROWS,
+        1000,
+    )  # three values a column: never two in some, three in others
+    assert not any(line.get_linestyle() == "None" for line in ax.lines)
+
+
+def test_density_puts_points_where_they_are():
+    points = np.array([[0.0, 0.0], [1.0, np.nan], [0.5, 1.0]])
+    cells = density.counts(points, 0, 1, group=1)
+    assert cells.sum() == 5
+    assert (cells[0, 0], cells[-1, 1], cells[-1, 2], cells[density.ROWS // 2, 2]) == (2, 1, 1, 1)
+
+
+def test_branches_are_told_apart(branches):
+    section, spectrum = plotting.figure(branches).axes
+    labels = [text.get_text() for text in section.get_legend().get_texts()]
+    assert labels == ["up \N{RIGHTWARDS ARROW}", "\N{LEFTWARDS ARROW} down"]
+    up, down = section.lines[:2]
+    assert len(up.get_xdata()) == len(down.get_xdata()) == 30 * 20
+    assert np.all(up.get_ydata() - down.get_ydata() == pytest.approx(1))
+    assert up.get_markersize() > down.get_markersize()
+    assert up.get_color() != down.get_color()
+    assert [line.get_color() for line in spectrum.lines[-2:]] == [up.get_color(), down.get_color()]
+    assert spectrum.get_ylabel() == r"$\lambda_1$"
+
+
+def test_dense_branches_are_dark_only_where_both_are(tmp_path, monkeypatch):
+    monkeypatch.setattr(sweeps, "MANY", 100)
+    x1 = np.zeros((40, 2, 10))
+    x1[:20, 0] = 1  # up: 1, then 0; down: 0 throughout
+    coordinates = {"b": np.linspace(1, 2, 40), "start": np.array([b"up", b"down"], dtype=object)}
+    ax = plotting.figure(write(tmp_path / "dense.h5", coordinates, {"x1": x1})).axes[0]
+    colours = image(ax).get_array()
+    up, down, both = colours[-15:, 0].min(axis=0), colours[:15, 0].min(axis=0), colours[:15, -1].min(axis=0)
+    assert up[2] > up[0]  # blue
+    assert down[0] > down[2]  # orange
+    np.testing.assert_allclose(both, up * down)
+    assert np.all(colours[density.ROWS // 2] == 1)
+    assert [text.get_text() for text in ax.get_legend().get_texts()][-1] == "both"
+
+
+def test_several_starts_are_all_there(tmp_path):
+    x1 = np.arange(3 * 4 * 5.0).reshape(3, 4, 5)
+    file = write(tmp_path / "r.h5", {"b": np.arange(1.0, 4), "start": np.arange(4)}, {"x1": x1})
+    fig = plotting.figure(file)
+    assert np.array_equal(drawn(fig.axes[0])[:, 1], x1.ravel())
+    assert "4 starts" in fig.get_suptitle()
+
+
+def test_a_partial_file_shows_what_is_there(tmp_path):
+    b = np.linspace(1, 2, 10)
+    done = np.arange(10) < 4
+    quantities = {"x1": np.ones((10, 3)), "lyapunov": np.zeros((10, 4)), "impacts_right": np.zeros(10, int)}
+    quantities["impacts_left"] = quantities["impacts_right"]
+    file = write(tmp_path / "p.h5.part", {"b": b}, quantities, done=done)
+    fig = plotting.figure(file)
+    assert np.array_equal(np.unique(drawn(fig.axes[0])[:, 0]), b[:4])
+    assert np.isfinite(fig.axes[2].lines[0].get_ydata()).sum() == 4
+    assert "4 of 10 points computed" in fig.get_suptitle()
+
+
+def test_one_value_and_no_section_points(tmp_path):
+    file = write(tmp_path / "v.h5", {"b": [2.0]}, {"x1": np.full((1, 3), np.nan), "lyapunov": exponents(1)})
+    section, spectrum = plotting.figure(file).axes
+    assert section.texts[0].get_text() == "no section points"
+    assert spectrum.get_xlim() == pytest.approx((1.9, 2.1))
+
+
+# --- two parameters
+
+
+@pytest.fixture
+def plane(tmp_path):
+    b, omega = np.linspace(6, 7, 4), np.array([0.5, 0.6, 0.8])
+    spectrum = np.full((4, 3, 2, 4), -0.1)
+    spectrum[1, 2, 0, 0], spectrum[1, 2, 1, 0] = -0.05, 0.02
+    period = np.ones((4, 3, 2), int)
+    period[1, 2] = 5, 0
+    period[3, 0] = 40
+    done = np.ones((4, 3, 2), bool)
+    done[0, 0] = False
+    coordinates = {"b": b, "omega": omega, "start": np.arange(2)}
+    return write(tmp_path / "plane.h5", coordinates, {"lyapunov": spectrum, "period": period}, done=done)
+
+
+def test_plane_shows_the_start_with_the_largest_exponent(plane):
+    fig = plotting.figure(plane)
+    largest, period = fig.axes[:2]
+    assert (largest.get_xlabel(), largest.get_ylabel()) == ("clearance $b$", r"forcing frequency $\omega$")
+    values, periods = image(largest).get_array(), image(period).get_array()
+    assert values.shape == (3, 4)  # rows: the second key
+    assert values[2, 1] == 0.02
+    assert periods[2, 1] == 0
+    assert values.mask[0, 0]
+    assert periods.mask[0, 0]
+    assert values.mask.sum() == 1
+    assert "2 starts" in fig.get_suptitle()
+    assert "22 of 24" in fig.get_suptitle()
+
+
+def test_plane_colours_change_sign_at_zero_and_count_periods(plane):
+    largest, period = plotting.figure(plane).axes[:2]
+    norm, picture = image(largest).norm, image(period)
+    assert norm(0.0) == 0.5
+    assert norm.vmin < 0 < norm.vmax
+    shades = [tuple(picture.cmap(picture.norm(n))) for n in range(14)]
+    assert len(set(shades)) == 14
+    assert picture.get_array()[0, 3] == 13  # 40, beyond the colours
+
+
+@pytest.mark.parametrize("value", [-0.02, 0.03, 0.0])
+def test_plane_of_one_sign(tmp_path, value):
+    coordinates = {"b": [1.0, 2.0], "R": [0.1, 0.2]}
+    file = write(tmp_path / "s.h5", coordinates, {"lyapunov": np.full((2, 2, 4), value)})
+    fig = plotting.figure(file)
+    fig.draw_without_rendering()
+    assert np.sign(image(fig.axes[0]).norm(value) - 0.5) == np.sign(value)
+
+
+# --- orbits
+
+
+def test_a_portrait_is_broken_at_impacts_and_walled_in(trajectory):
+    ax = plotting.figure(trajectory).axes[0]
+    x, v = ax.lines[0].get_data()
+    assert np.isnan(x).sum() == 4  # t = 2, 6, 10, 14
+    across = np.abs(np.diff(v)) > 0.1
+    assert not across.any()  # NaN compares false: no line from one side of a jump to the other
+    jumps = [line for line in ax.lines if line.get_label() == "impact"]
+    assert sorted(line.get_xdata()[0] for line in jumps) == [-2, -2, 2, 2]
+    assert all(np.allclose(np.sort(line.get_ydata()), [-1, 1]) for line in jumps)
+    walls = [line.get_xdata()[0] for line in ax.lines if line.get_transform() == ax.get_xaxis_transform()]
+    assert sorted(walls) == [-2, 2]
+    (section,) = (line for line in ax.lines if line.get_label() == r"$t = 0$ mod $T$")
+    np.testing.assert_allclose(section.get_xdata(), [0, 0, 0], atol=1e-9)
+
+
+def test_a_history_reaches_the_stops_and_counts_forcing_periods(trajectory):
+    ax = plotting.figure(trajectory, "history").axes[0]
+    lines = {line.get_label(): line for line in ax.lines}
+    assert lines["$x_1$"].get_xdata()[-1] == pytest.approx(2)
+    assert np.nanmax(np.abs(lines["$x_1$"].get_ydata())) == 2
+    assert len(lines["$x_2$"].get_xdata()) == 1601
+    assert sorted(line.get_ydata()[0] for line in ax.lines if line.get_label() == "stops") == [-2, 2]
+    assert "forcing periods" in ax.get_xlabel()
+
+
+def test_smooth_turns_are_no_impacts():
+    t = np.linspace(0, 20, 801)
+    x, v = np.cos(t), -np.sin(t)
+    assert len(break_at_impacts(t, x, v, {1: 1.0, -1: -1.0}).jumps) == 0
+
+
+def test_a_jump_away_from_the_stops_is_no_impact():
+    t = np.linspace(0, 1, 11)
+    x, v = np.abs(t - 0.55), np.sign(t - 0.55)
+    assert len(break_at_impacts(t, x, v, {-1: 0.0}).jumps) == 1
+    assert len(break_at_impacts(t, x, v, {-1: -0.5}).jumps) == 0
+
+
+def test_a_jump_has_the_velocities_of_its_own_instant():
+    t = np.linspace(0, 1, 11)
+    hit = 0.537  # constant acceleration -1 before and after
+    x = np.where(t < hit, t - t**2 / 2, 0)
+    stop, v_in = hit - hit**2 / 2, 1 - hit
+    later = t >= hit
+    x[later] = stop - 0.5 * v_in * (t[later] - hit) - (t[later] - hit) ** 2 / 2
+    v = np.where(later, -0.5 * v_in - (t - hit), 1 - t)
+    path = break_at_impacts(t, x, v, {1: stop})
+    assert path.jumps == pytest.approx(np.array([[stop, v_in, -0.5 * v_in]]), abs=2e-3)
+    assert path.t[6] == pytest.approx(hit, abs=2e-3)
+
+
+def test_clearance_of_a_physical_scene(tmp_path, trajectory):
+    physical = "{M1: 1, M2: 4, K1: 4, K2: 2, C1: 0, C2: 0, P1: 3, P2: 1, Omega: 1.5707963267948966, R: 1, B: 2}"
+    scene = f"system: {{physical: {physical}, stops: right}}"
+    with h5py.File(trajectory, "a") as file:
+        file.attrs["scene"] = scene
+    fig = plotting.figure(trajectory, "history")
+    assert [line.get_ydata()[0] for line in fig.axes[0].lines if line.get_label() == "stop"] == [2]
+    assert fig.axes[0].lines[0].get_xdata()[-1] == pytest.approx(2)
+    assert r"\mu_m = 4" in fig.get_suptitle()
+
+
+@pytest.mark.parametrize("scene", ["", "system: [", "[1, 2]", "system: 3", "system: {b: high, omega: 1e-1}"])
+def test_an_illegible_scene_costs_only_its_numbers(trajectory, scene):
+    with h5py.File(trajectory, "a") as file:
+        file.attrs["scene"] = scene
+    assert len(plotting.plot(trajectory, kind="all")) == 3
+
+
+def test_a_sweep_shows_four_orbits_and_both_branches_side_by_side(tmp_path, sweep, branches):
+    titles = [ax.get_title() for ax in plotting.figure(sweep, "iteration").axes]
+    assert titles == [f"$b = {value:.6g}$" for value in np.linspace(6.5, 6.9, 40)[[0, 13, 26, 39]]]
+    titles = [ax.get_title() for ax in plotting.figure(branches, "iteration").axes]
+    assert titles == ["$b = 6.6$, up", "$b = 6.6$, down", "$b = 6.8$, up", "$b = 6.8$, down"]
+
+
+def test_iteration_of_a_fixed_point_does_not_show_rounding(tmp_path):
+    x1 = 6.7 + 1e-15 * np.arange(20)
+    ax = plotting.figure(write(tmp_path / "f.h5", {}, {"x1": x1})).axes[0]
+    low, high = ax.get_ylim()
+    assert high - low > 1e-3
+    np.testing.assert_array_equal(drawn(ax)[:, 1], x1)
+    assert "300 periods" in ax.get_xlabel()
+
+
+# --- small tools
+
+
+def test_edges_lie_halfway():
+    np.testing.assert_allclose(edges([1, 2, 4]), [0.5, 1.5, 3, 5])
+    np.testing.assert_allclose(edges([0]), [-0.5, 0.5])
+
+
+def test_limits_ignore_gaps():
+    low, high = limits([np.nan, 1, 3])
+    assert low < 1
+    assert 3 < high < 3.2

@@ -1,0 +1,268 @@
+"""Scenes: every form of the contract is read, to the last digit, and the JSON Schema says the same."""
+
+import json
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+
+from vibro_sweep.scene import SceneError, json_schema, load_scene, parse_scene
+from vibro_sweep.system import NAMES, System, SystemError, check_value
+from vibro_sweep.yaml_text import YAMLTextError, read_yaml
+
+CONFIGS = Path(__file__).parent.parent / "configs"
+NUMBERS = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
+SYSTEM = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}"
+BASE = f"{SYSTEM}\norbit: {{transient: 10, record: 4}}\n"
+
+
+def sweep(text):
+    return parse_scene(f"{BASE}sweep: {text}").sweep
+
+
+class TestYAML:
+    @pytest.mark.parametrize(
+        "text, value",
+        [
+            ("1e-9", 1e-9),
+            ("1E5", 1e5),
+            ("-.5", -0.5),
+            ("6.", 6.0),
+            ("+12e03", 12000.0),
+            (".inf", float("inf")),
+            ("010", 10),
+            ("0x1F", 31),
+            ("0o17", 15),
+            ("-3", -3),
+            ("true", True),
+            ("False", False),
+            ("~", None),
+            ("", None),
+            ("no", "no"),
+            ("1_000", "1_000"),
+            ("12:30", "12:30"),
+            ("2020-01-01", "2020-01-01"),
+            ("'1e-9'", "1e-9"),
+            ("1e", "1e"),
+            ("tRue", "tRue"),
+        ],
+    )
+    def test_core_schema_of_yaml_1_2(self, text, value):
+        read = read_yaml(f"a: {text}")["a"]
+        assert read == value and type(read) is type(value)
+
+    @pytest.mark.parametrize(
+        "text, message",
+        [
+            ("a: 1\na: 2", "line 2, column 1: the key 'a' is given twice"),
+            ("a: &x [1]\nb: *x", "anchors are not allowed here: &x"),
+            ("b: *x", "aliases are not allowed here: *x"),
+            ("a: !!python/object/apply:os.system [ls]", "tags are not allowed"),
+            ("[" * 100_000, "nested more than 20 levels deep"),
+            ("{a: " * 100_000, "nested more than 20 levels deep"),
+            ("a: " + "9" * 5000, "an integer of 5000 digits"),
+            ("? [1, 2]\n: 3", "a key must be a word"),
+            ("a: 1\n---\nb: 2", "expected a single document"),
+            ("a: [1, 2", "line 1, column 9"),
+            ("a: \x00", "special characters are not allowed"),
+            ("a" * 1_000_001, "longer than 1000000 bytes"),
+        ],
+    )
+    def test_refused(self, text, message):
+        with pytest.raises(YAMLTextError, match=message.replace("*", r"\*")):
+            read_yaml(text)
+
+
+class TestAxes:
+    def test_paper_sweep_is_the_decimal_grid(self):
+        b = sweep("{b: {start: 6.5, stop: 6.9, step: 0.0002}}")["b"]
+        assert b.shape == (2001,)
+        assert b.tolist() == [(65000 + 2 * i) / 10000 for i in range(2001)]
+
+    @pytest.mark.parametrize(
+        "axis, values",
+        [
+            ("{start: 1, stop: 2, step: 0.5}", [1, 1.5, 2]),
+            ("{start: 2, stop: 1, step: -0.5}", [2, 1.5, 1]),
+            ("{start: 1, stop: 2, step: 0.3}", [1, 1.3, 1.6, 1.9]),
+            ("{start: 0.7, stop: 1, step: 0.1}", [0.7, 0.8, 0.9, 1]),
+            ("{start: 1, stop: 2, step: 5}", [1]),
+            ("{start: 1, stop: 1, step: -1}", [1]),
+            ("{start: 1, stop: 2, num: 5}", [1, 1.25, 1.5, 1.75, 2]),
+            ("{start: 2, stop: 1, num: 2e0}", [2, 1]),
+            ("{start: 0.1, stop: 0.3, num: 3}", [0.1, 0.2, 0.3]),
+            ("{values: [1, 3, 3.5]}", [1, 3, 3.5]),
+            ("{values: [3.5, 1]}", [3.5, 1]),
+            ("{values: [1e-9]}", [1e-9]),
+        ],
+    )
+    def test_forms(self, axis, values):
+        read = sweep(f"{{b: {axis}}}")["b"]
+        assert read.tolist() == values and read.dtype == float and not read.flags.writeable
+
+    def test_steps_that_are_no_short_decimals(self):
+        b = sweep("{b: {start: 0.12345678901234567, stop: 10, step: 0.0312345678901234567}}")["b"]
+        assert np.allclose(b, 0.12345678901234567 + 0.0312345678901234567 * np.arange(len(b)), rtol=1e-15)
+
+    def test_no_step_passes_the_stop(self):
+        values = sweep("{R: {start: 0, stop: 1, step: 0.35}}")["R"]
+        assert values.tolist() == [0, 0.35, 0.7]
+
+
+class TestScene:
+    def test_least_scene(self):
+        scene = parse_scene(BASE, "folder/least.yaml")
+        assert scene.name == "least" and scene.text == BASE
+        assert scene.system == System(**NUMBERS)
+        assert scene.model == "flow" and scene.sweep == {} and scene.shape == () and scene.n_points == 1
+        assert scene.start.kind == "state" and scene.start.state == (0, 0, 0, 0) and scene.n_starts == 1
+        assert (scene.transient, scene.record) == (10, 4)
+        assert scene.section.kind == "phase" and scene.observe == {"section"} and scene.trajectory is None
+
+    def test_all_keys(self):
+        scene = parse_scene(
+            """
+            system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, R: 0.8, tau: 0.5, stops: right}
+            model: flow
+            sweep: {omega: {values: [0.6, 0.7]}, b: {start: 5, stop: 6, num: 3}}
+            start: {random: 16, seed: 1}
+            orbit: {transient: 1e3, record: 200}
+            section: {kind: impact, stop: right}
+            observe: [lyapunov, impacts, section]
+            trajectory: {periods: 4, samples: 400}
+            """
+        )
+        assert scene.system == System(**(NUMBERS | dict(omega=0.6, b=5, tau=0.5)), stops="right")
+        assert list(scene.sweep) == ["omega", "b"] and scene.shape == (2, 3, 16) and scene.n_points == 96
+        assert (scene.start.kind, scene.start.count, scene.start.seed) == ("random", 16, 1)
+        assert scene.transient == 1000
+        assert (scene.section.kind, scene.section.stop) == ("impact", "right")
+        assert scene.observe == {"section", "lyapunov", "impacts"}
+        assert (scene.trajectory.periods, scene.trajectory.samples) == (4, 400)
+
+    def test_physical_units(self):
+        numbers = "M1: 2, M2: 20, K1: 8, K2: 40, C1: 0.4, C2: 2, P1: 3, P2: 1, Omega: 1.26, R: 0.8, B: 3.3"
+        text = f"system: {{physical: {{{numbers}}}, stops: left}}\norbit: {{transient: 0, record: 1}}\n"
+        system = parse_scene(text).system
+        assert system.mu_m == 10 and system.mu_k == 5 and system.f2 == 0.25 and system.stops == "left"
+        assert system.zeta == pytest.approx(0.05) and system.omega == pytest.approx(0.63)
+        assert system.b == pytest.approx(6.6)
+        swept = parse_scene(text + "sweep: {b: {values: [1, 2]}}")
+        assert swept.system == system.replace(b=1)
+
+    @pytest.mark.parametrize("direction, n_starts", [("up", 1), ("down", 1), ("both", 2)])
+    def test_follow(self, direction, n_starts):
+        scene = parse_scene(f"{BASE}sweep: {{b: {{values: [6, 7]}}}}\nstart: {{follow: {direction}}}")
+        assert scene.start.kind == "follow" and scene.start.direction == direction
+        assert scene.n_starts == n_starts and scene.shape == ((2,) if n_starts == 1 else (2, 2))
+
+    def test_one_random_start_makes_no_dimension(self):
+        assert parse_scene(f"{BASE}start: {{random: 1}}").shape == ()
+
+    def test_trajectory_alone(self):
+        assert parse_scene(f"{BASE}observe: []\ntrajectory: {{periods: 1, samples: 2}}").observe == frozenset()
+
+    def test_start_at_a_stop_and_beside_a_missing_one(self):
+        assert parse_scene(f"{BASE}start: {{x1: 6.6}}").start.state[0] == 6.6
+        one_sided = BASE.replace("b: 6.6", "b: 6.6, stops: right")
+        assert parse_scene(f"{one_sided}start: {{x1: -100}}").start.state[0] == -100
+
+    def test_parameters(self):
+        scene = parse_scene(BASE + "sweep: {omega: {values: [0.6, 0.63]}, b: {values: [5, 6, 7]}}")
+        parameters = scene.parameters()
+        assert tuple(parameters) == NAMES
+        assert {array.shape for array in parameters.values()} == {(2, 3)}
+        for i, omega in enumerate((0.6, 0.63)):
+            for j, b in enumerate((5, 6, 7)):
+                expected = scene.system.replace(omega=omega, b=b).parameters()
+                found = {name: array[i, j] for name, array in parameters.items()}
+                assert found == pytest.approx(expected, rel=1e-15)
+
+    def test_parameters_of_one_orbit(self):
+        parameters = parse_scene(BASE).parameters()
+        assert parameters["tau"] == pytest.approx(2.229306509033, abs=1e-12) and parameters["b"].shape == ()
+
+    def test_swept_phase(self):
+        parameters = parse_scene(BASE + "sweep: {tau: {values: [0, 1]}}").parameters()
+        assert parameters["tau"].tolist() == [0, 1]
+
+    def test_every_problem_is_named_at_once(self):
+        text = BASE.replace("R: 0.8", "R: 1.8").replace("mu_k: 5, ", "") + "sweep: {zeta: {start: 1, stop: 0, step: 1}}"
+        with pytest.raises(SceneError) as caught:
+            parse_scene(text, "bad.yaml")
+        keys = [line.partition(":")[0].partition(" =")[0] for line in caught.value.problems]
+        assert keys == ["sweep.zeta.step", "system.mu_k", "system.R"]
+        assert str(caught.value).startswith("bad.yaml: 3 problems\n")
+
+    def test_a_thousand_problems_stay_readable(self):
+        with pytest.raises(SceneError) as caught:
+            parse_scene(f"{BASE}sweep: {{b: {{values: [{', '.join('x' * 1000)}]}}}}")
+        assert len(str(caught.value).splitlines()) == 22
+
+    @pytest.mark.parametrize("values", ["[2, 3]", "[3, 2]", "[3]"])
+    def test_undamped_resonance_has_no_grazing_phase(self, values):
+        # mu_m = 1, mu_k = 7.875 has the mode omega_2 = 3 exactly
+        system = "system: {mu_m: 1, mu_k: 7.875, zeta: 0, f2: 0, R: 0.8, b: 1}"
+        text = f"{system}\norbit: {{transient: 10, record: 4}}\nsweep: {{omega: {{values: {values}}}}}"
+        with pytest.raises(SceneError, match=r"system.tau = \"grazing\": .*resonance"):
+            parse_scene(text)
+        assert parse_scene(text.replace(values, "[2, 2.5]")).shape == (2,)
+
+
+class TestSchema:
+    def test_committed_schema_is_up_to_date(self):
+        assert json.loads((CONFIGS / "scene.schema.json").read_text()) == json_schema()
+
+    def test_is_draft_7_without_newer_words(self):
+        schema = json_schema()
+        jsonschema.Draft7Validator.check_schema(schema)
+        assert not {'"$defs"', '"prefixItems"'} & set(json.dumps(schema).replace(":", " ").split())
+
+    @pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.yaml")), ids=lambda path: path.stem)
+    def test_configs_are_valid(self, path):
+        assert path.read_text().startswith("# yaml-language-server: $schema=./scene.schema.json\n")
+        assert load_scene(path).name == path.stem
+        jsonschema.Draft7Validator(json_schema()).validate(read_yaml(path.read_text()))
+
+    @pytest.mark.parametrize("key", NAMES)
+    def test_bounds_are_those_of_the_system(self, key):
+        validator = jsonschema.Draft7Validator(json_schema()["definitions"]["SystemForm"])
+        for value in (-1, -1e-9, 0, 1e-9, 0.5, 1, 1 + 1e-9, 1e9):
+            try:
+                check_value(key, value)
+                allowed = True
+            except SystemError:
+                allowed = False
+            assert validator.is_valid({key: value}) == allowed, value
+
+    def test_every_key_is_described(self):
+        definitions = json_schema()["definitions"]
+        for name, definition in definitions.items():
+            assert definition["additionalProperties"] is False and definition["description"]
+            for key, schema in definition["properties"].items():
+                assert schema.get("description") or name.endswith("Axis") or "$ref" in schema, (name, key)
+
+
+class TestFiles:
+    def test_name_and_text(self, tmp_path):
+        path = tmp_path / "my scene.yaml"
+        path.write_text(BASE)
+        scene = load_scene(path)
+        assert scene.name == "my scene" and scene.text == BASE
+
+    def test_not_text(self, tmp_path):
+        path = tmp_path / "scene.yaml"
+        path.write_bytes(b"system: \xff\xfe")
+        with pytest.raises(SceneError, match=r"scene\.yaml: byte 8 is not UTF-8"):
+            load_scene(path)
+
+    def test_huge(self, tmp_path):
+        path = tmp_path / "scene.yaml"
+        path.write_bytes(b"#" * 2_000_000)
+        with pytest.raises(SceneError, match="longer than 1000000 bytes"):
+            load_scene(path)
+
+    def test_missing(self, tmp_path):
+        with pytest.raises(FileNotFoundError):
+            load_scene(tmp_path / "none.yaml")

@@ -1,0 +1,115 @@
+"""The loop: orbits from section to section over the phase grid."""
+
+import numpy as np
+
+from vibro_sweep.kernels import status, tangent
+from vibro_sweep.kernels.flight import CHUNK
+from vibro_sweep.kernels.impacts import cross_cell, start_count
+from vibro_sweep.kernels.jit import jit
+
+
+@jit
+def control_point(scan, p, q, y0, y1, y2, y3):
+    """Control point p of a flight that starts at (y0, ..., y3); q: as counted from there."""
+    return scan[4, p] + scan[0, q] * y0 + scan[1, q] * y1 + scan[2, q] * y2 + scan[3, q] * y3
+
+
+@jit
+def first_suspect(f, stops, first, base, y0, y1, y2, y3):
+    """The first cell from `first` on in which contact cannot be excluded; `cells` if there is none.
+
+    (y0, ..., y3) = X - r at node `base`. The control points of all cells (tables.py) are looked at with multiply-adds
+    alone, in a loop that the compiler turns into vector instructions.
+    """
+    scan, cells, bound = f.scan, f.oscillator[0].cells, f.oscillator[0].remainder
+    margin = bound[0] * abs(y0) + bound[1] * abs(y1) + bound[2] * abs(y2) + bound[3] * abs(y3) + bound[4]
+    low, high = stops.left + margin, stops.right - margin
+    shift = np.uint64(2 * base)  # unsigned: else numba looks for negative indices, and the loop stays scalar
+    for begin in range(2 * first, 2 * cells, CHUNK):
+        outside = 0
+        for p in range(np.uint64(begin), np.uint64(begin + CHUNK)):
+            outside += not (low <= control_point(scan, p, p - shift, y0, y1, y2, y3) <= high)
+        if outside == 0:
+            continue
+        for p in range(begin, min(begin + CHUNK, 2 * cells)):
+            if not (low <= control_point(scan, p, p - 2 * base, y0, y1, y2, y3) <= high):
+                cell = p // 2
+                if p % 2 == 0 and cell > first and ends_outside(scan, cell - 1, base, low, high, y0, y1, y2, y3):
+                    return cell - 1
+                return cell
+    if first < cells and ends_outside(scan, cells - 1, base, low, high, y0, y1, y2, y3):
+        return cells - 1
+    return cells
+
+
+@jit
+def ends_outside(scan, k, base, low, high, y0, y1, y2, y3):
+    """Whether cell k ends outside, by the mean of the control points beside its end."""
+    p, q = 2 * k + 1, 2 * (k - base) + 1
+    end = 0.5 * (control_point(scan, p, q, y0, y1, y2, y3) + control_point(scan, p + 1, q + 1, y0, y1, y2, y3))
+    return not (low <= end <= high)
+
+
+@jit
+def cross_period(f, stops, o, records, t, k, s):
+    """Carry the orbit from offset s of cell k to the end of the forcing period. Returns a status."""
+    q, nodes, X = f.oscillator[0], f.nodes, o.X
+    o.events = o.samples_taken = 0
+    base, r = k, nodes[k].r
+    y0, y1, y2, y3 = X[0] - r[0], X[1] - r[1], X[2] - r[2], X[3] - r[3]
+    while True:
+        if s == 0.0 and o.resting == 0.0 and len(records.times) == 0:
+            k = first_suspect(f, stops, k, base, y0, y1, y2, y3)
+        if k > base:
+            E, r = nodes[k - base].E, nodes[k].r
+            for i in range(4):
+                X[i] = (E[i, 0] * y0 + E[i, 1] * y1) + (E[i, 2] * y2 + E[i, 3] * y3) + r[i]
+        if k == q.cells:
+            break
+        events, rested = o.events, o.resting != 0.0
+        outcome = cross_cell(f, stops, o, records, t, k, s)
+        if outcome != status.OK:
+            return outcome
+        k += 1
+        if s > 0.0 or rested or o.events > events:  # else it was free flight, which goes on from `base`
+            s, base, r = 0.0, k, nodes[k].r
+            y0, y1, y2, y3 = X[0] - r[0], X[1] - r[1], X[2] - r[2], X[3] - r[3]
+    if t.wanted:
+        tangent.end_period(t, q, nodes)
+    o.period += 1
+    return status.OK
+
+
+@jit
+def settle(f, stops, o, records, t, transient, warm_up):
+    """The transient; tangent vectors, if wanted (`warm_up` > 0), come along for its last `warm_up` periods."""
+    for n in range(transient):
+        if n == transient - warm_up:
+            tangent.begin(t)
+        outcome = cross_period(f, stops, o, records, t, 0, 0.0)
+        if outcome != status.OK:
+            return outcome
+    return status.OK
+
+
+@jit
+def record(f, stops, o, records, t, section, spectrum):
+    """len(section) periods; section[i]: the state at the end of period i. spectrum: the exponents.
+
+    Returns a status and the sum of the exponents.
+    """
+    start_count(o)
+    if t.wanted:
+        tangent.catch_up(t, f.oscillator[0])
+        tangent.start_record(t)
+    for n in range(len(section)):
+        outcome = cross_period(f, stops, o, records, t, 0, 0.0)
+        if outcome != status.OK:
+            return outcome, np.nan
+        for i in range(4):
+            section[n, i] = o.X[i]
+    if not t.wanted:
+        return status.OK, np.nan
+    tangent.catch_up(t, f.oscillator[0])
+    time = len(section) * (f.oscillator[0].width * f.oscillator[0].cells)
+    return status.OK, tangent.exponents(t, time, spectrum)

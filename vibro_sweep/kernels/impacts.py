@@ -1,0 +1,296 @@
+"""One orbit through one cell: from contact to contact, through chatter and rest, to the cell's end."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.kernels import status, tangent
+from vibro_sweep.kernels.contact import first_contact
+from vibro_sweep.kernels.flight import ORDER, evaluate, load
+from vibro_sweep.kernels.jit import jit
+
+MOST_EVENTS = 100_000  # impacts, grazes and rests in one forcing period; an orbit that needs more gets a status
+CHATTER = 2.0**-53  # of a period: the error allowed in time when the rest of a chatter sequence is summed up
+
+
+class Stops(NamedTuple):
+    """The walls, infinite where there is none, and the coefficient of restitution."""
+
+    left: float
+    right: float
+    R: float
+
+
+# One orbit on its way, and what is counted of it.
+ORBIT = np.dtype(
+    [
+        ("X", float, 4),  # x1, v1, x2, v2
+        ("resting", float),  # side of the stop that M1 rests on, or 0
+        ("c1", float, ORDER),  # Taylor coefficients of x1, or of the free acceleration of M1 at rest
+        ("c2", float, ORDER),  # of x2
+        ("period", np.int64),
+        ("events", np.int64),  # impacts, grazes, and ends of rests in this period
+        ("impacts_left", np.int64),
+        ("impacts_right", np.int64),
+        ("chatters", np.int64),  # sequences summed up
+        ("slowest", float),  # least |v1| before an impact
+        ("rest_time", float),
+        ("log_side", float),  # impacts on this side are logged; 0: on both
+        ("impacts_logged", np.int64),  # or would have been, had there been room
+        ("rests_logged", np.int64),
+        ("samples_taken", np.int64),
+    ]
+)
+
+
+class Records(NamedTuple):
+    """What is kept of an orbit on its way; an observation that nobody wants has m = 0."""
+
+    impacts: np.ndarray  # (m, 7): period, cell, offset, side, v1 before, x2, v2
+    rests: np.ndarray  # (m, 4): period, cell, offset, side at the onset of a rest, 0 at its end
+    times: np.ndarray  # (m, 2): cell and offset in this period at which the motion is sampled
+    samples: np.ndarray  # (m, 4)
+
+
+def new_records(impacts: int = 0, rests: int = 0, samples: int = 0) -> Records:
+    """Room for so many entries of each kind."""
+    return Records(np.empty((impacts, 7)), np.empty((rests, 4)), np.empty((samples, 2)), np.empty((samples, 4)))
+
+
+@jit
+def place(o, x1, v1, x2, v2):
+    """Start an orbit here, with nothing counted yet."""
+    o.X[0], o.X[1], o.X[2], o.X[3] = x1, v1, x2, v2
+    o.resting = 0.0
+    o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
+    start_count(o)
+
+
+@jit
+def start_count(o):
+    """Count impacts and rest from here on."""
+    o.impacts_left = o.impacts_right = o.chatters = 0
+    o.slowest, o.rest_time = np.inf, 0.0
+
+
+@jit
+def advance(o, u):
+    """The state at offset u of the series."""
+    X, c1, c2 = o.X, o.c1, o.c2
+    x1, v1, x2, v2 = c1[ORDER - 1], 0.0, c2[ORDER - 1], 0.0
+    for n in range(ORDER - 2, -1, -1):
+        v1 = v1 * u + x1
+        x1 = x1 * u + c1[n]
+        v2 = v2 * u + x2
+        x2 = x2 * u + c2[n]
+    X[0], X[1], X[2], X[3] = x1, v1, x2, v2
+
+
+@jit
+def sample(o, records, k, start, stop):
+    """Take the samples that fall in cell k between the offset `start`, where the series begins, and `stop`."""
+    times, samples = records.times, records.samples
+    i = o.samples_taken
+    while i < len(times) and times[i, 0] == k and times[i, 1] <= stop:
+        u = max(times[i, 1] - start, 0.0)
+        samples[i, 0], samples[i, 1] = evaluate(o.c1, u)
+        samples[i, 2], samples[i, 3] = evaluate(o.c2, u)
+        if o.resting != 0.0:
+            samples[i, 0], samples[i, 1] = o.X[0], 0.0
+        i += 1
+    o.samples_taken = i
+
+
+@jit
+def third_derivative_bound(q, c):
+    """Bound on the third derivative of a series over the cell."""
+    total = 0.0
+    for n in range(3, ORDER):
+        total += q.third[n] * abs(c[n])
+    return total
+
+
+@jit
+def departure(q, c, side, third, left, released):
+    """An offset up to which a mass that leaves the stop on `side` without speed cannot be back.
+
+    The gap is at least curve u^2/2 - third u^3/6; after a release curve = 0, and jerk u^3/6 - fourth u^4/24 stays.
+    """
+    curve, jerk = -2.0 * side * c[2], -6.0 * side * c[3]
+    if not released:
+        return min(left, 1.5 * curve / third) if third > 0.0 else left
+    fourth, power = 0.0, 1.0
+    for n in range(4, ORDER):
+        fourth += n * (n - 1.0) * (n - 2.0) * (n - 3.0) * abs(c[n]) * power
+        power *= q.width
+    return min(left, 2.0 * jerk / fourth) if fourth > 0.0 else left
+
+
+@jit
+def next_contact(stops, c, side, third, start, left):
+    """Offset and side of the first contact in the rest of the cell; `side` is the stop that M1 leaves, or 0."""
+    reach, power = 0.0, 1.0
+    for n in range(1, ORDER):
+        power *= left
+        reach += abs(c[n]) * power
+    gap = 0.0 if side > 0.0 else stops.right - c[0]
+    right = first_contact(c, gap, 1.0, third, start, left) if gap <= reach else np.inf
+    gap = 0.0 if side < 0.0 else c[0] - stops.left
+    if gap <= reach:
+        other = first_contact(c, gap, -1.0, third, start, min(left, right))
+        if other < right:
+            return other, -1.0
+    return right, 1.0
+
+
+@jit
+def impact(f, stops, o, records, t, k, s, side, sin, cos):
+    """v1 -> -R v1, and what is observed of it."""
+    q, X, R = f.oscillator[0], o.X, stops.R
+    before = X[1]
+    o.events += 1
+    if o.log_side == 0.0 or o.log_side == side:
+        if o.impacts_logged < len(records.impacts):
+            row = records.impacts[o.impacts_logged]
+            row[0], row[1], row[2], row[3], row[4], row[5], row[6] = o.period, k, s, side, before, X[2], X[3]
+        o.impacts_logged += 1
+    if side > 0.0:
+        o.impacts_right += 1
+    else:
+        o.impacts_left += 1
+    o.slowest = min(o.slowest, abs(before))
+    X[1] = -R * before
+    if t.wanted:
+        a = q.force
+        after = (a[0] * X[0] + a[1] * X[1]) + (a[2] * X[2] + a[3] * X[3]) + (a[4] * sin + a[5] * cos)
+        tangent.fly(t, q, f.nodes, k, s)
+        # a1+ + R a1-, since a1+ - a1- = 2 zeta (1 + R) v1-
+        tangent.saltate(t, q, R, (1.0 + R) * (after / before - 2.0 * q.zeta * R))
+
+
+@jit
+def mark_rest(o, records, k, s, side):
+    """Log the beginning of a rest on `side`, or (0) its end."""
+    o.events += 1
+    if o.rests_logged < len(records.rests):
+        row = records.rests[o.rests_logged]
+        row[0], row[1], row[2], row[3] = o.period, k, s, side
+    o.rests_logged += 1
+
+
+@jit
+def begin_rest(f, o, records, t, k, s, side):
+    """M1 comes to rest on the stop."""
+    o.X[1] = 0.0
+    o.resting = side
+    mark_rest(o, records, k, s, side)
+    if t.wanted:
+        tangent.fly(t, f.oscillator[0], f.nodes, k, s)
+        tangent.rest(t, f.oscillator[0])
+
+
+@jit
+def stay_at_rest(f, o, records, t, k, s, sin, cos):
+    """M1 rests from offset s of cell k on, M2 moves. Returns the offset of the release, infinite if it is not in the
+    cell.
+
+    M1 is released where its free acceleration, which points into the stop, changes sign: a root found like a contact.
+    """
+    q, X, c1, c2, side = f.oscillator[0], o.X, o.c1, o.c2, o.resting
+    left = q.width - s
+    a, b = q.resting1, q.resting2
+    for n in range(ORDER):
+        c1[n] = (a[0, n] * X[0] + a[1, n] * X[2]) + (a[2, n] * X[3] + a[3, n] * sin) + a[4, n] * cos
+        c2[n] = (b[0, n] * X[0] + b[1, n] * X[2]) + (b[2, n] * X[3] + b[3, n] * sin) + b[4, n] * cos
+    gap = max(side * c1[0], 0.0)
+    d = 0.0
+    if gap > 0.0 or side * c1[1] > 0.0:
+        d = first_contact(c1, gap, -side, third_derivative_bound(q, c1), 0.0, left)
+    end = min(d, left)
+    sample(o, records, k, s, s + end)
+    X[2], X[3] = evaluate(c2, end)
+    o.rest_time += end
+    if t.wanted:
+        xx, vx = evaluate(q.resting2[1], end)
+        xv, vv = evaluate(q.resting2[2], end)
+        tangent.release(t, q, xx, xv, vx, vv)
+        if d == np.inf:
+            t.cell, t.offset = k + 1, 0.0
+        else:
+            t.cell, t.offset = k, s + d
+    if d == np.inf:
+        return d
+    o.resting = 0.0
+    mark_rest(o, records, k, s + d, 0.0)
+    return s + d
+
+
+@jit
+def chatter(q, stops, o, third, side, left):
+    """Time in which the impacts to come accumulate, if they do so within the cell and can be summed up; else infinite.
+
+    With the acceleration a into the stop, flights last 2 v/a, 2 R v/a, ..., in all 2 v/(a (1 - R)) =: w. The change
+    of a within w makes an error of about w (third w/a).
+    """
+    speed, a = -side * o.X[1], 2.0 * side * o.c1[2]
+    if a <= 0.0 or stops.R == 1.0:
+        return np.inf
+    w = 2.0 * speed / (a * (1.0 - stops.R))
+    change = third * w / a
+    if w < left and change < 1e-3 and w * change <= CHATTER * q.width * q.cells:
+        return w
+    return np.inf
+
+
+@jit
+def cross_cell(f, stops, o, records, t, k, s):
+    """Follow the orbit from offset s in cell k to the cell's end, through all that happens. Returns a status."""
+    q, node, X, c1 = f.oscillator[0], f.nodes[k], o.X, o.c1
+    released = False
+    while o.events < MOST_EVENTS:
+        left = q.width - s
+        swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
+        sin = node.sin * turn + node.cos * swing
+        cos = node.cos * turn - node.sin * swing
+        if o.resting != 0.0:
+            s = stay_at_rest(f, o, records, t, k, s, sin, cos)
+            if s == np.inf:
+                return status.OK
+            released = True
+            continue
+        side = 1.0 if X[0] >= stops.right else (-1.0 if X[0] <= stops.left else 0.0)
+        if side * X[1] > 0.0:
+            impact(f, stops, o, records, t, k, s, side, sin, cos)
+        load(q.series1, X[0], X[1], X[2], X[3], sin, cos, c1)
+        load(q.series2, X[0], X[1], X[2], X[3], sin, cos, o.c2)
+        third = third_derivative_bound(q, c1)
+        start = 0.0
+        if side != 0.0 and X[1] == 0.0:
+            push = side * (c1[3] if released or c1[2] == 0.0 else c1[2])
+            if push > 0.0:
+                begin_rest(f, o, records, t, k, s, side)
+                continue
+            start = departure(q, c1, side, third, left, released)
+        elif side != 0.0:
+            w = chatter(q, stops, o, third, side, left)
+            if w < np.inf:
+                sample(o, records, k, s, s + w)
+                advance(o, w)
+                X[0] = stops.right if side > 0.0 else stops.left
+                s += w
+                o.chatters += 1
+                begin_rest(f, o, records, t, k, s, side)
+                continue
+        d, side = next_contact(stops, c1, side, third, start, left)
+        sample(o, records, k, s, s + min(d, left))
+        advance(o, min(d, left))
+        if d == np.inf:
+            return status.OK if math.isfinite(X[1] + X[3]) else status.NOT_FINITE
+        s += d
+        X[0] = stops.right if side > 0.0 else stops.left
+        released = False
+        if side * X[1] <= 0.0:  # it touched the stop without speed: a graze is no impact
+            X[1] = 0.0
+            o.events += 1
+    return status.EVENT_LIMIT

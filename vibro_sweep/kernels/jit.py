@@ -1,0 +1,40 @@
+"""All jit policy in one place: nogil, no fastmath but fused multiply-adds, cached on disk.
+
+numba's cache does not see an edit in a helper's file, so the cache folder is named by a hash of all kernel sources.
+"""
+
+import hashlib
+import os
+from pathlib import Path
+
+import numba
+from numba.core import config
+
+
+def source_hash() -> str:
+    """Identifies the kernels: equal hashes give equal numbers on equal machines."""
+    digest = hashlib.sha256()
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _cache_folder() -> str:
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    return os.path.join(config.CACHE_DIR or os.path.join(home, "vibro_sweep"), source_hash())
+
+
+_FOLDER = _cache_folder()
+
+
+def jit(function):
+    """`numba.njit` for a kernel. `contract` alone is allowed: it fuses multiply-adds and keeps every NaN check."""
+    dispatcher = numba.njit(nogil=True, fastmath={"contract"}, error_model="numpy")(function)
+    before, config.CACHE_DIR = config.CACHE_DIR, _FOLDER
+    try:
+        dispatcher.enable_caching()
+    except RuntimeError:  # no folder can be written: every start compiles anew
+        pass
+    finally:
+        config.CACHE_DIR = before
+    return dispatcher

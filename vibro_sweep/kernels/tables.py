@@ -1,0 +1,210 @@
+"""The tables of one oscillator (`Flight`), from its modes."""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.kernels.flight import CHUNK, ORDER, WIDTH, decaying, evaluate
+from vibro_sweep.kernels.jit import jit
+
+LEAST_CELLS = 32
+MOST_CELLS = 16384
+
+
+def cells_needed(omega_squared: np.ndarray, zeta: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """Cells for which every rate of a system times the cell width is at most `WIDTH`; omega_squared is (..., 2)."""
+    eta = np.asarray(zeta)[..., None] * omega_squared
+    overdamped = np.sqrt(np.maximum(eta**2 - omega_squared, 0.0))
+    rate = np.where(eta**2 <= omega_squared, np.sqrt(omega_squared), eta + overdamped).max(-1)
+    needed = 2 * math.pi * np.maximum(rate / omega, 1.0) / WIDTH
+    return np.maximum(LEAST_CELLS, 8 * np.ceil(np.minimum(needed, 1e9) / 8)).astype(np.int64)
+
+
+@jit
+def derive(A, row, size, series):
+    """series[i, n]: Taylor coefficient n of (row . z) as a function of z_i, for z' = A z."""
+    for i in range(size):
+        series[i, 0] = row[i]
+    for n in range(1, ORDER):
+        for i in range(size):
+            total = 0.0
+            for j in range(size):
+                total += series[j, n - 1] * A[j, i]
+            series[i, n] = total / n
+
+
+@jit
+def clear(a):
+    for i in range(a.shape[0]):
+        for j in range(a.shape[1]):
+            a[i, j] = 0.0
+
+
+@jit
+def fill_series(q, A, row, mu_m, mu_k, f2):
+    """Taylor series of x1 and x2 in flight, and of M1's free acceleration and x2 while M1 rests on a stop (eq. 3).
+
+    A (6, 6) and row (6,) are scratch.
+    """
+    zeta, omega = q.zeta, q.omega
+    clear(A)
+    A[0, 1] = A[2, 3] = 1.0
+    A[1, 0], A[1, 1], A[1, 2], A[1, 3], A[1, 4] = -1.0, -2.0 * zeta, 1.0, 2.0 * zeta, 1.0 - f2
+    A[3, 0], A[3, 1] = 1.0 / mu_m, 2.0 * zeta / mu_m
+    A[3, 2], A[3, 3], A[3, 4] = -(1.0 + mu_k) / mu_m, -2.0 * zeta * (1.0 + mu_k) / mu_m, f2 / mu_m
+    A[4, 5], A[5, 4] = omega, -omega
+    for i in range(6):
+        q.force[i] = A[1, i]
+        row[i] = 0.0
+    row[0] = 1.0
+    derive(A, row, 6, q.series1)
+    row[0], row[2] = 0.0, 1.0
+    derive(A, row, 6, q.series2)
+    # at rest z = (x1, x2, v2, sin, cos)
+    spring, damper, push = A[3, 2], A[3, 3], A[3, 4]
+    clear(A)
+    A[1, 2] = 1.0
+    A[2, 0], A[2, 1], A[2, 2], A[2, 3] = 1.0 / mu_m, spring, damper, push
+    A[3, 4], A[4, 3] = omega, -omega
+    row[0], row[1], row[2], row[3], row[4] = q.force[0], q.force[2], q.force[3], q.force[4], 0.0
+    derive(A, row, 5, q.resting1)
+    row[0], row[1], row[2], row[3] = 0.0, 1.0, 0.0, 0.0
+    derive(A, row, 5, q.resting2)
+
+
+@jit
+def fill_flight(q, nodes, psi, omega_squared, mu_m):
+    """E = exp(A t_k) in physical coordinates, from the 2x2 block of each mode."""
+    for k in range(q.cells + 1):
+        E, frame = nodes[k].E, nodes[k].frame
+        clear(E)
+        for j in range(2):
+            eta = q.zeta * omega_squared[j]
+            c, s, xi, rate = decaying(eta, omega_squared[j], k * q.width)
+            frame[2 * j], frame[2 * j + 1] = c, s
+            for i in range(2):
+                for m in range(2):
+                    weight = psi[i, j] * psi[m, j] * (mu_m if m == 1 else 1.0)
+                    E[2 * i, 2 * m] += weight * xi
+                    E[2 * i, 2 * m + 1] += weight * s
+                    E[2 * i + 1, 2 * m] -= weight * omega_squared[j] * s
+                    E[2 * i + 1, 2 * m + 1] += weight * rate
+
+
+@jit
+def fill_motion(q, nodes, tau):
+    """The phase at the nodes, and the motion r from rest at node 0."""
+    for k in range(q.cells + 1):
+        phase = tau + 2.0 * math.pi * (k / q.cells)
+        nodes[k].sin = math.sin(phase)
+        nodes[k].cos = math.cos(phase)
+    r = nodes[0].r
+    for i in range(4):
+        r[i] = 0.0
+    E = nodes[1].E
+    sin1, sin1_rate = evaluate(q.series1[4], q.width)
+    cos1, cos1_rate = evaluate(q.series1[5], q.width)
+    sin2, sin2_rate = evaluate(q.series2[4], q.width)
+    cos2, cos2_rate = evaluate(q.series2[5], q.width)
+    for k in range(q.cells):
+        sin, cos, r, after = nodes[k].sin, nodes[k].cos, nodes[k].r, nodes[k + 1].r
+        for i in range(4):
+            after[i] = (E[i, 0] * r[0] + E[i, 1] * r[1]) + (E[i, 2] * r[2] + E[i, 3] * r[3])
+        after[0] += sin1 * sin + cos1 * cos
+        after[1] += sin1_rate * sin + cos1_rate * cos
+        after[2] += sin2 * sin + cos2 * cos
+        after[3] += sin2_rate * sin + cos2_rate * cos
+
+
+@jit
+def fourth_derivative_bound(q, x1, v1, x2, v2, sin, cos):
+    """Bound on the fourth derivative of x1 over a cell that begins with this state: the sum of its terms' sizes."""
+    s = q.series1
+    total, power = 0.0, 1.0
+    for n in range(4, ORDER):
+        c = (s[0, n] * x1 + s[1, n] * v1) + (s[2, n] * x2 + s[3, n] * v2) + (s[4, n] * sin + s[5, n] * cos)
+        total += n * (n - 1.0) * (n - 2.0) * (n - 3.0) * power * abs(c)
+        power *= q.width
+    return total
+
+
+@jit
+def fill_scan(q, nodes, scan):
+    """Control points of the cubic through x1 and v1 at both ends of each cell, and how far x1 can be from it.
+
+    The cubic has the Bernstein coefficients x_k, x_k + h v_k/3, x_{k+1} - h v_{k+1}/3, x_{k+1}. Its error is at most
+    bound t^2 (1 - t)^2 h^4/24, a quartic with the one coefficient bound h^4/144, the middle one. So x1 stays below b
+    where both inner control points do by that much, and both ends do. Each end is the mean of the inner points beside
+    it.
+    """
+    third = q.width / 3.0
+    for i in range(5):
+        for p in range(2 * q.cells + 1, 2 * q.cells + CHUNK):
+            scan[i, p] = 0.0
+        q.remainder[i] = 0.0
+    for k in range(q.cells + 1):
+        E, r = nodes[k].E, nodes[k].r
+        for i in range(4):
+            scan[i, 2 * k] = E[0, i] + third * E[1, i]
+            if k > 0:
+                scan[i, 2 * k - 1] = E[0, i] - third * E[1, i]
+            free = fourth_derivative_bound(q, E[0, i], E[1, i], E[2, i], E[3, i], 0.0, 0.0)
+            q.remainder[i] = max(q.remainder[i], free)
+        scan[4, 2 * k] = r[0] + third * r[1]
+        if k > 0:
+            scan[4, 2 * k - 1] = r[0] - third * r[1]
+        forced = fourth_derivative_bound(q, r[0], r[1], r[2], r[3], nodes[k].sin, nodes[k].cos)
+        q.remainder[4] = max(q.remainder[4], forced)
+    for i in range(5):
+        largest = 0.0
+        for p in range(2 * q.cells + 1):
+            largest = max(largest, abs(scan[i, p]))
+        # 1e-15: the rounding of a control point, a few units in the last place of each of its terms
+        q.remainder[i] = q.remainder[i] * q.width**4 / 144.0 + 1e-15 * largest
+
+
+@jit
+def fill_frame(q, psi, omega_squared, mu_m):
+    """The metric in which free flight is a rotation times a decay (tangent.py)."""
+    series, to_frame, from_frame = q.frame_series, q.to_frame, q.from_frame
+    clear(to_frame)
+    clear(from_frame)
+    for j in range(2):
+        eta = q.zeta * omega_squared[j]
+        square = omega_squared[j] - eta * eta
+        # near critical damping the plane shears instead of turning; any scale then serves
+        scale = max(math.sqrt(abs(square)), 1e-3 * math.sqrt(omega_squared[j]))
+        q.frame_square[j], q.frame_scale[j] = square, scale
+        series[0, 2 * j], series[1, 2 * j] = 1.0, -eta
+        series[0, 2 * j + 1], series[1, 2 * j + 1] = 0.0, 1.0
+        for n in range(ORDER - 2):
+            for i in range(2 * j, 2 * j + 2):
+                rate = 2.0 * eta * (n + 1.0) * series[n + 1, i] + omega_squared[j] * series[n, i]
+                series[n + 2, i] = -rate / ((n + 1.0) * (n + 2.0))
+        for i in range(2):
+            mass = mu_m if i == 1 else 1.0
+            to_frame[2 * j, 2 * i] = scale * psi[i, j] * mass
+            to_frame[2 * j + 1, 2 * i] = eta * psi[i, j] * mass
+            to_frame[2 * j + 1, 2 * i + 1] = psi[i, j] * mass
+            from_frame[2 * i, 2 * j] = psi[i, j] / scale
+            from_frame[2 * i + 1, 2 * j] = -eta * psi[i, j] / scale
+            from_frame[2 * i + 1, 2 * j + 1] = psi[i, j]
+
+
+@jit
+def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, tau):
+    """Fill the tables of an oscillator with modes psi (2, 2), omega_squared (2,), and phase tau (radians) at node 0.
+
+    scratch: (7, 6) floats.
+    """
+    q = f.oscillator[0]
+    q.cells, q.width, q.omega, q.zeta, q.kappa = cells, 2.0 * math.pi / omega / cells, omega, zeta, 2.0 * zeta / mu_m
+    power = 1.0
+    for n in range(3, ORDER):
+        q.third[n] = n * (n - 1.0) * (n - 2.0) * power
+        power *= q.width
+    fill_series(q, scratch[:6], scratch[6], mu_m, mu_k, f2)
+    fill_flight(q, f.nodes, psi, omega_squared, mu_m)
+    fill_motion(q, f.nodes, tau)
+    fill_scan(q, f.nodes, f.scan)
+    fill_frame(q, psi, omega_squared, mu_m)

@@ -1,0 +1,95 @@
+"""How the pictures look: type, colours, the names of the axes."""
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+
+WIDTH = 7.0  # inches: a page's text width
+
+STYLE = {
+    "figure.dpi": 200,
+    "savefig.dpi": "figure",
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "axes.labelsize": 10,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "legend.fontsize": 8,
+    "figure.titlesize": 9,
+    "axes.linewidth": 0.6,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "lines.linewidth": 0.8,
+    "hatch.linewidth": 0.5,
+    "legend.frameon": False,
+    "mathtext.fontset": "stix",
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+}
+
+INK = "#1a1a2e"
+FAINT = "#8a8a96"
+EXPONENTS = ("#b2182b", "#2166ac", "#4d9221", "#6e6e78")  # lambda_1 .. lambda_4
+CHAOS = "#fbe3dc"  # the tint where lambda_1 > 0
+BRANCHES = {"up": "#1f6fb4", "down": "#e1570f"}
+ARROWS = {"up": "up \N{RIGHTWARDS ARROW}", "down": "\N{LEFTWARDS ARROW} down"}
+DASHES = (0, (5, 3))
+RIGHT, LEFT = "#c26a00", "#2b5c8a"
+NOT_COMPUTED = "#dcdce0"
+
+SYMBOLS = {
+    "mu_m": r"\mu_m",
+    "mu_k": r"\mu_k",
+    "zeta": r"\zeta",
+    "f2": "f_2",
+    "omega": r"\omega",
+    "R": "R",
+    "b": "b",
+    "tau": r"\tau",
+}
+_NAMES = {
+    "mu_m": "mass ratio",
+    "mu_k": "stiffness ratio",
+    "zeta": "damping ratio",
+    "f2": "share of the force on $M_2$",
+    "omega": "forcing frequency",
+    "R": "coefficient of restitution",
+    "b": "clearance",
+    "tau": "forcing phase",
+}
+
+
+def axis_name(key) -> str:
+    """A system number as an axis label: its name and its symbol."""
+    return f"{_NAMES[key]} ${SYMBOLS[key]}$" if key in SYMBOLS else key
+
+
+def page(height, title) -> Figure:
+    """An empty figure of the page's width; needs no display and is known to no pyplot."""
+    fig = Figure(figsize=(WIDTH, height), layout="constrained")
+    fig.suptitle(title)
+    return fig
+
+
+def density_colours() -> ListedColormap:
+    """Perceptually even, to nearly black from a light colour that still stands out on white."""
+    return ListedColormap(colormaps["magma_r"](np.linspace(0.22, 1, 256)), name="density")
+
+
+def edges(values) -> np.ndarray:
+    """Cell borders, shape (n + 1,), halfway between neighbouring values (n,)."""
+    values = np.asarray(values, float)
+    if len(values) == 1:
+        half = 0.05 * abs(values[0]) or 0.5
+        return np.array([values[0] - half, values[0] + half])
+    inner = (values[1:] + values[:-1]) / 2
+    return np.concatenate([[2 * values[0] - inner[0]], inner, [2 * values[-1] - inner[-1]]])
+
+
+def limits(values) -> tuple[float, float]:
+    """An axis's range for values of any shape, NaN among them; the rounding of a constant is not blown up."""
+    low, high = np.nanmin(values), np.nanmax(values)
+    middle = (low + high) / 2
+    half = max(0.53 * (high - low), 1e-3 * abs(middle), 1e-9)
+    return middle - half, middle + half

@@ -1,0 +1,214 @@
+"""Pictures over one swept parameter: bifurcation diagram, Lyapunov spectrum, impacts."""
+
+import numpy as np
+from matplotlib.collections import PatchCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+
+from vibro_sweep.plotting import density
+from vibro_sweep.plotting.result import Result
+from vibro_sweep.plotting.style import (
+    ARROWS,
+    BRANCHES,
+    CHAOS,
+    DASHES,
+    EXPONENTS,
+    FAINT,
+    INK,
+    LEFT,
+    RIGHT,
+    axis_name,
+    edges,
+    limits,
+    page,
+)
+
+MANY = 100_000  # from here on single points make a blot, and are counted instead
+_BRANCH_LINES = {
+    "up": {"lw": 1.6, "alpha": 0.5},
+    "down": {"lw": 0.8},
+}  # the wide one shows beside the narrow one
+
+
+def shows_bifurcation(result: Result) -> bool:
+    return len(result.sweep) == 1 and ("x1" in result or "v1" in result)
+
+
+def shows_lyapunov(result: Result) -> bool:
+    return len(result.sweep) == 1 and "lyapunov" in result
+
+
+def shows_impacts(result: Result) -> bool:
+    return len(result.sweep) == 1 and "impacts_right" in result and "impacts_left" in result
+
+
+def bifurcation(result: Result):
+    """Section points over the parameter; below, on the same axis, spectrum and impacts where stored."""
+    panels = [(3.6, _section)]
+    if shows_lyapunov(result):
+        panels.append((1.7, _spectrum))
+    if shows_impacts(result):
+        panels.append((0.9, _impact_counts))
+    return _stack(result, panels, "Bifurcation diagram")
+
+
+def lyapunov(result: Result):
+    """The Lyapunov spectrum over the parameter."""
+    return _stack(result, [(3.6, _spectrum)], "Lyapunov exponents")
+
+
+def impacts(result: Result):
+    """Impacts at each stop over the parameter."""
+    return _stack(result, [(2.8, _impact_counts)], "Impacts")
+
+
+def _stack(result, panels, what):
+    heights = [height for height, _ in panels]
+    starts = len(result.starts)
+    note = f"; {starts} starts at each value" if starts > 1 and not result.follow else ""
+    fig = page(sum(heights) + 1.0, result.title(what + note))
+    axes = fig.subplots(len(panels), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
+    ((key, values),) = result.sweep.items()
+    order = np.argsort(values)  # a sweep may run downwards; an axis does not
+    values = values[order]
+    for ax, (_, draw) in zip(axes, panels, strict=True):
+        draw(ax, result, values, order)
+    borders = edges(values)
+    most = 0.02 * (values[-1] - values[0]) or np.inf
+    axes[-1].set_xlim(max(borders[0], values[0] - most), min(borders[-1], values[-1] + most))
+    axes[-1].set_xlabel(axis_name(key))
+    _key(axes[0], result)
+    fig.align_ylabels(axes)
+    return fig
+
+
+def _key(ax, result):
+    """What the colours mean, above the panel, where it hides no point."""
+    handles = [line for line in ax.lines if line.get_gid() == "stop"][:1]
+    if result.follow:
+        dots = {"ls": "none", "marker": "o", "markersize": 4}
+        both = [Line2D([], [], color=INK, label="both", **dots)] if ax.images else []
+        handles += [*(Line2D([], [], color=BRANCHES[n], label=ARROWS[n], **dots) for n in BRANCHES), *both]
+    if handles:
+        place = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.1, "borderpad": 0.1}
+        ax.legend(handles=handles, ncols=len(handles), handletextpad=0.3, columnspacing=1.2, **place)
+
+
+def _section(ax, result, values, order):
+    at_impact = "phase" in result
+    points = result.array("v1" if at_impact else "x1")[order]  # (values, starts, samples)
+    count = np.isfinite(points).sum()
+    if at_impact:
+        ax.set_ylabel(f"$v_1$ before impact, {result.setting('section', 'stop') or 'right'} stop")
+    else:
+        ax.set_ylabel(r"$x_1$ at $t = 0$ mod $T$")
+    if not count:
+        ax.text(0.5, 0.5, "no section points", transform=ax.transAxes, ha="center", color=FAINT)
+        return
+    ax.set_ylim(limits(points))
+    if count >= MANY:
+        if result.follow:
+            density.two(ax, values, points, list(BRANCHES.values()))
+        else:
+            density.one(ax, values, points)
+    elif result.follow:
+        # Where the branches agree the wide dot shows as a rim around the narrow one.
+        for i, (name, scale) in enumerate({"up": 2.4, "down": 1.1}.items()):
+            _dots(ax, values, points[:, i], count, scale, color=BRANCHES[name])
+    else:
+        _dots(ax, values, points, count, color=INK)
+    if not at_impact:
+        _stop_lines(ax, result, values, order)
+
+
+def _dots(ax, values, points, count, scale=1.0, **style):
+    there = np.isfinite(points)
+    x = np.broadcast_to(np.expand_dims(values, tuple(range(1, points.ndim))), points.shape)
+    size = scale * np.clip(3.5 * (count / 1000) ** -0.25, 1.2, 4)
+    ax.plot(x[there], points[there], ".", markersize=size, markeredgewidth=0, rasterized=True, **style)
+
+
+def _stop_lines(ax, result, values, order):
+    """The stops, where they pass through the picture: a section point on this line is about to touch."""
+    low, high = ax.get_ylim()
+    stops = [result.stops((place,)) for place in order]
+    for side in stops[0]:
+        x1 = np.array([there[side] for there in stops])
+        if ((low < x1) & (x1 < high)).any():
+            label = f"stop, $x_1 = {'-' * (side < 0)}b$"
+            ax.plot(values, x1, color=FAINT, lw=0.7, ls=DASHES, zorder=1, gid="stop", label=label)
+
+
+def _spectrum(ax, result, values, order):
+    exponents = result.array("lyapunov")[order]  # (values, starts, 4)
+    exponents[~np.isfinite(exponents)] = np.nan  # directions lost by sticking leave a gap
+    _tint(ax, values, (exponents[:, :, 0] > 0).any(axis=1))
+    ax.axhline(0, color=INK, lw=0.6, zorder=1)
+    ax.set_ylabel(r"$\lambda_1$" if result.follow else r"$\lambda_i$")
+    if result.follow:
+        _branches(ax, values, exponents[:, :, 0])
+        return
+    for i in reversed(range(4)):  # lambda_1 on top
+        _curve(ax, values, exponents[:, :, i], color=EXPONENTS[i], label=rf"$\lambda_{i + 1}$")
+    _name_curves(ax, exponents)
+
+
+def _branches(ax, values, ordinates):
+    for i, name in enumerate(BRANCHES):
+        _curve(ax, values, ordinates[:, i], color=BRANCHES[name], label=ARROWS[name], **_BRANCH_LINES[name])
+
+
+def _tint(ax, values, chosen):
+    """The cells of the chosen values, from bottom to top."""
+    borders = edges(values)
+    sides = zip(borders[:-1][chosen], borders[1:][chosen], strict=True)
+    cells = [Rectangle((left, 0), right - left, 1) for left, right in sides]
+    tint = PatchCollection(cells, color=CHAOS, linewidth=0, transform=ax.get_xaxis_transform(), zorder=0)
+    ax.add_collection(tint, autolim=False)
+
+
+def _curve(ax, values, ordinates, **style):
+    """A line; dots where several attractors would make it jump to and fro, or where it has few points."""
+    if ordinates.ndim == 2 and ordinates.shape[1] > 1:
+        style |= {"ls": "none", "marker": ".", "markersize": 2.2, "markeredgewidth": 0, "rasterized": True}
+    elif len(values) < 60:
+        style |= {"marker": ".", "markersize": 4}
+    ax.plot(values, ordinates, **style)
+
+
+def _name_curves(ax, exponents):
+    """Each exponent's symbol at its right end, pushed apart where they are the same."""
+    low, high = ax.get_ylim()
+    known = [curve[np.isfinite(curve)] for curve in np.moveaxis(exponents, -1, 0)]
+    ends = [(curve[-1] - low) / (high - low) if curve.size else 0.0 for curve in known]
+    panel = ax.get_gridspec().get_height_ratios()[ax.get_subplotspec().rowspan.start]
+    apart = 0.16 / panel  # inches a line of text needs
+    for _ in range(50):
+        for i in range(3):
+            push = max(0.0, apart - (ends[i] - ends[i + 1])) / 2
+            ends[i] += push
+            ends[i + 1] -= push
+    for i, end in enumerate(ends):
+        _margin_note(ax, end, rf"$\lambda_{i + 1}$", EXPONENTS[i])
+
+
+def _margin_note(ax, height, text, colour, **style):
+    ax.annotate(text, (1.012, height), xycoords="axes fraction", va="center", color=colour, **style)
+
+
+def _impact_counts(ax, result, values, order):
+    periods = result.setting("orbit", "record")
+    per = periods if isinstance(periods, int) and periods > 0 else 1
+    # (values, starts)
+    right, left = (result.array(f"impacts_{side}")[order] / per for side in ("right", "left"))
+    ax.set_ylabel("impacts" if per == 1 else "impacts / $T$")
+    if result.follow:
+        _branches(ax, values, right + left)
+    elif len(result.starts) > 1:  # mirror images exchange right and left: only the sum is worth comparing
+        _curve(ax, values, right + left, color=INK)
+    else:
+        _curve(ax, values, right, color=RIGHT, label="right", lw=1.6, alpha=0.6)
+        _curve(ax, values, left, color=LEFT, label="left", lw=0.8)
+        _margin_note(ax, 0.75, "right", RIGHT, fontsize=8)
+        _margin_note(ax, 0.25, "left", LEFT, fontsize=8)
+    ax.set_ylim(bottom=0)

@@ -1,0 +1,320 @@
+"""From a scene to its file: blocks of points, computed by an executor, handed to the store as they come."""
+
+import itertools
+import math
+import os
+import platform
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep import store
+from vibro_sweep.kernels import points
+from vibro_sweep.kernels.status import MEANINGS, OK
+from vibro_sweep.kernels.tables import LEAST_CELLS
+from vibro_sweep.orbit import points_of
+from vibro_sweep.scene import Scene
+
+BLOCK_SECONDS = 0.25  # a block is small enough to be waited for, and large enough for its overhead not to count
+BLOCK_BYTES = 32e6
+BLOCKS_PER_WORKER = 4  # at least, so that workers end together
+
+
+class Block(NamedTuple):
+    """A box of the sweep's grid, all starts included; of a `follow`, a chain or several along the first axis."""
+
+    box: tuple[slice, ...]  # over the sweep's dimensions
+    plan: points.Plan
+    parameters: dict[str, np.ndarray]  # of the box's shape
+    starts: np.ndarray | tuple[int, int]  # (s, 4) for all points; or (count, seed), drawn at each
+    first: np.ndarray | None  # index of each point in the sweep, for drawing
+    reverse: tuple[bool, ...]  # of a `follow`, for each start: along falling index
+    samples: int
+    section: bool
+
+
+@dataclass
+class RunReport:
+    """What `run` did: orbits in the file, how many have a bad status, how many have which, and the wall time."""
+
+    points: int
+    bad: int
+    statuses: dict[str, int]
+    seconds: float
+
+
+@dataclass
+class Estimate:
+    """What `run` would do; `seconds` is measured on a few points, for this machine's cores."""
+
+    points: int
+    orbits: int
+    periods: int
+    bytes: int
+    seconds: float
+
+
+def run(
+    scene: Scene,
+    output: str | Path,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    mode: str = "new",
+) -> RunReport:
+    """Compute a scene and write its file.
+
+    Parameters
+    ----------
+    output : the HDF5 file; while it is computed it is `output`.part, readable at any moment
+    workers : threads, by default one for each core
+    executor : any `concurrent.futures.Executor` instead
+    progress : called as progress(done, total) in orbits, from this thread
+    mode : "new", "resume" (continue `output`.part where it stopped) or "overwrite"
+
+    Results do not depend on workers, executor, block size or interruptions, bit for bit. Raises `store.StoreError`
+    for a file that is in the way or does not fit the scene, and lets KeyboardInterrupt through once the file is safe.
+    """
+    began = time.perf_counter()
+    count = workers or available_cores()
+    with store.writer(scene, Path(output), mode) as file:
+        missing = file.missing()
+        total = scene.n_points
+        done = total - int(np.count_nonzero(missing)) * scene.n_starts
+        if progress:
+            progress(done, total)
+        pool = executor or ThreadPoolExecutor(count)
+        try:
+            todo = (block for block in blocks(scene, count) if missing[block.box].any())
+            for box, arrays in _in_turn(pool, todo, 2 * getattr(pool, "_max_workers", count)):
+                file.write(box, arrays)
+                done += arrays["status"].size
+                if progress:
+                    progress(min(done, total), total)
+        finally:
+            if executor is None:
+                pool.shutdown(cancel_futures=True)
+        seconds = time.perf_counter() - began
+        statuses = file.finish(_provenance(scene, count if executor is None else None, executor, seconds))
+    bad = sum(number for code, number in statuses.items() if code != OK)
+    named = {MEANINGS[code]: number for code, number in statuses.items()}
+    return RunReport(total, bad, named, seconds)
+
+
+def _in_turn(pool: Executor, todo: Iterator[Block], window: int):
+    """Results as they come; no more than `window` blocks are under way, so that memory stays bounded."""
+    under_way = {pool.submit(compute, block) for block in itertools.islice(todo, window)}
+    try:
+        while under_way:
+            finished, under_way = wait(under_way, return_when=FIRST_COMPLETED)
+            for future in finished:
+                yield future.result()
+            under_way |= {pool.submit(compute, block) for block in itertools.islice(todo, len(finished))}
+    finally:
+        for future in under_way:
+            future.cancel()
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def plan_of(scene: Scene) -> points.Plan:
+    """What the kernels need to know of a scene."""
+    side = {"right": 1.0, "left": -1.0}[scene.section.stop]
+    lyapunov = "lyapunov" in scene.observe
+    return points.Plan(
+        transient=scene.transient,
+        record=scene.record,
+        warm_up=min(scene.transient, points.WARM_UP) if lyapunov else 0,
+        lyapunov=lyapunov,
+        section_side=side if scene.section.kind == "impact" and "section" in scene.observe else 0.0,
+        right=scene.system.stops != "left",
+        left=scene.system.stops != "right",
+        follow=scene.start.kind == "follow",
+        periods=scene.trajectory.periods if scene.trajectory else 0,
+    )
+
+
+def blocks(scene: Scene, workers: int, points_per_block: int | None = None) -> Iterator[Block]:
+    """The scene cut into boxes, in the order of the file."""
+    shape, plan = scene.sweep_shape, plan_of(scene)
+    size = points_per_block or _block_size(scene, workers)
+    follow = plan.follow
+    axes = list(shape)
+    lengths = []  # of a box along each axis: whole trailing axes, then a part of one, then single values
+    for axis in reversed(range(len(axes))):
+        whole = follow and axis == 0
+        length = axes[axis] if whole else max(1, min(axes[axis], size))
+        lengths.insert(0, length)
+        size //= max(axes[axis], 1)
+    parameters = scene.parameters()
+    ranges = [range(0, extent, length) for extent, length in zip(axes, lengths, strict=True)]
+    start = scene.start
+    starts = (start.count, start.seed) if start.kind == "random" else np.tile(start.state, (scene.n_starts, 1))
+    rising = not follow or np.all(np.diff(next(iter(scene.sweep.values()))) > 0)
+    directions = {"up": (not rising,), "down": (bool(rising),), "both": (not rising, bool(rising)), None: ()}
+    for corner in itertools.product(*ranges):
+        box = tuple(
+            slice(at, min(at + length, extent)) for at, length, extent in zip(corner, lengths, axes, strict=True)
+        )
+        yield Block(
+            box=box,
+            plan=plan,
+            parameters={name: np.ascontiguousarray(values[box]) for name, values in parameters.items()},
+            starts=starts,
+            first=_indices(box, shape) if start.kind == "random" else None,
+            reverse=directions[start.direction],
+            samples=scene.trajectory.samples if scene.trajectory else 0,
+            section="section" in scene.observe,
+        )
+
+
+def _indices(box: tuple[slice, ...], shape: tuple[int, ...]) -> np.ndarray:
+    """Place of each point of a box in the sweep, of the box's shape."""
+    if not shape:
+        return np.zeros((), np.int64)
+    return np.ravel_multi_index(np.ix_(*(np.arange(part.start, part.stop) for part in box)), shape)
+
+
+def _block_size(scene: Scene, workers: int) -> int:
+    """Points in a block, from a rough cost of an orbit: it only has to be right within a factor of a few."""
+    cells = int(points_of({name: np.array(value) for name, value in scene.system.parameters().items()})["cells"])
+    periods = scene.transient + scene.record * (1.5 if "lyapunov" in scene.observe else 1.0)
+    seconds = scene.n_starts * (5e-5 + periods * (1.5e-7 * cells / LEAST_CELLS + 3e-7))
+    numbers = scene.n_starts * (5 * scene.record * ("section" in scene.observe) + 16)
+    if scene.trajectory:
+        numbers += scene.n_starts * 4 * scene.trajectory.samples
+    fair = math.prod(scene.sweep_shape) // (BLOCKS_PER_WORKER * workers)
+    return max(1, min(int(BLOCK_SECONDS / seconds), int(BLOCK_BYTES / (8 * numbers)), fair))
+
+
+_local = threading.local()
+
+
+def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
+    """The block's box and its arrays by dataset name; runs anywhere, needs nothing but the block."""
+    plan, shape = block.plan, block.parameters["b"].shape
+    table = points_of(block.parameters)
+    cells = int(table["cells"].max())
+    key = (plan.record, plan.section_side, block.samples)
+    if getattr(_local, "key", None) != key or _local.cells < cells:
+        _local.key, _local.cells, _local.workspace = key, cells, points.new_workspace(plan, cells, block.samples)
+    n_starts = block.starts[0] if isinstance(block.starts, tuple) else len(block.starts)
+    count = table.size
+    record = plan.record if block.section else 0
+    arrays = {
+        "results": points.new_results((count, n_starts)),
+        "sections": np.full((count, n_starts, record, 4), np.nan),
+        "phases": np.full((count, n_starts, record if plan.section_side else 0), np.nan),
+        "trajectories": np.full((count, n_starts, block.samples, 4), np.nan),
+    }
+    if plan.follow:
+        _follow(block, table, arrays)
+    else:
+        points.run_points(table.reshape(-1), _starts(block, table), *arrays.values(), _local.workspace, plan)
+    return block.box, _by_name(block, arrays, shape)
+
+
+def _follow(block: Block, table: np.ndarray, arrays: dict[str, np.ndarray]) -> None:
+    """Chains along the first axis, one for each direction and each point of the other axes."""
+    chains = table.reshape(len(table), -1)
+    for chain in range(chains.shape[1]):
+        for start, reverse in enumerate(block.reverse):
+            order = np.arange(len(table))[:: -1 if reverse else 1]
+            line = order * chains.shape[1] + chain
+            part = {name: values[line, start : start + 1] for name, values in arrays.items()}
+            first = np.ascontiguousarray(block.starts[start]).reshape(1, 1, 4)
+            points.run_points(
+                np.ascontiguousarray(chains[order, chain]), first, *part.values(), _local.workspace, block.plan
+            )
+            for name, values in part.items():
+                arrays[name][line, start : start + 1] = values
+
+
+def _starts(block: Block, table: np.ndarray) -> np.ndarray:
+    """(points, starts, 4): drawn uniformly from |x_i| < b, |v_i| < omega b, by the point's place in the sweep alone."""
+    if not isinstance(block.starts, tuple):
+        return np.broadcast_to(block.starts, (table.size, *block.starts.shape)).copy()
+    count, seed = block.starts
+    result = np.empty((table.size, count, 4))
+    for n, (index, point) in enumerate(zip(block.first.flat, table.flat, strict=True)):
+        draw = np.random.Generator(np.random.Philox(key=seed, counter=[0, 0, 0, int(index)]))
+        result[n] = draw.uniform(-1.0, 1.0, (count, 4)) * point["b"]
+        result[n, :, 1::2] *= point["omega"]
+    return result
+
+
+def _by_name(block: Block, arrays: dict[str, np.ndarray], shape: tuple[int, ...]) -> dict[str, np.ndarray]:
+    """The kernels' arrays as the file's datasets, of the box's shape."""
+    results, sections, phases, trajectories = arrays.values()
+    lead = shape + (results.shape[1:] if results.shape[1] > 1 else ())
+    named = {name: results[name].reshape(lead + results[name].shape[2:]) for name in results.dtype.names}
+    if block.section:
+        named |= {
+            name: sections[..., i].reshape(lead + sections.shape[2:3])
+            for i, name in enumerate(("x1", "v1", "x2", "v2"))
+        }
+    if block.plan.section_side:
+        named["phase"] = phases.reshape(lead + phases.shape[2:])
+    for i, name in enumerate(("x1", "v1", "x2", "v2")):
+        named[f"trajectory_{name}"] = trajectories[..., i].reshape(lead + trajectories.shape[2:3])
+    return named
+
+
+def estimate(scene: Scene) -> Estimate:
+    """What `run` would do. The time is measured on at most eight points of the sweep, with at most 300 periods each."""
+    orbits = scene.n_points
+    periods = scene.transient + scene.record
+    parameters = scene.parameters()
+    pick = np.unique(np.linspace(0, math.prod(scene.sweep_shape) - 1, 8).astype(int))
+    some = {name: values.reshape(-1)[pick] for name, values in parameters.items()}
+    share = min(1.0, 300 / periods)
+    plan = plan_of(scene)._replace(follow=False)
+    short = plan._replace(
+        transient=int(plan.transient * share),
+        record=max(1, int(plan.record * share)),
+        warm_up=min(plan.warm_up, int(plan.transient * share)),
+    )
+    block = Block((), short, some, np.zeros((1, 4)), None, (), 0, "section" in scene.observe)
+    compute(block)  # compiles
+    began = time.perf_counter()
+    compute(block)
+    seconds = (time.perf_counter() - began) / len(pick) * periods / (short.transient + short.record)
+    return Estimate(orbits, orbits, orbits * periods, store.size(scene), orbits * seconds / available_cores())
+
+
+def _provenance(scene: Scene, threads: int | None, executor: Executor | None, seconds: float) -> dict:
+    """How the file was made, as one JSON record."""
+    from importlib.metadata import version
+
+    from vibro_sweep import __version__
+
+    packages = ("numpy", "numba", "llvmlite", "h5py")
+    return {
+        "vibro_sweep": __version__,
+        "python": platform.python_version(),
+        **{name: version(name) for name in packages},
+        "cpu": _cpu_name(),
+        "executor": "threads" if executor is None else type(executor).__name__,
+        "threads": threads,
+        "seed": scene.start.seed if scene.start.kind == "random" else None,
+        "wall_time_s": round(seconds, 3),
+    }
+
+
+def _cpu_name() -> str:
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
