@@ -65,8 +65,9 @@ def modes(mu_m, mu_k) -> Modes:
     second = (1 + mu_k) / mu_m
     larger = (1 + second) / 2 + np.hypot((second - 1) / 2, coupling)
     smaller = mu_k / mu_m / larger
-    angle = np.arctan2(2 * coupling, second - 1) / 2
-    c, s = np.cos(angle), np.sin(angle)
+    angle = np.arctan2(2 * coupling, np.abs(second - 1)) / 2  # to the nearer axis: near pi/2 the cosine loses digits
+    near, far = np.cos(angle), np.sin(angle)
+    c, s = np.where(second >= 1, (near, far), (far, near))
     psi = np.stack([np.stack([c, -s], -1), np.stack([coupling * s, coupling * c], -1)], -2)
     return Modes(psi, np.stack([smaller, larger], -1))
 

@@ -1,13 +1,17 @@
 """The first contact with a stop, certified.
 
 Within a cell x1 is its Taylor polynomial (remainder below rounding), so the gap to a stop is a polynomial g too.
-From any point where g > 0 a parabola with the smallest possible second derivative stays below g, hence the first root
-of the parabola is never beyond the first root of g: stepping from root to root cannot pass a contact, however brief.
 
-Claim. Let m = ROUNDING * (g(0) + |c_1| u + |c_2| u^2) be the rounding of the evaluation of g at u. A contact after
+The safe way, `march`: from any point where g > 0 a parabola with the smallest possible second derivative stays below g,
+hence its first root is never beyond the first root of g, and stepping from root to root cannot pass a contact, however
+brief. On a simple root the steps converge cubically; near a graze, where Newton's method crawls, the parabola is exact
+to third order and decides in a few steps.
+
+The fast way, `descend`: Newton's method, where g is known to fall all the way to the root that it finds.
+
+Claim. Let m = ROUNDING * (g(0) + sum |c_n| u^n) be the rounding of the evaluation of g at u. A contact after
 which g falls below -m is never missed; where g stays above m no contact is reported. In between the flight is within
-rounding of a graze, and either answer is right. On a simple root the steps converge cubically; near a graze, where
-Newton's method crawls, the parabola is exact to third order and decides in a few steps.
+rounding of a graze, and either answer is right.
 """
 
 import math
@@ -36,37 +40,95 @@ def parabola_root(gap, rate, curve):
 
 
 @jit
-def first_contact(c, gap, side, third, start, rest):
-    """First u in (start, rest] at which x1 has moved by `gap` >= 0 towards the stop on `side` (+1, -1); infinite if
-    none.
+def evaluate_gap(c, gap, side, u):
+    """g and g' at u. x1 - c_0 = u p(u) keeps its digits when u is tiny; even and odd terms of p go side by side."""
+    v = u * u
+    even, slope_even, odd, slope_odd = c[ORDER - 1], 0.0, c[ORDER - 2], 0.0
+    for n in range(ORDER - 3, 0, -2):
+        slope_even = slope_even * v + even
+        even = even * v + c[n]
+        if n > 1:
+            slope_odd = slope_odd * v + odd
+            odd = odd * v + c[n - 1]
+    p = even + u * odd
+    slope = 2.0 * (u * slope_even + v * slope_odd) + odd
+    return gap - side * (u * p), -side * (p + u * slope)
 
-    c: Taylor coefficients of x1 at u = 0; gap 0 is a mass that just leaves the stop. third: bound on |d3 x1/du3| up to
-    `rest`. start: the motion up to there is known to be free.
+
+@jit
+def descend(c, gap, side, third, u, rest):
+    """The contact near u if g falls from 0 to there without fail, else 0."""
+    rate, curve = -side * c[1], -2.0 * side * c[2]
+    for _ in range(4):
+        g, slope = evaluate_gap(c, gap, side, u)
+        if slope >= 0.0:
+            return 0.0
+        step = -g / slope
+        u += step
+        if not 0.0 < u <= rest:
+            return 0.0
+        error = step * step * (abs(curve) + third * rest) / -slope  # at most what Newton's method leaves
+        if error <= 2.0**-53 * u:
+            falls = rate + max(curve, 0.0) * u + 0.5 * third * u * u < 0.0
+            return u if falls else 0.0
+    return 0.0
+
+
+@jit
+def first_contact(c, gap, side, third, start, rest):
+    """First u in (start, rest] at which x1 has moved by `gap` >= 0 towards the stop on `side` (+1 or -1).
+
+    Infinite if there is none, NaN if `STEPS` do not tell. c: Taylor coefficients of x1 at u = 0; gap 0 is a mass that
+    just leaves the stop. third: bound on the third derivative up to `rest`. start: the motion up to there is known to
+    be free.
     """
-    u = start
+    rate, curve = -side * c[1], -2.0 * side * c[2]
+    if start == 0.0:
+        d = parabola_root(gap, rate, curve - third * rest / 3.0)
+        if d >= rest:
+            return np.inf
+        if rate < 0.0 < gap:
+            jerk = -6.0 * side * c[3]
+            slope = rate + d * (curve + 0.5 * d * jerk)
+            guess = d - (gap + d * (rate + d * (0.5 * curve + d * jerk / 6.0))) / slope if slope < 0.0 else d
+            u = descend(c, gap, side, third, min(guess, rest), rest)
+            if u > 0.0:
+                return u
+    return march(c, gap, side, third, start, rest)
+
+
+@jit
+def march(c, gap, side, third, start, rest):
+    """`first_contact` by steps that cannot pass it."""
+    u, length = start, rest - start
     for _ in range(STEPS):
         # Horner's scheme for p = sum c_n u^(n-1), p' and p''/2: x1 - c_0 = u p keeps its digits when u is tiny
-        p, dp, ddp = c[ORDER - 1], 0.0, 0.0
+        p, dp, ddp, size = c[ORDER - 1], 0.0, 0.0, abs(c[ORDER - 1])
         for n in range(ORDER - 2, 0, -1):
             ddp = ddp * u + dp
             dp = dp * u + p
             p = p * u + c[n]
+            size = size * u + abs(c[n])
         g = gap - side * (u * p)
         rate = -side * (p + u * dp)
         curve = -2.0 * side * (dp + u * ddp)
-        if u > 0.0 and g <= ROUNDING * (gap + u * (abs(c[1]) + u * abs(c[2]))):
+        if u > 0.0 and g <= ROUNDING * (gap + u * size):
             if rate < 0.0:
                 return u
             g = max(g, 0.0)
-        left = rest - u
-        d = parabola_root(g, rate, curve - third * left / 3.0)
-        if d >= left:
-            return np.inf
-        reach = min(left, 1.25 * d)
-        change = third * reach / 3.0
-        d = min(parabola_root(g, rate, curve - change), reach)
-        latest = parabola_root(g, rate, curve + change)
+        length = min(length, rest - u)
+        d = parabola_root(g, rate, curve - third * length / 3.0)
+        while 0.0 < d < 0.25 * length:  # the bound is needed no further than the root
+            length = 2.0 * d
+            d = parabola_root(g, rate, curve - third * length / 3.0)
+        if d >= length:
+            u += length
+            if u >= rest:
+                return np.inf
+            length *= 2.0
+            continue
+        latest = parabola_root(g, rate, curve + third * length / 3.0)
         u += d
-        if latest <= reach and latest - d <= 2.0**-52 * u:
+        if latest <= length and latest - d <= 2.0**-52 * u:
             return u
-    return u
+    return np.nan

@@ -35,8 +35,10 @@ OSCILLATOR = np.dtype(
         ("force", float, 6),  # acceleration of M1 as a function of them
         ("resting1", float, (5, ORDER)),  # free acceleration of M1 while it rests, of (x1, x2, v2, sin, cos)
         ("resting2", float, (5, ORDER)),  # x2 meanwhile
+        ("reach", float, ORDER),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
         ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell
         ("frame_series", float, (ORDER, 4)),  # of tangent.py, like all that follow
+        ("stretch", np.int64),  # cells that may be flown between looks at the tangent vectors
         ("frame_scale", float, 2),  # g_j
         ("frame_square", float, 2),  # omega_dj^2
         ("to_frame", float, (4, 4)),
@@ -50,7 +52,8 @@ NODE = np.dtype(
         ("sin", float),  # of omega t + tau
         ("cos", float),
         ("E", float, (4, 4)),  # flight from node 0: X - r there to X - r here
-        ("r", float, 4),  # the motion from rest at node 0
+        ("forced", float, (4, 2)),  # motion from rest at node 0, as a function of (sin, cos) there
+        ("r", float, 4),  # that motion
         ("frame", float, 4),  # c_1, s_1, c_2, s_2 of a flight from node 0
     ]
 )

@@ -103,12 +103,21 @@ def sample(o, records, k, start, stop):
 
 
 @jit
-def third_derivative_bound(q, c):
-    """Bound on the third derivative of a series over the cell."""
-    total = 0.0
-    for n in range(3, ORDER):
-        total += q.third[n] * abs(c[n])
-    return total
+def bounds(q, c):
+    """Over a cell: how far x can move, and a bound on its third derivative. Summed by fours, for the vector unit."""
+    reach, third = q.reach, q.third
+    r0, r1, r2, r3, t0, t1, t2, t3 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for n in range(0, ORDER, 4):
+        a0, a1, a2, a3 = abs(c[n]), abs(c[n + 1]), abs(c[n + 2]), abs(c[n + 3])
+        r0 += reach[n] * a0
+        r1 += reach[n + 1] * a1
+        r2 += reach[n + 2] * a2
+        r3 += reach[n + 3] * a3
+        t0 += third[n] * a0
+        t1 += third[n + 1] * a1
+        t2 += third[n + 2] * a2
+        t3 += third[n + 3] * a3
+    return (r0 + r1) + (r2 + r3), (t0 + t1) + (t2 + t3)
 
 
 @jit
@@ -128,18 +137,14 @@ def departure(q, c, side, third, left, released):
 
 
 @jit
-def next_contact(stops, c, side, third, start, left):
+def next_contact(stops, c, side, reach, third, start, left):
     """Offset and side of the first contact in the rest of the cell; `side` is the stop that M1 leaves, or 0."""
-    reach, power = 0.0, 1.0
-    for n in range(1, ORDER):
-        power *= left
-        reach += abs(c[n]) * power
     gap = 0.0 if side > 0.0 else stops.right - c[0]
     right = first_contact(c, gap, 1.0, third, start, left) if gap <= reach else np.inf
     gap = 0.0 if side < 0.0 else c[0] - stops.left
     if gap <= reach:
         other = first_contact(c, gap, -1.0, third, start, min(left, right))
-        if other < right:
+        if not (other >= right or right != right):  # NaN, too, is passed on
             return other, -1.0
     return right, 1.0
 
@@ -206,7 +211,7 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos):
     gap = max(side * c1[0], 0.0)
     d = 0.0
     if gap > 0.0 or side * c1[1] > 0.0:
-        d = first_contact(c1, gap, -side, third_derivative_bound(q, c1), 0.0, left)
+        d = first_contact(c1, gap, -side, bounds(q, c1)[1], 0.0, left)
     end = min(d, left)
     sample(o, records, k, s, s + end)
     X[2], X[3] = evaluate(c2, end)
@@ -250,13 +255,14 @@ def cross_cell(f, stops, o, records, t, k, s):
     released = False
     while o.events < MOST_EVENTS:
         left = q.width - s
-        swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
-        sin = node.sin * turn + node.cos * swing
-        cos = node.cos * turn - node.sin * swing
+        sin, cos = node.sin, node.cos
+        if s > 0.0:
+            swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
+            sin, cos = sin * turn + cos * swing, cos * turn - sin * swing
         if o.resting != 0.0:
             s = stay_at_rest(f, o, records, t, k, s, sin, cos)
-            if s == np.inf:
-                return status.OK
+            if not s < np.inf:
+                return status.OK if s == np.inf else status.UNRESOLVED
             released = True
             continue
         side = 1.0 if X[0] >= stops.right else (-1.0 if X[0] <= stops.left else 0.0)
@@ -264,7 +270,7 @@ def cross_cell(f, stops, o, records, t, k, s):
             impact(f, stops, o, records, t, k, s, side, sin, cos)
         load(q.series1, X[0], X[1], X[2], X[3], sin, cos, c1)
         load(q.series2, X[0], X[1], X[2], X[3], sin, cos, o.c2)
-        third = third_derivative_bound(q, c1)
+        reach, third = bounds(q, c1)
         start = 0.0
         if side != 0.0 and X[1] == 0.0:
             push = side * (c1[3] if released or c1[2] == 0.0 else c1[2])
@@ -282,7 +288,9 @@ def cross_cell(f, stops, o, records, t, k, s):
                 o.chatters += 1
                 begin_rest(f, o, records, t, k, s, side)
                 continue
-        d, side = next_contact(stops, c1, side, third, start, left)
+        d, side = next_contact(stops, c1, side, reach, third, start, left)
+        if d != d:
+            return status.UNRESOLVED
         sample(o, records, k, s, s + min(d, left))
         advance(o, min(d, left))
         if d == np.inf:

@@ -9,6 +9,7 @@ from vibro_sweep.kernels.jit import jit
 
 LEAST_CELLS = 32
 MOST_CELLS = 16384
+STRETCH = 4.0  # logarithm of what free flight may do to a tangent vector unseen: two digits are lost of another
 
 
 def cells_needed(omega_squared: np.ndarray, zeta: np.ndarray, omega: np.ndarray) -> np.ndarray:
@@ -93,27 +94,39 @@ def fill_flight(q, nodes, psi, omega_squared, mu_m):
 
 @jit
 def fill_motion(q, nodes, tau):
-    """The phase at the nodes, and the motion r from rest at node 0."""
-    for k in range(q.cells + 1):
-        phase = tau + 2.0 * math.pi * (k / q.cells)
+    """The phase at the nodes, and the motion r from rest at node 0.
+
+    The flight to node k = rest + step, with step its lowest binary digit, is one to `rest` and one of `step` cells:
+    rounding errors grow with the number of digits of k, not with k.
+    """
+    cells = q.cells
+    for k in range(cells + 1):
+        phase = tau + 2.0 * math.pi * (k / cells)
         nodes[k].sin = math.sin(phase)
         nodes[k].cos = math.cos(phase)
-    r = nodes[0].r
-    for i in range(4):
-        r[i] = 0.0
-    E = nodes[1].E
-    sin1, sin1_rate = evaluate(q.series1[4], q.width)
-    cos1, cos1_rate = evaluate(q.series1[5], q.width)
-    sin2, sin2_rate = evaluate(q.series2[4], q.width)
-    cos2, cos2_rate = evaluate(q.series2[5], q.width)
-    for k in range(q.cells):
-        sin, cos, r, after = nodes[k].sin, nodes[k].cos, nodes[k].r, nodes[k + 1].r
+    sin, cos = nodes[0].sin, nodes[0].cos
+    clear(nodes[0].forced)
+    for j in range(2):
+        one = nodes[1].forced
+        one[0, j], one[1, j] = evaluate(q.series1[4 + j], q.width)
+        one[2, j], one[3, j] = evaluate(q.series2[4 + j], q.width)
+    for k in range(cells + 1):
+        if k > 1:
+            step = k & -k if k & (k - 1) else k // 2
+            before, after, out, E = nodes[k - step].forced, nodes[step].forced, nodes[k].forced, nodes[step].E
+            angle = 2.0 * math.pi * ((k - step) / cells)
+            swing, turn = math.sin(angle), math.cos(angle)
+            for i in range(4):
+                free0 = (E[i, 0] * before[0, 0] + E[i, 1] * before[1, 0]) + (
+                    E[i, 2] * before[2, 0] + E[i, 3] * before[3, 0]
+                )
+                free1 = (E[i, 0] * before[0, 1] + E[i, 1] * before[1, 1]) + (
+                    E[i, 2] * before[2, 1] + E[i, 3] * before[3, 1]
+                )
+                out[i, 0] = free0 + (after[i, 0] * turn - after[i, 1] * swing)
+                out[i, 1] = free1 + (after[i, 0] * swing + after[i, 1] * turn)
         for i in range(4):
-            after[i] = (E[i, 0] * r[0] + E[i, 1] * r[1]) + (E[i, 2] * r[2] + E[i, 3] * r[3])
-        after[0] += sin1 * sin + cos1 * cos
-        after[1] += sin1_rate * sin + cos1_rate * cos
-        after[2] += sin2 * sin + cos2 * cos
-        after[3] += sin2_rate * sin + cos2_rate * cos
+            nodes[k].r[i] = nodes[k].forced[i, 0] * sin + nodes[k].forced[i, 1] * cos
 
 
 @jit
@@ -169,9 +182,11 @@ def fill_frame(q, psi, omega_squared, mu_m):
     series, to_frame, from_frame = q.frame_series, q.to_frame, q.from_frame
     clear(to_frame)
     clear(from_frame)
+    fastest = 0.0
     for j in range(2):
         eta = q.zeta * omega_squared[j]
         square = omega_squared[j] - eta * eta
+        fastest = max(fastest, eta + math.sqrt(max(-square, 0.0)))
         # near critical damping the plane shears instead of turning; any scale then serves
         scale = max(math.sqrt(abs(square)), 1e-3 * math.sqrt(omega_squared[j]))
         q.frame_square[j], q.frame_scale[j] = square, scale
@@ -189,6 +204,7 @@ def fill_frame(q, psi, omega_squared, mu_m):
             from_frame[2 * i, 2 * j] = psi[i, j] / scale
             from_frame[2 * i + 1, 2 * j] = -eta * psi[i, j] / scale
             from_frame[2 * i + 1, 2 * j + 1] = psi[i, j]
+    q.stretch = int(min(STRETCH / (fastest * q.width), 1e9)) if fastest > 0.0 else 1_000_000_000
 
 
 @jit
@@ -200,8 +216,10 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
     q = f.oscillator[0]
     q.cells, q.width, q.omega, q.zeta, q.kappa = cells, 2.0 * math.pi / omega / cells, omega, zeta, 2.0 * zeta / mu_m
     power = 1.0
-    for n in range(3, ORDER):
-        q.third[n] = n * (n - 1.0) * (n - 2.0) * power
+    for n in range(ORDER):
+        q.reach[n] = power if n > 0 else 0.0
+        if n < ORDER - 3:
+            q.third[n + 3] = (n + 3.0) * (n + 2.0) * (n + 1.0) * power
         power *= q.width
     fill_series(q, scratch[:6], scratch[6], mu_m, mu_k, f2)
     fill_flight(q, f.nodes, psi, omega_squared, mu_m)

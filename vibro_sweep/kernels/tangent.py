@@ -26,6 +26,7 @@ TANGENT = np.dtype(
         ("cell", np.int64),  # the cell, and
         ("offset", float),  # the offset in it, up to which `flight` reaches
         ("flight", float, 4),  # c_1, s_1, c_2, s_2 of the flight since Z was last touched
+        ("stretch", np.int64),  # whole cells of that flight
         ("Z", float, (4, 4)),  # columns are vectors
         ("volume", float),  # |det Z|, from the identity det S = R^2
         ("growth", float, 4),  # products of the diagonals of R in Z = Q R
@@ -42,7 +43,7 @@ def begin(t):
         for j in range(4):
             t.Z[i, j] = 1.0 if i == j else 0.0
         t.flight[i] = 1.0 - i % 2
-    t.cell, t.offset, t.volume = 0, 0.0, 1.0
+    t.cell, t.offset, t.stretch, t.volume = 0, 0.0, 0, 1.0
     start_record(t)
 
 
@@ -65,6 +66,13 @@ def fly(t, q, nodes, k, s):
         cells -= 1
         u += q.width
     t.cell, t.offset = k, s
+    while t.stretch + cells > q.stretch:  # or all vectors would become the one that decays least
+        part = q.stretch - t.stretch
+        frame = nodes[part].frame
+        join(t, q, frame[0], frame[1], frame[2], frame[3])
+        catch_up(t, q)
+        cells -= part
+    t.stretch += cells
     if cells > 0:
         frame = nodes[cells].frame
         join(t, q, frame[0], frame[1], frame[2], frame[3])
@@ -91,6 +99,7 @@ def apply_flight(t, q):
             t.Z[2 * j + 1, i] = below * first + c * second
         t.volume *= c * c - above * below
         t.flight[2 * j], t.flight[2 * j + 1] = 1.0, 0.0
+    t.stretch = 0
 
 
 @jit
@@ -98,13 +107,11 @@ def end_period(t, q, nodes):
     """Carry the collected flight over the section."""
     fly(t, q, nodes, q.cells, 0.0)
     t.cell = 0
-    if abs(t.flight[2]) + q.frame_scale[1] * abs(t.flight[3]) < 1e-3:  # long before it underflows
-        catch_up(t, q)
 
 
 @jit
 def catch_up(t, q):
-    """Bring Z to the section, orthonormal."""
+    """Bring Z to where the collected flight ends, orthonormal."""
     apply_flight(t, q)
     orthonormalise(t)
 
