@@ -92,8 +92,7 @@ class Status(str):
 class Orbit:
     """What `simulate` returns. Times are absolute and nondimensional, sides +1 (right, A) and -1 (left, C).
 
-    impacts : structured, fields t, side, v1 (before), x2, v2; in order. Of a chatter sequence those computed one by
-    one.
+    impacts : structured, fields t, side, v1 (before), x2, v2; in order. Of chatter, those computed one by one.
     sticking : structured, fields t_on, t_off, side; t_off is the end of the simulation for a rest that outlasts it.
     section : (periods + 1, 4) states (x1, v1, x2, v2) at t = 0 mod T, NaN after a failure
     status : "ok", or what went wrong; `status.note` counts the chatter sequences whose end was summed up
@@ -230,8 +229,7 @@ def _sticking(engine: _Engine, rows: np.ndarray, end: float) -> np.ndarray:
 
 
 def lyapunov(system: System, state, transient: int = 1000, periods: int = 10_000) -> np.ndarray:
-    """Lyapunov spectrum (4,) of the orbit from `state` at t = 0: descending, natural logarithm, per nondimensional
-    time.
+    """Lyapunov spectrum (4,) of the orbit from `state` at t = 0: descending, natural logarithm, per unit time.
 
     -inf for dimensions lost by sticking, NaN where the orbit fails. A periodic orbit (period at most periods/2) gives
     its Floquet exponents. Raises ValueError as `simulate` does.

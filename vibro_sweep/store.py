@@ -1,9 +1,8 @@
 """The HDF5 file: written by one process, block by block, and read by everybody.
 
 While a run goes on the file is FILE.h5.part. All space is allotted when it is made and flushed to the disk, so that
-writing
-a block changes numbers in place and no structure: killed at any moment, the file stays readable. `status` is written
-after the data of its block; what it calls computed, is.
+writing a block changes numbers in place and no structure: killed at any moment, the file stays readable. `status` is
+written after the data of its block; what it calls computed, is.
 """
 
 import contextlib

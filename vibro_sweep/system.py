@@ -57,8 +57,8 @@ class Modes(NamedTuple):
 def modes(mu_m, mu_k) -> Modes:
     """Modes of K psi = omega_j^2 M psi (eq. 5) by one Jacobi rotation of M^-1/2 K M^-1/2.
 
-    The smaller eigenvalue is det/(the larger), which keeps its digits where a general eigensolver loses them
-    (mu_m = 1e-6 costs it nine).
+    The smaller eigenvalue is det/(the larger), which keeps its digits where a general eigensolver loses them (mu_m =
+    1e-6 costs it nine).
     """
     mu_m, mu_k = np.broadcast_arrays(np.asarray(mu_m, float), np.asarray(mu_k, float))
     coupling = 1 / np.sqrt(mu_m)
@@ -75,8 +75,8 @@ def modes(mu_m, mu_k) -> Modes:
 def steady_response(mu_m, mu_k, zeta, f2, omega) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients (d, e) of the steady motion x_i = d_i sin(omega t + tau) + e_i cos(omega t + tau); each (..., 2).
 
-    Eq. (7) with B_j = -2 eta_j omega f_j / D: the paper prints the opposite sign, which does not solve (5).
-    Infinite where an undamped mode is in resonance.
+    Eq. (7) with B_j = -2 eta_j omega f_j / D: the paper prints the opposite sign, which does not solve (5). Infinite
+    where an undamped mode is in resonance.
     """
     psi, omega_squared = modes(mu_m, mu_k)
     zeta, f2, omega = (np.asarray(value, float)[..., None] for value in (zeta, f2, omega))
@@ -227,9 +227,9 @@ class Grazing(NamedTuple):
 def grazing(system: System) -> Grazing:
     """Clearance b* and phase tau* at which the steady motion of period T touches both stops: eqs. (16)-(19).
 
-    The clearance and phase of `system` itself play no part. `determinant` is (15) without its factor omega_d1 omega_d2,
-    which also vanishes at critical damping, where the orbit is as unique as elsewhere. With the erratum of (7) the
-    paper's parameters give b* = 6.70571674097302; the paper prints 6.7107356.
+    The clearance and phase of `system` itself play no part. `determinant` is (15) without its factor omega_d1
+    omega_d2, which also vanishes at critical damping, where the orbit is as unique as elsewhere. With the erratum of
+    (7) the paper's parameters give b* = 6.70571674097302; the paper prints 6.7107356.
     """
     (d1, d2), (e1, e2) = steady_response(system.mu_m, system.mu_k, system.zeta, system.f2, system.omega)
     b = math.hypot(d1, e1)

@@ -2,16 +2,16 @@
 
 Within a cell x1 is its Taylor polynomial (remainder below rounding), so the gap to a stop is a polynomial g too.
 
-The safe way, `march`: from any point where g > 0 a parabola with the smallest possible second derivative stays below g,
-hence its first root is never beyond the first root of g, and stepping from root to root cannot pass a contact, however
-brief. On a simple root the steps converge cubically; near a graze, where Newton's method crawls, the parabola is exact
-to third order and decides in a few steps.
+The safe way, `march`: from any point where g > 0 a parabola with the smallest possible second derivative stays below
+g, hence its first root is never beyond the first root of g, and stepping from root to root cannot pass a contact,
+however brief. On a simple root the steps converge cubically; near a graze, where Newton's method crawls, the parabola
+is exact to third order and decides in a few steps.
 
 The fast way, `descend`: Newton's method, where g is known to fall all the way to the root that it finds.
 
-Claim. Let m = ROUNDING * (g(0) + sum |c_n| u^n) be the rounding of the evaluation of g at u. A contact after
-which g falls below -m is never missed; where g stays above m no contact is reported. In between the flight is within
-rounding of a graze, and either answer is right.
+Claim. Let m = ROUNDING * (g(0) + sum |c_n| u^n) be the rounding of the evaluation of g at u. A contact after which g
+falls below -m is never missed; where g stays above m no contact is reported. In between the flight is within rounding
+of a graze, and either answer is right.
 """
 
 import math

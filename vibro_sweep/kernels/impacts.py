@@ -197,8 +197,7 @@ def begin_rest(f, o, records, t, k, s, side):
 
 @jit
 def stay_at_rest(f, o, records, t, k, s, sin, cos):
-    """M1 rests from offset s of cell k on, M2 moves. Returns the offset of the release, infinite if it is not in the
-    cell.
+    """M1 rests from offset s of cell k on, M2 moves. Returns the offset of the release, infinite if it is later.
 
     M1 is released where its free acceleration, which points into the stop, changes sign: a root found like a contact.
     """

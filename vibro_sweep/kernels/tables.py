@@ -147,8 +147,7 @@ def fill_scan(q, nodes, scan):
 
     The cubic has the Bernstein coefficients x_k, x_k + h v_k/3, x_{k+1} - h v_{k+1}/3, x_{k+1}. Its error is at most
     bound t^2 (1 - t)^2 h^4/24, a quartic with the one coefficient bound h^4/144, the middle one. So x1 stays below b
-    where both inner control points do by that much, and both ends do. Each end is the mean of the inner points beside
-    it.
+    where both inner control points do by that much, and both ends do. An end is the mean of the inner points beside it.
     """
     third = q.width / 3.0
     for i in range(5):

@@ -1,9 +1,9 @@
 """Tangent vectors along an orbit, and from them the Lyapunov spectrum.
 
-Four vectors are kept as the columns of Z, in the frame z = (g_1 xi_1, xi_1' + eta_1 xi_1, g_2 xi_2, xi_2' + eta_2 xi_2)
-with g_j = |omega_dj|, in which the flight of mode j is e^{-eta_j u} times a rotation: in this metric the exponents of a
-non-impacting orbit are exact after any time, where those of (x, v) would only converge like 1/t. (Overdamped: times a
-symmetric matrix, and exact as soon as its eigenvectors are found.)
+Four vectors are kept as the columns of Z, in the frame z = (g_1 xi_1, xi_1' + eta_1 xi_1, g_2 xi_2, xi_2' + eta_2
+xi_2) with g_j = |omega_dj|, in which the flight of mode j is e^{-eta_j u} times a rotation: in this metric the
+exponents of a non-impacting orbit are exact after any time, where those of (x, v) would only converge like 1/t.
+(Overdamped: times a symmetric matrix, and exact as soon as its eigenvectors are found.)
 
 Flight is not applied step by step but collected as four numbers (c_1, s_1, c_2, s_2), and applied at the next impact.
 """
@@ -120,8 +120,8 @@ def catch_up(t, q):
 def saltate(t, q, R, steepness):
     """Z across an impact, by the saltation matrix S = DG + (F+ - DG F-) n^T/(n . F-).
 
-    In (x1, v1, x2, v2), with steepness = (a1+ + R a1-)/v1- and kappa = 2 zeta/mu_m:
-    dx1 -> -R dx1, dv1 -> steepness dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
+    In (x1, v1, x2, v2), with steepness = (a1+ + R a1-)/v1- and kappa = 2 zeta/mu_m: dx1 -> -R dx1, dv1 -> steepness
+    dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
     """
     apply_flight(t, q)
     for j in range(4):
