@@ -10,14 +10,16 @@ _HOME = {
     "grazing": "system",
     "simulate": "orbit",
     "lyapunov": "orbit",
+    "discontinuity_map": "discontinuity",
     "load_scene": "scene",
     "run": "sweep",
     "open": "store",
 }
 
-__all__ = ["System", "grazing", "load_scene", "lyapunov", "open", "run", "simulate"]
+__all__ = ["System", "discontinuity_map", "grazing", "load_scene", "lyapunov", "open", "run", "simulate"]
 
 if TYPE_CHECKING:
+    from vibro_sweep.discontinuity import discontinuity_map
     from vibro_sweep.orbit import lyapunov, simulate
     from vibro_sweep.scene import load_scene
     from vibro_sweep.store import open

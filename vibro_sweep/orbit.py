@@ -7,6 +7,7 @@ import numpy as np
 
 from vibro_sweep.kernels import ensemble, impacts, points, status, tables, tangent
 from vibro_sweep.kernels.flight import new_flight
+from vibro_sweep.kernels.observe import BATCHES
 from vibro_sweep.system import NAMES, System, SystemError, modes
 
 IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float), ("v2", float)])
@@ -175,15 +176,8 @@ def simulate(system: System, state, periods: int, start_time: float = 0.0) -> Or
             section[0] = engine.orbit["X"][0]
         else:
             count = min(CHUNK, len(section) - done)
-            outcome, _ = ensemble.record(
-                engine.flight,
-                engine.stops,
-                engine.orbit[0],
-                records,
-                engine.tangent[0],
-                section[done : done + count],
-                np.empty(4),
-            )
+            arguments = (engine.flight, engine.stops, engine.orbit[0], records, engine.tangent[0])
+            outcome = ensemble.record(*arguments, section[done : done + count], np.empty((0, 4)))
         logged = max(engine.orbit["impacts_logged"][0], engine.orbit["rests_logged"][0])
         if logged > room:
             engine.orbit[:] = before
@@ -249,6 +243,8 @@ def lyapunov(system: System, state, transient: int = 1000, periods: int = 10_000
         left=system.stops != "right",
         follow=False,
         periods=0,
+        parts=min(int(periods), BATCHES),
+        order=0,
     )
     results = points.new_results((1, 1))
     point = points_of(system.parameters()).reshape(1)
@@ -260,6 +256,7 @@ def lyapunov(system: System, state, transient: int = 1000, periods: int = 10_000
         results,
         nothing[..., None],
         nothing,
+        nothing[..., None],
         nothing[..., None],
         workspace,
         plan,

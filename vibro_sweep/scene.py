@@ -68,6 +68,8 @@ class Scene:
     text: str
     system: System
     model: str
+    order: int  # of the map
+    expand_at: float | None  # clearance at which the map is expanded; None: b*
     sweep: dict[str, np.ndarray]  # 0, 1 or 2 keys in the order of the file's dimensions
     start: Start
     transient: int  # forcing periods
@@ -164,6 +166,8 @@ def parse_scene(text: str, name: str = "scene") -> Scene:
         text=text,
         system=system,
         model=form.model,
+        order=form.order,
+        expand_at=form.expand_at,
         sweep=sweep,
         start=_start(form.start),
         transient=form.orbit.transient,
@@ -258,8 +262,7 @@ def _start_problems(form: SceneForm, sweep, system: System | None) -> list[str]:
 def _combination_problems(form: SceneForm) -> list[str]:
     problems = []
     section, stops = form.section, form.system.stops
-    if form.model == "map":
-        problems.append(problem("model", "map", "is not available yet; allowed: flow"))
+    problems += _map_problems(form)
     if section.kind == "impact" and stops not in ("both", section.stop):
         problems.append(problem("section.stop", section.stop, f"the system has no such stop (stops: {stops})"))
     if section.kind == "phase" and "stop" in section.model_fields_set:
@@ -267,6 +270,24 @@ def _combination_problems(form: SceneForm) -> list[str]:
     if not form.observe and form.trajectory is None:
         text = "nothing would be computed; name section, lyapunov or impacts, or ask for a trajectory"
         problems.append(problem("observe", [], text))
+    return problems
+
+
+def _map_problems(form: SceneForm) -> list[str]:
+    if form.model == "flow":
+        text = "belongs to `model: map`; leave it out"
+        return [
+            problem(key, getattr(form, key), text) for key in ("order", "expand_at") if key in form.model_fields_set
+        ]
+    problems = []
+    if form.expand_at is not None and form.expand_at <= 0:
+        problems.append(problem("expand_at", form.expand_at, "must be a number > 0"))
+    if form.system.tau != "grazing" or (form.sweep and "tau" in form.sweep.model_fields_set):
+        text = "the map's section is the phase of the graze; leave tau out, or say grazing"
+        problems.append(problem("system.tau", form.system.tau, text))
+    if form.trajectory:
+        text = "the map has no motion between its points; leave it out"
+        problems.append(problem("trajectory", form.trajectory.model_dump(), text))
     return problems
 
 

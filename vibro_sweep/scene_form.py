@@ -196,6 +196,12 @@ class SceneForm(Form):
         default="flow",
         description="flow: the impact oscillator itself; map: its discontinuity mapping (eq. 41)",
     )
+    order: Whole = Field(default=1, ge=1, le=2, description="with `model: map`: 1 is the paper's, 2 has the next term")
+    expand_at: float = Field(
+        default=None,
+        json_schema_extra={"exclusiveMinimum": 0},
+        description="with `model: map`: the clearance at which it is expanded, by default the exact b*",
+    )
     sweep: SweepForm = Field(default=None, description="the parameters that vary; left out: one orbit")
     start: Annotated[
         Annotated[StateStart, Tag("one start")]
@@ -205,7 +211,7 @@ class SceneForm(Form):
     ] = Field(default=StateStart(), description="where orbits begin")
     orbit: OrbitForm = Field(description="how long an orbit is")
     section: SectionForm = Field(default=SectionForm(kind="phase"), description="where an orbit becomes points")
-    observe: Annotated[frozenset[Literal["section", "lyapunov", "impacts"]], Strict(False)] = Field(
+    observe: Annotated[frozenset[Literal["section", "lyapunov", "impacts", "convergence"]], Strict(False)] = Field(
         default=frozenset({"section"}), description="what is computed and stored; nothing else is"
     )
     trajectory: TrajectoryForm = Field(default=None, description="store the continuous orbit as well")

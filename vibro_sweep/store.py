@@ -18,6 +18,7 @@ import numpy as np
 
 from vibro_sweep import __version__
 from vibro_sweep.kernels.jit import source_hash
+from vibro_sweep.kernels.observe import RUNNING, periods_read
 from vibro_sweep.kernels.status import MEANINGS, NOT_COMPUTED, OK
 from vibro_sweep.scene import Scene
 
@@ -53,6 +54,7 @@ _AXES = {
     "start": ("1", "start of the orbit"),
     "sample": ("1", "section point, counted from the end of the transient"),
     "exponent": ("1", "Lyapunov exponent, counted from the largest"),
+    "elapsed": ("1", "forcing periods since the end of the transient"),
     "time": ("1", "nondimensional time since the last section point"),
 }
 
@@ -72,7 +74,12 @@ def quantities(scene: Scene) -> dict[str, Quantity]:
         wanted["lyapunov"] = Quantity(
             "f8", np.nan, ("exponent",), "1", "Lyapunov exponents per unit time, natural logarithm"
         )
+        text = "standard error of the exponents; of a periodic orbit: what one more period changes"
+        wanted["lyapunov_error"] = Quantity("f8", np.nan, ("exponent",), "1", text)
         wanted["lyapunov_residual"] = Quantity("f8", np.nan, (), "1", "sum of the exponents minus its exact value")
+    if "convergence" in scene.observe:
+        text = "Lyapunov exponents as they converge, in the order of their vectors"
+        wanted["lyapunov_running"] = Quantity("f8", np.nan, ("elapsed", "exponent"), "1", text)
     if "impacts" in scene.observe:
         wanted["impacts_right"] = Quantity("i8", -1, (), "1", "impacts on the right stop in the recorded periods")
         wanted["impacts_left"] = Quantity("i8", -1, (), "1", "impacts on the left stop in the recorded periods")
@@ -99,6 +106,9 @@ def coordinates(scene: Scene) -> dict[str, np.ndarray]:
         result["sample"] = np.arange(scene.record)
     if "exponent" in extra:
         result["exponent"] = np.arange(1, 5)
+    if "elapsed" in extra:
+        parts = min(RUNNING, scene.record)
+        result["elapsed"] = np.array([periods_read.py_func(m, parts, scene.record) for m in range(parts)])
     if "time" in extra:
         span = scene.trajectory.periods * scene.system.period
         result["time"] = np.linspace(0.0, span, scene.trajectory.samples)

@@ -15,7 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep import store
+from vibro_sweep.discontinuity import expansion_point
 from vibro_sweep.kernels import points
+from vibro_sweep.kernels.observe import BATCHES, RUNNING
 from vibro_sweep.kernels.status import MEANINGS, OK
 from vibro_sweep.kernels.tables import LEAST_CELLS
 from vibro_sweep.orbit import points_of
@@ -37,6 +39,8 @@ class Block(NamedTuple):
     reverse: tuple[bool, ...]  # of a `follow`, for each start: along falling index
     samples: int
     section: bool
+    convergence: bool
+    expand_at: float | None  # clearance at which the discontinuity mapping is expanded; None: b*
 
 
 @dataclass
@@ -129,7 +133,7 @@ def available_cores() -> int:
 def plan_of(scene: Scene) -> points.Plan:
     """What the kernels need to know of a scene."""
     side = {"right": 1.0, "left": -1.0}[scene.section.stop]
-    lyapunov = "lyapunov" in scene.observe
+    lyapunov = "lyapunov" in scene.observe or "convergence" in scene.observe
     return points.Plan(
         transient=scene.transient,
         record=scene.record,
@@ -140,6 +144,8 @@ def plan_of(scene: Scene) -> points.Plan:
         left=scene.system.stops != "right",
         follow=scene.start.kind == "follow",
         periods=scene.trajectory.periods if scene.trajectory else 0,
+        parts=min(scene.record, RUNNING if "convergence" in scene.observe else BATCHES) if lyapunov else 0,
+        order=scene.order if scene.model == "map" else 0,
     )
 
 
@@ -174,6 +180,8 @@ def blocks(scene: Scene, workers: int, points_per_block: int | None = None) -> I
             reverse=directions[start.direction],
             samples=scene.trajectory.samples if scene.trajectory else 0,
             section="section" in scene.observe,
+            convergence="convergence" in scene.observe,
+            expand_at=scene.expand_at,
         )
 
 
@@ -203,6 +211,8 @@ def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
     """The block's box and its arrays by dataset name; runs anywhere, needs nothing but the block."""
     plan, shape = block.plan, block.parameters["b"].shape
     table = points_of(block.parameters)
+    if plan.order:
+        table["graze"] = expansion_point(block.parameters, block.expand_at)
     cells = int(table["cells"].max())
     key = (plan.record, plan.section_side, block.samples)
     if getattr(_local, "key", None) != key or _local.cells < cells:
@@ -214,6 +224,7 @@ def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
         "results": points.new_results((count, n_starts)),
         "sections": np.full((count, n_starts, record, 4), np.nan),
         "phases": np.full((count, n_starts, record if plan.section_side else 0), np.nan),
+        "running": np.full((count, n_starts, plan.parts if block.convergence else 0, 4), np.nan),
         "trajectories": np.full((count, n_starts, block.samples, 4), np.nan),
     }
     if plan.follow:
@@ -254,7 +265,7 @@ def _starts(block: Block, table: np.ndarray) -> np.ndarray:
 
 def _by_name(block: Block, arrays: dict[str, np.ndarray], shape: tuple[int, ...]) -> dict[str, np.ndarray]:
     """The kernels' arrays as the file's datasets, of the box's shape."""
-    results, sections, phases, trajectories = arrays.values()
+    results, sections, phases, running, trajectories = arrays.values()
     lead = shape + (results.shape[1:] if results.shape[1] > 1 else ())
     named = {name: results[name].reshape(lead + results[name].shape[2:]) for name in results.dtype.names}
     if block.section:
@@ -264,6 +275,7 @@ def _by_name(block: Block, arrays: dict[str, np.ndarray], shape: tuple[int, ...]
         }
     if block.plan.section_side:
         named["phase"] = phases.reshape(lead + phases.shape[2:])
+    named["lyapunov_running"] = running.reshape(lead + running.shape[2:])
     for i, name in enumerate(("x1", "v1", "x2", "v2")):
         named[f"trajectory_{name}"] = trajectories[..., i].reshape(lead + trajectories.shape[2:3])
     return named
@@ -283,7 +295,7 @@ def estimate(scene: Scene) -> Estimate:
         record=max(1, int(plan.record * share)),
         warm_up=min(plan.warm_up, int(plan.transient * share)),
     )
-    block = Block((), short, some, np.zeros((1, 4)), None, (), 0, "section" in scene.observe)
+    block = Block((), short, some, np.zeros((1, 4)), None, (), 0, "section" in scene.observe, False, scene.expand_at)
     compute(block)  # compiles
     began = time.perf_counter()
     compute(block)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from vibro_sweep.kernels import status, tangent
+from vibro_sweep.kernels.discontinuity import map_period
 from vibro_sweep.kernels.flight import CHUNK
 from vibro_sweep.kernels.impacts import cross_cell, start_count
 from vibro_sweep.kernels.jit import jit
@@ -81,35 +82,43 @@ def cross_period(f, stops, o, records, t, k, s):
 
 
 @jit
+def to_next_section(f, stops, o, records, t):
+    """One forcing period of the flow, or one iteration of the discontinuity mapping. Returns a status."""
+    if f.oscillator[0].order > 0:
+        return map_period(f, stops, o, records, t)
+    return cross_period(f, stops, o, records, t, 0, 0.0)
+
+
+@jit
 def settle(f, stops, o, records, t, transient, warm_up):
     """The transient; tangent vectors, if wanted (`warm_up` > 0), come along for its last `warm_up` periods."""
     for n in range(transient):
         if n == transient - warm_up:
             tangent.begin(t)
-        outcome = cross_period(f, stops, o, records, t, 0, 0.0)
+        outcome = to_next_section(f, stops, o, records, t)
         if outcome != status.OK:
             return outcome
     return status.OK
 
 
 @jit
-def record(f, stops, o, records, t, section, spectrum):
-    """len(section) periods; section[i]: the state at the end of period i. spectrum: the exponents.
+def record(f, stops, o, records, t, section, growth):
+    """len(section) periods; section[i]: the state at the end of period i. Returns a status.
 
-    Returns a status and the sum of the exponents.
+    growth: (m, 4) logarithms of the growth of the tangent vectors after each m-th part of the periods.
     """
     start_count(o)
     if t.wanted:
         tangent.catch_up(t, f.oscillator[0])
         tangent.start_record(t)
+    read = 0
     for n in range(len(section)):
-        outcome = cross_period(f, stops, o, records, t, 0, 0.0)
+        outcome = to_next_section(f, stops, o, records, t)
         if outcome != status.OK:
-            return outcome, np.nan
+            return outcome
         for i in range(4):
             section[n, i] = o.X[i]
-    if not t.wanted:
-        return status.OK, np.nan
-    tangent.catch_up(t, f.oscillator[0])
-    time = len(section) * (f.oscillator[0].width * f.oscillator[0].cells)
-    return status.OK, tangent.exponents(t, time, spectrum)
+        if t.wanted and (n + 1) * len(growth) >= (read + 1) * len(section):
+            tangent.read_growth(t, f.oscillator[0], growth[read])
+            read += 1
+    return status.OK

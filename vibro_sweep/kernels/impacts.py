@@ -36,6 +36,7 @@ ORBIT = np.dtype(
         ("chatters", np.int64),  # sequences summed up
         ("slowest", float),  # least |v1| before an impact
         ("rest_time", float),
+        ("log_volume", float),  # ln|det| of the jumps of the discontinuity mapping
         ("log_side", float),  # impacts on this side are logged; 0: on both
         ("impacts_logged", np.int64),  # or would have been, had there been room
         ("rests_logged", np.int64),
@@ -71,7 +72,7 @@ def place(o, x1, v1, x2, v2):
 def start_count(o):
     """Count impacts and rest from here on."""
     o.impacts_left = o.impacts_right = o.chatters = 0
-    o.slowest, o.rest_time = np.inf, 0.0
+    o.slowest, o.rest_time, o.log_volume = np.inf, 0.0, 0.0
 
 
 @jit
@@ -121,19 +122,22 @@ def bounds(q, c):
 
 
 @jit
-def departure(q, c, side, third, left, released):
-    """An offset up to which a mass that leaves the stop on `side` without speed cannot be back.
+def leading(c, first):
+    """Index of the first coefficient from `first` on that is not zero; ORDER - 1 if there is none."""
+    n = first
+    while n < ORDER - 1 and c[n] == 0.0:
+        n += 1
+    return n
 
-    The gap is at least curve u^2/2 - third u^3/6; after a release curve = 0, and jerk u^3/6 - fourth u^4/24 stays.
-    """
-    curve, jerk = -2.0 * side * c[2], -6.0 * side * c[3]
-    if not released:
-        return min(left, 1.5 * curve / third) if third > 0.0 else left
-    fourth, power = 0.0, 1.0
-    for n in range(4, ORDER):
-        fourth += n * (n - 1.0) * (n - 2.0) * (n - 3.0) * abs(c[n]) * power
+
+@jit
+def departure(q, c, n, left):
+    """An offset up to which a polynomial that starts as c_n u^n does not come back to 0."""
+    others, power = 0.0, 1.0
+    for m in range(n + 1, ORDER):
+        others += abs(c[m]) * power
         power *= q.width
-    return min(left, 2.0 * jerk / fourth) if fourth > 0.0 else left
+    return min(left, 0.5 * abs(c[n]) / others) if others > 0.0 else left
 
 
 @jit
@@ -208,9 +212,11 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos):
         c1[n] = (a[0, n] * X[0] + a[1, n] * X[2]) + (a[2, n] * X[3] + a[3, n] * sin) + a[4, n] * cos
         c2[n] = (b[0, n] * X[0] + b[1, n] * X[2]) + (b[2, n] * X[3] + b[3, n] * sin) + b[4, n] * cos
     gap = max(side * c1[0], 0.0)
+    n = 0 if gap > 0.0 else leading(c1, 1)
     d = 0.0
-    if gap > 0.0 or side * c1[1] > 0.0:
-        d = first_contact(c1, gap, -side, bounds(q, c1)[1], 0.0, left)
+    if side * c1[n] > 0.0:
+        start = departure(q, c1, n, left) if n > 1 else 0.0
+        d = first_contact(c1, gap, -side, bounds(q, c1)[1], start, left)
     end = min(d, left)
     sample(o, records, k, s, s + end)
     X[2], X[3] = evaluate(c2, end)
@@ -272,11 +278,11 @@ def cross_cell(f, stops, o, records, t, k, s):
         reach, third = bounds(q, c1)
         start = 0.0
         if side != 0.0 and X[1] == 0.0:
-            push = side * (c1[3] if released or c1[2] == 0.0 else c1[2])
-            if push > 0.0:
+            n = leading(c1, 3 if released else 2)
+            if side * c1[n] > 0.0:
                 begin_rest(f, o, records, t, k, s, side)
                 continue
-            start = departure(q, c1, side, third, left, released)
+            start = departure(q, c1, n, left)
         elif side != 0.0:
             w = chatter(q, stops, o, third, side, left)
             if w < np.inf:

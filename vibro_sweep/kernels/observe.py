@@ -5,11 +5,13 @@ import math
 import numpy as np
 
 from vibro_sweep.kernels import status, tangent
-from vibro_sweep.kernels.ensemble import cross_period, record, settle
+from vibro_sweep.kernels.ensemble import cross_period, record, settle, to_next_section
 from vibro_sweep.kernels.impacts import Records, place, start_count
 from vibro_sweep.kernels.jit import jit
 
 REPEAT = 1e-6  # section points this near to each other, relative to their size, are the same point
+RUNNING = 200  # points of a convergence diagram
+BATCHES = 20  # parts of the recorded time whose scatter gives the error of an exponent
 
 
 @jit
@@ -63,12 +65,36 @@ def follow_trajectory(f, stops, o, records, t, periods, out):
 
 
 @jit
-def floquet(f, stops, o, records, t, axes, period, spectrum):
+def time_average(growth, periods, T, spectrum, error):
+    """Exponents after so many periods, and their standard errors from the scatter over parts; growth as in `record`.
+
+    Neighbouring parts are joined until `BATCHES` are left, so that they are long enough to be independent.
+    """
+    parts = len(growth)
+    size = max(1, parts // BATCHES)
+    batches = parts // size
+    for i in range(4):
+        spectrum[i] = growth[parts - 1, i] / (periods * T)
+        scatter, before, began = 0.0, 0.0, 0
+        for m in range(size - 1, parts, size):
+            ended = periods_read(m, parts, periods)
+            scatter += ((growth[m, i] - before) / ((ended - began) * T) - spectrum[i]) ** 2
+            before, began = growth[m, i], ended
+        error[i] = math.sqrt(scatter / (batches * (batches - 1.0))) if batches > 1 else np.nan
+
+
+@jit
+def periods_read(m, parts, periods):
+    """Periods after which `record` reads the growth for the m-th time."""
+    return -(-(m + 1) * periods // parts)
+
+
+@jit
+def floquet(f, stops, o, records, t, axes, growth, period, spectrum):
     """The exponents of a periodic orbit, over exactly one more period of it: ln|Floquet multiplier|/time.
 
     The vectors have found the invariant subspaces. A real multiplier brings its vector back to itself, and its growth
-    is exact; a complex pair turns two vectors in their plane, and the mean of their growths is. Returns a status and
-    the sum of the exponents.
+    is exact; a complex pair turns two vectors in their plane, and the mean of their growths is. Returns a status.
     """
     for i in range(4):
         for j in range(4):
@@ -76,30 +102,67 @@ def floquet(f, stops, o, records, t, axes, period, spectrum):
     start_count(o)
     tangent.start_record(t)
     for _ in range(period):
-        outcome = cross_period(f, stops, o, records, t, 0, 0.0)
+        outcome = to_next_section(f, stops, o, records, t)
         if outcome != status.OK:
-            return outcome, np.nan
+            return outcome
     q = f.oscillator[0]
-    tangent.catch_up(t, q)
-    growth = tangent.exponents(t, period * (q.width * q.cells), spectrum)
+    tangent.read_growth(t, q, growth)
+    for i in range(4):
+        spectrum[i] = growth[i] / (period * (q.width * q.cells))
     i = 0
     while i < 3:
         turn = 0.0
         for j in range(4):
             turn += axes[j, i + 1] * t.Z[j, i]
         if abs(turn) > 1e-4:
-            mean = 0.5 * (spectrum[i] + spectrum[i + 1])
-            spectrum[i] = spectrum[i + 1] = mean
+            spectrum[i] = spectrum[i + 1] = 0.5 * (spectrum[i] + spectrum[i + 1])
             i += 1
         i += 1
-    return status.OK, growth
+    return status.OK
 
 
 @jit
-def observe(f, stops, w, plan, point, result, section, phase, trajectory):
+def keep_impacts(f, stops, o, records, point, section, phase):
+    """The logged impacts as points of an impact section; phase: omega t mod 2 pi."""
+    for n in range(min(o.impacts_logged, len(phase))):
+        row = records.impacts[n]
+        section[n, 0], section[n, 1] = stops.right if row[3] > 0.0 else stops.left, row[4]
+        section[n, 2], section[n, 3] = row[5], row[6]
+        phase[n] = point.omega * (row[1] * f.oscillator[0].width + row[2])
+
+
+@jit
+def keep_exponents(f, stops, o, records, t, w, period, divergence, result):
+    """The spectrum, its error, and the residual of its sum rule. Returns a status."""
+    spectrum, error, growth = result.lyapunov, result.lyapunov_error, w.growth
+    T, parts = f.oscillator[0].width * f.oscillator[0].cells, len(w.growth)
+    time = len(w.section) * T
+    time_average(growth, len(w.section), T, spectrum, error)
+    if period > 0:  # twice: what the second time changes is the error
+        for _ in range(2):
+            for i in range(4):
+                error[i] = spectrum[i]
+            outcome = floquet(f, stops, o, records, t, w.axes, growth[parts - 1], period, spectrum)
+            if outcome != status.OK:
+                return outcome
+        time = period * T
+        for i in range(4):
+            error[i] = abs(spectrum[i] - error[i]) if spectrum[i] > -np.inf else 0.0
+    last = growth[parts - 1]
+    total = ((last[0] + last[1]) + (last[2] + last[3])) / time
+    exact = divergence + o.log_volume / time
+    hits = o.impacts_right + o.impacts_left
+    if hits > 0 and f.oscillator[0].order == 0:
+        exact += 2.0 * (hits / time) * np.log(stops.R)
+    result.lyapunov_residual = total - exact if total > -np.inf else np.nan
+    tangent.sort(spectrum, error)
+    return status.OK
+
+
+@jit
+def observe(f, stops, w, plan, point, result, section, phase, running, trajectory):
     """One orbit from where it is placed to the end of all that is wanted of it. Returns a status."""
     o, t, records = w.orbit[0], w.tangent[0], w.records
-    points = section if len(section) > 0 and plan.section_side == 0.0 else w.section
     t.wanted = False
     outcome = settle(f, stops, o, records, t, plan.transient, plan.warm_up)
     if outcome != status.OK:
@@ -107,7 +170,7 @@ def observe(f, stops, w, plan, point, result, section, phase, trajectory):
     if plan.lyapunov and not t.wanted:
         tangent.begin(t)
     o.impacts_logged, o.log_side = 0, plan.section_side
-    outcome, growth = record(f, stops, o, records, t, points, result.lyapunov)
+    outcome = record(f, stops, o, records, t, w.section, w.growth)
     if outcome != status.OK:
         return outcome
     result.impacts_right, result.impacts_left = o.impacts_right, o.impacts_left
@@ -116,25 +179,21 @@ def observe(f, stops, w, plan, point, result, section, phase, trajectory):
     for i in range(4):
         result.end[i] = o.X[i]
     if len(phase) > 0:
-        for n in range(min(o.impacts_logged, len(phase))):
-            row = records.impacts[n]
-            section[n, 0], section[n, 1] = stops.right if row[3] > 0.0 else stops.left, row[4]
-            section[n, 2], section[n, 3] = row[5], row[6]
-            phase[n] = point.omega * (row[1] * f.oscillator[0].width + row[2])
-    resting, period = o.resting, find_period(points, w.axes[0])
-    result.period = period
+        keep_impacts(f, stops, o, records, point, section, phase)
+    else:
+        for n in range(len(section)):
+            for i in range(4):
+                section[n, i] = w.section[n, i]
+    resting, result.period = o.resting, find_period(w.section, w.axes[0])
+    T = f.oscillator[0].width * f.oscillator[0].cells
+    for n in range(len(running)):
+        for i in range(4):
+            running[n, i] = w.growth[n, i] / (periods_read(n, len(running), plan.record) * T)
     if plan.lyapunov:
-        periods_counted = plan.record
-        if period > 0:
-            outcome, growth = floquet(f, stops, o, records, t, w.axes, period, result.lyapunov)
-            if outcome != status.OK:
-                return outcome
-            periods_counted = period
-        tangent.sort(result.lyapunov)
-        nu = (o.impacts_right + o.impacts_left) / (periods_counted * 2.0 * math.pi / point.omega)
         divergence = -2.0 * point.zeta * (1.0 + (1.0 + point.mu_k) / point.mu_m)
-        exact = divergence + (2.0 * nu * np.log(stops.R) if nu > 0.0 else 0.0)
-        result.lyapunov_residual = growth - exact if growth > -np.inf else np.nan
+        outcome = keep_exponents(f, stops, o, records, t, w, result.period, divergence, result)
+        if outcome != status.OK:
+            return outcome
     if len(trajectory) > 0:
         t.wanted = False
         place(o, result.end[0], result.end[1], result.end[2], result.end[3])

@@ -15,12 +15,14 @@ from vibro_sweep.kernels.tangent import TANGENT
 POINT = np.dtype(
     [(name, float) for name in ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")]
     + [("psi", float, (2, 2)), ("omega_squared", float, 2), ("cells", np.int64)]
+    + [("graze", float, 4)]  # the point at which the discontinuity mapping is expanded
 )
 
 RESULT = np.dtype(
     [
         ("status", np.int8),
         ("lyapunov", float, 4),
+        ("lyapunov_error", float, 4),
         ("lyapunov_residual", float),
         ("impacts_right", np.int64),
         ("impacts_left", np.int64),
@@ -40,7 +42,7 @@ def new_results(shape: tuple[int, ...]) -> np.ndarray:
     results["status"] = status.NOT_COMPUTED
     for name in ("impacts_right", "impacts_left", "period"):
         results[name] = -1
-    for name in ("lyapunov", "lyapunov_residual", "min_impact_speed", "sticking_time", "end"):
+    for name in ("lyapunov", "lyapunov_error", "lyapunov_residual", "min_impact_speed", "sticking_time", "end"):
         results[name] = np.nan
     return results
 
@@ -57,6 +59,8 @@ class Plan(NamedTuple):
     left: bool
     follow: bool
     periods: int  # of the trajectory
+    parts: int  # of the record, at which the growth of tangent vectors is read
+    order: int  # of the discontinuity mapping; 0: the flow itself
 
 
 class Workspace(NamedTuple):
@@ -69,6 +73,7 @@ class Workspace(NamedTuple):
     section: np.ndarray  # (record, 4)
     scratch: np.ndarray  # (7, 6)
     axes: np.ndarray  # (4, 4)
+    growth: np.ndarray  # (parts, 4)
 
 
 def new_workspace(plan: Plan, cells: int, samples: int) -> Workspace:
@@ -81,6 +86,7 @@ def new_workspace(plan: Plan, cells: int, samples: int) -> Workspace:
         np.empty((plan.record, 4)),
         np.empty((7, 6)),
         np.empty((4, 4)),
+        np.empty((plan.parts, 4)),
     )
 
 
@@ -92,12 +98,12 @@ def same_oscillator(a, b):
 
 
 @jit
-def run_points(points, starts, results, sections, phases, trajectories, w, plan):
+def run_points(points, starts, results, sections, phases, running, trajectories, w, plan):
     """Compute a block. p = points, s = starts; observations that nobody wants have no samples.
 
     starts: (p, s, 4), or with `follow` (1, s, 4): then a point starts where the one before it ended. results: (p, s)
-    RESULT. sections: (p, s, record, 4). phases: (p, s, record), for an impact section. trajectories: (p, s, samples,
-    4).
+    RESULT. sections: (p, s, record, 4). phases: (p, s, record), for an impact section. running: (p, s, parts, 4), the
+    exponents as they converge. trajectories: (p, s, samples, 4).
     """
     f, o = w.flight, w.orbit[0]
     for p in range(len(points)):
@@ -111,6 +117,10 @@ def run_points(points, starts, results, sections, phases, trajectories, w, plan)
                 f, w.scratch, point.cells, point.psi, point.omega_squared,
                 point.mu_m, point.mu_k, point.zeta, point.f2, point.omega, point.tau,
             )  # fmt: skip
+            q = f.oscillator[0]
+            q.order = plan.order
+            for i in range(4):
+                q.graze[i] = point.graze[i]
         stops = Stops(-point.b if plan.left else -np.inf, point.b if plan.right else np.inf, point.R)
         for s in range(results.shape[1]):
             x = starts[0 if plan.follow else p, s]
@@ -120,6 +130,6 @@ def run_points(points, starts, results, sections, phases, trajectories, w, plan)
                 x1, v1, x2, v2 = end[0], end[1], end[2], end[3]
             place(o, min(max(x1, stops.left), stops.right), v1, x2, v2)
             outcome = observe(
-                f, stops, w, plan, point, results[p, s], sections[p, s], phases[p, s], trajectories[p, s]
+                f, stops, w, plan, point, results[p, s], sections[p, s], phases[p, s], running[p, s], trajectories[p, s]
             )  # fmt: skip
             results[p, s].status = outcome

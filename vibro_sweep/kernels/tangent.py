@@ -133,8 +133,14 @@ def saltate(t, q, R, steepness):
         to_v2 = -q.kappa * (1.0 + R) * dx
         for i in range(4):
             t.Z[i, j] += q.to_frame[i, 0] * to_x1 + q.to_frame[i, 1] * to_v1 + q.to_frame[i, 3] * to_v2
-    t.volume *= R * R
-    if t.lost or R == 0.0:
+    watch(t, R * R)
+
+
+@jit
+def watch(t, determinant):
+    """Orthonormalise, after a step with this |determinant|, if the vectors come to lie too close together."""
+    t.volume *= determinant
+    if t.lost or determinant == 0.0:
         orthonormalise(t)
         return
     size = 0.0
@@ -202,21 +208,19 @@ def start_record(t):
 
 
 @jit
-def exponents(t, time, spectrum):
-    """Fill in the exponents after `time`, -inf for dimensions lost by sticking. Returns their sum."""
-    total = 0.0
+def read_growth(t, q, out):
+    """Logarithms of the growth of the four vectors up to this section, -inf for dimensions lost by sticking."""
+    catch_up(t, q)
     for i in range(4):
-        spectrum[i] = (t.logs[i] + np.log(t.growth[i])) / time
-        total += spectrum[i]
-    return total
+        out[i] = t.logs[i] + np.log(t.growth[i])
 
 
 @jit
-def sort(spectrum):
+def sort(spectrum, error):
     """Descending; the vectors find their order only as far as the exponents differ."""
     for i in range(1, 4):
-        value, j = spectrum[i], i
+        value, doubt, j = spectrum[i], error[i], i
         while j > 0 and spectrum[j - 1] < value:
-            spectrum[j] = spectrum[j - 1]
+            spectrum[j], error[j] = spectrum[j - 1], error[j - 1]
             j -= 1
-        spectrum[j] = value
+        spectrum[j], error[j] = value, doubt

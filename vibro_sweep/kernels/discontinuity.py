@@ -1,0 +1,129 @@
+"""The discontinuity mapping (41) of the double grazing orbit, P = Phi_{T/2} o C2 o Phi_{T/2} o C1.
+
+Orders count in eps, with displacements from the grazing point D = O(eps) and penetration psi = O(eps^2). Flight is
+linear, so Phi_{T/2} is exact: D -> L D. What a graze of the right stop does, moved to the section in zero time, is
+
+    C1(X) = X - (1 + R) w e^{-A t} e_v
+
+where t is the time from the section to the impact (negative, and of size eps), w the speed there, and e_v = (0, 1, 0,
+0): the flights forth and back differ by the flight of the impulse alone. Order 1 is the paper's: t = 0 and w = sqrt(2
+omega^2 b* psi), with psi = x1 - b (eqs. 38, 39); C1 is then wrong by O(eps^2).
+
+Order 2 keeps what is linear in t. The jerk at the graze vanishes, so near it x1 - b = psi + v1 t + a t^2/2 +
+O(eps^4), with the acceleration a(X) = -omega^2 b* + O(eps) of the point itself, and the earlier root and the speed
+there are
+
+    w = sqrt(v1^2 - 2 a psi),    t = (w - v1)/a,    C1(X) = X - (1 + R) w (e_v - t A e_v) + O(eps^3)
+
+with A e_v = (1, -2 zeta, 0, 2 zeta/mu_m): impact if and only if the peak psi - v1^2/(2 a) lies beyond the stop. C2
+mirrors C1.
+"""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.kernels import status, tangent
+from vibro_sweep.kernels.jit import jit
+
+
+@jit
+def map_period(f, stops, o, records, t):
+    """One iteration of P; the section is the phase of the right graze. Returns a status."""
+    q, half = f.oscillator[0], f.oscillator[0].cells // 2
+    o.events = 0
+    for side in (1.0, -1.0):
+        if side > 0.0 and stops.right < np.inf:
+            jump(f, stops.right, stops.R, 1.0, o, records, t)
+        elif side < 0.0 and stops.left > -np.inf:
+            jump(f, -stops.left, stops.R, -1.0, o, records, t)
+        fly_half(f.nodes[half].E, q.graze, side, o.X)
+        if t.wanted and side > 0.0:
+            tangent.fly(t, q, f.nodes, half, 0.0)
+    if t.wanted:
+        tangent.end_period(t, q, f.nodes)
+    o.period += 1
+    return status.OK if math.isfinite(o.X[0] + o.X[1] + o.X[2] + o.X[3]) else status.NOT_FINITE
+
+
+@jit
+def fly_half(E, graze, side, X):
+    """Phi_{T/2} from the side's graze to the other's: X -> -X* + L (X - X*)."""
+    d0, d1, d2, d3 = X[0] - side * graze[0], X[1] - side * graze[1], X[2] - side * graze[2], X[3] - side * graze[3]
+    for i in range(4):
+        X[i] = (E[i, 0] * d0 + E[i, 1] * d1) + (E[i, 2] * d2 + E[i, 3] * d3) - side * graze[i]
+
+
+@jit
+def jump(f, b, R, side, o, records, t):
+    """C1 (side +1) or C2 (side -1), on the state and the tangent vectors."""
+    q, X, graze = f.oscillator[0], o.X, f.oscillator[0].graze
+    # seen from the right: the left stop is its mirror image
+    d0, v1, d2, d3 = side * X[0] - graze[0], side * X[1], side * X[2] - graze[2], side * X[3] - graze[3]
+    psi = d0 + (graze[0] - b)
+    second = q.order == 2
+    a = -q.omega * q.omega * graze[0]
+    if second:
+        a += (q.force[0] * d0 + q.force[1] * v1) + (q.force[2] * d2 + q.force[3] * d3)
+    square = -2.0 * a * psi + (v1 * v1 if second else 0.0)
+    if not (square > 0.0 and a < 0.0):
+        return
+    w = math.sqrt(square)
+    late = (w - v1) / a if second else 0.0
+    push = -(1.0 + R) * w
+    if side > 0.0:
+        o.impacts_right += 1
+    else:
+        o.impacts_left += 1
+    o.slowest = min(o.slowest, w)
+    if o.log_side == 0.0 or o.log_side == side:
+        if o.impacts_logged < len(records.impacts):
+            row = records.impacts[o.impacts_logged]
+            row[0], row[1], row[2], row[3] = o.period, (0.0 if side > 0.0 else q.cells // 2), 0.0, side
+            row[4], row[5], row[6] = side * w, X[2], X[3]
+        o.impacts_logged += 1
+    X[0] -= side * push * late
+    X[1] += side * push * (1.0 + late * 2.0 * q.zeta)
+    X[3] -= side * push * late * q.kappa
+    if t.wanted:
+        push_tangent(q, R, psi, a, w, v1, late, second, o, t)
+
+
+@jit
+def push_tangent(q, R, psi, a, w, v1, late, second, o, t):
+    """Tangent vectors across a jump: DC = 1 + e_v p^T - u r^T with u = A e_v.
+
+    p and r are the gradients of -(1 + R) w and of -(1 + R) w t. At order 1, r = 0 and p = (1 + R) (a/w) e_x: there is
+    the singularity of the square root.
+    """
+    force = q.force
+    dw0, dw1, dw2, dw3 = -a / w, 0.0, 0.0, 0.0
+    dt0, dt1, dt2, dt3 = 0.0, 0.0, 0.0, 0.0
+    if second:
+        dw0 -= psi * force[0] / w
+        dw1 = (v1 - psi * force[1]) / w
+        dw2, dw3 = -psi * force[2] / w, -psi * force[3] / w
+        dt0 = (dw0 - late * force[0]) / a
+        dt1 = (dw1 - 1.0 - late * force[1]) / a
+        dt2, dt3 = (dw2 - late * force[2]) / a, (dw3 - late * force[3]) / a
+    e = -(1.0 + R)
+    p0, p1, p2, p3 = e * dw0, e * dw1, e * dw2, e * dw3
+    r0, r1 = e * (late * dw0 + w * dt0), e * (late * dw1 + w * dt1)
+    r2, r3 = e * (late * dw2 + w * dt2), e * (late * dw3 + w * dt3)
+    u1, u3 = -2.0 * q.zeta, q.kappa  # u = (1, u1, 0, u3)
+    Z, back, to = t.Z, q.from_frame, q.to_frame
+    tangent.apply_flight(t, q)
+    for j in range(4):
+        x1 = back[0, 0] * Z[0, j] + back[0, 2] * Z[2, j]
+        v = (back[1, 0] * Z[0, j] + back[1, 1] * Z[1, j]) + (back[1, 2] * Z[2, j] + back[1, 3] * Z[3, j])
+        x2 = back[2, 0] * Z[0, j] + back[2, 2] * Z[2, j]
+        v2 = (back[3, 0] * Z[0, j] + back[3, 1] * Z[1, j]) + (back[3, 2] * Z[2, j] + back[3, 3] * Z[3, j])
+        kick = (p0 * x1 + p1 * v) + (p2 * x2 + p3 * v2)
+        shift = (r0 * x1 + r1 * v) + (r2 * x2 + r3 * v2)
+        for i in range(4):
+            Z[i, j] += to[i, 1] * kick - (to[i, 0] + to[i, 1] * u1 + to[i, 3] * u3) * shift
+    determinant = 1.0
+    if second:
+        determinant = (1.0 + p1) * (1.0 - (r0 + r1 * u1 + r3 * u3)) + (p0 + p1 * u1 + p3 * u3) * r1
+    o.log_volume += np.log(abs(determinant))
+    tangent.watch(t, abs(determinant))
