@@ -248,7 +248,7 @@ def _start_problems(form: SceneForm, sweep, system: System | None) -> list[str]:
     if isinstance(form.start, FollowStart) and form.sweep is None:
         return [problem("start.follow", form.start.follow, "there is no sweep to follow")]
     x1 = getattr(form.start, "x1", 0.0)
-    if system is None:
+    if system is None or form.model == "map":  # points of the map may lie beyond the stops
         return []
     b, origin = system.b, ""
     if "b" in sweep:

@@ -168,10 +168,10 @@ def writer(scene: Scene, path: Path, mode: str):
         for old in (path, part):
             if old.exists():
                 raise StoreError(f"{old} exists; `resume` continues it, `overwrite` replaces it")
-    if mode == "resume" and path.exists():
-        file = _open(path, "r")
-    elif mode == "resume" and part.exists():
+    if mode == "resume" and part.exists():
         file = _open(part, "r+")
+    elif mode == "resume" and path.exists():
+        file = _open(path, "r")
     else:
         file = _create(scene, part)
     try:
@@ -181,16 +181,19 @@ def writer(scene: Scene, path: Path, mode: str):
         file.close()
 
 
+def _locking(path: Path) -> bool | None:
+    """Readers do not lock a file that is being written; all others do as HDF5 does by default."""
+    return False if path.suffix == ".part" else None
+
+
 def _open(path: Path, mode: str) -> h5py.File:
     try:
-        file = h5py.File(path, mode, locking=mode != "r")
+        file = h5py.File(path, mode, locking=_locking(path) if mode == "r" else None)
     except BlockingIOError:
         raise StoreError(f"{path} is being written by another run") from None
     except FileNotFoundError:
         raise StoreError(f"{path}: there is no such file") from None
     except OSError as error:
-        if "lock" in str(error):
-            raise StoreError(f"{path} is being written by another run") from None
         raise StoreError(f"{path} is not an HDF5 file, or it is damaged ({error})") from None
     if "status" not in file or "scene" not in file.attrs:
         file.close()
@@ -213,14 +216,26 @@ def _made_by() -> dict:
     return {"vibro_sweep": __version__, "kernels": source_hash()}
 
 
+def _discard(part: Path) -> None:
+    """Remove what an interrupted run left, unless it is not interrupted: HDF5 truncates a file before it locks it."""
+    if not part.exists():
+        return
+    try:
+        h5py.File(part, "r+").close()
+    except BlockingIOError:
+        raise StoreError(f"{part} is being written by another run") from None
+    except OSError:  # damaged
+        pass
+    part.unlink()
+
+
 def _create(scene: Scene, part: Path) -> h5py.File:
     """The whole file, with nothing computed yet."""
+    _discard(part)
     try:
-        file = h5py.File(part, "w")
-    except OSError as error:
-        if "lock" in str(error):
-            raise StoreError(f"{part} is being written by another run") from None
-        raise
+        file = h5py.File(part, "x")
+    except FileExistsError:
+        raise StoreError(f"{part} is being written by another run") from None
     wanted = quantities(scene)
     now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     file.attrs["Conventions"] = "CF-1.11"
@@ -263,8 +278,9 @@ def open(path):  # the name that users of xarray expect
     """The file as an `xarray.Dataset`, with coordinates. Raises StoreError for a file that is none of ours."""
     import xarray
 
-    _open(Path(path), "r").close()
-    return xarray.open_dataset(path, engine="h5netcdf")
+    path = Path(path)
+    _open(path, "r").close()
+    return xarray.open_dataset(path, engine="h5netcdf", driver_kwds={"locking": _locking(path)})
 
 
 def describe(path: str | Path) -> str:

@@ -214,7 +214,7 @@ def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
     if plan.order:
         table["graze"] = expansion_point(block.parameters, block.expand_at)
     cells = int(table["cells"].max())
-    key = (plan.record, plan.section_side, block.samples)
+    key = (plan, block.samples)
     if getattr(_local, "key", None) != key or _local.cells < cells:
         _local.key, _local.cells, _local.workspace = key, cells, points.new_workspace(plan, cells, block.samples)
     n_starts = block.starts[0] if isinstance(block.starts, tuple) else len(block.starts)

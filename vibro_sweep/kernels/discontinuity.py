@@ -24,6 +24,7 @@ import math
 import numpy as np
 
 from vibro_sweep.kernels import status, tangent
+from vibro_sweep.kernels.impacts import count_impact, log_impact
 from vibro_sweep.kernels.jit import jit
 
 
@@ -71,17 +72,8 @@ def jump(f, b, R, side, o, records, t):
     w = math.sqrt(square)
     late = (w - v1) / a if second else 0.0
     push = -(1.0 + R) * w
-    if side > 0.0:
-        o.impacts_right += 1
-    else:
-        o.impacts_left += 1
-    o.slowest = min(o.slowest, w)
-    if o.log_side == 0.0 or o.log_side == side:
-        if o.impacts_logged < len(records.impacts):
-            row = records.impacts[o.impacts_logged]
-            row[0], row[1], row[2], row[3] = o.period, (0.0 if side > 0.0 else q.cells // 2), 0.0, side
-            row[4], row[5], row[6] = side * w, X[2], X[3]
-        o.impacts_logged += 1
+    count_impact(o, side, w)
+    log_impact(o, records, 0 if side > 0.0 else q.cells // 2, 0.0, side, side * w, X[2], X[3])
     X[0] -= side * push * late
     X[1] += side * push * (1.0 + late * 2.0 * q.zeta)
     X[3] -= side * push * late * q.kappa

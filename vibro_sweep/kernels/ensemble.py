@@ -5,7 +5,7 @@ import numpy as np
 from vibro_sweep.kernels import status, tangent
 from vibro_sweep.kernels.discontinuity import map_period
 from vibro_sweep.kernels.flight import CHUNK
-from vibro_sweep.kernels.impacts import cross_cell, start_count
+from vibro_sweep.kernels.impacts import cross_cell, start_count, strike
 from vibro_sweep.kernels.jit import jit
 
 
@@ -67,12 +67,17 @@ def cross_period(f, stops, o, records, t, k, s):
                 X[i] = (E[i, 0] * y0 + E[i, 1] * y1) + (E[i, 2] * y2 + E[i, 3] * y3) + r[i]
         if k == q.cells:
             break
-        events, rested = o.events, o.resting != 0.0
-        outcome = cross_cell(f, stops, o, records, t, k, s)
-        if outcome != status.OK:
-            return outcome
+        seen = 2
+        if s == 0.0 and o.resting == 0.0 and stops.left < X[0] < stops.right:
+            seen = strike(f, stops, o, records, t, k)
+        if seen == 2:
+            events, rested = o.events, o.resting != 0.0
+            outcome = cross_cell(f, stops, o, records, t, k, s)
+            if outcome != status.OK:
+                return outcome
+            seen = 1 if s > 0.0 or rested or o.events > events else 0
         k += 1
-        if s > 0.0 or rested or o.events > events:  # else it was free flight, which goes on from `base`
+        if seen == 1:  # else it was free flight, which goes on from `base`
             s, base, r = 0.0, k, nodes[k].r
             y0, y1, y2, y3 = X[0] - r[0], X[1] - r[1], X[2] - r[2], X[3] - r[3]
     if t.wanted:

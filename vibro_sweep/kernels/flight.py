@@ -38,6 +38,7 @@ OSCILLATOR = np.dtype(
         ("resting1", float, (5, ORDER)),  # free acceleration of M1 while it rests, of (x1, x2, v2, sin, cos)
         ("resting2", float, (5, ORDER)),  # x2 meanwhile
         ("reach", float, ORDER),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
+        ("impulse_third", float),  # bound on |d3 x1/du3| over a cell after a unit impulse on M1
         ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell
         ("frame_series", float, (ORDER, 4)),  # of tangent.py, like all that follow
         ("stretch", np.int64),  # cells that may be flown between looks at the tangent vectors

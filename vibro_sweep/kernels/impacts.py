@@ -104,6 +104,21 @@ def sample(o, records, k, start, stop):
 
 
 @jit
+def sample_rebound(q, o, records, k, d, impulse):
+    """The samples in cell k after an impact at offset d: of the old flight, and what the impulse adds to it."""
+    times, samples = records.times, records.samples
+    first = o.samples_taken
+    sample(o, records, k, 0.0, q.width)
+    for i in range(first, o.samples_taken):
+        x1, v1 = evaluate(q.series1[1], times[i, 1] - d)
+        x2, v2 = evaluate(q.series2[1], times[i, 1] - d)
+        samples[i, 0] += impulse * x1
+        samples[i, 1] += impulse * v1
+        samples[i, 2] += impulse * x2
+        samples[i, 3] += impulse * v2
+
+
+@jit
 def bounds(q, c):
     """Over a cell: how far x can move, and a bound on its third derivative. Summed by fours, for the vector unit."""
     reach, third = q.reach, q.third
@@ -154,21 +169,31 @@ def next_contact(stops, c, side, reach, third, start, left):
 
 
 @jit
-def impact(f, stops, o, records, t, k, s, side, sin, cos):
-    """v1 -> -R v1, and what is observed of it."""
-    q, X, R = f.oscillator[0], o.X, stops.R
-    before = X[1]
-    o.events += 1
+def log_impact(o, records, k, s, side, v1, x2, v2):
     if o.log_side == 0.0 or o.log_side == side:
         if o.impacts_logged < len(records.impacts):
             row = records.impacts[o.impacts_logged]
-            row[0], row[1], row[2], row[3], row[4], row[5], row[6] = o.period, k, s, side, before, X[2], X[3]
+            row[0], row[1], row[2], row[3], row[4], row[5], row[6] = o.period, k, s, side, v1, x2, v2
         o.impacts_logged += 1
+
+
+@jit
+def count_impact(o, side, v):
+    o.events += 1
     if side > 0.0:
         o.impacts_right += 1
     else:
         o.impacts_left += 1
-    o.slowest = min(o.slowest, abs(before))
+    o.slowest = min(o.slowest, abs(v))
+
+
+@jit
+def impact(f, stops, o, records, t, k, s, side, sin, cos):
+    """v1 -> -R v1, and what is observed of it."""
+    q, X, R = f.oscillator[0], o.X, stops.R
+    before = X[1]
+    log_impact(o, records, k, s, side, before, X[2], X[3])
+    count_impact(o, side, before)
     X[1] = -R * before
     if t.wanted:
         a = q.force
@@ -251,6 +276,67 @@ def chatter(q, stops, o, third, side, left):
     if w < left and change < 1e-3 and w * change <= CHATTER * q.width * q.cells:
         return w
     return np.inf
+
+
+@jit
+def speed_and_acceleration(c, u):
+    """First and second derivative of a series at u; even and odd terms go side by side."""
+    w = u * u
+    even, slope_even = (ORDER - 1.0) * c[ORDER - 1], 0.0
+    odd, slope_odd = (ORDER - 2.0) * c[ORDER - 2], 0.0
+    for n in range(ORDER - 3, 1, -2):
+        slope_even = slope_even * w + even
+        even = even * w + n * c[n]
+        slope_odd = slope_odd * w + odd
+        odd = odd * w + (n - 1.0) * c[n - 1]
+    slope_even = slope_even * w + even
+    even = even * w + c[1]
+    return even + u * odd, odd + 2.0 * (u * slope_even + w * slope_odd)
+
+
+@jit
+def strike(f, stops, o, records, t, k):
+    """Cross cell k from its node if there is one impact in it, or none, and nothing more can follow.
+
+    The motion goes on as if there were no stop, and what the impulse -(1 + R) v1 does is added at the cell's end.
+    Returns "free" 0 (the state is left alone), "struck" 1, or 2: it takes a closer look (`cross_cell`).
+    """
+    q, node, X, c, R = f.oscillator[0], f.nodes[k], o.X, o.c1, stops.R
+    load(q.series1, X[0], X[1], X[2], X[3], node.sin, node.cos, c)
+    reach, third = bounds(q, c)
+    d, side = next_contact(stops, c, 0.0, reach, third, 0.0, q.width)
+    watched = len(records.times) > 0 or len(records.impacts) > 0
+    if watched:
+        load(q.series2, X[0], X[1], X[2], X[3], node.sin, node.cos, o.c2)
+    if d == np.inf:
+        sample(o, records, k, 0.0, q.width)
+        return 0
+    v, a = speed_and_acceleration(c, d)
+    left, impulse, after = q.width - d, -(1.0 + R) * v, a + 2.0 * q.zeta * (1.0 + R) * v
+    third += abs(impulse) * q.impulse_third
+    rebound = R * abs(v)
+    stays_off = rebound > 0.5 * left * (max(side * after, 0.0) + left * third / 3.0)
+    stays_short = left * (rebound + 0.5 * left * (abs(after) + left * third / 3.0)) < stops.right - stops.left
+    if not (side * v > 0.0 and stays_off and stays_short):
+        return 2
+    count_impact(o, side, v)
+    if watched:
+        x2, v2 = evaluate(o.c2, d)
+        log_impact(o, records, k, d, side, v, x2, v2)
+        sample(o, records, k, 0.0, d)
+        sample_rebound(q, o, records, k, d, impulse)
+    if t.wanted:
+        tangent.fly(t, q, f.nodes, k, d)
+        tangent.saltate(t, q, R, (after + R * a) / v)
+    E, r, end = f.nodes[1].E, node.r, f.nodes[k + 1].r
+    y0, y1, y2, y3 = X[0] - r[0], X[1] - r[1], X[2] - r[2], X[3] - r[3]
+    x1, v1 = evaluate(q.series1[1], left)
+    x2, v2 = evaluate(q.series2[1], left)
+    X[0] = (E[0, 0] * y0 + E[0, 1] * y1) + (E[0, 2] * y2 + E[0, 3] * y3) + (end[0] + impulse * x1)
+    X[1] = (E[1, 0] * y0 + E[1, 1] * y1) + (E[1, 2] * y2 + E[1, 3] * y3) + (end[1] + impulse * v1)
+    X[2] = (E[2, 0] * y0 + E[2, 1] * y1) + (E[2, 2] * y2 + E[2, 3] * y3) + (end[2] + impulse * x2)
+    X[3] = (E[3, 0] * y0 + E[3, 1] * y1) + (E[3, 2] * y2 + E[3, 3] * y3) + (end[3] + impulse * v2)
+    return 1
 
 
 @jit

@@ -128,7 +128,9 @@ def run_points(points, starts, results, sections, phases, running, trajectories,
             if plan.follow and p > 0 and results[p - 1, s].status == status.OK:
                 end = results[p - 1, s].end
                 x1, v1, x2, v2 = end[0], end[1], end[2], end[3]
-            place(o, min(max(x1, stops.left), stops.right), v1, x2, v2)
+            if plan.order == 0:  # points of the map may lie beyond the stops
+                x1 = min(max(x1, stops.left), stops.right)
+            place(o, x1, v1, x2, v2)
             outcome = observe(
                 f, stops, w, plan, point, results[p, s], sections[p, s], phases[p, s], running[p, s], trajectories[p, s]
             )  # fmt: skip

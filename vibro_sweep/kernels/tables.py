@@ -221,6 +221,9 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
             q.third[n + 3] = (n + 3.0) * (n + 2.0) * (n + 1.0) * power
         power *= q.width
     fill_series(q, scratch[:6], scratch[6], mu_m, mu_k, f2)
+    q.impulse_third = 0.0
+    for n in range(ORDER):
+        q.impulse_third += q.third[n] * abs(q.series1[1, n])
     fill_flight(q, f.nodes, psi, omega_squared, mu_m)
     fill_motion(q, f.nodes, tau)
     fill_scan(q, f.nodes, f.scan)
