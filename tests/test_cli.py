@@ -241,10 +241,19 @@ def test_grazing(folder, capsys):
     assert "(19) holds" in lines[-1]
 
 
-def test_grazing_of_a_frequency_sweep_says_where(folder, capsys):
-    (folder / "plane.yaml").write_text(scene("sweep: {omega: {values: [0.6, 0.7]}, b: {values: [5, 6]}}"))
+def test_grazing_curve_of_a_frequency_sweep(folder, capsys):
+    (folder / "plane.yaml").write_text(scene("sweep: {omega: {values: [0.6, 0.63]}, b: {values: [5, 6]}}"))
     assert main(["grazing", "plane.yaml"]) == 0
-    assert capsys.readouterr().out.startswith("at the first point of the sweep: omega = 0.6\n")
+    header, first, last = capsys.readouterr().out.splitlines()
+    assert header == "# omega b* tau*" and first.startswith("0.6 ")
+    omega, b, tau = map(float, last.split())
+    assert omega == 0.63 and abs(b - 6.70571674097302) < 1e-13 and abs(tau - 2.229306509033) < 1e-12
+
+
+def test_grazing_of_two_frequencies_says_where(folder, capsys):
+    (folder / "plane.yaml").write_text(scene("sweep: {omega: {values: [0.6, 0.7]}, zeta: {values: [0.1, 0.2]}}"))
+    assert main(["grazing", "plane.yaml"]) == 0
+    assert capsys.readouterr().out.startswith("at the first point of the sweep: omega = 0.6, zeta = 0.1\n")
 
 
 def test_check(folder, capsys):

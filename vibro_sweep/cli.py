@@ -159,18 +159,24 @@ def check(scene_file: SceneFile):
 def grazing(scene_file: SceneFile):
     """Theorem 1: the clearance and phase of the double grazing.
 
-    There the non-impacting steady motion just touches both stops.
+    There the non-impacting steady motion just touches both stops. If the scene sweeps what they depend on: the curve.
     """
     from .scene import SceneError, load_scene
     from .system import grazing
 
     with _input_errors(SceneError):
         scene = load_scene(scene_file)
+    along = [key for key in scene.sweep if key not in ("b", "R", "tau")]
+    if len(along) == 1:
+        typer.echo(f"# {along[0]} b* tau*")
+        for value in scene.sweep[along[0]].tolist():
+            touch = grazing(scene.system.replace(**{along[0]: value}))
+            typer.echo(f"{value!r} {touch.b!r} {touch.tau!r}")
+        return
     touch = grazing(scene.system)
     _, _, x2, v2 = touch.state
-    base = ", ".join(f"{key} = {getattr(scene.system, key)!r}" for key in scene.sweep if key not in ("b", "R", "tau"))
-    if base:
-        typer.echo(f"at the first point of the sweep: {base}")
+    if along:
+        typer.echo("at the first point of the sweep: " + ", ".join(f"{key} = {getattr(scene.system, key)!r}" for key in along))
     typer.echo(f"b*    = {touch.b!r}")
     typer.echo(f"tau*  = {touch.tau!r}")
     typer.echo(f"state = x1: {touch.b!r}, v1: 0, x2: {x2!r}, v2: {v2!r}   (right stop; left stop: its negative)")
