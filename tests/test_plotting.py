@@ -66,13 +66,13 @@ def branches(tmp_path):
 
 @pytest.fixture
 def trajectory(tmp_path):
-    """Bounces between walls at +-2 with speed 1: period 8, impacts at t = 2, 6, 10, .."""
+    """Bounces between walls at +-2 with speed 1, impacts at t = 2, 6, 10, .. ; the forcing period is 8 too."""
     time = np.linspace(0, 16, 1601)
     x1 = np.abs((time - 2) % 8 - 4) - 2
     v1 = np.where((time - 2) % 8 < 4, -1.0, 1.0)
     scene = "system: {b: 2, omega: 0.7853981633974483, R: 1}"
     quantities = {"trajectory_x1": x1, "trajectory_v1": v1, "trajectory_x2": x1 / 2, "x1": x1[::800]}
-    return write(tmp_path / "one.h5", {}, quantities, scene=scene, time=time)
+    return write(tmp_path / "one.h5", {}, quantities, scene=scene, time=time / 8)
 
 
 def drawn(ax):
@@ -91,7 +91,7 @@ def image(ax):
 def test_kinds_follow_from_what_the_file_holds(tmp_path, sweep, branches, trajectory):
     assert plotting.kinds(sweep) == ["bifurcation", "lyapunov", "impacts", "iteration"]
     assert plotting.kinds(branches) == ["bifurcation", "lyapunov", "iteration"]
-    assert plotting.kinds(trajectory) == ["phase-portrait", "history", "iteration"]
+    assert plotting.kinds(trajectory) == ["phase-portrait", "configuration", "history", "iteration"]
     b = np.arange(1.0, 4)
     only = write(tmp_path / "only.h5", {"b": b}, {"lyapunov": exponents(3)})
     assert plotting.kinds(only) == ["lyapunov"]
@@ -116,6 +116,7 @@ def test_kind_all_writes_each_kind(trajectory, tmp_path):
     written = plotting.plot(trajectory, tmp_path / "fig.svg", kind="all")
     assert [path.name for path in written] == [
         "fig-phase-portrait.svg",
+        "fig-configuration.svg",
         "fig-history.svg",
         "fig-iteration.svg",
     ]
@@ -174,7 +175,7 @@ def test_nothing_to_show(tmp_path):
 def test_drawing_needs_no_display_and_no_engine(sweep):
     code = (
         "import sys; from vibro_sweep import plotting; plotting.plot(sys.argv[1], kind='all');"
-        "heavy = {'numba', 'pydantic', 'matplotlib.pyplot', 'vibro_sweep.kernels', 'vibro_sweep.system',"
+        "heavy = {'numba', 'pydantic', 'matplotlib.pyplot', 'vibro_sweep.kernels',"
         " 'vibro_sweep.scene', 'vibro_sweep.sweep', 'vibro_sweep.orbit'};"
         "print(sorted(heavy & set(sys.modules)))"
     )
@@ -282,13 +283,14 @@ def test_density_puts_points_where_they_are():
 def test_branches_are_told_apart(branches):
     section, spectrum = plotting.figure(branches).axes
     labels = [text.get_text() for text in section.get_legend().get_texts()]
-    assert labels == ["up \N{RIGHTWARDS ARROW}", "\N{LEFTWARDS ARROW} down"]
+    assert labels == ["grazing, $b^*$", "up \N{RIGHTWARDS ARROW}", "\N{LEFTWARDS ARROW} down"]
     up, down = section.lines[:2]
     assert len(up.get_xdata()) == len(down.get_xdata()) == 30 * 20
     assert np.all(up.get_ydata() - down.get_ydata() == pytest.approx(1))
     assert up.get_markersize() > down.get_markersize()
     assert up.get_color() != down.get_color()
-    assert [line.get_color() for line in spectrum.lines[-2:]] == [up.get_color(), down.get_color()]
+    curves = [line for line in spectrum.lines if line.get_gid() != "grazing"]
+    assert [line.get_color() for line in curves[-2:]] == [up.get_color(), down.get_color()]
     assert spectrum.get_ylabel() == r"$\lambda_1$"
 
 
@@ -454,7 +456,7 @@ def test_clearance_of_a_physical_scene(tmp_path, trajectory):
 def test_an_illegible_scene_costs_only_its_numbers(trajectory, scene):
     with h5py.File(trajectory, "a") as file:
         file.attrs["scene"] = scene
-    assert len(plotting.plot(trajectory, kind="all")) == 3
+    assert len(plotting.plot(trajectory, kind="all")) == 4
 
 
 def test_a_sweep_shows_four_orbits_and_both_branches_side_by_side(tmp_path, sweep, branches):

@@ -176,7 +176,8 @@ def grazing(scene_file: SceneFile):
     touch = grazing(scene.system)
     _, _, x2, v2 = touch.state
     if along:
-        typer.echo("at the first point of the sweep: " + ", ".join(f"{key} = {getattr(scene.system, key)!r}" for key in along))
+        first = ", ".join(f"{key} = {getattr(scene.system, key)!r}" for key in along)
+        typer.echo(f"at the first point of the sweep: {first}")
     typer.echo(f"b*    = {touch.b!r}")
     typer.echo(f"tau*  = {touch.tau!r}")
     typer.echo(f"state = x1: {touch.b!r}, v1: 0, x2: {x2!r}, v2: {v2!r}   (right stop; left stop: its negative)")

@@ -55,7 +55,7 @@ _AXES = {
     "sample": ("1", "section point, counted from the end of the transient"),
     "exponent": ("1", "Lyapunov exponent, counted from the largest"),
     "elapsed": ("1", "forcing periods since the end of the transient"),
-    "time": ("1", "nondimensional time since the last section point"),
+    "time": ("1", "forcing periods since the last section point"),
 }
 
 
@@ -110,8 +110,7 @@ def coordinates(scene: Scene) -> dict[str, np.ndarray]:
         parts = min(RUNNING, scene.record)
         result["elapsed"] = np.array([periods_read.py_func(m, parts, scene.record) for m in range(parts)])
     if "time" in extra:
-        span = scene.trajectory.periods * scene.system.period
-        result["time"] = np.linspace(0.0, span, scene.trajectory.samples)
+        result["time"] = np.linspace(0.0, scene.trajectory.periods, scene.trajectory.samples)
     return result
 
 

@@ -3,6 +3,7 @@
 numba's cache does not see an edit in a helper's file, so the cache folder is named by a hash of all kernel sources.
 """
 
+import functools
 import hashlib
 import os
 from pathlib import Path
@@ -12,6 +13,7 @@ from numba.core import config
 from numba.core.cpu import CPUTargetOptions
 
 
+@functools.cache  # of the sources as they were imported
 def source_hash() -> str:
     """Identifies the kernels: equal hashes give equal numbers on equal machines."""
     digest = hashlib.sha256()

@@ -24,8 +24,10 @@ _KINDS = {
     "lyapunov": (sweeps.shows_lyapunov, sweeps.lyapunov),
     "impacts": (sweeps.shows_impacts, sweeps.impacts),
     "phase-portrait": (orbits.shows_trajectory, orbits.phase_portrait),
+    "configuration": (orbits.shows_both_masses, orbits.configuration),
     "history": (orbits.shows_trajectory, orbits.history),
     "iteration": (orbits.shows_section, orbits.iteration),
+    "convergence": (orbits.shows_convergence, orbits.convergence),
 }
 
 

@@ -13,20 +13,30 @@ def shows_trajectory(result: Result) -> bool:
     return all(name in result for name in ("trajectory_x1", "trajectory_v1", "time"))
 
 
+def shows_both_masses(result: Result) -> bool:
+    return shows_trajectory(result) and "trajectory_x2" in result
+
+
 def shows_section(result: Result) -> bool:
     return "x1" in result or "v1" in result
 
 
-def phase_portrait(result: Result):
-    """x1 and v1 between the stops, one panel an orbit; the state at each forcing period marked."""
+def _portraits(result, what):
+    """A page with a panel for each orbit: (figure, [(axes, point)])."""
     points = result.points()
     columns = min(len(points), 2)
     rows = -(-len(points) // columns)
-    fig = page(3.0 * rows + 0.7 if columns > 1 else 5.0, result.title("Phase portrait"))
+    fig = page(3.0 * rows + 0.7 if columns > 1 else 5.0, result.title(what))
     grid = fig.subplots(rows, columns, squeeze=False)
     for ax in grid.flat[len(points) :]:
         ax.set_axis_off()
-    for ax, point in zip(grid.flat, points, strict=False):
+    return fig, list(zip(grid.flat, points, strict=False))
+
+
+def phase_portrait(result: Result):
+    """x1 and v1 between the stops, one panel an orbit; the state at each forcing period marked."""
+    fig, panels = _portraits(result, "Phase portrait")
+    for ax, point in panels:
         t, x, v = _trajectory(result, point)
         stops = result.stops(point.place)
         path = break_at_impacts(t, x, v, stops)
@@ -34,14 +44,33 @@ def phase_portrait(result: Result):
         for stop, v_in, v_out in path.jumps:
             ax.plot([stop, stop], [v_in, v_out], color=EXPONENTS[1], lw=1.2, ls=(0, (1, 1)), label="impact")
         _walls(ax, stops)
-        period = _forcing_period(result, point)
-        if period:
-            whole = np.arange(0, t[-1] + period / 2, period)
-            at = np.rint(np.interp(whole, t, np.arange(len(t)))).astype(int)
-            ax.plot(x[at], v[at], "o", color=EXPONENTS[0], markersize=3.5, label=r"$t = 0$ mod $T$", zorder=3)
+        _mark_sections(ax, result, point, t, x, v)
         ax.set(title=point.label, xlabel="$x_1$", ylabel="$v_1$")
     _legend(fig)
     return fig
+
+
+def configuration(result: Result):
+    """Both masses' displacements against each other (the paper's figure 4), one panel an orbit."""
+    fig, panels = _portraits(result, "Configuration plane")
+    for ax, point in panels:
+        t, x1, _ = _trajectory(result, point)
+        x2 = result.one("trajectory_x2", point)
+        stops = result.stops(point.place)
+        ax.plot(x1, x2, color=INK, lw=0.7)
+        _walls(ax, stops)
+        _mark_sections(ax, result, point, t, x1, x2)
+        ax.set(title=point.label, xlabel="$x_1$", ylabel="$x_2$")
+    _legend(fig)
+    return fig
+
+
+def _mark_sections(ax, result, point, t, x, y):
+    period = _forcing_period(result, point)
+    if period:
+        whole = np.arange(0, t[-1] + period / 2, period)
+        at = np.rint(np.interp(whole, t, np.arange(len(t)))).astype(int)
+        ax.plot(x[at], y[at], "o", color=EXPONENTS[0], markersize=3.5, label=r"$t = 0$ mod $T$", zorder=3)
 
 
 def history(result: Result):
@@ -63,7 +92,7 @@ def history(result: Result):
             ax.axhline(stop, color=FAINT, lw=0.7, ls=DASHES, label="stops" if len(stops) > 1 else "stop")
         ax.margins(x=0)
         ax.set(title=point.label, ylabel="displacement")
-    grid[-1].set_xlabel("$t / T$ (forcing periods)" if period else "nondimensional time $t$")
+    grid[-1].set_xlabel("$t / T$ (forcing periods)")
     _legend(fig)
     return fig
 
@@ -89,8 +118,65 @@ def iteration(result: Result):
     return fig
 
 
+def shows_convergence(result: Result) -> bool:
+    return "lyapunov_running" in result
+
+
+def convergence(result: Result):
+    """The spectrum as it was computed, period by period: lambda_1 beside zero, and below all four. Up to two orbits.
+
+    Where the file has them: a dashed line at each final value, a band of two standard errors around it.
+    """
+    points = result.points(2)
+    fig = page(5.0, result.title("Convergence of the Lyapunov exponents"))
+    grid = fig.subplots(2, len(points), sharex=True, sharey="row", squeeze=False, height_ratios=(1.2, 1))
+    periods = result.coordinate("elapsed")
+    settled = slice(len(periods) // 10, None)
+    for (largest, spectrum), point in zip(grid.T, points, strict=True):
+        running = np.where(np.isfinite(values := result.one("lyapunov_running", point)), values, np.nan)
+        for i in reversed(range(4)):
+            spectrum.plot(periods, running[:, i], color=EXPONENTS[i], label=rf"$\lambda_{i + 1}$")
+        order = np.argsort(-np.nan_to_num(running[-1], nan=-np.inf))
+        largest.plot(periods, running[:, order[0]], color=EXPONENTS[order[0]])
+        text = point.label
+        if "lyapunov" in result:
+            text = ", ".join(filter(None, [text, _final_values((largest, spectrum), result, point)]))
+        largest.axhline(0, color=INK, lw=0.6)
+        largest.set_title(text)
+        spectrum.set_xlabel("forcing periods")
+        spectrum.margins(x=0)
+    for row, shown in zip(grid, (slice(0, 1), slice(None)), strict=True):
+        values = [
+            np.sort(result.one("lyapunov_running", point)[settled], axis=1)[:, ::-1][:, shown] for point in points
+        ]
+        finite = np.concatenate([v[np.isfinite(v)] for v in values] + [[0.0]])
+        row[0].set_ylim(limits(finite))
+    grid[0, 0].set_ylabel(r"$\lambda_1$")
+    grid[1, 0].set_ylabel(r"$\lambda_i$")
+    _legend(fig)
+    fig.align_ylabels(grid[:, 0])
+    return fig
+
+
+def _final_values(panels, result, point) -> str:
+    """Draw the exponents of the file, with two standard errors; the first of them as text."""
+    final = result.one("lyapunov", point)
+    error = result.one("lyapunov_error", point) if "lyapunov_error" in result else np.full(4, np.nan)
+    for ax, count in zip(panels, (1, 4), strict=True):
+        for value, spread, colour in list(zip(final, error, EXPONENTS, strict=True))[:count]:
+            if np.isfinite(value):
+                ax.axhline(value, color=colour, lw=0.7, ls=DASHES)
+            if np.isfinite(value) and np.isfinite(spread):
+                ax.axhspan(value - 2 * spread, value + 2 * spread, color=colour, alpha=0.15, lw=0)
+    spread = rf" \pm {error[0]:.1g}" if np.isfinite(error[0]) else ""
+    return rf"$\lambda_1 = {final[0]:.3g}{spread}$"
+
+
 def _trajectory(result, point):
-    return result.coordinate("time"), *(result.one(f"trajectory_{name}", point) for name in ("x1", "v1"))
+    """Nondimensional time, x1 and v1."""
+    return result.coordinate("time") * (_forcing_period(result, point) or 1.0), *(
+        result.one(f"trajectory_{name}", point) for name in ("x1", "v1")
+    )
 
 
 def _forcing_period(result, point):

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap, TwoSlopeNorm
 
 from vibro_sweep.plotting.result import Result
-from vibro_sweep.plotting.style import NOT_COMPUTED, axis_name, edges, page
+from vibro_sweep.plotting.style import DASHES, INK, NOT_COMPUTED, axis_name, edges, page
 
 LONGEST = 12  # periods with a colour of their own
 # Paired light and dark, so that a period and its double, 1 and 2 or 3 and 6, are told apart at a glance.
@@ -33,8 +33,27 @@ def plane(result: Result):
         draw(ax, edges(x[columns]), edges(y[rows]), np.ma.masked_invalid(values[np.ix_(columns, rows)].T))
         ax.set_xlabel(axis_name(x_key))
         ax.set_facecolor(NOT_COMPUTED)
+        _grazing_curve(ax, result)
     grid[0].set_ylabel(axis_name(y_key))
     return fig
+
+
+def _grazing_curve(ax, result):
+    """b* of Theorem 1 where b is one of the axes: above it the mass can swing freely."""
+    keys = list(result.sweep)
+    if "b" not in keys:
+        return
+    other = keys[1 - keys.index("b")]
+    values = np.linspace(*sorted((min(result.sweep[other]), max(result.sweep[other]))), 800)
+    curve = result.grazing(**{other: values})
+    if curve is None:
+        return
+    frame = ax.get_xlim(), ax.get_ylim()
+    line = (values, np.broadcast_to(curve, values.shape))
+    for style in ({"color": "white", "lw": 2.2}, {"color": INK, "lw": 1.0, "ls": DASHES, "label": "grazing, $b^*$"}):
+        ax.plot(*(line if keys[1] == "b" else line[::-1]), **style)
+    ax.set(xlim=frame[0], ylim=frame[1])
+    ax.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1, borderpad=0.1)
 
 
 def _maps(result):

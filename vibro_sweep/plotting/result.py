@@ -8,6 +8,7 @@ import numpy as np
 import yaml
 
 from vibro_sweep.plotting.style import SYMBOLS
+from vibro_sweep.system import steady_response
 
 
 class PlotError(ValueError):
@@ -107,6 +108,28 @@ class Result:
         sides = {"right": (1,), "left": (-1,)}.get(self._system.get("stops"), (1, -1))
         return {} if b is None else {side: side * b for side in sides}
 
+    def grazing(self, **swept) -> np.ndarray | None:
+        """b* of Theorem 1 for swept values (n,) of some of the system's numbers; None where the scene does not tell."""
+        numbers = [swept.get(name, self._system.get(name)) for name in ("mu_m", "mu_k", "zeta", "f2", "omega")]
+        if None in [value if np.ndim(value) == 0 else 0 for value in numbers]:
+            return None
+        d, e = steady_response(*np.broadcast_arrays(*numbers))
+        return np.hypot(d[..., 0], e[..., 0])
+
+    def is_chaotic(self) -> np.ndarray:
+        """Where lambda_1 > 0 beyond two standard errors, if they are stored; bool, shape (*sweep, starts)."""
+        largest = self.array("lyapunov")[..., 0]
+        error = self.array("lyapunov_error")[..., 0] if "lyapunov_error" in self else 0.0
+        return largest - 2 * error > 0
+
+    def model(self) -> str:
+        """What was iterated, for a title: nothing where it is the oscillator itself."""
+        if self.scene.get("model") != "map":
+            return ""
+        at = self.scene.get("expand_at")
+        where = "" if at is None else f", expanded at $b = {at:.8g}$"
+        return f"discontinuity mapping of order {self.scene.get('order', 1)}{where}"
+
     def setting(self, group, name):
         """An entry such as `orbit: transient` of the scene, None where it is absent."""
         entries = self.scene.get(group)
@@ -133,7 +156,7 @@ class Result:
         same = [(key, self._system[key]) for key in SYMBOLS if key in self._system and key not in self.sweep]
         numbers = ", ".join(f"${SYMBOLS[key]} = {value:.6g}$" for key, value in same)
         missing = "" if self.done.all() else f"{self.done.sum()} of {self.done.size} points computed"
-        return "\n".join(filter(None, ["; ".join(filter(None, [what, missing])), numbers]))
+        return "\n".join(filter(None, ["; ".join(filter(None, [what, self.model(), missing])), numbers]))
 
 
 def _spread(items, most) -> list:

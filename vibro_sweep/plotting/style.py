@@ -32,6 +32,7 @@ INK = "#1a1a2e"
 FAINT = "#8a8a96"
 EXPONENTS = ("#b2182b", "#2166ac", "#4d9221", "#6e6e78")  # lambda_1 .. lambda_4
 CHAOS = "#fbe3dc"  # the tint where lambda_1 > 0
+GRAZING = "#7b3294"
 BRANCHES = {"up": "#1f6fb4", "down": "#e1570f"}
 ARROWS = {"up": "up \N{RIGHTWARDS ARROW}", "down": "\N{LEFTWARDS ARROW} down"}
 DASHES = (0, (5, 3))

@@ -14,6 +14,7 @@ from vibro_sweep.plotting.style import (
     DASHES,
     EXPONENTS,
     FAINT,
+    GRAZING,
     INK,
     LEFT,
     RIGHT,
@@ -73,6 +74,8 @@ def _stack(result, panels, what):
     values = values[order]
     for ax, (_, draw) in zip(axes, panels, strict=True):
         draw(ax, result, values, order)
+    if key == "b":
+        _grazing_lines(axes, result)
     borders = edges(values)
     most = 0.02 * (values[-1] - values[0]) or np.inf
     axes[-1].set_xlim(max(borders[0], values[0] - most), min(borders[-1], values[-1] + most))
@@ -82,9 +85,20 @@ def _stack(result, panels, what):
     return fig
 
 
+def _grazing_lines(axes, result):
+    """b* of Theorem 1, and where else the map was expanded."""
+    marks = [(result.grazing(), "grazing, $b^*$", (0, (4, 2))), (result.scene.get("expand_at"), "expanded at", ":")]
+    low, high = sorted((min(result.sweep["b"]), max(result.sweep["b"])))
+    for b, label, style in marks:
+        if b is not None and low <= b <= high:
+            for ax in axes:
+                ax.axvline(float(b), color=GRAZING, lw=0.8, ls=style, zorder=3, gid="grazing", label=label)
+
+
 def _key(ax, result):
     """What the colours mean, above the panel, where it hides no point."""
     handles = [line for line in ax.lines if line.get_gid() == "stop"][:1]
+    handles += [line for line in ax.lines if line.get_gid() == "grazing"]
     if result.follow:
         dots = {"ls": "none", "marker": "o", "markersize": 4}
         both = [Line2D([], [], color=INK, label="both", **dots)] if ax.images else []
@@ -142,15 +156,29 @@ def _stop_lines(ax, result, values, order):
 def _spectrum(ax, result, values, order):
     exponents = result.array("lyapunov")[order]  # (values, starts, 4)
     exponents[~np.isfinite(exponents)] = np.nan  # directions lost by sticking leave a gap
-    _tint(ax, values, (exponents[:, :, 0] > 0).any(axis=1))
+    error = result.array("lyapunov_error")[order] if "lyapunov_error" in result else np.zeros(exponents.shape)
+    _tint(ax, values, result.is_chaotic()[order].any(axis=1))
     ax.axhline(0, color=INK, lw=0.6, zorder=1)
     ax.set_ylabel(r"$\lambda_1$" if result.follow else r"$\lambda_i$")
     if result.follow:
         _branches(ax, values, exponents[:, :, 0])
+        for i, name in enumerate(BRANCHES):
+            _error_band(ax, values, exponents[:, i, 0], error[:, i, 0], BRANCHES[name])
         return
     for i in reversed(range(4)):  # lambda_1 on top
         _curve(ax, values, exponents[:, :, i], color=EXPONENTS[i], label=rf"$\lambda_{i + 1}$")
+        if len(result.starts) == 1:
+            _error_band(ax, values, exponents[:, 0, i], error[:, 0, i], EXPONENTS[i])
     _name_curves(ax, exponents)
+
+
+def _error_band(ax, values, ordinates, error, colour):
+    """One standard error to each side, where it is wider than the line."""
+    low, high = ax.get_ylim()
+    if np.nanmax(error, initial=0) > 2e-3 * (high - low):
+        ax.fill_between(
+            values, ordinates - error, ordinates + error, color=colour, alpha=0.3, lw=0, zorder=1.5, rasterized=True
+        )
 
 
 def _branches(ax, values, ordinates):

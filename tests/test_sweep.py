@@ -1,0 +1,366 @@
+"""From a scene to numbers: the same whoever computes them, in whatever pieces; and what they say of the oscillator."""
+
+import math
+import multiprocessing
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+import vibro_sweep as vs
+from vibro_sweep import sweep
+from vibro_sweep.scene import parse_scene
+
+CONFIGS = Path(__file__).parents[1] / "configs"
+PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
+ALL = "observe: [section, lyapunov, impacts]"
+COORDINATES = ("b", "omega", "R", "start", "sample", "exponent", "time")
+
+# every kind of sweep, of start and of observation among them
+SCENES = {
+    "random": f"""
+sweep: {{b: {{start: 6.5, stop: 6.8, num: 23}}}}
+start: {{random: 3, seed: 5}}
+orbit: {{transient: 100, record: 40}}
+section: {{kind: impact, stop: right}}
+trajectory: {{periods: 2, samples: 50}}
+{ALL}""",
+    "plane": f"""
+sweep: {{omega: {{start: 0.5, stop: 0.8, num: 5}}, b: {{start: 0.3, stop: 6.8, num: 7}}}}
+orbit: {{transient: 60, record: 40}}
+{ALL}""",
+    "follow": f"""
+sweep: {{b: {{start: 6.5, stop: 6.8, num: 9}}, R: {{values: [0.9, 0.8, 0.3]}}}}
+start: {{follow: both}}
+orbit: {{transient: 60, record: 40}}
+{ALL}""",
+}
+
+
+def scene_of(text, system=PAPER):
+    return parse_scene(f"system: {{{system}}}\n{text}")
+
+
+def arrays_of(path):
+    with h5py.File(path) as file:
+        return {name: dataset[()] for name, dataset in file.items()}
+
+
+def run(tmp_path, text, system=PAPER, **options):
+    """The scene's file, as arrays."""
+    path = tmp_path / f"{len(list(tmp_path.iterdir()))}.h5"
+    vs.run(scene_of(text, system), path, **options)
+    return arrays_of(path)
+
+
+def assert_same_bits(one, other):
+    assert one.keys() == other.keys()
+    for name in one:
+        if one[name].dtype == object:  # the names of starts
+            assert one[name].tolist() == other[name].tolist()
+        else:
+            assert one[name].shape == other[name].shape and one[name].tobytes() == other[name].tobytes(), name
+
+
+# The same numbers, bit for bit
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_workers_do_not_matter(tmp_path, name):
+    one = run(tmp_path, SCENES[name], workers=1)
+    assert np.all(one["status"] == 0)
+    for workers in (2, 3):
+        assert_same_bits(run(tmp_path, SCENES[name], workers=workers), one)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_block_size_does_not_matter(tmp_path, name):
+    scene, whole = scene_of(SCENES[name]), run(tmp_path, SCENES[name])
+    numbers = []
+    for size in (1, 4, 1000):
+        pieces = list(sweep.blocks(scene, 1, points_per_block=size))
+        numbers.append(len(pieces))
+        parts = {key: np.empty_like(values) for key, values in whole.items()}
+        for box, arrays in map(sweep.compute, pieces):
+            for key in parts:
+                parts[key][box if key in arrays else ...] = arrays.get(key, whole[key])
+        assert_same_bits(parts, whole)
+    # of a `follow`, the axis that it follows is never cut
+    assert (numbers[0], numbers[-1]) == (3 if name == "follow" else math.prod(scene.sweep_shape), 1)
+
+
+def test_executors_do_not_matter(tmp_path):
+    own = run(tmp_path, SCENES["random"])
+    with ThreadPoolExecutor(2) as pool:
+        assert_same_bits(run(tmp_path, SCENES["random"], executor=pool), own)
+    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
+        assert_same_bits(run(tmp_path, SCENES["random"], executor=pool), own)
+
+
+def test_random_starts(tmp_path):
+    """They depend on the seed and on the place in the sweep, and are spread over |x_i| < b, |v_i| < omega b."""
+    text = "sweep: {b: {values: [1, 2]}}\nstart: {random: 500, seed: SEED}\norbit: {transient: 0, record: 1}"
+    (block,) = sweep.blocks(scene_of(text.replace("SEED", "1")), 1, points_per_block=2)
+    starts = sweep._starts(block, sweep.points_of(block.parameters)) / np.array([1, 0.63, 1, 0.63])
+    assert starts.shape == (2, 500, 4) and len(np.unique(starts)) == starts.size
+    for b, drawn in zip((1, 2), starts / np.array([[[1]], [[2]]]), strict=True):
+        assert np.all(abs(drawn) < 1), b
+        np.testing.assert_allclose(drawn.mean(axis=0), 0, atol=0.1)
+        np.testing.assert_allclose((drawn**2).mean(axis=0), 1 / 3, atol=0.05)
+    one, same, other = (run(tmp_path, text.replace("SEED", seed))["x1"] for seed in "112")
+    assert np.array_equal(one, same) and not np.any(one == other)
+
+
+@pytest.fixture(scope="module")
+def long_scene(tmp_path_factory):
+    """A scene of a second or two, in several blocks, and its numbers."""
+    folder = tmp_path_factory.mktemp("long")
+    path = folder / "long.yaml"
+    text = f"sweep: {{b: {{start: 6.5, stop: 6.8, num: 300}}}}\norbit: {{transient: 60000, record: 200}}\n{ALL}\n"
+    path.write_text(f"system: {{{PAPER}}}\n{text}")
+    return path, run(folder, text)
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+def test_interrupted_and_resumed(tmp_path, long_scene, how):
+    scene, whole = long_scene
+    output, part = tmp_path / "out.h5", tmp_path / "out.h5.part"
+    command = [sys.executable, "-m", "vibro_sweep", "run", scene, "-o", output, "--workers", "1", "--quiet"]
+
+    def done():
+        try:
+            with h5py.File(part, locking=False) as file:
+                return np.count_nonzero(file["status"][()] != -1)
+        except (OSError, KeyError):  # it is being made
+            return 0
+
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    limit = time.monotonic() + 60
+    while not done():
+        assert process.poll() is None and time.monotonic() < limit
+        time.sleep(0.02)
+    process.send_signal(how)
+    error = process.communicate()[1]
+    assert process.returncode == (130 if how == signal.SIGINT else -signal.SIGKILL)
+    assert ("--resume" in error) == (how == signal.SIGINT)
+    assert 0 < done() < 300 and not output.exists()
+
+    seen = []
+    vs.run(vs.load_scene(scene), output, progress=lambda *progress: seen.append(progress), mode="resume")
+    assert seen[0][0] > 0 and seen[-1] == (300, 300)
+    assert not part.exists()
+    assert_same_bits(arrays_of(output), whole)
+
+
+# What the numbers are
+
+
+def test_one_orbit_is_that_of_simulate(tmp_path):
+    """No sweep, so no dimension but the quantities' own. A small clearance: M1 chatters and sticks."""
+    text = f"start: {{x1: 0.1, v2: 0.2}}\norbit: {{transient: 30, record: 20}}\n{ALL}"
+    small = PAPER.replace("6.6", "0.5").replace("0.8", "0.3")
+    data = run(tmp_path, text, small)
+    system = scene_of(text, small).system
+    orbit = vs.simulate(system, (0.1, 0, 0, 0.2), 50)
+    begin, end = 30 * system.period, 50 * system.period
+    late = orbit.impacts[orbit.impacts["t"] > begin]
+    for i, name in enumerate(("x1", "v1", "x2", "v2")):
+        assert data[name].shape == (20,) and np.array_equal(data[name], orbit.section[31:, i])
+    assert data["impacts_right"].shape == () and data["lyapunov"].shape == (4,)
+    assert data["impacts_right"] == np.count_nonzero(late["side"] > 0) > 20
+    assert data["impacts_left"] == np.count_nonzero(late["side"] < 0) > 20
+    assert data["min_impact_speed"] == abs(late["v1"]).min()
+    rests = np.clip(orbit.sticking["t_off"], begin, end) - np.clip(orbit.sticking["t_on"], begin, end)
+    assert data["sticking_time"] == pytest.approx(rests.sum(), abs=1e-10) and rests.sum() > 10
+    np.testing.assert_allclose(data["lyapunov"], vs.lyapunov(system, (0.1, 0, 0, 0.2), 30, 20))
+
+
+def test_impact_section(tmp_path):
+    """The impacts of `simulate` on that stop, in order; and NaN where there are no more."""
+    orbit = "orbit: {transient: 50, record: 60}"
+    for stop, side in (("right", 1), ("left", -1)):
+        text = f"sweep: {{b: {{values: [0.7, 6.68]}}}}\n{orbit}\nsection: {{kind: impact, stop: {stop}}}"
+        data = run(tmp_path, text)
+        for i, b in enumerate((0.7, 6.68)):
+            system = scene_of(text).system.replace(b=b)
+            impacts = vs.simulate(system, (0, 0, 0, 0), 110).impacts
+            impacts = impacts[(impacts["t"] > 50 * system.period) & (impacts["side"] == side)][:60]
+            count = len(impacts)
+            assert count == 60 if b == 0.7 else 0 < count < 60
+            assert np.all(data["x1"][i, :count] == side * b) and np.all(side * data["v1"][i, :count] > 0)
+            for name in ("v1", "x2", "v2"):
+                assert np.array_equal(data[name][i, :count], impacts[name])
+            phase = data["phase"][i, :count]
+            assert np.all((phase >= 0) & (phase < 2 * np.pi))
+            turn = np.exp(1j * (phase - 0.63 * impacts["t"]))
+            np.testing.assert_allclose(turn, 1, atol=1e-10)
+            for name in ("x1", "v1", "x2", "v2", "phase"):
+                assert np.all(np.isnan(data[name][i, count:]))
+
+
+def test_trajectory(tmp_path):
+    """The motion after the last section point: that of `simulate`, also through impacts and rest."""
+    text = """
+sweep: {b: {values: [0.5, 6.68]}}
+orbit: {transient: 40, record: 10}
+observe: [section]
+trajectory: {periods: 3, samples: 101}"""
+    data = run(tmp_path, text, PAPER.replace("0.8", "0.4"))
+    base = scene_of(text, PAPER.replace("0.8", "0.4")).system
+    np.testing.assert_allclose(data["time"], np.linspace(0, 3, 101), rtol=1e-15)
+    for i, b in enumerate((0.5, 6.68)):
+        last = np.array([data[name][i, -1] for name in ("x1", "v1", "x2", "v2")])
+        orbit = vs.simulate(base.replace(b=b), last, 3)
+        expected = orbit.sample(np.minimum(data["time"] * base.period, orbit.section_times[-1]))
+        for j, name in enumerate(("x1", "v1", "x2", "v2")):
+            np.testing.assert_allclose(data[f"trajectory_{name}"][i], expected[:, j], rtol=0, atol=1e-11)
+        assert np.all(abs(data["trajectory_x1"][i]) <= b)
+
+
+def test_follow_starts_where_the_last_point_ended(tmp_path):
+    text = "sweep: {b: {values: [6.6, 6.65, 6.7]}}\nstart: {follow: DIR}\norbit: {transient: 20, record: 10}"
+    for direction in ("up", "down"):
+        data = run(tmp_path, text.replace("DIR", direction))
+        X, order = (0, 0, 0, 0), (0, 1, 2) if direction == "up" else (2, 1, 0)
+        for i in order:
+            section = vs.simulate(scene_of(text.replace("DIR", "up")).system.replace(b=data["b"][i]), X, 30).section
+            assert np.array_equal(data["x1"][i], section[21:, 0])
+            X = section[-1]
+
+
+@pytest.mark.parametrize("direction", ["up", "down", "both"])
+def test_up_is_up_on_a_falling_axis(tmp_path, direction):
+    rising = SCENES["follow"].replace("both", direction)
+    falling = rising.replace("start: 6.5, stop: 6.8, num: 9", "start: 6.8, stop: 6.5, num: 9")
+    one, other = run(tmp_path, rising), run(tmp_path, falling)
+    for name in one:
+        if name not in COORDINATES:
+            assert one[name].tobytes() == np.ascontiguousarray(other[name][::-1]).tobytes(), name
+
+
+def test_order_of_two_keys(tmp_path):
+    one = run(tmp_path, SCENES["plane"])
+    omega, b = "omega: {start: 0.5, stop: 0.8, num: 5}", "b: {start: 0.3, stop: 6.8, num: 7}"
+    swapped = SCENES["plane"].replace(f"{omega}, {b}", f"{b}, {omega}")
+    other = run(tmp_path, swapped)
+    assert one["status"].shape == (5, 7) and other["status"].shape == (7, 5)
+    assert_same_bits(
+        {k: v if k in COORDINATES else np.ascontiguousarray(v.swapaxes(0, 1)) for k, v in other.items()}, one
+    )
+
+
+def test_a_point_of_a_plane_is_a_point(tmp_path):
+    """`grazing` is resolved at each frequency."""
+    data = run(tmp_path, SCENES["plane"])
+    for i, j in ((0, 6), (4, 2)):
+        system = scene_of(SCENES["plane"]).system.replace(omega=data["omega"][i], b=data["b"][j])
+        assert np.array_equal(data["v2"][i, j], vs.simulate(system, (0, 0, 0, 0), 100).section[61:, 3])
+
+
+def test_one_stop(tmp_path):
+    """M1 passes where the other stop would be."""
+    for stop, side in (("right", 1), ("left", -1)):
+        data = run(tmp_path, SCENES["plane"], f"{PAPER}, stops: {stop}")
+        struck, free = data[f"impacts_{stop}"], data["impacts_left" if side > 0 else "impacts_right"]
+        assert np.all(struck[:, 0] > 0) and np.all(free == 0)
+        assert np.all(side * data["x1"] <= data["b"][:, None]) and np.any(side * data["x1"] < -data["b"][:, None])
+
+
+def test_section_alone_computes_no_tangent(tmp_path):
+    scene = scene_of(SCENES["random"].replace(ALL, "observe: [section]"))
+    plan = sweep.plan_of(scene)
+    assert not plan.lyapunov and plan.warm_up == 0
+    (block,) = sweep.blocks(scene, 1, points_per_block=1000)
+    with ThreadPoolExecutor(1) as pool:  # a thread of its own, so that its workspace is new
+        _, arrays = pool.submit(sweep.compute, block).result()
+        touched = pool.submit(lambda: sweep._local.workspace.tangent.tobytes().strip(b"\0")).result()
+    assert not touched and np.all(np.isnan(arrays["lyapunov"]))
+    assert not {"lyapunov", "impacts_right"} & run(tmp_path, SCENES["random"].replace(ALL, "")).keys()
+
+
+def test_a_point_that_cannot_be_computed_has_a_status(tmp_path):
+    """The rates of the first system are too far apart; its neighbours do not notice."""
+    text = f"sweep: {{zeta: {{values: [1.0e+6, 0.1, 0.05]}}}}\norbit: {{transient: 5, record: 5}}\n{ALL}"
+    path = tmp_path / "bad.h5"
+    report = vs.run(scene_of(text), path)
+    data = arrays_of(path)
+    assert data["status"].tolist() == [3, 0, 0]
+    assert (report.points, report.bad, report.statuses) == (3, 1, {"ok": 2, "rates_too_far_apart": 1})
+    assert np.isnan(data["x1"][0]).all() and np.isfinite(data["x1"][1:]).all()
+
+
+# What the oscillator does
+
+
+@pytest.fixture(scope="module")
+def attractors(tmp_path_factory):
+    """Sixteen random starts at three clearances. 8 x 13 x 29 periods are recorded: counts come out even, and the
+    exponents of chaos stand out from their fluctuations."""
+    text = f"""
+sweep: {{b: {{values: [6.6, 6.68, 6.69]}}}}
+start: {{random: 16, seed: 1}}
+orbit: {{transient: 4000, record: 3016}}
+{ALL}"""
+    return run(tmp_path_factory.mktemp("attractors"), text)
+
+
+def test_chaos_at_6_68(attractors):
+    assert np.all(attractors["period"][1] == 0)
+    assert np.all(attractors["lyapunov"][1, :, 0] > 0)
+    assert np.all(attractors["impacts_right"][1] > 0) and np.all(attractors["impacts_left"][1] > 0)
+
+
+def test_period_29_at_6_69(attractors):
+    assert np.all(attractors["period"][2] == 29)
+    for side in ("right", "left"):
+        assert np.all(attractors[f"impacts_{side}"][2] == 4 * 3016 / 29)
+    np.testing.assert_allclose(attractors["lyapunov"][2, :, 0], -0.0054, atol=5e-5)
+
+
+def test_mirror_images_at_6_6(attractors):
+    """Two orbits of period 13 with four impacts on one side; half a period later, one is the negative of the other."""
+    right, left = attractors["impacts_right"][0], attractors["impacts_left"][0]
+    assert np.all(attractors["period"][0] == 13)
+    assert {*zip(right.tolist(), left.tolist(), strict=True)} == {(4 * 3016 / 13, 0), (0, 4 * 3016 / 13)}
+    np.testing.assert_allclose(attractors["lyapunov"][0, :, 0], -0.0072, atol=5e-5)
+    section = np.stack([attractors[name][0] for name in ("x1", "v1", "x2", "v2")], axis=-1)
+    here, there = section[np.argmax(right)], section[np.argmax(left)]
+    system = scene_of("orbit: {transient: 1, record: 1}").system
+    mirrored = -vs.simulate(system, here[-1], 1).sample(system.period / 2)[0]
+    assert abs(there - mirrored).max(axis=1).min() < 1e-9
+
+
+def test_sum_rule_everywhere(tmp_path):
+    """configs/paper_clearance.yaml: by the file's own account; and anew from its counts, where the orbit is chaotic."""
+    scene = vs.load_scene(CONFIGS / "paper_clearance.yaml")
+    vs.run(scene, tmp_path / "paper.h5")
+    data = arrays_of(tmp_path / "paper.h5")
+    assert data["status"].shape == (2001,) and not np.any(data["status"])
+    assert np.max(abs(data["lyapunov_residual"])) < 1e-12
+    chaotic = data["period"] == 0
+    rate = (data["impacts_right"] + data["impacts_left"]) / (scene.record * scene.system.period)
+    exact = -2 * 0.05 * (1 + (1 + 5) / 10) + 2 * rate * math.log(0.8)
+    assert np.count_nonzero(chaotic) > 100
+    assert np.max(abs(data["lyapunov"].sum(axis=-1) - exact)[chaotic]) < 1e-12
+
+
+def test_hysteresis(tmp_path):
+    """Upwards M1 goes on striking the stops beyond b* = 6.7057; downwards it swings freely until there."""
+    text = """
+sweep: {b: {start: 6.66, stop: 6.8, step: 0.002}}
+start: {follow: both}
+orbit: {transient: 1000, record: 100}
+observe: [impacts, section]"""
+    data = run(tmp_path, text)
+    assert data["start"].tolist() == [b"up", b"down"]
+    up, down = (data["impacts_right"] + data["impacts_left"]).T > 0
+    beyond = data["b"] > 6.70571674097302
+    assert np.count_nonzero(up & beyond) > 15 and np.all(up[data["b"] < 6.75]) and not up[-1]
+    assert np.array_equal(down, ~beyond)
+    assert np.all(data["period"][beyond, 1] == 1)
