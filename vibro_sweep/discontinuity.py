@@ -36,7 +36,9 @@ class DiscontinuityMap:
         self.graze = expansion_point({name: np.array(value) for name, value in parameters.items()}, expand_at)
         self.flight.oscillator["order"] = order
         self.flight.oscillator["graze"] = self.graze
-        self.flight.oscillator["stretch"] = self.flight.oscillator["cells"]  # no looks at the tangent vectors on the way
+        self.flight.oscillator["stretch"] = self.flight.oscillator[
+            "cells"
+        ]  # no looks at the tangent vectors on the way
         left, right = system.stops != "right", system.stops != "left"
         self.stops = impacts.Stops(-system.b if left else -np.inf, system.b if right else np.inf, system.R)
 

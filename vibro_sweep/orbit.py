@@ -177,7 +177,7 @@ def simulate(system: System, state, periods: int, start_time: float = 0.0) -> Or
         else:
             count = min(CHUNK, len(section) - done)
             arguments = (engine.flight, engine.stops, engine.orbit[0], records, engine.tangent[0])
-            outcome = ensemble.record(*arguments, section[done : done + count], np.empty((0, 4)))
+            outcome = ensemble.carry(*arguments, count, section[done : done + count], np.empty((0, 4)))
         logged = max(engine.orbit["impacts_logged"][0], engine.orbit["rests_logged"][0])
         if logged > room:
             engine.orbit[:] = before

@@ -5,7 +5,7 @@ import numpy as np
 from vibro_sweep.kernels import status, tangent
 from vibro_sweep.kernels.discontinuity import map_period
 from vibro_sweep.kernels.flight import CHUNK
-from vibro_sweep.kernels.impacts import cross_cell, start_count, strike
+from vibro_sweep.kernels.impacts import cross_cell, strike
 from vibro_sweep.kernels.jit import jit
 
 
@@ -87,43 +87,24 @@ def cross_period(f, stops, o, records, t, k, s):
 
 
 @jit
-def to_next_section(f, stops, o, records, t):
-    """One forcing period of the flow, or one iteration of the discontinuity mapping. Returns a status."""
-    if f.oscillator[0].order > 0:
-        return map_period(f, stops, o, records, t)
-    return cross_period(f, stops, o, records, t, 0, 0.0)
+def carry(f, stops, o, records, t, periods, section, growth):
+    """Carry the orbit over so many forcing periods, or iterations of the discontinuity mapping. Returns a status.
 
-
-@jit
-def settle(f, stops, o, records, t, transient, warm_up):
-    """The transient; tangent vectors, if wanted (`warm_up` > 0), come along for its last `warm_up` periods."""
-    for n in range(transient):
-        if n == transient - warm_up:
-            tangent.begin(t)
-        outcome = to_next_section(f, stops, o, records, t)
-        if outcome != status.OK:
-            return outcome
-    return status.OK
-
-
-@jit
-def record(f, stops, o, records, t, section, growth):
-    """len(section) periods; section[i]: the state at the end of period i. Returns a status.
-
-    growth: (m, 4) logarithms of the growth of the tangent vectors after each m-th part of the periods.
+    section: (periods, 4) the state at the end of each, or (0, 4). growth: (m, 4) logarithms of the growth of the
+    tangent vectors after each m-th part of the periods, or (0, 4).
     """
-    start_count(o)
-    if t.wanted:
-        tangent.catch_up(t, f.oscillator[0])
-        tangent.start_record(t)
     read = 0
-    for n in range(len(section)):
-        outcome = to_next_section(f, stops, o, records, t)
+    for n in range(periods):
+        if f.oscillator[0].order > 0:
+            outcome = map_period(f, stops, o, records, t)
+        else:
+            outcome = cross_period(f, stops, o, records, t, 0, 0.0)
         if outcome != status.OK:
             return outcome
-        for i in range(4):
-            section[n, i] = o.X[i]
-        if t.wanted and (n + 1) * len(growth) >= (read + 1) * len(section):
+        if len(section) > 0:
+            for i in range(4):
+                section[n, i] = o.X[i]
+        if (n + 1) * len(growth) >= (read + 1) * periods and len(growth) > 0:
             tangent.read_growth(t, f.oscillator[0], growth[read])
             read += 1
     return status.OK

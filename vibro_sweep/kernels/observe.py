@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from vibro_sweep.kernels import status, tangent
-from vibro_sweep.kernels.ensemble import cross_period, record, settle, to_next_section
+from vibro_sweep.kernels.ensemble import carry, cross_period
 from vibro_sweep.kernels.impacts import Records, place, start_count
 from vibro_sweep.kernels.jit import jit
 
@@ -90,7 +90,7 @@ def periods_read(m, parts, periods):
 
 
 @jit
-def floquet(f, stops, o, records, t, axes, growth, period, spectrum):
+def floquet(f, stops, o, records, t, axes, growth, nothing, period, spectrum):
     """The exponents of a periodic orbit, over exactly one more period of it: ln|Floquet multiplier|/time.
 
     The vectors have found the invariant subspaces. A real multiplier brings its vector back to itself, and its growth
@@ -101,14 +101,12 @@ def floquet(f, stops, o, records, t, axes, growth, period, spectrum):
             axes[i, j] = t.Z[i, j]
     start_count(o)
     tangent.start_record(t)
-    for _ in range(period):
-        outcome = to_next_section(f, stops, o, records, t)
-        if outcome != status.OK:
-            return outcome
-    q = f.oscillator[0]
-    tangent.read_growth(t, q, growth)
+    outcome = carry(f, stops, o, records, t, period, nothing, growth)
+    if outcome != status.OK:
+        return outcome
+    T = f.oscillator[0].width * f.oscillator[0].cells
     for i in range(4):
-        spectrum[i] = growth[i] / (period * (q.width * q.cells))
+        spectrum[i] = growth[0, i] / (period * T)
     i = 0
     while i < 3:
         turn = 0.0
@@ -142,7 +140,7 @@ def keep_exponents(f, stops, o, records, t, w, period, divergence, result):
         for _ in range(2):
             for i in range(4):
                 error[i] = spectrum[i]
-            outcome = floquet(f, stops, o, records, t, w.axes, growth[parts - 1], period, spectrum)
+            outcome = floquet(f, stops, o, records, t, w.axes, growth[parts - 1 :], w.section[:0], period, spectrum)
             if outcome != status.OK:
                 return outcome
         time = period * T
@@ -164,13 +162,17 @@ def observe(f, stops, w, plan, point, result, section, phase, running, trajector
     """One orbit from where it is placed to the end of all that is wanted of it. Returns a status."""
     o, t, records = w.orbit[0], w.tangent[0], w.records
     t.wanted = False
-    outcome = settle(f, stops, o, records, t, plan.transient, plan.warm_up)
+    outcome = carry(f, stops, o, records, t, plan.transient - plan.warm_up, w.section[:0], w.growth[:0])
+    if outcome == status.OK and plan.lyapunov:
+        tangent.begin(t)
+        outcome = carry(f, stops, o, records, t, plan.warm_up, w.section[:0], w.growth[:0])
+        tangent.catch_up(t, f.oscillator[0])
+        tangent.start_record(t)
     if outcome != status.OK:
         return outcome
-    if plan.lyapunov and not t.wanted:
-        tangent.begin(t)
+    start_count(o)
     o.impacts_logged, o.log_side = 0, plan.section_side
-    outcome = record(f, stops, o, records, t, w.section, w.growth)
+    outcome = carry(f, stops, o, records, t, plan.record, w.section, w.growth)
     if outcome != status.OK:
         return outcome
     result.impacts_right, result.impacts_left = o.impacts_right, o.impacts_left
