@@ -20,6 +20,7 @@ system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6, tau:
 orbit: {transient: 300, record: 20}
 """
 OWN = {"lyapunov": ("exponent",), "x1": ("sample",), "v1": ("sample",), "phase": ("sample",)}
+OWN |= {"lyapunov_running": ("elapsed", "exponent"), "lyapunov_error": ("exponent",)}
 OWN |= {f"trajectory_{name}": ("time",) for name in ("x1", "v1", "x2", "v2")}
 
 
@@ -473,6 +474,64 @@ def test_iteration_of_a_fixed_point_does_not_show_rounding(tmp_path):
     assert high - low > 1e-3
     np.testing.assert_array_equal(drawn(ax)[:, 1], x1)
     assert "300 periods" in ax.get_xlabel()
+
+
+def test_configuration_shows_both_displacements(trajectory):
+    ax = plotting.figure(trajectory, "configuration").axes[0]
+    x1, x2 = ax.lines[0].get_data()
+    np.testing.assert_array_equal(x2, x1 / 2)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("$x_1$", "$x_2$")
+
+
+def test_convergence_ends_at_the_exponents(tmp_path):
+    running = np.array([0.01, -0.02, -0.05, -0.1]) + np.random.default_rng(0).normal(size=(50, 4)) / 1000
+    quantities = {"lyapunov_running": running, "lyapunov": running[-1], "lyapunov_error": np.full(4, 0.002)}
+    ax, spectrum = plotting.figure(write(tmp_path / "c.h5", {}, quantities)).axes
+    np.testing.assert_array_equal(ax.lines[0].get_ydata(), running[:, 0])
+    assert ax.lines[1].get_ydata()[0] == running[-1, 0]
+    assert r"\pm 2 \times 10^{-3}" in ax.get_title()
+    assert len(spectrum.lines) == 8
+
+
+# --- grazing and errors
+
+
+def test_the_graze_is_marked_where_b_is_swept(sweep, tmp_path):
+    marks = [
+        line.get_xdata()[0] for ax in plotting.figure(sweep).axes for line in ax.lines if line.get_gid() == "grazing"
+    ]
+    assert marks == pytest.approx([6.70571674097302] * 3)
+    quantities = {"x1": np.full((5, 4), 1.0)}
+    other = plotting.figure(write(tmp_path / "R.h5", {"R": np.linspace(0, 1, 5)}, quantities)).axes[0]
+    assert not any(line.get_gid() == "grazing" for line in other.lines)
+
+
+@pytest.mark.parametrize("keys", [("b", "omega"), ("omega", "b")])
+def test_the_grazing_curve_on_a_plane(tmp_path, keys):
+    coordinates = {key: {"b": np.linspace(3, 9, 4), "omega": np.array([0.6, 0.63, 0.66])}[key] for key in keys}
+    shape = tuple(len(values) for values in coordinates.values())
+    ax = plotting.figure(write(tmp_path / "p.h5", coordinates, {"period": np.ones(shape, int)})).axes[0]
+    (curve,) = (line for line in ax.lines if line.get_label() == "grazing, $b^*$")
+    omega, b = curve.get_data()[:: 1 if keys[1] == "b" else -1]
+    assert np.interp(0.63, omega, b) == pytest.approx(6.7057, abs=1e-3)
+    assert ax.get_legend() is not None
+
+
+def test_no_system_no_grazing_curve(tmp_path):
+    coordinates = {"b": np.linspace(3, 9, 4), "omega": np.array([0.6, 0.63])}
+    file = write(tmp_path / "p.h5", coordinates, {"period": np.ones((4, 2), int)}, scene="")
+    assert not plotting.figure(file).axes[0].lines
+
+
+def test_chaos_is_claimed_beyond_two_standard_errors(sweep):
+    with h5py.File(sweep, "a") as file:
+        error = file.create_dataset("lyapunov_error", data=np.full((40, 4), 0.003))  # lambda_1 = 0.004 where chaotic
+        for i, name in enumerate(("b", "exponent")):
+            error.dims[i].attach_scale(file[name])
+    ax = plotting.figure(sweep, "lyapunov").axes[0]
+    (tint,) = (artist for artist in ax.collections if isinstance(artist, PatchCollection))
+    assert not tint.get_paths()
+    assert len(ax.collections) == 5  # a band of error for each exponent
 
 
 # --- small tools

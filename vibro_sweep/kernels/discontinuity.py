@@ -9,14 +9,14 @@ where t is the time from the section to the impact (negative, and of size eps), 
 0): the flights forth and back differ by the flight of the impulse alone. Order 1 is the paper's: t = 0 and w = sqrt(2
 omega^2 b* psi), with psi = x1 - b (eqs. 38, 39); C1 is then wrong by O(eps^2).
 
-Order 2 keeps what is linear in t. The jerk at the graze vanishes, so near it x1 - b = psi + v1 t + a t^2/2 +
-O(eps^4), with the acceleration a(X) = -omega^2 b* + O(eps) of the point itself, and the earlier root and the speed
-there are
+Order 2: the jerk at the graze vanishes, so near it x1 - b = psi + v1 t + a t^2/2 + O(eps^4), with the acceleration a(X)
+= -omega^2 b* + O(eps) of the point itself, and the earlier root and the speed there are
 
-    w = sqrt(v1^2 - 2 a psi),    t = (w - v1)/a,    C1(X) = X - (1 + R) w (e_v - t A e_v) + O(eps^3)
+    w = sqrt(v1^2 - 2 a psi) + O(eps^3),    t = (w - v1)/a + O(eps^3)
 
-with A e_v = (1, -2 zeta, 0, 2 zeta/mu_m): impact if and only if the peak psi - v1^2/(2 a) lies beyond the stop. C2
-mirrors C1.
+with an impact if and only if the peak psi - v1^2/(2 a) lies beyond the stop; C1 is wrong by O(eps^3). The flight of the
+impulse, e^{-A t} e_v, is exact. Cut off after -t A e_v it would serve as well near the graze; but on attractors t is
+not small, and the orbits of the map so cut off run away to infinity. C2 mirrors C1.
 """
 
 import math
@@ -24,6 +24,7 @@ import math
 import numpy as np
 
 from vibro_sweep.kernels import status, tangent
+from vibro_sweep.kernels.flight import decaying
 from vibro_sweep.kernels.impacts import count_impact, log_impact
 from vibro_sweep.kernels.jit import jit
 
@@ -74,19 +75,39 @@ def jump(f, b, R, side, o, records, t):
     push = -(1.0 + R) * w
     count_impact(o, side, w)
     log_impact(o, records, 0 if side > 0.0 else q.cells // 2, 0.0, side, side * w, X[2], X[3])
-    X[0] -= side * push * late
-    X[1] += side * push * (1.0 + late * 2.0 * q.zeta)
-    X[3] -= side * push * late * q.kappa
+    e0, e1, e2, e3, _, _ = impulse(q, -late)
+    X[0] += side * push * e0
+    X[1] += side * push * e1
+    X[2] += side * push * e2
+    X[3] += side * push * e3
     if t.wanted:
         push_tangent(q, R, psi, a, w, v1, late, second, o, t)
 
 
 @jit
-def push_tangent(q, R, psi, a, w, v1, late, second, o, t):
-    """Tangent vectors across a jump: DC = 1 + e_v p^T - u r^T with u = A e_v.
+def impulse(q, u):
+    """e^{A u} e_v, and the accelerations (a1, a2) there: the free motion at time u from a unit impulse on M1."""
+    x1, v1, x2, v2, a1, a2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for j in range(2):
+        eta, psi1, psi2 = -q.frame_series[1, 2 * j], q.from_frame[1, 2 * j + 1], q.from_frame[3, 2 * j + 1]
+        omega_squared = q.frame_square[j] + eta * eta
+        _, s, _, rate = decaying(eta, omega_squared, u)
+        a = -(2.0 * eta * rate + omega_squared * s)
+        x1 += psi1 * psi1 * s
+        v1 += psi1 * psi1 * rate
+        a1 += psi1 * psi1 * a
+        x2 += psi1 * psi2 * s
+        v2 += psi1 * psi2 * rate
+        a2 += psi1 * psi2 * a
+    return x1, v1, x2, v2, a1, a2
 
-    p and r are the gradients of -(1 + R) w and of -(1 + R) w t. At order 1, r = 0 and p = (1 + R) (a/w) e_x: there is
-    the singularity of the square root.
+
+@jit
+def push_tangent(q, R, psi, a, w, v1, late, second, o, t):
+    """Tangent vectors across a jump: DC = 1 + e p^T - u r^T with e = e^{-A t} e_v, u = A e.
+
+    p is the gradient of -(1 + R) w, and r that of t, times -(1 + R) w. At order 1, r = 0 and p = (1 + R) (a/w) e_x:
+    there is the singularity of the square root. Then |det DC| = 1; order 2 has R^2 at the graze, like the impact.
     """
     force = q.force
     dw0, dw1, dw2, dw3 = -a / w, 0.0, 0.0, 0.0
@@ -100,9 +121,8 @@ def push_tangent(q, R, psi, a, w, v1, late, second, o, t):
         dt2, dt3 = (dw2 - late * force[2]) / a, (dw3 - late * force[3]) / a
     e = -(1.0 + R)
     p0, p1, p2, p3 = e * dw0, e * dw1, e * dw2, e * dw3
-    r0, r1 = e * (late * dw0 + w * dt0), e * (late * dw1 + w * dt1)
-    r2, r3 = e * (late * dw2 + w * dt2), e * (late * dw3 + w * dt3)
-    u1, u3 = -2.0 * q.zeta, q.kappa  # u = (1, u1, 0, u3)
+    r0, r1, r2, r3 = e * w * dt0, e * w * dt1, e * w * dt2, e * w * dt3
+    e0, e1, e2, e3, u1, u3 = impulse(q, -late)  # u = (e1, u1, e3, u3)
     Z, back, to = t.Z, q.from_frame, q.to_frame
     tangent.apply_flight(t, q)
     for j in range(4):
@@ -112,10 +132,13 @@ def push_tangent(q, R, psi, a, w, v1, late, second, o, t):
         v2 = (back[3, 0] * Z[0, j] + back[3, 1] * Z[1, j]) + (back[3, 2] * Z[2, j] + back[3, 3] * Z[3, j])
         kick = (p0 * x1 + p1 * v) + (p2 * x2 + p3 * v2)
         shift = (r0 * x1 + r1 * v) + (r2 * x2 + r3 * v2)
+        d0, d1, d2, d3 = e0 * kick - e1 * shift, e1 * kick - u1 * shift, e2 * kick - e3 * shift, e3 * kick - u3 * shift
         for i in range(4):
-            Z[i, j] += to[i, 1] * kick - (to[i, 0] + to[i, 1] * u1 + to[i, 3] * u3) * shift
+            Z[i, j] += (to[i, 0] * d0 + to[i, 1] * d1) + (to[i, 2] * d2 + to[i, 3] * d3)
     determinant = 1.0
     if second:
-        determinant = (1.0 + p1) * (1.0 - (r0 + r1 * u1 + r3 * u3)) + (p0 + p1 * u1 + p3 * u3) * r1
+        pe, pu = (p0 * e0 + p1 * e1) + (p2 * e2 + p3 * e3), (p0 * e1 + p1 * u1) + (p2 * e3 + p3 * u3)
+        re, ru = (r0 * e0 + r1 * e1) + (r2 * e2 + r3 * e3), (r0 * e1 + r1 * u1) + (r2 * e3 + r3 * u3)
+        determinant = (1.0 + pe) * (1.0 - ru) + pu * re
     o.log_volume += np.log(abs(determinant))
     tangent.watch(t, abs(determinant))

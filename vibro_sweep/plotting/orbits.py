@@ -134,8 +134,8 @@ def convergence(result: Result):
     settled = slice(len(periods) // 10, None)
     for (largest, spectrum), point in zip(grid.T, points, strict=True):
         running = np.where(np.isfinite(values := result.one("lyapunov_running", point)), values, np.nan)
-        for i in reversed(range(4)):
-            spectrum.plot(periods, running[:, i], color=EXPONENTS[i], label=rf"$\lambda_{i + 1}$")
+        for i in range(4):
+            spectrum.plot(periods, running[:, i], color=EXPONENTS[i], label=rf"$\lambda_{i + 1}$", zorder=3 - i / 9)
         order = np.argsort(-np.nan_to_num(running[-1], nan=-np.inf))
         largest.plot(periods, running[:, order[0]], color=EXPONENTS[order[0]])
         text = point.label
@@ -144,7 +144,7 @@ def convergence(result: Result):
         largest.axhline(0, color=INK, lw=0.6)
         largest.set_title(text)
         spectrum.set_xlabel("forcing periods")
-        spectrum.margins(x=0)
+        spectrum.set_xlim(0, periods[-1])
     for row, shown in zip(grid, (slice(0, 1), slice(None)), strict=True):
         values = [
             np.sort(result.one("lyapunov_running", point)[settled], axis=1)[:, ::-1][:, shown] for point in points
@@ -168,8 +168,15 @@ def _final_values(panels, result, point) -> str:
                 ax.axhline(value, color=colour, lw=0.7, ls=DASHES)
             if np.isfinite(value) and np.isfinite(spread):
                 ax.axhspan(value - 2 * spread, value + 2 * spread, color=colour, alpha=0.15, lw=0)
-    spread = rf" \pm {error[0]:.1g}" if np.isfinite(error[0]) else ""
-    return rf"$\lambda_1 = {final[0]:.3g}{spread}$"
+    return rf"$\lambda_1 = {_scientific(final[0], 2)} \pm {_scientific(error[0], 0)}$"
+
+
+def _scientific(value, digits) -> str:
+    """A number for mathtext."""
+    if not np.isfinite(value) or value == 0:
+        return f"{value:.{digits}f}".replace("inf", r"\infty").replace("nan", "?")
+    mantissa, exponent = f"{value:.{digits}e}".split("e")
+    return rf"{mantissa} \times 10^{{{int(exponent)}}}"
 
 
 def _trajectory(result, point):
