@@ -1,0 +1,172 @@
+"""Degenerate modes against matrix exponentials of 50 digits and more, and the extremes of every parameter."""
+
+import naive
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+import vibro_sweep as vs
+from vibro_sweep.system import SystemError
+
+BASE = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63, R=0.8, b=1e12, tau=0.7)  # stops out of reach
+PAPER = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63)
+STATE = (0.3, 0.7, -0.5, 0.4)
+OMEGA_1, OMEGA_2 = np.sqrt(vs.System(**BASE).modes.omega_squared).tolist()
+
+CASES = {
+    **{f"zeta={zeta}": dict(zeta=zeta) for zeta in (0.0, 1e-12)},
+    **{
+        f"critical-{j}{off:+.0e}": dict(zeta=(1 + off) / omega)
+        for j, omega in ((1, OMEGA_1), (2, OMEGA_2))
+        for off in (0.0, -1e-12, 1e-12)
+    },
+    "one-overdamped": dict(zeta=(1 / OMEGA_1 + 1 / OMEGA_2) / 2),
+    **{f"both-overdamped-{f}": dict(zeta=f / OMEGA_1) for f in (1.5, 10.0)},
+    **{
+        f"resonance-{j}-zeta={zeta}": dict(omega=omega, zeta=zeta)
+        for j, omega in ((1, OMEGA_1), (2, OMEGA_2))
+        for zeta in (1.0, 0.1, 1e-3, 1e-6, 1e-9, 1e-12, 0.0)
+    },
+    **{
+        f"{name}={value}-zeta={zeta}": {name: value, "zeta": zeta}
+        for zeta in (0.05, 0.0)
+        for name, values in (
+            ("mu_m", (1e-6, 1e-4, 1e-2, 1e2, 1e4, 1e6)),
+            ("mu_k", (1e-6, 1e-4, 1e-2, 1e2, 1e4, 1e6)),
+            ("f2", (0.25, 0.5, 1.0)),
+        )
+        for value in values
+    },
+}
+REFUSED = {"mu_m=1e-06-zeta=0.05", "mu_m=0.0001-zeta=0.05", "mu_k=1000000.0-zeta=0.05", "mu_m=1e-06-zeta=0.0"}
+
+
+def after_a_period(parameters, state):
+    """The state after one free forcing period, by the exponential of the autonomous system, to 50 digits."""
+    mu_m, mu_k, zeta, f2, omega, tau = (mpf(parameters[n]) for n in ("mu_m", "mu_k", "zeta", "f2", "omega", "tau"))
+    A = mp.zeros(6)
+    A[0, 1] = A[2, 3] = 1
+    for j, a in enumerate((-1, -2 * zeta, 1, 2 * zeta, 1 - f2)):
+        A[1, j] = a
+    for j, a in enumerate((1, 2 * zeta, -(1 + mu_k), -2 * zeta * (1 + mu_k), f2)):
+        A[3, j] = a / mu_m
+    A[4, 5], A[5, 4] = omega, -omega
+    start = mp.matrix([*map(mpf, state), mp.sin(tau), mp.cos(tau)])
+    return (mp.expm(A * (2 * mp.pi / omega)) * start)[:4]
+
+
+def distance(x, y):
+    return mp.norm(mp.matrix([mpf(a) - mpf(b) for a, b in zip(x, y, strict=True)]))
+
+
+def error_and_condition(case):
+    """Relative error of the state after a period, and the sum of the effects of 2^-53 on every input."""
+    parameters = {**BASE, **CASES[case]}
+    found = vs.simulate(vs.System(**parameters), STATE, periods=1).section[1].tolist()
+    with mp.workdps(90):  # 50, and what squaring loses where the rates are large
+        exact = after_a_period(parameters, STATE)
+        size = mp.norm(exact)
+        moved = naive.perturbed_inputs({**parameters, "b": 1.0}, STATE)
+        condition = sum(distance(after_a_period(*inputs), exact) for inputs in moved)
+        return float(distance(found, exact) / size), float(condition / size)
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(case, marks=pytest.mark.xfail(raises=SystemError, strict=True, reason="too many cells"))
+        if case in REFUSED
+        else case
+        for case in CASES
+    ],
+)
+def test_flight_over_a_period(case):
+    error, condition = error_and_condition(case)
+    assert error < 1e-12, f"2^-53 on the inputs makes {condition:.1e}"
+    assert error < max(10 * condition, 1e-15)
+
+
+def compare_impacts(system, state, count, digits=30, tolerance=1e-10):
+    """The first impacts against the slow simulator; times relative to the period, speeds to the largest of them."""
+    exact = naive.simulate(system.parameters(), state, periods=5, impacts=count, digits=digits)
+    assert exact.impacts
+    periods = int(exact.impacts[-1].t / system.period) + 1
+    orbit = vs.simulate(system, state, periods=periods)
+    assert orbit.status == "ok"
+    hits = orbit.impacts[: len(exact.impacts)]
+    assert hits["side"].tolist() == [p.side for p in exact.impacts]
+    assert np.abs(hits["t"] - [float(p.t) for p in exact.impacts]).max() < tolerance * system.period
+    speeds = np.array([float(p.v1) for p in exact.impacts])
+    assert np.abs(hits["v1"] - speeds).max() < tolerance * np.abs(speeds).max()
+    return orbit
+
+
+@pytest.mark.parametrize("b", [1e-9, 1e-6, 1e-3, 1e3, 1e6, 1e9])
+def test_clearances(b):
+    """From the size of the rounding of x2 to where the force plays no part."""
+    system = vs.System(**PAPER, R=0.8, b=b, tau=0.0)
+    compare_impacts(system, (0.5 * b, max(b, 1.0), -0.2 * b, 0.1 * b), count=12)
+
+
+@pytest.mark.parametrize("R", [0.0, 1e-6, 1 - 1e-9, 1.0])
+def test_restitution(R):
+    compare_impacts(vs.System(**PAPER, R=R, b=3.0), (1.0, 0.5, -0.5, 0.2), count=12)
+
+
+def test_thousands_of_impacts_in_a_period():
+    system = vs.System(**PAPER, R=1.0, b=1e-3, tau=0.0)
+    orbit = compare_impacts(system, (0.0, 1.0, 0.0, 0.0), count=60)
+    assert orbit.status == "ok"
+    assert len(orbit.impacts) > 3000
+    # nothing is passed through: nearly always stop to stop, and M1 is back on the stop where it is hit twice
+    assert np.mean(orbit.impacts["side"][1:] != orbit.impacts["side"][:-1]) > 0.9
+    times = np.sort(np.random.default_rng(0).uniform(0, system.period, 20000))
+    assert np.abs(orbit.sample(times)[:, 0]).max() <= system.b
+
+
+def energy(system, states):
+    x1, v1, x2, v2 = states.T
+    return (v1**2 + system.mu_m * v2**2 + (x1 - x2) ** 2 + system.mu_k * x2**2) / 2
+
+
+@pytest.mark.parametrize("f2", [0.0, 0.4])
+def test_energy_balance_of_the_elastic_undamped_oscillator(f2):
+    """zeta = 0, R = 1: the energy changes by the work of the force, and by nothing else."""
+    system = vs.System(mu_m=10.0, mu_k=5.0, zeta=0.0, f2=f2, omega=0.63, R=1.0, b=2.0, tau=0.3)
+    orbit = vs.simulate(system, (0.5, 0.4, -0.3, 0.2), periods=100)
+    assert len(orbit.impacts) > 100
+    grid = np.linspace(0, orbit.section_times[-1], 100 * 16 + 1)
+    edges = np.unique(np.concatenate([grid, orbit.impacts["t"]]))
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    widths = np.diff(edges)[:, None]
+    times = (edges[:-1, None] + widths * (nodes + 1) / 2).ravel()
+    states = orbit.sample(times)
+    power = np.sin(system.omega * times + system.tau) * ((1 - f2) * states[:, 1] + f2 * states[:, 3])
+    work = (weights * widths / 2 * power.reshape(len(widths), -1)).sum()
+    start, end = energy(system, orbit.section[[0, -1]])
+    assert abs(end - start - work) < 1e-10 * max(start, end, np.abs(power).max())
+
+
+SCENE = """\
+system: {{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: {R}, b: {b}}}
+start: {{x1: 0, v1: 0, x2: 0, v2: 0}}
+orbit: {{transient: {transient}, record: 60}}
+observe: [section, impacts]
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("R, b", [(0.8, 6.8), (0.8, 5.0), (0.8, 6.6), (0.3, 0.5)])
+def test_ten_million_periods(R, b, tmp_path):
+    """The phase does not drift: the section points of a stable orbit after 10^4 and after 10^7 periods are the same."""
+    points = []
+    for transient in (10_000, 10_000_000):
+        scene = tmp_path / f"long{transient}.yaml"
+        scene.write_text(SCENE.format(R=R, b=b, transient=transient))
+        vs.run(vs.load_scene(scene), tmp_path / f"long{transient}.h5")
+        with vs.open(tmp_path / f"long{transient}.h5") as data:
+            assert int(data["status"]) == 0
+            assert int(data["period"]) > 0
+            points.append(np.stack([data[name].values.ravel() for name in ("x1", "v1", "x2", "v2")], -1))
+    shifts = [np.abs(points[0][-30:] - points[1][n : n + 30]).max() for n in range(30)]
+    assert min(shifts) < 1e-12
