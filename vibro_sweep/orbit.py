@@ -32,10 +32,9 @@ class _Engine:
 
     def __init__(self, system: System):
         point = points_of(system.parameters())[()]
-        if point["cells"] > tables.MOST_CELLS:
-            raise SystemError(
-                "omega", system.omega, f"such that {tables.MOST_CELLS} cells resolve the fastest rate over a period"
-            )
+        if point["cells"] == 0:
+            allowed = f"such that the fastest rate times the period is at most {tables.LONGEST:g}"
+            raise SystemError("omega", system.omega, allowed)
         self.period = system.period
         self.cells = int(point["cells"])
         self.width = self.period / self.cells

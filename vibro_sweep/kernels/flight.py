@@ -26,6 +26,8 @@ OSCILLATOR = np.dtype(
     [
         ("cells", np.int64),
         ("width", float),  # of a cell
+        ("stiff", np.bool_),  # cells do not resolve every rate
+        ("step", float),  # width of a series: a cell, or where stiff a part of one
         ("omega", float),
         ("zeta", float),
         ("kappa", float),  # 2 zeta/mu_m
@@ -41,6 +43,7 @@ OSCILLATOR = np.dtype(
         ("impulse_third", float),  # bound on |d3 x1/du3| over a cell after a unit impulse on M1
         ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell
         ("frame_series", float, (ORDER, 4)),  # of tangent.py, like all that follow
+        ("vanishing", np.int64),  # directions that a flight over a cell takes below the rounding of the others
         ("stretch", np.int64),  # cells that may be flown between looks at the tangent vectors
         ("frame_scale", float, 2),  # g_j
         ("frame_square", float, 2),  # omega_dj^2
@@ -55,8 +58,12 @@ NODE = np.dtype(
         ("sin", float),  # of omega t + tau
         ("cos", float),
         ("E", float, (4, 4)),  # flight from node 0: X - r there to X - r here
-        ("forced", float, (4, 2)),  # motion from rest at node 0, as a function of (sin, cos) there
-        ("r", float, 4),  # that motion
+        (
+            "forced",
+            float,
+            (2, 2, 2),
+        ),  # modal motion from rest at node 0, (mode; xi, xi'; to the force's sin, cos there)
+        ("r", float, 4),  # a motion under the force: from rest at node 0; of a fast mode the steady one
         ("frame", float, 4),  # c_1, s_1, c_2, s_2 of a flight from node 0
     ]
 )

@@ -151,7 +151,7 @@ def departure(q, c, n, left):
     others, power = 0.0, 1.0
     for m in range(n + 1, ORDER):
         others += abs(c[m]) * power
-        power *= q.width
+        power *= q.step
     return min(left, 0.5 * abs(c[n]) / others) if others > 0.0 else left
 
 
@@ -225,13 +225,12 @@ def begin_rest(f, o, records, t, k, s, side):
 
 
 @jit
-def stay_at_rest(f, o, records, t, k, s, sin, cos):
-    """M1 rests from offset s of cell k on, M2 moves. Returns the offset of the release, infinite if it is later.
+def stay_at_rest(f, o, records, t, k, s, left, sin, cos):
+    """M1 rests from offset s of cell k on, M2 moves. Returns the time to the release, infinite if more than `left`.
 
     M1 is released where its free acceleration, which points into the stop, changes sign: a root found like a contact.
     """
     q, X, c1, c2, side = f.oscillator[0], o.X, o.c1, o.c2, o.resting
-    left = q.width - s
     a, b = q.resting1, q.resting2
     for n in range(ORDER):
         c1[n] = (a[0, n] * X[0] + a[1, n] * X[2]) + (a[2, n] * X[3] + a[3, n] * sin) + a[4, n] * cos
@@ -250,15 +249,11 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos):
         xx, vx = evaluate(q.resting2[1], end)
         xv, vv = evaluate(q.resting2[2], end)
         tangent.release(t, q, xx, xv, vx, vv)
-        if d == np.inf:
-            t.cell, t.offset = k + 1, 0.0
-        else:
-            t.cell, t.offset = k, s + d
-    if d == np.inf:
-        return d
-    o.resting = 0.0
-    mark_rest(o, records, k, s + d, 0.0)
-    return s + d
+        t.cell, t.offset = k, s + end
+    if d < np.inf:
+        o.resting = 0.0
+        mark_rest(o, records, k, s + d, 0.0)
+    return d
 
 
 @jit
@@ -346,15 +341,20 @@ def cross_cell(f, stops, o, records, t, k, s):
     released = False
     while o.events < MOST_EVENTS:
         left = q.width - s
+        last = left <= 1.001 * q.step
+        left = left if last else q.step
         sin, cos = node.sin, node.cos
         if s > 0.0:
             swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
             sin, cos = sin * turn + cos * swing, cos * turn - sin * swing
         if o.resting != 0.0:
-            s = stay_at_rest(f, o, records, t, k, s, sin, cos)
-            if not s < np.inf:
-                return status.OK if s == np.inf else status.UNRESOLVED
-            released = True
+            d = stay_at_rest(f, o, records, t, k, s, left, sin, cos)
+            if d != d:
+                return status.UNRESOLVED
+            released = d < np.inf
+            if last and not released:
+                return status.OK
+            s += min(d, left)
             continue
         side = 1.0 if X[0] >= stops.right else (-1.0 if X[0] <= stops.left else 0.0)
         if side * X[1] > 0.0:
@@ -384,11 +384,13 @@ def cross_cell(f, stops, o, records, t, k, s):
             return status.UNRESOLVED
         sample(o, records, k, s, s + min(d, left))
         advance(o, min(d, left))
-        if d == np.inf:
+        if d == np.inf and (last or not math.isfinite(X[1] + X[3])):
             return status.OK if math.isfinite(X[1] + X[3]) else status.NOT_FINITE
-        s += d
-        X[0] = stops.right if side > 0.0 else stops.left
+        s += min(d, left)
         released = False
+        if d == np.inf:
+            continue
+        X[0] = stops.right if side > 0.0 else stops.left
         if side * X[1] <= 0.0:  # it touched the stop without speed: a graze is no impact
             X[1] = 0.0
             o.events += 1

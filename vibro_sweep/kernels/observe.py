@@ -154,6 +154,8 @@ def keep_exponents(f, stops, o, records, t, w, period, divergence, result):
         exact += 2.0 * (hits / time) * np.log(stops.R)
     result.lyapunov_residual = total - exact if total > -np.inf else np.nan
     tangent.sort(spectrum, error)
+    for i in range(4 - f.oscillator[0].vanishing, 4):
+        spectrum[i], error[i], result.lyapunov_residual = -np.inf, 0.0, np.nan
     return status.OK
 
 

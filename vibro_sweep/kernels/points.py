@@ -9,7 +9,7 @@ from vibro_sweep.kernels.flight import Flight, new_flight
 from vibro_sweep.kernels.impacts import ORBIT, Records, Stops, new_records, place
 from vibro_sweep.kernels.jit import jit
 from vibro_sweep.kernels.observe import observe
-from vibro_sweep.kernels.tables import MOST_CELLS, build
+from vibro_sweep.kernels.tables import build
 from vibro_sweep.kernels.tangent import TANGENT
 
 POINT = np.dtype(
@@ -79,7 +79,7 @@ class Workspace(NamedTuple):
 def new_workspace(plan: Plan, cells: int, samples: int) -> Workspace:
     impacts = plan.record if plan.section_side else 0
     return Workspace(
-        new_flight(min(cells, MOST_CELLS)),
+        new_flight(cells),
         np.zeros(1, ORBIT),
         np.zeros(1, TANGENT),
         new_records(impacts=impacts, samples=samples),
@@ -108,11 +108,11 @@ def run_points(points, starts, results, sections, phases, running, trajectories,
     f, o = w.flight, w.orbit[0]
     for p in range(len(points)):
         point = points[p]
-        if point.cells > MOST_CELLS:
+        if point.cells == 0:
             for s in range(results.shape[1]):
                 results[p, s].status = status.TOO_STIFF
             continue
-        if p == 0 or not same_oscillator(point, points[p - 1]) or points[p - 1].cells > MOST_CELLS:
+        if p == 0 or not same_oscillator(point, points[p - 1]) or points[p - 1].cells == 0:
             build(
                 f, w.scratch, point.cells, point.psi, point.omega_squared,
                 point.mu_m, point.mu_k, point.zeta, point.f2, point.omega, point.tau,

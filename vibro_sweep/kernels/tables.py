@@ -1,24 +1,50 @@
-"""The tables of one oscillator (`Flight`), from its modes."""
+"""The tables of one oscillator (`Flight`), from its modes.
+
+Where a rate is so fast that series would need more than `MOST_CELLS` cells to a period, the system is called stiff: its
+cells are those of a coarser grid, a series takes a small step within its cell, and a mode that the cells do not resolve
+is fast. The scan does not follow a fast mode but bounds it by its energy, which only falls; and since a fast mode is
+never in resonance, r can be its steady response.
+"""
 
 import math
 
 import numpy as np
 
-from vibro_sweep.kernels.flight import CHUNK, ORDER, WIDTH, decaying, evaluate
+from vibro_sweep.kernels.flight import CHUNK, ORDER, WIDTH, decaying
 from vibro_sweep.kernels.jit import jit
 
 LEAST_CELLS = 32
 MOST_CELLS = 16384
+STIFF_CELLS = 2048
+LONGEST = 1e7  # the fastest rate times the period beyond which a system is refused: two seconds of work at worst
+VANISHED = 30.0  # logarithm of what is below rounding
 STRETCH = 4.0  # logarithm of what free flight may do to a tangent vector unseen: two digits are lost of another
 
 
 def cells_needed(omega_squared: np.ndarray, zeta: np.ndarray, omega: np.ndarray) -> np.ndarray:
-    """Cells for which every rate of a system times the cell width is at most `WIDTH`; omega_squared is (..., 2)."""
+    """Cells for which every rate of a system times the cell width is at most `WIDTH`; omega_squared is (..., 2).
+
+    `STIFF_CELLS` where that would be too many, 0 where the rates are too far apart altogether.
+    """
     eta = np.asarray(zeta)[..., None] * omega_squared
     overdamped = np.sqrt(np.maximum(eta**2 - omega_squared, 0.0))
     rate = np.where(eta**2 <= omega_squared, np.sqrt(omega_squared), eta + overdamped).max(-1)
-    needed = 2 * math.pi * np.maximum(rate / omega, 1.0) / WIDTH
-    return np.maximum(LEAST_CELLS, 8 * np.ceil(np.minimum(needed, 1e9) / 8)).astype(np.int64)
+    turns = 2 * math.pi * np.maximum(rate / omega, 1.0)
+    cells = np.maximum(LEAST_CELLS, 8 * np.ceil(np.minimum(turns, LONGEST) / WIDTH / 8)).astype(np.int64)
+    return np.where(turns > LONGEST, 0, np.where(cells > MOST_CELLS, STIFF_CELLS, cells))
+
+
+@jit
+def rate_of(omega_squared, zeta):
+    """The fastest rate of a mode: the larger |root| of s^2 + 2 eta s + omega_j^2."""
+    eta = zeta * omega_squared
+    return math.sqrt(omega_squared) if eta * eta <= omega_squared else eta + math.sqrt(eta * eta - omega_squared)
+
+
+@jit
+def is_fast(q, omega_squared):
+    """Whether the cells do not resolve a mode."""
+    return q.stiff and rate_of(omega_squared, q.zeta) * q.width > WIDTH
 
 
 @jit
@@ -93,8 +119,24 @@ def fill_flight(q, nodes, psi, omega_squared, mu_m):
 
 
 @jit
-def fill_motion(q, nodes, tau):
-    """The phase at the nodes, and the motion r from rest at node 0.
+def forced_series(eta, omega_squared, omega, width, sin, cos):
+    """xi and xi' after `width`, from rest, of xi'' + 2 eta xi' + omega_j^2 xi = sin(omega t + phase)."""
+    now, before, total, rate = 0.0, 0.0, 0.0, 0.0  # Taylor terms c_(n+1) width^(n+1) and c_n width^n, and the sums
+    square, force, turned = width * width, sin, omega * width * cos
+    for n in range(ORDER - 2):
+        after = force * square - 2.0 * eta * width * (n + 1.0) * now - omega_squared * square * before
+        after /= (n + 1.0) * (n + 2.0)
+        total += after
+        rate += (n + 2.0) * after / width
+        before, now = now, after
+        # derivatives of the force, over n!
+        force, turned = turned / (n + 1.0), -omega * omega * square * force / (n + 1.0)
+    return total, rate
+
+
+@jit
+def fill_motion(q, nodes, psi, omega_squared, f2, tau):
+    """The phase at the nodes, and the motion r.
 
     The flight to node k = rest + step, with step its lowest binary digit, is one to `rest` and one of `step` cells:
     rounding errors grow with the number of digits of k, not with k.
@@ -102,31 +144,55 @@ def fill_motion(q, nodes, tau):
     cells = q.cells
     for k in range(cells + 1):
         phase = tau + 2.0 * math.pi * (k / cells)
-        nodes[k].sin = math.sin(phase)
-        nodes[k].cos = math.cos(phase)
-    sin, cos = nodes[0].sin, nodes[0].cos
-    clear(nodes[0].forced)
-    for j in range(2):
-        one = nodes[1].forced
-        one[0, j], one[1, j] = evaluate(q.series1[4 + j], q.width)
-        one[2, j], one[3, j] = evaluate(q.series2[4 + j], q.width)
-    for k in range(cells + 1):
-        if k > 1:
-            step = k & -k if k & (k - 1) else k // 2
-            before, after, out, E = nodes[k - step].forced, nodes[step].forced, nodes[k].forced, nodes[step].E
-            angle = 2.0 * math.pi * ((k - step) / cells)
-            swing, turn = math.sin(angle), math.cos(angle)
-            for i in range(4):
-                free0 = (E[i, 0] * before[0, 0] + E[i, 1] * before[1, 0]) + (
-                    E[i, 2] * before[2, 0] + E[i, 3] * before[3, 0]
-                )
-                free1 = (E[i, 0] * before[0, 1] + E[i, 1] * before[1, 1]) + (
-                    E[i, 2] * before[2, 1] + E[i, 3] * before[3, 1]
-                )
-                out[i, 0] = free0 + (after[i, 0] * turn - after[i, 1] * swing)
-                out[i, 1] = free1 + (after[i, 0] * swing + after[i, 1] * turn)
+        node = nodes[k]
+        node.sin, node.cos = math.sin(phase), math.cos(phase)
         for i in range(4):
-            nodes[k].r[i] = nodes[k].forced[i, 0] * sin + nodes[k].forced[i, 1] * cos
+            node.r[i] = 0.0
+    for j in range(2):
+        eta, square = q.zeta * omega_squared[j], omega_squared[j]
+        force = psi[0, j] * (1.0 - f2) + psi[1, j] * f2
+        if is_fast(q, square):
+            detuning, damping = square - q.omega * q.omega, 2.0 * eta * q.omega
+            size = force / (detuning * detuning + damping * damping)
+            for k in range(cells + 1):
+                sin, cos = nodes[k].sin, nodes[k].cos
+                xi = size * (detuning * sin - damping * cos)
+                rate = size * q.omega * (detuning * cos + damping * sin)
+                add_mode(nodes[k].r, psi, j, xi, rate)
+            continue
+        first, one = nodes[0].forced[j], nodes[1].forced[j]
+        first[0, 0] = first[0, 1] = first[1, 0] = first[1, 1] = 0.0
+        one[0, 0], one[1, 0] = forced_series(eta, square, q.omega, q.width, 1.0, 0.0)
+        one[0, 1], one[1, 1] = forced_series(eta, square, q.omega, q.width, 0.0, 1.0)
+        for k in range(cells + 1):
+            if k > 1:
+                step = k & -k if k & (k - 1) else k // 2
+                before, after, out = nodes[k - step].forced[j], nodes[step].forced[j], nodes[k].forced[j]
+                _, s, xi, rate = decaying(eta, square, step * q.width)
+                angle = 2.0 * math.pi * ((k - step) / cells)
+                swing, turn = math.sin(angle), math.cos(angle)
+                for i in range(2):  # to sin and cos at node 0
+                    there = (
+                        after[0, 0] * turn - after[0, 1] * swing if i == 0 else after[0, 0] * swing + after[0, 1] * turn
+                    )
+                    moving = (
+                        after[1, 0] * turn - after[1, 1] * swing if i == 0 else after[1, 0] * swing + after[1, 1] * turn
+                    )
+                    out[0, i] = xi * before[0, i] + s * before[1, i] + there
+                    out[1, i] = rate * before[1, i] - square * s * before[0, i] + moving
+            g, sin, cos = nodes[k].forced[j], nodes[0].sin, nodes[0].cos
+            add_mode(
+                nodes[k].r, psi, j, force * (g[0, 0] * sin + g[0, 1] * cos), force * (g[1, 0] * sin + g[1, 1] * cos)
+            )
+
+
+@jit
+def add_mode(X, psi, j, xi, rate):
+    """Add a mode's motion to a state."""
+    X[0] += psi[0, j] * xi
+    X[1] += psi[0, j] * rate
+    X[2] += psi[1, j] * xi
+    X[3] += psi[1, j] * rate
 
 
 @jit
@@ -142,7 +208,7 @@ def fourth_derivative_bound(q, x1, v1, x2, v2, sin, cos):
 
 
 @jit
-def fill_scan(q, nodes, scan):
+def fill_scan(q, nodes, scan, psi, omega_squared, mu_m, f2):
     """Control points of the cubic through x1 and v1 at both ends of each cell, and how far x1 can be from it.
 
     The cubic has the Bernstein coefficients x_k, x_k + h v_k/3, x_{k+1} - h v_{k+1}/3, x_{k+1}. Its error is at most
@@ -156,23 +222,67 @@ def fill_scan(q, nodes, scan):
         q.remainder[i] = 0.0
     for k in range(q.cells + 1):
         E, r = nodes[k].E, nodes[k].r
-        for i in range(4):
-            scan[i, 2 * k] = E[0, i] + third * E[1, i]
+        for i in range(5):
+            x, v = (r[0], r[1]) if i == 4 else (E[0, i], E[1, i])
+            if q.stiff and i < 4:
+                x, v = slow_part(q, psi, omega_squared, mu_m, i, k * q.width)
+            scan[i, 2 * k] = x + third * v
             if k > 0:
-                scan[i, 2 * k - 1] = E[0, i] - third * E[1, i]
-            free = fourth_derivative_bound(q, E[0, i], E[1, i], E[2, i], E[3, i], 0.0, 0.0)
-            q.remainder[i] = max(q.remainder[i], free)
-        scan[4, 2 * k] = r[0] + third * r[1]
-        if k > 0:
-            scan[4, 2 * k - 1] = r[0] - third * r[1]
-        forced = fourth_derivative_bound(q, r[0], r[1], r[2], r[3], nodes[k].sin, nodes[k].cos)
-        q.remainder[4] = max(q.remainder[4], forced)
+                scan[i, 2 * k - 1] = x - third * v
+        if not q.stiff:
+            for i in range(4):
+                free = fourth_derivative_bound(q, E[0, i], E[1, i], E[2, i], E[3, i], 0.0, 0.0)
+                q.remainder[i] = max(q.remainder[i], free)
+            forced = fourth_derivative_bound(q, r[0], r[1], r[2], r[3], nodes[k].sin, nodes[k].cos)
+            q.remainder[4] = max(q.remainder[4], forced)
     for i in range(5):
         largest = 0.0
         for p in range(2 * q.cells + 1):
             largest = max(largest, abs(scan[i, p]))
         # 1e-15: the rounding of a control point, a few units in the last place of each of its terms
         q.remainder[i] = q.remainder[i] * q.width**4 / 144.0 + 1e-15 * largest
+    if q.stiff:
+        add_stiff_remainder(q, nodes, psi, omega_squared, mu_m, f2)
+
+
+@jit
+def slow_part(q, psi, omega_squared, mu_m, i, u):
+    """x1 and v1 of the modes that are not fast, after a free flight from the unit state i."""
+    x, v = 0.0, 0.0
+    for j in range(2):
+        if not is_fast(q, omega_squared[j]):
+            _, s, xi, rate = decaying(q.zeta * omega_squared[j], omega_squared[j], u)
+            weight = psi[0, j] * psi[i // 2, j] * (mu_m if i // 2 == 1 else 1.0)
+            x += weight * (xi if i % 2 == 0 else s)
+            v += weight * (-omega_squared[j] * s if i % 2 == 0 else rate)
+    return x, v
+
+
+@jit
+def add_stiff_remainder(q, nodes, psi, omega_squared, mu_m, f2):
+    """`remainder` of a stiff system, by the energies of the modes: |xi| <= e = |xi_0| + |xi_0'|/omega_j in free motion.
+
+    Of a fast mode that is all. Of another, whose rate is rho, the equation of motion bounds each derivative by those
+    before: the fourth by 17 rho^4 e. The motion r is a sine in a fast mode; in another the force adds to the bounds.
+    """
+    quartic = q.width**4 / 144.0
+    for j in range(2):
+        rho, fast = rate_of(omega_squared[j], q.zeta), is_fast(q, omega_squared[j])
+        for i in range(4):
+            e = abs(psi[0, j] * psi[i // 2, j]) * (mu_m if i // 2 == 1 else 1.0)
+            if i % 2 == 1:
+                e /= math.sqrt(omega_squared[j])
+            q.remainder[i] += e * (1.0 if fast else 17.0 * rho**4 * quartic)
+        force = abs(psi[0, j] * (1.0 - f2) + psi[1, j] * f2)
+        if fast:
+            largest, rho = force / abs(omega_squared[j] - q.omega * q.omega), q.omega
+        else:
+            largest, rho = 0.0, max(rho, q.omega)
+            for k in range(q.cells + 1):
+                g = nodes[k].forced[j]
+                xi, rate = abs(g[0, 0]) + abs(g[0, 1]), abs(g[1, 0]) + abs(g[1, 1])
+                largest = max(largest, 2.0 * force * (xi + rate / math.sqrt(omega_squared[j])))
+        q.remainder[4] += abs(psi[0, j]) * (17.0 * rho**4 * largest + 8.0 * rho**2 * force) * quartic
 
 
 @jit
@@ -181,10 +291,12 @@ def fill_frame(q, psi, omega_squared, mu_m):
     series, to_frame, from_frame = q.frame_series, q.to_frame, q.from_frame
     clear(to_frame)
     clear(from_frame)
-    fastest = 0.0
+    fastest, q.vanishing = 0.0, 0
     for j in range(2):
         eta = q.zeta * omega_squared[j]
         square = omega_squared[j] - eta * eta
+        if (eta + math.sqrt(max(-square, 0.0))) * q.width > VANISHED:
+            q.vanishing += 2 if square > 0.0 else 1
         fastest = max(fastest, eta + math.sqrt(max(-square, 0.0)))
         # near critical damping the plane shears instead of turning; any scale then serves
         scale = max(math.sqrt(abs(square)), 1e-3 * math.sqrt(omega_squared[j]))
@@ -203,7 +315,7 @@ def fill_frame(q, psi, omega_squared, mu_m):
             from_frame[2 * i, 2 * j] = psi[i, j] / scale
             from_frame[2 * i + 1, 2 * j] = -eta * psi[i, j] / scale
             from_frame[2 * i + 1, 2 * j + 1] = psi[i, j]
-    q.stretch = int(min(STRETCH / (fastest * q.width), 1e9)) if fastest > 0.0 else 1_000_000_000
+    q.stretch = max(1, int(min(STRETCH / (fastest * q.width), 1e9))) if fastest > 0.0 else 1_000_000_000
 
 
 @jit
@@ -214,17 +326,20 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
     """
     q = f.oscillator[0]
     q.cells, q.width, q.omega, q.zeta, q.kappa = cells, 2.0 * math.pi / omega / cells, omega, zeta, 2.0 * zeta / mu_m
+    rate = max(omega, max(rate_of(omega_squared[0], zeta), rate_of(omega_squared[1], zeta)))
+    q.stiff = rate * q.width > 1.0001 * WIDTH
+    q.step = q.width / math.ceil(rate * q.width / WIDTH) if q.stiff else q.width
     power = 1.0
     for n in range(ORDER):
         q.reach[n] = power if n > 0 else 0.0
         if n < ORDER - 3:
             q.third[n + 3] = (n + 3.0) * (n + 2.0) * (n + 1.0) * power
-        power *= q.width
+        power *= q.step
     fill_series(q, scratch[:6], scratch[6], mu_m, mu_k, f2)
     q.impulse_third = 0.0
     for n in range(ORDER):
         q.impulse_third += q.third[n] * abs(q.series1[1, n])
     fill_flight(q, f.nodes, psi, omega_squared, mu_m)
-    fill_motion(q, f.nodes, tau)
-    fill_scan(q, f.nodes, f.scan)
+    fill_motion(q, f.nodes, psi, omega_squared, f2, tau)
+    fill_scan(q, f.nodes, f.scan, psi, omega_squared, mu_m, f2)
     fill_frame(q, psi, omega_squared, mu_m)

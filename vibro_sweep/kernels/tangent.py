@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.kernels.flight import ORDER
+from vibro_sweep.kernels.flight import ORDER, decaying
 from vibro_sweep.kernels.jit import jit
 
 CONDITION = 1e3  # bound on the condition number of Z past which it is orthonormalised
@@ -76,7 +76,12 @@ def fly(t, q, nodes, k, s):
     if cells > 0:
         frame = nodes[cells].frame
         join(t, q, frame[0], frame[1], frame[2], frame[3])
-    if u > 0.0:
+    if u > 0.0 and q.stiff:
+        eta1, eta2 = -q.frame_series[1, 0], -q.frame_series[1, 2]
+        c1, s1, _, _ = decaying(eta1, q.frame_square[0] + eta1 * eta1, u)
+        c2, s2, _, _ = decaying(eta2, q.frame_square[1] + eta2 * eta2, u)
+        join(t, q, c1, s1, c2, s2)
+    elif u > 0.0:
         series = q.frame_series
         c1, s1, c2, s2 = 0.0, 0.0, 0.0, 0.0
         for n in range(ORDER - 1, -1, -1):
