@@ -175,7 +175,7 @@ def simulate(system: System, state, periods: int, start_time: float = 0.0) -> Or
             section[0] = engine.orbit["X"][0]
         else:
             count = min(CHUNK, len(section) - done)
-            arguments = (engine.flight, engine.stops, engine.orbit[0], records, engine.tangent[0])
+            arguments = (engine.flight, engine.stops, engine.orbit[0], records, engine.tangent[0], None)
             outcome = ensemble.carry(*arguments, count, section[done : done + count], np.empty((0, 4)))
         logged = max(engine.orbit["impacts_logged"][0], engine.orbit["rests_logged"][0])
         if logged > room:
@@ -249,15 +249,6 @@ def lyapunov(system: System, state, transient: int = 1000, periods: int = 10_000
     point = points_of(system.parameters()).reshape(1)
     workspace = points.new_workspace(plan, engine.cells, 0)
     nothing = np.empty((1, 1, 0))
-    points.run_points(
-        point,
-        np.asarray(state, float).reshape(1, 1, 4),
-        results,
-        nothing[..., None],
-        nothing,
-        nothing[..., None],
-        nothing[..., None],
-        workspace,
-        plan,
-    )
+    starts = np.asarray(state, float).reshape(1, 1, 4)
+    points.run_points(point, starts, results, nothing[..., None], nothing, nothing[..., None], workspace, plan, None)
     return results["lyapunov"][0, 0]

@@ -225,13 +225,32 @@ def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
         "sections": np.full((count, n_starts, record, 4), np.nan),
         "phases": np.full((count, n_starts, record if plan.section_side else 0), np.nan),
         "running": np.full((count, n_starts, plan.parts if block.convergence else 0, 4), np.nan),
-        "trajectories": np.full((count, n_starts, block.samples, 4), np.nan),
     }
     if plan.follow:
         _follow(block, table, arrays)
     else:
-        points.run_points(table.reshape(-1), _starts(block, table), *arrays.values(), _local.workspace, plan)
-    return block.box, _by_name(block, arrays, shape)
+        _run(table.reshape(-1), _starts(block, table), arrays, plan)
+    named = _by_name(block, arrays, shape)
+    if block.samples:
+        named |= _trajectories(block, table, arrays["results"], named["status"].shape)
+        named["status"] = arrays["results"]["status"].reshape(named["status"].shape)
+    return block.box, named
+
+
+def _run(table: np.ndarray, starts: np.ndarray, arrays: dict[str, np.ndarray], plan: points.Plan) -> None:
+    points.run_points(table, starts, *arrays.values(), _local.workspace, plan, 1 if plan.order else None)
+
+
+def _trajectories(block: Block, table: np.ndarray, results: np.ndarray, lead: tuple[int, ...]) -> dict[str, np.ndarray]:
+    """The motion after the last section point, by dataset name; compiled only for scenes that ask for it."""
+    from vibro_sweep.kernels.trajectory import run_trajectories
+
+    motion = np.full((*results.shape, block.samples, 4), np.nan)
+    run_trajectories(table.reshape(-1), results, motion, _local.workspace, block.plan)
+    return {
+        f"trajectory_{name}": motion[..., i].reshape((*lead, block.samples))
+        for i, name in enumerate(("x1", "v1", "x2", "v2"))
+    }
 
 
 def _follow(block: Block, table: np.ndarray, arrays: dict[str, np.ndarray]) -> None:
@@ -243,9 +262,7 @@ def _follow(block: Block, table: np.ndarray, arrays: dict[str, np.ndarray]) -> N
             line = order * chains.shape[1] + chain
             part = {name: values[line, start : start + 1] for name, values in arrays.items()}
             first = np.ascontiguousarray(block.starts[start]).reshape(1, 1, 4)
-            points.run_points(
-                np.ascontiguousarray(chains[order, chain]), first, *part.values(), _local.workspace, block.plan
-            )
+            _run(np.ascontiguousarray(chains[order, chain]), first, part, block.plan)
             for name, values in part.items():
                 arrays[name][line, start : start + 1] = values
 
@@ -265,7 +282,7 @@ def _starts(block: Block, table: np.ndarray) -> np.ndarray:
 
 def _by_name(block: Block, arrays: dict[str, np.ndarray], shape: tuple[int, ...]) -> dict[str, np.ndarray]:
     """The kernels' arrays as the file's datasets, of the box's shape."""
-    results, sections, phases, running, trajectories = arrays.values()
+    results, sections, phases, running = arrays.values()
     lead = shape + (results.shape[1:] if results.shape[1] > 1 else ())
     named = {name: results[name].reshape(lead + results[name].shape[2:]) for name in results.dtype.names}
     if block.section:
@@ -276,8 +293,6 @@ def _by_name(block: Block, arrays: dict[str, np.ndarray], shape: tuple[int, ...]
     if block.plan.section_side:
         named["phase"] = phases.reshape(lead + phases.shape[2:])
     named["lyapunov_running"] = running.reshape(lead + running.shape[2:])
-    for i, name in enumerate(("x1", "v1", "x2", "v2")):
-        named[f"trajectory_{name}"] = trajectories[..., i].reshape(lead + trajectories.shape[2:3])
     return named
 
 

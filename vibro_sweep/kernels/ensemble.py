@@ -92,18 +92,19 @@ def cross_period(f, stops, o, records, t, k, s):
 
 
 @jit
-def carry(f, stops, o, records, t, periods, section, growth):
+def carry(f, stops, o, records, t, mapped, periods, section, growth):
     """Carry the orbit over so many forcing periods, or iterations of the discontinuity mapping. Returns a status.
 
-    section: (periods, 4) the state at the end of each, or (0, 4). growth: (m, 4) logarithms of the growth of the
-    tangent vectors after each m-th part of the periods, or (0, 4).
+    mapped: None for the flow, for which the mapping then need not be compiled. section: (periods, 4) the state at the
+    end of each, or (0, 4). growth: (m, 4) logarithms of the growth of the tangent vectors after each m-th part of the
+    periods, or (0, 4).
     """
     read = 0
     for n in range(periods):
-        if f.oscillator[0].order > 0:
-            outcome = map_period(f, stops, o, records, t)
-        else:
+        if mapped is None:
             outcome = cross_period(f, stops, o, records, t, 0, 0.0)
+        else:
+            outcome = map_period(f, stops, o, records, t)
         if outcome != status.OK:
             return outcome
         if len(section) > 0:

@@ -119,9 +119,12 @@ def load(series, x1, v1, x2, v2, sin, cos, c):
 
 @jit
 def evaluate(c, u):
-    """Polynomial with coefficients c at u, and its derivative."""
-    p, dp = c[ORDER - 1], 0.0
-    for n in range(ORDER - 2, -1, -1):
-        dp = dp * u + p
-        p = p * u + c[n]
-    return p, dp
+    """Polynomial with coefficients c at u, and its derivative; even and odd terms go side by side."""
+    v = u * u
+    odd, slope_odd, even, slope_even = c[ORDER - 1], 0.0, c[ORDER - 2], 0.0
+    for n in range(ORDER - 4, -1, -2):
+        slope_odd = slope_odd * v + odd
+        odd = odd * v + c[n + 1]
+        slope_even = slope_even * v + even
+        even = even * v + c[n]
+    return even + u * odd, odd + 2.0 * u * (slope_even + u * slope_odd)

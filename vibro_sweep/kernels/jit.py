@@ -30,6 +30,13 @@ def _cache_folder() -> str:
 _FOLDER = _cache_folder()
 
 
+# On the way of every impact: a call would copy the tables' descriptors to the stack, and they are many words.
+_INLINE = frozenset(
+    "cross_period strike first_suspect ends_outside load bounds next_contact first_contact descend evaluate_gap "
+    "fly join apply_flight saltate watch end_period".split()
+)
+
+
 def jit(function):
     """`numba.njit` for a kernel. `contract` alone is allowed: it fuses multiply-adds and keeps every NaN check.
 
@@ -37,7 +44,14 @@ def jit(function):
     threads would share them.
     """
     options = {"_nrt": False} if hasattr(CPUTargetOptions, "_nrt") else {}
-    dispatcher = numba.njit(nogil=True, fastmath={"contract"}, error_model="numpy", **options)(function)
+    dispatcher = numba.njit(
+        nogil=True,
+        fastmath={"contract"},
+        error_model="numpy",
+        forceinline=function.__name__ in _INLINE,
+        no_cfunc_wrapper=True,
+        **options,
+    )(function)
     before, config.CACHE_DIR = config.CACHE_DIR, _FOLDER
     try:
         dispatcher.enable_caching()

@@ -1,12 +1,12 @@
-"""What a scene observes of one orbit: section points, their period, impacts, exponents, the continuous motion."""
+"""What a scene observes of one orbit: section points, their period, impacts, exponents."""
 
 import math
 
 import numpy as np
 
 from vibro_sweep.kernels import status, tangent
-from vibro_sweep.kernels.ensemble import carry, cross_period
-from vibro_sweep.kernels.impacts import Records, place, start_count
+from vibro_sweep.kernels.ensemble import carry
+from vibro_sweep.kernels.impacts import start_count
 from vibro_sweep.kernels.jit import jit
 
 REPEAT = 1e-6  # section points this near to each other, relative to their size, are the same point
@@ -28,40 +28,28 @@ def find_period(section, tolerance):
         largest = max(largest, tolerance[i])
     for i in range(4):
         tolerance[i] = REPEAT * max(tolerance[i], 1e-3 * largest)
+    witness = count - 1  # the point that told the last p off tells off most of those to come
     for p in range(1, count // 2 + 1):
-        n, near = count - 1, True
-        while near and n >= p:
-            for i in range(4):
-                near = near and abs(section[n, i] - section[n - p, i]) <= tolerance[i]
+        if apart(section, tolerance, witness, p):
+            continue
+        n = count - 1
+        while n >= p and not apart(section, tolerance, n, p):
             n -= 1
-        if near:
+        if n < p:
             return p
+        witness = n
     return 0
 
 
 @jit
-def follow_trajectory(f, stops, o, records, t, periods, out):
-    """The motion over the next `periods`, sampled uniformly from the present section to the last one: out (m, 4)."""
-    q, last = f.oscillator[0], len(out) - 1
-    i = 0
-    for n in range(periods):
-        first = i
-        while i < last and i * periods < (n + 1) * last:
-            cells = (i * periods - n * last) / last * q.cells
-            records.times[i, 0] = math.floor(cells)
-            records.times[i, 1] = (cells - math.floor(cells)) * q.width
-            i += 1
-        part = Records(records.impacts, records.rests, records.times[first:i], records.samples[first:i])
-        outcome = cross_period(f, stops, o, part, t, 0, 0.0)
-        if outcome != status.OK:
-            return outcome
-    for i in range(last):
-        for j in range(4):
-            out[i, j] = records.samples[i, j]
-        out[i, 0] = min(max(out[i, 0], stops.left), stops.right)  # evaluation may round past a stop
-    for j in range(4):
-        out[last, j] = o.X[j]
-    return status.OK
+def apart(section, tolerance, n, p):
+    """Whether point n and the one p before it differ."""
+    if n < p:
+        return False
+    for i in range(4):
+        if not abs(section[n, i] - section[n - p, i]) <= tolerance[i]:
+            return True
+    return False
 
 
 @jit
@@ -90,7 +78,7 @@ def periods_read(m, parts, periods):
 
 
 @jit
-def floquet(f, stops, o, records, t, axes, growth, nothing, period, spectrum):
+def floquet(f, stops, o, records, t, mapped, axes, growth, nothing, period, spectrum):
     """The exponents of a periodic orbit, over exactly one more period of it: ln|Floquet multiplier|/time.
 
     The vectors have found the invariant subspaces. A real multiplier brings its vector back to itself, and its growth
@@ -101,7 +89,7 @@ def floquet(f, stops, o, records, t, axes, growth, nothing, period, spectrum):
             axes[i, j] = t.Z[i, j]
     start_count(o)
     tangent.start_record(t)
-    outcome = carry(f, stops, o, records, t, period, nothing, growth)
+    outcome = carry(f, stops, o, records, t, mapped, period, nothing, growth)
     if outcome != status.OK:
         return outcome
     T = f.oscillator[0].width * f.oscillator[0].cells
@@ -130,7 +118,7 @@ def keep_impacts(f, stops, o, records, point, section, phase):
 
 
 @jit
-def keep_exponents(f, stops, o, records, t, w, period, divergence, result):
+def keep_exponents(f, stops, o, records, t, mapped, w, period, divergence, result):
     """The spectrum, its error, and the residual of its sum rule. Returns a status."""
     spectrum, error, growth = result.lyapunov, result.lyapunov_error, w.growth
     T, parts = f.oscillator[0].width * f.oscillator[0].cells, len(w.growth)
@@ -140,7 +128,9 @@ def keep_exponents(f, stops, o, records, t, w, period, divergence, result):
         for _ in range(2):
             for i in range(4):
                 error[i] = spectrum[i]
-            outcome = floquet(f, stops, o, records, t, w.axes, growth[parts - 1 :], w.section[:0], period, spectrum)
+            outcome = floquet(
+                f, stops, o, records, t, mapped, w.axes, growth[parts - 1 :], w.section[:0], period, spectrum
+            )
             if outcome != status.OK:
                 return outcome
         time = period * T
@@ -160,21 +150,21 @@ def keep_exponents(f, stops, o, records, t, w, period, divergence, result):
 
 
 @jit
-def observe(f, stops, w, plan, point, result, section, phase, running, trajectory):
-    """One orbit from where it is placed to the end of all that is wanted of it. Returns a status."""
+def observe(f, stops, w, plan, mapped, point, result, section, phase, running):
+    """One orbit from where it is placed to the end of the record, or of one more period of it. Returns a status."""
     o, t, records = w.orbit[0], w.tangent[0], w.records
     t.wanted = False
-    outcome = carry(f, stops, o, records, t, plan.transient - plan.warm_up, w.section[:0], w.growth[:0])
+    outcome = carry(f, stops, o, records, t, mapped, plan.transient - plan.warm_up, w.section[:0], w.growth[:0])
     if outcome == status.OK and plan.lyapunov:
         tangent.begin(t)
-        outcome = carry(f, stops, o, records, t, plan.warm_up, w.section[:0], w.growth[:0])
+        outcome = carry(f, stops, o, records, t, mapped, plan.warm_up, w.section[:0], w.growth[:0])
         tangent.catch_up(t, f.oscillator[0])
         tangent.start_record(t)
     if outcome != status.OK:
         return outcome
     start_count(o)
     o.impacts_logged, o.log_side = 0, plan.section_side
-    outcome = carry(f, stops, o, records, t, plan.record, w.section, w.growth)
+    outcome = carry(f, stops, o, records, t, mapped, plan.record, w.section, w.growth)
     if outcome != status.OK:
         return outcome
     result.impacts_right, result.impacts_left = o.impacts_right, o.impacts_left
@@ -188,19 +178,14 @@ def observe(f, stops, w, plan, point, result, section, phase, running, trajector
         for n in range(len(section)):
             for i in range(4):
                 section[n, i] = w.section[n, i]
-    resting, result.period = o.resting, find_period(w.section, w.axes[0])
+    result.resting, result.period = o.resting, find_period(w.section, w.axes[0])
     T = f.oscillator[0].width * f.oscillator[0].cells
     for n in range(len(running)):
         for i in range(4):
             running[n, i] = w.growth[n, i] / (periods_read(n, len(running), plan.record) * T)
     if plan.lyapunov:
         divergence = -2.0 * point.zeta * (1.0 + (1.0 + point.mu_k) / point.mu_m)
-        outcome = keep_exponents(f, stops, o, records, t, w, result.period, divergence, result)
+        outcome = keep_exponents(f, stops, o, records, t, mapped, w, result.period, divergence, result)
         if outcome != status.OK:
             return outcome
-    if len(trajectory) > 0:
-        t.wanted = False
-        place(o, result.end[0], result.end[1], result.end[2], result.end[3])
-        o.resting = resting
-        return follow_trajectory(f, stops, o, records, t, plan.periods, trajectory)
     return status.OK

@@ -29,7 +29,8 @@ RESULT = np.dtype(
         ("min_impact_speed", float),
         ("sticking_time", float),
         ("period", np.int64),
-        ("end", float, 4),  # the state at the last section
+        ("end", float, 4),  # the state at the last section, and
+        ("resting", float),  # the side of the stop that M1 rests on there, or 0
     ]
 )
 
@@ -98,12 +99,28 @@ def same_oscillator(a, b):
 
 
 @jit
-def run_points(points, starts, results, sections, phases, running, trajectories, w, plan):
+def prepare(points, p, w, plan):
+    """The tables of point p, unless they are still those of the point before; its stops."""
+    f, point = w.flight, points[p]
+    if p == 0 or not same_oscillator(point, points[p - 1]) or points[p - 1].cells == 0:
+        build(
+            f, w.scratch, point.cells, point.psi, point.omega_squared,
+            point.mu_m, point.mu_k, point.zeta, point.f2, point.omega, point.tau,
+        )  # fmt: skip
+        q = f.oscillator[0]
+        q.order = plan.order
+        for i in range(4):
+            q.graze[i] = point.graze[i]
+    return Stops(-point.b if plan.left else -np.inf, point.b if plan.right else np.inf, point.R)
+
+
+@jit
+def run_points(points, starts, results, sections, phases, running, w, plan, mapped):
     """Compute a block. p = points, s = starts; observations that nobody wants have no samples.
 
     starts: (p, s, 4), or with `follow` (1, s, 4): then a point starts where the one before it ended. results: (p, s)
     RESULT. sections: (p, s, record, 4). phases: (p, s, record), for an impact section. running: (p, s, parts, 4), the
-    exponents as they converge. trajectories: (p, s, samples, 4).
+    exponents as they converge. mapped: None for the flow, 1 for the discontinuity mapping.
     """
     f, o = w.flight, w.orbit[0]
     for p in range(len(points)):
@@ -112,16 +129,7 @@ def run_points(points, starts, results, sections, phases, running, trajectories,
             for s in range(results.shape[1]):
                 results[p, s].status = status.TOO_STIFF
             continue
-        if p == 0 or not same_oscillator(point, points[p - 1]) or points[p - 1].cells == 0:
-            build(
-                f, w.scratch, point.cells, point.psi, point.omega_squared,
-                point.mu_m, point.mu_k, point.zeta, point.f2, point.omega, point.tau,
-            )  # fmt: skip
-            q = f.oscillator[0]
-            q.order = plan.order
-            for i in range(4):
-                q.graze[i] = point.graze[i]
-        stops = Stops(-point.b if plan.left else -np.inf, point.b if plan.right else np.inf, point.R)
+        stops = prepare(points, p, w, plan)
         for s in range(results.shape[1]):
             x = starts[0 if plan.follow else p, s]
             x1, v1, x2, v2 = x[0], x[1], x[2], x[3]
@@ -131,7 +139,6 @@ def run_points(points, starts, results, sections, phases, running, trajectories,
             if plan.order == 0:  # points of the map may lie beyond the stops
                 x1 = min(max(x1, stops.left), stops.right)
             place(o, x1, v1, x2, v2)
-            outcome = observe(
-                f, stops, w, plan, point, results[p, s], sections[p, s], phases[p, s], running[p, s], trajectories[p, s]
-            )  # fmt: skip
-            results[p, s].status = outcome
+            results[p, s].status = observe(
+                f, stops, w, plan, mapped, point, results[p, s], sections[p, s], phases[p, s], running[p, s]
+            )
