@@ -13,7 +13,7 @@ from numpy.random import default_rng
 
 import vibro_sweep as vs
 from vibro_sweep import orbit
-from vibro_sweep.kernels import contact, ensemble, impacts, status
+from vibro_sweep.kernels import contact, ensemble, impacts, orbits, status
 from vibro_sweep.kernels.flight import ORDER
 
 DECADES = np.arange(1, 16)
@@ -147,11 +147,11 @@ def first_impacts(f, stops, states, record, o, records, t, suspects):
         x = states[i]
         suspects[i] = ensemble.first_suspect(f, stops, 0, 0, x[0] - r[0], x[1] - r[1], x[2] - r[2], x[3] - r[3])
         # the first cell alone, with one event allowed: R = 1 makes a mass that creeps off the stop knock for ever
-        impacts.place(o, x[0], x[1], x[2], x[3])
+        orbits.place(o, x[0], x[1], x[2], x[3])
         o.events = impacts.MOST_EVENTS - 1
         outcome = impacts.cross_cell(f, stops, o, records, t, 0, 0.0)
         if o.impacts_logged == 0:
-            impacts.place(o, x[0], x[1], x[2], x[3])
+            orbits.place(o, x[0], x[1], x[2], x[3])
             outcome = ensemble.cross_period(f, stops, o, records, t, 0, 0.0)
         record[i, 0] = records.impacts[0, 1] if o.impacts_logged else np.inf
         record[i, 1] = records.impacts[0, 2]
@@ -212,7 +212,7 @@ def judge_flights(count, rng):
     engine = orbit._Engine(system)
     record, suspects = np.empty((len(states), 4)), np.empty(len(states), np.int64)
     first_impacts(
-        engine.flight, engine.stops, states, record, engine.orbit[0], impacts.new_records(impacts=1),
+        engine.flight, engine.stops, states, record, engine.orbit[0], orbits.new_records(impacts=1),
         engine.tangent[0], suspects,
     )  # fmt: skip
     assert np.isin(record[:, 3], [status.OK, status.EVENT_LIMIT]).all()  # none is unresolved

@@ -12,7 +12,7 @@ from mpmath import mp, mpf
 
 import vibro_sweep as vs
 from vibro_sweep.kernels import tangent
-from vibro_sweep.kernels.impacts import new_records
+from vibro_sweep.kernels.orbits import new_records
 from vibro_sweep.orbit import _Engine
 
 PAPER = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep import sweep
+from vibro_sweep import blocks
 from vibro_sweep.scene import parse_scene
 
 CONFIGS = Path(__file__).parents[1] / "configs"
@@ -84,10 +84,10 @@ def test_block_size_does_not_matter(tmp_path, name):
     scene, whole = scene_of(SCENES[name]), run(tmp_path, SCENES[name])
     numbers = []
     for size in (1, 4, 1000):
-        pieces = list(sweep.blocks(scene, 1, points_per_block=size))
+        pieces = list(blocks.blocks(scene, 1, points_per_block=size))
         numbers.append(len(pieces))
         parts = {key: np.empty_like(values) for key, values in whole.items()}
-        for box, arrays in map(sweep.compute, pieces):
+        for box, arrays in map(blocks.compute, pieces):
             for key in parts:
                 parts[key][box if key in arrays else ...] = arrays.get(key, whole[key])
         assert_same_bits(parts, whole)
@@ -106,8 +106,8 @@ def test_executors_do_not_matter(tmp_path):
 def test_random_starts(tmp_path):
     """They depend on the seed and on the place in the sweep, and are spread over |x_i| < b, |v_i| < omega b."""
     text = "sweep: {b: {values: [1, 2]}}\nstart: {random: 500, seed: SEED}\norbit: {transient: 0, record: 1}"
-    (block,) = sweep.blocks(scene_of(text.replace("SEED", "1")), 1, points_per_block=2)
-    starts = sweep._starts(block, sweep.points_of(block.parameters)) / np.array([1, 0.63, 1, 0.63])
+    (block,) = blocks.blocks(scene_of(text.replace("SEED", "1")), 1, points_per_block=2)
+    starts = blocks._starts(block, blocks.points_of(block.parameters)) / np.array([1, 0.63, 1, 0.63])
     assert starts.shape == (2, 500, 4) and len(np.unique(starts)) == starts.size
     for b, drawn in zip((1, 2), starts / np.array([[[1]], [[2]]]), strict=True):
         assert np.all(abs(drawn) < 1), b
@@ -274,12 +274,12 @@ def test_one_stop(tmp_path):
 
 def test_section_alone_computes_no_tangent(tmp_path):
     scene = scene_of(SCENES["random"].replace(ALL, "observe: [section]"))
-    plan = sweep.plan_of(scene)
+    plan = blocks.plan_of(scene)
     assert not plan.lyapunov and plan.warm_up == 0
-    (block,) = sweep.blocks(scene, 1, points_per_block=1000)
+    (block,) = blocks.blocks(scene, 1, points_per_block=1000)
     with ThreadPoolExecutor(1) as pool:  # a thread of its own, so that its workspace is new
-        _, arrays = pool.submit(sweep.compute, block).result()
-        touched = pool.submit(lambda: sweep._local.workspace.tangent.tobytes().strip(b"\0")).result()
+        _, arrays = pool.submit(blocks.compute, block).result()
+        touched = pool.submit(lambda: blocks._local.workspace.tangent.tobytes().strip(b"\0")).result()
     assert not touched and np.all(np.isnan(arrays["lyapunov"]))
     assert not {"lyapunov", "impacts_right"} & run(tmp_path, SCENES["random"].replace(ALL, "")).keys()
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.kernels import discontinuity, impacts, tables, tangent
+from vibro_sweep.kernels import discontinuity, orbits, tables, tangent
 from vibro_sweep.kernels.flight import new_flight
 from vibro_sweep.orbit import points_of
 from vibro_sweep.system import System, steady_response
@@ -40,16 +40,16 @@ class DiscontinuityMap:
             "cells"
         ]  # no looks at the tangent vectors on the way
         left, right = system.stops != "right", system.stops != "left"
-        self.stops = impacts.Stops(-system.b if left else -np.inf, system.b if right else np.inf, system.R)
+        self.stops = orbits.Stops(-system.b if left else -np.inf, system.b if right else np.inf, system.R)
 
     def _iterate(self, state, with_tangent: bool):
-        orbit, vectors = np.zeros(1, impacts.ORBIT), np.zeros(1, tangent.TANGENT)
+        orbit, vectors = np.zeros(1, orbits.ORBIT), np.zeros(1, tangent.TANGENT)
         orbit["X"] = np.asarray(state, float)
         if with_tangent:
             vectors["wanted"], vectors["volume"] = True, 1e300  # never orthonormalised: one iteration is no long way
             vectors["flight"] = 1.0, 0.0, 1.0, 0.0
             vectors["Z"] = self.flight.oscillator["to_frame"]
-        records = impacts.new_records()
+        records = orbits.new_records()
         discontinuity.map_period(self.flight, self.stops, orbit[0], records, vectors[0])
         if with_tangent:
             tangent.apply_flight(vectors[0], self.flight.oscillator[0])

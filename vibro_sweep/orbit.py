@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vibro_sweep.kernels import ensemble, impacts, points, status, tables, tangent
+from vibro_sweep.kernels import ensemble, orbits, points, status, tables, tangent
 from vibro_sweep.kernels.flight import new_flight
 from vibro_sweep.kernels.observe import BATCHES
 from vibro_sweep.system import NAMES, System, SystemError, modes
@@ -42,8 +42,8 @@ class _Engine:
         names = ("psi", "omega_squared", "mu_m", "mu_k", "zeta", "f2", "omega", "tau")
         tables.build(self.flight, np.empty((7, 6)), self.cells, *(point[name] for name in names))
         left, right = system.stops != "right", system.stops != "left"
-        self.stops = impacts.Stops(-system.b if left else -np.inf, system.b if right else np.inf, system.R)
-        self.orbit = np.zeros(1, impacts.ORBIT)
+        self.stops = orbits.Stops(-system.b if left else -np.inf, system.b if right else np.inf, system.R)
+        self.orbit = np.zeros(1, orbits.ORBIT)
         self.tangent = np.zeros(1, tangent.TANGENT)
 
     def place(self, state) -> None:
@@ -58,7 +58,7 @@ class _Engine:
 
     def put(self, state) -> None:
         """Start a new orbit from a state that is known to be allowed."""
-        self.orbit[0] = np.zeros((), impacts.ORBIT)
+        self.orbit[0] = np.zeros((), orbits.ORBIT)
         self.orbit["X"] = state
 
     def cross_period(self, records, cell=0, offset=0.0) -> int:
@@ -133,7 +133,7 @@ class Orbit:
             if n - first == len(self.section) - 1:  # the very end
                 result[chosen] = self.section[-1]
                 continue
-            records = impacts.new_records(samples=len(chosen))
+            records = orbits.new_records(samples=len(chosen))
             records.times[:, 0], records.times[:, 1] = cell[chosen], offset[chosen]
             engine.put(self._start if n < first else self.section[n - first])
             engine.cross_period(records, *((start_cell, start_offset) if n < first else (0, 0.0)))
@@ -169,7 +169,7 @@ def simulate(system: System, state, periods: int, start_time: float = 0.0) -> Or
     hits, rests, chatters, room, outcome = [], [], 0, ROOM, status.OK
     while done <= periods and outcome == status.OK:
         before = engine.orbit.copy()
-        records = impacts.new_records(impacts=room, rests=room)
+        records = orbits.new_records(impacts=room, rests=room)
         if inside:
             outcome, count = engine.cross_period(records, cell, offset), 1
             section[0] = engine.orbit["X"][0]

@@ -5,7 +5,7 @@ import numpy as np
 from vibro_sweep.kernels import status, tangent
 from vibro_sweep.kernels.discontinuity import map_period
 from vibro_sweep.kernels.flight import CHUNK
-from vibro_sweep.kernels.impacts import cross_cell, strike
+from vibro_sweep.kernels.impacts import FREE, STRUCK, UNCLEAR, cross_cell, strike
 from vibro_sweep.kernels.jit import jit
 
 
@@ -67,22 +67,22 @@ def cross_period(f, stops, o, records, t, k, s):
                 X[i] = (E[i, 0] * y0 + E[i, 1] * y1) + (E[i, 2] * y2 + E[i, 3] * y3) + r[i]
         if k == q.cells:
             break
-        seen = 2
+        seen = UNCLEAR
         if s == 0.0 and o.resting == 0.0 and stops.left < X[0] < stops.right and not q.stiff:
             seen = strike(f, stops, o, records, t, k)
-        if seen == 2:
+        if seen == UNCLEAR:
             events, rested = o.events, o.resting != 0.0
             outcome = cross_cell(f, stops, o, records, t, k, s)
             if outcome != status.OK:
                 return outcome
-            seen = 1 if s > 0.0 or rested or o.events > events else 0
+            seen = STRUCK if s > 0.0 or rested or o.events > events else FREE
         k += 1
-        if q.stiff and seen == 0:  # go on from here: what a fast mode has lost meanwhile makes the scan's bound tighter
+        if q.stiff and seen == FREE:  # go on from here: the less of a fast mode is left, the tighter the scan
             E, r = nodes[k - base].E, nodes[k].r
             for i in range(4):
                 X[i] = (E[i, 0] * y0 + E[i, 1] * y1) + (E[i, 2] * y2 + E[i, 3] * y3) + r[i]
-            seen = 1
-        if seen == 1:  # else it was free flight, which goes on from `base`
+            seen = STRUCK
+        if seen == STRUCK:  # else it was free flight, which goes on from `base`
             s, base, r = 0.0, k, nodes[k].r
             y0, y1, y2, y3 = X[0] - r[0], X[1] - r[1], X[2] - r[2], X[3] - r[3]
     if t.wanted:

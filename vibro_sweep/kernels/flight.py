@@ -128,3 +128,21 @@ def evaluate(c, u):
         slope_even = slope_even * v + even
         even = even * v + c[n]
     return even + u * odd, odd + 2.0 * u * (slope_even + u * slope_odd)
+
+
+@jit
+def bounds(q, c):
+    """Over a cell: how far x can move, and a bound on its third derivative. Summed by fours, for the vector unit."""
+    reach, third = q.reach, q.third
+    r0, r1, r2, r3, t0, t1, t2, t3 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for n in range(0, ORDER, 4):
+        a0, a1, a2, a3 = abs(c[n]), abs(c[n + 1]), abs(c[n + 2]), abs(c[n + 3])
+        r0 += reach[n] * a0
+        r1 += reach[n + 1] * a1
+        r2 += reach[n + 2] * a2
+        r3 += reach[n + 3] * a3
+        t0 += third[n] * a0
+        t1 += third[n + 1] * a1
+        t2 += third[n + 2] * a2
+        t3 += third[n + 3] * a3
+    return (r0 + r1) + (r2 + r3), (t0 + t1) + (t2 + t3)

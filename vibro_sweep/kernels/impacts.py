@@ -1,106 +1,18 @@
-"""One orbit through one cell: from contact to contact, through chatter and rest, to the cell's end."""
+"""One orbit through one cell: from contact to contact to the cell's end."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from vibro_sweep.kernels import status, tangent
 from vibro_sweep.kernels.contact import first_contact
-from vibro_sweep.kernels.flight import ORDER, evaluate, load
+from vibro_sweep.kernels.flight import ORDER, bounds, evaluate, load
 from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.orbits import advance, sample
+from vibro_sweep.kernels.rest import begin_rest, chatter, departure, leading, stay_at_rest
 
 MOST_EVENTS = 100_000  # impacts, grazes and rests in one forcing period; an orbit that needs more gets a status
-CHATTER = 2.0**-53  # of a period: the error allowed in time when the rest of a chatter sequence is summed up
-
-
-class Stops(NamedTuple):
-    """The walls, infinite where there is none, and the coefficient of restitution."""
-
-    left: float
-    right: float
-    R: float
-
-
-# One orbit on its way, and what is counted of it.
-ORBIT = np.dtype(
-    [
-        ("X", float, 4),  # x1, v1, x2, v2
-        ("resting", float),  # side of the stop that M1 rests on, or 0
-        ("c1", float, ORDER),  # Taylor coefficients of x1, or of the free acceleration of M1 at rest
-        ("c2", float, ORDER),  # of x2
-        ("period", np.int64),
-        ("events", np.int64),  # impacts, grazes, and ends of rests in this period
-        ("impacts_left", np.int64),
-        ("impacts_right", np.int64),
-        ("chatters", np.int64),  # sequences summed up
-        ("slowest", float),  # least |v1| before an impact
-        ("rest_time", float),
-        ("log_volume", float),  # ln|det| of the jumps of the discontinuity mapping
-        ("log_side", float),  # impacts on this side are logged; 0: on both
-        ("impacts_logged", np.int64),  # or would have been, had there been room
-        ("rests_logged", np.int64),
-        ("samples_taken", np.int64),
-    ]
-)
-
-
-class Records(NamedTuple):
-    """What is kept of an orbit on its way; an observation that nobody wants has m = 0."""
-
-    impacts: np.ndarray  # (m, 7): period, cell, offset, side, v1 before, x2, v2
-    rests: np.ndarray  # (m, 4): period, cell, offset, side at the onset of a rest, 0 at its end
-    times: np.ndarray  # (m, 2): cell and offset in this period at which the motion is sampled
-    samples: np.ndarray  # (m, 4)
-
-
-def new_records(impacts: int = 0, rests: int = 0, samples: int = 0) -> Records:
-    """Room for so many entries of each kind."""
-    return Records(np.empty((impacts, 7)), np.empty((rests, 4)), np.empty((samples, 2)), np.empty((samples, 4)))
-
-
-@jit
-def place(o, x1, v1, x2, v2):
-    """Start an orbit here, with nothing counted yet."""
-    o.X[0], o.X[1], o.X[2], o.X[3] = x1, v1, x2, v2
-    o.resting = 0.0
-    o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
-    start_count(o)
-
-
-@jit
-def start_count(o):
-    """Count impacts and rest from here on."""
-    o.impacts_left = o.impacts_right = o.chatters = 0
-    o.slowest, o.rest_time, o.log_volume = np.inf, 0.0, 0.0
-
-
-@jit
-def advance(o, u):
-    """The state at offset u of the series."""
-    X, c1, c2 = o.X, o.c1, o.c2
-    x1, v1, x2, v2 = c1[ORDER - 1], 0.0, c2[ORDER - 1], 0.0
-    for n in range(ORDER - 2, -1, -1):
-        v1 = v1 * u + x1
-        x1 = x1 * u + c1[n]
-        v2 = v2 * u + x2
-        x2 = x2 * u + c2[n]
-    X[0], X[1], X[2], X[3] = x1, v1, x2, v2
-
-
-@jit
-def sample(o, records, k, start, stop):
-    """Take the samples that fall in cell k between the offset `start`, where the series begins, and `stop`."""
-    times, samples = records.times, records.samples
-    i = o.samples_taken
-    while i < len(times) and times[i, 0] == k and times[i, 1] <= stop:
-        u = max(times[i, 1] - start, 0.0)
-        samples[i, 0], samples[i, 1] = evaluate(o.c1, u)
-        samples[i, 2], samples[i, 3] = evaluate(o.c2, u)
-        if o.resting != 0.0:
-            samples[i, 0], samples[i, 1] = o.X[0], 0.0
-        i += 1
-    o.samples_taken = i
+FREE, STRUCK, UNCLEAR = 0, 1, 2  # what `strike` finds in a cell
 
 
 @jit
@@ -116,43 +28,6 @@ def sample_rebound(q, o, records, k, d, impulse):
         samples[i, 1] += impulse * v1
         samples[i, 2] += impulse * x2
         samples[i, 3] += impulse * v2
-
-
-@jit
-def bounds(q, c):
-    """Over a cell: how far x can move, and a bound on its third derivative. Summed by fours, for the vector unit."""
-    reach, third = q.reach, q.third
-    r0, r1, r2, r3, t0, t1, t2, t3 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for n in range(0, ORDER, 4):
-        a0, a1, a2, a3 = abs(c[n]), abs(c[n + 1]), abs(c[n + 2]), abs(c[n + 3])
-        r0 += reach[n] * a0
-        r1 += reach[n + 1] * a1
-        r2 += reach[n + 2] * a2
-        r3 += reach[n + 3] * a3
-        t0 += third[n] * a0
-        t1 += third[n + 1] * a1
-        t2 += third[n + 2] * a2
-        t3 += third[n + 3] * a3
-    return (r0 + r1) + (r2 + r3), (t0 + t1) + (t2 + t3)
-
-
-@jit
-def leading(c, first):
-    """Index of the first coefficient from `first` on that is not zero; ORDER - 1 if there is none."""
-    n = first
-    while n < ORDER - 1 and c[n] == 0.0:
-        n += 1
-    return n
-
-
-@jit
-def departure(q, c, n, left):
-    """An offset up to which a polynomial that starts as c_n u^n does not come back to 0."""
-    others, power = 0.0, 1.0
-    for m in range(n + 1, ORDER):
-        others += abs(c[m]) * power
-        power *= q.step
-    return min(left, 0.5 * abs(c[n]) / others) if others > 0.0 else left
 
 
 @jit
@@ -204,76 +79,6 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
 
 
 @jit
-def mark_rest(o, records, k, s, side):
-    """Log the beginning of a rest on `side`, or (0) its end."""
-    o.events += 1
-    if o.rests_logged < len(records.rests):
-        row = records.rests[o.rests_logged]
-        row[0], row[1], row[2], row[3] = o.period, k, s, side
-    o.rests_logged += 1
-
-
-@jit
-def begin_rest(f, o, records, t, k, s, side):
-    """M1 comes to rest on the stop."""
-    o.X[1] = 0.0
-    o.resting = side
-    mark_rest(o, records, k, s, side)
-    if t.wanted:
-        tangent.fly(t, f.oscillator[0], f.nodes, k, s)
-        tangent.rest(t, f.oscillator[0])
-
-
-@jit
-def stay_at_rest(f, o, records, t, k, s, left, sin, cos):
-    """M1 rests from offset s of cell k on, M2 moves. Returns the time to the release, infinite if more than `left`.
-
-    M1 is released where its free acceleration, which points into the stop, changes sign: a root found like a contact.
-    """
-    q, X, c1, c2, side = f.oscillator[0], o.X, o.c1, o.c2, o.resting
-    a, b = q.resting1, q.resting2
-    for n in range(ORDER):
-        c1[n] = (a[0, n] * X[0] + a[1, n] * X[2]) + (a[2, n] * X[3] + a[3, n] * sin) + a[4, n] * cos
-        c2[n] = (b[0, n] * X[0] + b[1, n] * X[2]) + (b[2, n] * X[3] + b[3, n] * sin) + b[4, n] * cos
-    gap = max(side * c1[0], 0.0)
-    n = 0 if gap > 0.0 else leading(c1, 1)
-    d = 0.0
-    if side * c1[n] > 0.0:
-        start = departure(q, c1, n, left) if n > 1 else 0.0
-        d = first_contact(c1, gap, -side, bounds(q, c1)[1], start, left)
-    end = min(d, left)
-    sample(o, records, k, s, s + end)
-    X[2], X[3] = evaluate(c2, end)
-    o.rest_time += end
-    if t.wanted:
-        xx, vx = evaluate(q.resting2[1], end)
-        xv, vv = evaluate(q.resting2[2], end)
-        tangent.release(t, q, xx, xv, vx, vv)
-        t.cell, t.offset = k, s + end
-    if d < np.inf:
-        o.resting = 0.0
-        mark_rest(o, records, k, s + d, 0.0)
-    return d
-
-
-@jit
-def chatter(q, stops, o, third, side, left):
-    """Time in which the impacts to come accumulate, if they do so within the cell and can be summed up; else infinite.
-
-    With the acceleration a into the stop, flights last 2 v/a, 2 R v/a, ..., in all 2 v/(a (1 - R)) =: w. The change
-    of a within w makes an error of about w (third w/a).
-    """
-    speed, a = -side * o.X[1], 2.0 * side * o.c1[2]
-    if a <= 0.0 or stops.R == 1.0:
-        return np.inf
-    w = 2.0 * speed / (a * (1.0 - stops.R))
-    change = third * w / a
-    if w < left and change < 1e-3 and w * change <= CHATTER * q.width * q.cells:
-        return w
-    return np.inf
-
-
-@jit
 def speed_and_acceleration(c, u):
     """First and second derivative of a series at u; even and odd terms go side by side."""
     w = u * u
@@ -294,7 +99,7 @@ def strike(f, stops, o, records, t, k):
     """Cross cell k from its node if there is one impact in it, or none, and nothing more can follow.
 
     The motion goes on as if there were no stop, and what the impulse -(1 + R) v1 does is added at the cell's end.
-    Returns "free" 0 (the state is left alone), "struck" 1, or 2: it takes a closer look (`cross_cell`).
+    Returns FREE (the state is left alone), STRUCK, or UNCLEAR: it takes a closer look (`cross_cell`).
     """
     q, node, X, c, R = f.oscillator[0], f.nodes[k], o.X, o.c1, stops.R
     load(q.series1, X[0], X[1], X[2], X[3], node.sin, node.cos, c)
@@ -305,7 +110,7 @@ def strike(f, stops, o, records, t, k):
         load(q.series2, X[0], X[1], X[2], X[3], node.sin, node.cos, o.c2)
     if d == np.inf:
         sample(o, records, k, 0.0, q.width)
-        return 0
+        return FREE
     v, a = speed_and_acceleration(c, d)
     left, impulse, after = q.width - d, -(1.0 + R) * v, a + 2.0 * q.zeta * (1.0 + R) * v
     third += abs(impulse) * q.impulse_third
@@ -313,7 +118,7 @@ def strike(f, stops, o, records, t, k):
     stays_off = rebound > 0.5 * left * (max(side * after, 0.0) + left * third / 3.0)
     stays_short = left * (rebound + 0.5 * left * (abs(after) + left * third / 3.0)) < stops.right - stops.left
     if not (side * v > 0.0 and stays_off and stays_short):
-        return 2
+        return UNCLEAR
     count_impact(o, side, v)
     if watched:
         x2, v2 = evaluate(o.c2, d)
@@ -331,7 +136,7 @@ def strike(f, stops, o, records, t, k):
     X[1] = (E[1, 0] * y0 + E[1, 1] * y1) + (E[1, 2] * y2 + E[1, 3] * y3) + (end[1] + impulse * v1)
     X[2] = (E[2, 0] * y0 + E[2, 1] * y1) + (E[2, 2] * y2 + E[2, 3] * y3) + (end[2] + impulse * x2)
     X[3] = (E[3, 0] * y0 + E[3, 1] * y1) + (E[3, 2] * y2 + E[3, 3] * y3) + (end[3] + impulse * v2)
-    return 1
+    return STRUCK
 
 
 @jit

@@ -6,8 +6,8 @@ import numpy as np
 
 from vibro_sweep.kernels import status, tangent
 from vibro_sweep.kernels.ensemble import carry
-from vibro_sweep.kernels.impacts import start_count
 from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.orbits import start_count
 
 REPEAT = 1e-6  # section points this near to each other, relative to their size, are the same point
 RUNNING = 200  # points of a convergence diagram

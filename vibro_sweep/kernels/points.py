@@ -6,9 +6,9 @@ import numpy as np
 
 from vibro_sweep.kernels import status
 from vibro_sweep.kernels.flight import Flight, new_flight
-from vibro_sweep.kernels.impacts import ORBIT, Records, Stops, new_records, place
 from vibro_sweep.kernels.jit import jit
 from vibro_sweep.kernels.observe import observe
+from vibro_sweep.kernels.orbits import ORBIT, Records, Stops, new_records, place
 from vibro_sweep.kernels.tables import build
 from vibro_sweep.kernels.tangent import TANGENT
 

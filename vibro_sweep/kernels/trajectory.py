@@ -4,8 +4,8 @@ import math
 
 from vibro_sweep.kernels import status
 from vibro_sweep.kernels.ensemble import cross_period
-from vibro_sweep.kernels.impacts import Records, place
 from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.orbits import Records, place
 from vibro_sweep.kernels.points import prepare
 
 

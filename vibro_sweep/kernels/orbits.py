@@ -1,0 +1,97 @@
+"""The moving state of an orbit, what is counted of it, and what is kept of its way."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.kernels.flight import ORDER, evaluate
+from vibro_sweep.kernels.jit import jit
+
+
+class Stops(NamedTuple):
+    """The walls, infinite where there is none, and the coefficient of restitution."""
+
+    left: float
+    right: float
+    R: float
+
+
+# One orbit on its way, and what is counted of it.
+ORBIT = np.dtype(
+    [
+        ("X", float, 4),  # x1, v1, x2, v2
+        ("resting", float),  # side of the stop that M1 rests on, or 0
+        ("c1", float, ORDER),  # Taylor coefficients of x1, or of the free acceleration of M1 at rest
+        ("c2", float, ORDER),  # of x2
+        ("period", np.int64),
+        ("events", np.int64),  # impacts, grazes, and ends of rests in this period
+        ("impacts_left", np.int64),
+        ("impacts_right", np.int64),
+        ("chatters", np.int64),  # sequences summed up
+        ("slowest", float),  # least |v1| before an impact
+        ("rest_time", float),
+        ("log_volume", float),  # ln|det| of the jumps of the discontinuity mapping
+        ("log_side", float),  # impacts on this side are logged; 0: on both
+        ("impacts_logged", np.int64),  # or would have been, had there been room
+        ("rests_logged", np.int64),
+        ("samples_taken", np.int64),
+    ]
+)
+
+
+class Records(NamedTuple):
+    """What is kept of an orbit on its way; an observation that nobody wants has m = 0."""
+
+    impacts: np.ndarray  # (m, 7): period, cell, offset, side, v1 before, x2, v2
+    rests: np.ndarray  # (m, 4): period, cell, offset, side at the onset of a rest, 0 at its end
+    times: np.ndarray  # (m, 2): cell and offset in this period at which the motion is sampled
+    samples: np.ndarray  # (m, 4)
+
+
+def new_records(impacts: int = 0, rests: int = 0, samples: int = 0) -> Records:
+    """Room for so many entries of each kind."""
+    return Records(np.empty((impacts, 7)), np.empty((rests, 4)), np.empty((samples, 2)), np.empty((samples, 4)))
+
+
+@jit
+def place(o, x1, v1, x2, v2):
+    """Start an orbit here, with nothing counted yet."""
+    o.X[0], o.X[1], o.X[2], o.X[3] = x1, v1, x2, v2
+    o.resting = 0.0
+    o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
+    start_count(o)
+
+
+@jit
+def start_count(o):
+    """Count impacts and rest from here on."""
+    o.impacts_left = o.impacts_right = o.chatters = 0
+    o.slowest, o.rest_time, o.log_volume = np.inf, 0.0, 0.0
+
+
+@jit
+def advance(o, u):
+    """The state at offset u of the series."""
+    X, c1, c2 = o.X, o.c1, o.c2
+    x1, v1, x2, v2 = c1[ORDER - 1], 0.0, c2[ORDER - 1], 0.0
+    for n in range(ORDER - 2, -1, -1):
+        v1 = v1 * u + x1
+        x1 = x1 * u + c1[n]
+        v2 = v2 * u + x2
+        x2 = x2 * u + c2[n]
+    X[0], X[1], X[2], X[3] = x1, v1, x2, v2
+
+
+@jit
+def sample(o, records, k, start, stop):
+    """Take the samples that fall in cell k between the offset `start`, where the series begins, and `stop`."""
+    times, samples = records.times, records.samples
+    i = o.samples_taken
+    while i < len(times) and times[i, 0] == k and times[i, 1] <= stop:
+        u = max(times[i, 1] - start, 0.0)
+        samples[i, 0], samples[i, 1] = evaluate(o.c1, u)
+        samples[i, 2], samples[i, 3] = evaluate(o.c2, u)
+        if o.resting != 0.0:
+            samples[i, 0], samples[i, 1] = o.X[0], 0.0
+        i += 1
+    o.samples_taken = i
