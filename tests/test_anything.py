@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import vibro_sweep as vs
 from vibro_sweep.kernels.impacts import MOST_EVENTS
-from vibro_sweep.system import SystemError
+from vibro_sweep.system import ParameterError
 
 EPS = 2.0**-52
 PERIODS = 3
@@ -61,7 +61,7 @@ def test_anything(values, start):
     state = scaled(start, system.b)
     try:
         orbit = vs.simulate(system, state, periods=PERIODS)
-    except SystemError as error:  # too stiff for the grid, and said so
+    except ParameterError as error:  # too stiff for the grid, and said so
         assert error.key == "omega"
         return
     assert len(orbit.impacts) <= PERIODS * MOST_EVENTS
@@ -97,7 +97,7 @@ def test_any_exponents(values, start):
     system = vs.System(**values)
     try:
         exponents = vs.lyapunov(system, scaled(start, system.b), transient=1, periods=2)
-    except SystemError as error:
+    except ParameterError as error:
         assert error.key == "omega"
         return
     if np.isnan(exponents).any():

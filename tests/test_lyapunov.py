@@ -207,3 +207,20 @@ def test_bad_lengths(arguments):
     ((name, value),) = arguments.items()
     with pytest.raises(ValueError, match=f"{name}: {value}"):
         vs.lyapunov(PAPER, REST, **arguments)
+
+
+def test_a_rest_on_the_way_to_an_attractor_costs_no_exponent():
+    """b = 0.1: from rest the transient sticks for a while, the attractor does not."""
+    system = PAPER.replace(b=0.1)
+    early = vs.simulate(system, REST, 200).sticking
+    late = vs.simulate(system, vs.simulate(system, REST, 200).section[-1], 1000).sticking
+    assert len(early) > 0 and len(late) == 0
+    elsewhere = vs.lyapunov(system, (0.05, 1.0, 0.0, 0.0))
+    np.testing.assert_allclose(vs.lyapunov(system, REST, transient=200), elsewhere, rtol=0, atol=1e-9)
+
+
+def test_no_restitution_costs_one_exponent():
+    """R = 0: v1 is forgotten at every impact."""
+    system = PAPER.replace(b=4.0, R=0.0)
+    spectrum = vs.lyapunov(system, REST)
+    assert np.isfinite(spectrum[:3]).all() and spectrum[3] == -np.inf

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from vibro_sweep.scene import SceneError, json_schema, load_scene, parse_scene
-from vibro_sweep.system import NAMES, System, SystemError, check_value
+from vibro_sweep.system import NAMES, ParameterError, System, check_value
 from vibro_sweep.yaml_text import YAMLTextError, read_yaml
 
 CONFIGS = Path(__file__).parent.parent / "configs"
@@ -232,7 +232,7 @@ class TestSchema:
             try:
                 check_value(key, value)
                 allowed = True
-            except SystemError:
+            except ParameterError:
                 allowed = False
             assert validator.is_valid({key: value}) == allowed, value
 

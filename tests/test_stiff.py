@@ -86,6 +86,6 @@ def test_farther_apart_than_any_grid():
 
 
 def test_refused_beyond_reason():
-    with pytest.raises(vs.system.SystemError, match="fastest rate"):
+    with pytest.raises(vs.system.ParameterError, match="fastest rate"):
         vs.simulate(vs.System(**{**PAPER, "mu_m": 1e-9, "omega": 1e-5, "zeta": 10.0}), (0, 0, 0, 0), 1)
     assert status.MEANINGS[status.TOO_STIFF] == "rates_too_far_apart"

@@ -10,7 +10,7 @@ import scipy.linalg
 from mpmath import mp, mpf
 
 import vibro_sweep as vs
-from vibro_sweep.system import SystemError, modes, steady_response
+from vibro_sweep.system import ParameterError, modes, steady_response
 
 PAPER = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 ORDINARY = [(10, 5), (1, 1), (0.2, 3), (30, 0.1)]
@@ -118,7 +118,7 @@ def test_undamped_resonance_has_no_grazing():
     system = PAPER.replace(zeta=0, tau=0.0)
     resonant = system.replace(omega=float(np.sqrt(system.modes.omega_squared[0])))
     assert not vs.grazing(resonant).satisfied and vs.grazing(system).satisfied
-    with pytest.raises(SystemError, match="resonance"):
+    with pytest.raises(ParameterError, match="resonance"):
         resonant.replace(tau="grazing")
 
 
@@ -146,21 +146,21 @@ def test_physical_units_describe_the_same_motion():
     [("C2", 0.61), ("M1", 0), ("K2", -1), ("P1", -1), ("B", math.nan), ("Omega", math.inf), ("C1", "0.4"), ("R", 1.2)],
 )
 def test_bad_physical_units(key, value):
-    with pytest.raises(SystemError) as error:
+    with pytest.raises(ParameterError) as error:
         vs.System.physical(**PHYSICAL | {key: value})
     assert error.value.key == key and repr(error.value.value) == repr(value)
     assert (key == "C2") == ("proportional" in str(error.value))
 
 
 def test_physical_units_without_force():
-    with pytest.raises(SystemError, match="P1"):
+    with pytest.raises(ParameterError, match="P1"):
         vs.System.physical(**PHYSICAL | {"P1": 0, "P2": 0})
 
 
 @pytest.mark.parametrize("key", ["mu_m", "mu_k", "zeta", "f2", "omega", "R", "b"])
 @pytest.mark.parametrize("value", [math.nan, math.inf, -1, -1e-300, "1", None, True, [1.0]])
 def test_bad_numbers(key, value):
-    with pytest.raises(SystemError) as error:
+    with pytest.raises(ParameterError) as error:
         PAPER.replace(**{key: value})
     assert error.value.key == key and repr(error.value.value) == repr(value)
     assert str(error.value).startswith(f"{key}: ") and error.value.allowed in str(error.value)
@@ -178,7 +178,7 @@ def test_bad_numbers(key, value):
 )
 def test_other_bad_values(changes):
     ((key, value),) = changes.items()
-    with pytest.raises(SystemError) as error:
+    with pytest.raises(ParameterError) as error:
         PAPER.replace(**changes)
     assert error.value.key == key and repr(error.value.value) == repr(value)
 

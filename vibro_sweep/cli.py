@@ -218,7 +218,8 @@ def _check_output(output: Path, scene_file: Path, resume: bool, overwrite: bool)
     if output.exists() and output.samefile(scene_file):
         raise InputError(f"--output {output} is the scene itself")
     if output.exists() and not (resume or overwrite):
-        raise InputError(f"{output} exists; --overwrite replaces it, or name another file with -o")
+        rest = f" ({part} is an interrupted run: --resume continues that)" if part.exists() else ""
+        raise InputError(f"{output} exists; --overwrite replaces it, or name another file with -o{rest}")
     if part.exists() and not (resume or overwrite):
         raise InputError(f"{part} is an interrupted run; --resume continues it, --overwrite starts again")
     if not output.parent.is_dir():

@@ -8,7 +8,7 @@ import numpy as np
 from vibro_sweep.kernels import ensemble, orbits, points, status, tables, tangent
 from vibro_sweep.kernels.flight import new_flight
 from vibro_sweep.kernels.observe import BATCHES
-from vibro_sweep.system import NAMES, System, SystemError, modes
+from vibro_sweep.system import NAMES, ParameterError, System, modes
 
 IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float), ("v2", float)])
 STICKING = np.dtype([("t_on", float), ("t_off", float), ("side", np.int8)])
@@ -34,7 +34,7 @@ class _Engine:
         point = points_of(system.parameters())[()]
         if point["cells"] == 0:
             allowed = f"such that the fastest rate times the period is at most {tables.LONGEST:g}"
-            raise SystemError("omega", system.omega, allowed)
+            raise ParameterError("omega", system.omega, allowed)
         self.period = system.period
         self.cells = int(point["cells"])
         self.width = self.period / self.cells
@@ -51,9 +51,8 @@ class _Engine:
         if values.shape != (4,) or not np.isfinite(values).all():
             raise ValueError(f"state: {state!r} is not allowed; it must be four finite numbers (x1, v1, x2, v2)")
         if not self.stops.left <= values[0] <= self.stops.right:
-            raise ValueError(
-                f"state: x1 = {values[0]!r} is behind a stop; allowed: {self.stops.left!r} .. {self.stops.right!r}"
-            )
+            allowed = f"{self.stops.left!r} .. {self.stops.right!r}"
+            raise ValueError(f"state: x1 = {float(values[0])!r} is behind a stop; allowed: {allowed}")
         self.put(values)
 
     def put(self, state) -> None:

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from .scene_axes import axis_values
 from .scene_form import FollowStart, PhysicalSystemForm, RandomStart, SceneForm, json_schema
 from .scene_problems import SceneError, form_problems, problem
-from .system import NAMES, System, SystemError, check_value, grazing_phase
+from .system import NAMES, ParameterError, System, check_value, grazing_phase
 from .yaml_text import MAX_BYTES, YAMLTextError, read_yaml
 
 __all__ = [
@@ -202,7 +202,7 @@ def _sweep(form: SceneForm, keys) -> tuple[dict[str, np.ndarray], list[str]]:
 def _number_problems(path: str, key: str, value) -> list[str]:
     try:
         check_value(key, value)
-    except SystemError as error:
+    except ParameterError as error:
         return [problem(f"{path}.{key}", error.value, f"must be {error.allowed}")]
     return []
 
@@ -215,7 +215,7 @@ def _system(form: SceneForm, sweep) -> tuple[System | None, list[str]]:
         try:
             system = System.physical(**physical, tau=form.system.tau, stops=form.system.stops)
             return system.replace(**first), []
-        except SystemError as error:
+        except ParameterError as error:
             path = "system.physical" if error.key in physical else "system"
             return None, [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]
     swept = form.sweep.model_fields_set if form.sweep else set()
@@ -232,7 +232,7 @@ def _system(form: SceneForm, sweep) -> tuple[System | None, list[str]]:
         return None, problems
     try:
         return System(**(numbers | first), stops=form.system.stops), []
-    except SystemError as error:
+    except ParameterError as error:
         return None, [problem(f"system.{error.key}", error.value, f"must be {error.allowed}")]
 
 

@@ -317,9 +317,15 @@ def describe(path: str | Path) -> str:
 def _accuracy(file: h5py.File) -> list[str]:
     lines = []
     if "lyapunov_residual" in file:
-        residual = np.abs(file["lyapunov_residual"][()])
-        if np.isfinite(residual).any():
-            lines.append(f"accuracy     |sum of exponents - exact sum| <= {np.nanmax(residual):.2g}")
+        residual, found = np.abs(file["lyapunov_residual"][()]), file["lyapunov"][..., 0]
+        checked = np.isfinite(residual)
+        total = np.count_nonzero(np.isfinite(found))
+        if checked.any():
+            lines.append(f"accuracy     |sum of exponents - exact sum| <= {np.max(residual[checked]):.2g}")
+        if checked.sum() < total:
+            lines.append(
+                f"             not known where dimensions are lost: {total - checked.sum():,} of {total:,} orbits"
+            )
     if "min_impact_speed" in file:
         speed = file["min_impact_speed"][()]
         if np.isfinite(speed).any():

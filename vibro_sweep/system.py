@@ -28,7 +28,7 @@ _ALLOWED = {
 }
 
 
-class SystemError(ValueError):
+class ParameterError(ValueError):
     """A parameter outside its range; carries `key`, `value` and `allowed`."""
 
     def __init__(self, key: str, value: object, allowed: str):
@@ -37,14 +37,14 @@ class SystemError(ValueError):
 
 
 def check_value(key: str, value: object) -> None:
-    """Raise `SystemError` unless `value` (a number or an array of numbers) is allowed for the parameter `key`."""
+    """Raise `ParameterError` unless `value` (a number or an array of numbers) is allowed for the parameter `key`."""
     holds, allowed = _ALLOWED[key]
     numbers = np.asarray(value)
     if numbers.dtype.kind not in "fiu":
-        raise SystemError(key, value, allowed)
+        raise ParameterError(key, value, allowed)
     good = np.isfinite(numbers) & holds(numbers)
     if not np.all(good):
-        raise SystemError(key, numbers[~good].flat[0].item(), f"finite, {allowed}")
+        raise ParameterError(key, numbers[~good].flat[0].item(), f"finite, {allowed}")
 
 
 class Modes(NamedTuple):
@@ -113,7 +113,7 @@ class System:
 
     Raises
     ------
-    SystemError : a parameter is outside its range
+    ParameterError : a parameter is outside its range
     """
 
     mu_m: float
@@ -131,16 +131,16 @@ class System:
             value = getattr(self, name)
             if name == "tau" and value == "grazing":
                 if not math.isfinite(self.phase):
-                    raise SystemError(
+                    raise ParameterError(
                         "tau", value, "a number: an undamped mode is in resonance, no steady motion exists"
                     )
                 continue
             if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
-                raise SystemError(name, value, _ALLOWED[name][1])
+                raise ParameterError(name, value, _ALLOWED[name][1])
             check_value(name, value)
             object.__setattr__(self, name, float(value))
         if self.stops not in STOPS:
-            raise SystemError("stops", self.stops, "both, right or left")
+            raise ParameterError("stops", self.stops, "both, right or left")
 
     @classmethod
     def physical(
@@ -148,20 +148,20 @@ class System:
     ) -> "System":
         """From physical quantities in any consistent units (section 2 of the paper; mu_c = C2/C1 there).
 
-        Raises `SystemError` also where C1/K1 differs from C2/K2: the damping must be proportional.
+        Raises `ParameterError` also where C1/K1 differs from C2/K2: the damping must be proportional.
         """
         given = {"M1": M1, "M2": M2, "K1": K1, "K2": K2, "C1": C1, "C2": C2, "P1": P1, "P2": P2, "Omega": Omega, "B": B}
         for name, value in given.items():
             may_vanish = name in ("C1", "C2", "P1", "P2")
             allowed = "a finite number >= 0" if may_vanish else "a finite number > 0"
             if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-                raise SystemError(name, value, allowed)
+                raise ParameterError(name, value, allowed)
             if value < 0 or (value == 0 and not may_vanish):
-                raise SystemError(name, value, allowed)
+                raise ParameterError(name, value, allowed)
         if P1 + P2 == 0:
-            raise SystemError("P1", P1, "such that P1 + P2 > 0: lengths are measured in (P1 + P2)/K1")
+            raise ParameterError("P1", P1, "such that P1 + P2 > 0: lengths are measured in (P1 + P2)/K1")
         if not math.isclose(C1 * K2, C2 * K1, rel_tol=1e-9):
-            raise SystemError(
+            raise ParameterError(
                 "C2",
                 C2,
                 f"{C1 * K2 / K1!r}: C1/K1 = {C1 / K1!r} and C2/K2 = {C2 / K2!r} differ, damping must be proportional",

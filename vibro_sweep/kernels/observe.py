@@ -159,6 +159,8 @@ def observe(f, stops, w, plan, mapped, point, result, section, phase, running):
         tangent.begin(t)
         outcome = carry(f, stops, o, records, t, mapped, plan.warm_up, w.section[:0], w.growth[:0])
         tangent.catch_up(t, f.oscillator[0])
+        if t.lost > 0:  # on the way here; what the attractor itself loses shows again
+            tangent.begin(t)
         tangent.start_record(t)
     if outcome != status.OK:
         return outcome

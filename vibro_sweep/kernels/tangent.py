@@ -22,7 +22,7 @@ CONDITION = 1e3  # bound on the condition number of Z past which it is orthonorm
 TANGENT = np.dtype(
     [
         ("wanted", np.bool_),  # else nothing is computed
-        ("lost", np.bool_),  # two dimensions, by sticking
+        ("lost", np.int64),  # dimensions: two by sticking, one by an impact without restitution
         ("cell", np.int64),  # the cell, and
         ("offset", float),  # the offset in it, up to which `flight` reaches
         ("flight", float, 4),  # c_1, s_1, c_2, s_2 of the flight since Z was last touched
@@ -38,7 +38,7 @@ TANGENT = np.dtype(
 @jit
 def begin(t):
     """Four orthonormal vectors at the section."""
-    t.wanted, t.lost = True, False
+    t.wanted, t.lost = True, 0
     for i in range(4):
         for j in range(4):
             t.Z[i, j] = 1.0 if i == j else 0.0
@@ -145,7 +145,9 @@ def saltate(t, q, R, steepness):
 def watch(t, determinant):
     """Orthonormalise, after a step with this |determinant|, if the vectors come to lie too close together."""
     t.volume *= determinant
-    if t.lost or determinant == 0.0:
+    if determinant == 0.0:
+        t.lost = max(t.lost, 1)
+    if t.lost > 0:
         orthonormalise(t)
         return
     size = 0.0
@@ -165,7 +167,7 @@ def orthonormalise(t):
         for row in range(4):
             square += Z[row, i] * Z[row, i]
         length = math.sqrt(square)
-        if t.lost and i >= 2:
+        if i >= 4 - t.lost:
             length = 0.0
         inverse = 1.0 / length if length > 0.0 else 0.0
         for row in range(4):
@@ -187,7 +189,7 @@ def orthonormalise(t):
 def rest(t, q):
     """Z when M1 comes to rest on a stop: dx1 = dv1 = 0, and two of the four dimensions are lost for good."""
     apply_flight(t, q)
-    t.lost = True
+    t.lost = 2
     release(t, q, 1.0, 0.0, 0.0, 1.0)
 
 

@@ -155,6 +155,9 @@ class Result:
         """What is shown, the numbers that are the same at every point, and how much is there if not all."""
         same = [(key, self._system[key]) for key in SYMBOLS if key in self._system and key not in self.sweep]
         numbers = ", ".join(f"${SYMBOLS[key]} = {value:.6g}$" for key, value in same)
+        stops = self.setting("system", "stops")
+        if stops in ("right", "left"):
+            numbers += f", {stops} stop only"
         missing = "" if self.done.all() else f"{self.done.sum()} of {self.done.size} points computed"
         return "\n".join(filter(None, ["; ".join(filter(None, [what, self.model(), missing])), numbers]))
 

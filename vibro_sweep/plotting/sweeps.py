@@ -169,7 +169,17 @@ def _spectrum(ax, result, values, order):
         _curve(ax, values, exponents[:, :, i], color=EXPONENTS[i], label=rf"$\lambda_{i + 1}$")
         if len(result.starts) == 1:
             _error_band(ax, values, exponents[:, 0, i], error[:, 0, i], EXPONENTS[i])
+    _keep_the_leading_ones_legible(ax, exponents)
     _name_curves(ax, exponents)
+
+
+def _keep_the_leading_ones_legible(ax, exponents):
+    """An exponent many times further down than the first three (strong damping, little restitution) is cut off."""
+    known = exponents[..., :3][np.isfinite(exponents[..., :3])]
+    if known.size:
+        span = max(known.max(), 0.0) - known.min()
+        low, high = ax.get_ylim()
+        ax.set_ylim(bottom=max(low, known.min() - 1.5 * span) if span > 0 else low, top=high)
 
 
 def _error_band(ax, values, ordinates, error, colour):
@@ -217,7 +227,8 @@ def _name_curves(ax, exponents):
             ends[i] += push
             ends[i + 1] -= push
     for i, end in enumerate(ends):
-        _margin_note(ax, end, rf"$\lambda_{i + 1}$", EXPONENTS[i])
+        beyond = "" if known[i].size and known[i][-1] >= low else r"\,\downarrow" if known[i].size else r" = -\infty"
+        _margin_note(ax, max(end, 0.03), rf"$\lambda_{i + 1}{beyond}$", EXPONENTS[i])
 
 
 def _margin_note(ax, height, text, colour, **style):
@@ -237,6 +248,9 @@ def _impact_counts(ax, result, values, order):
     else:
         _curve(ax, values, right, color=RIGHT, label="right", lw=1.6, alpha=0.6)
         _curve(ax, values, left, color=LEFT, label="left", lw=0.8)
-        _margin_note(ax, 0.75, "right", RIGHT, fontsize=8)
-        _margin_note(ax, 0.25, "left", LEFT, fontsize=8)
+        stops = result.setting("system", "stops")
+        if stops != "left":
+            _margin_note(ax, 0.75, "right", RIGHT, fontsize=8)
+        if stops != "right":
+            _margin_note(ax, 0.25, "left", LEFT, fontsize=8)
     ax.set_ylim(bottom=0)
