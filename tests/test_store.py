@@ -25,7 +25,7 @@ ALL = "observe: [section, lyapunov, impacts]\n"
 TRAJECTORY = "trajectory: {periods: 2, samples: 5}\n"
 SECTION = {"x1", "v1", "x2", "v2", "period"}
 LYAPUNOV = {"lyapunov", "lyapunov_residual", "lyapunov_error"}
-IMPACTS = {"impacts_right", "impacts_left", "min_impact_speed", "sticking_time"}
+IMPACTS = {"impacts_right", "impacts_left", "min_impact_speed", "contact_error", "sticking_time"}
 RUNNING = {"trajectory_x1", "trajectory_v1", "trajectory_x2", "trajectory_v2"}
 
 # the text after SYSTEM: (the dimensions of the sweep and the starts, the datasets)

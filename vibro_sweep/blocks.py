@@ -44,6 +44,7 @@ def plan_of(scene: Scene) -> points.Plan:
         record=scene.record,
         warm_up=min(scene.transient, points.WARM_UP) if lyapunov else 0,
         lyapunov=lyapunov,
+        impacts="impacts" in scene.observe,
         section_side=side if scene.section.kind == "impact" and "section" in scene.observe else 0.0,
         right=scene.system.stops != "left",
         left=scene.system.stops != "right",

@@ -236,6 +236,7 @@ def lyapunov(system: System, state, transient: int = 1000, periods: int = 10_000
         record=int(periods),
         warm_up=min(int(transient), points.WARM_UP),
         lyapunov=True,
+        impacts=False,
         section_side=0.0,
         right=system.stops != "left",
         left=system.stops != "right",

@@ -86,6 +86,8 @@ def quantities(scene: Scene) -> dict[str, Quantity]:
         wanted["min_impact_speed"] = Quantity(
             "f8", np.nan, (), "1", "smallest |v_1| before an impact in the recorded periods"
         )
+        text = "largest distance from the stop at which an impact was computed"
+        wanted["contact_error"] = Quantity("f8", np.nan, (), "1", text)
         wanted["sticking_time"] = Quantity("f8", np.nan, (), "1", "time at rest on a stop in the recorded periods")
     if scene.trajectory:
         for name, (units, long_name) in _SECTION.items():
@@ -326,6 +328,10 @@ def _accuracy(file: h5py.File) -> list[str]:
             lines.append(
                 f"             not known where dimensions are lost: {total - checked.sum():,} of {total:,} orbits"
             )
+    if "contact_error" in file:
+        missed = file["contact_error"][()]
+        if np.isfinite(missed).any():
+            lines.append(f"             impacts were found within {np.nanmax(missed):.2g} of the stop")
     if "min_impact_speed" in file:
         speed = file["min_impact_speed"][()]
         if np.isfinite(speed).any():

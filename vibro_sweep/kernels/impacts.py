@@ -120,6 +120,9 @@ def strike(f, stops, o, records, t, k):
     if not (side * v > 0.0 and stays_off and stays_short):
         return UNCLEAR
     count_impact(o, side, v)
+    if o.measured:
+        x1, _ = evaluate(c, d)
+        o.miss = max(o.miss, abs(x1 - (stops.right if side > 0.0 else stops.left)))
     if watched:
         x2, v2 = evaluate(o.c2, d)
         log_impact(o, records, k, d, side, v, x2, v2)
@@ -195,7 +198,9 @@ def cross_cell(f, stops, o, records, t, k, s):
         released = False
         if d == np.inf:
             continue
-        X[0] = stops.right if side > 0.0 else stops.left
+        wall = stops.right if side > 0.0 else stops.left
+        o.miss = max(o.miss, abs(X[0] - wall))
+        X[0] = wall
         if side * X[1] <= 0.0:  # it touched the stop without speed: a graze is no impact
             X[1] = 0.0
             o.events += 1

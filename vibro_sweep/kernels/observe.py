@@ -165,12 +165,13 @@ def observe(f, stops, w, plan, mapped, point, result, section, phase, running):
     if outcome != status.OK:
         return outcome
     start_count(o)
-    o.impacts_logged, o.log_side = 0, plan.section_side
+    o.impacts_logged, o.log_side, o.measured = 0, plan.section_side, plan.impacts
     outcome = carry(f, stops, o, records, t, mapped, plan.record, w.section, w.growth)
     if outcome != status.OK:
         return outcome
     result.impacts_right, result.impacts_left = o.impacts_right, o.impacts_left
     result.min_impact_speed = o.slowest if o.slowest < np.inf else np.nan
+    result.contact_error = o.miss if o.slowest < np.inf else np.nan
     result.sticking_time = o.rest_time
     for i in range(4):
         result.end[i] = o.X[i]

@@ -29,6 +29,8 @@ ORBIT = np.dtype(
         ("impacts_right", np.int64),
         ("chatters", np.int64),  # sequences summed up
         ("slowest", float),  # least |v1| before an impact
+        ("measured", np.bool_),  # whether to measure
+        ("miss", float),  # how far from the stop an impact was found at most
         ("rest_time", float),
         ("log_volume", float),  # ln|det| of the jumps of the discontinuity mapping
         ("log_side", float),  # impacts on this side are logged; 0: on both
@@ -66,7 +68,7 @@ def place(o, x1, v1, x2, v2):
 def start_count(o):
     """Count impacts and rest from here on."""
     o.impacts_left = o.impacts_right = o.chatters = 0
-    o.slowest, o.rest_time, o.log_volume = np.inf, 0.0, 0.0
+    o.slowest, o.miss, o.rest_time, o.log_volume = np.inf, 0.0, 0.0, 0.0
 
 
 @jit

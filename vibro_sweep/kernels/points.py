@@ -27,6 +27,7 @@ RESULT = np.dtype(
         ("impacts_right", np.int64),
         ("impacts_left", np.int64),
         ("min_impact_speed", float),
+        ("contact_error", float),
         ("sticking_time", float),
         ("period", np.int64),
         ("end", float, 4),  # the state at the last section, and
@@ -43,7 +44,15 @@ def new_results(shape: tuple[int, ...]) -> np.ndarray:
     results["status"] = status.NOT_COMPUTED
     for name in ("impacts_right", "impacts_left", "period"):
         results[name] = -1
-    for name in ("lyapunov", "lyapunov_error", "lyapunov_residual", "min_impact_speed", "sticking_time", "end"):
+    for name in (
+        "lyapunov",
+        "lyapunov_error",
+        "lyapunov_residual",
+        "min_impact_speed",
+        "contact_error",
+        "sticking_time",
+        "end",
+    ):
         results[name] = np.nan
     return results
 
@@ -55,6 +64,7 @@ class Plan(NamedTuple):
     record: int
     warm_up: int  # periods of the transient with tangent vectors
     lyapunov: bool
+    impacts: bool
     section_side: float  # 0: the section is t = 0 mod T; else the stop of an impact section
     right: bool
     left: bool
