@@ -20,6 +20,7 @@ from timing import spent
 
 import vibro_sweep as vs
 from vibro_sweep import scene, sweep
+from vibro_sweep.blocks import BLOCK_BYTES
 from vibro_sweep.plotting.style import DASHES, FAINT, page
 
 TITLE = "Scaling"
@@ -241,8 +242,8 @@ def goals(data: dict) -> list[Goal]:
     points, peaks, sizes = zip(*data["memory"], strict=True)
     grown, file = peaks[-1] - peaks[1], sizes[-1] - sizes[1]
     reached = f"{points[1]} to {points[-1]} points: {grown / 1e6:+.0f} MB of memory, {file / 1e6:+.0f} MB of file"
-    asked = f"memory bounded by a few blocks, {BLOCKS * sweep.BLOCK_BYTES / 1e6:.0f} MB"
-    rows.append(Goal(asked, reached, BLOCKS * sweep.BLOCK_BYTES / max(grown, 1e6), COMMAND))
+    asked = f"memory bounded by a few blocks, {BLOCKS * BLOCK_BYTES / 1e6:.0f} MB"
+    rows.append(Goal(asked, reached, BLOCKS * BLOCK_BYTES / max(grown, 1e6), COMMAND))
     speed = data["parallel"]
     reached = f"{speed['workers']:.2f} times; two processes: {speed['processes']:.2f} times"
     asked = f"two workers: {WORKERS} times one, where the machine has two cores to give"

@@ -54,7 +54,7 @@ def apart(section, tolerance, n, p):
 
 @jit
 def time_average(growth, periods, T, spectrum, error):
-    """Exponents after so many periods, and their standard errors from the scatter over parts; growth as in `record`.
+    """Exponents after so many periods, and their standard errors from the scatter over parts; growth as in `carry`.
 
     Neighbouring parts are joined until `BATCHES` are left, so that they are long enough to be independent.
     """
@@ -73,7 +73,7 @@ def time_average(growth, periods, T, spectrum, error):
 
 @jit
 def periods_read(m, parts, periods):
-    """Periods after which `record` reads the growth for the m-th time."""
+    """Periods after which `carry` reads the growth for the m-th time."""
     return -(-(m + 1) * periods // parts)
 
 
