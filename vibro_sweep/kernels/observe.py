@@ -28,24 +28,18 @@ def find_period(section, tolerance):
         largest = max(largest, tolerance[i])
     for i in range(4):
         tolerance[i] = REPEAT * max(tolerance[i], 1e-3 * largest)
-    witness = count - 1  # the point that told the last p off tells off most of those to come
     for p in range(1, count // 2 + 1):
-        if apart(section, tolerance, witness, p):
-            continue
-        n = count - 1
-        while n >= p and not apart(section, tolerance, n, p):
-            n -= 1
-        if n < p:
+        n = p  # from the beginning: where the orbit has not settled, the first point tells
+        while n < count and not apart(section, tolerance, n, p):
+            n += 1
+        if n == count:
             return p
-        witness = n
     return 0
 
 
 @jit
 def apart(section, tolerance, n, p):
     """Whether point n and the one p before it differ."""
-    if n < p:
-        return False
     for i in range(4):
         if not abs(section[n, i] - section[n - p, i]) <= tolerance[i]:
             return True
