@@ -1,6 +1,6 @@
 """Any admissible oscillator and start: no crash, no hang, no NaN without a status, and never behind a stop.
 
-Work per period is bounded: at most MOST_CELLS cells and MOST_EVENTS impacts, grazes and rests.
+Work per period is bounded: LONGEST / WIDTH series (kernels/tables.py) and MOST_EVENTS impacts, grazes and rests.
 """
 
 import math
@@ -105,3 +105,14 @@ def test_any_exponents(values, start):
     else:
         assert (np.diff(exponents[~np.isneginf(exponents)]) <= 0).all()
         assert (exponents < math.inf).all()
+
+
+def test_what_sampling_takes_off_at_a_stop_is_rounding(monkeypatch):
+    """`sample` cuts x1 off at the stops, and so cannot show what it cut: here it does not cut."""
+    monkeypatch.setattr(np, "clip", lambda x, *_: x)
+    for changes in (dict(b=6.6), dict(b=3.0), dict(b=1.0), dict(b=0.5, R=0.3), dict(b=1e-3, R=1.0)):
+        system = vs.System(**(dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63, R=0.8) | changes))
+        orbit = vs.simulate(system, (0.1 * system.b, 0.2, 0.1, -0.3), 20)
+        moments = np.concatenate([orbit.impacts["t"], np.linspace(0.0, orbit.section_times[-1], 2000)])
+        states = orbit.sample(moments[moments <= orbit.section_times[-1]])
+        assert np.abs(states[:, 0]).max() - system.b < 16 * EPS * np.abs(states).max()

@@ -71,9 +71,10 @@ def error_and_condition(case):
 
 @pytest.mark.parametrize("case", CASES)
 def test_flight_over_a_period(case):
-    """To 1e-12, or a thousandth of what rounding the inputs does: mu_m = 1e-6 undamped has 6.6e-9 of that."""
+    """To 1e-12; but where rounding the inputs alone makes 6.6e-9 of it, 2.1e-12 is what was reached."""
     error, condition = error_and_condition(case)
-    assert error < max(1e-12, 1e-3 * condition), f"2^-53 on the inputs makes {condition:.1e}"
+    bound = 3e-12 if case == "mu_m=1e-06-zeta=0.0" else 1e-12
+    assert error < bound, f"2^-53 on the inputs makes {condition:.1e}"
     assert error < max(10 * condition, 1e-15)
 
 
