@@ -129,7 +129,9 @@ def keep_exponents(f, stops, o, records, t, mapped, w, period, divergence, resul
                 return outcome
         time = period * T
         for i in range(4):
-            error[i] = abs(spectrum[i] - error[i]) if spectrum[i] > -np.inf else 0.0
+            # two periods may agree better than either is known, by rounding on vectors that lie close together
+            known = 2.0**-52 * tangent.CONDITION / time
+            error[i] = max(abs(spectrum[i] - error[i]), known) if spectrum[i] > -np.inf else 0.0
     last = growth[parts - 1]
     total = ((last[0] + last[1]) + (last[2] + last[3])) / time
     exact = divergence + o.log_volume / time
