@@ -6,6 +6,7 @@ A Jacobian knows nothing of the saltation matrix: it is the difference of orbits
 import math
 
 import naive
+import numba
 import numpy as np
 import pytest
 from mpmath import mp, mpf
@@ -13,7 +14,7 @@ from mpmath import mp, mpf
 import vibro_sweep as vs
 from vibro_sweep.kernels import tangent
 from vibro_sweep.kernels.orbits import new_records
-from vibro_sweep.orbit import _Engine
+from vibro_sweep.orbit import Engine
 
 PAPER = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 REST = (0.0, 0.0, 0.0, 0.0)
@@ -114,7 +115,9 @@ def test_chaos():
     system, warm_up, count, gap = PAPER.replace(b=6.68), 100, 2000, 1e-8
     X = settled(system)
     exponent = vs.lyapunov(system, X, warm_up, count)[0]
-    metric = _Engine(system).flight.oscillator["to_frame"][0]  # in another one the ends of the record differ by 1e-5
+    metric = Engine(system).ensemble.flights.oscillator["to_frame"][
+        0
+    ]  # in another one the ends of the record differ by 1e-5
     beside, logs = X + gap / 2, []
     for _ in range(warm_up + count):
         X, beside = (vs.simulate(system, x, 1).section[-1] for x in (X, beside))
@@ -167,6 +170,12 @@ def test_sticking_loses_two_dimensions():
     assert np.all(spectrum[2:] == -np.inf)
 
 
+@numba.njit
+def to_the_section(vectors, oscillator, nodes):
+    tangent.fly_to(vectors, 0, oscillator, nodes, 0, 0.0)
+    tangent.apply_flight(vectors, tangent.only(0))
+
+
 @pytest.mark.parametrize(
     "changes, X",
     [
@@ -183,15 +192,16 @@ def test_tangent_vectors_across_one_impact(changes, X):
     assert len(orbit.impacts) == 1
     J = jacobian(lambda x: vs.simulate(system, x, 1).section[-1], X, STEP)
 
-    engine = _Engine(system)
+    engine = Engine(system, lyapunov=True)
     engine.place(X)
-    oscillator, vectors = engine.flight.oscillator[0], engine.tangent[0]
-    tangent.begin(vectors)
-    vectors["Z"] = oscillator["to_frame"]
+    oscillator, vectors = engine.ensemble.flights.oscillator[0], engine.ensemble.tangent[0]
+    tangent.begin(vectors, 0)
+    vectors["Z"][:, 0] = oscillator["to_frame"].ravel()
     vectors["volume"] = 1e30  # so well conditioned, it believes, that nothing is orthonormalised on the way
-    engine.cross_period(new_records())
-    tangent.apply_flight(vectors, oscillator)
-    np.testing.assert_allclose(oscillator["from_frame"] @ vectors["Z"], J, atol=1e-8)
+    vectors["wanted"] = True
+    engine.carry(new_records(1), np.empty((1, 4)))
+    to_the_section(vectors, oscillator, engine.ensemble.flights.nodes[0])
+    np.testing.assert_allclose(oscillator["from_frame"] @ vectors["Z"][:, 0].reshape(4, 4), J, atol=1e-8)
 
     trace = 2 * system.zeta * (1 + (1 + system.mu_k) / system.mu_m)
     assert np.linalg.det(J) == pytest.approx(system.R**2 * math.exp(-trace * system.period), rel=1e-4)

@@ -279,7 +279,7 @@ def test_section_alone_computes_no_tangent(tmp_path):
     (block,) = blocks.blocks(scene, 1, points_per_block=1000)
     with ThreadPoolExecutor(1) as pool:  # a thread of its own, so that its workspace is new
         _, arrays = pool.submit(blocks.compute, block).result()
-        touched = pool.submit(lambda: blocks._local.workspace.tangent.tobytes().strip(b"\0")).result()
+        touched = pool.submit(lambda: blocks._local.workspace.ensemble.tangent.tobytes().strip(b"\0")).result()
     assert not touched and np.all(np.isnan(arrays["lyapunov"]))
     assert not {"lyapunov", "impacts_right"} & run(tmp_path, SCENES["random"].replace(ALL, "")).keys()
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from vibro_sweep.discontinuity import expansion_point
 from vibro_sweep.kernels import points
-from vibro_sweep.kernels.observe import BATCHES, RUNNING
+from vibro_sweep.kernels.observe import RUNNING
+from vibro_sweep.kernels.spectrum import BATCHES
 from vibro_sweep.kernels.tables import LEAST_CELLS
 from vibro_sweep.orbit import points_of
 from vibro_sweep.scene import Scene
@@ -48,7 +49,6 @@ def plan_of(scene: Scene) -> points.Plan:
         section_side=side if scene.section.kind == "impact" and "section" in scene.observe else 0.0,
         right=scene.system.stops != "left",
         left=scene.system.stops != "right",
-        follow=scene.start.kind == "follow",
         periods=scene.trajectory.periods if scene.trajectory else 0,
         parts=min(scene.record, RUNNING if "convergence" in scene.observe else BATCHES) if lyapunov else 0,
         order=scene.order if scene.model == "map" else 0,
@@ -59,7 +59,7 @@ def blocks(scene: Scene, workers: int, points_per_block: int | None = None) -> I
     """The scene cut into boxes, in the order of the file."""
     shape, plan = scene.sweep_shape, plan_of(scene)
     size = points_per_block or _block_size(scene, workers)
-    follow = plan.follow
+    follow = scene.start.kind == "follow"
     axes = list(shape)
     lengths = []  # of a box along each axis: whole trailing axes, then a part of one, then single values
     for axis in reversed(range(len(axes))):
@@ -125,26 +125,27 @@ def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
         _local.key, _local.cells, _local.workspace = key, cells, points.new_workspace(plan, cells, block.samples)
     n_starts = block.starts[0] if isinstance(block.starts, tuple) else len(block.starts)
     count = table.size
+    if block.reverse:
+        steps, places = _chains(block, table)
+    else:
+        steps, places = np.repeat(table.reshape(1, -1), n_starts, axis=1), None
     record = plan.record if block.section else 0
     arrays = {
-        "results": points.new_results((count, n_starts)),
-        "sections": np.full((count, n_starts, record, 4), np.nan),
-        "phases": np.full((count, n_starts, record if plan.section_side else 0), np.nan),
-        "running": np.full((count, n_starts, plan.parts if block.convergence else 0, 4), np.nan),
+        "results": points.new_results(steps.shape),
+        "sections": np.full((*steps.shape, record, 4), np.nan),
+        "phases": np.full((*steps.shape, record if plan.section_side else 0), np.nan),
+        "running": np.full((*steps.shape, plan.parts if block.convergence else 0, 4), np.nan),
     }
-    if plan.follow:
-        _follow(block, table, arrays)
-    else:
-        _run(table.reshape(-1), _starts(block, table), arrays, plan)
+    starts = _starts(block, table).reshape(-1, 4)[: steps.shape[1]]
+    points.run_points(steps, starts, *arrays.values(), _local.workspace, plan, 1 if plan.order else None)
+    for name, values in arrays.items():
+        shape_of_one = values.shape[2:]
+        arrays[name] = (values if places is None else values[places]).reshape(count, n_starts, *shape_of_one)
     named = _by_name(block, arrays, shape)
     if block.samples:
         named |= _trajectories(block, table, arrays["results"], named["status"].shape)
         named["status"] = arrays["results"]["status"].reshape(named["status"].shape)
     return block.box, named
-
-
-def _run(table: np.ndarray, starts: np.ndarray, arrays: dict[str, np.ndarray], plan: points.Plan) -> None:
-    points.run_points(table, starts, *arrays.values(), _local.workspace, plan, 1 if plan.order else None)
 
 
 def _trajectories(block: Block, table: np.ndarray, results: np.ndarray, lead: tuple[int, ...]) -> dict[str, np.ndarray]:
@@ -159,18 +160,18 @@ def _trajectories(block: Block, table: np.ndarray, results: np.ndarray, lead: tu
     }
 
 
-def _follow(block: Block, table: np.ndarray, arrays: dict[str, np.ndarray]) -> None:
-    """Chains along the first axis, one for each direction and each point of the other axes."""
-    chains = table.reshape(len(table), -1)
-    for chain in range(chains.shape[1]):
-        for start, reverse in enumerate(block.reverse):
-            order = np.arange(len(table))[:: -1 if reverse else 1]
-            line = order * chains.shape[1] + chain
-            part = {name: values[line, start : start + 1] for name, values in arrays.items()}
-            first = np.ascontiguousarray(block.starts[start]).reshape(1, 1, 4)
-            _run(np.ascontiguousarray(chains[order, chain]), first, part, block.plan)
-            for name, values in part.items():
-                arrays[name][line, start : start + 1] = values
+def _chains(block: Block, table: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+    """Of a `follow`, the points of all chains step by step, and at which step and in which chain each orbit is.
+
+    A chain goes along the first axis; there is one for each point of the other axes and each direction.
+    """
+    n, directions = len(table), len(block.reverse)
+    lines = table.reshape(n, -1)
+    step = np.stack([np.arange(n)[:: -1 if reverse else 1] for reverse in block.reverse], axis=1)  # (n, directions)
+    steps = np.stack([lines[step[:, s]] for s in range(directions)], axis=2).reshape(n, -1)
+    chain = np.arange(steps.shape[1]).reshape(1, -1, directions)
+    places = np.broadcast_arrays(step[:, None, :], chain)
+    return np.ascontiguousarray(steps), tuple(place.reshape(-1) for place in places)
 
 
 def _starts(block: Block, table: np.ndarray) -> np.ndarray:

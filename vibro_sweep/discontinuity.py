@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from vibro_sweep.kernels import discontinuity, orbits, tables, tangent
-from vibro_sweep.kernels.flight import new_flight
-from vibro_sweep.orbit import points_of
+from vibro_sweep.kernels import ensemble, tangent
+from vibro_sweep.orbit import Engine
 from vibro_sweep.system import System, steady_response
 
 
@@ -28,32 +27,26 @@ class DiscontinuityMap:
     def __init__(self, system: System, order: int = 1, expand_at: float | None = None):
         if order not in (1, 2):
             raise ValueError(f"order: {order!r} is not allowed; it must be 1 or 2")
+        system = system.replace(tau="grazing")
+        parameters = {name: np.array(value) for name, value in system.parameters().items()}
+        self._engine = Engine(system)
         parameters = system.replace(tau="grazing").parameters()
-        point = points_of({name: np.array(value) for name, value in parameters.items()})[()]
-        self.flight = new_flight(int(point["cells"]))
-        names = ("psi", "omega_squared", "mu_m", "mu_k", "zeta", "f2", "omega", "tau")
-        tables.build(self.flight, np.empty((7, 6)), int(point["cells"]), *(point[name] for name in names))
         self.graze = expansion_point({name: np.array(value) for name, value in parameters.items()}, expand_at)
-        self.flight.oscillator["order"] = order
-        self.flight.oscillator["graze"] = self.graze
-        self.flight.oscillator["stretch"] = self.flight.oscillator[
-            "cells"
-        ]  # no looks at the tangent vectors on the way
-        left, right = system.stops != "right", system.stops != "left"
-        self.stops = orbits.Stops(-system.b if left else -np.inf, system.b if right else np.inf, system.R)
+        self._engine = Engine(system.replace(tau="grazing"), lyapunov=True)
+        oscillator = self._engine.ensemble.flights.oscillator[:1]
+        oscillator["order"], oscillator["graze"] = order, self.graze
+        oscillator["stretch"] = oscillator["cells"]  # no looks at the tangent vectors on the way
 
     def _iterate(self, state, with_tangent: bool):
-        orbit, vectors = np.zeros(1, orbits.ORBIT), np.zeros(1, tangent.TANGENT)
-        orbit["X"] = np.asarray(state, float)
+        engine, vectors = self._engine, self._engine.ensemble.tangent[0]
+        engine.put(state)
+        vectors["wanted"] = with_tangent
         if with_tangent:
-            vectors["wanted"], vectors["volume"] = True, 1e300  # never orthonormalised: one iteration is no long way
-            vectors["flight"] = 1.0, 0.0, 1.0, 0.0
-            vectors["Z"] = self.flight.oscillator["to_frame"]
-        records = orbits.new_records()
-        discontinuity.map_period(self.flight, self.stops, orbit[0], records, vectors[0])
-        if with_tangent:
-            tangent.apply_flight(vectors[0], self.flight.oscillator[0])
-        return orbit["X"][0], vectors["Z"][0]
+            tangent.begin(vectors, 0)
+            vectors["volume"] = 1e300  # never orthonormalised: one iteration is no long way
+            vectors["Z"][:, 0] = vectors["to_frame"][:, 0]
+        ensemble.map_once(engine.ensemble)
+        return engine.orbit["X"][0, :4].copy(), vectors["Z"][:, 0].reshape(4, 4)
 
     def __call__(self, state) -> np.ndarray:
         """The state (4,) one period later."""
@@ -61,7 +54,7 @@ class DiscontinuityMap:
 
     def jacobian(self, state) -> np.ndarray:
         """(4, 4) derivative of the map, singular like 1/sqrt(psi) at a graze."""
-        return self.flight.oscillator["from_frame"][0] @ self._iterate(state, True)[1]
+        return self._engine.ensemble.flights.oscillator["from_frame"][0] @ self._iterate(state, True)[1]
 
 
 def discontinuity_map(system: System, order: int = 1, expand_at: float | None = None) -> DiscontinuityMap:

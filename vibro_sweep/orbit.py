@@ -5,9 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vibro_sweep.kernels import ensemble, orbits, points, status, tables, tangent
-from vibro_sweep.kernels.flight import new_flight
-from vibro_sweep.kernels.observe import BATCHES
+from vibro_sweep.kernels import ensemble, orbits, points, status, tables
+from vibro_sweep.kernels.spectrum import BATCHES
 from vibro_sweep.system import NAMES, ParameterError, System, modes
 
 IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float), ("v2", float)])
@@ -27,24 +26,40 @@ def points_of(parameters: dict[str, np.ndarray]) -> np.ndarray:
     return result
 
 
-class _Engine:
-    """The tables of one system, and an orbit on its way."""
+def _plan(system: System, transient: int = 0, record: int = 0, lyapunov: bool = False) -> points.Plan:
+    """What the kernels are asked for."""
+    return points.Plan(
+        transient=transient,
+        record=record,
+        warm_up=min(transient, points.WARM_UP) if lyapunov else 0,
+        lyapunov=lyapunov,
+        impacts=False,
+        right=system.stops != "left",
+        left=system.stops != "right",
+        section_side=0.0,
+        periods=0,
+        parts=min(record, BATCHES) if lyapunov else 0,
+        order=0,
+    )
 
-    def __init__(self, system: System):
-        point = points_of(system.parameters())[()]
-        if point["cells"] == 0:
+
+class Engine:
+    """The tables of one system, and an orbit on its way; with tangent vectors if they are wanted."""
+
+    def __init__(self, system: System, lyapunov: bool = False):
+        self.point = points_of(system.parameters()).reshape(1)
+        self.cells = int(self.point["cells"][0])
+        if self.cells == 0:
             allowed = f"such that the fastest rate times the period is at most {tables.LONGEST:g}"
             raise ParameterError("omega", system.omega, allowed)
         self.period = system.period
-        self.cells = int(point["cells"])
         self.width = self.period / self.cells
-        self.flight = new_flight(self.cells)
-        names = ("psi", "omega_squared", "mu_m", "mu_k", "zeta", "f2", "omega", "tau")
-        tables.build(self.flight, np.empty((7, 6)), self.cells, *(point[name] for name in names))
-        left, right = system.stops != "right", system.stops != "left"
-        self.stops = orbits.Stops(-system.b if left else -np.inf, system.b if right else np.inf, system.R)
-        self.orbit = np.zeros(1, orbits.ORBIT)
-        self.tangent = np.zeros(1, tangent.TANGENT)
+        plan = _plan(system, lyapunov=lyapunov)
+        workspace = points.new_workspace(plan, self.cells, 0)
+        self.stops = points.prepare(self.point, 0, workspace, plan)
+        self.ensemble = workspace.ensemble
+        self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
+        self.orbit = self.ensemble.orbits[:1]
 
     def place(self, state) -> None:
         values = np.asarray(state, float)
@@ -55,13 +70,17 @@ class _Engine:
             raise ValueError(f"state: x1 = {float(values[0])!r} is behind a stop; allowed: {allowed}")
         self.put(values)
 
-    def put(self, state) -> None:
-        """Start a new orbit from a state that is known to be allowed."""
-        self.orbit[0] = np.zeros((), orbits.ORBIT)
-        self.orbit["X"] = state
+    def put(self, state, cell: int = 0, offset: float = 0.0) -> None:
+        """Start a new orbit from a state that is known to be allowed, at this offset of this cell."""
+        orbits.place(self.orbit[0], self.ensemble.flights.nodes[0], self.stops, *map(float, state))
+        self.orbit["cell"], self.orbit["offset"] = cell, offset
+        orbits.take_off(self.orbit[0], self.ensemble.flights.nodes[0])
 
-    def cross_period(self, records, cell=0, offset=0.0) -> int:
-        return ensemble.cross_period(self.flight, self.stops, self.orbit[0], records, self.tangent[0], cell, offset)
+    def carry(self, records, section) -> int:
+        """Carry the orbit over as many periods as `section` (n, 4) has rows. Returns a status."""
+        self.orbit["periods"] = len(section)
+        ensemble.carry(self.ensemble._replace(records=records), None, section[None], True, np.empty((1, 0, 4)), 0)
+        return int(self.orbit["status"][0])
 
     def locate(self, times) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Period, cell and offset of absolute times."""
@@ -104,7 +123,7 @@ class Orbit:
     section: np.ndarray
     status: "Status"
     _start: np.ndarray = field(repr=False)
-    _engine: _Engine = field(repr=False)
+    _engine: Engine = field(repr=False)
 
     @property
     def section_times(self) -> np.ndarray:
@@ -132,10 +151,13 @@ class Orbit:
             if n - first == len(self.section) - 1:  # the very end
                 result[chosen] = self.section[-1]
                 continue
-            records = orbits.new_records(samples=len(chosen))
+            records = orbits.new_records(1, samples=len(chosen))
             records.times[:, 0], records.times[:, 1] = cell[chosen], offset[chosen]
-            engine.put(self._start if n < first else self.section[n - first])
-            engine.cross_period(records, *((start_cell, start_offset) if n < first else (0, 0.0)))
+            if n < first:
+                engine.put(self._start, start_cell, start_offset)
+            else:
+                engine.put(self.section[n - first])
+            engine.carry(records, np.empty((1, 4)))
             result[chosen] = records.samples
         result[:, 0] = np.clip(result[:, 0], engine.stops.left, engine.stops.right)
         return result
@@ -156,36 +178,32 @@ def simulate(system: System, state, periods: int, start_time: float = 0.0) -> Or
         raise ValueError(f"periods: {periods!r} is not allowed; it must be a whole number >= 0")
     if not math.isfinite(start_time):
         raise ValueError(f"start_time: {start_time!r} is not allowed; it must be finite")
-    engine = _Engine(system)
+    engine = Engine(system)
     engine.place(state)
     first, cell, offset = (value[()] for value in engine.locate(start_time))
+    engine.put(state, cell, offset)
     engine.orbit["period"] = first
     section = np.full((int(periods) + 1, 4), np.nan)
     inside = cell > 0 or offset > 0  # the period in which the orbit starts is not recorded, but its impacts are
-    done = 0 if inside else 1
     if not inside:
         section[0] = state
     hits, rests, chatters, room, outcome = [], [], 0, ROOM, status.OK
+    done = 0 if inside else 1
     while done <= periods and outcome == status.OK:
         before = engine.orbit.copy()
-        records = orbits.new_records(impacts=room, rests=room)
-        if inside:
-            outcome, count = engine.cross_period(records, cell, offset), 1
-            section[0] = engine.orbit["X"][0]
-        else:
-            count = min(CHUNK, len(section) - done)
-            arguments = (engine.flight, engine.stops, engine.orbit[0], records, engine.tangent[0], None)
-            outcome = ensemble.carry(*arguments, count, section[done : done + count], np.empty((0, 4)))
+        records = orbits.new_records(1, impacts=room, rests=room)
+        count = min(CHUNK, len(section) - done)
+        outcome = engine.carry(records, section[done : done + count])
         logged = max(engine.orbit["impacts_logged"][0], engine.orbit["rests_logged"][0])
         if logged > room:
             engine.orbit[:] = before
             room, outcome = 2 * int(logged), status.OK
             continue
-        hits.append(records.impacts[: engine.orbit["impacts_logged"][0]])
-        rests.append(records.rests[: engine.orbit["rests_logged"][0]])
+        hits.append(records.impacts[0, : engine.orbit["impacts_logged"][0]])
+        rests.append(records.rests[0, : engine.orbit["rests_logged"][0]])
         chatters += int(engine.orbit["chatters"][0])
         engine.orbit["impacts_logged"] = engine.orbit["rests_logged"] = engine.orbit["chatters"] = 0
-        inside, done = False, done + count
+        done += count
     if outcome != status.OK:
         reached = int(engine.orbit["period"][0]) - math.ceil(start_time / engine.period)
         section[max(reached + 1, 0) :] = np.nan
@@ -202,7 +220,7 @@ def simulate(system: System, state, periods: int, start_time: float = 0.0) -> Or
     )
 
 
-def _impacts(engine: _Engine, rows: np.ndarray) -> np.ndarray:
+def _impacts(engine: Engine, rows: np.ndarray) -> np.ndarray:
     result = np.empty(len(rows), IMPACT)
     result["t"] = engine.time(rows[:, 0], rows[:, 1], rows[:, 2])
     for column, name in enumerate(("side", "v1", "x2", "v2"), start=3):
@@ -210,7 +228,7 @@ def _impacts(engine: _Engine, rows: np.ndarray) -> np.ndarray:
     return result
 
 
-def _sticking(engine: _Engine, rows: np.ndarray, end: float) -> np.ndarray:
+def _sticking(engine: Engine, rows: np.ndarray, end: float) -> np.ndarray:
     times, sides = engine.time(rows[:, 0], rows[:, 1], rows[:, 2]), rows[:, 3]
     result = np.empty(np.count_nonzero(sides), STICKING)
     result["t_on"], result["side"] = times[sides != 0], sides[sides != 0]
@@ -229,26 +247,11 @@ def lyapunov(system: System, state, transient: int = 1000, periods: int = 10_000
     for name, value, least in (("transient", transient, 0), ("periods", periods, 1)):
         if value != int(value) or value < least:
             raise ValueError(f"{name}: {value!r} is not allowed; it must be a whole number >= {least}")
-    engine = _Engine(system)
+    engine = Engine(system)
     engine.place(state)
-    plan = points.Plan(
-        transient=int(transient),
-        record=int(periods),
-        warm_up=min(int(transient), points.WARM_UP),
-        lyapunov=True,
-        impacts=False,
-        section_side=0.0,
-        right=system.stops != "left",
-        left=system.stops != "right",
-        follow=False,
-        periods=0,
-        parts=min(int(periods), BATCHES),
-        order=0,
-    )
-    results = points.new_results((1, 1))
-    point = points_of(system.parameters()).reshape(1)
-    workspace = points.new_workspace(plan, engine.cells, 0)
-    nothing = np.empty((1, 1, 0))
-    starts = np.asarray(state, float).reshape(1, 1, 4)
+    plan = _plan(system, int(transient), int(periods), lyapunov=True)
+    results, nothing = points.new_results((1, 1)), np.empty((1, 1, 0))
+    starts, workspace = np.asarray(state, float).reshape(1, 4), points.new_workspace(plan, engine.cells, 0)
+    point = engine.point.reshape(1, 1)
     points.run_points(point, starts, results, nothing[..., None], nothing, nothing[..., None], workspace, plan, None)
     return results["lyapunov"][0, 0]

@@ -18,7 +18,8 @@ import numpy as np
 
 from vibro_sweep import __version__
 from vibro_sweep.kernels.jit import source_hash
-from vibro_sweep.kernels.observe import RUNNING, periods_read
+from vibro_sweep.kernels.observe import RUNNING
+from vibro_sweep.kernels.spectrum import periods_read
 from vibro_sweep.kernels.status import MEANINGS, NOT_COMPUTED, OK
 from vibro_sweep.scene import Scene
 

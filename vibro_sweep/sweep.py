@@ -113,7 +113,7 @@ def estimate(scene: Scene) -> Estimate:
     pick = np.unique(np.linspace(0, math.prod(scene.sweep_shape) - 1, 8).astype(int))
     some = {name: values.reshape(-1)[pick] for name, values in parameters.items()}
     share = min(1.0, 300 / periods)
-    plan = plan_of(scene)._replace(follow=False)
+    plan = plan_of(scene)
     short = plan._replace(
         transient=int(plan.transient * share),
         record=max(1, int(plan.record * share)),

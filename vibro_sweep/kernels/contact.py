@@ -42,41 +42,6 @@ def parabola_root(gap, rate, curve):
 
 
 @jit
-def evaluate_gap(c, gap, side, u):
-    """g and g' at u. x1 - c_0 = u p(u) keeps its digits when u is tiny; even and odd terms of p go side by side."""
-    v = u * u
-    even, slope_even, odd, slope_odd = c[ORDER - 1], 0.0, c[ORDER - 2], 0.0
-    for n in range(ORDER - 3, 0, -2):
-        slope_even = slope_even * v + even
-        even = even * v + c[n]
-        if n > 1:
-            slope_odd = slope_odd * v + odd
-            odd = odd * v + c[n - 1]
-    p = even + u * odd
-    slope = 2.0 * (u * slope_even + v * slope_odd) + odd
-    return gap - side * (u * p), -side * (p + u * slope)
-
-
-@jit
-def descend(c, gap, side, third, u, rest):
-    """The contact near u if g falls from 0 to there without fail, else 0."""
-    rate, curve = -side * c[1], -2.0 * side * c[2]
-    for _ in range(4):
-        g, slope = evaluate_gap(c, gap, side, u)
-        if slope >= 0.0:
-            return 0.0
-        step = -g / slope
-        u += step
-        if not 0.0 < u <= rest:
-            return 0.0
-        error = step * step * (abs(curve) + third * rest) / -slope  # at most what Newton's method leaves
-        if error <= 2.0**-53 * u:
-            falls = rate + max(curve, 0.0) * u + 0.5 * third * u * u < 0.0
-            return u if falls else 0.0
-    return 0.0
-
-
-@jit
 def first_contact(c, gap, side, third, start, rest):
     """First u in (start, rest] at which x1 has moved by `gap` >= 0 towards the stop on `side` (+1 or -1).
 
@@ -84,24 +49,6 @@ def first_contact(c, gap, side, third, start, rest):
     just leaves the stop. third: bound on the third derivative up to `rest`. start: the motion up to there is known to
     be free.
     """
-    rate, curve = -side * c[1], -2.0 * side * c[2]
-    if start == 0.0:
-        d = parabola_root(gap, rate, curve - third * rest / 3.0)
-        if d >= rest:
-            return np.inf
-        if rate < 0.0 < gap:
-            jerk = -6.0 * side * c[3]
-            slope = rate + d * (curve + 0.5 * d * jerk)
-            guess = d - (gap + d * (rate + d * (0.5 * curve + d * jerk / 6.0))) / slope if slope < 0.0 else d
-            u = descend(c, gap, side, third, min(guess, rest), rest)
-            if u > 0.0:
-                return u
-    return march(c, gap, side, third, start, rest)
-
-
-@jit
-def march(c, gap, side, third, start, rest):
-    """`first_contact` by steps that cannot pass it."""
     u, length = start, rest - start
     for _ in range(STEPS):
         # Horner's scheme for p = sum c_n u^(n-1), p' and p''/2: x1 - c_0 = u p keeps its digits when u is tiny

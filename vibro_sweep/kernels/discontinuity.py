@@ -27,6 +27,7 @@ from vibro_sweep.kernels import status, tangent
 from vibro_sweep.kernels.flight import decaying
 from vibro_sweep.kernels.impacts import count_impact, log_impact
 from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.lanes import alike
 
 
 @jit
@@ -35,16 +36,13 @@ def map_period(f, stops, o, records, t):
     q, half = f.oscillator[0], f.oscillator[0].cells // 2
     o.events = 0
     for side in (1.0, -1.0):
+        if t.wanted:
+            tangent.fly_to(t, o.lane, q, f.nodes, 0 if side > 0.0 else half, 0.0)
         if side > 0.0 and stops.right < np.inf:
             jump(f, stops.right, stops.R, 1.0, o, records, t)
         elif side < 0.0 and stops.left > -np.inf:
             jump(f, -stops.left, stops.R, -1.0, o, records, t)
         fly_half(f.nodes[half].E, q.graze, side, o.X)
-        if t.wanted and side > 0.0:
-            tangent.fly(t, q, f.nodes, half, 0.0)
-    if t.wanted:
-        tangent.end_period(t, q, f.nodes)
-    o.period += 1
     return status.OK if math.isfinite(o.X[0] + o.X[1] + o.X[2] + o.X[3]) else status.NOT_FINITE
 
 
@@ -53,7 +51,7 @@ def fly_half(E, graze, side, X):
     """Phi_{T/2} from the side's graze to the other's: X -> -X* + L (X - X*)."""
     d0, d1, d2, d3 = X[0] - side * graze[0], X[1] - side * graze[1], X[2] - side * graze[2], X[3] - side * graze[3]
     for i in range(4):
-        X[i] = (E[i, 0] * d0 + E[i, 1] * d1) + (E[i, 2] * d2 + E[i, 3] * d3) - side * graze[i]
+        X[i] = (E[0, i] * d0 + E[1, i] * d1) + (E[2, i] * d2 + E[3, i] * d3) - side * graze[i]
 
 
 @jit
@@ -123,22 +121,23 @@ def push_tangent(q, R, psi, a, w, v1, late, second, o, t):
     p0, p1, p2, p3 = e * dw0, e * dw1, e * dw2, e * dw3
     r0, r1, r2, r3 = e * w * dt0, e * w * dt1, e * w * dt2, e * w * dt3
     e0, e1, e2, e3, u1, u3 = impulse(q, -late)  # u = (e1, u1, e3, u3)
-    Z, back, to = t.Z, q.from_frame, q.to_frame
-    tangent.apply_flight(t, q)
+    Z, lane, back, to = t.Z, o.lane, q.from_frame, q.to_frame
+    tangent.apply_flight(t, tangent.only(lane))
     for j in range(4):
-        x1 = back[0, 0] * Z[0, j] + back[0, 2] * Z[2, j]
-        v = (back[1, 0] * Z[0, j] + back[1, 1] * Z[1, j]) + (back[1, 2] * Z[2, j] + back[1, 3] * Z[3, j])
-        x2 = back[2, 0] * Z[0, j] + back[2, 2] * Z[2, j]
-        v2 = (back[3, 0] * Z[0, j] + back[3, 1] * Z[1, j]) + (back[3, 2] * Z[2, j] + back[3, 3] * Z[3, j])
+        z0, z1, z2, z3 = Z[j, lane], Z[4 + j, lane], Z[8 + j, lane], Z[12 + j, lane]
+        x1 = back[0, 0] * z0 + back[0, 2] * z2
+        v = (back[1, 0] * z0 + back[1, 1] * z1) + (back[1, 2] * z2 + back[1, 3] * z3)
+        x2 = back[2, 0] * z0 + back[2, 2] * z2
+        v2 = (back[3, 0] * z0 + back[3, 1] * z1) + (back[3, 2] * z2 + back[3, 3] * z3)
         kick = (p0 * x1 + p1 * v) + (p2 * x2 + p3 * v2)
         shift = (r0 * x1 + r1 * v) + (r2 * x2 + r3 * v2)
         d0, d1, d2, d3 = e0 * kick - e1 * shift, e1 * kick - u1 * shift, e2 * kick - e3 * shift, e3 * kick - u3 * shift
         for i in range(4):
-            Z[i, j] += (to[i, 0] * d0 + to[i, 1] * d1) + (to[i, 2] * d2 + to[i, 3] * d3)
+            Z[4 * i + j, lane] += (to[i, 0] * d0 + to[i, 1] * d1) + (to[i, 2] * d2 + to[i, 3] * d3)
     determinant = 1.0
     if second:
         pe, pu = (p0 * e0 + p1 * e1) + (p2 * e2 + p3 * e3), (p0 * e1 + p1 * u1) + (p2 * e3 + p3 * u3)
         re, ru = (r0 * e0 + r1 * e1) + (r2 * e2 + r3 * e3), (r0 * e1 + r1 * u1) + (r2 * e3 + r3 * u3)
         determinant = (1.0 + pe) * (1.0 - ru) + pu * re
     o.log_volume += np.log(abs(determinant))
-    tangent.watch(t, abs(determinant))
+    tangent.watch(t, tangent.only(lane), alike(abs(determinant)))

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.lanes import LANES, new_lines, record
 
 ORDER = 16  # Taylor coefficients of a cell: with rate * width <= WIDTH the first one left out is below 2^-53 / 1000
 WIDTH = 0.5
@@ -22,11 +23,10 @@ CHUNK = 16  # control points examined together: two to a cell
 
 
 # One oscillator. Structured arrays let the kernels pass it by one pointer, and need no reference counts.
-OSCILLATOR = np.dtype(
+OSCILLATOR = record(
     [
         ("cells", np.int64),
         ("width", float),  # of a cell
-        ("stiff", np.bool_),  # cells do not resolve every rate
         ("step", float),  # width of a series: a cell, or where stiff a part of one
         ("omega", float),
         ("zeta", float),
@@ -49,21 +49,17 @@ OSCILLATOR = np.dtype(
         ("frame_square", float, 2),  # omega_dj^2
         ("to_frame", float, (4, 4)),
         ("from_frame", float, (4, 4)),
+        ("stiff", np.bool_),  # cells do not resolve every rate
     ]
 )
 
 # One node of the grid.
-NODE = np.dtype(
+NODE = record(
     [
-        ("sin", float),  # of omega t + tau
-        ("cos", float),
-        ("E", float, (4, 4)),  # flight from node 0: X - r there to X - r here
-        (
-            "forced",
-            float,
-            (2, 2, 2),
-        ),  # modal motion from rest at node 0, (mode; xi, xi'; to the force's sin, cos there)
-        ("r", float, 4),  # a motion under the force: from rest at node 0; of a fast mode the steady one
+        ("E", float, (4, LANES)),  # flight from node 0: row j is X - r here of the unit state j there; padded
+        ("z", float, LANES),  # r, a motion under the force: from rest at node 0; of a fast mode the steady one;
+        # then sin and cos of omega t + tau
+        ("forced", float, (2, 2, 2)),  # modal motion from rest at node 0: mode; xi, xi'; to the force's sin, cos there
         ("frame", float, 4),  # c_1, s_1, c_2, s_2 of a flight from node 0
     ]
 )
@@ -79,9 +75,12 @@ class Flight(NamedTuple):
     )  # (5, 2 cells + CHUNK): control points, two to a cell, as a function of X - r at node 0; those of r
 
 
-def new_flight(cells: int) -> Flight:
-    """Space for the tables of an oscillator with at most so many cells."""
-    return Flight(np.zeros(1, OSCILLATOR), np.zeros(cells + 1, NODE), np.zeros((5, 2 * cells + CHUNK)))
+def new_flight(count: int, cells: int) -> Flight:
+    """Space for the tables of so many oscillators with at most so many cells."""
+    points = 2 * cells + CHUNK
+    return Flight(
+        new_lines(count, OSCILLATOR), new_lines((count, cells + 1), NODE), new_lines((count, 5, points), float)
+    )
 
 
 @jit

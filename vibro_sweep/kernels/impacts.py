@@ -1,4 +1,4 @@
-"""One orbit through one cell: from contact to contact to the cell's end."""
+"""One orbit through one cell, the long way: from contact to contact to the cell's end."""
 
 import math
 
@@ -6,28 +6,13 @@ import numpy as np
 
 from vibro_sweep.kernels import status, tangent
 from vibro_sweep.kernels.contact import first_contact
-from vibro_sweep.kernels.flight import ORDER, bounds, evaluate, load
+from vibro_sweep.kernels.flight import bounds, evaluate, load
 from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.lanes import alike
 from vibro_sweep.kernels.orbits import advance, sample
 from vibro_sweep.kernels.rest import begin_rest, chatter, departure, leading, stay_at_rest
 
 MOST_EVENTS = 100_000  # impacts, grazes and rests in one forcing period; an orbit that needs more gets a status
-FREE, STRUCK, UNCLEAR = 0, 1, 2  # what `strike` finds in a cell
-
-
-@jit
-def sample_rebound(q, o, records, k, d, impulse):
-    """The samples in cell k after an impact at offset d: of the old flight, and what the impulse adds to it."""
-    times, samples = records.times, records.samples
-    first = o.samples_taken
-    sample(o, records, k, 0.0, q.width)
-    for i in range(first, o.samples_taken):
-        x1, v1 = evaluate(q.series1[1], times[i, 1] - d)
-        x2, v2 = evaluate(q.series2[1], times[i, 1] - d)
-        samples[i, 0] += impulse * x1
-        samples[i, 1] += impulse * v1
-        samples[i, 2] += impulse * x2
-        samples[i, 3] += impulse * v2
 
 
 @jit
@@ -63,6 +48,24 @@ def count_impact(o, side, v):
 
 
 @jit
+def watch_rebound(q, o, records, k, d, side, v, impulse):
+    """Keep an impact at offset d of cell k, and samples in the cell: of the old flight, and what the impulse adds."""
+    x2, v2 = evaluate(o.c2, d)
+    log_impact(o, records, k, d, side, v, x2, v2)
+    sample(o, records, k, 0.0, d)
+    times, samples = records.times, records.samples
+    first = o.samples_taken
+    sample(o, records, k, 0.0, q.width)
+    for i in range(first, o.samples_taken):
+        x1, v1 = evaluate(q.series1[1], times[i, 1] - d)
+        x2, v2 = evaluate(q.series2[1], times[i, 1] - d)
+        samples[i, 0] += impulse * x1
+        samples[i, 1] += impulse * v1
+        samples[i, 2] += impulse * x2
+        samples[i, 3] += impulse * v2
+
+
+@jit
 def impact(f, stops, o, records, t, k, s, side, sin, cos):
     """v1 -> -R v1, and what is observed of it."""
     q, X, R = f.oscillator[0], o.X, stops.R
@@ -73,73 +76,10 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
     if t.wanted:
         a = q.force
         after = (a[0] * X[0] + a[1] * X[1]) + (a[2] * X[2] + a[3] * X[3]) + (a[4] * sin + a[5] * cos)
-        tangent.fly(t, q, f.nodes, k, s)
+        tangent.fly_to(t, o.lane, q, f.nodes, k, s)
         # a1+ + R a1-, since a1+ - a1- = 2 zeta (1 + R) v1-
-        tangent.saltate(t, q, R, (1.0 + R) * (after / before - 2.0 * q.zeta * R))
-
-
-@jit
-def speed_and_acceleration(c, u):
-    """First and second derivative of a series at u; even and odd terms go side by side."""
-    w = u * u
-    even, slope_even = (ORDER - 1.0) * c[ORDER - 1], 0.0
-    odd, slope_odd = (ORDER - 2.0) * c[ORDER - 2], 0.0
-    for n in range(ORDER - 3, 1, -2):
-        slope_even = slope_even * w + even
-        even = even * w + n * c[n]
-        slope_odd = slope_odd * w + odd
-        odd = odd * w + (n - 1.0) * c[n - 1]
-    slope_even = slope_even * w + even
-    even = even * w + c[1]
-    return even + u * odd, odd + 2.0 * (u * slope_even + w * slope_odd)
-
-
-@jit
-def strike(f, stops, o, records, t, k):
-    """Cross cell k from its node if there is one impact in it, or none, and nothing more can follow.
-
-    The motion goes on as if there were no stop, and what the impulse -(1 + R) v1 does is added at the cell's end.
-    Returns FREE (the state is left alone), STRUCK, or UNCLEAR: it takes a closer look (`cross_cell`).
-    """
-    q, node, X, c, R = f.oscillator[0], f.nodes[k], o.X, o.c1, stops.R
-    load(q.series1, X[0], X[1], X[2], X[3], node.sin, node.cos, c)
-    reach, third = bounds(q, c)
-    d, side = next_contact(stops, c, 0.0, reach, third, 0.0, q.width)
-    watched = len(records.times) > 0 or len(records.impacts) > 0
-    if watched:
-        load(q.series2, X[0], X[1], X[2], X[3], node.sin, node.cos, o.c2)
-    if d == np.inf:
-        sample(o, records, k, 0.0, q.width)
-        return FREE
-    v, a = speed_and_acceleration(c, d)
-    left, impulse, after = q.width - d, -(1.0 + R) * v, a + 2.0 * q.zeta * (1.0 + R) * v
-    third += abs(impulse) * q.impulse_third
-    rebound = R * abs(v)
-    stays_off = rebound > 0.5 * left * (max(side * after, 0.0) + left * third / 3.0)
-    stays_short = left * (rebound + 0.5 * left * (abs(after) + left * third / 3.0)) < stops.right - stops.left
-    if not (side * v > 0.0 and stays_off and stays_short):
-        return UNCLEAR
-    count_impact(o, side, v)
-    if o.measured:
-        x1, _ = evaluate(c, d)
-        o.miss = max(o.miss, abs(x1 - (stops.right if side > 0.0 else stops.left)))
-    if watched:
-        x2, v2 = evaluate(o.c2, d)
-        log_impact(o, records, k, d, side, v, x2, v2)
-        sample(o, records, k, 0.0, d)
-        sample_rebound(q, o, records, k, d, impulse)
-    if t.wanted:
-        tangent.fly(t, q, f.nodes, k, d)
-        tangent.saltate(t, q, R, (after + R * a) / v)
-    E, r, end = f.nodes[1].E, node.r, f.nodes[k + 1].r
-    y0, y1, y2, y3 = X[0] - r[0], X[1] - r[1], X[2] - r[2], X[3] - r[3]
-    x1, v1 = evaluate(q.series1[1], left)
-    x2, v2 = evaluate(q.series2[1], left)
-    X[0] = (E[0, 0] * y0 + E[0, 1] * y1) + (E[0, 2] * y2 + E[0, 3] * y3) + (end[0] + impulse * x1)
-    X[1] = (E[1, 0] * y0 + E[1, 1] * y1) + (E[1, 2] * y2 + E[1, 3] * y3) + (end[1] + impulse * v1)
-    X[2] = (E[2, 0] * y0 + E[2, 1] * y1) + (E[2, 2] * y2 + E[2, 3] * y3) + (end[2] + impulse * x2)
-    X[3] = (E[3, 0] * y0 + E[3, 1] * y1) + (E[3, 2] * y2 + E[3, 3] * y3) + (end[3] + impulse * v2)
-    return STRUCK
+        steepness = (1.0 + R) * (after / before - 2.0 * q.zeta * R)
+        tangent.saltate(t, tangent.only(o.lane), alike(steepness))
 
 
 @jit
@@ -151,7 +91,7 @@ def cross_cell(f, stops, o, records, t, k, s):
         left = q.width - s
         last = left <= 1.001 * q.step
         left = left if last else q.step
-        sin, cos = node.sin, node.cos
+        sin, cos = node.z[4], node.z[5]
         if s > 0.0:
             swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
             sin, cos = sin * turn + cos * swing, cos * turn - sin * swing

@@ -30,20 +30,31 @@ def _cache_folder() -> str:
 _FOLDER = _cache_folder()
 
 
-# On the way of every impact: a call would copy the tables' descriptors to the stack, and they are many words.
+# On the way of every impact: a call would pass the tables' many words, or vectors, through memory.
 _INLINE = frozenset(
-    "cross_period strike first_suspect ends_outside load bounds next_contact first_contact descend evaluate_gap "
-    "fly join apply_flight saltate watch end_period".split()
+    "flight_of records_of control_points at_node first_suspect fly_to_node end_period seek settle strike load "
+    "parabola_root derivatives descend evaluate count only leap_over join aim".split()
 )
 
 
 def jit(function):
-    """`numba.njit` for a kernel. `contract` alone is allowed: it fuses multiply-adds and keeps every NaN check.
+    """`numba.njit` for a kernel that other kernels call."""
+    return _compiled(function, no_cpython_wrapper=True)
+
+
+def entry(function):
+    """`numba.njit` for a kernel that Python calls, too."""
+    return _compiled(function, no_cpython_wrapper=False)
+
+
+def _compiled(function, **options):
+    """`contract` alone is allowed of fastmath: it fuses multiply-adds and keeps every NaN check.
 
     Kernels allocate nothing, and so are compiled without numba's reference counts: they took a third of the time, and
     threads would share them.
     """
-    options = {"_nrt": False} if hasattr(CPUTargetOptions, "_nrt") else {}
+    if hasattr(CPUTargetOptions, "_nrt"):
+        options["_nrt"] = False
     dispatcher = numba.njit(
         nogil=True,
         fastmath={"contract"},

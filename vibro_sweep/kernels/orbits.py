@@ -4,8 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.kernels import status
 from vibro_sweep.kernels.flight import ORDER, evaluate
-from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.jit import entry, jit
+from vibro_sweep.kernels.lanes import LANES, put, record, row
 
 
 class Stops(NamedTuple):
@@ -17,9 +19,20 @@ class Stops(NamedTuple):
 
 
 # One orbit on its way, and what is counted of it.
-ORBIT = np.dtype(
+ORBIT = record(
     [
-        ("X", float, 4),  # x1, v1, x2, v2
+        ("X", float, LANES),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
+        ("y", float, LANES),  # X - r at node `base`, in free flight
+        ("lane", np.int64),  # its place among eight
+        ("table", np.int64),  # place of its oscillator's tables
+        ("status", np.int64),
+        ("periods", np.int64),  # to carry it over
+        ("done", np.int64),  # of these
+        ("read", np.int64),  # readings of the growth of tangent vectors
+        ("cell", np.int64),
+        ("offset", float),
+        ("base", np.int64),
+        ("stops", float, 3),  # left, right, R
         ("resting", float),  # side of the stop that M1 rests on, or 0
         ("c1", float, ORDER),  # Taylor coefficients of x1, or of the free acceleration of M1 at rest
         ("c2", float, ORDER),  # of x2
@@ -29,7 +42,6 @@ ORBIT = np.dtype(
         ("impacts_right", np.int64),
         ("chatters", np.int64),  # sequences summed up
         ("slowest", float),  # least |v1| before an impact
-        ("measured", np.bool_),  # whether to measure
         ("miss", float),  # how far from the stop an impact was found at most
         ("rest_time", float),
         ("log_volume", float),  # ln|det| of the jumps of the discontinuity mapping
@@ -50,18 +62,34 @@ class Records(NamedTuple):
     samples: np.ndarray  # (m, 4)
 
 
-def new_records(impacts: int = 0, rests: int = 0, samples: int = 0) -> Records:
-    """Room for so many entries of each kind."""
-    return Records(np.empty((impacts, 7)), np.empty((rests, 4)), np.empty((samples, 2)), np.empty((samples, 4)))
+def new_records(orbits: int, impacts: int = 0, rests: int = 0, samples: int = 0) -> Records:
+    """Room for so many entries of each kind, for each of so many orbits; samples for one alone."""
+    return Records(
+        np.empty((orbits, impacts, 7)),
+        np.empty((orbits, rests, 4)),
+        np.empty((samples, 2)),
+        np.empty((samples, 4)),
+    )
 
 
-@jit
-def place(o, x1, v1, x2, v2):
-    """Start an orbit here, with nothing counted yet."""
+@entry
+def place(o, nodes, stops, x1, v1, x2, v2):
+    """Start an orbit at the section, with nothing counted yet."""
     o.X[0], o.X[1], o.X[2], o.X[3] = x1, v1, x2, v2
-    o.resting = 0.0
-    o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
+    o.stops[0], o.stops[1], o.stops[2] = stops.left, stops.right, stops.R
+    o.status, o.resting, o.offset = status.OK, 0.0, 0.0
+    o.cell = o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
+    take_off(o, nodes)
     start_count(o)
+
+
+@entry
+def take_off(o, nodes):
+    """Free flight begins at the node where X is."""
+    z = nodes[o.cell].z
+    o.base = o.cell
+    o.X[4], o.X[5] = z[4], z[5]
+    put(o.y, 0, row(o.X, 0) - row(z, 0))
 
 
 @jit
@@ -69,6 +97,14 @@ def start_count(o):
     """Count impacts and rest from here on."""
     o.impacts_left = o.impacts_right = o.chatters = 0
     o.slowest, o.miss, o.rest_time, o.log_volume = np.inf, 0.0, 0.0, 0.0
+
+
+@jit
+def add_count(o, left, right, slowest, miss):
+    """Add impacts that were counted elsewhere."""
+    o.impacts_left += int(left)
+    o.impacts_right += int(right)
+    o.slowest, o.miss = min(o.slowest, slowest), max(o.miss, miss)
 
 
 @jit

@@ -1,16 +1,16 @@
-"""A block of points: for each its tables, for each of its starts an orbit and what the scene observes of it."""
+"""A block: for each orbit the tables of its point, its way, and what the scene observes of it."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.kernels import status
-from vibro_sweep.kernels.flight import Flight, new_flight
-from vibro_sweep.kernels.jit import jit
-from vibro_sweep.kernels.observe import observe
-from vibro_sweep.kernels.orbits import ORBIT, Records, Stops, new_records, place
+from vibro_sweep.kernels import status, strike, tangent
+from vibro_sweep.kernels.ensemble import Ensemble, carry, flight_of, new_ensemble
+from vibro_sweep.kernels.jit import entry, jit
+from vibro_sweep.kernels.lanes import LANES
+from vibro_sweep.kernels.observe import PHASES, RECORD, begin_phase, close, end_phase
+from vibro_sweep.kernels.orbits import Stops, place
 from vibro_sweep.kernels.tables import build
-from vibro_sweep.kernels.tangent import TANGENT
 
 POINT = np.dtype(
     [(name, float) for name in ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")]
@@ -65,10 +65,9 @@ class Plan(NamedTuple):
     warm_up: int  # periods of the transient with tangent vectors
     lyapunov: bool
     impacts: bool
-    section_side: float  # 0: the section is t = 0 mod T; else the stop of an impact section
     right: bool
     left: bool
-    follow: bool
+    section_side: float  # 0: the section is t = 0 mod T; else the stop of an impact section
     periods: int  # of the trajectory
     parts: int  # of the record, at which the growth of tangent vectors is read
     order: int  # of the discontinuity mapping; 0: the flow itself
@@ -77,78 +76,95 @@ class Plan(NamedTuple):
 class Workspace(NamedTuple):
     """What one thread needs besides its points; allocated once for many blocks."""
 
-    flight: Flight
-    orbit: np.ndarray
-    tangent: np.ndarray
-    records: Records
-    section: np.ndarray  # (record, 4)
+    ensemble: Ensemble
+    built: np.ndarray  # (LANES,) POINT: whose tables these are
+    section: np.ndarray  # (LANES, record, 4)
+    growth: np.ndarray  # (LANES, parts, 4)
+    axes: np.ndarray  # (LANES, 16)
     scratch: np.ndarray  # (7, 6)
-    axes: np.ndarray  # (4, 4)
-    growth: np.ndarray  # (parts, 4)
 
 
 def new_workspace(plan: Plan, cells: int, samples: int) -> Workspace:
-    impacts = plan.record if plan.section_side else 0
     return Workspace(
-        new_flight(cells),
-        np.zeros(1, ORBIT),
-        np.zeros(1, TANGENT),
-        new_records(impacts=impacts, samples=samples),
-        np.empty((plan.record, 4)),
+        new_ensemble(cells, impacts=plan.record if plan.section_side else 0, samples=samples),
+        np.zeros(LANES, POINT),
+        np.empty((LANES, plan.record, 4)),
+        np.empty((LANES, plan.parts, 4)),
+        np.empty((LANES, 16)),
         np.empty((7, 6)),
-        np.empty((4, 4)),
-        np.empty((plan.parts, 4)),
     )
 
 
 @jit
 def same_oscillator(a, b):
     """Whether two points share their tables: they may differ in b and R."""
-    same = a.mu_m == b.mu_m and a.mu_k == b.mu_k and a.zeta == b.zeta
+    same = a.mu_m == b.mu_m and a.mu_k == b.mu_k and a.zeta == b.zeta and a.cells == b.cells
     return same and a.f2 == b.f2 and a.omega == b.omega and a.tau == b.tau
 
 
-@jit
-def prepare(points, p, w, plan):
-    """The tables of point p, unless they are still those of the point before; its stops."""
-    f, point = w.flight, points[p]
-    if p == 0 or not same_oscillator(point, points[p - 1]) or points[p - 1].cells == 0:
+@entry
+def prepare(points, i, w, plan):
+    """Orbit i gets the tables of its point, those of the orbit before it if they are the same; and its stops."""
+    e, point, o, table = w.ensemble, points[i], w.ensemble.orbits[i], i
+    if i > 0 and same_oscillator(point, w.built[e.orbits[i - 1].table]):
+        table = e.orbits[i - 1].table
+    o.table = table
+    f = flight_of(e, o)
+    q = f.oscillator[0]
+    if not same_oscillator(point, w.built[table]):
         build(
             f, w.scratch, point.cells, point.psi, point.omega_squared,
             point.mu_m, point.mu_k, point.zeta, point.f2, point.omega, point.tau,
         )  # fmt: skip
-        q = f.oscillator[0]
-        q.order = plan.order
-        for i in range(4):
-            q.graze[i] = point.graze[i]
-    return Stops(-point.b if plan.left else -np.inf, point.b if plan.right else np.inf, point.R)
+        w.built[table] = point
+    q.order = plan.order
+    for j in range(4):
+        q.graze[j] = point.graze[j]
+    stops = Stops(-point.b if plan.left else -np.inf, point.b if plan.right else np.inf, point.R)
+    strike.deal(e.strike[0], i, q, stops)
+    if plan.lyapunov:
+        tangent.deal(e.tangent[0], i, q, point.R)
+    return stops
 
 
-@jit
+@entry
 def run_points(points, starts, results, sections, phases, running, w, plan, mapped):
-    """Compute a block. p = points, s = starts; observations that nobody wants have no samples.
+    """Compute a block. n = steps, m = orbits; observations that nobody wants have no samples.
 
-    starts: (p, s, 4), or with `follow` (1, s, 4): then a point starts where the one before it ended. results: (p, s)
-    RESULT. sections: (p, s, record, 4). phases: (p, s, record), for an impact section. running: (p, s, parts, 4), the
-    exponents as they converge. mapped: None for the flow, 1 for the discontinuity mapping.
+    points: (n, m) POINT. starts: (m, 4), at the first step; at the others an orbit goes on from where it ended, with
+    the next point's numbers. results: (n, m) RESULT. sections: (n, m, record, 4). phases: (n, m, record), for an impact
+    section. running: (n, m, parts, 4), the exponents as they converge. mapped: None for the flow, 1 for the
+    discontinuity mapping.
     """
-    f, o = w.flight, w.orbit[0]
-    for p in range(len(points)):
-        point = points[p]
-        if point.cells == 0:
-            for s in range(results.shape[1]):
-                results[p, s].status = status.TOO_STIFF
-            continue
-        stops = prepare(points, p, w, plan)
-        for s in range(results.shape[1]):
-            x = starts[0 if plan.follow else p, s]
-            x1, v1, x2, v2 = x[0], x[1], x[2], x[3]
-            if plan.follow and p > 0 and results[p - 1, s].status == status.OK:
-                end = results[p - 1, s].end
-                x1, v1, x2, v2 = end[0], end[1], end[2], end[3]
-            if plan.order == 0:  # points of the map may lie beyond the stops
-                x1 = min(max(x1, stops.left), stops.right)
-            place(o, x1, v1, x2, v2)
-            results[p, s].status = observe(
-                f, stops, w, plan, mapped, point, results[p, s], sections[p, s], phases[p, s], running[p, s]
-            )
+    e = w.ensemble
+    for first in range(0, points.shape[1], LANES):
+        last = min(first + LANES, points.shape[1])
+        for n in range(len(points)):
+            for i in range(LANES):
+                o = e.orbits[i]
+                o.status = status.NOT_COMPUTED
+                if first + i >= last:
+                    continue
+                point, result = points[n, first + i], results[n, first + i]
+                if point.cells == 0:
+                    result.status = status.TOO_STIFF
+                    continue
+                stops = prepare(points[n, first:last], i, w, plan)
+                x = starts[first + i]
+                x1, v1, x2, v2 = x[0], x[1], x[2], x[3]
+                if n > 0 and results[n - 1, first + i].status == status.OK:
+                    end = results[n - 1, first + i].end
+                    x1, v1, x2, v2 = end[0], end[1], end[2], end[3]
+                if plan.order == 0:  # points of the map may lie beyond the stops
+                    x1 = min(max(x1, stops.left), stops.right)
+                place(o, e.flights.nodes[o.table], stops, x1, v1, x2, v2)
+            rows, row = points[n, first:last], results[n, first:last]
+            for phase in range(PHASES):
+                parts = begin_phase(e, w, plan, phase, row)
+                if parts >= 0:
+                    carry(e, mapped, w.section, phase == RECORD, w.growth, parts)
+                    end_phase(
+                        e, w, plan, phase, rows, row,
+                        sections[n, first:last], phases[n, first:last], running[n, first:last],
+                    )  # fmt: skip
+            close(e, w, plan, rows, row)

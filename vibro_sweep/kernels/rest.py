@@ -47,8 +47,8 @@ def begin_rest(f, o, records, t, k, s, side):
     o.resting = side
     mark_rest(o, records, k, s, side)
     if t.wanted:
-        tangent.fly(t, f.oscillator[0], f.nodes, k, s)
-        tangent.rest(t, f.oscillator[0])
+        tangent.fly_to(t, o.lane, f.oscillator[0], f.nodes, k, s)
+        tangent.rest(t, o.lane)
 
 
 @jit
@@ -75,8 +75,8 @@ def stay_at_rest(f, o, records, t, k, s, left, sin, cos):
     if t.wanted:
         xx, vx = evaluate(q.resting2[1], end)
         xv, vv = evaluate(q.resting2[2], end)
-        tangent.release(t, q, xx, xv, vx, vv)
-        t.cell, t.offset = k, s + end
+        tangent.release(t, o.lane, xx, xv, vx, vv)
+        t.cell[o.lane], t.offset[o.lane] = k, s + end
     if d < np.inf:
         o.resting = 0.0
         mark_rest(o, records, k, s + d, 0.0)

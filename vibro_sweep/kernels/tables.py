@@ -5,15 +5,16 @@ import math
 import numpy as np
 
 from vibro_sweep.kernels.flight import CHUNK, ORDER, WIDTH, decaying
-from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.jit import entry, jit
+from vibro_sweep.kernels.lanes import LANES
 from vibro_sweep.kernels.stiff import add_stiff_remainder, is_fast, rate_of, slow_part
 
-LEAST_CELLS = 32
+LEAST_CELLS = 24
 MOST_CELLS = 16384
 STIFF_CELLS = 2048
 LONGEST = 1e7  # the fastest rate times the period beyond which a system is refused: two seconds of work at worst
 VANISHED = 30.0  # logarithm of what is below rounding
-STRETCH = 4.0  # logarithm of what free flight may do to a tangent vector unseen: two digits are lost of another
+STRETCH = 4.0  # logarithm of what free flight may do to a tangent vector and not to another: two digits are lost
 
 
 def cells_needed(omega_squared: np.ndarray, zeta: np.ndarray, omega: np.ndarray) -> np.ndarray:
@@ -94,10 +95,10 @@ def fill_flight(q, nodes, psi, omega_squared, mu_m):
             for i in range(2):
                 for m in range(2):
                     weight = psi[i, j] * psi[m, j] * (mu_m if m == 1 else 1.0)
-                    E[2 * i, 2 * m] += weight * xi
-                    E[2 * i, 2 * m + 1] += weight * s
-                    E[2 * i + 1, 2 * m] -= weight * omega_squared[j] * s
-                    E[2 * i + 1, 2 * m + 1] += weight * rate
+                    E[2 * m, 2 * i] += weight * xi
+                    E[2 * m + 1, 2 * i] += weight * s
+                    E[2 * m, 2 * i + 1] -= weight * omega_squared[j] * s
+                    E[2 * m + 1, 2 * i + 1] += weight * rate
 
 
 @jit
@@ -126,10 +127,10 @@ def fill_motion(q, nodes, psi, omega_squared, f2, tau):
     cells = q.cells
     for k in range(cells + 1):
         phase = tau + 2.0 * math.pi * (k / cells)
-        node = nodes[k]
-        node.sin, node.cos = math.sin(phase), math.cos(phase)
-        for i in range(4):
-            node.r[i] = 0.0
+        z = nodes[k].z
+        for i in range(LANES):
+            z[i] = 0.0
+        z[4], z[5] = math.sin(phase), math.cos(phase)
     for j in range(2):
         eta, square = q.zeta * omega_squared[j], omega_squared[j]
         force = psi[0, j] * (1.0 - f2) + psi[1, j] * f2
@@ -137,10 +138,10 @@ def fill_motion(q, nodes, psi, omega_squared, f2, tau):
             detuning, damping = square - q.omega * q.omega, 2.0 * eta * q.omega
             size = force / (detuning * detuning + damping * damping)
             for k in range(cells + 1):
-                sin, cos = nodes[k].sin, nodes[k].cos
+                sin, cos = nodes[k].z[4], nodes[k].z[5]
                 xi = size * (detuning * sin - damping * cos)
                 rate = size * q.omega * (detuning * cos + damping * sin)
-                add_mode(nodes[k].r, psi, j, xi, rate)
+                add_mode(nodes[k].z, psi, j, xi, rate)
             continue
         first, one = nodes[0].forced[j], nodes[1].forced[j]
         first[0, 0] = first[0, 1] = first[1, 0] = first[1, 1] = 0.0
@@ -162,9 +163,9 @@ def fill_motion(q, nodes, psi, omega_squared, f2, tau):
                     )
                     out[0, i] = xi * before[0, i] + s * before[1, i] + there
                     out[1, i] = rate * before[1, i] - square * s * before[0, i] + moving
-            g, sin, cos = nodes[k].forced[j], nodes[0].sin, nodes[0].cos
+            g, sin, cos = nodes[k].forced[j], nodes[0].z[4], nodes[0].z[5]
             add_mode(
-                nodes[k].r, psi, j, force * (g[0, 0] * sin + g[0, 1] * cos), force * (g[1, 0] * sin + g[1, 1] * cos)
+                nodes[k].z, psi, j, force * (g[0, 0] * sin + g[0, 1] * cos), force * (g[1, 0] * sin + g[1, 1] * cos)
             )
 
 
@@ -203,9 +204,9 @@ def fill_scan(q, nodes, scan, psi, omega_squared, mu_m, f2):
             scan[i, p] = 0.0
         q.remainder[i] = 0.0
     for k in range(q.cells + 1):
-        E, r = nodes[k].E, nodes[k].r
+        E, z = nodes[k].E, nodes[k].z
         for i in range(5):
-            x, v = (r[0], r[1]) if i == 4 else (E[0, i], E[1, i])
+            x, v = (z[0], z[1]) if i == 4 else (E[i, 0], E[i, 1])
             if q.stiff and i < 4:
                 x, v = slow_part(q, psi, omega_squared, mu_m, i, k * q.width)
             scan[i, 2 * k] = x + third * v
@@ -213,9 +214,9 @@ def fill_scan(q, nodes, scan, psi, omega_squared, mu_m, f2):
                 scan[i, 2 * k - 1] = x - third * v
         if not q.stiff:
             for i in range(4):
-                free = fourth_derivative_bound(q, E[0, i], E[1, i], E[2, i], E[3, i], 0.0, 0.0)
+                free = fourth_derivative_bound(q, E[i, 0], E[i, 1], E[i, 2], E[i, 3], 0.0, 0.0)
                 q.remainder[i] = max(q.remainder[i], free)
-            forced = fourth_derivative_bound(q, r[0], r[1], r[2], r[3], nodes[k].sin, nodes[k].cos)
+            forced = fourth_derivative_bound(q, z[0], z[1], z[2], z[3], z[4], z[5])
             q.remainder[4] = max(q.remainder[4], forced)
     for i in range(5):
         largest = 0.0
@@ -233,13 +234,14 @@ def fill_frame(q, psi, omega_squared, mu_m):
     series, to_frame, from_frame = q.frame_series, q.to_frame, q.from_frame
     clear(to_frame)
     clear(from_frame)
-    fastest, q.vanishing = 0.0, 0
+    fastest, slowest, q.vanishing = 0.0, np.inf, 0
     for j in range(2):
         eta = q.zeta * omega_squared[j]
         square = omega_squared[j] - eta * eta
         if (eta + math.sqrt(max(-square, 0.0))) * q.width > VANISHED:
             q.vanishing += 2 if square > 0.0 else 1
         fastest = max(fastest, eta + math.sqrt(max(-square, 0.0)))
+        slowest = min(slowest, eta if square >= 0.0 else omega_squared[j] / (eta + math.sqrt(-square)))
         # near critical damping the plane shears instead of turning; any scale then serves
         scale = max(math.sqrt(abs(square)), 1e-3 * math.sqrt(omega_squared[j]))
         q.frame_square[j], q.frame_scale[j] = square, scale
@@ -257,10 +259,11 @@ def fill_frame(q, psi, omega_squared, mu_m):
             from_frame[2 * i, 2 * j] = psi[i, j] / scale
             from_frame[2 * i + 1, 2 * j] = -eta * psi[i, j] / scale
             from_frame[2 * i + 1, 2 * j + 1] = psi[i, j]
-    q.stretch = max(1, int(min(STRETCH / (fastest * q.width), 1e9))) if fastest > 0.0 else 1_000_000_000
+    apart = (fastest - slowest) * q.width
+    q.stretch = max(1, int(STRETCH / apart)) if apart > 1e-9 * STRETCH else 1_000_000_000
 
 
-@jit
+@entry
 def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, tau):
     """Fill the tables of an oscillator with modes psi (2, 2), omega_squared (2,), and phase tau (radians) at node 0.
 

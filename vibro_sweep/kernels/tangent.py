@@ -1,11 +1,12 @@
-"""Tangent vectors along an orbit, and from them the Lyapunov spectrum.
+"""Tangent vectors along eight orbits, and from them the Lyapunov spectra.
 
-Four vectors are kept as the columns of Z, in the frame z = (g_1 xi_1, xi_1' + eta_1 xi_1, g_2 xi_2, xi_2' + eta_2
-xi_2) with g_j = |omega_dj|, in which the flight of mode j is e^{-eta_j u} times a rotation: in this metric the
+Four vectors of each orbit are kept as the columns of Z, in the frame z = (g_1 xi_1, xi_1' + eta_1 xi_1, g_2 xi_2, xi_2'
++ eta_2 xi_2) with g_j = |omega_dj|, in which the flight of mode j is e^{-eta_j u} times a rotation: in this metric the
 exponents of a non-impacting orbit are exact after any time, where those of (x, v) would only converge like 1/t.
 (Overdamped: times a symmetric matrix, and exact as soon as its eigenvectors are found.)
 
 Flight is not applied step by step but collected as four numbers (c_1, s_1, c_2, s_2), and applied at the next impact.
+`who` is the mask of the orbits to which something happens; i is one of them.
 """
 
 import math
@@ -13,213 +14,296 @@ import math
 import numpy as np
 
 from vibro_sweep.kernels.flight import ORDER, decaying
-from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.jit import entry, jit
+from vibro_sweep.kernels.lanes import LANES, bits, lanes_of, put, record, row, select
 
 CONDITION = 1e3  # bound on the condition number of Z past which it is orthonormalised
 
 
-# Tangent vectors of one orbit.
-TANGENT = np.dtype(
+# Tangent vectors of eight orbits; one column each.
+TANGENT = record(
     [
+        # of the oscillator
+        ("series", float, (4 * ORDER, LANES)),
+        ("scale", float, (2, LANES)),  # g_j
+        ("square", float, (2, LANES)),  # omega_dj^2
+        ("to_frame", float, (16, LANES)),
+        ("from_frame", float, (16, LANES)),
+        ("kappa", float, LANES),
+        ("R", float, LANES),
+        # of the orbit
+        ("lost", float, LANES),  # dimensions: two by sticking, one by an impact without restitution
+        ("cell", np.int64, LANES),  # the cell, counted from the section, and
+        ("offset", float, LANES),  # the offset in it, up to which `flight` reaches
+        ("leap", float, (4, LANES)),  # c_1, s_1, c_2, s_2 of a flight over whole cells
+        ("part", float, LANES),  # of a cell, to fly after it
+        ("flight", float, (4, LANES)),  # c_1, s_1, c_2, s_2 of the flight since Z was last touched
+        ("stretch", np.int64, LANES),  # whole cells of that flight
+        ("Z", float, (16, LANES)),  # columns of Z (4, 4) are vectors
+        ("volume", float, LANES),  # |det Z|, from the identity det S = R^2
+        ("growth", float, (4, LANES)),  # products of the diagonals of R in Z = Q R
+        ("logs", float, (4, LANES)),  # their logarithms, taken before they leave the range of the floats
         ("wanted", np.bool_),  # else nothing is computed
-        ("lost", np.int64),  # dimensions: two by sticking, one by an impact without restitution
-        ("cell", np.int64),  # the cell, and
-        ("offset", float),  # the offset in it, up to which `flight` reaches
-        ("flight", float, 4),  # c_1, s_1, c_2, s_2 of the flight since Z was last touched
-        ("stretch", np.int64),  # whole cells of that flight
-        ("Z", float, (4, 4)),  # columns are vectors
-        ("volume", float),  # |det Z|, from the identity det S = R^2
-        ("growth", float, 4),  # products of the diagonals of R in Z = Q R
-        ("logs", float, 4),  # their logarithms, taken before they leave the range of the floats
     ]
 )
 
 
 @jit
-def begin(t):
-    """Four orthonormal vectors at the section."""
-    t.wanted, t.lost = True, 0
-    for i in range(4):
+def only(i):
+    """The mask of one orbit."""
+    return lanes_of(1 << i)
+
+
+@jit
+def deal(t, i, q, R):
+    """Give orbit i its oscillator."""
+    for n in range(ORDER):
         for j in range(4):
-            t.Z[i, j] = 1.0 if i == j else 0.0
-        t.flight[i] = 1.0 - i % 2
-    t.cell, t.offset, t.stretch, t.volume = 0, 0.0, 0, 1.0
-    start_record(t)
+            t.series[4 * n + j, i] = q.frame_series[n, j]
+    for m in range(4):
+        for j in range(4):
+            t.to_frame[4 * m + j, i], t.from_frame[4 * m + j, i] = q.to_frame[m, j], q.from_frame[m, j]
+    for j in range(2):
+        t.scale[j, i], t.square[j, i] = q.frame_scale[j], q.frame_square[j]
+    t.kappa[i], t.R[i] = q.kappa, R
+
+
+@entry
+def begin(t, i):
+    """Four orthonormal vectors at the section."""
+    for m in range(4):
+        for j in range(4):
+            t.Z[4 * m + j, i] = 1.0 if m == j else 0.0
+        t.flight[m, i] = 1.0 - m % 2
+    t.lost[i], t.volume[i], t.offset[i] = 0.0, 1.0, 0.0
+    t.cell[i] = t.stretch[i] = 0
+    start_record(t, i)
 
 
 @jit
-def join(t, q, c1, s1, c2, s2):
+def start_record(t, i):
+    """Count growth from here on."""
+    for j in range(4):
+        t.growth[j, i], t.logs[j, i] = 1.0, 0.0
+
+
+@jit
+def join(t, who, c1, s1, c2, s2):
     """Lengthen the collected flight by a flight with these factors."""
-    a, b = t.flight[0], t.flight[1]
-    t.flight[0] = a * c1 - q.frame_square[0] * (b * s1)
-    t.flight[1] = a * s1 + b * c1
-    a, b = t.flight[2], t.flight[3]
-    t.flight[2] = a * c2 - q.frame_square[1] * (b * s2)
-    t.flight[3] = a * s2 + b * c2
+    a, b, flight = row(t.flight, 0), row(t.flight, 1), t.flight
+    put(flight, 0, select(who, a * c1 - row(t.square, 0) * (b * s1), a))
+    put(flight, 1, select(who, a * s1 + b * c1, b))
+    a, b = row(flight, 2), row(flight, 3)
+    put(flight, 2, select(who, a * c2 - row(t.square, 1) * (b * s2), a))
+    put(flight, 3, select(who, a * s2 + b * c2, b))
 
 
 @jit
-def fly(t, q, nodes, k, s):
-    """Lengthen the collected flight to the offset s in cell k of this period."""
-    cells, u = k - t.cell, s - t.offset
+def fly(t, who):
+    """Lengthen the collected flight by `leap` and `part`."""
+    leap, series, u = t.leap, t.series, row(t.part, 0)
+    join(t, who, row(leap, 0), row(leap, 1), row(leap, 2), row(leap, 3))
+    last = 4 * (ORDER - 1)
+    c1, s1, c2, s2 = row(series, last), row(series, last + 1), row(series, last + 2), row(series, last + 3)
+    for n in range(last - 4, -1, -4):
+        c1 = c1 * u + row(series, n)
+        s1 = s1 * u + row(series, n + 1)
+        c2 = c2 * u + row(series, n + 2)
+        s2 = s2 * u + row(series, n + 3)
+    join(t, who, c1, s1, c2, s2)
+
+
+@jit
+def leap_over(t, i, q, nodes, cells):
+    """The factors of a flight over whole cells."""
+    t.part[i] = 0.0
+    if cells <= q.cells:
+        frame = nodes[cells].frame
+        for j in range(4):
+            t.leap[j, i] = frame[j]
+    else:
+        decay_over(t, i, q, cells * q.width)
+
+
+@jit
+def decay_over(t, i, q, u):
+    """The factors of a flight of any length."""
+    for j in range(2):
+        eta = -q.frame_series[1, 2 * j]
+        t.leap[2 * j, i], t.leap[2 * j + 1, i], _, _ = decaying(eta, q.frame_square[j] + eta * eta, u)
+
+
+@jit
+def stop_over(t, i, q, nodes, cells):
+    """Fly on, with looks at the vectors, or all would become the one that decays least. Returns the cells left."""
+    while t.stretch[i] + cells > q.stretch:
+        part = q.stretch - t.stretch[i]
+        leap_over(t, i, q, nodes, part)
+        fly(t, only(i))
+        catch_up(t, only(i))
+        cells -= part
+    return cells
+
+
+@jit
+def aim(t, i, q, nodes, k, s):
+    """What `fly` is to do to bring the collected flight of orbit i to offset s of cell k of this period."""
+    cells, u = k - t.cell[i], s - t.offset[i]
     if u < 0.0:
         cells -= 1
         u += q.width
-    t.cell, t.offset = k, s
-    while t.stretch + cells > q.stretch:  # or all vectors would become the one that decays least
-        part = q.stretch - t.stretch
-        frame = nodes[part].frame
-        join(t, q, frame[0], frame[1], frame[2], frame[3])
-        catch_up(t, q)
-        cells -= part
-    t.stretch += cells
-    if cells > 0:
-        frame = nodes[cells].frame
-        join(t, q, frame[0], frame[1], frame[2], frame[3])
-    if u > 0.0 and q.stiff:
-        eta1, eta2 = -q.frame_series[1, 0], -q.frame_series[1, 2]
-        c1, s1, _, _ = decaying(eta1, q.frame_square[0] + eta1 * eta1, u)
-        c2, s2, _, _ = decaying(eta2, q.frame_square[1] + eta2 * eta2, u)
-        join(t, q, c1, s1, c2, s2)
-    elif u > 0.0:
-        series = q.frame_series
-        c1, s1, c2, s2 = 0.0, 0.0, 0.0, 0.0
-        for n in range(ORDER - 1, -1, -1):
-            c1 = c1 * u + series[n, 0]
-            s1 = s1 * u + series[n, 1]
-            c2 = c2 * u + series[n, 2]
-            s2 = s2 * u + series[n, 3]
-        join(t, q, c1, s1, c2, s2)
+    t.cell[i], t.offset[i] = k, s
+    if t.stretch[i] + cells > q.stretch:
+        cells = stop_over(t, i, q, nodes, cells)
+    t.stretch[i] += cells
+    leap_over(t, i, q, nodes, cells)
+    if not q.stiff:
+        t.part[i] = u
+    elif u > 0.0:  # too far for the series
+        fly(t, only(i))
+        decay_over(t, i, q, u)
 
 
 @jit
-def apply_flight(t, q):
+def fly_to(t, i, q, nodes, k, s):
+    """Lengthen the collected flight of orbit i to offset s of cell k of this period."""
+    aim(t, i, q, nodes, k, s)
+    fly(t, only(i))
+
+
+@jit
+def apply_flight(t, who):
     """Z after the collected flight."""
+    Z, flight, volume = t.Z, t.flight, row(t.volume, 0)
     for j in range(2):
-        c, s = t.flight[2 * j], t.flight[2 * j + 1]
-        above, below = q.frame_scale[j] * s, -q.frame_square[j] / q.frame_scale[j] * s
-        for i in range(4):
-            first, second = t.Z[2 * j, i], t.Z[2 * j + 1, i]
-            t.Z[2 * j, i] = c * first + above * second
-            t.Z[2 * j + 1, i] = below * first + c * second
-        t.volume *= c * c - above * below
-        t.flight[2 * j], t.flight[2 * j + 1] = 1.0, 0.0
-    t.stretch = 0
+        c, s = row(flight, 2 * j), row(flight, 2 * j + 1)
+        above, below = row(t.scale, j) * s, -row(t.square, j) / row(t.scale, j) * s
+        for m in range(4):
+            first, second = row(Z, 8 * j + m), row(Z, 8 * j + 4 + m)
+            put(Z, 8 * j + m, select(who, c * first + above * second, first))
+            put(Z, 8 * j + 4 + m, select(who, below * first + c * second, second))
+        volume = volume * (c * c - above * below)
+        put(flight, 2 * j, select(who, 1.0, c))
+        put(flight, 2 * j + 1, select(who, 0.0, s))
+    put(t.volume, 0, select(who, volume, row(t.volume, 0)))
+    for i in range(LANES):
+        if bits(who) >> i & 1:
+            t.stretch[i] = 0
 
 
 @jit
-def end_period(t, q, nodes):
-    """Carry the collected flight over the section."""
-    fly(t, q, nodes, q.cells, 0.0)
-    t.cell = 0
-
-
-@jit
-def catch_up(t, q):
+def catch_up(t, who):
     """Bring Z to where the collected flight ends, orthonormal."""
-    apply_flight(t, q)
-    orthonormalise(t)
+    apply_flight(t, who)
+    orthonormalise(t, who)
 
 
 @jit
-def saltate(t, q, R, steepness):
+def saltate(t, who, steepness):
     """Z across an impact, by the saltation matrix S = DG + (F+ - DG F-) n^T/(n . F-).
 
     In (x1, v1, x2, v2), with steepness = (a1+ + R a1-)/v1- and kappa = 2 zeta/mu_m: dx1 -> -R dx1, dv1 -> steepness
     dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
     """
-    apply_flight(t, q)
+    apply_flight(t, who)
+    Z, back, to, R = t.Z, t.from_frame, t.to_frame, row(t.R, 0)
     for j in range(4):
-        dx = q.from_frame[0, 0] * t.Z[0, j] + q.from_frame[0, 2] * t.Z[2, j]
-        dv = q.from_frame[1, 0] * t.Z[0, j] + q.from_frame[1, 1] * t.Z[1, j]
-        dv += q.from_frame[1, 2] * t.Z[2, j] + q.from_frame[1, 3] * t.Z[3, j]
+        z0, z1, z2, z3 = row(Z, j), row(Z, 4 + j), row(Z, 8 + j), row(Z, 12 + j)
+        dx = row(back, 0) * z0 + row(back, 2) * z2
+        dv = (row(back, 4) * z0 + row(back, 5) * z1) + (row(back, 6) * z2 + row(back, 7) * z3)
         to_x1 = -(1.0 + R) * dx
         to_v1 = steepness * dx - (1.0 + R) * dv
-        to_v2 = -q.kappa * (1.0 + R) * dx
-        for i in range(4):
-            t.Z[i, j] += q.to_frame[i, 0] * to_x1 + q.to_frame[i, 1] * to_v1 + q.to_frame[i, 3] * to_v2
-    watch(t, R * R)
+        to_v2 = row(t.kappa, 0) * to_x1
+        for m in range(4):
+            z = row(Z, 4 * m + j)
+            after = z + row(to, 4 * m) * to_x1 + row(to, 4 * m + 1) * to_v1 + row(to, 4 * m + 3) * to_v2
+            put(Z, 4 * m + j, select(who, after, z))
+    watch(t, who, R * R)
 
 
 @jit
-def watch(t, determinant):
+def watch(t, who, determinant):
     """Orthonormalise, after a step with this |determinant|, if the vectors come to lie too close together."""
-    t.volume *= determinant
-    if determinant == 0.0:
-        t.lost = max(t.lost, 1)
-    if t.lost > 0:
-        orthonormalise(t)
-        return
-    size = 0.0
-    for i in range(4):
-        for j in range(4):
-            size += t.Z[i, j] * t.Z[i, j]
-    if size * size > 8.0 * CONDITION * t.volume:  # the condition number is below 2/det (|Z|^2/4)^2
-        orthonormalise(t)
+    put(t.volume, 0, select(who, row(t.volume, 0) * determinant, row(t.volume, 0)))
+    lost = row(t.lost, 0)
+    put(t.lost, 0, select(who & (determinant <= 0.0) & (lost < 1.0), 1.0, lost))
+    size = 0.0 * lost
+    for m in range(16):
+        size += row(t.Z, m) * row(t.Z, m)
+    # the condition number is below 2/det (|Z|^2/4)^2
+    close = who & ((row(t.lost, 0) > 0.0) | (size * size > 8.0 * CONDITION * row(t.volume, 0)))
+    if bits(close) != 0:
+        orthonormalise(t, close)
 
 
 @jit
-def orthonormalise(t):
+def orthonormalise(t, who):
     """Gram-Schmidt: Z = Q R, Z becomes Q and the diagonal of R is added to the growth."""
     Z = t.Z
     for i in range(4):
-        square = 0.0
-        for row in range(4):
-            square += Z[row, i] * Z[row, i]
-        length = math.sqrt(square)
-        if i >= 4 - t.lost:
-            length = 0.0
-        inverse = 1.0 / length if length > 0.0 else 0.0
-        for row in range(4):
-            Z[row, i] *= inverse
+        z0, z1, z2, z3 = row(Z, i), row(Z, 4 + i), row(Z, 8 + i), row(Z, 12 + i)
+        length = math.sqrt((z0 * z0 + z1 * z1) + (z2 * z2 + z3 * z3))
+        length = select(row(t.lost, 0) >= 4.0 - i, 0.0, length)
+        inverse = select(length > 0.0, 1.0 / length, 0.0)
+        q0, q1, q2, q3 = inverse * z0, inverse * z1, inverse * z2, inverse * z3
+        put(Z, i, select(who, q0, z0))
+        put(Z, 4 + i, select(who, q1, z1))
+        put(Z, 8 + i, select(who, q2, z2))
+        put(Z, 12 + i, select(who, q3, z3))
         for j in range(i + 1, 4):
-            along = 0.0
-            for row in range(4):
-                along += Z[row, i] * Z[row, j]
-            for row in range(4):
-                Z[row, j] -= along * Z[row, i]
-        t.growth[i] *= length
-        if not 1e-100 < t.growth[i] < 1e100:
-            t.logs[i] += np.log(t.growth[i])
-            t.growth[i] = 1.0
-    t.volume = 1.0
+            z0, z1, z2, z3 = row(Z, j), row(Z, 4 + j), row(Z, 8 + j), row(Z, 12 + j)
+            along = (q0 * z0 + q1 * z1) + (q2 * z2 + q3 * z3)
+            put(Z, j, select(who, z0 - along * q0, z0))
+            put(Z, 4 + j, select(who, z1 - along * q1, z1))
+            put(Z, 8 + j, select(who, z2 - along * q2, z2))
+            put(Z, 12 + j, select(who, z3 - along * q3, z3))
+        growth = row(t.growth, i)
+        put(t.growth, i, select(who, growth * length, growth))
+        growth = row(t.growth, i)
+        extreme = bits(who & ~((growth > 1e-100) & (growth < 1e100)))
+        if extreme != 0:
+            take_logs(t, i, extreme)
+    put(t.volume, 0, select(who, 1.0, row(t.volume, 0)))
 
 
 @jit
-def rest(t, q):
+def take_logs(t, j, extreme):
+    """Begin products anew before they leave the range of the floats."""
+    for i in range(LANES):
+        if extreme >> i & 1:
+            t.logs[j, i] += np.log(t.growth[j, i])
+            t.growth[j, i] = 1.0
+
+
+@jit
+def rest(t, i):
     """Z when M1 comes to rest on a stop: dx1 = dv1 = 0, and two of the four dimensions are lost for good."""
-    apply_flight(t, q)
-    t.lost = 2
-    release(t, q, 1.0, 0.0, 0.0, 1.0)
+    apply_flight(t, only(i))
+    t.lost[i] = 2.0
+    release(t, i, 1.0, 0.0, 0.0, 1.0)
 
 
 @jit
-def release(t, q, xx, xv, vx, vv):
+def release(t, i, xx, xv, vx, vv):
     """Z after a rest on the stop during which (dx2, dv2) is multiplied by ((xx, xv), (vx, vv))."""
+    Z, back, to = t.Z, t.from_frame, t.to_frame
     for j in range(4):
-        dx = q.from_frame[2, 0] * t.Z[0, j] + q.from_frame[2, 2] * t.Z[2, j]
-        dv = q.from_frame[3, 0] * t.Z[0, j] + q.from_frame[3, 1] * t.Z[1, j]
-        dv += q.from_frame[3, 2] * t.Z[2, j] + q.from_frame[3, 3] * t.Z[3, j]
+        z0, z1, z2, z3 = Z[j, i], Z[4 + j, i], Z[8 + j, i], Z[12 + j, i]
+        dx = back[8, i] * z0 + back[10, i] * z2
+        dv = (back[12, i] * z0 + back[13, i] * z1) + (back[14, i] * z2 + back[15, i] * z3)
         dx, dv = xx * dx + xv * dv, vx * dx + vv * dv
-        for i in range(4):
-            t.Z[i, j] = q.to_frame[i, 2] * dx + q.to_frame[i, 3] * dv
-    orthonormalise(t)
+        for m in range(4):
+            Z[4 * m + j, i] = to[4 * m + 2, i] * dx + to[4 * m + 3, i] * dv
+    orthonormalise(t, only(i))
 
 
 @jit
-def start_record(t):
-    """Count growth from here on."""
-    for i in range(4):
-        t.growth[i] = 1.0
-        t.logs[i] = 0.0
-
-
-@jit
-def read_growth(t, q, out):
+def read_growth(t, i, q, nodes, out):
     """Logarithms of the growth of the four vectors up to this section, -inf for dimensions lost by sticking."""
-    catch_up(t, q)
-    for i in range(4):
-        out[i] = t.logs[i] + np.log(t.growth[i])
+    fly_to(t, i, q, nodes, 0, 0.0)
+    catch_up(t, only(i))
+    for j in range(4):
+        out[j] = t.logs[j, i] + np.log(t.growth[j, i])
 
 
 @jit

@@ -3,16 +3,20 @@
 import math
 
 from vibro_sweep.kernels import status
-from vibro_sweep.kernels.ensemble import cross_period
-from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.ensemble import Ensemble, carry
+from vibro_sweep.kernels.jit import entry, jit
+from vibro_sweep.kernels.lanes import LANES
 from vibro_sweep.kernels.orbits import Records, place
 from vibro_sweep.kernels.points import prepare
 
 
 @jit
-def follow(f, stops, o, records, t, periods, out):
-    """The motion over the next `periods`, sampled uniformly from the present section to the last one: out (m, 4)."""
-    q, last = f.oscillator[0], len(out) - 1
+def follow(w, periods, out):
+    """The motion of the first orbit over the next `periods`, sampled uniformly from section to section: out (m, 4)."""
+    e = w.ensemble
+    o, records, last = e.orbits[0], e.records, len(out) - 1
+    q = e.flights.oscillator[o.table]
+    o.periods = 1
     i = 0
     for n in range(periods):
         first = i
@@ -22,30 +26,30 @@ def follow(f, stops, o, records, t, periods, out):
             records.times[i, 1] = (cells - math.floor(cells)) * q.width
             i += 1
         part = Records(records.impacts, records.rests, records.times[first:i], records.samples[first:i])
-        outcome = cross_period(f, stops, o, part, t, 0, 0.0)
-        if outcome != status.OK:
-            return outcome
+        part = Ensemble(e.flights, e.orbits, e.strike, e.tangent, part)
+        carry(part, None, w.section, False, w.growth, 0)
     for i in range(last):
         for j in range(4):
             out[i, j] = records.samples[i, j]
-        out[i, 0] = min(max(out[i, 0], stops.left), stops.right)  # evaluation may round past a stop
+        out[i, 0] = min(max(out[i, 0], o.stops[0]), o.stops[1])  # evaluation may round past a stop
     for j in range(4):
         out[last, j] = o.X[j]
-    return status.OK
+    return o.status
 
 
-@jit
+@entry
 def run_trajectories(points, results, trajectories, w, plan):
     """Go on from where `run_points` left the orbits of a block. trajectories: (p, s, samples, 4)."""
-    o, t = w.orbit[0], w.tangent[0]
-    t.wanted = False
+    e = w.ensemble
+    e.tangent[0].wanted = e.strike[0].measured = False
+    for i in range(1, LANES):
+        e.orbits[i].status = status.NOT_COMPUTED
     for p in range(len(points)):
-        if points[p].cells == 0:
-            continue
-        stops = prepare(points, p, w, plan)
         for s in range(results.shape[1]):
-            result = results[p, s]
+            result, o = results[p, s], e.orbits[0]
             if result.status == status.OK:
-                place(o, result.end[0], result.end[1], result.end[2], result.end[3])
+                stops = prepare(points[p : p + 1], 0, w, plan)
+                end = result.end
+                place(o, e.flights.nodes[o.table], stops, end[0], end[1], end[2], end[3])
                 o.resting = result.resting
-                result.status = follow(w.flight, stops, o, w.records, t, plan.periods, trajectories[p, s])
+                result.status = follow(w, plan.periods, trajectories[p, s])
