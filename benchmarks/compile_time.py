@@ -46,11 +46,11 @@ def first_point() -> None:
 
     clock = Clock()
     event.register("numba:compile", clock)
-    from vibro_sweep import scene, sweep
+    from vibro_sweep import blocks, compute, scene
 
-    block = next(sweep.blocks(scene.load_scene(SCENE), 1, points_per_block=1))
+    block = next(blocks.blocks(scene.load_scene(SCENE), points_per_block=1))
     loaded = time.time()
-    sweep.compute(block)
+    compute.compute(block)
     print(json.dumps({"imported": imported, "loaded": loaded, "done": time.time(), "own": clock.own}))
 
 

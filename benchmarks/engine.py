@@ -1,4 +1,4 @@
-"""This package as one of the methods: `sweep.compute` on a block of one point, as a sweep calls it."""
+"""This package as one of the methods: `compute.compute` on a block of one point, as a sweep calls it."""
 
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
@@ -8,7 +8,7 @@ import numpy as np
 from peers import Solver
 
 import vibro_sweep as vs
-from vibro_sweep import scene, sweep
+from vibro_sweep import blocks, compute, scene
 from vibro_sweep.kernels import tables
 
 
@@ -19,10 +19,10 @@ def scene_text(params, state, observe="impacts", sweep_key="", transient=0, reco
     return f"system: {{{system}}}\n{sweep_key}\nstart: {{{start}}}\norbit: {{{orbit}}}\nobserve: [{observe}]\n"
 
 
-def block_of(text: str) -> sweep.Block:
+def block_of(text: str) -> blocks.Block:
     """A scene as one block."""
     parsed = scene.parse_scene(text)
-    (block,) = sweep.blocks(parsed, 1, points_per_block=10**9)
+    (block,) = blocks.blocks(parsed, points_per_block=10**9)
     return block
 
 
@@ -51,7 +51,7 @@ def _solver(params, states, observe, cells) -> Solver:
 
         def run():
             with grid():
-                arrays = thread.submit(sweep.compute, block).result()[1]
+                arrays = thread.submit(compute.compute, block).result()[1]
             if arrays["status"].any():
                 raise ArithmeticError(f"status {arrays['status']}")
             return int(arrays["impacts_right"].sum() + arrays["impacts_left"].sum())

@@ -1,7 +1,7 @@
 """How cost grows: with periods, points and impacts; memory with the size of a sweep; speed with workers.
 
-Cost is CPU time of `sweep.compute` on one block, the least of a few. Of impacts, it is what they add to the same flight
-without stops. Memory is the peak of a fresh process that runs a whole sweep into its file.
+Cost is CPU time of `compute.compute` on one block, the least of a few. Of impacts, it is what they add to the same
+flight without stops. Memory is the peak of a fresh process that runs a whole sweep into its file.
 """
 
 import multiprocessing
@@ -19,8 +19,10 @@ from engine import block_of, scene_text
 from timing import spent
 
 import vibro_sweep as vs
-from vibro_sweep import scene, sweep
-from vibro_sweep.blocks import BLOCK_BYTES
+from vibro_sweep import scene
+from vibro_sweep.blocks import Block
+from vibro_sweep.compute import compute
+from vibro_sweep.cost import BLOCK_BYTES
 from vibro_sweep.plotting.style import DASHES, FAINT, page
 
 TITLE = "Scaling"
@@ -49,14 +51,14 @@ class Curve(NamedTuple):
         return max(self.slope(), float(last))
 
 
-def least(block: sweep.Block, rounds: int = 3) -> tuple[float, dict]:
+def least(block: Block, rounds: int = 3) -> tuple[float, dict]:
     """CPU seconds of a block, and its arrays."""
-    sweep.compute(block)
-    taken = [spent(lambda: sweep.compute(block)) for _ in range(rounds)]
+    compute(block)
+    taken = [spent(lambda: compute(block)) for _ in range(rounds)]
     return min(seconds for seconds, _ in taken), taken[0][1][1]
 
 
-def orbit_block(b: float, periods: int, clearance: float | None = None) -> sweep.Block:
+def orbit_block(b: float, periods: int, clearance: float | None = None) -> Block:
     """An orbit that starts on the attractor at b; as a transient it needs no memory."""
     params, states = problem.on_attractor(b)
     return block_of(scene_text(params | {"b": clearance or b}, states[0], transient=periods - 1, record=1))

@@ -10,7 +10,7 @@ from engine import block_of, scene_text
 from peers import ENGINE, EXPONENTS, method
 
 import vibro_sweep as vs
-from vibro_sweep import sweep
+from vibro_sweep.compute import compute
 from vibro_sweep.kernels import tables
 from vibro_sweep.kernels.flight import new_flight
 from vibro_sweep.orbit import points_of
@@ -53,8 +53,8 @@ def test_sweep(benchmark):
     params = problem.on_attractor(3.0)[0]
     key = "sweep: {b: {start: 6.5, stop: 6.9, num: 201}}"
     block = block_of(scene_text(params, (0.0,) * 4, "section, lyapunov, impacts", key, transient=200, record=100))
-    sweep.compute(block)
-    _, arrays = benchmark(sweep.compute, block)
+    compute(block)
+    _, arrays = benchmark(compute, block)
     assert not arrays["status"].any()
 
 

@@ -197,6 +197,7 @@ def test_read_only_folder(folder, capsys, monkeypatch):
 
 
 def test_scheduler_without_its_package(folder, capsys, monkeypatch):
+    monkeypatch.delitem(sys.modules, "vibro_sweep.cluster", raising=False)
     monkeypatch.setitem(sys.modules, "distributed", None)
     words = ["--scheduler", "tcp://host:8786", "dask.distributed"]
     assert_refused(capsys, folder, ["run", "good.yaml", "--scheduler", "tcp://host:8786"], words)
@@ -254,6 +255,12 @@ def test_grazing_of_two_frequencies_says_where(folder, capsys):
     (folder / "plane.yaml").write_text(scene("sweep: {omega: {values: [0.6, 0.7]}, zeta: {values: [0.1, 0.2]}}"))
     assert main(["grazing", "plane.yaml"]) == 0
     assert capsys.readouterr().out.startswith("at the first point of the sweep: omega = 0.6, zeta = 0.1\n")
+
+
+def test_grazing_does_not_depend_on_the_start(folder, capsys):
+    (folder / "plane.yaml").write_text(scene("sweep: {x1: {values: [0, 1]}, v1: {values: [0, 1]}}"))
+    assert main(["grazing", "plane.yaml"]) == 0
+    assert capsys.readouterr().out.startswith("b*    = 6.7057167409730")
 
 
 def test_check(folder, capsys):

@@ -11,10 +11,10 @@ import pytest
 import xarray
 
 import vibro_sweep as vs
-from vibro_sweep import store
+from vibro_sweep import blocks, compute, store
 from vibro_sweep.kernels.status import MEANINGS
 from vibro_sweep.scene import parse_scene
-from vibro_sweep.store import StoreError, describe
+from vibro_sweep.store import StoreError, describe, opening
 
 SYSTEM = (
     "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}\norbit: {transient: 3, record: 4}\n"
@@ -179,10 +179,23 @@ with store.writer(scene.parse_scene({scene.text!r}), Path({str(path)!r}), {mode!
         answer = in_another_process(code)
         assert "StoreError" in answer and "let in" not in answer
         assert ("being written" in answer) == (mode != "new")
-        assert np.all(first.missing())
+        assert np.all(first.missing((slice(None),)))
     assert "0 of 3" in describe(f"{path}.part")
     vs.run(scene, path, mode="resume")
     assert "3 of 3" in describe(path)
+
+
+@pytest.mark.parametrize("starts", [1, 2])
+def test_what_is_missing_and_what_is_done(path, starts):
+    scene = scene_of(PLANE + f"start: {{random: {starts}}}\nobserve: [impacts]")
+    (*_, last) = blocks.blocks(scene, points_per_block=2)
+    with store.writer(scene, path, "new") as file:
+        everything = (slice(None), slice(None))
+        assert file.done() == 0 and np.array_equal(file.missing(everything), np.ones((2, 3)))
+        file.write(*compute.compute(last))
+        assert file.done() == starts
+        assert np.array_equal(file.missing(everything), [[1, 1, 1], [1, 1, 0]])
+        assert np.array_equal(file.missing((slice(1, 2), slice(1, 3))), [[1, 0]])
 
 
 def test_describe_says_how_far_it_is(path):
@@ -223,7 +236,7 @@ def test_resume_refuses_another_scene(path):
 
 def test_resume_refuses_other_kernels(path, monkeypatch):
     broken_off(scene_of(SWEEP), path)
-    monkeypatch.setattr(store, "source_hash", lambda: "0123456789abcdef")
+    monkeypatch.setattr(opening, "source_hash", lambda: "0123456789abcdef")
     with pytest.raises(StoreError, match="other kernels"):
         vs.run(scene_of(SWEEP), path, mode="resume")
 
@@ -236,7 +249,7 @@ def test_resume_of_nothing_is_a_run(path):
 def test_resume_of_a_complete_file_changes_nothing(path, monkeypatch):
     vs.run(scene_of(SWEEP), path)
     before, written = path.read_bytes(), path.stat().st_mtime_ns
-    monkeypatch.setattr("vibro_sweep.sweep.compute", None)  # nothing is computed
+    monkeypatch.setattr("vibro_sweep.sweep.orbit_seconds", None)  # nothing is computed
     seen = []
     report = vs.run(scene_of(SWEEP), path, mode="resume", progress=lambda *progress: seen.append(progress))
     assert (report.points, report.bad, seen) == (3, 0, [(3, 3)])

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep import blocks
+from vibro_sweep import blocks, compute
 from vibro_sweep.scene import parse_scene
 
 CONFIGS = Path(__file__).parents[1] / "configs"
@@ -40,6 +40,15 @@ sweep: {{b: {{start: 6.5, stop: 6.8, num: 9}}, R: {{values: [0.9, 0.8, 0.3]}}}}
 start: {{follow: both}}
 orbit: {{transient: 60, record: 40}}
 {ALL}""",
+    "attractors": """
+sweep: {b: {start: 6.6, stop: 6.8, num: 9}}
+start: {random: 5, seed: 2}
+orbit: {transient: 1500, record: 100}
+observe: [attractors]""",
+    "basins": """
+sweep: {x1: {values: [-6, 0, 6]}, v1: {start: -1, stop: 1, num: 5}}
+orbit: {transient: 100, record: 40}
+observe: [attractors, section]""",
 }
 
 
@@ -84,15 +93,15 @@ def test_block_size_does_not_matter(tmp_path, name):
     scene, whole = scene_of(SCENES[name]), run(tmp_path, SCENES[name])
     numbers = []
     for size in (1, 4, 1000):
-        pieces = list(blocks.blocks(scene, 1, points_per_block=size))
+        pieces = list(blocks.blocks(scene, points_per_block=size))
         numbers.append(len(pieces))
         parts = {key: np.empty_like(values) for key, values in whole.items()}
-        for box, arrays in map(blocks.compute, pieces):
+        for box, arrays in map(compute.compute, pieces):
             for key in parts:
                 parts[key][box if key in arrays else ...] = arrays.get(key, whole[key])
         assert_same_bits(parts, whole)
-    # of a `follow`, the axis that it follows is never cut
-    assert (numbers[0], numbers[-1]) == (3 if name == "follow" else math.prod(scene.sweep_shape), 1)
+    # of a `follow`, the axis that it follows is never cut, and each direction is a block of its own
+    assert (numbers[0], numbers[-1]) == ((2, 2) if name == "follow" else (math.prod(scene.sweep_shape), 1))
 
 
 def test_executors_do_not_matter(tmp_path):
@@ -106,8 +115,8 @@ def test_executors_do_not_matter(tmp_path):
 def test_random_starts(tmp_path):
     """They depend on the seed and on the place in the sweep, and are spread over |x_i| < b, |v_i| < omega b."""
     text = "sweep: {b: {values: [1, 2]}}\nstart: {random: 500, seed: SEED}\norbit: {transient: 0, record: 1}"
-    (block,) = blocks.blocks(scene_of(text.replace("SEED", "1")), 1, points_per_block=2)
-    starts = blocks._starts(block, blocks.points_of(block.parameters)) / np.array([1, 0.63, 1, 0.63])
+    (block,) = blocks.blocks(scene_of(text.replace("SEED", "1")), points_per_block=2)
+    starts = compute._starts(block, compute.points_of(block.parameters)) / np.array([1, 0.63, 1, 0.63])
     assert starts.shape == (2, 500, 4) and len(np.unique(starts)) == starts.size
     for b, drawn in zip((1, 2), starts / np.array([[[1]], [[2]]]), strict=True):
         assert np.all(abs(drawn) < 1), b
@@ -276,11 +285,11 @@ def test_section_alone_computes_no_tangent(tmp_path):
     scene = scene_of(SCENES["random"].replace(ALL, "observe: [section]"))
     plan = blocks.plan_of(scene)
     assert not plan.lyapunov and plan.warm_up == 0
-    (block,) = blocks.blocks(scene, 1, points_per_block=1000)
+    (block,) = blocks.blocks(scene, points_per_block=1000)
     with ThreadPoolExecutor(1) as pool:  # a thread of its own, so that its workspace is new
-        _, arrays = pool.submit(blocks.compute, block).result()
-        touched = pool.submit(lambda: blocks._local.workspace.ensemble.tangent.tobytes().strip(b"\0")).result()
-    assert not touched and np.all(np.isnan(arrays["lyapunov"]))
+        _, arrays = pool.submit(compute.compute, block).result()
+        touched = pool.submit(lambda: compute._local.workspace.ensemble.tangent.tobytes().strip(b"\0")).result()
+    assert not touched and "lyapunov" not in arrays
     assert not {"lyapunov", "impacts_right"} & run(tmp_path, SCENES["random"].replace(ALL, "")).keys()
 
 

@@ -1,7 +1,5 @@
 """``python -m vibro_sweep`` is the program ``vibro-sweep``."""
 
-import sys
+from .cli import program
 
-from .cli import main
-
-sys.exit(main())
+program()

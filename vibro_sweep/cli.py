@@ -1,9 +1,10 @@
-"""The program `vibro-sweep`: its commands, its progress bar, its messages and its exit status.
+"""The program `vibro-sweep`: its commands, its messages and its exit status.
 
 Commands import what they need when they run, so that `--help` answers at once.
 """
 
 import contextlib
+import os
 import shlex
 import sys
 import tempfile
@@ -38,6 +39,16 @@ def main(argv: list[str] | None = None) -> int:
     except SystemExit as stop:
         return stop.code or 0
     return 0
+
+
+def program() -> None:
+    """`main` as a process, which it ends."""
+    status = main()
+    if status == INTERRUPTED:  # threads may be in the middle of a block, which may be long: do not wait for them
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+    sys.exit(status)
 
 
 def _positive(text: str) -> int:
@@ -92,17 +103,22 @@ def run(
         _check_output(output, scene_file, resume, overwrite)
 
     from . import sweep
+    from .progress import progress_bar
     from .store import StoreError
 
     mode = "resume" if resume else "overwrite" if overwrite else "new"
+    again = ["vibro-sweep", "run", str(scene_file), "-o", str(output), "--resume"]
+    again += ["--scheduler", scheduler] if scheduler else ["--workers", str(workers)] if workers else []
     with _input_errors(StoreError):
         try:
-            with _executor(scheduler) as executor, _progress(scene.n_points, quiet) as progress:
+            with _executor(scheduler) as executor, progress_bar(scene.n_points, quiet) as progress:
                 report = sweep.run(scene, output, workers, executor, progress, mode)
         except KeyboardInterrupt:
-            command = shlex.join(["vibro-sweep", "run", str(scene_file), "-o", str(output), "--resume"])
-            typer.echo(f"vibro-sweep: interrupted; to continue: {command}", err=True)
+            typer.echo(f"vibro-sweep: interrupted; to continue: {shlex.join(again)}", err=True)
             raise typer.Exit(INTERRUPTED) from None
+        except sweep.RunError as error:
+            text = f"{error}. Nothing that was computed is lost; to continue: {shlex.join(again)}"
+            raise InputError(text) from None
     if not quiet:
         typer.echo(_summary(output, report))
     if plot:
@@ -145,14 +161,15 @@ def check(scene_file: SceneFile):
     with _input_errors(SceneError):
         scene = load_scene(scene_file)
 
-    from . import sweep
+    from .compute import RunError
+    from .cost import estimate
 
-    with _input_errors():
-        estimate = sweep.estimate(scene)
+    with _input_errors(RunError):
+        cost = estimate(scene)
     typer.echo(f"{scene_file}: {scene}")
-    typer.echo(f"  file      {estimate.points:,} points, {_bytes(estimate.bytes)}")
-    typer.echo(f"  work      {estimate.orbits:,} orbits, {estimate.periods:,} forcing periods in all")
-    typer.echo(f"  time      about {_duration(estimate.seconds)} here, once compiled")
+    typer.echo(f"  file      {_points(cost.points)}, {_bytes(cost.bytes)}")
+    typer.echo(f"  work      {cost.orbits:,} orbits, {cost.periods:,} forcing periods in all")
+    typer.echo(f"  time      about {_duration(cost.seconds)} here, once compiled")
 
 
 @app.command()
@@ -166,7 +183,7 @@ def grazing(scene_file: SceneFile):
 
     with _input_errors(SceneError):
         scene = load_scene(scene_file)
-    along = [key for key in scene.sweep if key not in ("b", "R", "tau")]
+    along = [key for key in scene.sweep if key in ("mu_m", "mu_k", "zeta", "f2", "omega")]
     if len(along) == 1:
         typer.echo(f"# {along[0]} b* tau*")
         for value in scene.sweep[along[0]].tolist():
@@ -237,37 +254,15 @@ def _executor(scheduler: str | None):
         yield None
         return
     try:
-        from distributed import Client
+        from .cluster import ClusterError, cluster
     except ImportError:
         text = f"--scheduler {scheduler} needs the package dask.distributed: pip install distributed"
         raise InputError(text) from None
-    with Client(scheduler) as client:
-        yield client.get_executor()
-
-
-@contextlib.contextmanager
-def _progress(total: int, quiet: bool):
-    """A callable (done, total) that draws on a terminal; None where nobody looks."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = [
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("points  {task.fields[rate]}"),
-        TimeRemainingColumn(),
-    ]
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("", total=total, rate="compiling")
-
-        def show(done: int, total: int):
-            bar.update(task, completed=done, total=total)
-            bar.update(task, rate=f"{bar.tasks[task].speed or 0:,.0f}/s ")
-
-        yield show
+    try:
+        with cluster(scheduler) as executor:
+            yield executor
+    except ClusterError as error:
+        raise InputError(f"--scheduler {scheduler}: {error}") from None
 
 
 def _draw(file: Path, output: Path | None, kind: str | None, quiet: bool):
@@ -284,7 +279,11 @@ def _summary(output: Path, report) -> str:
     bad = {name: count for name, count in report.statuses.items() if name != "ok" and count}
     named = ", ".join(f"{name} {count}" for name, count in bad.items())
     state = f"{report.bad} with a bad status ({named})" if report.bad else "all ok"
-    return f"{output}: {report.points:,} points in {_duration(report.seconds)}, {state}"
+    return f"{output}: {_points(report.points)} in {_duration(report.seconds)}, {state}"
+
+
+def _points(count: int) -> str:
+    return f"{count:,} point" + "s" * (count != 1)
 
 
 def _duration(seconds: float) -> str:

@@ -34,6 +34,7 @@ def _plan(system: System, transient: int = 0, record: int = 0, lyapunov: bool = 
         warm_up=min(transient, points.WARM_UP) if lyapunov else 0,
         lyapunov=lyapunov,
         impacts=False,
+        attractors=False,
         right=system.stops != "left",
         left=system.stops != "right",
         section_side=0.0,

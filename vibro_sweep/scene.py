@@ -8,8 +8,9 @@ import numpy as np
 from pydantic import ValidationError
 
 from .scene_axes import axis_values
-from .scene_form import FollowStart, PhysicalSystemForm, RandomStart, SceneForm, json_schema
+from .scene_form import PhysicalSystemForm, SceneForm, json_schema
 from .scene_problems import SceneError, form_problems, problem
+from .scene_starts import SWEPT, Start, start_of, start_problems
 from .system import NAMES, ParameterError, System, check_value, grazing_phase
 from .yaml_text import MAX_BYTES, YAMLTextError, read_yaml
 
@@ -26,22 +27,6 @@ __all__ = [
 
 MAX_POINTS = 10**9
 MAX_NUMBERS = 10**11  # doubles in the file, about a terabyte
-
-
-@dataclass(frozen=True)
-class Start:
-    """Where orbits begin at t = 0. `kind`: "state" | "random" | "follow"."""
-
-    kind: str = "state"
-    state: tuple[float, float, float, float] = (
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )  # (x1, v1, x2, v2); of a `follow`: of its first point
-    count: int = 1  # random starts at each point
-    seed: int = 0
-    direction: str | None = None  # of a `follow`: "up" | "down" | "both"
 
 
 @dataclass(frozen=True)
@@ -70,7 +55,7 @@ class Scene:
     model: str
     order: int  # of the map
     expand_at: float | None  # clearance at which the map is expanded; None: b*
-    sweep: dict[str, np.ndarray]  # 0, 1 or 2 keys in the order of the file's dimensions
+    sweep: dict[str, np.ndarray]  # 0, 1 or 2 in the order of the file's dimensions; of the start: start_x1, ...
     start: Start
     transient: int  # forcing periods
     record: int  # forcing periods
@@ -101,8 +86,10 @@ class Scene:
         """What is computed, in a few lines."""
         system = ", ".join(f"{name} = {getattr(self.system, name)}" for name in NAMES if name not in self.sweep)
         axes = [f"{key} = {v[0]:g} .. {v[-1]:g} ({len(v):,} values)" for key, v in self.sweep.items()]
+        state = dict(zip(SWEPT.values(), self.start.state, strict=True))
         starts = {
-            "state": "from x1, v1, x2, v2 = " + ", ".join(f"{value:g}" for value in self.start.state),
+            "state": "from x1, v1, x2, v2 = "
+            + ", ".join("swept" if name in self.sweep else f"{value:g}" for name, value in state.items()),
             "random": f"from {self.start.count:,} random states, seed {self.start.seed}",
             "follow": f"following the sweep ({self.start.direction})",
         }
@@ -120,12 +107,24 @@ class Scene:
         return "\n".join(lines)
 
     def parameters(self) -> dict[str, np.ndarray]:
-        """Every number of the system by name, `tau` resolved; arrays of `sweep_shape`, read-only."""
-        numbers = {name: getattr(self.system, name) for name in NAMES}
-        numbers.update(zip(self.sweep, np.meshgrid(*self.sweep.values(), indexing="ij", sparse=True), strict=True))
-        if "tau" not in self.sweep and self.system.tau == "grazing":
-            numbers["tau"] = grazing_phase(*(numbers[name] for name in ("mu_m", "mu_k", "zeta", "f2", "omega")))
-        return {name: np.broadcast_to(value, self.sweep_shape) for name, value in numbers.items()}
+        """Every number of the system by name, `tau` resolved, and swept numbers of the start (start_x1, ...).
+
+        Arrays of `sweep_shape`, read-only.
+        """
+        return grid(self.system, self.sweep)
+
+
+def grid(system: System, axes: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Every number of the system by name, `tau` resolved, and the axes, at each point of a grid of values for some.
+
+    Read-only arrays with one dimension for each of `axes`, in their order.
+    """
+    numbers = {name: getattr(system, name) for name in NAMES}
+    numbers.update(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
+    if "tau" not in axes and system.tau == "grazing":
+        numbers["tau"] = grazing_phase(*(numbers[name] for name in ("mu_m", "mu_k", "zeta", "f2", "omega")))
+    shape = tuple(len(values) for values in axes.values())
+    return {name: np.broadcast_to(value, shape) for name, value in numbers.items()}
 
 
 def load_scene(path) -> Scene:
@@ -157,7 +156,7 @@ def parse_scene(text: str, name: str = "scene") -> Scene:
 
     sweep, problems = _sweep(form, data.get("sweep"))
     system, more = _system(form, sweep)
-    problems += more + _start_problems(form, sweep, system) + _combination_problems(form)
+    problems += more + start_problems(form, sweep, system) + _combination_problems(form)
     if problems:
         raise SceneError(name, problems)
     trajectory = form.trajectory and Trajectory(form.trajectory.periods, form.trajectory.samples)
@@ -169,7 +168,7 @@ def parse_scene(text: str, name: str = "scene") -> Scene:
         order=form.order,
         expand_at=form.expand_at,
         sweep=sweep,
-        start=_start(form.start),
+        start=start_of(form.start),
         transient=form.orbit.transient,
         record=form.orbit.record,
         section=Section(form.section.kind, form.section.stop),
@@ -191,10 +190,10 @@ def _sweep(form: SceneForm, keys) -> tuple[dict[str, np.ndarray], list[str]]:
     sweep, problems = {}, []
     for key in keys:
         values, wrong = axis_values(f"sweep.{key}", getattr(form.sweep, key))
-        if values is not None:
+        if values is not None and key in NAMES:
             wrong = _number_problems("sweep", key, values)
         if not wrong:
-            sweep[key] = values
+            sweep[SWEPT.get(key, key)] = values
         problems += wrong
     return sweep, problems
 
@@ -209,7 +208,7 @@ def _number_problems(path: str, key: str, value) -> list[str]:
 
 def _system(form: SceneForm, sweep) -> tuple[System | None, list[str]]:
     """The base system with the first swept values in it, or None and what is wrong."""
-    first = {key: float(values[0]) for key, values in sweep.items()}
+    first = {key: float(values[0]) for key, values in sweep.items() if key in NAMES}
     if isinstance(form.system, PhysicalSystemForm):
         physical = form.system.physical.model_dump()
         try:
@@ -218,7 +217,7 @@ def _system(form: SceneForm, sweep) -> tuple[System | None, list[str]]:
         except ParameterError as error:
             path = "system.physical" if error.key in physical else "system"
             return None, [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]
-    swept = form.sweep.model_fields_set if form.sweep else set()
+    swept = form.sweep.model_fields_set.intersection(NAMES) if form.sweep else set()
     problems, numbers = [], {}
     for key in NAMES:
         value = getattr(form.system, key)
@@ -228,35 +227,12 @@ def _system(form: SceneForm, sweep) -> tuple[System | None, list[str]]:
         elif value != "grazing":
             problems += _number_problems("system", key, value)
         numbers[key] = value
-    if problems or swept != sweep.keys():
+    if problems or swept != first.keys():
         return None, problems
     try:
         return System(**(numbers | first), stops=form.system.stops), []
     except ParameterError as error:
         return None, [problem(f"system.{error.key}", error.value, f"must be {error.allowed}")]
-
-
-def _start(form) -> Start:
-    if isinstance(form, RandomStart):
-        return Start("random", count=form.random, seed=form.seed)
-    if isinstance(form, FollowStart):
-        return Start("follow", direction=form.follow)
-    return Start("state", state=(form.x1, form.v1, form.x2, form.v2))
-
-
-def _start_problems(form: SceneForm, sweep, system: System | None) -> list[str]:
-    if isinstance(form.start, FollowStart) and form.sweep is None:
-        return [problem("start.follow", form.start.follow, "there is no sweep to follow")]
-    x1 = getattr(form.start, "x1", 0.0)
-    if system is None or form.model == "map":  # points of the map may lie beyond the stops
-        return []
-    b, origin = system.b, ""
-    if "b" in sweep:
-        b, origin = float(sweep["b"].min()), ", the smallest b of the sweep"
-    left, right = form.system.stops != "right", form.system.stops != "left"
-    if (right and x1 > b) or (left and x1 < -b):
-        return [problem("start.x1", x1, f"is behind a stop; |x1| must be <= {b!r}{origin}")]
-    return []
 
 
 def _combination_problems(form: SceneForm) -> list[str]:
@@ -268,7 +244,7 @@ def _combination_problems(form: SceneForm) -> list[str]:
     if section.kind == "phase" and "stop" in section.model_fields_set:
         problems.append(problem("section.stop", section.stop, "belongs to `kind: impact`; leave it out"))
     if not form.observe and form.trajectory is None:
-        text = "nothing would be computed; name section, lyapunov or impacts, or ask for a trajectory"
+        text = "nothing would be computed; name section, lyapunov, impacts or attractors, or ask for a trajectory"
         problems.append(problem("observe", [], text))
     return problems
 

@@ -121,7 +121,7 @@ Axis = Annotated[
 
 
 class SweepForm(Form):
-    """One key: a bifurcation diagram; two: a parameter plane."""
+    """One key: a bifurcation diagram; two: a parameter plane, or a plane of initial states."""
 
     model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 2})
 
@@ -133,6 +133,10 @@ class SweepForm(Form):
     R: Axis = _number("coefficient of restitution")
     b: Axis = _number("clearance")
     tau: Axis = _number("phase of the force at t = 0 in radians")
+    x1: Axis = _number("displacement of the first mass at t = 0, between the stops")
+    v1: Axis = _number("its velocity")
+    x2: Axis = _number("displacement of the second mass at t = 0")
+    v2: Axis = _number("its velocity")
 
 
 class StateStart(Form):
@@ -185,6 +189,9 @@ class TrajectoryForm(Form):
     samples: Whole = Field(ge=2, le=MAX_COUNT, description="number of equidistant times")
 
 
+Observation = Literal["section", "lyapunov", "impacts", "attractors", "convergence"]
+
+
 class SceneForm(Form):
     """A scene of vibro-sweep: what to compute."""
 
@@ -211,7 +218,7 @@ class SceneForm(Form):
     ] = Field(default=StateStart(), description="where orbits begin")
     orbit: OrbitForm = Field(description="how long an orbit is")
     section: SectionForm = Field(default=SectionForm(kind="phase"), description="where an orbit becomes points")
-    observe: Annotated[frozenset[Literal["section", "lyapunov", "impacts", "convergence"]], Strict(False)] = Field(
+    observe: Annotated[frozenset[Observation], Strict(False)] = Field(
         default=frozenset({"section"}), description="what is computed and stored; nothing else is"
     )
     trajectory: TrajectoryForm = Field(default=None, description="store the continuous orbit as well")

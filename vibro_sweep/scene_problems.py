@@ -90,7 +90,7 @@ def _line(item) -> str:
         "int_type": "must be a whole number",
         "finite_number": "must be a finite number",
         "list_type": "must be a list of numbers",
-        "frozen_set_type": "must be a list of section, lyapunov, impacts",
+        "frozen_set_type": "must be a list of section, lyapunov, impacts, attractors",
         "greater_than_equal": f"must be a whole number >= {ctx.get('ge')}",
         "less_than_equal": f"must be a whole number <= {ctx.get('le')}",
     }.get(kind, item["msg"])

@@ -1,21 +1,24 @@
 """From a scene to its file: blocks of points, computed by an executor, handed to the store as they come."""
 
-import itertools
-import math
-import os
 import platform
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, ThreadPoolExecutor, wait
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from vibro_sweep import store
-from vibro_sweep.blocks import Block, blocks, compute, plan_of
+from vibro_sweep.blocks import blocks
+from vibro_sweep.compute import RunError
+from vibro_sweep.cost import WINDOW, available_cores, orbit_seconds, points_per_block
 from vibro_sweep.kernels.status import MEANINGS, OK
+from vibro_sweep.pool import as_computed
 from vibro_sweep.scene import Scene
+
+__all__ = ["RunError", "RunReport", "run"]
+
+THREAD_SECONDS, SECONDS = 1.0, 4.0  # of a block: long enough for its overhead not to count, short enough to lose
 
 
 @dataclass
@@ -25,17 +28,6 @@ class RunReport:
     points: int
     bad: int
     statuses: dict[str, int]
-    seconds: float
-
-
-@dataclass
-class Estimate:
-    """What `run` would do; `seconds` is measured on a few points, for this machine's cores."""
-
-    points: int
-    orbits: int
-    periods: int
-    bytes: int
     seconds: float
 
 
@@ -52,79 +44,61 @@ def run(
     Parameters
     ----------
     output : the HDF5 file; while it is computed it is `output`.part, readable at any moment
-    workers : threads, by default one for each core
+    workers : threads, by default one for each core; of an `executor` that does not say how many it has, its workers
     executor : any `concurrent.futures.Executor` instead
     progress : called as progress(done, total) in orbits, from this thread
     mode : "new", "resume" (continue `output`.part where it stopped) or "overwrite"
 
-    Results do not depend on workers, executor, block size or interruptions, bit for bit. Raises `store.StoreError`
-    for a file that is in the way or does not fit the scene, and lets KeyboardInterrupt through once the file is safe.
+    Results do not depend on workers, executor, block size or interruptions, bit for bit. Memory is that of the blocks
+    under way, whatever the size of the sweep. Raises `store.StoreError` for a file that is in the way or does not fit
+    the scene, RunError where workers fail, and lets KeyboardInterrupt through once the file is safe; threads that are
+    in a block then, end with it.
     """
     began = time.perf_counter()
-    count = workers or available_cores()
     with store.writer(scene, Path(output), mode) as file:
-        missing = file.missing()
-        total = scene.n_points
-        done = total - int(np.count_nonzero(missing)) * scene.n_starts
+        total, done = scene.n_points, file.done()
         if progress:
             progress(done, total)
-        pool = executor or ThreadPoolExecutor(count)
-        try:
-            todo = (block for block in blocks(scene, count) if missing[block.box].any())
-            for box, arrays in _in_turn(pool, todo, 2 * getattr(pool, "_max_workers", count)):
-                file.write(box, arrays)
-                done += arrays["status"].size
-                if progress:
-                    progress(min(done, total), total)
-        finally:
-            if executor is None:
-                pool.shutdown(cancel_futures=True)
+        if done < total:
+            with closing(_results(scene, file, workers or available_cores(), executor)) as results:
+                for box, arrays in results:
+                    file.write(box, arrays)
+                    done += arrays["status"].size
+                    if progress:
+                        progress(min(done, total), total)
         seconds = time.perf_counter() - began
-        statuses = file.finish(_provenance(scene, count if executor is None else None, executor, seconds))
+        threads = (workers or available_cores()) if executor is None else None
+        statuses = file.finish(_provenance(scene, threads, executor, seconds))
     bad = sum(number for code, number in statuses.items() if code != OK)
     named = {MEANINGS[code]: number for code, number in statuses.items()}
     return RunReport(total, bad, named, seconds)
 
 
-def _in_turn(pool: Executor, todo: Iterator[Block], window: int):
-    """Results as they come; no more than `window` blocks are under way, so that memory stays bounded."""
-    under_way = {pool.submit(compute, block) for block in itertools.islice(todo, window)}
+def _results(scene: Scene, file: store.Writer, workers: int, executor: Executor | None) -> Iterator[tuple]:
+    """Results of all blocks with a point that is missing in the file, as they come."""
+    cost = _off_the_main_thread(orbit_seconds, scene)
+    pool = executor or ThreadPoolExecutor(workers)
+    size = points_per_block(scene, cost, _worker_count(pool, workers), THREAD_SECONDS if executor is None else SECONDS)
+    todo = (block for block in blocks(scene, size) if file.missing(block.box).any())
     try:
-        while under_way:
-            finished, under_way = wait(under_way, return_when=FIRST_COMPLETED)
-            for future in finished:
-                yield future.result()
-            under_way |= {pool.submit(compute, block) for block in itertools.islice(todo, len(finished))}
+        yield from as_computed(pool, todo, lambda: WINDOW * _worker_count(pool, workers))
     finally:
-        for future in under_way:
-            future.cancel()
+        if executor is None:
+            pool.shutdown(wait=False, cancel_futures=True)
 
 
-def available_cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+def _off_the_main_thread(function: Callable, *arguments):
+    """Its result; meanwhile Ctrl-C is answered, which neither the compiler nor compiled code do."""
+    pool = ThreadPoolExecutor(1)
+    try:
+        return pool.submit(function, *arguments).result()
+    finally:
+        pool.shutdown(wait=False)
 
 
-def estimate(scene: Scene) -> Estimate:
-    """What `run` would do. The time is measured on at most eight points of the sweep, with at most 300 periods each."""
-    orbits = scene.n_points
-    periods = scene.transient + scene.record
-    parameters = scene.parameters()
-    pick = np.unique(np.linspace(0, math.prod(scene.sweep_shape) - 1, 8).astype(int))
-    some = {name: values.reshape(-1)[pick] for name, values in parameters.items()}
-    share = min(1.0, 300 / periods)
-    plan = plan_of(scene)
-    short = plan._replace(
-        transient=int(plan.transient * share),
-        record=max(1, int(plan.record * share)),
-        warm_up=min(plan.warm_up, int(plan.transient * share)),
-    )
-    block = Block((), short, some, np.zeros((1, 4)), None, (), 0, "section" in scene.observe, False, scene.expand_at)
-    compute(block)  # compiles
-    began = time.perf_counter()
-    compute(block)
-    seconds = (time.perf_counter() - began) / len(pick) * periods / (short.transient + short.record)
-    return Estimate(orbits, orbits, orbits * periods, store.size(scene), orbits * seconds / available_cores())
+def _worker_count(pool: Executor, default: int) -> int:
+    """Blocks that an executor computes at a time, now: it may grow. mpi4py and `cluster` call it `num_workers`."""
+    return getattr(pool, "num_workers", None) or getattr(pool, "_max_workers", None) or default
 
 
 def _provenance(scene: Scene, threads: int | None, executor: Executor | None, seconds: float) -> dict:

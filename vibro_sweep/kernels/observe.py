@@ -7,6 +7,7 @@ out to be periodic and exponents are wanted, twice one more period.
 import numpy as np
 
 from vibro_sweep.kernels import status
+from vibro_sweep.kernels.averages import is_settled, keep_averages
 from vibro_sweep.kernels.jit import jit
 from vibro_sweep.kernels.lanes import LANES
 from vibro_sweep.kernels.orbits import start_count
@@ -102,6 +103,11 @@ def close(e, w, plan, points, results):
         o, result = e.orbits[i], results[i]
         if plan.lyapunov and o.status == status.OK:
             close_spectrum(e, o, w, points[i], result)
+            if plan.attractors:
+                states = w.section[i]
+                end = find_period(states[-(len(states) // 10) :], w.axes[i])
+                if is_settled(result.period, end, result.lyapunov, result.lyapunov_error):
+                    keep_averages(states, period_of(e, o), REPEAT, o, result)
         if o.status != status.NOT_COMPUTED:
             result.status = o.status
 

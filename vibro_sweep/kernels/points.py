@@ -30,6 +30,8 @@ RESULT = np.dtype(
         ("contact_error", float),
         ("sticking_time", float),
         ("period", np.int64),
+        ("average", float, 7),  # what an attractor is known by (averages.py), and
+        ("average_error", float, 7),  # how well
         ("end", float, 4),  # the state at the last section, and
         ("resting", float),  # the side of the stop that M1 rests on there, or 0
     ]
@@ -51,6 +53,8 @@ def new_results(shape: tuple[int, ...]) -> np.ndarray:
         "min_impact_speed",
         "contact_error",
         "sticking_time",
+        "average",
+        "average_error",
         "end",
     ):
         results[name] = np.nan
@@ -65,6 +69,7 @@ class Plan(NamedTuple):
     warm_up: int  # periods of the transient with tangent vectors
     lyapunov: bool
     impacts: bool
+    attractors: bool  # with `lyapunov`
     right: bool
     left: bool
     section_side: float  # 0: the section is t = 0 mod T; else the stop of an impact section

@@ -9,7 +9,7 @@ from pathlib import Path
 import matplotlib
 from matplotlib.figure import Figure
 
-from vibro_sweep.plotting import orbits, planes, sweeps
+from vibro_sweep.plotting import basins, coexistence, orbits, planes, sweeps
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import STYLE
 
@@ -19,6 +19,8 @@ SUFFIXES = (".png", ".svg", ".pdf")
 
 # In order of preference: the first that a file can show is its default.
 _KINDS = {
+    "basins": (basins.shows, basins.basins),
+    "coexistence": (coexistence.shows, coexistence.coexistence),
     "plane": (planes.shows, planes.plane),
     "bifurcation": (sweeps.shows_bifurcation, sweeps.bifurcation),
     "lyapunov": (sweeps.shows_lyapunov, sweeps.lyapunov),
@@ -88,7 +90,13 @@ def _chosen(result: Result, kind: str | None) -> list[str]:
 
 def _draw(result: Result, kind: str) -> Figure:
     with matplotlib.rc_context(STYLE):
-        return _KINDS[kind][1](result)
+        fig = _KINDS[kind][1](result)
+        if result.failed:
+            for ax in fig.axes:
+                if ax.get_label() != "<colorbar>":
+                    text = "all points failed; `vibro-sweep info` says how"
+                    ax.text(0.5, 0.55, text, transform=ax.transAxes, ha="center")
+        return fig
 
 
 def _beside(path: Path) -> Path:

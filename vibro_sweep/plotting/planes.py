@@ -1,6 +1,7 @@
 """Pictures over two swept parameters: where the motion is periodic, with which period, and where chaotic."""
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.colors import BoundaryNorm, ListedColormap, TwoSlopeNorm
 
 from vibro_sweep.plotting.result import Result
@@ -22,7 +23,8 @@ def shows(result: Result) -> bool:
 def plane(result: Result):
     """lambda_1 and the period over the two parameters, side by side; the impacts where neither is stored.
 
-    Of several starts the one with the largest lambda_1 is shown, point by point.
+    Of several starts the one with the largest lambda_1 is shown, point by point; beside it how many attractors they
+    reach, where that is stored.
     """
     maps, note = _maps(result)
     fig = page(4.2 if len(maps) > 1 else 5.2, result.title("Parameter plane" + note))
@@ -70,6 +72,8 @@ def _maps(result):
         maps.append((_exponent, np.take_along_axis(largest, chosen, -1)[..., 0]))
     if "period" in result:
         maps.append((_period, np.take_along_axis(result.array("period"), chosen, -1)[..., 0]))
+    if "attractor" in result and starts > 1:
+        maps[1:] = [(_number, np.fmax.reduce(result.array("attractor"), axis=-1))]
     if not maps:
         impacts = result.array("impacts_right") + result.array("impacts_left")
         maps.append((_impacts, impacts[..., 0]))
@@ -96,6 +100,13 @@ def _period(ax, x, y, values):
     bar = _bar(ax, image, r"period$\,/\,T$ (0: none found)", ticks=range(LONGEST + 2))
     bar.ax.set_xticklabels([*range(LONGEST + 1), f">{LONGEST}"])
     bar.ax.tick_params(length=0)
+
+
+def _number(ax, x, y, values):
+    most = int(values.max()) if values.count() else 1
+    colours = ListedColormap(colormaps["viridis"](np.linspace(0, 1, most + 1)))
+    image = ax.pcolorfast(x, y, values, cmap=colours, norm=BoundaryNorm(np.arange(-0.5, most + 1), most + 1))
+    _bar(ax, image, "attractors", ticks=range(most + 1))
 
 
 def _impacts(ax, x, y, values):

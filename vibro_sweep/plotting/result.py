@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 import yaml
 
+from vibro_sweep import journal
 from vibro_sweep.plotting.style import SYMBOLS
 from vibro_sweep.system import steady_response
 
@@ -28,15 +29,17 @@ class Result:
 
     `sweep`: key -> its values, in order; `starts`: names of the starts (one empty name if there is only one);
     `follow`: they are an upward and a downward branch; `done`: bool, shape (*sweep, starts), which points are
-    computed; `scene`: the scene as a mapping, {} where it is illegible.
+    computed; `failed`: none of them well; `scene`: the scene as a mapping, {} where it is illegible.
     Raises `PlotError` where the file is missing or not a result.
     """
 
     def __init__(self, path):
         self.path = path
         try:
-            # A .part file is locked by the process that writes it; a picture of it is wanted all the same.
-            self._file = h5py.File(path, "r", locking=False)
+            journal.recover(path)
+            # A .part file is locked by the process that writes it; a picture of it is wanted all the same. A whole one
+            # may be open in this process as `vibro_sweep.open` opens it, and HDF5 wants it opened alike.
+            self._file = h5py.File(path, "r", locking=False if str(path).endswith(".part") else None)
         except FileNotFoundError as error:
             raise PlotError(f"{path}: no such file") from error
         except OSError as error:
@@ -55,12 +58,14 @@ class Result:
             names = [dim[0].name.rpartition("/")[2] for dim in status.dims]
         except (IndexError, RuntimeError) as error:
             raise PlotError(f"{self.path}: not a result of vibro-sweep (no dimension scales)") from error
-        self.sweep = {name: self._file[name][()].astype(float) for name in names if name != "start"}
+        self.sweep = {name: self.coordinate(name).astype(float) for name in names if name != "start"}
         self._one_start = "start" not in names
-        starts = [""] if self._one_start else self._file["start"][()]
+        starts = [""] if self._one_start else self.coordinate("start")
         self.starts = [start.decode() if isinstance(start, bytes) else str(start) for start in starts]
         self.follow = self.starts == ["up", "down"]
-        self.done = self._with_start(status[()]) != -1
+        codes = self._with_start(self._read("status"))
+        self.done = codes != -1
+        self.failed = self.done.any() and not (codes == 0).any()
         self.scene = _mapping(self._file.attrs.get("scene", ""))
         self._system = _system(self.scene)
 
@@ -69,8 +74,12 @@ class Result:
 
     def __exit__(self, kind, error, trace):
         self._file.close()
-        if isinstance(error, OSError):  # h5py's word for what it cannot read back
-            raise PlotError(f"{self.path}: cannot be read, the file is damaged or being written") from error
+
+    def _read(self, name, index=()):
+        try:
+            return self._file[name][index]
+        except OSError as error:  # h5py's word for what it cannot read back
+            raise PlotError(f"{self.path}: `{name}` cannot be read, it is damaged or being written") from error
 
     def __contains__(self, name) -> bool:
         return name in self._file
@@ -81,17 +90,20 @@ class Result:
 
     def coordinate(self, name) -> np.ndarray:
         """Values of a dimension."""
-        return self._file[name][()]
+        return self._read(name)
 
     def array(self, name) -> np.ndarray:
-        """A quantity as floats, shape (*sweep, starts, its own dimensions); NaN where not computed."""
-        values = self._with_start(self._file[name][()]).astype(float)
+        """A quantity as floats, shape (*sweep, starts, its own dimensions); NaN where not computed or failed."""
+        stored = self._with_start(self._read(name))
+        values = stored.astype(float)
         values[~self.done] = np.nan
+        if stored.dtype.kind == "i":
+            values[stored == -1] = np.nan
         return values
 
     def one(self, name, point: Point) -> np.ndarray:
         """A quantity at one point, shape (its own dimensions); reads no other point."""
-        return self._file[name][point.index[:-1] if self._one_start else point.index]
+        return self._read(name, point.index[:-1] if self._one_start else point.index)
 
     def _with_start(self, values) -> np.ndarray:
         return np.expand_dims(values, len(self.sweep)) if self._one_start else values

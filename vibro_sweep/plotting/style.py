@@ -48,6 +48,10 @@ SYMBOLS = {
     "R": "R",
     "b": "b",
     "tau": r"\tau",
+    "start_x1": "x_1(0)",
+    "start_v1": "v_1(0)",
+    "start_x2": "x_2(0)",
+    "start_v2": "v_2(0)",
 }
 _NAMES = {
     "mu_m": "mass ratio",
@@ -58,6 +62,10 @@ _NAMES = {
     "R": "coefficient of restitution",
     "b": "clearance",
     "tau": "forcing phase",
+    "start_x1": "initial displacement",
+    "start_v1": "initial velocity",
+    "start_x2": "initial displacement",
+    "start_v2": "initial velocity",
 }
 
 

@@ -75,7 +75,7 @@ def _stack(result, panels, what):
     for ax, (_, draw) in zip(axes, panels, strict=True):
         draw(ax, result, values, order)
     if key == "b":
-        _grazing_lines(axes, result)
+        mark_grazing(axes, result)
     borders = edges(values)
     most = 0.02 * (values[-1] - values[0]) or np.inf
     axes[-1].set_xlim(max(borders[0], values[0] - most), min(borders[-1], values[-1] + most))
@@ -85,8 +85,8 @@ def _stack(result, panels, what):
     return fig
 
 
-def _grazing_lines(axes, result):
-    """b* of Theorem 1, and where else the map was expanded."""
+def mark_grazing(axes, result):
+    """In each panel over b: b* of Theorem 1, and where else the map was expanded."""
     marks = [(result.grazing(), "grazing, $b^*$", (0, (4, 2))), (result.scene.get("expand_at"), "expanded at", ":")]
     low, high = sorted((min(result.sweep["b"]), max(result.sweep["b"])))
     for b, label, style in marks:
@@ -116,6 +116,8 @@ def _section(ax, result, values, order):
         ax.set_ylabel(f"$v_1$ before impact, {result.setting('section', 'stop') or 'right'} stop")
     else:
         ax.set_ylabel(r"$x_1$ at $t = 0$ mod $T$")
+    if result.failed:
+        return
     if not count:
         ax.text(0.5, 0.5, "no section points", transform=ax.transAxes, ha="center", color=FAINT)
         return
@@ -170,7 +172,8 @@ def _spectrum(ax, result, values, order):
         if len(result.starts) == 1:
             _error_band(ax, values, exponents[:, 0, i], error[:, 0, i], EXPONENTS[i])
     _keep_the_leading_ones_legible(ax, exponents)
-    _name_curves(ax, exponents)
+    if not result.failed:
+        _name_curves(ax, exponents)
 
 
 def _keep_the_leading_ones_legible(ax, exponents):

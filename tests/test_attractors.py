@@ -1,0 +1,323 @@
+"""Which orbits end on the same attractor: against whole section clouds compared point by point, and what is known."""
+
+import h5py
+import numpy as np
+import pytest
+
+import vibro_sweep as vs
+from vibro_sweep import attractors, blocks, compute
+from vibro_sweep.scene import SceneError, parse_scene
+
+PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
+
+
+def scene_of(text, system=PAPER):
+    return parse_scene(f"system: {{{system}}}\n{text}")
+
+
+def run(folder, text, system=PAPER):
+    """The scene's file, as arrays."""
+    path = folder / f"{len(list(folder.iterdir()))}.h5"
+    vs.run(scene_of(text, system), path)
+    with h5py.File(path) as file:
+        return {name: dataset[()] for name, dataset in file.items()}
+
+
+def same_partition(one, other) -> bool:
+    """Whether two labellings differ in the names of the parts alone."""
+    pairs = set(zip(np.ravel(one).tolist(), np.ravel(other).tolist(), strict=True))
+    return len(pairs) == len({a for a, _ in pairs}) == len({b for _, b in pairs})
+
+
+def by_hand(system, starts, periods, record=400):
+    """A label for each start, slowly: periodic orbits are one if the section points of each lie on those of the other.
+
+    Pairwise, and nothing is shared with the package but the orbits of `simulate`.
+    """
+    clouds = [vs.simulate(system, start, periods).section[-record:] for start in starts]
+    labels, kept = [], []
+    for cloud in clouds:
+        for number, other in enumerate(kept):
+            distance = np.linalg.norm(cloud[:, None] - other[None], axis=-1)
+            if max(distance.min(axis=0).max(), distance.min(axis=1).max()) < 1e-4:
+                labels.append(number)
+                break
+        else:
+            labels.append(len(kept))
+            kept.append(cloud)
+    return np.array(labels), kept
+
+
+@pytest.fixture(scope="module")
+def coexistence(tmp_path_factory):
+    """Random starts at clearances whose attractors are known."""
+    text = """
+sweep: {b: {values: [6.6, 6.68, 6.69, 6.734, 6.8]}}
+start: {random: 12, seed: 3}
+orbit: {transient: 8000, record: 1000}
+observe: [attractors, impacts, lyapunov]"""
+    return scene_of(text), run(tmp_path_factory.mktemp("coexistence"), text)
+
+
+def test_each_attractor_of_the_brute_force(coexistence):
+    """Section points of `simulate` from the same random starts, compared in pairs."""
+    scene, data = coexistence
+    (block,) = blocks.blocks(scene, points_per_block=100)
+    starts = compute._starts(block, compute.points_of(block.parameters))
+    for i, b in enumerate(data["b"]):
+        if b == 6.68:  # chaos: its points never meet
+            continue
+        label, kept = by_hand(scene.system.replace(b=b), starts[i], 8000)
+        assert same_partition(label, data["attractor"][i]), b
+        assert data["attractor"][i].max() == len(kept)
+
+
+def test_what_is_known_of_them(coexistence):
+    data = coexistence[1]
+    at = {b: i for i, b in enumerate(data["b"].tolist())}
+    number = data["attractor"].max(axis=1)
+    assert [int(number[at[b]]) for b in (6.6, 6.68, 6.69, 6.8)] == [2, 1, 1, 1]
+    assert set(data["period"][at[6.6]]) == {13} and set(data["period"][at[6.69]]) == {29}
+    assert set(data["period"][at[6.68]]) == {0}
+    free = at[6.8]
+    assert np.all(data["share"][free] == 1) and np.all(data["period"][free] == 1)
+    assert np.all(data["average"][free, :, 4:6] == 0) and np.all(data["impacts_right"][free] == 0)
+
+
+def test_mirror_images_are_two(coexistence):
+    """At b = 6.6: as often right in one as left in the other, the same exponents; and X(t + T/2) = -X'(t)."""
+    scene, data = coexistence
+    label, average = data["attractor"][0], data["average"][0]
+    one, other = (average[label == number][0] for number in (1, 2))
+    assert sorted((one[4], one[5])) == [0, 4 / 13] and (one[4], one[5]) == (other[5], other[4])
+    assert one[6] == pytest.approx(other[6], rel=1e-6) and not np.allclose(one[:4], other[:4], rtol=0.01)
+    system = scene.system.replace(b=6.6)
+    (block,) = blocks.blocks(scene, points_per_block=100)
+    starts = compute._starts(block, compute.points_of(block.parameters))[0]
+    orbits = [vs.simulate(system, starts[label == number][0], 4013) for number in (1, 2)]
+    times = (4000 + np.arange(13)) * system.period
+    mirrored = -orbits[0].sample(times - system.period / 2)
+    np.testing.assert_allclose(mirrored.mean(axis=0), other[:4], rtol=0, atol=1e-4)
+    for orbit, known in zip(orbits, (one, other), strict=True):
+        np.testing.assert_allclose(orbit.section[-13:].mean(axis=0), known[:4], rtol=0, atol=1e-4)
+
+
+def test_shares(coexistence):
+    data = coexistence[1]
+    for label, share in zip(data["attractor"], data["share"], strict=True):
+        assert sum(share[label == number][0] for number in np.unique(label)) == pytest.approx(1)
+        sizes = np.bincount(label)[1:]
+        assert np.all(np.diff(sizes) <= 0) and np.all(share == np.bincount(label)[label] / len(label))
+
+
+def test_impacts_are_those_that_were_counted(coexistence):
+    data = coexistence[1]
+    for side, column in (("right", 4), ("left", 5)):
+        counted = data[f"impacts_{side}"] / 1000
+        whole = data["average"][..., column] * np.maximum(data["period"], 1)
+        assert np.all((data["period"] == 0) | (abs(whole - whole.round()) < 1e-9))
+        within = np.where(data["period"] > 0, 8 / 1000, 1e-12)  # a part of a period more or less
+        assert np.all(abs(counted - data["average"][..., column]) <= within)
+
+
+def test_the_free_motion_and_what_it_coexists_with(tmp_path):
+    """Above b*: it is there and stable from its own state; from rest the mass goes on striking the stops."""
+    text = """
+sweep: {x1: {values: [0, 6.7]}, b: {values: [6.72, 6.74, 6.78]}}
+start: {x2: 3.2286, v2: 0.2475}
+orbit: {transient: 20000, record: 600}
+observe: [attractors]"""
+    data = run(tmp_path, text)
+    impacts = data["average"][..., 4] + data["average"][..., 5]
+    assert np.all(impacts[1] == 0) and impacts[0, 2] == 0 and np.all(impacts[0, :2] > 0.1)
+
+
+# Initial states as the plane of a sweep
+
+
+BASINS = """
+sweep: {x1: {start: -6.7, stop: 6.7, num: 8}, v1: {values: [3, 0, -0.3]}}
+start: {x2: 3.2286, v2: 0.2475}
+orbit: {transient: 5000, record: 200}
+observe: [attractors, section]"""
+
+
+@pytest.fixture(scope="module")
+def basins(tmp_path_factory):
+    return run(tmp_path_factory.mktemp("basins"), BASINS, f"{PAPER}, b: 6.734")
+
+
+def test_basins_against_simulate(basins):
+    """Each state of the plane ends where `simulate` from it does."""
+    system = scene_of(BASINS, f"{PAPER}, b: 6.734").system
+    assert basins["start_x1"].shape == (8,) and basins["start_v1"].tolist() == [3, 0, -0.3]
+    assert basins["x1"].shape == (8, 3, 200) and basins["attractor"].shape == (8, 3)
+    states = [(x1, v1, 3.2286, 0.2475) for x1 in basins["start_x1"] for v1 in basins["start_v1"]]
+    for at in (0, 10, 21, 23):
+        orbit = vs.simulate(system, states[at], 5200)
+        assert np.array_equal(orbit.section[-200:, 0], basins["x1"].reshape(24, 200)[at])
+    slow, kept = by_hand(system, states, 5200, record=160)
+    label = attractors.group(
+        basins["period"].ravel(), basins["average"].reshape(-1, 7), basins["average_error"].reshape(-1, 7)
+    )
+    assert len(kept) == label.max() == 3 and same_partition(slow, label)
+
+
+@pytest.mark.parametrize("key", ["x1", "v1", "x2", "v2"])
+def test_every_swept_state(tmp_path, key):
+    """Alone, and with a number of the system."""
+    text = f"sweep: {{{key}: {{values: [-0.4, 0.3]}}, R: {{values: [0.7, 0.8]}}}}\norbit: {{transient: 0, record: 3}}"
+    data = run(tmp_path, f"start: {{x1: 0.1, v1: 0.2, x2: 0.3, v2: 0.4}}\n{text}", f"{PAPER}, b: 0.5")
+    for i, value in enumerate(data[f"start_{key}"]):
+        for j, restitution in enumerate(data["R"]):
+            state = dict(x1=0.1, v1=0.2, x2=0.3, v2=0.4) | {key: value}
+            system = scene_of(text, f"{PAPER}, b: 0.5").system.replace(R=restitution)
+            assert np.array_equal(vs.simulate(system, list(state.values()), 3).section[1:, 2], data["x2"][i, j])
+
+
+# The grouping alone
+
+
+def known_orbits(n, seed):
+    """Orbits on known attractors, in random order: their truth, period, average and error."""
+    random = np.random.default_rng(seed)
+    period = np.array([0, 0, 1, 5, 5, 10])
+    middle = np.tile(random.normal(size=7), (6, 1))
+    middle[:, 6] = [0.01, 0.01, -0.1, -0.02, -0.02, -0.01]
+    middle[1, 1] += 3  # chaotic twins
+    middle[2, 4:6] = 0  # no impacts
+    middle[4, 0] += 0.1  # periodic twins
+    middle[5, 2] += 0.1  # the period doubled one is another
+    truth = random.integers(0, 6, n)
+    error = np.where(period[truth, None] > 0, 1e-6, 0.05) * np.ones(7)
+    error[:, 6] = 1e-3
+    average = middle[truth] + error * random.normal(size=(n, 7)).clip(-2, 2)
+    return truth, period[truth], average, error
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_groups(seed):
+    truth, period, average, error = known_orbits(300, seed)
+    label = attractors.group(period, average, error)
+    assert same_partition(label, truth)
+    sizes = np.bincount(label)
+    assert sizes[0] == 0 and np.all(np.diff(sizes[1:]) <= 0)
+    order = np.random.default_rng(seed).permutation(300)
+    assert same_partition(attractors.group(period[order], average[order], error[order]), truth[order])
+
+
+def test_points_do_not_matter_to_each_other():
+    some = [known_orbits(40, seed)[1:] for seed in range(12)]
+    together = attractors.group(*(np.stack(arrays) for arrays in zip(*some, strict=True)))
+    for label, one in zip(together, some, strict=True):
+        assert np.array_equal(label, attractors.group(*one))
+
+
+def test_equal_shares_are_numbered_by_the_first_start():
+    _, period, average, error = known_orbits(300, 0)
+    first = [int(np.flatnonzero(period == p)[0]) for p in (1, 5, 10)]
+    for order in ([0, 1, 2], [2, 0, 1], [1, 2, 0]):
+        chosen = np.array(first)[order]
+        assert attractors.group(period[chosen], average[chosen], error[chosen]).tolist() == [1, 2, 3]
+
+
+def test_chaos_that_changes_sides_seldom_is_one():
+    """Each orbit has a mean of its own, between those of the sides; many of them fill the range."""
+    average, error = np.zeros((40, 7)), np.full((40, 7), 0.01)
+    average[:, 1] = np.random.default_rng(0).permutation(np.linspace(-1, 1, 40))
+    average[:, 6], error[:, 6] = 0.01, 0.001
+    period = np.zeros(40, int)
+    assert np.all(attractors.group(period, average, error) == 1)
+    apart = abs(average[:, 1]) > 0.8  # nothing between the sides: two
+    assert attractors.group(period[apart], average[apart], error[apart]).max() == 2
+
+
+def test_an_orbit_on_its_way_is_no_attractor():
+    """It has no period, need not be chaotic, and has the averages of a periodic one; multiples of a period are one."""
+    average, error = np.ones((4, 7)), np.full((4, 7), 1e-6)
+    average[:, 6] = [-1e-4, -1e-4, -1e-4, 0.01]
+    average[2, :6] += 0.01
+    error[2:, :6], error[2:, 6] = 0.01, 1e-3
+    period = np.array([35, 105, 0, 0])
+    for order in ([0, 1, 2, 3], [2, 3, 1, 0], [3, 2, 0, 1]):
+        label = attractors.group(period[order], average[order], error[order])
+        assert label.tolist() == [(1, 1, 0, 2)[i] for i in order]
+
+
+def test_failed_orbits_and_those_that_have_not_settled():
+    label = np.array([[1, 1, 0, -1], [-1, -1, -1, -1]])
+    share = attractors.share(label)
+    assert share[0, :3].tolist() == [2 / 3, 2 / 3, 1 / 3] and np.isnan(share[0, 3]) and np.isnan(share[1]).all()
+
+
+def test_too_short_a_transient_is_said(tmp_path):
+    """A weakly damped free motion: its exponents say that it settles, and its section points that it has not yet."""
+    text = "start: {random: 4}\norbit: {transient: 10, record: 400}\nobserve: [attractors]"
+    system = PAPER.replace("0.05", "0.005") + ", b: 1.0e+6"
+    data = run(tmp_path, text, system)
+    assert np.all(data["period"] == 0) and np.all(data["attractor"] == 0) and np.all(data["share"] == 1)
+    data = run(tmp_path, text.replace("10,", "2000,"), system)
+    assert np.all(data["period"] == 1) and np.all(data["attractor"] == 1)
+
+
+def test_an_orbit_that_arrives_within_the_record_has_not_settled(tmp_path):
+    """At b = 6.7524 chaos ends in free motion after some 10^4 periods: such an orbit is on neither, and is no third."""
+    text = """
+start: {random: 32, seed: 1}
+orbit: {transient: 0, record: 40000}
+observe: [attractors, section]"""
+    data = run(tmp_path, text, f"{PAPER}, b: 6.7524")
+    free = np.all(abs(np.diff(data["x1"][:, -3000:], axis=1)) < 1e-6, axis=1)
+    assert 0 < free.sum() and np.all(data["attractor"][free & (data["period"] == 0)] == 0)
+
+
+def test_a_point_that_cannot_be_computed_has_no_attractor(tmp_path):
+    text = "sweep: {zeta: {values: [1.0e+6, 0.05]}}\nstart: {random: 3}\norbit: {transient: 100, record: 20}"
+    data = run(tmp_path, f"{text}\nobserve: [attractors]", f"{PAPER}, b: 6.8")
+    assert np.all(data["attractor"][0] == -1) and np.isnan(data["share"][0]).all() and np.all(data["attractor"][1] >= 0)
+    assert not {"x1", "lyapunov", "impacts_right"} & data.keys()
+
+
+# Scenes that cannot be
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        (
+            "sweep: {x1: {values: [0, 1]}}\nstart: {random: 4}",
+            "start.random = 4: the sweep over x1 says where orbits start; give one state or leave it out",
+        ),
+        (
+            "sweep: {x1: {values: [0, 1]}, v2: {values: [0]}}\nstart: {follow: up}",
+            'start.follow = "up": the sweep over x1, v2 says where orbits start; give one state or leave it out',
+        ),
+        ("sweep: {x1: {values: [0, 6.8]}}", "sweep.x1 = 6.8: is behind a stop; |x1| must be <= 6.7"),
+        ("sweep: {x1: {values: [-6.8, 0]}}", "sweep.x1 = -6.8: is behind a stop; |x1| must be <= 6.7"),
+        (
+            "sweep: {x1: {values: [0, 6.6]}, b: {values: [6.5, 7]}}",
+            "sweep.x1 = 6.6: is behind a stop; |x1| must be <= 6.5, the smallest b of the sweep",
+        ),
+        ("sweep: {v1: {values: [0, .inf]}}", "sweep.v1.values[1] = .inf: must be a finite number"),
+        (
+            "observe: [attractor]",
+            'observe[0] = "attractor": did you mean `attractors`? '
+            "allowed: section, lyapunov, impacts, attractors, convergence",
+        ),
+        (
+            "sweep: {start_x1: {values: [0]}}",
+            'sweep.start_x1 = {"values": [0]}: unknown key; allowed here: '
+            "mu_m, mu_k, zeta, f2, omega, R, b, tau, x1, v1, x2, v2",
+        ),
+    ],
+)
+def test_bad_scenes(text, problem):
+    with pytest.raises(SceneError) as caught:
+        scene_of(f"orbit: {{transient: 1, record: 1}}\n{text}", f"{PAPER}, b: 6.7")
+    assert caught.value.problems == (problem,)
+
+
+def test_no_stop_no_bound():
+    text = "sweep: {x1: {values: [-9, 6.7]}}\norbit: {transient: 1, record: 1}"
+    assert scene_of(text, f"{PAPER}, b: 6.7, stops: right").shape == (2,)
+    assert scene_of(f"model: map\n{text}".replace("6.7", "7"), f"{PAPER}, b: 6.7").shape == (2,)

@@ -1,0 +1,230 @@
+"""Dask with processes of its own, started by command: the same arrays, whoever dies; and what the user is told."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from test_sweep import ALL, PAPER, arrays_of, assert_same_bits
+
+import vibro_sweep as vs
+from vibro_sweep.cli import main
+
+distributed = pytest.importorskip("distributed")
+
+PACKAGE = Path(vs.__file__).parent
+LIMIT = 60  # seconds after which something hangs
+
+BLOCKER = """
+import sys
+
+class Blocker:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] == "vibro_sweep":
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Blocker())
+"""
+
+
+class Cluster:
+    """A scheduler and workers, each a process."""
+
+    def __init__(self, folder: Path):
+        self.folder, self.processes = folder, []
+        self.start("scheduler", "--host", "127.0.0.1", "--port", "0", "--dashboard-address", "127.0.0.1:0")
+        told = folder / "scheduler.json"
+        self.wait(lambda: told.exists() and told.stat().st_size)
+        self.address = json.loads(told.read_text())["address"]
+
+    def start(self, what, *options, **environment):
+        files = ["--scheduler-file", str(self.folder / "scheduler.json"), "--no-dashboard"]
+        command = [sys.executable, "-m", "distributed.cli.dask_" + what, *files, *options]
+        with (self.folder / f"{len(self.processes)}.log").open("w") as log:
+            process = subprocess.Popen(command, stdout=log, stderr=log, cwd=self.folder, env=os.environ | environment)
+        self.processes.append(process)
+        return process
+
+    def worker(self, **environment):
+        folder = ["--local-directory", str(self.folder)]
+        return self.start("worker", "--nthreads", "1", "--no-nanny", *folder, **environment)
+
+    def wait(self, condition):
+        limit = time.monotonic() + LIMIT
+        while not condition():
+            assert time.monotonic() < limit and all(process.poll() in (None, -9) for process in self.processes)
+            time.sleep(0.02)
+
+    def wait_for_workers(self, count):
+        with distributed.Client(self.address, set_as_default=False) as client:
+            client.wait_for_workers(count, timeout=LIMIT)
+
+    def end(self):
+        for process in self.processes:
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    folder = tmp_path / "cluster"
+    folder.mkdir()
+    cluster = Cluster(folder)
+    yield cluster
+    cluster.end()
+
+
+@pytest.fixture(scope="module")
+def unfit(tmp_path_factory):
+    """Where Python finds no package, and where it finds one with other kernels."""
+    lacking, other = tmp_path_factory.mktemp("lacking"), tmp_path_factory.mktemp("other")
+    (lacking / "sitecustomize.py").write_text(BLOCKER)
+    shutil.copytree(PACKAGE, other / "vibro_sweep", ignore=shutil.ignore_patterns("__pycache__"))
+    with (other / "vibro_sweep" / "kernels" / "status.py").open("a") as file:
+        file.write("# other\n")
+    return {"lacking": str(lacking), "other": str(other)}
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    """A scene of some seconds in at least sixteen blocks, and its numbers by threads."""
+    path = tmp_path_factory.mktemp("scene") / "scene.yaml"
+    more = f"start: {{random: 2, seed: 5}}\norbit: {{transient: 10000, record: 40}}\n{ALL}\n"
+    path.write_text(f"system: {{{PAPER}}}\nsweep: {{b: {{start: 6.5, stop: 6.8, num: 300}}}}\n{more}")
+    vs.run(vs.load_scene(path), path.with_suffix(".h5"))
+    return path, arrays_of(path.with_suffix(".h5"))
+
+
+def done(output):
+    """Orbits in the unfinished file."""
+    try:
+        with h5py.File(f"{output}.part", locking=False) as file:
+            return np.count_nonzero(file["status"][()] != -1)
+    except (OSError, KeyError):  # it is being made
+        return 0
+
+
+def command_of(scene, output, cluster):
+    return ["run", str(scene), "-o", str(output), "--scheduler", cluster.address, "--quiet"]
+
+
+def test_dask_processes_and_threads_agree(tmp_path, cluster, scene):
+    path, whole = scene
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        vs.run(vs.load_scene(path), tmp_path / "processes.h5", executor=pool)
+    assert_same_bits(arrays_of(tmp_path / "processes.h5"), whole)
+    workers = [cluster.worker(), cluster.worker()]
+    cluster.wait_for_workers(2)
+    assert main(command_of(path, tmp_path / "dask.h5", cluster)) == 0
+    assert_same_bits(arrays_of(tmp_path / "dask.h5"), whole)
+    assert all(worker.poll() is None for worker in workers)
+    with h5py.File(tmp_path / "dask.h5") as file:
+        assert json.loads(file.attrs["provenance"])["executor"] == "ClusterExecutor"
+
+
+def test_two_workers_killed_and_one_added(tmp_path, cluster, scene):
+    path, whole = scene
+    output = tmp_path / "out.h5"
+    workers = [cluster.worker(), cluster.worker()]
+    cluster.wait_for_workers(2)
+    run = subprocess.Popen([sys.executable, "-m", "vibro_sweep", *command_of(path, output, cluster)])
+    cluster.wait(lambda: done(output))
+    for worker in workers:
+        worker.send_signal(signal.SIGKILL)
+        worker.wait()
+    assert 0 < done(output) < whole["status"].size and run.poll() is None
+    cluster.worker()
+    assert run.wait(LIMIT) == 0
+    assert_same_bits(arrays_of(output), whole)
+
+
+def test_ctrl_c(tmp_path, cluster, scene):
+    path, whole = scene
+    output = tmp_path / "out.h5"
+    cluster.worker()
+    command = [sys.executable, "-m", "vibro_sweep", *command_of(path, output, cluster)]
+    run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    cluster.wait(lambda: done(output))
+    run.send_signal(signal.SIGINT)
+    error = run.communicate(timeout=LIMIT)[1]
+    assert run.returncode == 130 and len(error.splitlines()) == 1
+    assert "--resume" in error and f"--scheduler {cluster.address}" in error
+    assert main([*command_of(path, output, cluster), "--resume"]) == 0
+    assert_same_bits(arrays_of(output), whole)
+
+
+@pytest.mark.slow
+def test_the_scheduler_dies(tmp_path, cluster, scene):
+    path, whole = scene
+    output = tmp_path / "out.h5"
+    cluster.worker()
+    command = [sys.executable, "-m", "vibro_sweep", *command_of(path, output, cluster)]
+    run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    cluster.wait(lambda: done(output))
+    cluster.processes[0].kill()
+    error = run.communicate(timeout=LIMIT)[1]
+    assert run.returncode == 2 and len(error.splitlines()) == 1
+    assert "its scheduler has died" in error and "--resume" in error
+    vs.run(vs.load_scene(path), output, mode="resume")
+    assert_same_bits(arrays_of(output), whole)
+
+
+@pytest.mark.slow
+def test_a_worker_without_the_package_joins_later(tmp_path, cluster, scene, unfit):
+    """It ends at its first block, which others compute."""
+    path, whole = scene
+    output = tmp_path / "out.h5"
+    worker = cluster.worker()
+    run = subprocess.Popen([sys.executable, "-m", "vibro_sweep", *command_of(path, output, cluster)])
+    cluster.wait(lambda: done(output))
+    worker.send_signal(signal.SIGSTOP)  # so that blocks go to the other
+    cluster.worker(PYTHONPATH=unfit["lacking"]).wait(LIMIT)
+    worker.send_signal(signal.SIGCONT)
+    assert run.wait(LIMIT) == 0
+    assert_same_bits(arrays_of(output), whole)
+    assert "No module named 'vibro_sweep'" in (cluster.folder / "2.log").read_text()
+
+
+@pytest.mark.slow
+def test_a_worker_with_other_kernels_joins_later(tmp_path, cluster, scene, unfit):
+    output = tmp_path / "out.h5"
+    worker = cluster.worker()
+    command = [sys.executable, "-m", "vibro_sweep", *command_of(scene[0], output, cluster)]
+    run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    cluster.wait(lambda: done(output))
+    worker.send_signal(signal.SIGSTOP)  # so that blocks go to the other
+    cluster.worker(PYTHONPATH=unfit["other"])
+    error = run.communicate(timeout=LIMIT)[1]
+    assert run.returncode == 2 and len(error.splitlines()) == 1
+    assert "has vibro_sweep" in error and "install the same on both" in error and "--resume" in error
+
+
+def test_unfit_workers_are_named(tmp_path, cluster, scene, capsys, unfit):
+    cluster.worker()
+    cluster.worker(PYTHONPATH=unfit["lacking"])
+    cluster.worker(PYTHONPATH=unfit["other"])
+    cluster.wait_for_workers(3)
+    assert main(command_of(scene[0], tmp_path / "out.h5", cluster)) == 2
+    error = capsys.readouterr().err
+    assert len(error.splitlines()) == 1 and "No module named 'vibro_sweep'" in error
+    assert error.count("worker tcp://127.0.0.1:") == 2 and error.count("kernels") == 2
+    assert not list(tmp_path.glob("out.h5*"))
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "host", "post://host:1"])
+def test_no_scheduler(tmp_path, scene, capsys, monkeypatch, address):
+    monkeypatch.setattr("vibro_sweep.cluster.CONNECT_SECONDS", 0.5)
+    output = tmp_path / "out.h5"
+    assert main(["run", str(scene[0]), "-o", str(output), "--scheduler", address]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"vibro-sweep: error: --scheduler {address}: no dask scheduler answers there")
+    assert len(error.splitlines()) == 1 and not list(tmp_path.iterdir())

@@ -1,0 +1,130 @@
+"""Pictures of several attractors: the colours are those of the file's numbers."""
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+
+import vibro_sweep as vs
+from vibro_sweep import plotting
+from vibro_sweep.plotting.families import KINDS, describe, kind
+from vibro_sweep.scene import parse_scene
+
+PAPER = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.734}"
+
+
+def run(path, text, system=PAPER):
+    vs.run(parse_scene(f"{system}\n{text}"), path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def coexistence(tmp_path_factory):
+    """Periodic mirror images, chaos and free motion; falling values, which an axis turns round."""
+    text = """
+sweep: {b: {values: [6.8, 6.68, 6.6]}}
+start: {random: 10, seed: 1}
+orbit: {transient: 4000, record: 400}
+observe: [attractors]"""
+    return run(tmp_path_factory.mktemp("plots") / "coexistence.h5", text)
+
+
+@pytest.fixture(scope="module")
+def basins(tmp_path_factory):
+    text = """
+sweep: {v1: {values: [1, 0, -0.3]}, x1: {start: -6.7, stop: 6.7, num: 8}}
+start: {x2: 3.2286, v2: 0.2475}
+orbit: {transient: 5000, record: 100}
+observe: [attractors]"""
+    return run(tmp_path_factory.mktemp("plots") / "basins.h5", text)
+
+
+def test_kinds(coexistence, basins, tmp_path):
+    assert plotting.kinds(coexistence) == ["coexistence"]
+    assert plotting.kinds(basins) == ["basins", "plane"]
+    text = """
+sweep: {b: {values: [6.6, 6.8]}, R: {values: [0.7, 0.8]}}
+start: {random: 3}
+orbit: {transient: 100, record: 40}
+observe: [attractors, lyapunov]"""
+    plane = run(tmp_path / "plane.h5", text)
+    assert plotting.kinds(plane) == ["plane"]
+    number = plotting.figure(plane).axes[1]
+    expected = vs.open(plane).attractor.max("start").values
+    assert np.array_equal(number.images[0].get_array(), expected.T)
+
+
+def test_stacks_are_the_shares(coexistence):
+    data, fig = vs.open(coexistence), plotting.figure(coexistence)
+    points, stacks = fig.axes
+    parts, seams = stacks.collections
+    assert not seams.get_segments()  # no two attractors of one colour here
+    columns = {}
+    for path, colour in zip(parts.get_paths(), parts.get_facecolors(), strict=True):
+        (left, low), (right, high) = path.vertices.min(axis=0), path.vertices.max(axis=0)
+        columns.setdefault((left, right), []).append((low, high, tuple(colour[:3])))
+    for (left, right), stack in columns.items():
+        (i,) = np.flatnonzero((left < data.b.values) & (data.b.values < right))
+        label = data.attractor.values[i]
+        assert sorted(high - low for low, high, _ in stack) == pytest.approx(sorted(np.bincount(label)[1:] / 10))
+        assert stack[0][0] == 0 and stack[-1][1] == pytest.approx(1)
+        expected = {6.8: ["free"], 6.68: ["aperiodic"], 6.6: ["right", "left"]}[data.b.values[i]]
+        assert [part[2] for part in stack] == [to_rgb(KINDS[which][1]) for which in expected]
+    assert len(columns) == 3
+    shown = np.concatenate([line.get_xydata() for line in points.lines if line.get_linestyle() == "None"])
+    assert len(shown) == 4 and np.all(np.isin(shown[:, 0], data.b.values))
+    names = [text.get_text() for text in fig.legends[0].get_texts()]
+    assert names[:4] == [KINDS[which][0] for which in ("free", "right", "left", "aperiodic")]
+
+
+def test_basins_have_the_colours_of_their_attractors(basins):
+    data, fig = vs.open(basins), plotting.figure(basins)
+    (ax,) = fig.axes
+    (image,) = ax.images
+    shown = np.asarray(image.get_array())
+    order = np.argsort(data.start_v1.values)
+    right, left = (data.average.sel(averaged=f"impacts_{side}").values[order].T for side in ("right", "left"))
+    for here, which in ((right > left, "right"), (left > right, "left"), (right + left == 0, "free")):
+        assert here.any() and np.all(shown[here] == to_rgb(KINDS[which][1]))
+    assert {text.get_text().split(" (")[0] for text in fig.legends[0].get_texts()} == {
+        "period 16, 4 impacts right, 0 left",
+        "period 16, 0 impacts right, 4 left",
+        "non-impacting, period 1",
+    }
+
+
+def test_one_basin(tmp_path):
+    """Everything ends in the free motion; a number that YAML takes for text is a number."""
+    text = "sweep: {x1: {values: [0, 1]}, v2: {values: [0, 1]}}\nstart: {v1: 1e-3}\norbit: {transient: 2000, record: 9}"
+    path = run(tmp_path / "one.h5", f"{text}\nobserve: [attractors]", PAPER.replace("6.734", "6.8"))
+    fig = plotting.figure(path)
+    assert [text.get_text() for text in fig.legends[0].get_texts()] == ["non-impacting, period 1 (100 %)"]
+    assert "$v_1(0) = 0.001$, $x_2(0) = 0$" in fig.get_suptitle()
+
+
+def test_words():
+    average = np.array([0, 0, 0, 0, 1 / 3, 0, -0.1])
+    assert describe(3, average) == "period 3, 1 impact right, 0 left"
+    assert describe(0, average) == "chaotic or quasi-periodic, 0.333 + 0 impacts / $T$"
+    assert describe(0, np.full(7, np.nan)) == "not settled"
+    average[5] = 1 / 3
+    assert kind(6, average) == "even" and describe(6, average) == "period 6, 2 impacts right, 2 left"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "sweep: {b: {values: [5, 6]}}\nobserve: [section, lyapunov, impacts]",
+        "sweep: {b: {values: [5, 6]}}\nstart: {random: 2}\nobserve: [attractors]",
+        "sweep: {b: {values: [5, 6]}, R: {values: [0.5, 0.6]}}\nobserve: [section, lyapunov, impacts]",
+        "sweep: {x1: {values: [0, 1]}, v1: {values: [0, 1]}}\nobserve: [attractors]",
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_empty_axes_say_why(tmp_path, text):
+    scene = f"{PAPER}\norbit: {{transient: 5, record: 5}}\n{text}".replace("0.05", "1.0e+6")
+    path = tmp_path / "failed.h5"
+    vs.run(parse_scene(scene), path)
+    for one in plotting.kinds(path):
+        fig = plotting.figure(path, one)
+        panels = [ax for ax in fig.axes if ax.get_label() != "<colorbar>"]
+        assert all(any("all points failed" in text.get_text() for text in ax.texts) for ax in panels), one

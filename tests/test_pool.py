@@ -1,0 +1,234 @@
+"""Blocks through executors of every kind: those that lose workers, grow, answer in any order, or break."""
+
+import contextlib
+import multiprocessing
+import pickle
+import random
+import signal
+import subprocess
+import sys
+import time
+import tracemalloc
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
+from itertools import islice
+
+import pytest
+from test_sweep import PAPER, SCENES, arrays_of, assert_same_bits, scene_of
+
+import vibro_sweep as vs
+from vibro_sweep import blocks, cost, sweep
+from vibro_sweep.compute import BlockError, RunError, compute
+from vibro_sweep.kernels.lanes import LANES
+
+LIMIT = 60  # seconds after which something hangs
+CHAINS = 3 * LANES  # in three blocks, each way
+FOLLOW = SCENES["follow"].replace("values: [0.9, 0.8, 0.3]", f"start: 0.9, stop: 0.4, num: {CHAINS}")
+HUGE = """
+sweep: {omega: {start: 0.5, stop: 0.8, num: 4000}, zeta: {start: 0.02, stop: 0.1, num: 4000}}
+start: {random: 16, seed: 1}
+orbit: {transient: 60000, record: 2500}
+observe: [lyapunov, impacts]"""
+
+
+class Answering(Executor):
+    """Answers every block at once with `reply(block)`, or with what that raises."""
+
+    def __init__(self, reply):
+        self.reply, self.sent = reply, []
+
+    def submit(self, function, block):
+        self.sent.append(block)
+        future = Future()
+        try:
+            future.set_result(self.reply(block))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+class Shuffling(Executor):
+    """Answers one of the waiting blocks when no more of `total` come; has one worker, and three after ten blocks."""
+
+    def __init__(self, total):
+        self.total, self.num_workers, self.waiting, self.most, self.order = total, 1, [], {1: 0, 3: 0}, []
+
+    def submit(self, function, block):
+        future = Future()
+        self.waiting.append((future, function, block))
+        self.most[self.num_workers] = max(self.most[self.num_workers], len(self.waiting))
+        return future
+
+    def serve(self, stop):
+        choice = random.Random(1)
+        limit = time.monotonic() + 10
+        while not stop:
+            time.sleep(0.001)
+            full = len(self.waiting) >= min(cost.WINDOW * self.num_workers, self.total - len(self.order))
+            if self.waiting and (full or time.monotonic() > limit):
+                future, function, block = self.waiting.pop(choice.randrange(len(self.waiting)))
+                self.order.append(block.box)
+                self.num_workers = 3 if len(self.order) > 10 else 1
+                future.set_result(function(block))
+
+
+@contextlib.contextmanager
+def serving(pool):
+    stop = []
+    with ThreadPoolExecutor(1) as thread:
+        thread.submit(pool.serve, stop)
+        try:
+            yield pool
+        finally:
+            stop.append(True)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The arrays of a scene of six blocks."""
+    path = tmp_path_factory.mktemp("whole") / "whole.h5"
+    vs.run(scene_of(FOLLOW), path)
+    return arrays_of(path)
+
+
+def test_any_order_and_a_window_that_follows_the_workers(tmp_path, monkeypatch):
+    scene = scene_of(SCENES["plane"])
+    vs.run(scene, tmp_path / "own.h5")
+    monkeypatch.setattr(sweep, "points_per_block", lambda *_: 1)
+    with serving(Shuffling(35)) as pool:
+        vs.run(scene, tmp_path / "out.h5", executor=pool)
+    assert pool.most == {1: cost.WINDOW, 3: 3 * cost.WINDOW}
+    assert len(pool.order) == 35 and pool.order != sorted(pool.order, key=str)
+    assert_same_bits(arrays_of(tmp_path / "out.h5"), arrays_of(tmp_path / "own.h5"))
+
+
+def test_lost_blocks_are_sent_again(tmp_path, whole):
+    lost = []
+
+    def reply(block):
+        if lost.count(block.box) < 2 and block.box[1].start == LANES:
+            lost.append(block.box)
+            raise ConnectionError("the worker is gone")
+        return compute(block)
+
+    vs.run(scene_of(FOLLOW), tmp_path / "out.h5", executor=Answering(reply))
+    assert len(lost) == 4  # in both directions, twice
+    assert_same_bits(arrays_of(tmp_path / "out.h5"), whole)
+
+
+@pytest.mark.parametrize(
+    "error, attempts, words",
+    [
+        (
+            ConnectionError("the worker is gone"),
+            3,
+            "3 attempts at b = .*, R = 0.7.* were lost .*worker is gone",
+        ),
+        (ModuleNotFoundError("No module named 'vibro_sweep'"), 1, "a worker cannot load vibro_sweep .*No module"),
+        (BlockError("worker host, failed at b = 6.5: MemoryError"), 1, "worker host, failed at b = 6.5: MemoryError"),
+    ],
+)
+def test_what_ends_a_run_loses_nothing(tmp_path, whole, error, attempts, words):
+    scene, output, sent = scene_of(FOLLOW), tmp_path / "out.h5", []
+
+    def reply(block):
+        if block.box[1].start == LANES:
+            sent.append(block.box)
+            raise error
+        return compute(block)
+
+    with pytest.raises(RunError, match=words):
+        vs.run(scene, output, executor=Answering(reply))
+    assert sent.count(sent[0]) == attempts
+    seen = []
+    vs.run(scene, output, mode="resume", progress=lambda done, total: seen.append(done))
+    # nine points of eight chains each way came before it, and others may have come meanwhile
+    assert 9 * 2 * LANES <= seen[0] < 9 * 2 * CHAINS
+    assert_same_bits(arrays_of(output), whole)
+
+
+def test_an_error_in_a_block_says_where(monkeypatch):
+    block = next(blocks.blocks(scene_of(SCENES["plane"]), points_per_block=3))
+    monkeypatch.setattr("vibro_sweep.compute.points_of", lambda _: 1 / 0)
+    with pytest.raises(BlockError, match=r"process \d+, failed at omega = 0.5, b = 0.3 .. 2.4\d*: ZeroDivisionError"):
+        compute(block)
+
+
+def test_a_worker_with_other_kernels_refuses():
+    block = next(blocks.blocks(scene_of(SCENES["plane"]), points_per_block=3))
+    with pytest.raises(BlockError, match=r"has vibro_sweep .*; this program is vibro_sweep 9, kernels 0"):
+        compute(block._replace(version="vibro_sweep 9, kernels 0"))
+
+
+def test_a_broken_process_pool_is_resumed(tmp_path, whole):
+    scene, output = scene_of(FOLLOW), tmp_path / "out.h5"
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
+
+        def kill(done, total):
+            if done:
+                for process in pool._processes.values():
+                    process.kill()
+
+        with pytest.raises(RunError, match="a worker process died"):
+            vs.run(scene, output, executor=pool, progress=kill)
+    seen = []
+    vs.run(scene, output, mode="resume", progress=lambda done, total: seen.append(done))
+    assert 0 < seen[0] < 9 * 2 * CHAINS
+    assert_same_bits(arrays_of(output), whole)
+
+
+def test_ctrl_c_does_not_wait_for_a_block(tmp_path):
+    """One orbit of 10^9 periods, which takes minutes."""
+    (tmp_path / "long.yaml").write_text(f"system: {{{PAPER}}}\norbit: {{transient: 1.0e+9, record: 1}}\n")
+    command = [sys.executable, "-m", "vibro_sweep", "run", "long.yaml"]
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    limit = time.monotonic() + LIMIT
+    while not (tmp_path / "long.h5.part").exists():
+        assert process.poll() is None and time.monotonic() < limit
+        time.sleep(0.02)
+    time.sleep(1.5)  # until it is in the block
+    process.send_signal(signal.SIGINT)
+    assert "--resume" in process.communicate(timeout=LIMIT)[1]
+    assert process.returncode == 130
+
+
+def test_a_huge_plane_is_planned_lazily():
+    """The phase of grazing differs at each of its 16 million points; a megabyte of it is never held."""
+    scene = scene_of(HUGE)
+    tracemalloc.start()
+    planned = list(islice(blocks.blocks(scene, points_per_block=30), 1000))
+    compute(planned[-1]._replace(plan=planned[-1].plan._replace(transient=0, warm_up=0, record=1, parts=1)))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 10e6
+    for block in planned[:2]:
+        assert len(pickle.dumps(block)) < 1200 + 8 * (1 + 30)
+
+
+def test_size_of_a_block():
+    """By time, by memory, and such that all workers have some."""
+    scene = scene_of(SCENES["plane"].replace("num: 5", "num: 5000").replace("num: 7", "num: 7000"))
+    assert cost.points_per_block(scene, 1e-3, 2, 4.0) == 4000
+    assert cost.points_per_block(scene, 10.0, 2, 4.0) == 1
+    each = 32 * scene.record  # bytes of the section points
+    assert 0.7 < cost.points_per_block(scene, 1e-9, 2, 4.0) * each / cost.BLOCK_BYTES < 1
+    assert 0.7 < cost.points_per_block(scene, 1e-9, 1000, 4.0) * each / (cost.BYTES_UNDER_WAY / 2000) < 1
+    small = scene_of(SCENES["plane"])
+    assert cost.points_per_block(small, 1e-9, 1, 4.0) == 35 // cost.BLOCKS_PER_WORKER
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("transient", [0, 7, 10**6])
+def test_cost_of_an_orbit(monkeypatch, name, transient):
+    """By a clock that runs a microsecond in each period: what is measured stands for the whole, and takes no second."""
+    scene, clock = replace(scene_of(SCENES[name]), transient=transient), [0.0]
+
+    def counting(block):
+        box, arrays = compute(block._replace(plan=block.plan._replace(transient=0, warm_up=0)))
+        clock[0] += 1e-6 * (block.plan.transient + block.plan.record) * arrays["status"].size
+        return box, arrays
+
+    monkeypatch.setattr(cost, "compute", counting)
+    monkeypatch.setattr(cost.time, "perf_counter", lambda: clock[0])
+    assert cost.orbit_seconds(scene) == pytest.approx(1e-6 * (transient + scene.record))
+    assert clock[0] < 1

@@ -1,0 +1,70 @@
+"""Which of several orbits of one system end on the same attractor, from what is known of each without the others.
+
+That is its period and seven averages (`AVERAGED`), which all orbits of an attractor share whatever their phase. Mirror
+images (X -> -X, t -> t + T/2) share period and exponents; their section points, and so the averages of these, differ.
+"""
+
+import numpy as np
+
+AVERAGED = ("x1", "v1", "x2", "v2", "impacts_right", "impacts_left", "lyapunov")
+
+BAD, NOT_SETTLED = -1, 0  # of an orbit without attractor
+ERRORS = 4  # to each side of an average; where the ranges of two orbits meet, the averages may be the same
+CERTAIN = 2  # lambda_1 is above zero where so many of its errors are
+
+
+def group(period, average, error) -> np.ndarray:
+    """The attractor of each orbit: 1, 2, ... by falling number of orbits; or `NOT_SETTLED`.
+
+    Of equally many the one that an earlier orbit reaches comes first. An attractor holds all orbits of one period whose
+    averages meet, or are linked by others between them: where chaos changes sides seldom, each orbit has averages of
+    its own, and many of them fill the range. (A multiple of the period is the same: what is left of a slow approach can
+    repeat itself better after several periods than after one.) An orbit without a period that need not be chaotic and
+    has the averages of a periodic one is taken to be on its way there.
+
+    Parameters
+    ----------
+    period : (..., orbits), 0 where there is none
+    average, error : (..., orbits, 7), as `AVERAGED`; NaN of an orbit that has not settled
+    """
+    low, high = average - ERRORS * error, average + ERRORS * error
+    low[period > 0, 6], high[period > 0, 6] = -np.inf, np.inf  # a periodic orbit is known better by the rest
+    waiting = np.isfinite(low[..., :6]).all(axis=-1)
+    doubtful = (period == 0) & (average[..., 6] <= CERTAIN * error[..., 6])
+    label, sizes, firsts = np.full(period.shape, NOT_SETTLED), [], []
+    while waiting.any():
+        first = np.argmax(waiting * (1 + (period > 0)), axis=-1)[..., None]  # a periodic one, if there is any
+        found, near = _attractor_of(first, waiting, period, low, high)
+        waiting &= ~found & ~(near & doubtful & (np.take_along_axis(period, first, axis=-1) > 0))
+        sizes.append(np.count_nonzero(found, axis=-1))
+        firsts.append(np.argmax(found, axis=-1))
+        label[found] = len(sizes)
+    if not sizes:
+        return label
+    order = np.lexsort((np.stack(firsts, axis=-1), -np.stack(sizes, axis=-1)), axis=-1)
+    rank = 1 + np.argsort(order, axis=-1)
+    return np.where(label > 0, np.take_along_axis(rank, np.maximum(label - 1, 0), axis=-1), label)
+
+
+def _attractor_of(first, waiting, period, low, high) -> tuple[np.ndarray, np.ndarray]:
+    """The waiting orbits on the attractor of orbit `first`, and all that have averages as they do (bool)."""
+    base = np.take_along_axis(period, first, axis=-1)
+    alike = waiting & (np.gcd(period, base) == np.minimum(period, base))
+    found = alike & (np.arange(period.shape[-1]) == first)
+    while True:
+        lowest = np.min(low, axis=-2, keepdims=True, initial=np.inf, where=found[..., None])
+        highest = np.max(high, axis=-2, keepdims=True, initial=-np.inf, where=found[..., None])
+        near = ((low <= highest) & (high >= lowest)).all(axis=-1)
+        if not (alike & near & ~found).any():
+            return found, near
+        found |= alike & near
+
+
+def share(label) -> np.ndarray:
+    """The part of the orbits (..., orbits) with the label of each, of those that are not `BAD`; NaN for these."""
+    count = np.count_nonzero(label != BAD, axis=-1, keepdims=True)
+    result = np.full(label.shape, np.nan)
+    for one in range(NOT_SETTLED, label.max(initial=0) + 1):
+        same = label == one
+        np.copyto(result, np.count_nonzero(same, axis=-1, keepdims=True) / np.maximum(count, 1), where=same)
+    return result

@@ -1,0 +1,113 @@
+"""Several attractors at one value of the parameter: which there are, and how many starts reach each."""
+
+import itertools
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.patches import Patch
+
+from vibro_sweep.plotting.families import KINDS, kind
+from vibro_sweep.plotting.result import Point, Result
+from vibro_sweep.plotting.style import axis_name, edges, page
+from vibro_sweep.plotting.sweeps import mark_grazing
+
+NARROW = 0.012  # of the axis; the period of a window is written over it where it is wider
+
+
+class Share(NamedTuple):
+    """An attractor at one value of the parameter, and the part of the starts that reach it."""
+
+    place: int  # of the value, along the axis
+    point: tuple[int, int]  # of the first start that reaches it, in the file
+    kind: str
+    period: int
+    share: float
+    mean: float  # of x1 over the section points
+
+
+def shows(result: Result) -> bool:
+    return len(result.sweep) == 1 and len(result.starts) > 1 and "attractor" in result
+
+
+def coexistence(result: Result):
+    """Over the parameter: section points of each attractor, or their mean; below, the starts' shares, stacked."""
+    ((key, values),) = result.sweep.items()
+    order = np.argsort(values)  # a sweep may run downwards; an axis does not
+    values, found = values[order], _shares(result, order)
+    fig = page(5.8, result.title(f"Coexisting attractors; {len(result.starts)} starts at each value"))
+    above, below = axes = fig.subplots(2, sharex=True, height_ratios=(1.6, 1))
+    _points(above, result, values, found)
+    _stacks(below, values, found)
+    _name_windows(below, values, found)
+    if key == "b":
+        mark_grazing(axes, result)
+    below.set(xlim=edges(values)[[0, -1]], ylim=(0, 1), xlabel=axis_name(key), ylabel="share of starts")
+    there = {one.kind for one in found}
+    handles = [Patch(color=colour, label=name) for which, (name, colour) in KINDS.items() if which in there]
+    handles += [line for line in above.lines if line.get_gid() == "grazing"]
+    fig.legend(handles=handles, loc="outside lower center", ncols=3)
+    fig.align_ylabels(axes)
+    return fig
+
+
+def _shares(result, order) -> list[Share]:
+    """Every attractor at every value, in the order in which they are stacked."""
+    label, share, period = (result.array(name)[order] for name in ("attractor", "share", "period"))
+    average = result.array("average")[order]
+    rank = list(KINDS)
+    found = []
+    for place in range(len(label)):
+        here = []
+        for number in np.unique(label[place][label[place] >= 0]):
+            members = np.flatnonzero(label[place] == number)
+            first, least = members[0], int(period[place, members].min())
+            which, mean = kind(least, average[place, first]), average[place, members, 0].mean()
+            here.append(Share(place, (order[place], first), which, least, share[place, first], mean))
+        found += sorted(here, key=lambda one: (rank.index(one.kind), one.period, -one.share))
+    return found
+
+
+def _points(ax, result, values, found):
+    """x1 at the section, of one orbit on each attractor; its mean where the points are not stored."""
+    stored = "x1" in result and "phase" not in result
+    ax.set_ylabel(r"$x_1$ at $t = 0$ mod $T$" if stored else r"mean of $x_1$ at $t = 0$ mod $T$")
+    size = np.clip(60 / np.sqrt(len(values)), 1.2, 6) * (0.5 if stored else 1)
+    for which, (_, colour) in KINDS.items():
+        chosen = [one for one in found if one.kind == which and which != "unsettled"]
+        y = [result.one("x1", Point(one.point, one.point[:1], "")) if stored else [one.mean] for one in chosen]
+        x = [np.full(len(points), values[one.place]) for one, points in zip(chosen, y, strict=True)]
+        if chosen:
+            dots = {"markersize": size, "markeredgewidth": 0, "rasterized": True}
+            ax.plot(np.concatenate(x), np.concatenate(y), ".", color=colour, **dots)
+
+
+def _stacks(ax, values, found):
+    """A column for each value, of one part for each attractor; a line between parts of one colour."""
+    borders, top = edges(values), np.zeros(len(values))
+    parts, colours, seams = [], [], []
+    for before, one in itertools.pairwise([None, *found]):
+        left, right, low = borders[one.place], borders[one.place + 1], top[one.place]
+        top[one.place] = high = low + one.share
+        parts.append([(left, low), (right, low), (right, high), (left, high)])
+        colours.append(KINDS[one.kind][1])
+        if before and (before.place, before.kind) == (one.place, one.kind):
+            seams.append([(left, low), (right, low)])
+    ax.add_collection(PolyCollection(parts, facecolors=colours, linewidth=0))
+    ax.add_collection(LineCollection(seams, colors="white", linewidth=0.6))
+
+
+def _name_windows(ax, values, found):
+    """Over each window the period of the motion that most starts reach."""
+    widest = {}  # place -> the attractor
+    for one in found:
+        if one.place not in widest or one.share > widest[one.place].share:
+            widest[one.place] = one
+    borders = edges(values)
+    for period, window in itertools.groupby(widest.values(), key=lambda one: one.period):
+        places = [one.place for one in window]
+        left, right = borders[places[0]], borders[places[-1] + 1]
+        if period > 0 and right - left > NARROW * (borders[-1] - borders[0]):
+            above = {"xy": ((left + right) / 2, 1.0), "xycoords": ax.get_xaxis_transform(), "xytext": (0, 2)}
+            ax.annotate(f"{period}", **above, textcoords="offset points", ha="center", fontsize=7)
+    ax.annotate("period", (1.012, 1.0), (0, 2), xycoords="axes fraction", textcoords="offset points", fontsize=7)

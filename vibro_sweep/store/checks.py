@@ -1,0 +1,86 @@
+"""Going through a file in pieces that fit into memory: counting, and finding what its checksums do not confirm."""
+
+from collections import Counter
+from collections.abc import Iterator
+
+import h5py
+import numpy as np
+
+from vibro_sweep.kernels.status import NOT_COMPUTED
+from vibro_sweep.scene import Scene
+from vibro_sweep.store.layout import coordinates
+
+Piece = tuple[slice, ...]  # the box of a chunk; () for a dataset of one number
+
+
+def pieces(dataset: h5py.Dataset) -> list[Piece]:
+    """The chunks that have their place in the file; where nothing is computed yet there are none."""
+    if not dataset.chunks:
+        return [()]
+    corners = []
+    dataset.id.chunk_iter(lambda chunk: corners.append(chunk.chunk_offset))
+    lengths = list(zip(dataset.chunks, dataset.shape, strict=True))
+    return [
+        tuple(slice(at, min(at + most, end)) for at, (most, end) in zip(corner, lengths, strict=True))
+        for corner in corners
+    ]
+
+
+def statuses(file: h5py.File) -> Counter:
+    """How many orbits have which status; those whose status cannot be read count as not computed."""
+    counts = Counter()
+    for _, values in readable(file["status"]):
+        codes, numbers = np.unique(values, return_counts=True)
+        counts.update(dict(zip(codes.tolist(), numbers.tolist(), strict=True)))
+    counts[NOT_COMPUTED] += file["status"].size - counts.total()
+    return +counts
+
+
+def readable(dataset: h5py.Dataset) -> Iterator[tuple[Piece, np.ndarray]]:
+    """The chunks whose checksums hold, and what is in them."""
+    return ((piece, values) for piece, values in _read(dataset) if values is not None)
+
+
+def damaged(file: h5py.File) -> list[tuple[str, Piece]]:
+    """Every chunk whose checksum is wrong, with the name of its dataset, `status` first; () for all of a dataset."""
+    names = sorted(file, key=lambda name: name != "status")
+    return [(name, piece) for name in names for piece, values in _read(file[name]) if values is None]
+
+
+def _read(dataset: h5py.Dataset) -> Iterator[tuple[Piece, np.ndarray | None]]:
+    """Every chunk and what is in it, None where that cannot be read."""
+    try:
+        found = pieces(dataset)
+    except (OSError, RuntimeError):  # the list of chunks itself is damaged
+        yield (), None
+        return
+    for piece in found:
+        try:
+            values = dataset[piece]
+        except OSError:
+            values = None
+        yield piece, values
+
+
+def mend(file: h5py.File, scene: Scene, name: str, piece: Piece) -> None:
+    """Put a damaged chunk of a coordinate back; of a quantity, make it and its points not computed."""
+    dataset, axes = file[name], coordinates(scene)
+    values = np.full(dataset.chunks, dataset.fillvalue, dataset.dtype)
+    if name in axes:
+        values[: piece[0].stop - piece[0].start] = axes[name][piece]
+    dataset.id.write_direct_chunk(tuple(part.start for part in piece), _with_checksum(values))
+    if name not in axes:
+        file["status"][piece[: file["status"].ndim]] = NOT_COMPUTED
+
+
+def _with_checksum(values: np.ndarray) -> bytes:
+    """A chunk as HDF5 stores it."""
+    with h5py.File("chunk", "w", driver="core", backing_store=False) as file:
+        dataset = file.create_dataset("chunk", data=values, chunks=values.shape, fletcher32=True)
+        return dataset.id.read_direct_chunk((0,) * values.ndim)[1]
+
+
+def summary(found: list[tuple[str, Piece]]) -> str:
+    """Which datasets are damaged, for a message."""
+    chunks = Counter(name for name, _ in found)
+    return ", ".join(f"{name} ({count} chunk{'s' if count > 1 else ''})" for name, count in chunks.items())
