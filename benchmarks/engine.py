@@ -1,4 +1,4 @@
-"""This package as one of the methods: `compute.compute` on a block of one point, as a sweep calls it."""
+"""This package as one of the methods: `compute.compute` on a block of one point with one start or eight."""
 
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
@@ -47,7 +47,7 @@ def _solver(params, states, observe, cells) -> Solver:
                 periods *= 4
 
     def job(periods):
-        block = block_of(scene_text(params, states[0], observe, record=periods))
+        block = block_of(scene_text(params, states[0], observe, record=periods))._replace(starts=states)
 
         def run():
             with grid():
@@ -58,14 +58,19 @@ def _solver(params, states, observe, cells) -> Solver:
 
         return run
 
-    return Solver(impacts, job)
+    return Solver(impacts, job, len(states))
 
 
-def orbit(params, states, cells=None) -> Solver:
-    """The orbit alone."""
+def batch(params, states, cells=None) -> Solver:
+    """Eight orbits, as the points of a sweep."""
     return _solver(params, states, "impacts", cells)
 
 
+def scalar(params, states) -> Solver:
+    """One orbit alone."""
+    return _solver(params, states[:1], "impacts", None)
+
+
 def exponents(params, states) -> Solver:
-    """With the four Lyapunov exponents."""
+    """Eight orbits with the four Lyapunov exponents of each."""
     return _solver(params, states, "impacts, lyapunov", None)

@@ -28,7 +28,7 @@ POINTS = 4000
 SCENE = f"""
 system: {{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}}
 sweep: {{b: {{start: 6.5, stop: 6.9, num: {POINTS}}}}}
-orbit: {{transient: 2000, record: 100}}
+orbit: {{transient: 12000, record: 100}}
 observe: [section, lyapunov, impacts]
 """
 

@@ -43,7 +43,7 @@ TOLERANCES = (1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-16)
 COARSE = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 STEPS = (100, 300, 1000, 3000, 10000)
 
-ENGINE, EXPONENTS = "vibro_sweep", "vibro_sweep, exponents"
+ENGINE, EXPONENTS, ALONE = "vibro_sweep", "vibro_sweep, exponents", "vibro_sweep, one orbit"
 BATCH, SCALAR, BARE = "heyoka, batch of 8", "heyoka, one orbit", "heyoka, batch of 8, no events"
 TANGENT_BATCH, TANGENT = "heyoka, batch of 8, exponents", "heyoka, one orbit, exponents"
 RK4 = "RK4, bisection"
@@ -52,8 +52,9 @@ NEEDS = {"heyoka": "heyoka", "CVODE": "sksundae", "SciPy": "scipy"}  # package, 
 CALLS = "a Python callback at each impact"
 COMPILED = "restarted at each impact; right-hand side compiled, called through Python"
 METHODS = (
-    Method(ENGINE, "engine", "orbit", "cells", (8, 16, 24, 32, 64, 128)),
-    Method(EXPONENTS, "engine", "exponents"),
+    Method(ENGINE, "engine", "batch", "cells", (8, 16, 24, 32, 64, 128), note="eight orbits, as the points of a sweep"),
+    Method(EXPONENTS, "engine", "exponents", note="eight orbits"),
+    Method(ALONE, "engine", "scalar"),
     Method(BATCH, "peer_heyoka", "batch", "tol", TOLERANCES, {"tol": 1e-16}, CALLS),
     Method(SCALAR, "peer_heyoka", "scalar", "tol", TOLERANCES, {"tol": 1e-16}, CALLS),
     Method(BARE, "peer_heyoka", "bare", note="flies through the stops: the floor of the peer"),
