@@ -100,11 +100,11 @@ def impacts_curve(b: float, sizes) -> Curve:
     return Curve("impacts", b, found, seconds)
 
 
-def sweep_text(count: int, record: int) -> str:
+def sweep_text(count: int, record: int, transient: int = 50) -> str:
     """A sweep of so many clearances with everything observed."""
     params, _ = problem.on_attractor(6.69)
     key = f"sweep: {{b: {{start: 6.5, stop: 6.9, num: {count}}}}}"
-    return scene_text(params, (0.0,) * 4, "section, lyapunov, impacts", key, transient=50, record=record)
+    return scene_text(params, (0.0,) * 4, "section, lyapunov, impacts", key, transient=transient, record=record)
 
 
 def peak_bytes() -> float:
@@ -144,7 +144,7 @@ def in_processes(count: int, text: str, workers: int = 1) -> list[tuple[float, f
 
 def parallel(points: int, rounds: int) -> dict[str, float]:
     """Throughput with two workers, and of two processes, over that of one; interleaved, medians."""
-    text = sweep_text(points, 1500)
+    text = sweep_text(points, 100, 20_000)  # a long time to settle, and a file of a few megabytes
     one, two, both = [], [], []
     for _ in range(rounds):
         one.append(in_processes(1, text, 1)[0][0])

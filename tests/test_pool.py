@@ -64,7 +64,7 @@ class Shuffling(Executor):
         limit = time.monotonic() + 10
         while not stop:
             time.sleep(0.001)
-            full = len(self.waiting) >= min(cost.WINDOW * self.num_workers, self.total - len(self.order))
+            full = len(self.waiting) >= min(self.num_workers, self.total - len(self.order))
             if self.waiting and (full or time.monotonic() > limit):
                 future, function, block = self.waiting.pop(choice.randrange(len(self.waiting)))
                 self.order.append(block.box)
@@ -97,7 +97,7 @@ def test_any_order_and_a_window_that_follows_the_workers(tmp_path, monkeypatch):
     monkeypatch.setattr(sweep, "points_per_block", lambda *_: 1)
     with serving(Shuffling(35)) as pool:
         vs.run(scene, tmp_path / "out.h5", executor=pool)
-    assert pool.most == {1: cost.WINDOW, 3: 3 * cost.WINDOW}
+    assert pool.most == {1: 1, 3: 3}
     assert len(pool.order) == 35 and pool.order != sorted(pool.order, key=str)
     assert_same_bits(arrays_of(tmp_path / "out.h5"), arrays_of(tmp_path / "own.h5"))
 
@@ -212,7 +212,7 @@ def test_size_of_a_block():
     assert cost.points_per_block(scene, 10.0, 2, 4.0) == 1
     each = 32 * scene.record  # bytes of the section points
     assert 0.7 < cost.points_per_block(scene, 1e-9, 2, 4.0) * each / cost.BLOCK_BYTES < 1
-    assert 0.7 < cost.points_per_block(scene, 1e-9, 1000, 4.0) * each / (cost.BYTES_UNDER_WAY / 2000) < 1
+    assert 0.7 < cost.points_per_block(scene, 1e-9, 1000, 4.0) * each / (cost.BYTES_UNDER_WAY / 1000) < 1
     small = scene_of(SCENES["plane"])
     assert cost.points_per_block(small, 1e-9, 1, 4.0) == 35 // cost.BLOCKS_PER_WORKER
 

@@ -17,7 +17,6 @@ from vibro_sweep.scene import Scene
 POINTS = 8  # that are measured, spread over the sweep
 STARTS = 4
 MEASURED = 0.05  # seconds that a measurement takes at least, where the scene has as many periods
-WINDOW = 2  # blocks under way for each worker: one that it computes, and the next
 BLOCKS_PER_WORKER = 8  # at least, so that workers end together
 BLOCK_BYTES, BYTES_UNDER_WAY = 32e6, 1e9
 
@@ -81,7 +80,7 @@ def points_per_block(scene: Scene, orbit_seconds: float, workers: int, seconds: 
     orbits = 1 if scene.start.kind == "follow" else scene.n_starts  # of a point in one block
     bytes_each = orbits * (store.size(scene) / scene.n_points + RESULT.itemsize)
     by_time = seconds / (orbits * orbit_seconds)
-    by_memory = min(BLOCK_BYTES, BYTES_UNDER_WAY / (WINDOW * workers)) / bytes_each
+    by_memory = min(BLOCK_BYTES, BYTES_UNDER_WAY / workers) / bytes_each
     fair = scene.n_points / orbits / (BLOCKS_PER_WORKER * workers)
     count = max(1, int(min(by_time, by_memory, fair)))
     return count - count % LANES if count > LANES else count  # that many orbits are computed at once

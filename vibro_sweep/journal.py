@@ -24,7 +24,7 @@ import zlib
 from vibro_sweep import changes
 
 CHECKPOINT_SECONDS = 1.0
-CHECKPOINT_BYTES = 64_000_000
+CHECKPOINT_BYTES = 16_000_000
 
 _START = struct.Struct(">16sQ")  # of the journal: a name that nobody else gives, bytes of the file when it was emptied
 

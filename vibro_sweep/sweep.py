@@ -11,7 +11,7 @@ from pathlib import Path
 from vibro_sweep import store
 from vibro_sweep.blocks import blocks
 from vibro_sweep.compute import RunError
-from vibro_sweep.cost import WINDOW, available_cores, orbit_seconds, points_per_block
+from vibro_sweep.cost import available_cores, orbit_seconds, points_per_block
 from vibro_sweep.kernels.status import MEANINGS, OK
 from vibro_sweep.pool import as_computed
 from vibro_sweep.scene import Scene
@@ -81,7 +81,8 @@ def _results(scene: Scene, file: store.Writer, workers: int, executor: Executor 
     size = points_per_block(scene, cost, _worker_count(pool, workers), THREAD_SECONDS if executor is None else SECONDS)
     todo = (block for block in blocks(scene, size) if file.missing(block.box).any())
     try:
-        yield from as_computed(pool, todo, lambda: WINDOW * _worker_count(pool, workers))
+        # one block for each worker: it gets its next when the one before is safe in the file
+        yield from as_computed(pool, todo, lambda: _worker_count(pool, workers))
     finally:
         if executor is None:
             pool.shutdown(wait=False, cancel_futures=True)

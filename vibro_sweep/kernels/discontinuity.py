@@ -28,6 +28,7 @@ from vibro_sweep.kernels.flight import decaying
 from vibro_sweep.kernels.impacts import count_impact, log_impact
 from vibro_sweep.kernels.jit import jit
 from vibro_sweep.kernels.lanes import alike
+from vibro_sweep.kernels.orthonormal import watch
 
 
 @jit
@@ -140,4 +141,4 @@ def push_tangent(q, R, psi, a, w, v1, late, second, o, t):
         re, ru = (r0 * e0 + r1 * e1) + (r2 * e2 + r3 * e3), (r0 * e1 + r1 * u1) + (r2 * e3 + r3 * u3)
         determinant = (1.0 + pe) * (1.0 - ru) + pu * re
     o.log_volume += np.log(abs(determinant))
-    tangent.watch(t, tangent.only(lane), alike(abs(determinant)))
+    watch(t, tangent.only(lane), alike(abs(determinant)))

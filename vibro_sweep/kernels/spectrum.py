@@ -7,6 +7,7 @@ import numpy as np
 from vibro_sweep.kernels import status, tangent
 from vibro_sweep.kernels.jit import jit
 from vibro_sweep.kernels.orbits import start_count
+from vibro_sweep.kernels.orthonormal import CONDITION
 
 BATCHES = 20  # parts of the recorded time whose scatter gives the error of an exponent
 
@@ -76,7 +77,7 @@ def end_floquet(e, w, results):
                 j += 1
             j += 1
         # two periods may agree better than either is known, by rounding on vectors that lie close together
-        known = 2.0**-52 * tangent.CONDITION / time
+        known = 2.0**-52 * CONDITION / time
         for j in range(4):
             error[j] = max(abs(spectrum[j] - before[j]), known) if spectrum[j] > -np.inf else 0.0
 

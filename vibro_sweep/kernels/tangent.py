@@ -9,16 +9,12 @@ Flight is not applied step by step but collected as four numbers (c_1, s_1, c_2,
 `who` is the mask of the orbits to which something happens; i is one of them.
 """
 
-import math
-
 import numpy as np
 
 from vibro_sweep.kernels.flight import ORDER, decaying
 from vibro_sweep.kernels.jit import entry, jit
 from vibro_sweep.kernels.lanes import LANES, bits, lanes_of, put, record, row, select
-
-CONDITION = 1e3  # bound on the condition number of Z past which it is orthonormalised
-
+from vibro_sweep.kernels.orthonormal import orthonormalise, watch
 
 # Tangent vectors of eight orbits; one column each.
 TANGENT = record(
@@ -219,60 +215,6 @@ def saltate(t, who, steepness):
             after = z + row(to, 4 * m) * to_x1 + row(to, 4 * m + 1) * to_v1 + row(to, 4 * m + 3) * to_v2
             put(Z, 4 * m + j, select(who, after, z))
     watch(t, who, R * R)
-
-
-@jit
-def watch(t, who, determinant):
-    """Orthonormalise, after a step with this |determinant|, if the vectors come to lie too close together."""
-    put(t.volume, 0, select(who, row(t.volume, 0) * determinant, row(t.volume, 0)))
-    lost = row(t.lost, 0)
-    put(t.lost, 0, select(who & (determinant <= 0.0) & (lost < 1.0), 1.0, lost))
-    size = 0.0 * lost
-    for m in range(16):
-        size += row(t.Z, m) * row(t.Z, m)
-    # the condition number is below 2/det (|Z|^2/4)^2
-    close = who & ((row(t.lost, 0) > 0.0) | (size * size > 8.0 * CONDITION * row(t.volume, 0)))
-    if bits(close) != 0:
-        orthonormalise(t, close)
-
-
-@jit
-def orthonormalise(t, who):
-    """Gram-Schmidt: Z = Q R, Z becomes Q and the diagonal of R is added to the growth."""
-    Z = t.Z
-    for i in range(4):
-        z0, z1, z2, z3 = row(Z, i), row(Z, 4 + i), row(Z, 8 + i), row(Z, 12 + i)
-        length = math.sqrt((z0 * z0 + z1 * z1) + (z2 * z2 + z3 * z3))
-        length = select(row(t.lost, 0) >= 4.0 - i, 0.0, length)
-        inverse = select(length > 0.0, 1.0 / length, 0.0)
-        q0, q1, q2, q3 = inverse * z0, inverse * z1, inverse * z2, inverse * z3
-        put(Z, i, select(who, q0, z0))
-        put(Z, 4 + i, select(who, q1, z1))
-        put(Z, 8 + i, select(who, q2, z2))
-        put(Z, 12 + i, select(who, q3, z3))
-        for j in range(i + 1, 4):
-            z0, z1, z2, z3 = row(Z, j), row(Z, 4 + j), row(Z, 8 + j), row(Z, 12 + j)
-            along = (q0 * z0 + q1 * z1) + (q2 * z2 + q3 * z3)
-            put(Z, j, select(who, z0 - along * q0, z0))
-            put(Z, 4 + j, select(who, z1 - along * q1, z1))
-            put(Z, 8 + j, select(who, z2 - along * q2, z2))
-            put(Z, 12 + j, select(who, z3 - along * q3, z3))
-        growth = row(t.growth, i)
-        put(t.growth, i, select(who, growth * length, growth))
-        growth = row(t.growth, i)
-        extreme = bits(who & ~((growth > 1e-100) & (growth < 1e100)))
-        if extreme != 0:
-            take_logs(t, i, extreme)
-    put(t.volume, 0, select(who, 1.0, row(t.volume, 0)))
-
-
-@jit
-def take_logs(t, j, extreme):
-    """Begin products anew before they leave the range of the floats."""
-    for i in range(LANES):
-        if extreme >> i & 1:
-            t.logs[j, i] += np.log(t.growth[j, i])
-            t.growth[j, i] = 1.0
 
 
 @jit
