@@ -30,7 +30,7 @@ COMMAND = "python benchmarks/scaling.py"
 FREE = 6.8  # a clearance at which the orbit from rest swings freely in the end
 FAR = 1e6  # a clearance that nothing reaches
 WORKERS = 1.8
-BLOCKS = 3  # two under way for one worker, and one being written
+BLOCKS = 5  # one computed, one written, and of that what the journal gathers, appends and has not yet put into the file
 SLOPE = 1.1  # of a line in the double logarithmic plot that still counts as straight
 COLOURS = {FREE: "#6e6e78", 6.69: "#b2182b", 3.0: "#2166ac", 1.0: "#4d9221"}
 
