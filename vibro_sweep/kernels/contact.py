@@ -2,12 +2,10 @@
 
 Within a cell x1 is its Taylor polynomial (remainder below rounding), so the gap to a stop is a polynomial g too.
 
-The safe way, `march`: from any point where g > 0 a parabola with the smallest possible second derivative stays below
-g, hence its first root is never beyond the first root of g, and stepping from root to root cannot pass a contact,
-however brief. On a simple root the steps converge cubically; near a graze, where Newton's method crawls, the parabola
-is exact to third order and decides in a few steps.
-
-The fast way, `descend`: Newton's method, where g is known to fall all the way to the root that it finds.
+From any point where g > 0 a parabola with the smallest possible second derivative stays below g, hence its first root
+is never beyond the first root of g, and stepping from root to root cannot pass a contact, however brief. On a simple
+root the steps converge cubically; near a graze, where Newton's method crawls, the parabola is exact to third order and
+decides in a few steps. (Faster, where g is known to fall all the way to the root: `strike.descend`.)
 
 Claim. Let m = ROUNDING * (g(0) + sum |c_n| u^n) be the rounding of the evaluation of g at u. A contact after which g
 falls below -m is never missed; where g stays above m no contact is reported. In between the flight is within rounding
@@ -45,9 +43,9 @@ def parabola_root(gap, rate, curve):
 def first_contact(c, gap, side, third, start, rest):
     """First u in (start, rest] at which x1 has moved by `gap` >= 0 towards the stop on `side` (+1 or -1).
 
-    Infinite if there is none, NaN if `STEPS` do not tell. c: Taylor coefficients of x1 at u = 0; gap 0 is a mass that
-    just leaves the stop. third: bound on the third derivative up to `rest`. start: the motion up to there is known to
-    be free.
+    Infinite if there is none, NaN if `STEPS` steps do not tell. c: Taylor coefficients of x1 at u = 0; gap 0 is a mass
+    that just leaves the stop. third: bound on the third derivative up to `rest`. start: the motion up to there is known
+    to be free.
     """
     u, length = start, rest - start
     for _ in range(STEPS):

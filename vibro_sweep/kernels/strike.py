@@ -13,9 +13,10 @@ from vibro_sweep.kernels.jit import jit
 from vibro_sweep.kernels.lanes import LANES, bits, put, put_transposed, record, row, select, transposed
 
 TAIL = 8  # terms from here on are bounded together
-PUSH, SIDE, OFFSET, SPEED, IMPULSE = 0, 4, 5, 6, 7  # in a row of `hit`: what the impact adds to X at the end of the
-# cell (4 numbers); its side, offset in the cell, v1 before it, and -(1 + R) v1
 LOOKS = 4  # at the gap, each followed by a step towards the contact
+# In a row of `hit`, after what the impact adds to X at the end of the cell (4 numbers): its side, its offset in the
+# cell, v1 before it, and -(1 + R) v1.
+SIDE, OFFSET, SPEED, IMPULSE = 4, 5, 6, 7
 
 # Eight orbits that may strike; one column each.
 STRIKE = record(
@@ -33,7 +34,7 @@ STRIKE = record(
         ("R", float, LANES),
         ("z", float, (LANES, LANES)),  # one row for each orbit, at the beginning of its cell: x1, v1, x2, v2, sin, cos
         ("c", float, (ORDER, LANES)),  # Taylor coefficients of x1
-        ("hit", float, (LANES, LANES)),  # one row for each orbit, as follows
+        ("hit", float, (LANES, LANES)),  # one row for each orbit: its impact
         ("hits", float, (2, LANES)),  # impacts since `start_count`, on the left and on the right
         ("slowest", float, LANES),  # least |v1| before one
         ("miss", float, LANES),  # how far from the stop one was found at most, where `measured`
@@ -161,8 +162,8 @@ def start_count(t):
 def count(t, struck, side, v):
     """Count impacts with these speeds."""
     speed, slowest = abs(v), row(t.slowest, 0)
-    put(t.hits, 0, row(t.hits, 0) + select(struck & (side < 0.0), 1.0, 0.0 * v))
-    put(t.hits, 1, row(t.hits, 1) + select(struck & (side > 0.0), 1.0, 0.0 * v))
+    put(t.hits, 0, row(t.hits, 0) + select(struck & (side < 0.0), 1.0, 0.0))
+    put(t.hits, 1, row(t.hits, 1) + select(struck & (side > 0.0), 1.0, 0.0))
     put(t.slowest, 0, select(struck & (speed < slowest), speed, slowest))
 
 
