@@ -1,0 +1,109 @@
+"""Eight numbers side by side, held against numpy: every operation, on numbers of all sizes, infinities and NaN."""
+
+import math
+
+import numpy as np
+import pytest
+
+from vibro_sweep.kernels.jit import entry
+from vibro_sweep.kernels.lanes import (
+    LANES,
+    LINE,
+    alike,
+    bits,
+    eight,
+    lanes_of,
+    leading,
+    new_lines,
+    put,
+    put_transposed,
+    record,
+    row,
+    select,
+    transposed,
+)
+
+SPECIAL = np.array([0.0, -0.0, 1.0, np.inf, -np.inf, np.nan, 1e-310, -1e300])
+
+
+@entry
+def arithmetic(a, out):
+    x, y = row(a, 0), row(a, 1)
+    put(out, 0, x + y)
+    put(out, 1, x - 2.0)
+    put(out, 2, 3 * y)
+    put(out, 3, x / y)
+    put(out, 4, -x)
+    put(out, 5, abs(y))
+    put(out, 6, math.sqrt(x))
+    total = x
+    total += 1.0
+    put(out, 7, total)
+
+
+@entry
+def comparisons(a, masks, out):
+    x, y = row(a, 0), row(a, 1)
+    masks[0], masks[1], masks[2], masks[3] = bits(x < y), bits(x <= y), bits(x > 1.0), bits(0.0 >= y)
+    masks[4], masks[5] = bits((x < y) & (x > 1.0)), bits((x < y) | ~(x > 1.0))
+    masks[6] = leading(lanes_of(0b00010111))
+    put(out, 0, select(x < y, x, y))
+    put(out, 1, select(x < y, 1.0, alike(2.0)))
+
+
+@entry
+def moved(a, out, turned, back):
+    put(out, 0, eight(a, 3))
+    x = transposed(a)
+    put(turned, 0, x[0])
+    put(turned, 1, x[7])
+    put_transposed(back, (x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]))
+
+
+def numbers(shape, seed):
+    rng = np.random.default_rng(seed)
+    return rng.normal(size=shape) * 10.0 ** rng.integers(-200, 200, shape)
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize("shift", range(LANES))
+def test_arithmetic(shift):
+    for a in (numbers((2, LANES), shift), np.stack([SPECIAL, np.roll(SPECIAL, shift)])):
+        out = np.empty((8, LANES))
+        arithmetic(a, out)
+        x, y = a
+        expected = np.stack([x + y, x - 2.0, 3 * y, x / y, -x, abs(y), np.sqrt(x), x + 1.0])
+        np.testing.assert_array_equal(out, expected)
+
+
+@pytest.mark.parametrize("shift", range(LANES))
+def test_comparisons(shift):
+    a = np.stack([SPECIAL, np.roll(SPECIAL, shift)])
+    masks, out = np.empty(7, np.int64), np.empty((2, LANES))
+    comparisons(a, masks, out)
+    x, y = a
+    tests = (x < y, x <= y, x > 1.0, 0.0 >= y, (x < y) & (x > 1.0), (x < y) | ~(x > 1.0))
+    assert masks[:6].tolist() == [int(np.packbits(test, bitorder="little")[0]) for test in tests]
+    assert masks[6] == 3
+    np.testing.assert_array_equal(out, [np.where(x < y, x, y), np.where(x < y, 1.0, 2.0)])
+
+
+def test_rows_and_columns():
+    a, out, turned, back = (
+        numbers((LANES, LANES), 1),
+        np.empty((1, LANES)),
+        np.empty((2, LANES)),
+        np.empty((LANES, LANES)),
+    )
+    moved(a, out, turned, back)
+    np.testing.assert_array_equal(out[0], a.ravel()[3:11])
+    np.testing.assert_array_equal(turned, a.T[[0, 7]])
+    np.testing.assert_array_equal(back, a)
+
+
+def test_records_begin_with_a_cache_line():
+    kind = record([("x", float, LANES), ("flag", np.bool_)])
+    for _ in range(20):
+        lines = new_lines((3,), kind)
+        assert kind.itemsize % LINE == 0 and lines.ctypes.data % LINE == 0
+        assert not lines["x"].any() and not lines["flag"].any()
