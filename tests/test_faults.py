@@ -406,12 +406,11 @@ def test_a_large_file_is_made_at_once(path):
 
 @pytest.mark.slow
 def test_killed_at_random_moments(monkeypatch):
-    """Ten of the hundred kills of benchmarks/kills.py. Lost is what was not written yet: a block of each worker,
-    and a result of each that waits for its turn."""
+    """Ten of the hundred kills of benchmarks/kills.py: each costs at most the block that each worker is at."""
     monkeypatch.syspath_prepend(Path(__file__).parents[1] / "benchmarks")
     import kills
 
     found, _, same = kills.measure(10, 2, 7)
     assert same
     assert len({kill.when for kill in found}) > 1
-    assert all(0 <= kill.blocks <= 4 for kill in found)
+    assert all(0 <= kill.blocks <= 2 for kill in found)
