@@ -33,8 +33,6 @@ class Block(NamedTuple):
     reverse: bool  # of a `follow`: along falling index
     wanted: frozenset[str]  # datasets
     samples: int
-    section: bool
-    convergence: bool
     expand_at: float | None  # clearance at which the discontinuity mapping is expanded; None: b*
     version: str  # of the program that made it, and is to compute it
 
@@ -104,8 +102,6 @@ def blocks(scene: Scene, points_per_block: int) -> Iterator[Block]:
         "follow": follow,
         "wanted": frozenset(quantities(scene)),
         "samples": scene.trajectory.samples if scene.trajectory else 0,
-        "section": "section" in scene.observe,
-        "convergence": "convergence" in scene.observe,
         "expand_at": scene.expand_at,
         "version": version(),
     }

@@ -50,12 +50,12 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
         steps = np.ascontiguousarray(table.reshape(len(table), -1)[:: -1 if block.reverse else 1])
     else:
         steps = np.repeat(table.reshape(1, -1), n_starts, axis=1)
-    record = plan.record if block.section else 0
+    record = plan.record if "x1" in block.wanted else 0
     arrays = {
         "results": points.new_results(steps.shape),
         "sections": np.full((*steps.shape, record, 4), np.nan),
         "phases": np.full((*steps.shape, record if plan.section_side else 0), np.nan),
-        "running": np.full((*steps.shape, plan.parts if block.convergence else 0, 4), np.nan),
+        "running": np.full((*steps.shape, plan.parts if "lyapunov_running" in block.wanted else 0, 4), np.nan),
     }
     first = starts.reshape(-1, 4)[: steps.shape[1]]
     workspace = _workspace(block, int(table["cells"].max()))
@@ -121,7 +121,7 @@ def _by_name(block: Block, arrays: dict[str, np.ndarray], lead: tuple[int, ...])
     """The kernels' arrays as the file's datasets; lead: shape of the box, and of its starts if there are several."""
     results, sections, phases, running = arrays.values()
     named = {name: results[name].reshape(lead + results[name].shape[2:]) for name in results.dtype.names}
-    if block.section:
+    if "x1" in block.wanted:
         named |= {name: sections[..., i].reshape(lead + sections.shape[2:3]) for i, name in enumerate(STATE)}
     if block.plan.section_side:
         named["phase"] = phases.reshape(lead + phases.shape[2:])
