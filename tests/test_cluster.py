@@ -147,16 +147,22 @@ def test_two_workers_killed_and_one_added(tmp_path, cluster, scene):
     assert_same_bits(arrays_of(output), whole)
 
 
-def test_ctrl_c(tmp_path, cluster, scene):
-    path, whole = scene
-    output = tmp_path / "out.h5"
+def stopped(cluster, path, output, stop):
+    """Exit status and the one line of error of a run on one worker that is stopped in the middle by stop(run)."""
     cluster.worker()
     command = [sys.executable, "-m", "vibro_sweep", *command_of(path, output, cluster)]
     run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     cluster.wait(lambda: done(output))
-    run.send_signal(signal.SIGINT)
-    error = run.communicate(timeout=LIMIT)[1]
-    assert run.returncode == 130 and len(error.splitlines()) == 1
+    stop(run)
+    (error,) = run.communicate(timeout=LIMIT)[1].splitlines()
+    return run.returncode, error
+
+
+def test_ctrl_c(tmp_path, cluster, scene):
+    path, whole = scene
+    output = tmp_path / "out.h5"
+    status, error = stopped(cluster, path, output, lambda run: run.send_signal(signal.SIGINT))
+    assert status == 130
     assert "--resume" in error and f"--scheduler {cluster.address}" in error
     assert main([*command_of(path, output, cluster), "--resume"]) == 0
     assert_same_bits(arrays_of(output), whole)
@@ -166,13 +172,8 @@ def test_ctrl_c(tmp_path, cluster, scene):
 def test_the_scheduler_dies(tmp_path, cluster, scene):
     path, whole = scene
     output = tmp_path / "out.h5"
-    cluster.worker()
-    command = [sys.executable, "-m", "vibro_sweep", *command_of(path, output, cluster)]
-    run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    cluster.wait(lambda: done(output))
-    cluster.processes[0].kill()
-    error = run.communicate(timeout=LIMIT)[1]
-    assert run.returncode == 2 and len(error.splitlines()) == 1
+    status, error = stopped(cluster, path, output, lambda _: cluster.processes[0].kill())
+    assert status == 2
     assert "its scheduler has died" in error and "--resume" in error
     vs.run(vs.load_scene(path), output, mode="resume")
     assert_same_bits(arrays_of(output), whole)
