@@ -13,7 +13,7 @@ from vibro_sweep.kernels.lanes import (
     bits,
     eight,
     lanes_of,
-    leading,
+    leading_lanes,
     new_lines,
     put,
     put_transposed,
@@ -46,7 +46,7 @@ def comparisons(a, masks, out):
     x, y = row(a, 0), row(a, 1)
     masks[0], masks[1], masks[2], masks[3] = bits(x < y), bits(x <= y), bits(x > 1.0), bits(0.0 >= y)
     masks[4], masks[5] = bits((x < y) & (x > 1.0)), bits((x < y) | ~(x > 1.0))
-    masks[6] = leading(lanes_of(0b00010111))
+    masks[6] = leading_lanes(lanes_of(0b00010111))
     put(out, 0, select(x < y, x, y))
     put(out, 1, select(x < y, 1.0, alike(2.0)))
 

@@ -13,7 +13,7 @@ from vibro_sweep.kernels.discontinuity import map_period
 from vibro_sweep.kernels.flight import CHUNK, Flight, load, new_flight
 from vibro_sweep.kernels.impacts import cross_cell, watch_rebound
 from vibro_sweep.kernels.jit import entry, jit
-from vibro_sweep.kernels.lanes import LANES, bits, eight, lanes_of, leading, new_lines, put, row, select
+from vibro_sweep.kernels.lanes import LANES, bits, eight, lanes_of, leading_lanes, new_lines, put, row, select
 from vibro_sweep.kernels.orbits import ORBIT, Records, Stops, add_count, new_records, sample, take_off
 from vibro_sweep.kernels.strike import IMPULSE, OFFSET, SIDE, SPEED, STRIKE, start_count, strike
 from vibro_sweep.kernels.tangent import TANGENT
@@ -47,6 +47,12 @@ def flight_of(e, o):
     """The tables of an orbit's oscillator."""
     n = o.table
     return Flight(e.flights.oscillator[n : n + 1], e.flights.nodes[n], e.flights.scan[n])
+
+
+@jit
+def stops_of(o):
+    """The stops of an orbit."""
+    return Stops(o.stops[0], o.stops[1], o.stops[2])
 
 
 @jit
@@ -93,8 +99,8 @@ def first_suspect(f, o, first):
         b = control_points(scan, p + LANES, q + LANES, y0, y1, y2, y3)
         a_inside, b_inside = (a >= low) & (a <= high), (b >= low) & (b <= high)
         if bits(~(a_inside & b_inside)) != 0:
-            n = leading(a_inside)
-            k = min((p + n + (leading(b_inside) if n == LANES else 0)) // 2, cells)
+            n = leading_lanes(a_inside)
+            k = min((p + n + (leading_lanes(b_inside) if n == LANES else 0)) // 2, cells)
             break
     if k == base:  # X is known there, and better
         return k
@@ -152,7 +158,7 @@ def seek(e, o, section, keep, growth, parts):
         return False
     f = flight_of(e, o)
     q, nodes, X, t = f.oscillator[0], f.nodes, o.X, e.strike[0]
-    stops = Stops(o.stops[0], o.stops[1], o.stops[2])
+    stops = stops_of(o)
     sampled = len(e.records.times) > 0
     while o.done < o.periods and o.status == status.OK:
         if o.offset == 0.0 and o.resting == 0.0:
@@ -175,7 +181,7 @@ def settle(e, o, free, struck):
     """Go on to the end of the cell in which the orbit may have struck."""
     f, t, i = flight_of(e, o), e.strike[0], o.lane
     if not (free or struck):
-        go_long_way(e, o, f, Stops(o.stops[0], o.stops[1], o.stops[2]))
+        go_long_way(e, o, f, stops_of(o))
         return
     q, X, records = f.oscillator[0], o.X, records_of(e, o)
     watched = len(records.times) > 0 or (struck and len(records.impacts) > 0)
@@ -240,7 +246,7 @@ def carry(e, mapped, section, keep, growth, parts):
 def iterate(e, o, section, keep, growth, parts):
     """Carry one orbit over its `periods` of the discontinuity mapping."""
     f = flight_of(e, o)
-    stops, records = Stops(o.stops[0], o.stops[1], o.stops[2]), records_of(e, o)
+    stops, records = stops_of(o), records_of(e, o)
     while o.done < o.periods and o.status == status.OK:
         o.status = map_period(f, stops, o, records, e.tangent[0])
         if o.status == status.OK:
@@ -253,7 +259,7 @@ def map_once(e):
     o, t = e.orbits[0], e.tangent[0]
     f = flight_of(e, o)
     q = f.oscillator[0]
-    map_period(f, Stops(o.stops[0], o.stops[1], o.stops[2]), o, records_of(e, o), t)
+    map_period(f, stops_of(o), o, records_of(e, o), t)
     if t.wanted:
         tangent.fly_to(t, 0, q, f.nodes, q.cells, 0.0)
         tangent.apply_flight(t, tangent.only(0))

@@ -32,7 +32,7 @@ _FOLDER = _cache_folder()
 
 # On the way of every impact: a call would pass the tables' many words, or vectors, through memory.
 _INLINE = frozenset(
-    "flight_of records_of control_points at_node first_suspect fly_to_node end_period seek settle strike load "
+    "flight_of stops_of records_of control_points at_node first_suspect fly_to_node end_period seek settle strike load "
     "parabola_root derivatives descend evaluate count only leap_over join aim".split()
 )
 

@@ -163,7 +163,7 @@ def bits(typingctx, condition):
 
 
 @intrinsic
-def leading(typingctx, condition):
+def leading_lanes(typingctx, condition):
     """How many lanes from the first on a mask holds in."""
     if isinstance(condition, MaskType):
 
