@@ -37,7 +37,7 @@ def test_tables(benchmark):
     names = ("psi", "omega_squared", "mu_m", "mu_k", "zeta", "f2", "omega", "tau")
     cells = int(point["cells"])
     flights = new_flight(1, cells)
-    flight = Flight(flights.oscillator, flights.nodes[0], flights.scan[0])
+    flight = Flight(flights.oscillator[0], flights.nodes[0], flights.scan[0])
     arguments = (flight, np.empty((7, 6)), cells, *(point[name] for name in names))
     tables.build(*arguments)
     benchmark(tables.build, *arguments)

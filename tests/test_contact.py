@@ -19,7 +19,7 @@ from vibro_sweep.kernels import contact, ensemble, impacts, orbits, status
 from vibro_sweep.kernels.flight import ORDER
 from vibro_sweep.kernels.jit import entry
 from vibro_sweep.kernels.lanes import LANES, lanes_of
-from vibro_sweep.kernels.strike import OFFSET, STRIKE, TAIL, strike
+from vibro_sweep.kernels.strike import STRIKE, TAIL, strike
 
 DECADES = np.arange(1, 16)
 EPS = 2.0**-52
@@ -45,8 +45,11 @@ def strikes(t, c, gap, side, third, rest, out):
             n, t.tail[5, i] = first + i, 0.0
             for m in range(ORDER):
                 t.series1[5 * ORDER + m, i] = c[n, m]
-            for m in range(TAIL, ORDER):
-                t.tail[5, i] += m * (m - 1) * (m - 2) * rest[n] ** (m - 3) * abs(c[n, m])
+                weight = m * (m - 1) * (m - 2) * rest[n] ** (m - 3) if m > 2 else 0.0
+                if m < TAIL:
+                    t.third[m, i] = weight
+                else:
+                    t.tail[5, i] += weight * abs(c[n, m])
             t.z[i, 5], t.width[i] = 1.0, rest[n]
             t.right[i] = gap[n] if side[n] > 0 else np.inf
             t.left[i] = -gap[n] if side[n] < 0 else -np.inf
@@ -54,7 +57,7 @@ def strikes(t, c, gap, side, third, rest, out):
         for i in range(LANES):
             n = first + i
             if gap[n] > 0 and (free | struck) >> i & 1:
-                out[n] = np.inf if free >> i & 1 else t.hit[i, OFFSET]
+                out[n] = np.inf if free >> i & 1 else t.offset[i]
                 count += 1
     return count
 
@@ -188,7 +191,8 @@ def first_impacts(e, stops, states, record, suspects, nothing):
     for i in range(len(states)):
         x = states[i]
         orbits.place(o, f.nodes, stops, x[0], x[1], x[2], x[3])
-        suspects[i] = ensemble.first_suspect(f, o, 0)
+        o.suspect = ensemble.first_suspect(f, o)
+        suspects[i] = ensemble.suspect_state(o, f.nodes)[0]
         # the first cell alone, with one event allowed: R = 1 makes a mass that creeps off the stop knock for ever
         orbits.place(o, f.nodes, stops, x[0], x[1], x[2], x[3])
         o.events = impacts.MOST_EVENTS - 1

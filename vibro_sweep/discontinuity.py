@@ -33,7 +33,7 @@ class DiscontinuityMap:
         parameters = system.replace(tau="grazing").parameters()
         self.graze = expansion_point({name: np.array(value) for name, value in parameters.items()}, expand_at)
         self._engine = Engine(system.replace(tau="grazing"), lyapunov=True)
-        oscillator = self._engine.ensemble.flights.oscillator[:1]
+        oscillator = self._engine.ensemble.flights.oscillator[0]
         oscillator["order"], oscillator["graze"] = order, self.graze
         oscillator["stretch"] = oscillator["cells"]  # no looks at the tangent vectors on the way
 
@@ -54,7 +54,7 @@ class DiscontinuityMap:
 
     def jacobian(self, state) -> np.ndarray:
         """(4, 4) derivative of the map, singular like 1/sqrt(psi) at a graze."""
-        return self._engine.ensemble.flights.oscillator["from_frame"][0] @ self._iterate(state, True)[1]
+        return self._engine.ensemble.flights.oscillator["from_frame"][0, 0] @ self._iterate(state, True)[1]
 
 
 def discontinuity_map(system: System, order: int = 1, expand_at: float | None = None) -> DiscontinuityMap:

@@ -13,9 +13,9 @@ from vibro_sweep.kernels.discontinuity import map_period
 from vibro_sweep.kernels.flight import CHUNK, Flight, load, new_flight
 from vibro_sweep.kernels.impacts import cross_cell, watch_rebound
 from vibro_sweep.kernels.jit import entry, jit
-from vibro_sweep.kernels.lanes import LANES, bits, eight, lanes_of, leading_lanes, new_lines, put, row, select
+from vibro_sweep.kernels.lanes import LANES, bits, eight, lanes_of, leading, leading_lanes, new_lines, put, row
 from vibro_sweep.kernels.orbits import ORBIT, Records, Stops, add_count, new_records, sample, take_off
-from vibro_sweep.kernels.strike import IMPULSE, OFFSET, SIDE, SPEED, STRIKE, start_count, strike
+from vibro_sweep.kernels.strike import STRIKE, start_count, strike
 from vibro_sweep.kernels.tangent import TANGENT
 
 
@@ -45,8 +45,8 @@ def new_ensemble(cells: int, impacts: int = 0, rests: int = 0, samples: int = 0)
 @jit
 def flight_of(e, o):
     """The tables of an orbit's oscillator."""
-    n = o.table
-    return Flight(e.flights.oscillator[n : n + 1], e.flights.nodes[n], e.flights.scan[n])
+    n = np.uint64(o.table)  # unsigned: else numba looks for negative indices
+    return Flight(e.flights.oscillator[n], e.flights.nodes[n], e.flights.scan[n])
 
 
 @jit
@@ -77,23 +77,24 @@ def control_points(scan, p, q, y0, y1, y2, y3):
 @jit
 def at_node(nodes, k, base, y0, y1, y2, y3):
     """X - r at node k of a free flight that has X - r = (y0, ..., y3) at node `base`."""
-    E = nodes[np.uint64(k - base)].E  # unsigned: else numba looks for negative indices
+    E = nodes[np.uint64(k - base)].E
     return (row(E, 0) * y0 + row(E, 1) * y1) + (row(E, 2) * y2 + row(E, 3) * y3)
 
 
 @jit
-def first_suspect(f, o, first):
-    """The first cell from `first` on in which contact cannot be excluded; `cells` if there is none. Takes X there.
+def first_suspect(f, o):
+    """The first cell from `o.cell` on in which contact cannot be excluded; `cells` if there is none.
 
     The orbit is in free flight from node `base`. The control points of all cells (tables.py) are looked at, `CHUNK` at
-    a time; an end of a cell may lie outside though all control points before it are inside.
+    a time; an end of a cell may lie outside though all control points before it are inside (`suspect_state`).
     """
-    scan, nodes, cells, bound = f.scan, f.nodes, f.oscillator[0].cells, f.oscillator[0].remainder
+    scan, cells, bound = f.scan, f.oscillator[0].cells, f.oscillator[0].remainder
     base, y0, y1, y2, y3 = o.base, o.y[0], o.y[1], o.y[2], o.y[3]
     margin = (bound[0] * abs(y0) + bound[1] * abs(y1)) + (bound[2] * abs(y2) + bound[3] * abs(y3)) + bound[4]
     low, high = o.stops[0] + margin, o.stops[1] - margin
+    o.low, o.high = low, high
     k = cells
-    for p in range(2 * first, 2 * cells, CHUNK):
+    for p in range(2 * o.cell, 2 * cells, CHUNK):
         q = p - 2 * base
         a = control_points(scan, p, q, y0, y1, y2, y3)
         b = control_points(scan, p + LANES, q + LANES, y0, y1, y2, y3)
@@ -102,20 +103,26 @@ def first_suspect(f, o, first):
             n = leading_lanes(a_inside)
             k = min((p + n + (leading_lanes(b_inside) if n == LANES else 0)) // 2, cells)
             break
-    if k == base:  # X is known there, and better
-        return k
-    put(o.X, 0, at_node(nodes, k, base, y0, y1, y2, y3) + row(nodes[np.uint64(k)].z, 0))
-    if k > first and not (low <= o.X[0] <= high):
-        k -= 1
-        put(o.X, 0, at_node(nodes, k, base, y0, y1, y2, y3) + row(nodes[k].z, 0))
     return k
 
 
 @jit
-def fly_to_node(o, nodes):
-    """X after the free flight from `base` to the cell where the orbit is."""
-    y = at_node(nodes, o.cell, o.base, o.y[0], o.y[1], o.y[2], o.y[3])
-    put(o.X, 0, y + row(nodes[o.cell].z, 0))
+def state_at(o, nodes, k):
+    """X after the free flight from `base` to node k; there it is known already, and better."""
+    if k == o.base:
+        return row(o.X, 0)
+    return at_node(nodes, k, o.base, o.y[0], o.y[1], o.y[2], o.y[3]) + row(nodes[np.uint64(k)].z, 0)
+
+
+@jit
+def suspect_state(o, nodes):
+    """The suspect cell, and X at its beginning; or the cell before, if that end of it lies outside."""
+    k = o.suspect
+    X = state_at(o, nodes, k)
+    if k > o.cell and not o.low <= leading(X) <= o.high:
+        k -= 1
+        X = state_at(o, nodes, k)
+    return k, X
 
 
 @jit
@@ -137,70 +144,95 @@ def end_period(e, o, q, nodes, section, keep, growth, parts):
 
 
 @jit
-def go_long_way(e, o, f, stops):
-    """Follow the orbit to the end of its cell through all that happens."""
+def under_way(o):
+    """Whether an orbit has periods to go."""
+    return o.done < o.periods and o.status == status.OK
+
+
+@jit
+def go_long_way(e, o, f, section, keep, growth, parts):
+    """Follow the orbit through all that happens, to the end of its cell or of the one in which M1 leaves the stop."""
     q = f.oscillator[0]
-    events, rested = o.events, o.offset > 0.0 or o.resting != 0.0
-    o.status = cross_cell(f, stops, o, records_of(e, o), e.tangent[0], o.cell, o.offset)
-    free = not (rested or o.events > events)
-    o.cell += 1
-    if free and q.stiff:
-        fly_to_node(o, f.nodes)
-    if q.stiff or not free:  # the less of a fast mode is left, the tighter the scan
-        take_off(o, f.nodes)
-    o.offset = 0.0
-
-
-@jit
-def seek(e, o, section, keep, growth, parts):
-    """Carry an orbit on to the next cell in which it may strike. Whether there is one."""
-    if o.done >= o.periods or o.status != status.OK:
-        return False
-    f = flight_of(e, o)
-    q, nodes, X, t = f.oscillator[0], f.nodes, o.X, e.strike[0]
-    stops = stops_of(o)
-    sampled = len(e.records.times) > 0
-    while o.done < o.periods and o.status == status.OK:
-        if o.offset == 0.0 and o.resting == 0.0:
-            if not sampled:
-                o.cell = first_suspect(f, o, o.cell)
-            elif o.cell > o.base:
-                fly_to_node(o, nodes)
+    while True:
+        events, rested = o.events, o.offset > 0.0 or o.resting != 0.0
+        o.status = cross_cell(f, stops_of(o), o, records_of(e, o), e.tangent[0], o.cell, o.offset)
+        free = not (rested or o.events > events)
+        o.cell += 1
+        if free and q.stiff:
+            put(o.X, 0, state_at(o, f.nodes, o.cell))
+        if q.stiff or not free:  # the less of a fast mode is left, the tighter the scan
+            take_off(o, f.nodes)
+        o.offset = 0.0
+        if o.resting == 0.0 or o.status != status.OK:
+            return
         if o.cell == q.cells:
-            end_period(e, o, q, nodes, section, keep, growth, parts)
-            continue
-        if o.offset == 0.0 and o.resting == 0.0 and stops.left < X[0] < stops.right and not q.stiff:
-            put(t.z, o.lane, row(X, 0))
-            return True
-        go_long_way(e, o, f, stops)
-    return False
+            end_period(e, o, q, f.nodes, section, keep, growth, parts)
+            if o.done == o.periods:
+                return
 
 
 @jit
-def settle(e, o, free, struck):
+def seek(e, section, keep, growth, parts):
+    """Carry all orbits on to the next cells in which they may strike. Returns who has one, as bits.
+
+    Each step is done for all of them before the next, so that the processor has work while one waits for its numbers.
+    """
+    sampled, t = len(e.records.times) > 0, e.strike[0]
+    waiting = seeking = 0
+    for i in range(LANES):
+        if under_way(e.orbits[i]):
+            seeking |= 1 << i
+    while seeking != 0:
+        for i in range(LANES):
+            if seeking >> i & 1:
+                o = e.orbits[i]
+                o.suspect = o.cell if sampled else first_suspect(flight_of(e, o), o)
+        for i in range(LANES):
+            if seeking >> i & 1:
+                o = e.orbits[i]
+                f = flight_of(e, o)
+                q = f.oscillator[0]
+                k, X = suspect_state(o, f.nodes)
+                o.cell = k
+                if k < q.cells and o.stops[0] < leading(X) < o.stops[1] and not q.stiff:
+                    put(t.z, i, X)
+                    waiting |= 1 << i
+                    seeking ^= 1 << i
+                    continue
+                put(o.X, 0, X)
+                if k == q.cells:
+                    end_period(e, o, q, f.nodes, section, keep, growth, parts)
+                else:
+                    go_long_way(e, o, f, section, keep, growth, parts)
+                if not under_way(o):
+                    seeking ^= 1 << i
+    return waiting
+
+
+@jit
+def settle(e, o, free, struck, section, keep, growth, parts):
     """Go on to the end of the cell in which the orbit may have struck."""
     f, t, i = flight_of(e, o), e.strike[0], o.lane
     if not (free or struck):
-        go_long_way(e, o, f, stops_of(o))
+        put(o.X, 0, row(t.z, i))
+        go_long_way(e, o, f, section, keep, growth, parts)
         return
-    q, X, records = f.oscillator[0], o.X, records_of(e, o)
+    q, records = f.oscillator[0], records_of(e, o)
     watched = len(records.times) > 0 or (struck and len(records.impacts) > 0)
     if watched:
-        load(q.series1, X[0], X[1], X[2], X[3], X[4], X[5], o.c1)
-        load(q.series2, X[0], X[1], X[2], X[3], X[4], X[5], o.c2)
+        z = t.z[i]
+        load(q.series1, z[0], z[1], z[2], z[3], z[4], z[5], o.c1)
+        load(q.series2, z[0], z[1], z[2], z[3], z[4], z[5], o.c2)
     if free:
         if watched:
             sample(o, records, o.cell, 0.0, q.width)
         o.cell += 1
         return
-    hit = t.hit[i]
     if watched:
-        watch_rebound(q, o, records, o.cell, hit[OFFSET], hit[SIDE], hit[SPEED], hit[IMPULSE])
-    put(o.y, 0, row(X, 0) - row(f.nodes[o.cell].z, 0))
+        watch_rebound(q, o, records, o.cell, t.offset[i], t.side[i], t.speed[i], t.impulse[i])
     o.cell += 1
-    o.base = o.cell
-    put(o.y, 0, at_node(f.nodes, 1, 0, o.y[0], o.y[1], o.y[2], o.y[3]) + select(lanes_of(15), row(hit, 0), 0.0))
-    put(X, 0, row(o.y, 0) + row(f.nodes[o.cell].z, 0))
+    put(o.X, 0, row(t.X, i))
+    take_off(o, f.nodes)
 
 
 @entry
@@ -215,18 +247,16 @@ def carry(e, mapped, section, keep, growth, parts):
     for i in range(LANES):
         e.orbits[i].done = e.orbits[i].read = 0
     start_count(s)
-    waiting = free = struck = 0
-    while True:
-        before, waiting = waiting, 0
+    if mapped is not None:
         for i in range(LANES):
-            o, lane = e.orbits[i], 1 << i
-            if mapped is not None:
-                iterate(e, o, section, keep, growth, parts)
-                continue
-            if before & lane:
-                settle(e, o, free & lane, struck & lane)
-            if seek(e, o, section, keep, growth, parts):
-                waiting |= lane
+            iterate(e, e.orbits[i], section, keep, growth, parts)
+        return
+    for i in range(LANES):
+        o = e.orbits[i]
+        if under_way(o) and (o.offset > 0.0 or o.resting != 0.0):
+            go_long_way(e, o, flight_of(e, o), section, keep, growth, parts)
+    while True:
+        waiting = seek(e, section, keep, growth, parts)
         if waiting == 0:
             break
         free, struck = strike(s, lanes_of(waiting))
@@ -235,9 +265,12 @@ def carry(e, mapped, section, keep, growth, parts):
                 if struck >> i & 1:
                     o = e.orbits[i]
                     f = flight_of(e, o)
-                    tangent.aim(t, i, f.oscillator[0], f.nodes, o.cell, s.hit[i, OFFSET])
+                    tangent.aim(t, i, f.oscillator[0], f.nodes, o.cell, s.offset[i])
             tangent.fly(t, lanes_of(struck))
             tangent.saltate(t, lanes_of(struck), row(s.steepness, 0))
+        for i in range(LANES):
+            if waiting >> i & 1:
+                settle(e, e.orbits[i], free >> i & 1, struck >> i & 1, section, keep, growth, parts)
     for i in range(LANES):
         add_count(e.orbits[i], s.hits[0, i], s.hits[1, i], s.slowest[i], s.miss[i])
 

@@ -79,7 +79,7 @@ def new_flight(count: int, cells: int) -> Flight:
     """Space for the tables of so many oscillators with at most so many cells."""
     points = 2 * cells + CHUNK
     return Flight(
-        new_lines(count, OSCILLATOR), new_lines((count, cells + 1), NODE), new_lines((count, 5, points), float)
+        new_lines((count, 1), OSCILLATOR), new_lines((count, cells + 1), NODE), new_lines((count, 5, points), float)
     )
 
 

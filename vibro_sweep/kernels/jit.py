@@ -32,8 +32,9 @@ _FOLDER = _cache_folder()
 
 # On the way of every impact: a call would pass the tables' many words, or vectors, through memory.
 _INLINE = frozenset(
-    "flight_of stops_of records_of control_points at_node first_suspect fly_to_node end_period seek settle strike load "
-    "parabola_root derivatives descend evaluate count only leap_over join aim".split()
+    "flight_of stops_of records_of control_points at_node first_suspect suspect_state state_at under_way end_period "
+    "seek settle strike load derivatives approach descend of_z third_derivative stays_clear take_off evaluate count "
+    "only leap_over join aim".split()
 )
 
 

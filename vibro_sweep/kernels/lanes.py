@@ -163,6 +163,17 @@ def bits(typingctx, condition):
 
 
 @intrinsic
+def leading(typingctx, x):
+    """The first of eight numbers."""
+    if isinstance(x, LanesType):
+
+        def codegen(context, builder, sig, args):
+            return builder.extract_element(args[0], ir.Constant(_INDEX, 0))
+
+        return types.float64(x), codegen
+
+
+@intrinsic
 def leading_lanes(typingctx, condition):
     """How many lanes from the first on a mask holds in."""
     if isinstance(condition, MaskType):

@@ -147,7 +147,7 @@ def apart(section, tolerance, n, p):
 @jit
 def keep_impacts(e, o, omega, section, phase):
     """The logged impacts as points of an impact section; phase: omega t mod 2 pi."""
-    width = e.flights.oscillator[o.table].width
+    width = e.flights.oscillator[o.table, 0].width
     for n in range(min(o.impacts_logged, len(phase))):
         row = e.records.impacts[o.lane, n]
         section[n, 0], section[n, 1] = o.stops[1] if row[3] > 0.0 else o.stops[0], row[4]

@@ -7,7 +7,7 @@ import numpy as np
 from vibro_sweep.kernels import status
 from vibro_sweep.kernels.flight import ORDER, evaluate
 from vibro_sweep.kernels.jit import entry, jit
-from vibro_sweep.kernels.lanes import LANES, put, record, row
+from vibro_sweep.kernels.lanes import LANES, lanes_of, put, record, row, select
 
 
 class Stops(NamedTuple):
@@ -32,6 +32,9 @@ ORBIT = record(
         ("cell", np.int64),
         ("offset", float),
         ("base", np.int64),
+        ("suspect", np.int64),  # the next cell in which contact cannot be excluded, and
+        ("low", float),  # what x1 at its beginning is held against
+        ("high", float),
         ("stops", float, 3),  # left, right, R
         ("resting", float),  # side of the stop that M1 rests on, or 0
         ("c1", float, ORDER),  # Taylor coefficients of x1, or of the free acceleration of M1 at rest
@@ -86,10 +89,11 @@ def place(o, nodes, stops, x1, v1, x2, v2):
 @entry
 def take_off(o, nodes):
     """Free flight begins at the node where X is."""
-    z = nodes[o.cell].z
+    z = row(nodes[o.cell].z, 0)
+    X = select(lanes_of(15), row(o.X, 0), z)  # z ends in sin and cos
     o.base = o.cell
-    o.X[4], o.X[5] = z[4], z[5]
-    put(o.y, 0, row(o.X, 0) - row(z, 0))
+    put(o.X, 0, X)
+    put(o.y, 0, X - z)
 
 
 @jit

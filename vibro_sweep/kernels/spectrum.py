@@ -28,7 +28,7 @@ def end_warm_up(e, count):
         o = e.orbits[i]
         if o.status == status.OK:
             n = o.table
-            tangent.fly_to(t, i, e.flights.oscillator[n], e.flights.nodes[n], 0, 0.0)
+            tangent.fly_to(t, i, e.flights.oscillator[n, 0], e.flights.nodes[n], 0, 0.0)
             tangent.catch_up(t, tangent.only(i))
             if t.lost[i] > 0.0:  # on the way here; what the attractor itself loses shows again
                 tangent.begin(t, i)
@@ -110,7 +110,7 @@ def periods_read(m, parts, periods):
 @jit
 def period_of(e, o):
     """The forcing period T."""
-    q = e.flights.oscillator[o.table]
+    q = e.flights.oscillator[o.table, 0]
     return q.width * q.cells
 
 
@@ -118,7 +118,7 @@ def period_of(e, o):
 def close_spectrum(e, o, w, point, result):
     """The residual of the sum rule; and the spectrum in order."""
     q, spectrum, error, periodic = (
-        e.flights.oscillator[o.table],
+        e.flights.oscillator[o.table, 0],
         result.lyapunov,
         result.lyapunov_error,
         result.period > 0,

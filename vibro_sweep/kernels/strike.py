@@ -8,24 +8,26 @@ import math
 
 import numpy as np
 
+from vibro_sweep.kernels import flight
 from vibro_sweep.kernels.flight import ORDER
 from vibro_sweep.kernels.jit import jit
-from vibro_sweep.kernels.lanes import LANES, bits, put, put_transposed, record, row, select, transposed
+from vibro_sweep.kernels.lanes import LANES, alike, bits, put, put_transposed, record, row, select, transposed
 
 TAIL = 8  # terms from here on are bounded together
+ROUGH = 10  # terms that bring the search so near to the contact that one look with all of them suffices, as a rule
+SIXTH = 1.0 / 6.0  # a product: a division takes as long as the three others of a bound
 LOOKS = 4  # at the gap, each followed by a step towards the contact
-# In a row of `hit`, after what the impact adds to X at the end of the cell (4 numbers): its side, its offset in the
-# cell, v1 before it, and -(1 + R) v1.
-SIDE, OFFSET, SPEED, IMPULSE = 4, 5, 6, 7
 
 # Eight orbits that may strike; one column each.
 STRIKE = record(
     [
         # of the oscillator
         ("series1", float, (6 * ORDER, LANES)),
+        ("end", float, (24, LANES)),  # row 4 j + i: X_i at the cell's end, from z_j at its beginning
         ("impulse1", float, (ORDER, LANES)),  # series of x1, and
         ("impulse2", float, (ORDER, LANES)),  # of x2, after a unit impulse on M1
-        ("tail", float, (6, LANES)),  # bound on what the series from TAIL on adds to the third derivative, for unit z
+        ("third", float, (TAIL, LANES)),  # weights of |c_n| in a bound on the third derivative over the cell
+        ("tail", float, (6, LANES)),  # bound on what the series from TAIL on adds to it, for unit z
         ("width", float, LANES),
         ("zeta", float, LANES),
         ("impulse_third", float, LANES),
@@ -34,11 +36,16 @@ STRIKE = record(
         ("R", float, LANES),
         ("z", float, (LANES, LANES)),  # one row for each orbit, at the beginning of its cell: x1, v1, x2, v2, sin, cos
         ("c", float, (ORDER, LANES)),  # Taylor coefficients of x1
-        ("hit", float, (LANES, LANES)),  # one row for each orbit: its impact
+        # of the impact
+        ("X", float, (LANES, LANES)),  # one row for each orbit: the state at the end of the cell, and four zeros
+        ("side", float, LANES),
+        ("offset", float, LANES),
+        ("speed", float, LANES),  # v1 before it
+        ("impulse", float, LANES),  # -(1 + R) v1
+        ("steepness", float, LANES),  # (a+ + R a-)/v, for the saltation matrix
         ("hits", float, (2, LANES)),  # impacts since `start_count`, on the left and on the right
         ("slowest", float, LANES),  # least |v1| before one
         ("miss", float, LANES),  # how far from the stop one was found at most, where `measured`
-        ("steepness", float, LANES),  # (a+ + R a-)/v, for the saltation matrix
         ("measured", np.bool_),
     ]
 )
@@ -53,87 +60,102 @@ def deal(t, i, q, stops):
             t.series1[ORDER * j + n, i] = q.series1[j, n]
             if n >= TAIL:
                 t.tail[j, i] += q.third[n] * abs(q.series1[j, n])
+        t.end[4 * j, i], t.end[4 * j + 1, i] = flight.evaluate(q.series1[j], q.width)
+        t.end[4 * j + 2, i], t.end[4 * j + 3, i] = flight.evaluate(q.series2[j], q.width)
     for n in range(ORDER):
         t.impulse1[n, i], t.impulse2[n, i] = q.series1[1, n], q.series2[1, n]
+    for n in range(TAIL):
+        t.third[n, i] = q.third[n]
     t.width[i], t.zeta[i], t.impulse_third[i] = q.width, q.zeta, q.impulse_third
     t.left[i], t.right[i], t.R[i] = stops.left, stops.right, stops.R
 
 
 @jit
-def load(t, z, width):
-    """Taylor coefficients of x1; how far x1 can move over the cell, and a bound on its third derivative."""
-    s, c = t.series1, t.c
-    x1, v1, x2, v2, sin, cos = z[0], z[1], z[2], z[3], z[4], z[5]
-    for n in range(ORDER):
-        put(
-            c,
-            n,
-            (row(s, n) * x1 + row(s, ORDER + n) * v1)
-            + (row(s, 2 * ORDER + n) * x2 + row(s, 3 * ORDER + n) * v2)
-            + (row(s, 4 * ORDER + n) * sin + row(s, 5 * ORDER + n) * cos),
-        )
-    third = 0.0 * x1
-    for n in range(TAIL - 1, 2, -1):
-        third = third * width + n * (n - 1.0) * (n - 2.0) * abs(row(c, n))
-    tail = t.tail
-    third += row(tail, 0) * abs(x1) + row(tail, 1) * abs(v1) + row(tail, 2) * abs(x2) + row(tail, 3) * abs(v2)
-    third += row(tail, 4) * abs(sin) + row(tail, 5) * abs(cos)
-    return width * (abs(row(c, 1)) + width * (abs(row(c, 2)) + width * third / 6.0)), third
+def of_z(rows, n, step, z):
+    """A sum of six products: row n of the first of `rows` with x1, that `step` rows on with v1, ..."""
+    return (
+        (row(rows, n) * z[0] + row(rows, n + step) * z[1])
+        + (row(rows, n + 2 * step) * z[2] + row(rows, n + 3 * step) * z[3])
+        + (row(rows, n + 4 * step) * z[4] + row(rows, n + 5 * step) * z[5])
+    )
 
 
 @jit
-def parabola_root(gap, rate, curve):
-    """First d > 0 with gap + rate d + curve d^2/2 = 0, for gap > 0; infinite where there is none."""
-    square = rate * rate - 2.0 * curve * gap
-    root = math.sqrt(select(square < 0.0, 0.0, square))
-    d = select(rate < 0.0, 2.0 * gap / (root - rate), select(curve < 0.0, (rate + root) / -curve, np.inf))
-    return select(square < 0.0, np.inf, d)
+def load(t, z, first, last):
+    """Taylor coefficients of x1."""
+    for n in range(first, last):
+        put(t.c, n, of_z(t.series1, n, ORDER, z))
 
 
 @jit
-def derivatives(c, u):
-    """x1 - c_0 at u, and its derivatives v, a and the jerk. It is u p(u), which keeps its digits when u is tiny."""
-    p = row(c, ORDER - 1)
-    p1, p2, p3 = 0.0 * u, 0.0 * u, 0.0 * u  # the n-th derivative of p over n!: four sums that hide each other's latency
-    for n in range(ORDER - 2, 0, -1):
+def third_derivative(t, z):
+    """A bound on the third derivative of x1 over the cell."""
+    c, weight, tail = t.c, t.third, t.tail
+    even = row(weight, 4) * abs(row(c, 4)) + row(weight, 6) * abs(row(c, 6))
+    odd = row(weight, 3) * abs(row(c, 3)) + row(weight, 5) * abs(row(c, 5)) + row(weight, 7) * abs(row(c, 7))
+    return even + odd + of_z(tail, 0, 1, (abs(z[0]), abs(z[1]), abs(z[2]), abs(z[3]), abs(z[4]), abs(z[5])))
+
+
+@jit
+def stays_clear(gap, rate, curve, width):
+    """Whether gap + rate d + curve d^2/2 > 0 for all d up to `width`, where gap > 0."""
+    falls_short = (rate >= 0.0) | (curve <= 0.0) | (rate + curve * width <= 0.0) | (rate * rate < 2.0 * curve * gap)
+    return falls_short & (gap + width * (rate + 0.5 * width * curve) > 0.0)
+
+
+@jit
+def derivatives(c, u, last):
+    """x1 - c_0 at u, v, a/2 and a sixth of the jerk, from terms before `last`.
+
+    It is u p(u), which keeps its digits when u is tiny. Four sums hide each other's latency.
+    """
+    p = row(c, last - 1)
+    p1, p2, p3 = 0.0 * u, 0.0 * u, 0.0 * u  # the n-th derivative of p over n!
+    for n in range(last - 2, 0, -1):
         p3 = p3 * u + p2
         p2 = p2 * u + p1
         p1 = p1 * u + p
         p = p * u + row(c, n)
-    return u * p, p + u * p1, 2.0 * (p1 + u * p2), 6.0 * (p2 + u * p3)
+    return u * p, p + u * p1, p1 + u * p2, p2 + u * p3
 
 
 @jit
-def descend(c, gap, side, third, first, width, wanted):
-    """The contact d in (0, width] by Chebyshev's method, where the gap g falls from 0 to there without fail.
-
-    first: the earliest at which it can be. Returns d, v and a there, and which of the `wanted` lanes found it.
-    """
-    rate, curve, jerk = -side * row(c, 1), -2.0 * side * row(c, 2), -6.0 * side * row(c, 3)
-    slope = rate + first * (curve + 0.5 * first * jerk)
-    u = first - (gap + first * (rate + first * (0.5 * curve + first * jerk / 6.0))) / slope
-    u = select((slope < 0.0) & (u > 0.0), u, first)
+def approach(c, gap, side, rate, curve, width):
+    """Near the contact: from the root of a parabola, a step of fourth order."""
+    square = rate * rate - 2.0 * curve * gap
+    u = 2.0 * gap / (math.sqrt(select(square > 0.0, square, 0.0)) - rate)
     u = select(u <= width, u, width)
-    steepest = abs(curve) + third * width  # bound on the second derivative of g
+    x, v, a, jerk = derivatives(c, u, ROUGH)
+    inverse = 1.0 / v
+    newton, a, jerk = (side * gap - x) * inverse, a * inverse, jerk * inverse
+    after = u + newton * (1.0 - newton * (a - newton * (2.0 * a * a - jerk)))
+    return select((side * v > 0.0) & (after > 0.0) & (after <= width), after, u)
+
+
+@jit
+def descend(c, u, gap, side, steepest, width, wanted):
+    """The contact d in (0, width], from near it, by Chebyshev's method.
+
+    steepest: bound on the second derivative. Returns d, v and a there, and which of the `wanted` lanes found it.
+    """
     d, speed, acceleration = u, u, u
     found = wanted & ~wanted
     for _ in range(LOOKS):
-        x, v, a, jerk = derivatives(c, u)
+        x, v, a, jerk = derivatives(c, u, ORDER)
         inverse = 1.0 / v
         newton = (side * gap - x) * inverse
-        step = newton - 0.5 * a * inverse * newton * newton
+        step = newton - a * inverse * newton * newton
         after = u + step
         wanted = wanted & (side * v > 0.0) & (after > 0.0) & (after <= width)
         now = wanted & (newton * newton * steepest * abs(inverse) <= 2.0**-53 * u)  # what Newton's method leaves
         d = select(now, after, d)
-        speed = select(now, v + step * (a + 0.5 * step * jerk), speed)
-        acceleration = select(now, a + step * jerk, acceleration)
+        speed = select(now, v + step * (2.0 * a + 3.0 * step * jerk), speed)
+        acceleration = select(now, 2.0 * a + 6.0 * step * jerk, acceleration)
         found, wanted = found | now, wanted & ~now
         if bits(wanted) == 0:
             break
         u = select(wanted, after, u)
-    falls = rate + select(curve > 0.0, curve, 0.0) * d + 0.5 * third * d * d < 0.0
-    return d, speed, acceleration, found & falls
+    return d, speed, acceleration, found
 
 
 @jit
@@ -175,32 +197,52 @@ def strike(t, waiting):
     """
     z = transposed(t.z)
     c, width, x1, R = t.c, row(t.width, 0), z[0], row(t.R, 0)
-    reach, third = load(t, z, width)
+    load(t, z, 0, TAIL)
+    third = third_derivative(t, z)
+    reach = width * (abs(row(c, 1)) + width * (abs(row(c, 2)) + width * third * SIXTH))  # how far x1 can move
     right, left = row(t.right, 0) - x1, x1 - row(t.left, 0)
     near_right, near_left = right <= reach, left <= reach
     side, gap = select(near_right, 1.0, -1.0), select(near_right, right, left)
     rate, curve = -side * row(c, 1), -2.0 * side * row(c, 2)
-    first = parabola_root(gap, rate, curve - third * width / 3.0)
-    free = ~(near_right | near_left) | (~(near_right & near_left) & (first >= width))
-    free = free & waiting
-    if bits(waiting & ~free) == 0:
+    clear = stays_clear(gap, rate, curve - 2.0 * third * width * SIXTH, width)
+    free = waiting & (~(near_right | near_left) | (~(near_right & near_left) & clear))
+    wanted = waiting & ~free & (rate < 0.0) & ~(near_right & near_left)
+    if bits(wanted) == 0:
         return bits(free), 0
-    d, v, a, struck = descend(
-        c, gap, side, third, first, width, waiting & ~free & (rate < 0.0) & ~(near_right & near_left)
-    )
+    load(t, z, TAIL, ORDER)
+    u = approach(c, gap, side, rate, curve, width)
+    d, v, a, struck = descend(c, u, gap, side, abs(curve) + third * width, width, wanted)
+    falls = rate + select(curve > 0.0, curve, 0.0) * d + 0.5 * third * d * d < 0.0  # all the way to the contact
     rest, impulse = width - d, -(1.0 + R) * v
     after = a - 2.0 * row(t.zeta, 0) * impulse
     third += abs(impulse) * row(t.impulse_third, 0)
     rebound, back = R * abs(v), side * after
-    stays_off = rebound > 0.5 * rest * (select(back > 0.0, back, 0.0) + rest * third / 3.0)
-    stays_short = rest * (rebound + 0.5 * rest * (abs(after) + rest * third / 3.0)) < row(t.right, 0) - row(t.left, 0)
-    struck = struck & (side * v > 0.0) & stays_off & stays_short
+    stays_off = rebound > rest * (0.5 * select(back > 0.0, back, 0.0) + rest * third * SIXTH)
+    stays_short = rest * (rebound + rest * (0.5 * abs(after) + rest * third * SIXTH)) < row(t.right, 0) - row(t.left, 0)
+    struck = struck & falls & (side * v > 0.0) & stays_off & stays_short
     count(t, struck, side, v)
     if t.measured:
-        miss = abs(gap - side * derivatives(c, d)[0])
+        miss = abs(gap - side * derivatives(c, d, ORDER)[0])
         put(t.miss, 0, select(struck & (miss > row(t.miss, 0)), miss, row(t.miss, 0)))
+    put(t.side, 0, side)
+    put(t.offset, 0, d)
+    put(t.speed, 0, v)
+    put(t.impulse, 0, impulse)
     put(t.steepness, 0, (after + R * a) / v)
-    pushed1, pushed2 = evaluate(t.impulse1, rest), evaluate(t.impulse2, rest)
-    push = impulse * pushed1[0], impulse * pushed1[1], impulse * pushed2[0], impulse * pushed2[1]
-    put_transposed(t.hit, (*push, side, d, v, impulse))
+    x, v = evaluate(t.impulse1, rest)
+    x2, v2 = evaluate(t.impulse2, rest)
+    nothing = alike(0.0)
+    put_transposed(
+        t.X,
+        (
+            of_z(t.end, 0, 4, z) + impulse * x,
+            of_z(t.end, 1, 4, z) + impulse * v,
+            of_z(t.end, 2, 4, z) + impulse * x2,
+            of_z(t.end, 3, 4, z) + impulse * v2,
+            nothing,
+            nothing,
+            nothing,
+            nothing,
+        ),
+    )
     return bits(free), bits(struck)

@@ -15,7 +15,7 @@ def follow(w, periods, out):
     """The motion of the first orbit over the next `periods`, sampled uniformly from section to section: out (m, 4)."""
     e = w.ensemble
     o, records, last = e.orbits[0], e.records, len(out) - 1
-    q = e.flights.oscillator[o.table]
+    q = e.flights.oscillator[o.table, 0]
     o.periods = 1
     i = 0
     for n in range(periods):
