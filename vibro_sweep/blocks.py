@@ -70,6 +70,7 @@ def plan_of(scene: Scene) -> points.Plan:
         transient=scene.transient,
         record=scene.record,
         warm_up=min(scene.transient, points.WARM_UP) if lyapunov else 0,
+        states=lyapunov or "section" in scene.observe,
         lyapunov=lyapunov,
         impacts="impacts" in scene.observe,
         attractors="attractors" in scene.observe,

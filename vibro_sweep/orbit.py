@@ -32,6 +32,7 @@ def _plan(system: System, transient: int = 0, record: int = 0, lyapunov: bool = 
         transient=transient,
         record=record,
         warm_up=min(transient, points.WARM_UP) if lyapunov else 0,
+        states=lyapunov,
         lyapunov=lyapunov,
         impacts=False,
         attractors=False,

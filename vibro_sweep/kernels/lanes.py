@@ -237,6 +237,21 @@ def put(typingctx, array, n, value):
         return types.void(array, n, value), codegen
 
 
+@intrinsic
+def put_four(typingctx, array, n, x):
+    """The n-th four numbers of a contiguous array become the first four of x."""
+    if isinstance(array, types.Array) and isinstance(x, LanesType):
+
+        def codegen(context, builder, sig, args):
+            first = ir.Constant(ir.VectorType(_INDEX, 4), [0, 1, 2, 3])
+            value = builder.shuffle_vector(args[2], args[2], first)
+            place = _address(context, builder, sig.args, args, 4)
+            builder.store(value, builder.bitcast(place, value.type.as_pointer()), align=8)
+            return context.get_dummy_value()
+
+        return types.void(array, n, x), codegen
+
+
 def _transpose(builder, rows):
     """Eight vectors as the columns of eight others: neighbours, then pairs, then fours change places."""
     kind = ir.VectorType(_INDEX, LANES)

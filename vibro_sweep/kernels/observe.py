@@ -88,7 +88,9 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
         for n in range(len(section)):
             for j in range(4):
                 section[n, j] = states[n, j]
-    result.resting, result.period = o.resting, find_period(states, w.axes[o.lane])
+    result.resting = o.resting
+    if plan.states:
+        result.period = find_period(states, w.axes[o.lane])
     for n in range(len(running)):
         for j in range(4):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
@@ -121,8 +123,10 @@ def find_period(section, tolerance):
     count, largest = len(section), 0.0
     for i in range(4):
         tolerance[i] = 0.0
-        for n in range(count):
+    for n in range(count):
+        for i in range(4):
             tolerance[i] = max(tolerance[i], abs(section[n, i]))
+    for i in range(4):
         largest = max(largest, tolerance[i])
     for i in range(4):
         tolerance[i] = REPEAT * max(tolerance[i], 1e-3 * largest)

@@ -67,7 +67,8 @@ class Plan(NamedTuple):
     transient: int
     record: int
     warm_up: int  # periods of the transient with tangent vectors
-    lyapunov: bool
+    states: bool  # of every recorded section, for the scene or to find the period of the orbit
+    lyapunov: bool  # with `states`
     impacts: bool
     attractors: bool  # with `lyapunov`
     right: bool
@@ -93,7 +94,7 @@ def new_workspace(plan: Plan, cells: int, samples: int) -> Workspace:
     return Workspace(
         new_ensemble(cells, impacts=plan.record if plan.section_side else 0, samples=samples),
         np.zeros(LANES, POINT),
-        np.empty((LANES, plan.record, 4)),
+        np.empty((LANES, plan.record if plan.states else 0, 4)),
         np.empty((LANES, plan.parts, 4)),
         np.empty((LANES, 16)),
         np.empty((7, 6)),
@@ -167,7 +168,7 @@ def run_points(points, starts, results, sections, phases, running, w, plan, mapp
             for phase in range(PHASES):
                 parts = begin_phase(e, w, plan, phase, row)
                 if parts >= 0:
-                    carry(e, mapped, w.section, phase == RECORD, w.growth, parts)
+                    carry(e, mapped, w.section, phase == RECORD and plan.states, w.growth, parts)
                     end_phase(
                         e, w, plan, phase, rows, row,
                         sections[n, first:last], phases[n, first:last], running[n, first:last],

@@ -109,9 +109,11 @@ def derivatives(c, u, last):
 
     It is u p(u), which keeps its digits when u is tiny. Four sums hide each other's latency.
     """
-    p = row(c, last - 1)
-    p1, p2, p3 = 0.0 * u, 0.0 * u, 0.0 * u  # the n-th derivative of p over n!
-    for n in range(last - 2, 0, -1):
+    p3 = p2 = p1 = row(c, last - 1)  # the n-th derivative of p over n!
+    p = p1 * u + row(c, last - 2)
+    p1, p = p1 * u + p, p * u + row(c, last - 3)
+    p2, p1, p = p2 * u + p1, p1 * u + p, p * u + row(c, last - 4)
+    for n in range(last - 5, 0, -1):
         p3 = p3 * u + p2
         p2 = p2 * u + p1
         p1 = p1 * u + p
@@ -120,11 +122,16 @@ def derivatives(c, u, last):
 
 
 @jit
-def approach(c, gap, side, rate, curve, width):
-    """Near the contact: from the root of a parabola, a step of fourth order."""
+def parabola_root(gap, rate, curve, width):
+    """Where gap + rate d + curve d^2/2 = 0, or is least; no further than `width`."""
     square = rate * rate - 2.0 * curve * gap
     u = 2.0 * gap / (math.sqrt(select(square > 0.0, square, 0.0)) - rate)
-    u = select(u <= width, u, width)
+    return select(u <= width, u, width)
+
+
+@jit
+def approach(c, u, gap, side, width):
+    """Near the contact, by a step of fourth order."""
     x, v, a, jerk = derivatives(c, u, ROUGH)
     inverse = 1.0 / v
     newton, a, jerk = (side * gap - x) * inverse, a * inverse, jerk * inverse
@@ -146,15 +153,15 @@ def descend(c, u, gap, side, steepest, width, wanted):
         newton = (side * gap - x) * inverse
         step = newton - a * inverse * newton * newton
         after = u + step
+        d = select(wanted, after, d)
+        speed = select(wanted, v + step * (2.0 * a + 3.0 * step * jerk), speed)
+        acceleration = select(wanted, 2.0 * a + 6.0 * step * jerk, acceleration)
         wanted = wanted & (side * v > 0.0) & (after > 0.0) & (after <= width)
         now = wanted & (newton * newton * steepest * abs(inverse) <= 2.0**-53 * u)  # what Newton's method leaves
-        d = select(now, after, d)
-        speed = select(now, v + step * (2.0 * a + 3.0 * step * jerk), speed)
-        acceleration = select(now, 2.0 * a + 6.0 * step * jerk, acceleration)
         found, wanted = found | now, wanted & ~now
         if bits(wanted) == 0:
             break
-        u = select(wanted, after, u)
+        u = d
     return d, speed, acceleration, found
 
 
@@ -162,9 +169,9 @@ def descend(c, u, gap, side, steepest, width, wanted):
 def evaluate(c, u):
     """Polynomial at u, and its derivative; even and odd terms go side by side."""
     v = u * u
-    odd, even = row(c, ORDER - 1), row(c, ORDER - 2)
-    slope_odd, slope_even = 0.0 * u, 0.0 * u
-    for n in range(ORDER - 4, -1, -2):
+    slope_odd, slope_even = row(c, ORDER - 1), row(c, ORDER - 2)
+    odd, even = slope_odd * v + row(c, ORDER - 3), slope_even * v + row(c, ORDER - 4)
+    for n in range(ORDER - 6, -1, -2):
         slope_odd = slope_odd * v + odd
         odd = odd * v + row(c, n + 1)
         slope_even = slope_even * v + even
@@ -196,21 +203,21 @@ def strike(t, waiting):
     The motion goes on as if there were no stop, and what the impulse -(1 + R) v1 does is added at the cell's end.
     """
     z = transposed(t.z)
-    c, width, x1, R = t.c, row(t.width, 0), z[0], row(t.R, 0)
-    load(t, z, 0, TAIL)
-    third = third_derivative(t, z)
-    reach = width * (abs(row(c, 1)) + width * (abs(row(c, 2)) + width * third * SIXTH))  # how far x1 can move
+    c, width, x1, v1, R = t.c, row(t.width, 0), z[0], z[1], row(t.R, 0)
+    load(t, z, 1, 3)
     right, left = row(t.right, 0) - x1, x1 - row(t.left, 0)
-    near_right, near_left = right <= reach, left <= reach
-    side, gap = select(near_right, 1.0, -1.0), select(near_right, right, left)
-    rate, curve = -side * row(c, 1), -2.0 * side * row(c, 2)
-    clear = stays_clear(gap, rate, curve - 2.0 * third * width * SIXTH, width)
-    free = waiting & (~(near_right | near_left) | (~(near_right & near_left) & clear))
-    wanted = waiting & ~free & (rate < 0.0) & ~(near_right & near_left)
+    side, gap, behind = select(v1 > 0.0, 1.0, -1.0), select(v1 > 0.0, right, left), select(v1 > 0.0, left, right)
+    rate, curve = -abs(v1), -2.0 * side * row(c, 2)
+    u = parabola_root(gap, rate, curve, width)
+    load(t, z, 3, ORDER)
+    third = third_derivative(t, z)
+    bend = 2.0 * third * width * SIXTH
+    clear = stays_clear(gap, rate, curve - bend, width)
+    safe = waiting & stays_clear(behind, -rate, -curve - bend, width)
+    free, wanted = safe & clear, safe & ~clear & (rate < 0.0)
     if bits(wanted) == 0:
         return bits(free), 0
-    load(t, z, TAIL, ORDER)
-    u = approach(c, gap, side, rate, curve, width)
+    u = approach(c, u, gap, side, width)
     d, v, a, struck = descend(c, u, gap, side, abs(curve) + third * width, width, wanted)
     falls = rate + select(curve > 0.0, curve, 0.0) * d + 0.5 * third * d * d < 0.0  # all the way to the contact
     rest, impulse = width - d, -(1.0 + R) * v
