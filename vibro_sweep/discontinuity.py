@@ -35,7 +35,7 @@ class DiscontinuityMap:
         self._engine = Engine(system.replace(tau="grazing"), lyapunov=True)
         oscillator = self._engine.ensemble.flights.oscillator[0]
         oscillator["order"], oscillator["graze"] = order, self.graze
-        oscillator["stretch"] = oscillator["cells"]  # no looks at the tangent vectors on the way
+        oscillator["stretch"] = oscillator["leash"] = oscillator["cells"]  # no looks at the tangent vectors on the way
 
     def _iterate(self, state, with_tangent: bool):
         engine, vectors = self._engine, self._engine.ensemble.tangent[0]

@@ -124,6 +124,7 @@ def push_tangent(q, R, psi, a, w, v1, late, second, o, t):
     e0, e1, e2, e3, u1, u3 = impulse(q, -late)  # u = (e1, u1, e3, u3)
     Z, lane, back, to = t.Z, o.lane, q.from_frame, q.to_frame
     tangent.apply_flight(t, tangent.only(lane))
+    t.mixed[lane] = 1.0
     for j in range(4):
         z0, z1, z2, z3 = Z[j, lane], Z[4 + j, lane], Z[8 + j, lane], Z[12 + j, lane]
         x1 = back[0, 0] * z0 + back[0, 2] * z2

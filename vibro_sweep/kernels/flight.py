@@ -44,7 +44,8 @@ OSCILLATOR = record(
         ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell
         ("frame_series", float, (ORDER, 4)),  # of tangent.py, like all that follow
         ("vanishing", np.int64),  # directions that a flight over a cell takes below the rounding of the others
-        ("stretch", np.int64),  # cells that may be flown between looks at the tangent vectors
+        ("stretch", np.int64),  # cells that may be flown between looks at the tangent vectors, and
+        ("leash", np.int64),  # while each lies in the plane of one mode
         ("frame_scale", float, 2),  # g_j
         ("frame_square", float, 2),  # omega_dj^2
         ("to_frame", float, (4, 4)),

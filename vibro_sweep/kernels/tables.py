@@ -15,6 +15,8 @@ STIFF_CELLS = 2048
 LONGEST = 1e7  # the fastest rate times the period beyond which a system is refused: two seconds of work at worst
 VANISHED = 30.0  # logarithm of what is below rounding
 STRETCH = 4.0  # logarithm of what free flight may do to a tangent vector and not to another: two digits are lost
+LOST = 200.0  # logarithm of what free flight may do to all of them
+MOST_STRETCH = 1_000_000_000
 
 
 def cells_needed(omega_squared: np.ndarray, zeta: np.ndarray, omega: np.ndarray) -> np.ndarray:
@@ -234,7 +236,7 @@ def fill_frame(q, psi, omega_squared, mu_m):
     series, to_frame, from_frame = q.frame_series, q.to_frame, q.from_frame
     clear(to_frame)
     clear(from_frame)
-    fastest, slowest, q.vanishing = 0.0, np.inf, 0
+    fastest, slowest, turning, q.vanishing = 0.0, np.inf, True, 0
     for j in range(2):
         eta = q.zeta * omega_squared[j]
         square = omega_squared[j] - eta * eta
@@ -244,6 +246,7 @@ def fill_frame(q, psi, omega_squared, mu_m):
         slowest = min(slowest, eta if square >= 0.0 else omega_squared[j] / (eta + math.sqrt(-square)))
         # near critical damping the plane shears instead of turning; any scale then serves
         scale = max(math.sqrt(abs(square)), 1e-3 * math.sqrt(omega_squared[j]))
+        turning = turning and square > 1e-6 * omega_squared[j]
         q.frame_square[j], q.frame_scale[j] = square, scale
         series[0, 2 * j], series[1, 2 * j] = 1.0, -eta
         series[0, 2 * j + 1], series[1, 2 * j + 1] = 0.0, 1.0
@@ -260,7 +263,10 @@ def fill_frame(q, psi, omega_squared, mu_m):
             from_frame[2 * i + 1, 2 * j] = -eta * psi[i, j] / scale
             from_frame[2 * i + 1, 2 * j + 1] = psi[i, j]
     apart = (fastest - slowest) * q.width
-    q.stretch = max(1, int(STRETCH / apart)) if apart > 1e-9 * STRETCH else 1_000_000_000
+    q.stretch = max(1, int(STRETCH / apart)) if apart > 1e-9 * STRETCH else MOST_STRETCH
+    q.leash = q.stretch
+    if turning:  # nothing then but the range of the floats asks for a look
+        q.leash = max(q.stretch, int(min(LOST / (fastest * q.width), MOST_STRETCH)) if fastest > 0.0 else MOST_STRETCH)
 
 
 @entry

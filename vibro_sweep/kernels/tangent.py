@@ -35,6 +35,7 @@ TANGENT = record(
         ("part", float, LANES),  # of a cell, to fly after it
         ("flight", float, (4, LANES)),  # c_1, s_1, c_2, s_2 of the flight since Z was last touched
         ("stretch", np.int64, LANES),  # whole cells of that flight
+        ("mixed", float, LANES),  # 0: each vector lies in the plane of one mode, where free flight turns it
         ("Z", float, (16, LANES)),  # columns of Z (4, 4) are vectors
         ("volume", float, LANES),  # |det Z|, from the identity det S = R^2
         ("growth", float, (4, LANES)),  # products of the diagonals of R in Z = Q R
@@ -71,7 +72,7 @@ def begin(t, i):
         for j in range(4):
             t.Z[4 * m + j, i] = 1.0 if m == j else 0.0
         t.flight[m, i] = 1.0 - m % 2
-    t.lost[i], t.volume[i], t.offset[i] = 0.0, 1.0, 0.0
+    t.lost[i], t.volume[i], t.offset[i], t.mixed[i] = 0.0, 1.0, 0.0, 0.0
     t.cell[i] = t.stretch[i] = 0
     start_record(t, i)
 
@@ -130,10 +131,17 @@ def decay_over(t, i, q, u):
 
 
 @jit
+def most_cells(t, i, q):
+    """Cells that may be flown between looks at the vectors."""
+    return q.stretch if t.mixed[i] > 0.0 else q.leash
+
+
+@jit
 def stop_over(t, i, q, nodes, cells):
     """Fly on, with looks at the vectors, or all would become the one that decays least. Returns the cells left."""
-    while t.stretch[i] + cells > q.stretch:
-        part = q.stretch - t.stretch[i]
+    limit = most_cells(t, i, q)
+    while t.stretch[i] + cells > limit:
+        part = limit - t.stretch[i]
         leap_over(t, i, q, nodes, part)
         fly(t, only(i))
         catch_up(t, only(i))
@@ -149,7 +157,7 @@ def aim(t, i, q, nodes, k, s):
         cells -= 1
         u += q.width
     t.cell[i], t.offset[i] = k, s
-    if t.stretch[i] + cells > q.stretch:
+    if t.stretch[i] + cells > most_cells(t, i, q):
         cells = stop_over(t, i, q, nodes, cells)
     t.stretch[i] += cells
     leap_over(t, i, q, nodes, cells)
@@ -214,6 +222,7 @@ def saltate(t, who, steepness):
             z = row(Z, 4 * m + j)
             after = z + row(to, 4 * m) * to_x1 + row(to, 4 * m + 1) * to_v1 + row(to, 4 * m + 3) * to_v2
             put(Z, 4 * m + j, select(who, after, z))
+    put(t.mixed, 0, select(who, 1.0, row(t.mixed, 0)))
     watch(t, who, R * R)
 
 
@@ -229,6 +238,7 @@ def rest(t, i):
 def release(t, i, xx, xv, vx, vv):
     """Z after a rest on the stop during which (dx2, dv2) is multiplied by ((xx, xv), (vx, vv))."""
     Z, back, to = t.Z, t.from_frame, t.to_frame
+    t.mixed[i] = 1.0
     for j in range(4):
         z0, z1, z2, z3 = Z[j, i], Z[4 + j, i], Z[8 + j, i], Z[12 + j, i]
         dx = back[8, i] * z0 + back[10, i] * z2
