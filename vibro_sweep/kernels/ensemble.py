@@ -266,7 +266,7 @@ def carry(e, mapped, section, keep, growth, parts):
                     f = flight_of(e, o)
                     tangent.aim(t, i, f.oscillator[0], f.nodes, o.cell, s.offset[i])
             tangent.fly(t, lanes_of(struck))
-            tangent.saltate(t, lanes_of(struck), row(s.steepness, 0))
+            tangent.saltate(t, lanes_of(struck), row(s.jump, 0) / row(s.speed, 0))
         for i in range(LANES):
             if waiting >> i & 1:
                 settle(e, e.orbits[i], free >> i & 1, struck >> i & 1, section, keep, growth, parts)

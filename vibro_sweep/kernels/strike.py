@@ -42,7 +42,7 @@ STRIKE = record(
         ("offset", float, LANES),
         ("speed", float, LANES),  # v1 before it
         ("impulse", float, LANES),  # -(1 + R) v1
-        ("steepness", float, LANES),  # (a+ + R a-)/v, for the saltation matrix
+        ("jump", float, LANES),  # a+ + R a-, for the saltation matrix
         ("hits", float, (2, LANES)),  # impacts since `start_count`, on the left and on the right
         ("slowest", float, LANES),  # least |v1| before one
         ("miss", float, LANES),  # how far from the stop one was found at most, where `measured`
@@ -204,7 +204,8 @@ def strike(t, waiting):
     """
     z = transposed(t.z)
     c, width, x1, v1, R = t.c, row(t.width, 0), z[0], z[1], row(t.R, 0)
-    load(t, z, 1, 3)
+    put(c, 1, v1)
+    load(t, z, 2, 3)
     right, left = row(t.right, 0) - x1, x1 - row(t.left, 0)
     side, gap, behind = select(v1 > 0.0, 1.0, -1.0), select(v1 > 0.0, right, left), select(v1 > 0.0, left, right)
     rate, curve = -abs(v1), -2.0 * side * row(c, 2)
@@ -235,7 +236,7 @@ def strike(t, waiting):
     put(t.offset, 0, d)
     put(t.speed, 0, v)
     put(t.impulse, 0, impulse)
-    put(t.steepness, 0, (after + R * a) / v)
+    put(t.jump, 0, after + R * a)
     x, v = evaluate(t.impulse1, rest)
     x2, v2 = evaluate(t.impulse2, rest)
     nothing = alike(0.0)
