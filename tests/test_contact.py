@@ -38,7 +38,7 @@ def first_contacts(c, gap, side, third, start, rest, out):
 
 @numba.njit
 def strikes(t, c, gap, side, third, rest, out):
-    """The same, eight at once where that suffices; returns how often. The flight is c itself, for z = (0, ..., 1)."""
+    """The same, eight at once where that suffices; returns how often. c is the flight for z = (0, c_1, 0, 0, 0, 1)."""
     count = 0
     for first in range(0, len(gap) - LANES + 1, LANES):
         for i in range(LANES):
@@ -50,7 +50,7 @@ def strikes(t, c, gap, side, third, rest, out):
                     t.third[m, i] = weight
                 else:
                     t.tail[5, i] += weight * abs(c[n, m])
-            t.z[i, 5], t.width[i] = 1.0, rest[n]
+            t.z[i, 1], t.z[i, 5], t.width[i] = c[n, 1], 1.0, rest[n]
             t.right[i] = gap[n] if side[n] > 0 else np.inf
             t.left[i] = -gap[n] if side[n] < 0 else -np.inf
         free, struck = strike(t, lanes_of(255))

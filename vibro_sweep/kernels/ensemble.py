@@ -13,7 +13,18 @@ from vibro_sweep.kernels.discontinuity import map_period
 from vibro_sweep.kernels.flight import CHUNK, Flight, load, new_flight
 from vibro_sweep.kernels.impacts import cross_cell, watch_rebound
 from vibro_sweep.kernels.jit import entry, jit
-from vibro_sweep.kernels.lanes import LANES, bits, eight, lanes_of, leading, leading_lanes, new_lines, put, put_four, row
+from vibro_sweep.kernels.lanes import (
+    LANES,
+    bits,
+    eight,
+    lanes_of,
+    leading,
+    leading_lanes,
+    new_lines,
+    put,
+    put_four,
+    row,
+)
 from vibro_sweep.kernels.orbits import ORBIT, Records, Stops, add_count, new_records, sample, take_off
 from vibro_sweep.kernels.strike import STRIKE, start_count, strike
 from vibro_sweep.kernels.tangent import TANGENT
