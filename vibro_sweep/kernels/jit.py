@@ -34,7 +34,7 @@ _FOLDER = _cache_folder()
 _INLINE = frozenset(
     "flight_of stops_of records_of control_points at_node first_suspect suspect_state state_at under_way end_period "
     "seek settle strike load derivatives parabola_root approach descend of_z third_derivative stays_clear take_off "
-    "evaluate count only leap_over join aim most_cells".split()
+    "leaves_freely land evaluate count only leap_over join aim most_cells".split()
 )
 
 

@@ -15,7 +15,7 @@ from vibro_sweep.kernels.lanes import LANES, alike, bits, put, put_transposed, r
 
 TAIL = 8  # terms from here on are bounded together
 ROUGH = 10  # terms that bring the search so near to the contact that one look with all of them suffices, as a rule
-SIXTH = 1.0 / 6.0  # a product: a division takes as long as the three others of a bound
+SIXTH = 1.0 / 6.0  # for a product: a division takes as long as all else in a bound
 LOOKS = 4  # at the gap, each followed by a step towards the contact
 
 # Eight orbits that may strike; one column each.
@@ -197,37 +197,58 @@ def count(t, struck, side, v):
 
 
 @jit
+def leaves_freely(t, v, after, side, rest, third):
+    """Whether M1 touches neither stop in the time `rest` after an impact with v, that leaves it with this acceleration.
+
+    third: bound on the third derivative.
+    """
+    rebound, back, bend = row(t.R, 0) * abs(v), side * after, rest * third * SIXTH
+    stays_off = rebound > rest * (0.5 * select(back > 0.0, back, 0.0) + bend)
+    return stays_off & (rest * (rebound + rest * (0.5 * abs(after) + bend)) < row(t.right, 0) - row(t.left, 0))
+
+
+@jit
+def land(t, z, impulse, rest):
+    """X at the end of the cell: of the motion as if there were no stop, and what the impulse has done by then."""
+    x1, v1 = evaluate(t.impulse1, rest)
+    x2, v2 = evaluate(t.impulse2, rest)
+    x1 = of_z(t.end, 0, 4, z) + impulse * x1
+    v1 = of_z(t.end, 1, 4, z) + impulse * v1
+    x2 = of_z(t.end, 2, 4, z) + impulse * x2
+    v2 = of_z(t.end, 3, 4, z) + impulse * v2
+    nothing = alike(0.0)
+    put_transposed(t.X, (x1, v1, x2, v2, nothing, nothing, nothing, nothing))
+
+
+@jit
 def strike(t, waiting):
     """Cross a cell. Returns masks of the `waiting`: free flight (the orbit is left alone); one impact and none after.
 
-    The motion goes on as if there were no stop, and what the impulse -(1 + R) v1 does is added at the cell's end.
+    Of the impact are left its `side`, `offset`, `speed`, `impulse` and `jump`, and X at the end of the cell.
     """
     z = transposed(t.z)
-    c, width, x1, v1, R = t.c, row(t.width, 0), z[0], z[1], row(t.R, 0)
+    c, width, v1 = t.c, row(t.width, 0), z[1]
     put(c, 1, v1)
     load(t, z, 2, 3)
-    right, left = row(t.right, 0) - x1, x1 - row(t.left, 0)
+    right, left = row(t.right, 0) - z[0], z[0] - row(t.left, 0)
     side, gap, behind = select(v1 > 0.0, 1.0, -1.0), select(v1 > 0.0, right, left), select(v1 > 0.0, left, right)
     rate, curve = -abs(v1), -2.0 * side * row(c, 2)
     u = parabola_root(gap, rate, curve, width)
-    load(t, z, 3, ORDER)
+    load(t, z, 3, ORDER)  # while the processor takes that root
     third = third_derivative(t, z)
     bend = 2.0 * third * width * SIXTH
-    clear = stays_clear(gap, rate, curve - bend, width)
     safe = waiting & stays_clear(behind, -rate, -curve - bend, width)
+    clear = stays_clear(gap, rate, curve - bend, width)
     free, wanted = safe & clear, safe & ~clear & (rate < 0.0)
     if bits(wanted) == 0:
         return bits(free), 0
     u = approach(c, u, gap, side, width)
     d, v, a, struck = descend(c, u, gap, side, abs(curve) + third * width, width, wanted)
     falls = rate + select(curve > 0.0, curve, 0.0) * d + 0.5 * third * d * d < 0.0  # all the way to the contact
-    rest, impulse = width - d, -(1.0 + R) * v
+    impulse, rest = -(1.0 + row(t.R, 0)) * v, width - d
     after = a - 2.0 * row(t.zeta, 0) * impulse
     third += abs(impulse) * row(t.impulse_third, 0)
-    rebound, back = R * abs(v), side * after
-    stays_off = rebound > rest * (0.5 * select(back > 0.0, back, 0.0) + rest * third * SIXTH)
-    stays_short = rest * (rebound + rest * (0.5 * abs(after) + rest * third * SIXTH)) < row(t.right, 0) - row(t.left, 0)
-    struck = struck & falls & (side * v > 0.0) & stays_off & stays_short
+    struck = struck & falls & (side * v > 0.0) & leaves_freely(t, v, after, side, rest, third)
     count(t, struck, side, v)
     if t.measured:
         miss = abs(gap - side * derivatives(c, d, ORDER)[0])
@@ -236,21 +257,6 @@ def strike(t, waiting):
     put(t.offset, 0, d)
     put(t.speed, 0, v)
     put(t.impulse, 0, impulse)
-    put(t.jump, 0, after + R * a)
-    x, v = evaluate(t.impulse1, rest)
-    x2, v2 = evaluate(t.impulse2, rest)
-    nothing = alike(0.0)
-    put_transposed(
-        t.X,
-        (
-            of_z(t.end, 0, 4, z) + impulse * x,
-            of_z(t.end, 1, 4, z) + impulse * v,
-            of_z(t.end, 2, 4, z) + impulse * x2,
-            of_z(t.end, 3, 4, z) + impulse * v2,
-            nothing,
-            nothing,
-            nothing,
-            nothing,
-        ),
-    )
+    put(t.jump, 0, after + row(t.R, 0) * a)
+    land(t, z, impulse, rest)
     return bits(free), bits(struck)
