@@ -7,7 +7,6 @@ before or behind it. The reference then judges the flight as it is in floats, so
 import itertools
 
 import certified
-import numba
 import numpy as np
 import pytest
 from certified import NEGATIVE, POSITIVE, REAL
@@ -29,14 +28,14 @@ CHAIN = 8 * EPS  # of the largest term of x1 along the flight: rounding allowed 
 # --- polynomials: contact.first_contact alone -----------------------------------------------------------------------
 
 
-@numba.njit
+@entry
 def first_contacts(c, gap, side, third, start, rest, out):
     for i in range(len(gap)):
         out[i] = contact.first_contact(c[i], gap[i], side[i], third[i], start[i], rest[i])
     return 0
 
 
-@numba.njit
+@entry
 def strikes(t, c, gap, side, third, rest, out):
     """The same, eight at once where that suffices; returns how often. c is the flight for z = (0, c_1, 0, 0, 0, 1)."""
     count = 0
@@ -190,15 +189,15 @@ def first_impacts(e, stops, states, record, suspects, nothing):
     f, records = ensemble.flight_of(e, o), ensemble.records_of(e, o)
     for i in range(len(states)):
         x = states[i]
-        orbits.place(o, f.nodes, stops, x[0], x[1], x[2], x[3])
+        orbits.place(o, f.nodes, stops, 0, 0.0, x[0], x[1], x[2], x[3])
         o.suspect = ensemble.first_suspect(f, o)
         suspects[i] = ensemble.suspect_state(o, f.nodes)[0]
         # the first cell alone, with one event allowed: R = 1 makes a mass that creeps off the stop knock for ever
-        orbits.place(o, f.nodes, stops, x[0], x[1], x[2], x[3])
+        orbits.place(o, f.nodes, stops, 0, 0.0, x[0], x[1], x[2], x[3])
         o.events = impacts.MOST_EVENTS - 1
         outcome = impacts.cross_cell(f, stops, o, records, t, 0, 0.0)
         if o.impacts_logged == 0:
-            orbits.place(o, f.nodes, stops, x[0], x[1], x[2], x[3])
+            orbits.place(o, f.nodes, stops, 0, 0.0, x[0], x[1], x[2], x[3])
             o.periods = 1
             ensemble.carry(e, None, nothing, False, nothing, 0)
             outcome = o.status

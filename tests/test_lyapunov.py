@@ -6,13 +6,13 @@ A Jacobian knows nothing of the saltation matrix: it is the difference of orbits
 import math
 
 import naive
-import numba
 import numpy as np
 import pytest
 from mpmath import mp, mpf
 
 import vibro_sweep as vs
 from vibro_sweep.kernels import tangent
+from vibro_sweep.kernels.jit import entry
 from vibro_sweep.kernels.orbits import new_records
 from vibro_sweep.orbit import Engine
 
@@ -168,7 +168,7 @@ def test_sticking_loses_two_dimensions():
     assert np.all(spectrum[2:] == -np.inf)
 
 
-@numba.njit
+@entry
 def to_the_section(vectors, oscillator, nodes):
     tangent.fly_to(vectors, 0, oscillator, nodes, 0, 0.0)
     tangent.apply_flight(vectors, tangent.only(0))

@@ -74,9 +74,8 @@ class Engine:
 
     def put(self, state, cell: int = 0, offset: float = 0.0) -> None:
         """Start a new orbit from a state that is known to be allowed, at this offset of this cell."""
-        orbits.place(self.orbit[0], self.ensemble.flights.nodes[0], self.stops, *map(float, state))
-        self.orbit["cell"], self.orbit["offset"] = cell, offset
-        orbits.take_off(self.orbit[0], self.ensemble.flights.nodes[0])
+        nodes = self.ensemble.flights.nodes[0]
+        orbits.place(self.orbit[0], nodes, self.stops, int(cell), float(offset), *map(float, state))
 
     def carry(self, records, section) -> int:
         """Carry the orbit over as many periods as `section` (n, 4) has rows. Returns a status."""

@@ -12,7 +12,7 @@ from vibro_sweep.kernels import status, tangent
 from vibro_sweep.kernels.discontinuity import map_period
 from vibro_sweep.kernels.flight import CHUNK, Flight, load, new_flight
 from vibro_sweep.kernels.impacts import cross_cell, watch_rebound
-from vibro_sweep.kernels.jit import entry, jit
+from vibro_sweep.kernels.jit import aside, entry, inline
 from vibro_sweep.kernels.lanes import (
     LANES,
     bits,
@@ -53,27 +53,27 @@ def new_ensemble(cells: int, impacts: int = 0, rests: int = 0, samples: int = 0)
     )
 
 
-@jit
+@inline
 def flight_of(e, o):
     """The tables of an orbit's oscillator."""
     n = np.uint64(o.table)  # unsigned: else numba looks for negative indices
     return Flight(e.flights.oscillator[n], e.flights.nodes[n], e.flights.scan[n])
 
 
-@jit
+@inline
 def stops_of(o):
     """The stops of an orbit."""
     return Stops(o.stops[0], o.stops[1], o.stops[2])
 
 
-@jit
+@inline
 def records_of(e, o):
     """What is kept of an orbit."""
     n = o.lane
     return Records(e.records.impacts[n], e.records.rests[n], e.records.times, e.records.samples)
 
 
-@jit
+@inline
 def control_points(scan, p, q, y0, y1, y2, y3):
     """Control points p, ..., p + 7 of a flight that starts at (y0, ..., y3); q: as counted from there."""
     return (
@@ -85,14 +85,14 @@ def control_points(scan, p, q, y0, y1, y2, y3):
     )
 
 
-@jit
+@inline
 def at_node(nodes, k, base, y0, y1, y2, y3):
     """X - r at node k of a free flight that has X - r = (y0, ..., y3) at node `base`."""
     E = nodes[np.uint64(k - base)].E
     return (row(E, 0) * y0 + row(E, 1) * y1) + (row(E, 2) * y2 + row(E, 3) * y3)
 
 
-@jit
+@inline
 def first_suspect(f, o):
     """The first cell from `o.cell` on in which contact cannot be excluded; `cells` if there is none.
 
@@ -117,7 +117,7 @@ def first_suspect(f, o):
     return k
 
 
-@jit
+@inline
 def state_at(o, nodes, k):
     """X after the free flight from `base` to node k; there it is known already, and better."""
     if k == o.base:
@@ -125,7 +125,7 @@ def state_at(o, nodes, k):
     return at_node(nodes, k, o.base, o.y[0], o.y[1], o.y[2], o.y[3]) + row(nodes[np.uint64(k)].z, 0)
 
 
-@jit
+@inline
 def suspect_state(o, nodes):
     """The suspect cell, and X at its beginning; or the cell before, if that end of it lies outside."""
     k = o.suspect
@@ -136,7 +136,7 @@ def suspect_state(o, nodes):
     return k, X
 
 
-@jit
+@inline
 def end_period(e, o, q, nodes, section, keep, growth, parts):
     """Take the orbit over the section."""
     o.cell = o.events = o.samples_taken = 0
@@ -153,13 +153,13 @@ def end_period(e, o, q, nodes, section, keep, growth, parts):
             o.read += 1
 
 
-@jit
+@inline
 def under_way(o):
     """Whether an orbit has periods to go."""
     return o.done < o.periods and o.status == status.OK
 
 
-@jit
+@aside
 def go_long_way(e, o, f, section, keep, growth, parts):
     """Follow the orbit through all that happens, to the end of its cell or of the one in which M1 leaves the stop."""
     q = f.oscillator[0]
@@ -181,7 +181,7 @@ def go_long_way(e, o, f, section, keep, growth, parts):
                 return
 
 
-@jit
+@inline
 def seek(e, section, keep, growth, parts):
     """Carry all orbits on to the next cells in which they may strike. Returns who has one, as bits.
 
@@ -219,7 +219,7 @@ def seek(e, section, keep, growth, parts):
     return waiting
 
 
-@jit
+@inline
 def settle(e, o, free, struck, section, keep, growth, parts):
     """Go on to the end of the cell in which the orbit may have struck."""
     f, t, i = flight_of(e, o), e.strike[0], o.lane
@@ -285,7 +285,7 @@ def carry(e, mapped, section, keep, growth, parts):
         add_count(e.orbits[i], s.hits[0, i], s.hits[1, i], s.slowest[i], s.miss[i])
 
 
-@jit
+@aside
 def iterate(e, o, section, keep, growth, parts):
     """Carry one orbit over its `periods` of the discontinuity mapping."""
     f = flight_of(e, o)

@@ -7,7 +7,7 @@ import numpy as np
 from vibro_sweep.kernels import status, tangent
 from vibro_sweep.kernels.contact import first_contact
 from vibro_sweep.kernels.flight import bounds, evaluate, load
-from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.jit import aside, jit
 from vibro_sweep.kernels.lanes import alike
 from vibro_sweep.kernels.orbits import advance, sample
 from vibro_sweep.kernels.rest import begin_rest, chatter, departure, leading, stay_at_rest
@@ -47,7 +47,7 @@ def count_impact(o, side, v):
     o.slowest = min(o.slowest, abs(v))
 
 
-@jit
+@aside
 def watch_rebound(q, o, records, k, d, side, v, impulse):
     """Keep an impact at offset d of cell k, and samples in the cell: of the old flight, and what the impulse adds."""
     x2, v2 = evaluate(o.c2, d)
@@ -82,7 +82,7 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
         tangent.saltate(t, tangent.only(o.lane), alike(steepness))
 
 
-@jit
+@aside
 def cross_cell(f, stops, o, records, t, k, s):
     """Follow the orbit from offset s in cell k to the cell's end, through all that happens. Returns a status."""
     q, node, X, c1 = f.oscillator[0], f.nodes[k], o.X, o.c1

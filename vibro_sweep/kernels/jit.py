@@ -12,6 +12,11 @@ import numba
 from numba.core import config
 from numba.core.cpu import CPUTargetOptions
 
+try:
+    from vibro_sweep.kernels.compiler import AsideCompiler, PartCompiler, WholeCompiler
+except ImportError:  # another numba: kernels compile as it does by itself, in twice the time
+    AsideCompiler = PartCompiler = WholeCompiler = None
+
 
 @functools.cache  # of the sources as they were imported
 def source_hash() -> str:
@@ -30,25 +35,37 @@ def _cache_folder() -> str:
 _FOLDER = _cache_folder()
 
 
-# On the way of every impact: a call would pass the tables' many words, or vectors, through memory.
-_INLINE = frozenset(
-    "flight_of stops_of records_of control_points at_node first_suspect suspect_state state_at under_way end_period "
-    "seek settle strike load derivatives parabola_root approach descend of_z third_derivative stays_clear take_off "
-    "leaves_freely land evaluate count only leap_over join aim most_cells".split()
-)
-
-
 def jit(function):
     """`numba.njit` for a kernel that other kernels call."""
-    return _compiled(function, no_cpython_wrapper=True)
+    return _compiled(function, PartCompiler, no_cpython_wrapper=True)
 
 
-def entry(function):
-    """`numba.njit` for a kernel that Python calls, too."""
-    return _compiled(function, no_cpython_wrapper=False)
+def inline(function):
+    """`jit` for what is on the way of all orbits: a call would pass vectors, and the tables' many words, by memory."""
+    return _compiled(function, PartCompiler, no_cpython_wrapper=True, forceinline=True)
 
 
-def _compiled(function, **options):
+def aside(function):
+    """`jit` for what is rare: inlined, it would take registers and room from what is on the way."""
+    return _compiled(function, AsideCompiler, no_cpython_wrapper=True)
+
+
+class entry:  # noqa: N801  # a decorator
+    """`numba.njit` for a kernel that Python calls, too: one for Python, cached, and a `jit` for other kernels."""
+
+    def __init__(self, function):
+        self._part, self._whole = jit(function), _compiled(function, WholeCompiler)
+        _enable_caching(self._whole)
+
+    def __call__(self, *args):
+        return self._whole(*args)
+
+    @property
+    def _numba_type_(self):  # what other kernels see of it
+        return self._part._numba_type_
+
+
+def _compiled(function, compiler, forceinline=False, **options):
     """`contract` alone is allowed of fastmath: it fuses multiply-adds and keeps every NaN check.
 
     Kernels allocate nothing, and so are compiled without numba's reference counts: they took a third of the time, and
@@ -56,14 +73,13 @@ def _compiled(function, **options):
     """
     if hasattr(CPUTargetOptions, "_nrt"):
         options["_nrt"] = False
-    dispatcher = numba.njit(
-        nogil=True,
-        fastmath={"contract"},
-        error_model="numpy",
-        forceinline=function.__name__ in _INLINE,
-        no_cfunc_wrapper=True,
-        **options,
-    )(function)
+    if compiler:
+        options["pipeline_class"] = compiler
+    options |= {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy", "no_cfunc_wrapper": True}
+    return numba.njit(forceinline=forceinline, **options)(function)  # said, or a kernel would have it from its caller
+
+
+def _enable_caching(dispatcher):
     before, config.CACHE_DIR = config.CACHE_DIR, _FOLDER
     try:
         dispatcher.enable_caching()
@@ -71,4 +87,3 @@ def _compiled(function, **options):
         pass
     finally:
         config.CACHE_DIR = before
-    return dispatcher

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibro_sweep.kernels import status
 from vibro_sweep.kernels.averages import is_settled, keep_averages
-from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.jit import aside, jit
 from vibro_sweep.kernels.lanes import LANES
 from vibro_sweep.kernels.orbits import start_count
 from vibro_sweep.kernels.spectrum import (
@@ -27,7 +27,7 @@ RUNNING = 200  # points of a convergence diagram
 TRANSIENT, WARM_UP, RECORD, FLOQUET, PHASES = 0, 1, 2, 3, 5
 
 
-@jit
+@aside
 def begin_phase(e, w, plan, phase, results):
     """Set the orbits out. Returns how often the growth of their tangent vectors is to be read, or -1: nothing to do."""
     if phase == TRANSIENT:
@@ -59,7 +59,7 @@ def set_out(e, periods):
         e.orbits[i].periods = periods
 
 
-@jit
+@aside
 def end_phase(e, w, plan, phase, points, results, sections, phases, running):
     """Keep what the phase has shown. One row for each orbit."""
     if phase == WARM_UP:
@@ -72,7 +72,7 @@ def end_phase(e, w, plan, phase, points, results, sections, phases, running):
         end_floquet(e, w, results)
 
 
-@jit
+@aside
 def keep_record(e, w, plan, point, result, section, phase, running, o):
     """What the record of an orbit shows."""
     result.impacts_right, result.impacts_left = o.impacts_right, o.impacts_left
@@ -98,7 +98,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
         time_average(growth, plan.record, T, result.lyapunov, result.lyapunov_error)
 
 
-@jit
+@aside
 def close(e, w, plan, points, results):
     """What remains to be said of the orbits after all phases, and how they went."""
     for i in range(len(results)):

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.kernels import status
 from vibro_sweep.kernels.flight import ORDER, evaluate
-from vibro_sweep.kernels.jit import entry, jit
+from vibro_sweep.kernels.jit import aside, entry, inline, jit
 from vibro_sweep.kernels.lanes import LANES, lanes_of, put, record, row, select
 
 
@@ -76,17 +76,17 @@ def new_records(orbits: int, impacts: int = 0, rests: int = 0, samples: int = 0)
 
 
 @entry
-def place(o, nodes, stops, x1, v1, x2, v2):
-    """Start an orbit at the section, with nothing counted yet."""
+def place(o, nodes, stops, cell, offset, x1, v1, x2, v2):
+    """Start an orbit at this offset of this cell, with nothing counted yet."""
     o.X[0], o.X[1], o.X[2], o.X[3] = x1, v1, x2, v2
     o.stops[0], o.stops[1], o.stops[2] = stops.left, stops.right, stops.R
-    o.status, o.resting, o.offset = status.OK, 0.0, 0.0
-    o.cell = o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
+    o.status, o.resting, o.cell, o.offset = status.OK, 0.0, cell, offset
+    o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
     take_off(o, nodes)
     start_count(o)
 
 
-@entry
+@inline
 def take_off(o, nodes):
     """Free flight begins at the node where X is."""
     z = row(nodes[o.cell].z, 0)
@@ -124,7 +124,7 @@ def advance(o, u):
     X[0], X[1], X[2], X[3] = x1, v1, x2, v2
 
 
-@jit
+@aside
 def sample(o, records, k, start, stop):
     """Take the samples that fall in cell k between the offset `start`, where the series begins, and `stop`."""
     times, samples = records.times, records.samples

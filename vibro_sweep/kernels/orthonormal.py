@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.jit import aside, jit
 from vibro_sweep.kernels.lanes import LANES, bits, put, row, select
 
 CONDITION = 1e3  # bound on the condition number of Z past which it is orthonormalised
@@ -28,7 +28,7 @@ def watch(t, who, determinant):
         orthonormalise(t, close)
 
 
-@jit
+@aside
 def orthonormalise(t, who):
     """Gram-Schmidt: Z = Q R, Z becomes Q and the diagonal of R is added to the growth."""
     Z = t.Z
@@ -58,7 +58,7 @@ def orthonormalise(t, who):
     put(t.volume, 0, select(who, 1.0, row(t.volume, 0)))
 
 
-@jit
+@aside
 def take_logs(t, j, extreme):
     """Begin products anew before they leave the range of the floats."""
     for i in range(LANES):

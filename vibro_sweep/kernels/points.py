@@ -163,7 +163,7 @@ def run_points(points, starts, results, sections, phases, running, w, plan, mapp
                     x1, v1, x2, v2 = end[0], end[1], end[2], end[3]
                 if plan.order == 0:  # points of the map may lie beyond the stops
                     x1 = min(max(x1, stops.left), stops.right)
-                place(o, e.flights.nodes[o.table], stops, x1, v1, x2, v2)
+                place(o, e.flights.nodes[o.table], stops, 0, 0.0, x1, v1, x2, v2)
             rows, row = points[n, first:last], results[n, first:last]
             for phase in range(PHASES):
                 parts = begin_phase(e, w, plan, phase, row)

@@ -10,7 +10,7 @@ import numpy as np
 
 from vibro_sweep.kernels import flight
 from vibro_sweep.kernels.flight import ORDER
-from vibro_sweep.kernels.jit import jit
+from vibro_sweep.kernels.jit import inline, jit
 from vibro_sweep.kernels.lanes import LANES, alike, bits, put, put_transposed, record, row, select, transposed
 
 TAIL = 8  # terms from here on are bounded together
@@ -70,7 +70,7 @@ def deal(t, i, q, stops):
     t.left[i], t.right[i], t.R[i] = stops.left, stops.right, stops.R
 
 
-@jit
+@inline
 def of_z(rows, n, step, z):
     """A sum of six products: row n of the first of `rows` with x1, that `step` rows on with v1, ..."""
     return (
@@ -80,14 +80,14 @@ def of_z(rows, n, step, z):
     )
 
 
-@jit
+@inline
 def load(t, z, first, last):
     """Taylor coefficients of x1."""
     for n in range(first, last):
         put(t.c, n, of_z(t.series1, n, ORDER, z))
 
 
-@jit
+@inline
 def third_derivative(t, z):
     """A bound on the third derivative of x1 over the cell."""
     c, weight, tail = t.c, t.third, t.tail
@@ -96,14 +96,14 @@ def third_derivative(t, z):
     return even + odd + of_z(tail, 0, 1, (abs(z[0]), abs(z[1]), abs(z[2]), abs(z[3]), abs(z[4]), abs(z[5])))
 
 
-@jit
+@inline
 def stays_clear(gap, rate, curve, width):
     """Whether gap + rate d + curve d^2/2 > 0 for all d up to `width`, where gap > 0."""
     falls_short = (rate >= 0.0) | (curve <= 0.0) | (rate + curve * width <= 0.0) | (rate * rate < 2.0 * curve * gap)
     return falls_short & (gap + width * (rate + 0.5 * width * curve) > 0.0)
 
 
-@jit
+@inline
 def derivatives(c, u, last):
     """x1 - c_0 at u, v, a/2 and a sixth of the jerk, from terms before `last`.
 
@@ -121,7 +121,7 @@ def derivatives(c, u, last):
     return u * p, p + u * p1, p1 + u * p2, p2 + u * p3
 
 
-@jit
+@inline
 def parabola_root(gap, rate, curve, width):
     """Where gap + rate d + curve d^2/2 = 0, or is least; no further than `width`."""
     square = rate * rate - 2.0 * curve * gap
@@ -129,7 +129,7 @@ def parabola_root(gap, rate, curve, width):
     return select(u <= width, u, width)
 
 
-@jit
+@inline
 def approach(c, u, gap, side, width):
     """Near the contact, by a step of fourth order."""
     x, v, a, jerk = derivatives(c, u, ROUGH)
@@ -139,7 +139,7 @@ def approach(c, u, gap, side, width):
     return select((side * v > 0.0) & (after > 0.0) & (after <= width), after, u)
 
 
-@jit
+@inline
 def descend(c, u, gap, side, steepest, width, wanted):
     """The contact d in (0, width], from near it, by Chebyshev's method.
 
@@ -165,7 +165,7 @@ def descend(c, u, gap, side, steepest, width, wanted):
     return d, speed, acceleration, found
 
 
-@jit
+@inline
 def evaluate(c, u):
     """Polynomial at u, and its derivative; even and odd terms go side by side."""
     v = u * u
@@ -187,7 +187,7 @@ def start_count(t):
         t.slowest[i] = np.inf
 
 
-@jit
+@inline
 def count(t, struck, side, v):
     """Count impacts with these speeds."""
     speed, slowest = abs(v), row(t.slowest, 0)
@@ -196,7 +196,7 @@ def count(t, struck, side, v):
     put(t.slowest, 0, select(struck & (speed < slowest), speed, slowest))
 
 
-@jit
+@inline
 def leaves_freely(t, v, after, side, rest, third):
     """Whether M1 touches neither stop in the time `rest` after an impact with v, that leaves it with this acceleration.
 
@@ -207,7 +207,7 @@ def leaves_freely(t, v, after, side, rest, third):
     return stays_off & (rest * (rebound + rest * (0.5 * abs(after) + bend)) < row(t.right, 0) - row(t.left, 0))
 
 
-@jit
+@inline
 def land(t, z, impulse, rest):
     """X at the end of the cell: of the motion as if there were no stop, and what the impulse has done by then."""
     x1, v1 = evaluate(t.impulse1, rest)
@@ -220,7 +220,7 @@ def land(t, z, impulse, rest):
     put_transposed(t.X, (x1, v1, x2, v2, nothing, nothing, nothing, nothing))
 
 
-@jit
+@inline
 def strike(t, waiting):
     """Cross a cell. Returns masks of the `waiting`: free flight (the orbit is left alone); one impact and none after.
 

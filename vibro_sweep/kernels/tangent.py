@@ -12,7 +12,7 @@ Flight is not applied step by step but collected as four numbers (c_1, s_1, c_2,
 import numpy as np
 
 from vibro_sweep.kernels.flight import ORDER, decaying
-from vibro_sweep.kernels.jit import entry, jit
+from vibro_sweep.kernels.jit import aside, entry, inline, jit
 from vibro_sweep.kernels.lanes import LANES, bits, lanes_of, put, record, row, select
 from vibro_sweep.kernels.orthonormal import orthonormalise, watch
 
@@ -45,7 +45,7 @@ TANGENT = record(
 )
 
 
-@jit
+@inline
 def only(i):
     """The mask of one orbit."""
     return lanes_of(1 << i)
@@ -84,7 +84,7 @@ def start_record(t, i):
         t.growth[j, i], t.logs[j, i] = 1.0, 0.0
 
 
-@jit
+@inline
 def join(t, who, c1, s1, c2, s2):
     """Lengthen the collected flight by a flight with these factors."""
     a, b, flight = row(t.flight, 0), row(t.flight, 1), t.flight
@@ -110,7 +110,7 @@ def fly(t, who):
     join(t, who, c1, s1, c2, s2)
 
 
-@jit
+@inline
 def leap_over(t, i, q, nodes, cells):
     """The factors of a flight over whole cells."""
     t.part[i] = 0.0
@@ -130,13 +130,13 @@ def decay_over(t, i, q, u):
         t.leap[2 * j, i], t.leap[2 * j + 1, i], _, _ = decaying(eta, q.frame_square[j] + eta * eta, u)
 
 
-@jit
+@inline
 def most_cells(t, i, q):
     """Cells that may be flown between looks at the vectors."""
     return q.stretch if t.mixed[i] > 0.0 else q.leash
 
 
-@jit
+@aside
 def stop_over(t, i, q, nodes, cells):
     """Fly on, with looks at the vectors, or all would become the one that decays least. Returns the cells left."""
     limit = most_cells(t, i, q)
@@ -149,7 +149,7 @@ def stop_over(t, i, q, nodes, cells):
     return cells
 
 
-@jit
+@inline
 def aim(t, i, q, nodes, k, s):
     """What `fly` is to do to bring the collected flight of orbit i to offset s of cell k of this period."""
     cells, u = k - t.cell[i], s - t.offset[i]
@@ -249,7 +249,7 @@ def release(t, i, xx, xv, vx, vv):
     orthonormalise(t, only(i))
 
 
-@jit
+@aside
 def read_growth(t, i, q, nodes, out):
     """Logarithms of the growth of the four vectors up to this section, -inf for dimensions lost by sticking."""
     fly_to(t, i, q, nodes, 0, 0.0)

@@ -50,6 +50,6 @@ def run_trajectories(points, results, trajectories, w, plan):
             if result.status == status.OK:
                 stops = prepare(points[p : p + 1], 0, w, plan)
                 end = result.end
-                place(o, e.flights.nodes[o.table], stops, end[0], end[1], end[2], end[3])
+                place(o, e.flights.nodes[o.table], stops, 0, 0.0, end[0], end[1], end[2], end[3])
                 o.resting = result.resting
                 result.status = follow(w, plan.periods, trajectories[p, s])

@@ -1,0 +1,113 @@
+"""numba's compiler, so that a first run waits half as long.
+
+By itself numba optimises each kernel, turns it into machine code, and does all of that again with what it calls, in
+every kernel that calls it. Here that is done once: for an entry, together with all that it reaches.
+
+This leans on the inside of numba (0.60 to 0.68 are known to do); the import fails where what it needs is not there.
+"""
+
+import gc
+
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler, Flags
+
+if not (
+    hasattr(JITCodeLibrary, "_optimize_functions")
+    and hasattr(JITCodeLibrary, "_ensure_finalized")
+    and hasattr(Flags(), "_values")
+):
+    raise ImportError("numba has changed inside")
+
+# Passes for what kernels do not hold: closures, array expressions, literal arguments; and inlining, which LLVM does.
+SPARED = frozenset(
+    "with_lifting inline_closure_likes inline_inlinables find_literally literal_unroll LiteralPropagation "
+    "inline_overloads nopython_rewrites annotate_types".split()
+)
+
+
+class _Part(JITCodeLibrary):
+    """A kernel that only kernels call: code to be linked, and not yet optimised."""
+
+    def _optimize_functions(self, ll_module):
+        ll_module.data_layout = self._codegen._data_layout
+        for function in ll_module.functions:
+            passes, builder = self._codegen._function_pass_manager(opt=1)
+            passes.run(function, builder)
+
+    def finalize(self):
+        self._finalized = True
+
+
+class _Aside(_Part):
+    """One that stays a call: within what is on the way of all orbits it would take registers and room from that."""
+
+    def add_ir_module(self, ir_module):
+        for function in ir_module.functions:
+            if not function.is_declaration:
+                function.attributes.add("noinline")
+        super().add_ir_module(ir_module)
+
+
+class _Whole(JITCodeLibrary):
+    """An entry, with all parts that it reaches."""
+
+    def add_linking_library(self, library):
+        if library not in self._linking_libraries:
+            super().add_linking_library(library)
+            for other in library._linking_libraries:
+                self.add_linking_library(other)
+
+
+class _Flags(Flags):
+    """Compared as a whole: numba goes through them whenever it looks for a function, tens of thousands of times."""
+
+    __slots__ = ()
+
+    def __eq__(self, other):
+        return isinstance(other, _Flags) and self._values == other._values
+
+    def __hash__(self):
+        return len(self._values)
+
+
+class WholeCompiler(Compiler):
+    """For an entry."""
+
+    library = _Whole
+
+    def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
+        super().__init__(typingctx, targetctx, library, args, return_type, _Flags(flags), locals)
+
+    def define_pipelines(self):
+        [pipeline] = super().define_pipelines()
+        pipeline.passes = [(step, why) for step, why in pipeline.passes if step.name() not in SPARED]
+        pipeline.finalize()
+        return [pipeline]
+
+    def compile_extra(self, func):
+        self.state.library = self.library(self.state.targetctx.codegen(), func.__qualname__)
+        self.state.library.enable_object_caching()
+        collecting = gc.isenabled()
+        gc.disable()  # a tenth of the time, and there is little to collect
+        try:
+            return super().compile_extra(func)
+        finally:
+            if collecting:
+                gc.enable()
+
+
+class PartCompiler(WholeCompiler):
+    """For a kernel that only kernels call."""
+
+    library = _Part
+
+    def __init__(self, *args):
+        super().__init__(*args)
+        # There is nothing for Python to call; numba still wants something callable to know the kernel by.
+        self.state.targetctx.get_executable = lambda library, fndesc, env: [].append
+
+
+class AsideCompiler(PartCompiler):
+    """For one of those that is no part of its callers."""
+
+    library = _Aside
