@@ -144,7 +144,7 @@ def in_processes(count: int, text: str, workers: int = 1) -> list[tuple[float, f
 
 def parallel(points: int, rounds: int) -> dict[str, float]:
     """Throughput with two workers, and of two processes, over that of one; interleaved, medians."""
-    text = sweep_text(points, 100, 20_000)  # a long time to settle, and a file of a few megabytes
+    text = sweep_text(points, 100, 40_000)  # a long time to settle, and a file of a few megabytes
     one, two, both = [], [], []
     for _ in range(rounds):
         one.append(in_processes(1, text, 1)[0][0])

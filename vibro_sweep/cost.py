@@ -16,9 +16,9 @@ from vibro_sweep.scene import Scene
 
 POINTS = 8  # that are measured, spread over the sweep
 STARTS = 4
-MEASURED = 0.05  # seconds that a measurement takes at least, where the scene has as many periods
+MEASURED = 0.02  # seconds that a measurement takes at least, where the scene has as many periods
 BLOCKS_PER_WORKER = 8  # at least, so that workers end together
-BLOCK_BYTES, BYTES_UNDER_WAY = 16e6, 1e9
+BLOCK_BYTES, BYTES_UNDER_WAY = 12e6, 1e9
 
 
 @dataclass
