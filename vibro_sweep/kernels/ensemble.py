@@ -24,6 +24,7 @@ from vibro_sweep.kernels.lanes import (
     put,
     put_four,
     row,
+    select,
 )
 from vibro_sweep.kernels.orbits import ORBIT, Records, Stops, add_count, new_records, sample, take_off
 from vibro_sweep.kernels.strike import STRIKE, start_count, strike
@@ -143,7 +144,9 @@ def end_period(e, o, q, nodes, section, keep, growth, parts):
     take_off(o, nodes)
     o.period += 1
     if keep:
-        put_four(section[np.uint64(o.lane)], o.done, row(o.X, 0))
+        X, largest = row(o.X, 0), row(o.largest, 0)
+        put_four(section[np.uint64(o.lane)], o.done, X)
+        put(o.largest, 0, select(abs(X) > largest, abs(X), largest))
     o.done += 1
     t = e.tangent[0]
     if t.wanted:

@@ -9,7 +9,7 @@ import numpy as np
 from vibro_sweep.kernels import status
 from vibro_sweep.kernels.averages import is_settled, keep_averages
 from vibro_sweep.kernels.jit import aside, jit
-from vibro_sweep.kernels.lanes import LANES
+from vibro_sweep.kernels.lanes import LANES, put
 from vibro_sweep.kernels.orbits import start_count
 from vibro_sweep.kernels.spectrum import (
     begin_floquet,
@@ -39,6 +39,7 @@ def begin_phase(e, w, plan, phase, results):
         set_out(e, plan.record)
         for i in range(len(results)):
             start_count(e.orbits[i])
+            put(e.orbits[i].largest, 0, 0.0)
             e.orbits[i].impacts_logged, e.orbits[i].log_side = 0, plan.section_side
         return plan.parts
     if not plan.lyapunov:
@@ -90,7 +91,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
                 section[n, j] = states[n, j]
     result.resting = o.resting
     if plan.states:
-        result.period = find_period(states, w.axes[o.lane])
+        result.period = find_period(states, o.largest, w.axes[o.lane])
     for n in range(len(running)):
         for j in range(4):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
@@ -107,7 +108,7 @@ def close(e, w, plan, points, results):
             close_spectrum(e, o, w, points[i], result)
             if plan.attractors:
                 states = w.section[i]
-                end = find_period(states[-(len(states) // 10) :], w.axes[i])
+                end = find_period(states[-(len(states) // 10) :], o.largest, w.axes[i])
                 if is_settled(result.period, end, result.lyapunov, result.lyapunov_error):
                     keep_averages(states, period_of(e, o), REPEAT, o, result)
         if o.status != status.NOT_COMPUTED:
@@ -115,21 +116,14 @@ def close(e, w, plan, points, results):
 
 
 @jit
-def find_period(section, tolerance):
+def find_period(section, sizes, tolerance):
     """Least p, up to half of the points, after which all points repeat themselves; 0 if there is none.
 
-    tolerance: (4,) or longer, scratch.
+    sizes: of the points. tolerance: scratch. Both (4,) or longer.
     """
-    count, largest = len(section), 0.0
+    count, largest = len(section), max(max(sizes[0], sizes[1]), max(sizes[2], sizes[3]))
     for i in range(4):
-        tolerance[i] = 0.0
-    for n in range(count):
-        for i in range(4):
-            tolerance[i] = max(tolerance[i], abs(section[n, i]))
-    for i in range(4):
-        largest = max(largest, tolerance[i])
-    for i in range(4):
-        tolerance[i] = REPEAT * max(tolerance[i], 1e-3 * largest)
+        tolerance[i] = REPEAT * max(sizes[i], 1e-3 * largest)
     for p in range(1, count // 2 + 1):
         n = p  # from the beginning: where the orbit has not settled, the first point tells
         while n < count and not apart(section, tolerance, n, p):

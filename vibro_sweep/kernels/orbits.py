@@ -23,6 +23,7 @@ ORBIT = record(
     [
         ("X", float, LANES),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
         ("y", float, LANES),  # X - r at node `base`, in free flight
+        ("largest", float, LANES),  # sizes of the section states that were kept
         ("lane", np.int64),  # its place among eight
         ("table", np.int64),  # place of its oscillator's tables
         ("status", np.int64),

@@ -30,25 +30,29 @@ def watch(t, who, determinant):
 
 @aside
 def orthonormalise(t, who):
-    """Gram-Schmidt: Z = Q R, Z becomes Q and the diagonal of R is added to the growth."""
+    """Gram-Schmidt: Z = Q R, Z becomes Q and the diagonal of R is added to the growth.
+
+    The lengths are taken out last: the next vector need not wait for a square root.
+    """
     Z = t.Z
     for i in range(4):
         z0, z1, z2, z3 = row(Z, i), row(Z, 4 + i), row(Z, 8 + i), row(Z, 12 + i)
-        length = math.sqrt((z0 * z0 + z1 * z1) + (z2 * z2 + z3 * z3))
-        length = select(row(t.lost, 0) >= 4.0 - i, 0.0, length)
-        inverse = select(length > 0.0, 1.0 / length, 0.0)
-        q0, q1, q2, q3 = inverse * z0, inverse * z1, inverse * z2, inverse * z3
-        put(Z, i, select(who, q0, z0))
-        put(Z, 4 + i, select(who, q1, z1))
-        put(Z, 8 + i, select(who, q2, z2))
-        put(Z, 12 + i, select(who, q3, z3))
+        square = (z0 * z0 + z1 * z1) + (z2 * z2 + z3 * z3)
+        square = select(row(t.lost, 0) >= 4.0 - i, 0.0, square)
+        inverse = select(square > 0.0, 1.0 / square, 0.0)
         for j in range(i + 1, 4):
-            z0, z1, z2, z3 = row(Z, j), row(Z, 4 + j), row(Z, 8 + j), row(Z, 12 + j)
-            along = (q0 * z0 + q1 * z1) + (q2 * z2 + q3 * z3)
-            put(Z, j, select(who, z0 - along * q0, z0))
-            put(Z, 4 + j, select(who, z1 - along * q1, z1))
-            put(Z, 8 + j, select(who, z2 - along * q2, z2))
-            put(Z, 12 + j, select(who, z3 - along * q3, z3))
+            w0, w1, w2, w3 = row(Z, j), row(Z, 4 + j), row(Z, 8 + j), row(Z, 12 + j)
+            along = inverse * ((z0 * w0 + z1 * w1) + (z2 * w2 + z3 * w3))
+            put(Z, j, select(who, w0 - along * z0, w0))
+            put(Z, 4 + j, select(who, w1 - along * z1, w1))
+            put(Z, 8 + j, select(who, w2 - along * z2, w2))
+            put(Z, 12 + j, select(who, w3 - along * z3, w3))
+        length = math.sqrt(square)
+        inverse = select(square > 0.0, 1.0 / length, 0.0)
+        put(Z, i, select(who, inverse * z0, z0))
+        put(Z, 4 + i, select(who, inverse * z1, z1))
+        put(Z, 8 + i, select(who, inverse * z2, z2))
+        put(Z, 12 + i, select(who, inverse * z3, z3))
         growth = row(t.growth, i)
         put(t.growth, i, select(who, growth * length, growth))
         growth = row(t.growth, i)

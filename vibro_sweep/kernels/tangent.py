@@ -25,7 +25,7 @@ TANGENT = record(
         ("square", float, (2, LANES)),  # omega_dj^2
         ("to_frame", float, (16, LANES)),
         ("from_frame", float, (16, LANES)),
-        ("kappa", float, LANES),
+        ("kick", float, (4, LANES)),  # to_frame of a step of x1 by 1 and of v2 by kappa = 2 zeta/mu_m
         ("R", float, LANES),
         # of the orbit
         ("lost", float, LANES),  # dimensions: two by sticking, one by an impact without restitution
@@ -62,7 +62,9 @@ def deal(t, i, q, R):
             t.to_frame[4 * m + j, i], t.from_frame[4 * m + j, i] = q.to_frame[m, j], q.from_frame[m, j]
     for j in range(2):
         t.scale[j, i], t.square[j, i] = q.frame_scale[j], q.frame_square[j]
-    t.kappa[i], t.R[i] = q.kappa, R
+    for m in range(4):
+        t.kick[m, i] = q.to_frame[m, 0] + q.kappa * q.to_frame[m, 3]
+    t.R[i] = R
 
 
 @entry
@@ -217,10 +219,9 @@ def saltate(t, who, steepness):
         dv = (row(back, 4) * z0 + row(back, 5) * z1) + (row(back, 6) * z2 + row(back, 7) * z3)
         to_x1 = -(1.0 + R) * dx
         to_v1 = steepness * dx - (1.0 + R) * dv
-        to_v2 = row(t.kappa, 0) * to_x1
         for m in range(4):
             z = row(Z, 4 * m + j)
-            after = z + row(to, 4 * m) * to_x1 + row(to, 4 * m + 1) * to_v1 + row(to, 4 * m + 3) * to_v2
+            after = z + row(t.kick, m) * to_x1 + row(to, 4 * m + 1) * to_v1
             put(Z, 4 * m + j, select(who, after, z))
     put(t.mixed, 0, select(who, 1.0, row(t.mixed, 0)))
     watch(t, who, R * R)
