@@ -11,54 +11,20 @@ import subprocess
 import sys
 import tempfile
 import time
-from pathlib import Path
 
-from book import Goal, digits, main, table
+from book import HERE, Goal, digits, main, table
 
 TITLE = "First run and later starts"
 COMMAND = "python benchmarks/compile_time.py"
-SCENE = Path(__file__).parent.parent / "configs" / "quickstart.yaml"
+SCENE = HERE.parent / "configs" / "quickstart.yaml"
 ASKED_COMPILE, ASKED_START = 10, 1
 
 
-def first_point() -> None:
-    """In a fresh process: time up to the first point, and what was compiled on the way; prints JSON."""
-    imported = time.time()
-    from numba.core import event
-
-    class Clock(event.Listener):
-        """CPU seconds for each function without what it has compiled on the way."""
-
-        def __init__(self):
-            self.open, self.own = [], {}
-
-        def on_start(self, _):
-            self.open.append([time.process_time(), 0.0])
-
-        def on_end(self, ended):
-            began, others = self.open.pop()
-            whole = time.process_time() - began
-            function = ended.data["dispatcher"].py_func
-            name = f"{function.__module__.rsplit('.', 1)[-1]}.{function.__name__}"
-            self.own[name] = self.own.get(name, 0.0) + whole - others
-            if self.open:
-                self.open[-1][1] += whole
-
-    clock = Clock()
-    event.register("numba:compile", clock)
-    from vibro_sweep import blocks, compute, scene
-
-    block = next(blocks.blocks(scene.load_scene(SCENE), points_per_block=1))
-    loaded = time.time()
-    compute.compute(block)
-    print(json.dumps({"imported": imported, "loaded": loaded, "done": time.time(), "own": clock.own}))
-
-
 def start(cache: str) -> dict:
-    """`first_point` in a fresh Python with this cache; seconds count from the start of that Python."""
+    """first_point.py in a fresh Python with this cache; seconds count from the start of that Python."""
     began = time.time()
     environment = os.environ | {"NUMBA_CACHE_DIR": cache}
-    command = [sys.executable, __file__, "--first-point"]
+    command = [sys.executable, HERE / "first_point.py", SCENE]
     found = json.loads(subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout)
     return {
         "loaded": found["loaded"] - began,
@@ -103,7 +69,4 @@ def figure(_: dict) -> None:
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--first-point"]:
-        first_point()
-    else:
-        main(__name__)
+    main(__name__)
