@@ -3,20 +3,17 @@
 By itself numba optimises each kernel, turns it into machine code, and does all of that again with what it calls, in
 every kernel that calls it. Here that is done once: for an entry, together with all that it reaches.
 
-This leans on the inside of numba (0.60 to 0.68 are known to do); the import fails where what it needs is not there.
+This leans on the inside of numba, as it is in 0.68; the import fails where what it needs is not there.
 """
 
 import gc
 
-from numba.core.codegen import JITCodeLibrary
+from numba.core.codegen import CPUCodegen, JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
 
-if not (
-    hasattr(JITCodeLibrary, "_optimize_functions")
-    and hasattr(JITCodeLibrary, "_ensure_finalized")
-    and hasattr(Flags(), "_values")
-):
-    raise ImportError("numba has changed inside")
+NEEDED = {JITCodeLibrary: "_optimize_functions", CPUCodegen: "_pass_builder", Flags(): "_values"}
+if not all(hasattr(where, name) for where, name in NEEDED.items()):
+    raise ImportError("this numba is another inside")
 
 # Passes for what kernels do not hold: closures, array expressions, literal arguments; and inlining, which LLVM does.
 SPARED = frozenset(
