@@ -138,13 +138,13 @@ def suspect_state(o, nodes):
 
 
 @inline
-def end_period(e, o, q, nodes, section, keep, growth, parts):
-    """Take the orbit over the section."""
+def end_period(e, o, q, nodes, X, section, keep, growth, parts):
+    """Take the orbit over the section, where its state is X."""
     o.cell = o.events = o.samples_taken = 0
-    take_off(o, nodes)
+    take_off(o, nodes, X)
     o.period += 1
     if keep:
-        X, largest = row(o.X, 0), row(o.largest, 0)
+        largest = row(o.largest, 0)
         put_four(section[np.uint64(o.lane)], o.done, X)
         put(o.largest, 0, select(abs(X) > largest, abs(X), largest))
     o.done += 1
@@ -174,12 +174,12 @@ def go_long_way(e, o, f, section, keep, growth, parts):
         if free and q.stiff:
             put(o.X, 0, state_at(o, f.nodes, o.cell))
         if q.stiff or not free:  # the less of a fast mode is left, the tighter the scan
-            take_off(o, f.nodes)
+            take_off(o, f.nodes, row(o.X, 0))
         o.offset = 0.0
         if o.resting == 0.0 or o.status != status.OK:
             return
         if o.cell == q.cells:
-            end_period(e, o, q, f.nodes, section, keep, growth, parts)
+            end_period(e, o, q, f.nodes, row(o.X, 0), section, keep, growth, parts)
             if o.done == o.periods:
                 return
 
@@ -212,13 +212,16 @@ def seek(e, section, keep, growth, parts):
                     waiting |= 1 << i
                     seeking ^= 1 << i
                     continue
-                put(o.X, 0, X)
                 if k == q.cells:
-                    end_period(e, o, q, f.nodes, section, keep, growth, parts)
+                    end_period(e, o, q, f.nodes, X, section, keep, growth, parts)
+                    if o.done < o.periods:
+                        continue
                 else:
+                    put(o.X, 0, X)
                     go_long_way(e, o, f, section, keep, growth, parts)
-                if not under_way(o):
-                    seeking ^= 1 << i
+                    if under_way(o):
+                        continue
+                seeking ^= 1 << i
     return waiting
 
 
@@ -244,8 +247,7 @@ def settle(e, o, free, struck, section, keep, growth, parts):
     if watched:
         watch_rebound(q, o, records, o.cell, t.offset[i], t.side[i], t.speed[i], t.impulse[i])
     o.cell += 1
-    put(o.X, 0, row(t.X, i))
-    take_off(o, f.nodes)
+    take_off(o, f.nodes, row(t.X, i))
 
 
 @entry
@@ -296,7 +298,7 @@ def iterate(e, o, section, keep, growth, parts):
     while o.done < o.periods and o.status == status.OK:
         o.status = map_period(f, stops, o, records, e.tangent[0])
         if o.status == status.OK:
-            end_period(e, o, f.oscillator[0], f.nodes, section, keep, growth, parts)
+            end_period(e, o, f.oscillator[0], f.nodes, row(o.X, 0), section, keep, growth, parts)
 
 
 @entry

@@ -83,15 +83,15 @@ def place(o, nodes, stops, cell, offset, x1, v1, x2, v2):
     o.stops[0], o.stops[1], o.stops[2] = stops.left, stops.right, stops.R
     o.status, o.resting, o.cell, o.offset = status.OK, 0.0, cell, offset
     o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
-    take_off(o, nodes)
+    take_off(o, nodes, row(o.X, 0))
     start_count(o)
 
 
 @inline
-def take_off(o, nodes):
-    """Free flight begins at the node where X is."""
-    z = row(nodes[o.cell].z, 0)
-    X = select(lanes_of(15), row(o.X, 0), z)  # z ends in sin and cos
+def take_off(o, nodes, X):
+    """Free flight begins with X at the node where the orbit is."""
+    z = row(nodes[np.uint64(o.cell)].z, 0)
+    X = select(lanes_of(15), X, z)  # z ends in sin and cos
     o.base = o.cell
     put(o.X, 0, X)
     put(o.y, 0, X - z)
