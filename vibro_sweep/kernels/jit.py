@@ -54,6 +54,7 @@ class entry:  # noqa: N801  # a decorator
     """`numba.njit` for a kernel that Python calls, too: one for Python, cached, and a `jit` for other kernels."""
 
     def __init__(self, function):
+        functools.update_wrapper(self, function)
         self._part, self._whole = jit(function), _compiled(function, WholeCompiler)
         _enable_caching(self._whole)
 
