@@ -14,7 +14,7 @@ from numpy.random import default_rng
 
 import vibro_sweep as vs
 from vibro_sweep import orbit
-from vibro_sweep.kernels import contact, ensemble, impacts, orbits, status
+from vibro_sweep.kernels import contact, ensemble, impacts, orbits, scan, status
 from vibro_sweep.kernels.flight import ORDER
 from vibro_sweep.kernels.jit import entry
 from vibro_sweep.kernels.lanes import LANES, lanes_of
@@ -190,8 +190,8 @@ def first_impacts(e, stops, states, record, suspects, nothing):
     for i in range(len(states)):
         x = states[i]
         orbits.place(o, f.nodes, stops, 0, 0.0, x[0], x[1], x[2], x[3])
-        o.suspect = ensemble.first_suspect(f, o)
-        suspects[i] = ensemble.suspect_state(o, f.nodes)[0]
+        o.suspect = scan.first_suspect(f, o)
+        suspects[i] = scan.suspect_state(o, f.nodes)[0]
         # the first cell alone, with one event allowed: R = 1 makes a mass that creeps off the stop knock for ever
         orbits.place(o, f.nodes, stops, 0, 0.0, x[0], x[1], x[2], x[3])
         o.events = impacts.MOST_EVENTS - 1

@@ -13,9 +13,11 @@ from vibro_sweep.kernels.lanes import (
     bits,
     eight,
     lanes_of,
+    leading,
     leading_lanes,
     new_lines,
     put,
+    put_four,
     put_transposed,
     record,
     row,
@@ -107,3 +109,18 @@ def test_records_begin_with_a_cache_line():
         lines = new_lines((3,), kind)
         assert kind.itemsize % LINE == 0 and lines.ctypes.data % LINE == 0
         assert not lines["x"].any() and not lines["flag"].any()
+
+
+@entry
+def parts(a, out):
+    for n in range(len(a)):
+        put_four(out, n, row(a, n))
+        out[n, 3] = leading(row(a, n))
+
+
+def test_the_first_of_eight():
+    """Four of them are stored and nothing behind; one of them is a float."""
+    a, out = numbers((5, LANES), 0), np.zeros((6, 4))
+    parts(a, out)
+    np.testing.assert_array_equal(out[:5], a[:, [0, 1, 2, 0]])
+    assert not out[5].any()
