@@ -21,8 +21,9 @@ from book import Goal, digits, main, table
 from scaling import in_processes
 
 import vibro_sweep as vs
-from vibro_sweep import cost, scene, sweep
-from vibro_sweep.compute import compute
+from vibro_sweep.driver import cost, sweep
+from vibro_sweep.driver.compute import compute
+from vibro_sweep.scene import scene
 
 TITLE = "The driver"
 COMMAND = "python benchmarks/driver.py"
@@ -91,7 +92,7 @@ class Clocked(Executor):
 @contextlib.contextmanager
 def dask():
     """An executor of worker processes that are started by command."""
-    from vibro_sweep.cluster import cluster
+    from vibro_sweep.driver.cluster import cluster
 
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
         told, log = Path(folder) / "scheduler.json", stack.enter_context(open(os.devnull, "w"))

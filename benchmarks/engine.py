@@ -8,8 +8,9 @@ import numpy as np
 from peers import Solver
 
 import vibro_sweep as vs
-from vibro_sweep import blocks, compute, scene
-from vibro_sweep.kernels import tables
+from vibro_sweep.driver import blocks, compute
+from vibro_sweep.engine.tables import cells as grid
+from vibro_sweep.scene import scene
 
 
 def scene_text(params, state, observe="impacts", sweep_key="", transient=0, record=1000) -> str:
@@ -29,7 +30,7 @@ def block_of(text: str) -> blocks.Block:
 @contextmanager
 def cell_count(cells: int):
     """The grid with another number of cells than the package chooses; fewer than that are not certified."""
-    with patch.object(tables, "cells_needed", lambda rates, *_: np.full(rates.shape[:-1], cells)):
+    with patch.object(grid, "cells_needed", lambda rates, *_: np.full(rates.shape[:-1], cells)):
         yield
 
 

@@ -33,7 +33,8 @@ def first_point(path: str) -> dict:
     """Times since the epoch at which the scene is read and its first point computed; `own`: the Clock's seconds."""
     clock = Clock()
     event.register("numba:compile", clock)
-    from vibro_sweep import blocks, compute, scene
+    from vibro_sweep.driver import blocks, compute
+    from vibro_sweep.scene import scene
 
     block = next(blocks.blocks(scene.load_scene(path), points_per_block=1))
     loaded = time.time()

@@ -16,11 +16,11 @@ from numba import njit
 from peers import ENGINE, METHODS
 from timing import interleaved, spent
 
-from vibro_sweep.kernels.flight import ORDER
-from vibro_sweep.kernels.jit import entry, jit
-from vibro_sweep.kernels.lanes import LANES, new_lines, put, row
-from vibro_sweep.orbit import points_of
-from vibro_sweep.system import System
+from vibro_sweep.engine.one_system import points_of
+from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.lanes import LANES, new_lines, put, row
+from vibro_sweep.engine.tables.flight import ORDER
+from vibro_sweep.model.oscillator import System
 
 TITLE = "The arithmetic floor"
 COMMAND = "python benchmarks/floor.py"

@@ -3,8 +3,8 @@
     python benchmarks/grazes.py [--flights 2000] [--decades 2 3 4 5 6 8 10 12] [--methods ...]
 
 Each flight of the paper's oscillator has one extremum of x1 at a random time that lies 10^-k b behind a stop (does the
-method see an impact?) or before it (does it see one that is not there?). Flights are built and certified by
-tests/certified.py, in 40-digit and extended arithmetic. scipy and heyoka are optional: `pip install .[bench]`.
+method see an impact?) or before it (does it see one that is not there?). Flights are built and certified in
+40-digit and extended arithmetic (tests/reference/certified.py). scipy and heyoka are optional: `pip install .[bench]`.
 """
 
 import argparse
@@ -16,7 +16,7 @@ import numpy as np
 import vibro_sweep as vs
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
-import certified
+from reference import certified
 
 SYSTEM = vs.System(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63, R=0.8, b=6.6)
 GROUPS = 100  # times of the extremum

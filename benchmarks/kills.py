@@ -1,18 +1,20 @@
 """Runs killed at random moments, resumed, and compared bit for bit with one that was left alone: a Markdown table.
 
-    python benchmarks/kills.py [--kills 100] [--workers 2] [--seed 1]
+    python benchmarks/kills.py [--kills 102] [--seed 1] [--by "1 worker" "2 workers" Dask]
 
-Each time the command line runs a scene of some seconds and gets a SIGKILL at a moment drawn uniformly from the time
-that the whole run takes; then it is resumed to its end. Every block leaves a line in a log when it is begun and when it
-is computed, so that the work lost is measured, in blocks: one for each that was computed but not yet written, and of
-each that was being computed the share of its time that had gone by. It should be about the number of workers at most.
+Each time the command line runs a scene of some seconds and gets one of `SIGNALS`, in turn, at a moment drawn uniformly
+from the time that the whole run takes; then it is resumed to its end. By Dask there are two workers of one thread, and
+the scheduler, or a worker, is killed as well. No run may print a traceback, none may leave anything but its file, and
+those that can answer must end with the exit status of an interruption. Every block leaves a line in a log when it is
+begun, so that points computed again are known: about one block of each worker at most.
 """
 
 import argparse
 import collections
+import contextlib
+import json
 import os
 import signal
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -24,7 +26,7 @@ import h5py
 import numpy as np
 from book import table
 
-POINTS = 4000
+POINTS = 2000
 SCENE = f"""
 system: {{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}}
 sweep: {{b: {{start: 6.5, stop: 6.9, num: {POINTS}}}}}
@@ -32,70 +34,153 @@ orbit: {{transient: 12000, record: 100}}
 observe: [section, lyapunov, impacts]
 """
 
-# The program, with a line in a log for each block that is begun or computed: its first point, its end, the time.
+# The program, with a line in a log for each block that is begun, here or by a worker of Dask: its first point, its end.
 PROGRAM = """
-import os, sys, time
-from vibro_sweep import cli, compute, pool
-log = os.open(sys.argv[1], os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+import os, signal, sys
+signal.signal(signal.SIGINT, signal.SIG_IGN)  # until the program itself begins
+from vibro_sweep.__main__ import program
+from vibro_sweep.driver import compute
+from vibro_sweep.driver import pool
+log = sys.argv[1]
 plain = compute.compute
 def logged(block):
-    place = f"{block.box[0].start} {block.box[0].stop}"
-    os.write(log, f"{place} {time.monotonic()}\\n".encode())
-    result = plain(block)
-    os.write(log, f"{place} {time.monotonic()}\\n".encode())
-    return result
+    file = os.open(log, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+    os.write(file, f"{block.box[0].start} {block.box[0].stop}\\n".encode())
+    os.close(file)
+    return plain(block)
 pool.compute = logged
-sys.exit(cli.main(["run", *sys.argv[2:]]))
+sys.argv[:2] = ["vibro-sweep", "run"]
+signal.signal(signal.SIGINT, signal.default_int_handler)
+program()
 """
+
+SIGNALS = ("KILL", "TERM", "HUP", "INT", "INT twice", "STOP, CONT")
+OF_DASK = ("KILL the scheduler", "KILL a worker")
+STATUS = {"KILL": -9, "TERM": -15, "HUP": -1, "INT": 130, "INT twice": 130, "KILL the scheduler": 2}
+BY = {"1 worker": SIGNALS, "2 workers": SIGNALS, "Dask": SIGNALS + OF_DASK}
+LIMIT = 600  # seconds after which something hangs
 
 
 class Kill(NamedTuple):
+    how: str
     when: str
     points: int  # computed again
-    blocks: int  # begun again
-    work: float  # lost, in blocks
+    blocks: float  # the same, in the largest of the blocks
+
+
+class Threads:
+    """A run by threads."""
+
+    def __init__(self, by):
+        self.options = ["--workers", by.split()[0]]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def mend(self):
+        pass
+
+
+class Cluster:
+    """A scheduler of Dask and two workers, on this machine alone."""
+
+    def __enter__(self):
+        self._folder, self._processes = tempfile.TemporaryDirectory(), []
+        self.mend()
+        return self
+
+    def __exit__(self, *_):
+        for process in self._processes:
+            process.kill()
+            process.wait()
+        self._processes.clear()
+        self._folder.cleanup()
+
+    def mend(self):
+        """Begin again where somebody was killed."""
+        if self._processes and all(process.poll() is None for process in self._processes):
+            return
+        self.__exit__()
+        self._folder = tempfile.TemporaryDirectory()
+        told = Path(self._folder.name, "scheduler.json")
+        self._start("scheduler", told, "--port", "0")
+        limit = time.monotonic() + LIMIT
+        while not (told.exists() and told.stat().st_size):
+            if time.monotonic() > limit:
+                raise SystemExit("no scheduler of Dask starts here")
+            time.sleep(0.05)
+        self.options = ["--scheduler", json.loads(told.read_text())["address"]]
+        for _ in range(2):
+            self._start("worker", told, "--nthreads", "1", "--no-nanny", "--local-directory", self._folder.name)
+
+    def kill(self, which):
+        self._processes[which].kill()
+
+    def _start(self, what, told, *options):
+        listening = ["--host", "127.0.0.1", "--dashboard-address", "127.0.0.1:0", "--no-dashboard"]
+        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", "--scheduler-file", str(told)]
+        silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": self._folder.name}
+        self._processes.append(subprocess.Popen([*command, *listening, *options], **silent))
 
 
 def start(log, scene, output, workers):
-    options = ["--workers", str(workers), "--resume", "--quiet"]
-    return subprocess.Popen([sys.executable, "-c", PROGRAM, log, scene, "-o", output, *options])
+    command = [sys.executable, "-c", PROGRAM, log, scene, "-o", output, *workers.options, "--resume", "--quiet"]
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
 
 
-def killed(scene, folder, workers, moment):
+def send(process, workers, how, pause):
+    """The signals of one of SIGNALS, `pause` seconds between two; or the kills of the cluster."""
+    if how in OF_DASK:
+        workers.kill(OF_DASK.index(how))
+        return
+    for name in {"INT twice": ("INT", "INT"), "STOP, CONT": ("STOP", "CONT")}.get(how, (how,)):
+        process.send_signal(getattr(signal, f"SIG{name}"))
+        time.sleep(pause)
+
+
+def ended(process, how):
+    """Wait for it; no traceback, and the exit status that the signal asks for."""
+    told = process.communicate(timeout=LIMIT)[1]
+    early = (-2,) if "INT" in how else ()  # Python itself had not begun
+    if ("Traceback" in told and not early) or process.returncode not in (0, STATUS.get(how, 0), *early):
+        raise SystemExit(f"a run with {how} ended with the exit status {process.returncode}:\n{told}")
+
+
+def killed(scene, place, workers, moment, how, pause):
     """One run killed after `moment` seconds and resumed: what was lost, and the file."""
-    output, logs = folder / "out.h5", [folder / "first", folder / "second"]
+    folder = place / "files"
+    folder.mkdir(parents=True)
+    output, logs = folder / "out.h5", [place / "first", place / "second"]
     process = start(logs[0], scene, output, workers)
     try:
         process.wait(moment)
+        how = "none, it had ended"
     except subprocess.TimeoutExpired:
-        process.send_signal(signal.SIGKILL)
-        process.wait()
-    end = time.monotonic()
-    part, journal = Path(f"{output}.part"), Path(f"{output}.part.journal")
+        send(process, workers, how, pause)
+    ended(process, how)
+    part = Path(f"{output}.part")
     if output.exists():
-        when = "after the end"
+        when = "went on" if how in ("STOP, CONT", "KILL a worker") else "after the end"
     elif not part.exists():
-        when = "before the file existed"
+        when = "before the part existed"
     else:
-        when = f"in mid-run, journal {'in use' if journal.stat().st_size > 1000 else 'empty'}"
-    if start(logs[1], scene, output, workers).wait() != 0:
-        raise SystemExit(f"the run killed after {moment} s cannot be resumed")
-    first, second = map(blocks, logs)
-    again = [times for place, times in first.items() if place in second]
-    points = sum(len(range(*place)) for place in [*first, *second]) - POINTS
-    whole = [times[1] - times[0] for times in [*first.values(), *second.values()] if len(times) == 2]
-    usual = statistics.median(whole)  # the first block of each worker takes longer: it loads the compiled code
-    work = sum(1 if len(times) == 2 else min(1, (end - times[0]) / usual) for times in again)
-    return Kill(when, points, len(again), work), output
+        when = "while the file was made" if any(folder.glob(".*")) else "in mid-run"
+    workers.mend()
+    ended(start(logs[1], scene, output, workers), "resumed")
+    if left := [path.name for path in folder.iterdir() if path != output]:
+        raise SystemExit(f"a run with {how} after {moment} s left {left}")
+    sizes = [size for log in logs for size in blocks(log)]
+    again = sum(sizes) - POINTS
+    return Kill(how, when, again, again / max(sizes)), output
 
 
 def blocks(log):
-    """(first point, end) of each block -> when it was begun and, if it was, computed."""
-    result = collections.defaultdict(list)
-    for line in log.read_text().splitlines() if log.exists() else []:
-        first, end, moment = line.split()
-        result[int(first), int(end)].append(float(moment))
-    return result
+    """Points of each block that was begun."""
+    lines = log.read_text().splitlines() if log.exists() else []
+    return [int(end) - int(first) for first, end in map(str.split, lines)]
 
 
 def arrays(path):
@@ -103,53 +188,62 @@ def arrays(path):
         return {name: dataset[()].tobytes() for name, dataset in file.items()}
 
 
-def measure(kills, workers, seed):
+def measure(kills, by, seed):
     """What each kill cost; seconds of the whole run; whether all arrays are the same."""
     rng, found, same = np.random.default_rng(seed), [], True
-    with tempfile.TemporaryDirectory() as folder:
-        folder = Path(folder)
+    with contextlib.ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        workers = stack.enter_context(Cluster() if by == "Dask" else Threads(by))
         scene, whole = folder / "scene.yaml", folder / "whole.h5"
         scene.write_text(SCENE)
         for _ in range(2):  # the first one compiles
             whole.unlink(missing_ok=True)
             began = time.monotonic()
-            start(os.devnull, scene, whole, workers).wait()
+            ended(start(os.devnull, scene, whole, workers), "whole")
             seconds = time.monotonic() - began
         expected = arrays(whole)
         for k in range(kills):
-            place = folder / str(k)
-            place.mkdir()
-            kill, output = killed(scene, place, workers, rng.uniform(0, seconds))
+            moment, pause = rng.uniform(0, seconds), rng.uniform(0, 0.1)
+            how = BY[by][k % len(BY[by])]
+            kill, output = killed(scene, folder / str(k), workers, moment, how, pause)
             same &= arrays(output) == expected
             found.append(kill)
+            told = f"{kill.how}, {kill.when}, {kill.points} points again, {kill.blocks:.2f} blocks, same bits: {same}"
+            print(f"{by} {k + 1} of {kills}: {told}", file=sys.stderr, flush=True)
     return found, seconds, same
 
 
-def report(found, seconds, same, workers) -> str:
-    groups = collections.defaultdict(list)
-    for kill in found:
-        groups[kill.when].append(kill)
-    rows = []
-    for when, kills in sorted(groups.items()):
-        begun, work = [kill.blocks for kill in kills], [kill.work for kill in kills]
-        ends = f"{np.mean(work):.2f}", f"{max(work):.2f}"
-        rows.append((when, len(kills), sum(kill.points for kill in kills), max(begun), *ends))
-    header = ("killed", "runs", "points computed again", "blocks begun again, most", "work lost, mean", "most")
-    every, again = POINTS * len(found), sum(kill.points for kill in found)
-    return (
-        f"{table(header, rows)}\n{len(found)} runs of {seconds:.1f} s with {workers} workers, each killed once. After "
-        f"they were resumed all arrays are {'' if same else 'NOT '}equal bit for bit to those of an undisturbed run. "
-        f"Work is in blocks; of {every:,} points {again:,} were computed again ({100 * again / every:.2g} %)."
-    )
+def report(measured) -> str:
+    """Of what `measure` has found for each of the keys of `BY`."""
+    rows, notes = [], []
+    for by, (found, seconds, same) in measured.items():
+        groups = collections.defaultdict(list)
+        for kill in found:
+            groups[kill.how, kill.when].append(kill)
+        for (how, when), kills in sorted(groups.items()):
+            points, most = [kill.points for kill in kills], max(kill.blocks for kill in kills)
+            rows.append((by, how, when, len(kills), sum(points), f"{most:.2f}"))
+        again = sum(kill.points for kill in found)
+        notes.append(
+            f"By {by}: {len(found)} runs of {seconds:.1f} s, each killed once. After they were resumed all arrays are "
+            f"{'' if same else 'NOT '}equal bit for bit to those of an undisturbed run. Of {POINTS * len(found):,} "
+            f"points {again:,} were computed again."
+        )
+    header = ("by", "signal", "killed", "runs", "points computed again", "in blocks, most")
+    return "\n".join([table(header, rows), *notes])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--kills", type=int, default=100)
-    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--kills", type=int, default=102, help="of all three kinds together")
+    parser.add_argument("--by", nargs="*", choices=BY, default=list(BY))
     parser.add_argument("--seed", type=int, default=1)
     chosen = parser.parse_args()
-    print(report(*measure(chosen.kills, chosen.workers, chosen.seed), chosen.workers))
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # so is a job in the background born, and its children too
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # which `nohup` lets nobody hear
+    each = -(-chosen.kills // len(chosen.by))
+    print(report({by: measure(each, by, chosen.seed + k) for k, by in enumerate(chosen.by)}))
 
 
 if __name__ == "__main__":

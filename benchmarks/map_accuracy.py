@@ -2,7 +2,7 @@
 
     python benchmarks/map_accuracy.py [--output FIGURE.png] [--workers N]
 
-The first part is computed in 45 digits (tests/naive.py, tests/naive_map.py): in doubles the error of order 2 drowns in
+The first part is computed in 45 digits (tests/reference/naive_map.py): in doubles the error of order 2 drowns in
 rounding at about psi = 1e-9. Prints both tables in Markdown.
 """
 
@@ -17,9 +17,9 @@ from mpmath import mp, mpf
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-import naive
 import paper
-from naive_map import NaiveMap, linear_family, root_family
+from reference import naive
+from reference.naive_map import NaiveMap, linear_family, root_family
 
 import vibro_sweep as vs
 from vibro_sweep.plotting.style import DASHES, EXPONENTS, FAINT, GRAZING, INK, LEFT, RIGHT, STYLE, page

@@ -16,6 +16,7 @@ import numpy as np
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
+from vibro_sweep.model.status import STANDING
 from vibro_sweep.scene import parse_scene
 
 SCENES = Path(__file__).parents[1] / "configs" / "paper"
@@ -119,7 +120,7 @@ def attractors(data, record) -> list[Attractor]:
 
 def bounded(data):
     """Which orbits have not run away."""
-    return (data.status == 0) & (abs(data.x1).max("sample") < FAR)
+    return data.status.isin(STANDING) & (abs(data.x1).max("sample") < FAR)
 
 
 def strikes(data) -> np.ndarray:

@@ -11,7 +11,9 @@ import numpy as np
 from numba import njit
 from peers import Solver
 
-from vibro_sweep.system import NAMES, System, steady_response
+from vibro_sweep.model.grazing import steady_response
+from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.parameters import NAMES
 
 MOST_PERIODS = 5000
 compiled = njit(fastmath={"contract"}, error_model="numpy")

@@ -1,8 +1,9 @@
 """The problem that every method solves: the paper's oscillator at three clearances, and the truth about it.
 
-The truth is the first 40 impacts of three orbits at each clearance, computed by tests/naive.py with 40 digits and kept
-in data/impacts.json (`python benchmarks/problem.py --write` makes it anew, in minutes). An error is the largest error
-of those 40 impact times over the three orbits: early times mean something, the end of a chaotic orbit does not.
+The truth is the first 40 impacts of three orbits at each clearance, computed with 40 digits by
+tests/reference/naive.py and kept in data/impacts.json (`python benchmarks/problem.py --write` makes it anew, in
+minutes). An error is the largest error of those 40 impact times over the three orbits: early times mean something, the
+end of a chaotic orbit does not.
 """
 
 import json
@@ -96,7 +97,7 @@ def on_attractor(b: float) -> tuple[dict[str, float], np.ndarray]:
 
 
 def write_reference() -> None:
-    import naive
+    from reference import naive
 
     jobs = [(b, tuple(b * x for x in start), COUNT) for b in CLEARANCES for start in naive.STARTS]
     with ProcessPoolExecutor() as pool:

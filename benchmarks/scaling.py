@@ -19,18 +19,18 @@ from engine import block_of, scene_text
 from timing import spent
 
 import vibro_sweep as vs
-from vibro_sweep import scene
-from vibro_sweep.blocks import Block
-from vibro_sweep.compute import compute
-from vibro_sweep.cost import BLOCK_BYTES
+from vibro_sweep.driver.blocks import Block
+from vibro_sweep.driver.compute import compute
+from vibro_sweep.driver.memory import BLOCK_BYTES
 from vibro_sweep.plotting.style import DASHES, FAINT, page
+from vibro_sweep.scene import scene
 
 TITLE = "Scaling"
 COMMAND = "python benchmarks/scaling.py"
 FREE = 6.8  # a clearance at which the orbit from rest swings freely in the end
 FAR = 1e6  # a clearance that nothing reaches
 WORKERS = 1.8
-BLOCKS = 5  # one computed, one written, and of that what the journal gathers, appends and has not yet put into the file
+BLOCKS = 5  # one computed, one written; at the end as many as are put into the file together, and what HDF5 keeps
 SLOPE = 1.1  # of a line in the double logarithmic plot that still counts as straight
 COLOURS = {FREE: "#6e6e78", 6.69: "#b2182b", 3.0: "#2166ac", 1.0: "#4d9221"}
 

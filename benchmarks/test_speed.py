@@ -10,10 +10,10 @@ from engine import block_of, scene_text
 from peers import ENGINE, EXPONENTS, method
 
 import vibro_sweep as vs
-from vibro_sweep.compute import compute
-from vibro_sweep.kernels import tables
-from vibro_sweep.kernels.flight import Flight, new_flight
-from vibro_sweep.orbit import points_of
+from vibro_sweep.driver.compute import compute
+from vibro_sweep.engine.one_system import points_of
+from vibro_sweep.engine.tables import build as tables
+from vibro_sweep.engine.tables.flight import Flight, new_flight
 
 PERIODS = 29 * 100
 CLEARANCES = (6.8, *problem.CLEARANCES)

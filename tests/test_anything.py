@@ -1,20 +1,24 @@
 """Any admissible oscillator and start: no crash, no hang, no NaN without a status, and never behind a stop.
 
-Work per period is bounded: LONGEST / WIDTH series (kernels/tables.py) and MOST_EVENTS impacts, grazes and rests.
+Work per period is bounded: LONGEST / WIDTH series (engine/tables/cells.py) and MOST_EVENTS impacts, grazes and rests.
 """
 
 import math
+import time
+from collections import Counter
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 import vibro_sweep as vs
-from vibro_sweep.kernels.impacts import MOST_EVENTS
-from vibro_sweep.system import ParameterError
+from vibro_sweep.engine.motion.impacts import MOST_EVENTS
+from vibro_sweep.model.parameters import ParameterError
 
 EPS = 2.0**-52
 PERIODS = 3
+SECONDS = 20.0  # of processor time, for one example
 
 
 def numbers(low, high):
@@ -51,65 +55,99 @@ def scaled(start, b):
 QUIET = dict(mu_m=1.0, mu_k=1.0, zeta=0.0, f2=1.0, omega=1.0, R=0.8, b=0.5, tau=0.0, stops="both")
 
 
-@settings(max_examples=150, deadline=20_000, suppress_health_check=[HealthCheck.too_slow])
-@given(values=parameters, start=starts)
-@example(values=QUIET, start=(1.0, 0.0, 1.0, 0.0, False))
-@example(values=QUIET | dict(tau=1.0), start=(1.0, 0.0, 1.0, 0.0, False))
-@example(values=QUIET | dict(R=1.0, b=1e-6), start=(0.0, 1.0, 0.0, 0.0, True))
-def test_anything(values, start):
-    system = vs.System(**values)
-    state = scaled(start, system.b)
-    try:
-        orbit = vs.simulate(system, state, periods=PERIODS)
-    except ParameterError as error:  # too stiff for the grid, and said so
-        assert error.key == "omega"
-        return
-    assert len(orbit.impacts) <= PERIODS * MOST_EVENTS
-    if orbit.status != "ok":
-        assert orbit.status.code > 0
-        known = np.isfinite(orbit.section).all(1)
-        assert (np.diff(known.astype(int)) <= 0).all()  # NaN from the failure on
-        return
-    assert np.isfinite(orbit.section).all()
-    right = system.b if system.stops != "left" else math.inf
-    left = -system.b if system.stops != "right" else -math.inf
-    slack = 1 + 4 * EPS
-    times = np.linspace(0.0, orbit.section_times[-1], 57)
-    samples = orbit.sample(times)
-    assert np.isfinite(samples).all()
-    for x1 in (orbit.section[:, 0], samples[:, 0]):
-        assert (x1 <= right * slack).all()
-        assert (x1 >= left * slack).all()
-    hits = orbit.impacts
-    for name in hits.dtype.names:
-        assert np.isfinite(hits[name]).all()
-    assert (hits["side"] * hits["v1"] > 0).all()
-    assert (np.diff(hits["t"]) >= 0).all()
-    rests = orbit.sticking
-    assert (rests["t_off"] >= rests["t_on"]).all()
-    assert (rests["t_on"][1:] >= rests["t_off"][:-1]).all()
-    assert rests["t_off"].max(initial=0.0) <= orbit.section_times[-1]
+def require(outcomes, **shares):
+    """At least such shares of the examples came to these outcomes: a test that refuses them all shows nothing."""
+    for outcome, share in shares.items():
+        assert outcomes[outcome] >= share * outcomes["examples"] > 0, (outcome, dict(outcomes))
 
 
-@settings(max_examples=25, deadline=20_000, suppress_health_check=[HealthCheck.too_slow])
-@given(values=parameters, start=starts)
-def test_any_exponents(values, start):
-    system = vs.System(**values)
-    try:
-        exponents = vs.lyapunov(system, scaled(start, system.b), transient=1, periods=2)
-    except ParameterError as error:
-        assert error.key == "omega"
-        return
-    if np.isnan(exponents).any():
-        assert vs.simulate(system, scaled(start, system.b), periods=PERIODS).status != "ok"
-    else:
-        assert (np.diff(exponents[~np.isneginf(exponents)]) <= 0).all()
-        assert (exponents < math.inf).all()
+def searching(count):
+    """The same few examples each time, and others each time where there are many of them."""
+    few = count <= 50
+    return settings(
+        max_examples=count, derandomize=few, deadline=None, suppress_health_check=[HealthCheck.too_slow], database=None
+    )
 
 
-def test_what_sampling_takes_off_at_a_stop_is_rounding(monkeypatch):
-    """`sample` cuts x1 off at the stops, and so cannot show what it cut: here it does not cut."""
-    monkeypatch.setattr(np, "clip", lambda x, *_: x)
+@pytest.mark.parametrize("count", [50, pytest.param(400, marks=pytest.mark.slow)])
+def test_anything(count):
+    """Of 400 examples 93 % were well, 58 % with impacts and 30 % with rests; 5 % are too stiff."""
+    outcomes = Counter()
+
+    @searching(count)
+    @given(values=parameters, start=starts)
+    @example(values=QUIET, start=(1.0, 0.0, 1.0, 0.0, False))
+    @example(values=QUIET | dict(tau=1.0), start=(1.0, 0.0, 1.0, 0.0, False))
+    @example(values=QUIET | dict(R=1.0, b=1e-6), start=(0.0, 1.0, 0.0, 0.0, True))
+    def check(values, start):
+        outcomes["examples"] += 1
+        system = vs.System(**values)
+        state, began = scaled(start, system.b), time.process_time()
+        try:
+            orbit = vs.simulate(system, state, periods=PERIODS)
+        except ParameterError as error:  # too stiff for the grid, and said so
+            assert error.key == "omega"
+            return
+        assert time.process_time() - began < SECONDS
+        assert len(orbit.impacts) <= PERIODS * MOST_EVENTS
+        outcomes[str(orbit.status)] += 1
+        if orbit.status != "ok":
+            assert orbit.status.code > 0
+            known = np.isfinite(orbit.section).all(1)
+            assert (np.diff(known.astype(int)) <= 0).all()  # NaN from the failure on
+            return
+        assert np.isfinite(orbit.section).all()
+        right = system.b if system.stops != "left" else math.inf
+        left = -system.b if system.stops != "right" else -math.inf
+        times = np.linspace(0.0, orbit.section_times[-1], 57)
+        samples = orbit.sample(times)
+        assert np.isfinite(samples).all()
+        size = np.abs(samples).max()  # x1 is a sum of terms as large as the state
+        for x1, rounding in ((orbit.section[:, 0], 4 * EPS * system.b), (samples[:, 0], 64 * EPS * (size + system.b))):
+            assert (x1 <= right + rounding).all()
+            assert (x1 >= left - rounding).all()
+        hits, rests = orbit.impacts, orbit.sticking
+        outcomes["struck"] += len(hits) > 0
+        outcomes["rested"] += len(rests) > 0
+        for name in hits.dtype.names:
+            assert np.isfinite(hits[name]).all()
+        assert (hits["side"] * hits["v1"] > 0).all()
+        assert (np.diff(hits["t"]) >= 0).all()
+        assert (rests["t_off"] >= rests["t_on"]).all()
+        assert (rests["t_on"][1:] >= rests["t_off"][:-1]).all()
+        assert rests["t_off"].max(initial=0.0) <= orbit.section_times[-1]
+
+    check()
+    require(outcomes, ok=0.75, struck=0.35, rested=0.1)
+
+
+@pytest.mark.parametrize("count", [25, pytest.param(100, marks=pytest.mark.slow)])
+def test_any_exponents(count):
+    """Of 100 examples 95 % had them."""
+    outcomes = Counter()
+
+    @searching(count)
+    @given(values=parameters, start=starts)
+    def check(values, start):
+        outcomes["examples"] += 1
+        system = vs.System(**values)
+        try:
+            exponents = vs.lyapunov(system, scaled(start, system.b), transient=1, periods=2)
+        except ParameterError as error:
+            assert error.key == "omega"
+            return
+        if np.isnan(exponents).any():
+            assert vs.simulate(system, scaled(start, system.b), periods=PERIODS).status != "ok"
+        else:
+            outcomes["known"] += 1
+            assert (np.diff(exponents[~np.isneginf(exponents)]) <= 0).all()
+            assert (exponents < math.inf).all()
+
+    check()
+    require(outcomes, known=0.75)
+
+
+def test_samples_pass_a_stop_by_rounding_alone():
     for changes in (dict(b=6.6), dict(b=3.0), dict(b=1.0), dict(b=0.5, R=0.3), dict(b=1e-3, R=1.0)):
         system = vs.System(**(dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63, R=0.8) | changes))
         orbit = vs.simulate(system, (0.1 * system.b, 0.2, 0.1, -0.3), 20)

@@ -1,13 +1,16 @@
 """The program from outside: exit status, messages, and what it leaves on the disk."""
 
 import json
+import re
 import subprocess
 import sys
 import time
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+import vibro_sweep as vs
 from vibro_sweep.cli import main
 
 NUMBERS = dict(mu_m="10", mu_k="5", zeta="0.05", f2="0", omega="0.63", R="0.8", b="6.6")
@@ -117,6 +120,36 @@ BAD_SCENES = {
     "key twice": (scene("model: flow\nmodel: map"), ["'model'", "twice"]),
     "alias bomb": ("a: &a [x]\nb: &b [*a, *a]\nc: [*b, *b]", ["anchors are not allowed", "&a"]),
     "deep nesting": ("[" * 10_000, ["nested"]),
+    "escape of no character": (scene('model: "\\UFFFFFFFF"'), ["line 3", "an escape of no character"]),
+    "escape of half a character": (scene('model: "\\uD800"'), ["line 3", "an escape of no character"]),
+    "axis beyond the floats": (
+        swept("tau: {start: -1.0e+308, stop: 1.0e+308, num: 3}"),
+        ["sweep.tau.stop", "1e+308", "1e+300"],
+    ),
+    "integer beyond the floats": (scene(b="1" + 400 * "0"), ["system.b", "1000", "must be a number"]),
+    "physical mass too small": (physical(M1="1e-200", M2="1e200"), ["system.physical.M2", "1e+200", "mu_m = inf"]),
+    "physical damping that vanishes": (
+        physical(C1="1e-300", C2="5e-300", K1="1e100", K2="5e100"),
+        ["system.physical.C1", "1e-300", "zeta = 0.0"],
+    ),
+    "physical force beyond the floats": (physical(P1="1e308", P2="1e308"), ["system.physical.P2", "f2 = 0.0"]),
+    "start of a swept number": (
+        scene("start: {x1: 1}\nsweep: {x1: {values: [0, 1]}}"),
+        ["start.x1", "1", "is swept", "leave it out"],
+    ),
+    "section that is not observed": (
+        scene("section: {kind: impact}\nobserve: [lyapunov]"),
+        ["section.kind", "impact", "not observed", "leave it out"],
+    ),
+    "observed twice": (scene("observe: [section, impacts, section]"), ["observe", "names section twice"]),
+    "record of a machine's memory": (
+        scene(orbit="{transient: 0, record: 1e9}"),
+        ["orbit.record", "1000000000", "MB of memory at once", "at most 400 MB"],
+    ),
+    "samples of a machine's memory": (
+        scene("trajectory: {periods: 1, samples: 1e9}"),
+        ["trajectory.samples", "1000000000", "MB of memory at once", "at most 400 MB"],
+    ),
     "Python object": ("system: !!python/object/apply:os.system [ls]", ["tags are not allowed", "os.system"]),
 }
 
@@ -164,7 +197,7 @@ def test_bad_scene(folder, capsys, name, command):
         (["run", "good.yaml", "--workers", "many"], ["--workers", "'many'", ">= 1"]),
         (["run", "good.yaml", "--resume", "--overwrite"], ["--resume", "--overwrite", "exclude"]),
         (["run", "good.yaml", "-o", "old.h5"], ["old.h5", "exists", "--overwrite"]),
-        (["run", "good.yaml", "-o", "half.h5"], ["half.h5.part", "--resume", "--overwrite"]),
+        (["run", "good.yaml", "-o", "half.h5"], ["half.h5.part", "in the way", "move it away"]),
         (["run", "good.yaml", "-o", "good.yaml", "--overwrite"], ["good.yaml", "the scene itself"]),
         (["run", "good.yaml", "-o", "none/new.h5"], ["none/new.h5", "no folder"]),
         (["run", "good.yaml", "-o", "."], [".", "is a folder"]),
@@ -197,7 +230,7 @@ def test_read_only_folder(folder, capsys, monkeypatch):
 
 
 def test_scheduler_without_its_package(folder, capsys, monkeypatch):
-    monkeypatch.delitem(sys.modules, "vibro_sweep.cluster", raising=False)
+    monkeypatch.delitem(sys.modules, "vibro_sweep.driver.cluster", raising=False)
     monkeypatch.setitem(sys.modules, "distributed", None)
     words = ["--scheduler", "tcp://host:8786", "dask.distributed"]
     assert_refused(capsys, folder, ["run", "good.yaml", "--scheduler", "tcp://host:8786"], words)
@@ -266,8 +299,31 @@ def test_grazing_does_not_depend_on_the_start(folder, capsys):
 def test_check(folder, capsys):
     assert main(["check", "good.yaml"]) == 0
     out = capsys.readouterr().out
-    assert out.startswith("good.yaml: b = 6.5 .. 6.7 (3 values)\n") and "3 points" in out and "time" in out
+    assert out.startswith("good.yaml: b = 6.5 .. 6.7 (3 values)\n") and "3 points" in out
+    assert re.search(r"  time      about [0-9.e+-]+ (s|min|h) here, once compiled\n", out)
     assert [path.name for path in folder.iterdir()] == ["good.yaml"]
+
+
+def test_kinds_of_pictures_in_the_help():
+    from vibro_sweep import cli, plotting
+
+    assert list(cli.KINDS) == list(plotting.KINDS)
+
+
+@pytest.mark.parametrize(
+    "stops, where, sign", [("right", "(right stop, t = 0)", 1), ("left", "(left stop, t = T/2)", -1)]
+)
+def test_grazing_of_one_stop(folder, capsys, stops, where, sign):
+    (folder / "one.yaml").write_text(scene(stops=stops))
+    assert main(["grazing", "one.yaml"]) == 0
+    line = capsys.readouterr().out.splitlines()[2]
+    numbers = [float(part.split()[0].strip(",")) for part in line.split(": ")[1:]]
+    assert line.endswith(where) and "negative" not in line
+    system = vs.System(**{key: float(value) for key, value in NUMBERS.items()}, stops=stops)
+    # without stops this motion is steady, and touches the stop half a period later on the left
+    orbit = vs.simulate(system.replace(b=100), vs.grazing(system).state, 1)
+    assert np.allclose(orbit.sample([system.period / 2 if stops == "left" else 0.0])[0], numbers, atol=1e-9)
+    assert np.sign(numbers[0]) == sign
 
 
 def test_run_then_look(folder, capsys):
@@ -276,7 +332,9 @@ def test_run_then_look(folder, capsys):
     assert captured.out.startswith("good.h5: 3 points in ") and "all ok" in captured.out and captured.err == ""
     assert {path.name for path in folder.iterdir()} >= {"good.yaml", "good.h5", "good.png"}
     assert main(["info", "good.h5"]) == 0
-    assert "b" in capsys.readouterr().out
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "good.h5: vibro_sweep: good" and lines[1].split() == ["b", "6.5", "..", "6.7", "(3", "values)"]
+    assert "computed     3 of 3 orbits (100 %)" in lines and "checksums    all hold" in lines
     assert main(["plot", "good.h5", "-o", "picture.svg"]) == 0
     assert (folder / "picture.svg").exists()
 
@@ -284,15 +342,43 @@ def test_run_then_look(folder, capsys):
 def test_existing_file_is_kept_unless_told(folder, capsys):
     assert main(["run", "good.yaml", "-o", "file.h5", "--quiet"]) == 0
     assert capsys.readouterr().out == ""
-    assert_refused(capsys, folder, ["run", "good.yaml", "-o", "file.h5"], ["file.h5", "exists"])
+    (folder / "good.yaml").write_text(scene("sweep: {b: {values: [6.5, 6.6]}}"))
+    words = ["file.h5 exists", "--overwrite replaces it", "another scene", "- sweep: {b: {values: [6.5, 6.6, 6.7]}}"]
+    assert_refused(capsys, folder, ["run", "good.yaml", "-o", "file.h5"], words)
     (folder / "file.h5").write_bytes(b"old")
     assert main(["run", "good.yaml", "-o", "file.h5", "--quiet", "--overwrite"]) == 0
     assert (folder / "file.h5").read_bytes().startswith(b"\x89HDF")
 
 
+def test_run_again(folder, capsys):
+    assert main(["run", "good.yaml", "--plot"]) == 0
+    before = contents(folder)
+    capsys.readouterr()
+    assert main(["run", "good.yaml"]) == 0
+    assert capsys.readouterr().out == "good.h5 is complete already, from the same scene: 3 points, all ok\n"
+    assert contents(folder) == before
+    assert main(["run", "good.yaml", "--plot"]) == 0
+    assert capsys.readouterr().out.endswith("good.png\n") and contents(folder) == before
+    (folder / "good.png").write_text("a picture by hand")
+    words = ["good.png exists", "--overwrite replaces it"]
+    assert_refused(capsys, folder, ["run", "good.yaml", "--plot"], words)
+    assert_refused(capsys, folder, ["plot", "good.h5"], words)
+    assert main(["plot", "good.h5", "--overwrite"]) == 0
+
+
+def test_file_of_another_version_is_kept(folder, capsys, monkeypatch):
+    with monkeypatch.context() as other:
+        other.setattr("vibro_sweep.identity.identity", lambda: "another")
+        assert main(["run", "good.yaml", "--quiet"]) == 0
+    words = ["good.h5 exists", "other code", "--overwrite replaces it"]
+    assert_refused(capsys, folder, ["run", "good.yaml"], words)
+
+
 def test_bad_points_are_counted_by_name(folder, capsys, monkeypatch):
-    report = SimpleNamespace(points=1003, bad=3, statuses={"ok": 1000, "chatter": 2, "lost": 1}, seconds=1.234)
-    monkeypatch.setattr("vibro_sweep.sweep.run", lambda *_: report)
+    report = SimpleNamespace(
+        points=1003, bad=3, statuses={"ok": 1000, "chatter": 2, "lost": 1}, seconds=1.234, computed=1
+    )
+    monkeypatch.setattr("vibro_sweep.driver.sweep.run", lambda *_: report)
     assert main(["run", "good.yaml"]) == 1
     assert capsys.readouterr().out == "good.h5: 1,003 points in 1.2 s, 3 with a bad status (chatter 2, lost 1)\n"
     assert main(["run", "good.yaml", "--quiet"]) == 1
@@ -302,7 +388,7 @@ def test_interruption(folder, capsys, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("vibro_sweep.sweep.run", interrupted)
+    monkeypatch.setattr("vibro_sweep.driver.sweep.run", interrupted)
     assert main(["run", "good.yaml", "-o", "my file.h5"]) == 130
     err = capsys.readouterr().err
     assert err == "vibro-sweep: interrupted; to continue: vibro-sweep run good.yaml -o 'my file.h5' --resume\n"
@@ -313,9 +399,9 @@ def test_what_run_is_told(folder, monkeypatch):
 
     def record(scene, output, workers, executor, progress, mode):
         told.append((scene.name, str(output), workers, executor, progress, mode))
-        return SimpleNamespace(points=3, bad=0, statuses={"ok": 3}, seconds=0.0)
+        return SimpleNamespace(points=3, bad=0, statuses={"ok": 3}, seconds=0.0, computed=3)
 
-    monkeypatch.setattr("vibro_sweep.sweep.run", record)
+    monkeypatch.setattr("vibro_sweep.driver.sweep.run", record)
     assert main(["run", "good.yaml"]) == 0
     assert main(["run", "good.yaml", "--workers", "3", "--resume", "--quiet"]) == 0
     assert main(["run", "good.yaml", "-o", "x.h5", "--overwrite"]) == 0
@@ -330,9 +416,9 @@ def test_progress_on_a_terminal(folder, capsys, monkeypatch):
     def run(scene, output, workers, executor, progress, mode):
         for done in range(4):
             progress(done, 3)
-        return SimpleNamespace(points=3, bad=0, statuses={"ok": 3}, seconds=0.0)
+        return SimpleNamespace(points=3, bad=0, statuses={"ok": 3}, seconds=0.0, computed=3)
 
-    monkeypatch.setattr("vibro_sweep.sweep.run", run)
+    monkeypatch.setattr("vibro_sweep.driver.sweep.run", run)
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     assert main(["run", "good.yaml"]) == 0
     assert "3/3" in capsys.readouterr().err

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -10,16 +11,18 @@ import time
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
+from types import SimpleNamespace
 
 import h5py
-import numpy as np
 import pytest
-from test_sweep import ALL, PAPER, arrays_of, assert_same_bits
+from support import ROOT
+from support.scenes import ALL, PAPER, arrays_of, assert_same_bits, done
 
 import vibro_sweep as vs
 from vibro_sweep.cli import main
 
 distributed = pytest.importorskip("distributed")
+driver_cluster = pytest.importorskip("vibro_sweep.driver.cluster")
 
 PACKAGE = Path(vs.__file__).parent
 LIMIT = 60  # seconds after which something hangs
@@ -85,11 +88,11 @@ def cluster(tmp_path):
 
 @pytest.fixture(scope="module")
 def unfit(tmp_path_factory):
-    """Where Python finds no package, and where it finds one with other kernels."""
+    """Where Python finds no package, and where it finds one with other code."""
     lacking, other = tmp_path_factory.mktemp("lacking"), tmp_path_factory.mktemp("other")
     (lacking / "sitecustomize.py").write_text(BLOCKER)
     shutil.copytree(PACKAGE, other / "vibro_sweep", ignore=shutil.ignore_patterns("__pycache__"))
-    with (other / "vibro_sweep" / "kernels" / "status.py").open("a") as file:
+    with (other / "vibro_sweep" / "engine" / "status.py").open("a") as file:
         file.write("# other\n")
     return {"lacking": str(lacking), "other": str(other)}
 
@@ -104,19 +107,11 @@ def scene(tmp_path_factory):
     return path, arrays_of(path.with_suffix(".h5"))
 
 
-def done(output):
-    """Orbits in the unfinished file."""
-    try:
-        with h5py.File(f"{output}.part", locking=False) as file:
-            return np.count_nonzero(file["status"][()] != -1)
-    except (OSError, KeyError):  # it is being made
-        return 0
-
-
 def command_of(scene, output, cluster):
     return ["run", str(scene), "-o", str(output), "--scheduler", cluster.address, "--quiet"]
 
 
+@pytest.mark.slow
 def test_dask_processes_and_threads_agree(tmp_path, cluster, scene):
     path, whole = scene
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
@@ -158,6 +153,7 @@ def stopped(cluster, path, output, stop):
     return run.returncode, error
 
 
+@pytest.mark.slow
 def test_ctrl_c(tmp_path, cluster, scene):
     path, whole = scene
     output = tmp_path / "out.h5"
@@ -196,7 +192,7 @@ def test_a_worker_without_the_package_joins_later(tmp_path, cluster, scene, unfi
 
 
 @pytest.mark.slow
-def test_a_worker_with_other_kernels_joins_later(tmp_path, cluster, scene, unfit):
+def test_a_worker_with_other_code_joins_later(tmp_path, cluster, scene, unfit):
     output = tmp_path / "out.h5"
     worker = cluster.worker()
     command = [sys.executable, "-m", "vibro_sweep", *command_of(scene[0], output, cluster)]
@@ -217,15 +213,82 @@ def test_unfit_workers_are_named(tmp_path, cluster, scene, capsys, unfit):
     assert main(command_of(scene[0], tmp_path / "out.h5", cluster)) == 2
     error = capsys.readouterr().err
     assert len(error.splitlines()) == 1 and "No module named 'vibro_sweep'" in error
-    assert error.count("worker tcp://127.0.0.1:") == 2 and error.count("kernels") == 2
+    assert error.count("worker tcp://127.0.0.1:") == 2 and error.count(", code ") == 2
     assert not list(tmp_path.glob("out.h5*"))
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "host", "post://host:1"])
 def test_no_scheduler(tmp_path, scene, capsys, monkeypatch, address):
-    monkeypatch.setattr("vibro_sweep.cluster.CONNECT_SECONDS", 0.5)
+    monkeypatch.setattr("vibro_sweep.driver.cluster.CONNECT_SECONDS", 0.5)
     output = tmp_path / "out.h5"
     assert main(["run", str(scene[0]), "-o", str(output), "--scheduler", address]) == 2
     error = capsys.readouterr().err
     assert error.startswith(f"vibro-sweep: error: --scheduler {address}: no dask scheduler answers there")
     assert len(error.splitlines()) == 1 and not list(tmp_path.iterdir())
+
+
+LISTENING = """
+ip link set lo up || exit 77
+%s
+for i in $(seq 60); do sleep 1; [ $(ss -Hltn | wc -l) -ge 8 ] && break; done
+ss -Hltn
+kill $(jobs -p)
+"""
+
+
+@pytest.mark.slow
+def test_the_commands_of_the_readme_listen_on_this_machine_alone(tmp_path):
+    """In a network of their own, where every listening socket is theirs: `ss` shows what other machines could reach."""
+    lines = re.findall("^dask .*&$", (ROOT / "README.md").read_text(), re.MULTILINE)
+    assert len(lines) == 2
+    namespace = shutil.which("unshare"), "--net", *([] if os.geteuid() == 0 else ["--map-root-user"])
+    if None in namespace or not shutil.which("ss") or subprocess.run([*namespace, "true"], check=False).returncode:
+        pytest.skip("no network namespace here")
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    program = LISTENING % "\n".join(f"{line.removesuffix('&')} >/dev/null 2>&1 &" for line in lines)
+    done = subprocess.run(
+        [*namespace, "bash", "-c", program],
+        cwd=tmp_path,
+        env=os.environ | {"PATH": path},
+        capture_output=True,
+        text=True,
+    )
+    if done.returncode == 77:
+        pytest.skip("no loopback interface here")
+    addresses = [line.split()[3] for line in done.stdout.splitlines()]
+    assert len(addresses) >= 8  # scheduler, dashboard; two nannies; two workers, each with an HTTP server
+    assert all(address.startswith("127.0.0.1:") for address in addresses), addresses
+
+
+@pytest.mark.parametrize(
+    "address, warned",
+    [("tcp://10.1.2.3:8786", True), ("tcp://127.0.0.1:8786", False), ("tcp://localhost:8786", False)],
+)
+def test_a_scheduler_within_reach_of_others_is_warned_of(caplog, monkeypatch, address, warned):
+    def no_client(*_, **__):
+        return SimpleNamespace(wait_for_workers=lambda *_, **__: None, close=lambda: None, nthreads=dict)
+
+    monkeypatch.setattr(driver_cluster, "Client", no_client)
+    monkeypatch.setattr(driver_cluster, "_check", lambda _: None)
+    monkeypatch.setattr(driver_cluster, "ClusterExecutor", lambda client: client)
+    with caplog.at_level("WARNING"), driver_cluster.cluster(address):
+        pass
+    assert ("without TLS" in caplog.text) == warned
+
+
+def test_a_client_whose_scheduler_is_gone_is_no_bug():
+    """RuntimeError and OSError by turns are what a client raises then."""
+
+    def gone():
+        raise RuntimeError("ConnectionPool is closed")
+
+    executor = driver_cluster.ClusterExecutor.__new__(driver_cluster.ClusterExecutor)
+    executor._threads, executor._last = gone, 3
+    assert executor.num_workers == 3
+
+
+@pytest.mark.parametrize("address", ["tls://127.0.0.1:1"])
+def test_tls_without_certificates(tmp_path, scene, capsys, address):
+    assert main(["run", str(scene[0]), "-o", str(tmp_path / "out.h5"), "--scheduler", address]) == 2
+    error = capsys.readouterr().err
+    assert len(error.splitlines()) == 1 and "distributed.comm.tls" in error

@@ -1,9 +1,9 @@
 """Degenerate modes against matrix exponentials of 50 digits and more, and the extremes of every parameter."""
 
-import naive
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from reference import naive
 
 import vibro_sweep as vs
 
@@ -113,7 +113,8 @@ def test_thousands_of_impacts_in_a_period():
     # nothing is passed through: nearly always stop to stop, and M1 is back on the stop where it is hit twice
     assert np.mean(orbit.impacts["side"][1:] != orbit.impacts["side"][:-1]) > 0.9
     times = np.sort(np.random.default_rng(0).uniform(0, system.period, 20000))
-    assert np.abs(orbit.sample(times)[:, 0]).max() <= system.b
+    samples = orbit.sample(times)
+    assert np.abs(samples[:, 0]).max() <= system.b + 64 * 2.0**-52 * np.abs(samples).max()
 
 
 def energy(system, states):

@@ -6,10 +6,10 @@ The bound is ten times what one part in 2^53 on every input does to the same imp
 import json
 import math
 
-import naive
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from reference import naive
 
 import vibro_sweep as vs
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from vibro_sweep.kernels.jit import entry
-from vibro_sweep.kernels.lanes import (
+from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.simd.lanes import (
     LANES,
     LINE,
     alike,

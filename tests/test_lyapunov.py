@@ -5,16 +5,13 @@ A Jacobian knows nothing of the saltation matrix: it is the difference of orbits
 
 import math
 
-import naive
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from reference import naive
 
 import vibro_sweep as vs
-from vibro_sweep.kernels import tangent
-from vibro_sweep.kernels.jit import entry
-from vibro_sweep.kernels.orbits import new_records
-from vibro_sweep.orbit import Engine
+from vibro_sweep.engine.period_map import PeriodMap
 
 PAPER = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 REST = (0.0, 0.0, 0.0, 0.0)
@@ -37,6 +34,16 @@ def jacobian(flow, X, step):
         back[i] -= step
         columns.append([(p - q) / (2 * step) for p, q in zip(flow(there), flow(back), strict=True)])
     return np.array(columns, float).T
+
+
+def metric(system):
+    """(4, 4): from (x1, v1, x2, v2) to (g xi, xi' + eta xi) of each mode, where free flight turns tangent vectors."""
+    rows, mass = [], np.array([1, system.mu_m])
+    for j, (square, eta) in enumerate(zip(system.modes.omega_squared, system.eta, strict=True)):
+        to_mode = system.modes.psi[:, j] * mass
+        g = math.sqrt(abs(square - eta**2))
+        rows += [np.kron(g * to_mode, [1, 0]), np.kron(to_mode, [eta, 1])]
+    return np.array(rows)
 
 
 def of_multipliers(matrix, time):
@@ -115,11 +122,11 @@ def test_chaos():
     system, warm_up, count, gap = PAPER.replace(b=6.68), 100, 2000, 1e-8
     X = settled(system)
     exponent = vs.lyapunov(system, X, warm_up, count)[0]
-    metric = Engine(system).ensemble.flights.oscillator["to_frame"][0, 0]
+    W = metric(system)
     beside, logs = X + gap / 2, []
     for _ in range(warm_up + count):
         X, beside = (vs.simulate(system, x, 1).section[-1] for x in (X, beside))
-        distance = np.linalg.norm(metric @ (beside - X))
+        distance = np.linalg.norm(W @ (beside - X))
         logs.append(math.log(distance / gap))
         beside = X + (beside - X) * (gap / distance)
     assert exponent > 1e-3
@@ -168,12 +175,6 @@ def test_sticking_loses_two_dimensions():
     assert np.all(spectrum[2:] == -np.inf)
 
 
-@entry
-def to_the_section(vectors, oscillator, nodes):
-    tangent.fly_to(vectors, 0, oscillator, nodes, 0, 0.0)
-    tangent.apply_flight(vectors, tangent.only(0))
-
-
 @pytest.mark.parametrize(
     "changes, X",
     [
@@ -184,25 +185,20 @@ def to_the_section(vectors, oscillator, nodes):
     ids=str,
 )
 def test_tangent_vectors_across_one_impact(changes, X):
-    """Four unit vectors carried over a period with one impact are the Jacobian, which is differences of orbits."""
+    """Over one period the four vectors grow by the diagonal of R in J = Q R, in their own metric."""
     system = PAPER.replace(b=3.0, tau=1.0, **changes)
     orbit = vs.simulate(system, X, 1)
     assert len(orbit.impacts) == 1
     J = jacobian(lambda x: vs.simulate(system, x, 1).section[-1], X, STEP)
-
-    engine = Engine(system, lyapunov=True)
-    engine.place(X)
-    oscillator, vectors = engine.ensemble.flights.oscillator[0, 0], engine.ensemble.tangent[0]
-    tangent.begin(vectors, 0)
-    vectors["Z"][:, 0] = oscillator["to_frame"].ravel()
-    vectors["volume"] = 1e30  # so well conditioned, it believes, that nothing is orthonormalised on the way
-    vectors["wanted"] = True
-    engine.carry(new_records(1), np.empty((1, 4)))
-    to_the_section(vectors, oscillator, engine.ensemble.flights.nodes[0])
-    np.testing.assert_allclose(oscillator["from_frame"] @ vectors["Z"][:, 0].reshape(4, 4), J, atol=1e-8)
-
+    exact = PeriodMap(system)([X], jacobian=True).jacobian[0]
+    np.testing.assert_allclose(exact, J, atol=1e-8)
     trace = 2 * system.zeta * (1 + (1 + system.mu_k) / system.mu_m)
     assert np.linalg.det(J) == pytest.approx(system.R**2 * math.exp(-trace * system.period), rel=1e-4)
+
+    W = metric(system)
+    growth = np.log(abs(np.diag(np.linalg.qr(W @ exact @ np.linalg.inv(W)).R)))
+    exponents = vs.lyapunov(system, X, transient=0, periods=1)
+    np.testing.assert_allclose(exponents * system.period, np.sort(growth)[::-1], rtol=0, atol=1e-9)
 
 
 def test_failure_has_no_exponents():

@@ -1,8 +1,8 @@
 """The slow simulator against what is known without it: a general ODE solver, and exact identities."""
 
-import naive
 import pytest
 from mpmath import mp, mpf
+from reference import naive
 
 PAPER = {**naive.PAPER, "b": 6.6, "tau": 2.2}
 START = (1.0, 0.5, -0.3, 0.2)

@@ -1,11 +1,11 @@
 """The paper's scenes, and what the table of benchmarks/paper.py must say."""
 
 import sys
-from pathlib import Path
 
 import pytest
+from support import ROOT
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+sys.path.insert(0, str(ROOT / "benchmarks"))
 
 import paper
 

@@ -1,7 +1,10 @@
 """Pictures: what a file can show, and that the figure holds the file's numbers."""
 
+import ast
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import h5py
 import matplotlib.pyplot
@@ -9,27 +12,35 @@ import numpy as np
 import pytest
 from matplotlib.collections import PatchCollection
 from matplotlib.colors import LogNorm
+from support.old_files import OLD
 
 from vibro_sweep import plotting
 from vibro_sweep.plotting import PlotError, density, sweeps
-from vibro_sweep.plotting.breaks import break_at_impacts
 from vibro_sweep.plotting.style import edges, limits
 
-SCENE = """
-system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6, tau: grazing, stops: both}
-orbit: {transient: 300, record: 20}
-"""
+SETTINGS = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63, R=0.8, b=6.6, tau=2.2293, stops="both")
+SETTINGS |= dict(b_star=6.70571674097302, model="flow", section="phase", transient=300, record=20)
 OWN = {"lyapunov": ("exponent",), "x1": ("sample",), "v1": ("sample",), "phase": ("sample",)}
 OWN |= {"lyapunov_running": ("elapsed", "exponent"), "lyapunov_error": ("exponent",)}
 OWN |= {f"trajectory_{name}": ("time",) for name in ("x1", "v1", "x2", "v2")}
+OWN |= {f"trajectory_section_{name}": ("trajectory_section",) for name in ("x1", "v1", "x2")}
+OWN |= {f"trajectory_impact_{name}": ("trajectory_impact",) for name in ("time", "side", "v1", "v1_after", "x2")}
 
 
-def write(path, coordinates, quantities, done=None, scene=SCENE, time=()):
-    """A result file by the contract: `coordinates` in order, then each quantity's own dimensions (OWN)."""
+def write(path, coordinates, quantities, done=None, settings=SETTINGS, time=(), along=None):
+    """A result file by the contract: `coordinates` in order, then each quantity's own dimensions (OWN).
+
+    along: numbers that follow from swept ones, name -> (key, values).
+    """
     shape = tuple(len(values) for values in coordinates.values())
     quantities = {"status": np.where(np.ones(shape, bool) if done is None else done, 0, -1), **quantities}
     with h5py.File(path, "w") as file:
-        file.attrs["scene"] = scene
+        along = along or {}
+        file.attrs.update({name: v for name, v in settings.items() if name not in coordinates and name not in along})
+        file.attrs.update({"scene": "", "title": "", "history": "", "provenance": "{}"})
+        names = [name for name in quantities if name != "status"]
+        file.attrs["sweep_dimensions"] = [name for name in coordinates if name != "start"] or h5py.Empty("S1")
+        file.attrs["quantities"] = names or h5py.Empty("S1")
         known = dict(coordinates)
         for name, values in quantities.items():
             data = file.create_dataset(name, data=values)
@@ -39,6 +50,11 @@ def write(path, coordinates, quantities, done=None, scene=SCENE, time=()):
                     file[dim] = known[dim]
                     file[dim].make_scale(dim)
                 data.dims[i].attach_scale(file[dim])
+        for name, (key, values) in along.items():
+            file[name] = values
+            file[name].dims[0].attach_scale(file[key])
+        if "lyapunov_error" in file:
+            file["lyapunov_error"].attrs["significant"] = 2.0
     return path
 
 
@@ -67,13 +83,23 @@ def branches(tmp_path):
 
 @pytest.fixture
 def trajectory(tmp_path):
-    """Bounces between walls at +-2 with speed 1, impacts at t = 2, 6, 10, .. ; the forcing period is 8 too."""
-    time = np.linspace(0, 16, 1601)
+    """Bounces between walls at +-2 with speed 1, impacts at t = 2, 6, 10, 14; the forcing period is 8 too."""
+    time = np.linspace(0, 16, 41)  # no sample meets an impact
     x1 = np.abs((time - 2) % 8 - 4) - 2
     v1 = np.where((time - 2) % 8 < 4, -1.0, 1.0)
-    scene = "system: {b: 2, omega: 0.7853981633974483, R: 1}"
-    quantities = {"trajectory_x1": x1, "trajectory_v1": v1, "trajectory_x2": x1 / 2, "x1": x1[::800]}
-    return write(tmp_path / "one.h5", {}, quantities, scene=scene, time=time / 8)
+    side = np.array([1, -1, 1, -1, 0])
+    nan = np.full(1, np.nan)
+    quantities = {
+        **{"trajectory_x1": x1, "trajectory_v1": v1, "trajectory_x2": x1 / 2, "x1": np.zeros(2)},
+        **{"trajectory_section_x1": np.zeros(3), "trajectory_section_v1": np.ones(3)},
+        **{"trajectory_section_x2": np.zeros(3), "trajectory_impacts": 4, "trajectory_impact_side": side},
+        "trajectory_impact_time": np.append([2, 6, 10, 14], nan) / 8,
+        "trajectory_impact_v1": np.append(side[:4], nan),
+        "trajectory_impact_v1_after": np.append(-side[:4], nan),
+        "trajectory_impact_x2": np.append(side[:4], nan),
+    }
+    settings = SETTINGS | dict(b=2.0, omega=2 * np.pi / 8, R=1.0)
+    return write(tmp_path / "one.h5", {}, quantities, settings=settings, time=time / 8)
 
 
 def drawn(ax):
@@ -107,10 +133,13 @@ def test_the_suffix_is_the_format(sweep, tmp_path, suffix, magic):
     assert output.read_bytes().startswith(magic)
 
 
-def test_the_picture_lies_beside_the_file_unless_told_otherwise(sweep, tmp_path):
-    assert plotting.plot(sweep) == [tmp_path / "sweep.png"]
+def test_the_picture_lies_in_the_current_folder_unless_told_otherwise(sweep, tmp_path, monkeypatch):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    assert plotting.plot(sweep) == [Path("sweep.png")]
     part = sweep.rename(tmp_path / "other.h5.part")
-    assert plotting.plot(part) == [tmp_path / "other.png"]
+    assert plotting.plot(part) == [Path("other.png")]
+    assert sorted(path.name for path in Path().iterdir()) == ["other.png", "sweep.png"]
 
 
 def test_kind_all_writes_each_kind(trajectory, tmp_path):
@@ -158,7 +187,7 @@ def test_files_that_are_no_results(tmp_path):
         plotting.plot(text)
     with h5py.File(tmp_path / "foreign.h5", "w") as file:
         file["status"] = np.zeros(3)
-    with pytest.raises(PlotError, match="not a result of vibro-sweep"):
+    with pytest.raises(PlotError, match="none that vibro-sweep wrote"):
         plotting.kinds(tmp_path / "foreign.h5")
 
 
@@ -176,8 +205,8 @@ def test_nothing_to_show(tmp_path):
 def test_drawing_needs_no_display_and_no_engine(sweep):
     code = (
         "import sys; from vibro_sweep import plotting; plotting.plot(sys.argv[1], kind='all');"
-        "heavy = {'numba', 'pydantic', 'matplotlib.pyplot', 'vibro_sweep.kernels',"
-        " 'vibro_sweep.scene', 'vibro_sweep.sweep', 'vibro_sweep.orbit'};"
+        "heavy = {'numba', 'pydantic', 'matplotlib.pyplot', 'vibro_sweep.engine',"
+        " 'vibro_sweep.scene', 'vibro_sweep.driver', 'vibro_sweep.analysis', 'yaml'};"
         "print(sorted(heavy & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code, sweep], capture_output=True, text=True, check=True)
@@ -187,6 +216,22 @@ def test_drawing_needs_no_display_and_no_engine(sweep):
 def test_a_figure_leaves_pyplot_alone(sweep):
     plotting.figure(sweep)
     assert matplotlib.pyplot.get_fignums() == []
+
+
+def test_plotting_imports_nothing_that_computes():
+    """Neither at its start nor within a function."""
+    modules = list(Path(plotting.__file__).parent.glob("*.py"))
+    assert len(modules) > 8
+    for module in modules:
+        for node in ast.walk(ast.parse(module.read_text())):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            if isinstance(node, ast.ImportFrom):
+                assert node.level == 0, module
+                names = [f"{node.module}.{alias.name}" for alias in node.names]
+            for name in names:
+                if name.startswith("vibro_sweep."):
+                    assert name.split(".")[1] in ("plotting", "store", "model"), (module.name, name)
+                assert name.split(".")[0] != "yaml", module.name
 
 
 # --- one parameter
@@ -239,8 +284,8 @@ def test_an_impact_section_shows_velocities_and_skips_missing_samples(tmp_path):
     v1 = np.full((5, 4), np.nan)
     v1[2:, :2] = 1.5
     quantities = {"x1": v1 * 0 + 3, "v1": v1, "phase": v1 * 0}
-    scene = SCENE + "section: {kind: impact, stop: left}"
-    file = write(tmp_path / "impact.h5", {"omega": np.linspace(0.5, 0.6, 5)}, quantities, scene=scene)
+    settings = SETTINGS | dict(section="impact", section_stop="left")
+    file = write(tmp_path / "impact.h5", {"omega": np.linspace(0.5, 0.6, 5)}, quantities, settings=settings)
     ax = plotting.figure(file).axes[0]
     assert drawn(ax).shape == (6, 2)
     assert ax.get_ylabel() == "$v_1$ before impact, left stop"
@@ -391,19 +436,20 @@ def test_plane_of_one_sign(tmp_path, value):
 # --- orbits
 
 
-def test_a_portrait_is_broken_at_impacts_and_walled_in(trajectory):
+def test_a_portrait_has_the_impacts_and_section_points_of_the_file(trajectory):
     ax = plotting.figure(trajectory).axes[0]
     x, v = ax.lines[0].get_data()
-    assert np.isnan(x).sum() == 4  # t = 2, 6, 10, 14
+    assert len(x) == 41 + 3 * 4 and np.isnan(x).sum() == 4
+    assert np.nanmax(x) == 2 and np.nanmin(x) == -2  # up to the walls, between the samples
     across = np.abs(np.diff(v)) > 0.1
     assert not across.any()  # NaN compares false: no line from one side of a jump to the other
     jumps = [line for line in ax.lines if line.get_label() == "impact"]
-    assert sorted(line.get_xdata()[0] for line in jumps) == [-2, -2, 2, 2]
-    assert all(np.allclose(np.sort(line.get_ydata()), [-1, 1]) for line in jumps)
+    assert [line.get_xdata()[0] for line in jumps] == [2, -2, 2, -2]
+    assert [list(line.get_ydata()) for line in jumps] == [[1, -1], [-1, 1], [1, -1], [-1, 1]]
     walls = [line.get_xdata()[0] for line in ax.lines if line.get_transform() == ax.get_xaxis_transform()]
     assert sorted(walls) == [-2, 2]
     (section,) = (line for line in ax.lines if line.get_label() == r"$t = 0$ mod $T$")
-    np.testing.assert_allclose(section.get_xdata(), [0, 0, 0], atol=1e-9)
+    assert section.get_xdata().tolist() == [0, 0, 0] and section.get_ydata().tolist() == [1, 1, 1]
 
 
 def test_a_history_reaches_the_stops_and_counts_forcing_periods(trajectory):
@@ -411,53 +457,17 @@ def test_a_history_reaches_the_stops_and_counts_forcing_periods(trajectory):
     lines = {line.get_label(): line for line in ax.lines}
     assert lines["$x_1$"].get_xdata()[-1] == pytest.approx(2)
     assert np.nanmax(np.abs(lines["$x_1$"].get_ydata())) == 2
-    assert len(lines["$x_2$"].get_xdata()) == 1601
+    assert len(lines["$x_2$"].get_xdata()) == 41 + 2 * 4
     assert sorted(line.get_ydata()[0] for line in ax.lines if line.get_label() == "stops") == [-2, 2]
     assert "forcing periods" in ax.get_xlabel()
 
 
-def test_smooth_turns_are_no_impacts():
-    t = np.linspace(0, 20, 801)
-    x, v = np.cos(t), -np.sin(t)
-    assert len(break_at_impacts(t, x, v, {1: 1.0, -1: -1.0}).jumps) == 0
-
-
-def test_a_jump_away_from_the_stops_is_no_impact():
-    t = np.linspace(0, 1, 11)
-    x, v = np.abs(t - 0.55), np.sign(t - 0.55)
-    assert len(break_at_impacts(t, x, v, {-1: 0.0}).jumps) == 1
-    assert len(break_at_impacts(t, x, v, {-1: -0.5}).jumps) == 0
-
-
-def test_a_jump_has_the_velocities_of_its_own_instant():
-    t = np.linspace(0, 1, 11)
-    hit = 0.537  # constant acceleration -1 before and after
-    x = np.where(t < hit, t - t**2 / 2, 0)
-    stop, v_in = hit - hit**2 / 2, 1 - hit
-    later = t >= hit
-    x[later] = stop - 0.5 * v_in * (t[later] - hit) - (t[later] - hit) ** 2 / 2
-    v = np.where(later, -0.5 * v_in - (t - hit), 1 - t)
-    path = break_at_impacts(t, x, v, {1: stop})
-    assert path.jumps == pytest.approx(np.array([[stop, v_in, -0.5 * v_in]]), abs=2e-3)
-    assert path.t[6] == pytest.approx(hit, abs=2e-3)
-
-
-def test_clearance_of_a_physical_scene(tmp_path, trajectory):
-    physical = "{M1: 1, M2: 4, K1: 4, K2: 2, C1: 0, C2: 0, P1: 3, P2: 1, Omega: 1.5707963267948966, R: 1, B: 2}"
-    scene = f"system: {{physical: {physical}, stops: right}}"
-    with h5py.File(trajectory, "a") as file:
-        file.attrs["scene"] = scene
-    fig = plotting.figure(trajectory, "history")
-    assert [line.get_ydata()[0] for line in fig.axes[0].lines if line.get_label() == "stop"] == [2]
-    assert fig.axes[0].lines[0].get_xdata()[-1] == pytest.approx(2)
-    assert r"\mu_m = 4" in fig.get_suptitle()
-
-
 @pytest.mark.parametrize("scene", ["", "system: [", "[1, 2]", "system: 3", "system: {b: high, omega: 1e-1}"])
-def test_an_illegible_scene_costs_only_its_numbers(trajectory, scene):
-    with h5py.File(trajectory, "a") as file:
+def test_an_illegible_scene_of_version_0_1_costs_only_its_numbers(tmp_path, scene):
+    path = shutil.copy(OLD / "orbit.h5", tmp_path)
+    with h5py.File(path, "a") as file:
         file.attrs["scene"] = scene
-    assert len(plotting.plot(trajectory, kind="all")) == 4
+    assert len(plotting.plot(path, tmp_path / "old.png", kind="all")) == 4
 
 
 def test_a_sweep_shows_four_orbits_and_both_branches_side_by_side(tmp_path, sweep, branches):
@@ -479,6 +489,7 @@ def test_iteration_of_a_fixed_point_does_not_show_rounding(tmp_path):
 def test_configuration_shows_both_displacements(trajectory):
     ax = plotting.figure(trajectory, "configuration").axes[0]
     x1, x2 = ax.lines[0].get_data()
+    assert len(x1) == 41 + 2 * 4
     np.testing.assert_array_equal(x2, x1 / 2)
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("$x_1$", "$x_2$")
 
@@ -508,24 +519,26 @@ def test_the_graze_is_marked_where_b_is_swept(sweep, tmp_path):
 
 @pytest.mark.parametrize("keys", [("b", "omega"), ("omega", "b")])
 def test_the_grazing_curve_on_a_plane(tmp_path, keys):
-    coordinates = {key: {"b": np.linspace(3, 9, 4), "omega": np.array([0.6, 0.63, 0.66])}[key] for key in keys}
+    coordinates = {key: {"b": np.linspace(3, 9, 4), "omega": np.array([0.66, 0.63, 0.6])}[key] for key in keys}
     shape = tuple(len(values) for values in coordinates.values())
-    ax = plotting.figure(write(tmp_path / "p.h5", coordinates, {"period": np.ones(shape, int)})).axes[0]
+    along = {"b_star": ("omega", np.array([9.0, 6.7, 5.0]))}
+    ax = plotting.figure(write(tmp_path / "p.h5", coordinates, {"period": np.ones(shape, int)}, along=along)).axes[0]
     (curve,) = (line for line in ax.lines if line.get_label() == "grazing, $b^*$")
     omega, b = curve.get_data()[:: 1 if keys[1] == "b" else -1]
-    assert np.interp(0.63, omega, b) == pytest.approx(6.7057, abs=1e-3)
+    assert omega.tolist() == [0.6, 0.63, 0.66] and b.tolist() == [5.0, 6.7, 9.0]
     assert ax.get_legend() is not None
 
 
-def test_no_system_no_grazing_curve(tmp_path):
+def test_no_numbers_no_grazing_curve(tmp_path):
     coordinates = {"b": np.linspace(3, 9, 4), "omega": np.array([0.6, 0.63])}
-    file = write(tmp_path / "p.h5", coordinates, {"period": np.ones((4, 2), int)}, scene="")
+    file = write(tmp_path / "p.h5", coordinates, {"period": np.ones((4, 2), int)}, settings={"record": 20})
     assert not plotting.figure(file).axes[0].lines
 
 
 def test_chaos_is_claimed_beyond_two_standard_errors(sweep):
     with h5py.File(sweep, "a") as file:
         error = file.create_dataset("lyapunov_error", data=np.full((40, 4), 0.003))  # lambda_1 = 0.004 where chaotic
+        error.attrs["significant"] = 2.0
         for i, name in enumerate(("b", "exponent")):
             error.dims[i].attach_scale(file[name])
     ax = plotting.figure(sweep, "lyapunov").axes[0]

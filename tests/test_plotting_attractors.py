@@ -1,13 +1,20 @@
 """Pictures of several attractors: the colours are those of the file's numbers."""
 
+import shutil
+
+import h5py
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
+from support.old_files import OLD
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
 from vibro_sweep.plotting.families import KINDS, describe, kind
+from vibro_sweep.plotting.style import NOT_COMPUTED
 from vibro_sweep.scene import parse_scene
+
+SIDES = ("right", "left")
 
 PAPER = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.734}"
 
@@ -90,6 +97,53 @@ def test_basins_have_the_colours_of_their_attractors(basins):
         "period 16, 0 impacts right, 4 left",
         "non-impacting, period 1",
     }
+
+
+def test_basins_are_those_that_the_file_numbers(basins, tmp_path):
+    """Whatever the averages are: the picture groups nothing itself."""
+    path = shutil.copy(basins, tmp_path)
+    with h5py.File(path, "r+") as file:
+        shape = file["attractor_id"].shape
+        file["attractor_id"][...] = 1 + np.arange(24).reshape(shape) % 2
+        file["attractor_id"][0, 0] = 0
+    (ax,) = plotting.figure(path).axes
+    order = np.argsort(vs.open(path).start_v1.values)
+    shown = np.asarray(ax.images[0].get_array())
+    number = vs.open(path).attractor_id.values[order].T
+    colours = {one: {tuple(colour) for colour in shown[number == one].tolist()} for one in (0, 1, 2)}
+    assert all(len(found) == 1 for found in colours.values())
+    assert len(set.union(*colours.values())) == 3 and colours[0] == {to_rgb(NOT_COMPUTED)}
+
+
+def test_many_basins_share_a_colour(basins, tmp_path):
+    """The largest ones are named, the others are together."""
+    path = shutil.copy(basins, tmp_path)
+    with h5py.File(path, "r+") as file:
+        file["attractor_id"][...] = np.concatenate([np.arange(1, 20), np.full(5, 20)]).reshape(3, 8)
+    names = [text.get_text() for text in plotting.figure(path).legends[0].get_texts()]
+    assert len(names) == 12 and names[-1] == "others (37.5 %)" and names[0].endswith("(20.8 %)")
+
+
+@pytest.mark.parametrize("unnumbered", ["version 0.1", "not complete"])
+def test_basins_of_a_file_without_numbers_are_kinds(basins, tmp_path, unnumbered):
+    """And the picture says so."""
+    path = shutil.copy(OLD / "basins.h5" if unnumbered == "version 0.1" else basins, tmp_path)
+    if unnumbered == "not complete":
+        with h5py.File(path, "r+") as file:
+            file["attractor_id"][...] = -1
+            file["status"][0, 0] = file["attractor"][0, 0] = -1
+    fig = plotting.figure(path)
+    assert "this file does not number its attractors" in fig.get_suptitle()
+    names = {text.get_text().split(" (")[0] for text in fig.legends[0].get_texts()}
+    assert names == {KINDS[which][0] for which in ("free", "right", "left")}
+    data = vs.open(path)
+    columns, rows = (np.argsort(data[key].values) for key in data.status.dims)
+    right, left = (data.average.sel(averaged=f"impacts_{one}").values[np.ix_(columns, rows)].T for one in SIDES)
+    shown = np.asarray(fig.axes[0].images[0].get_array())
+    done = data.status.values[np.ix_(columns, rows)].T == 0
+    for here, which in ((right > left, "right"), (left > right, "left"), (right + left == 0, "free")):
+        assert (here & done).any() and np.all(shown[here & done] == to_rgb(KINDS[which][1]))
+    assert np.all(shown[~done] == to_rgb(NOT_COMPUTED))
 
 
 def test_one_basin(tmp_path):

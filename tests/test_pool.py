@@ -14,12 +14,13 @@ from dataclasses import replace
 from itertools import islice
 
 import pytest
-from test_sweep import PAPER, SCENES, arrays_of, assert_same_bits, scene_of
+from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep import blocks, cost, sweep
-from vibro_sweep.compute import BlockError, RunError, compute
-from vibro_sweep.kernels.lanes import LANES
+from vibro_sweep.driver import blocks, cost, memory, sweep
+from vibro_sweep.driver.compute import BlockError, RunError, compute
+from vibro_sweep.engine.points import RESULT
+from vibro_sweep.engine.simd.lanes import LANES
 
 LIMIT = 60  # seconds after which something hangs
 CHAINS = 3 * LANES  # in three blocks, each way
@@ -149,15 +150,15 @@ def test_what_ends_a_run_loses_nothing(tmp_path, whole, error, attempts, words):
 
 def test_an_error_in_a_block_says_where(monkeypatch):
     block = next(blocks.blocks(scene_of(SCENES["plane"]), points_per_block=3))
-    monkeypatch.setattr("vibro_sweep.compute.points_of", lambda _: 1 / 0)
+    monkeypatch.setattr("vibro_sweep.driver.compute.points_of", lambda _: 1 / 0)
     with pytest.raises(BlockError, match=r"process \d+, failed at omega = 0.5, b = 0.3 .. 2.4\d*: ZeroDivisionError"):
         compute(block)
 
 
-def test_a_worker_with_other_kernels_refuses():
+def test_a_worker_with_other_code_refuses():
     block = next(blocks.blocks(scene_of(SCENES["plane"]), points_per_block=3))
-    with pytest.raises(BlockError, match=r"has vibro_sweep .*; this program is vibro_sweep 9, kernels 0"):
-        compute(block._replace(version="vibro_sweep 9, kernels 0"))
+    with pytest.raises(BlockError, match=r"has vibro_sweep .*; this program is vibro_sweep 9, code 0"):
+        compute(block._replace(version="vibro_sweep 9, code 0"))
 
 
 def test_a_broken_process_pool_is_resumed(tmp_path, whole):
@@ -205,14 +206,15 @@ def test_a_huge_plane_is_planned_lazily():
         assert len(pickle.dumps(block)) < 1200 + 8 * (1 + 30)
 
 
-def test_size_of_a_block():
+def test_size_of_a_block(monkeypatch):
     """By time, by memory, and such that all workers have some."""
     scene = scene_of(SCENES["plane"].replace("num: 5", "num: 5000").replace("num: 7", "num: 7000"))
     assert cost.points_per_block(scene, 1e-3, 2, 4.0) == 4000
     assert cost.points_per_block(scene, 10.0, 2, 4.0) == 1
-    each = 32 * scene.record  # bytes of the section points
-    assert 0.7 < cost.points_per_block(scene, 1e-9, 2, 4.0) * each / cost.BLOCK_BYTES < 1
-    assert 0.7 < cost.points_per_block(scene, 1e-9, 1000, 4.0) * each / (cost.BYTES_UNDER_WAY / 1000) < 1
+    each = 32 * scene.record + RESULT.itemsize
+    assert 0.7 < cost.points_per_block(scene, 1e-9, 2, 4.0) * each / memory.BLOCK_BYTES < 1
+    monkeypatch.setattr(memory, "available_cores", lambda: 2)
+    assert 0.7 < cost.points_per_block(scene, 1e-9, 1000, 4.0) * each / (memory.BYTES_UNDER_WAY / 1000) < 1
     small = scene_of(SCENES["plane"])
     assert cost.points_per_block(small, 1e-9, 1, 4.0) == 35 // cost.BLOCKS_PER_WORKER
 
@@ -229,6 +231,6 @@ def test_cost_of_an_orbit(monkeypatch, name, transient):
         return box, arrays
 
     monkeypatch.setattr(cost, "compute", counting)
-    monkeypatch.setattr(cost.time, "perf_counter", lambda: clock[0])
+    monkeypatch.setattr(cost.time, "thread_time", lambda: clock[0])
     assert cost.orbit_seconds(scene) == pytest.approx(1e-6 * (transient + scene.record))
     assert clock[0] < 1

@@ -3,9 +3,9 @@
 import math
 from concurrent.futures import ProcessPoolExecutor
 
-import naive
 import numpy as np
 import pytest
+from reference import naive
 
 import vibro_sweep as vs
 
@@ -180,6 +180,7 @@ def test_resting_over_the_section():
 
 def test_sampled_rest():
     orbit = vs.simulate(vs.System(**PAPER, R=0.3, b=0.5), ORIGIN, periods=3)
+    assert len(orbit.sticking) == 6
     for rest in orbit.sticking:
         times = np.linspace(rest["t_on"], rest["t_off"], 30)[1:-1]
         assert (orbit.sample(times)[:, :2] == (0.5 * rest["side"], 0.0)).all()
@@ -209,3 +210,45 @@ def test_exponents_lost_by_resting(R):
     assert np.isfinite(exponents[:2]).all()
     assert np.isneginf(exponents[2:]).all()
     assert exponents[0] >= exponents[1]
+
+
+# M1 leaves a stop without speed (a start at rest on it, release after a rest, R = 0) and soon reaches the other one.
+DEPARTURES = [
+    (dict(**PAPER, R=0.8, b=0.02, tau=0.0), (0.02, 0.0, -1.0, 0.0)),
+    *((dict(**PAPER, R=0.5, b=b, tau=0.3), (b, 0.0, -0.2, -0.3)) for b in (1e-3, 1e-4, 1e-6, 1e-9)),
+    *((dict(**PAPER, R=0.0, b=b, tau=2.5), (-b, 0.0, 0.3, 0.1)) for b in (1e-2, 1e-4, 1e-6)),
+    (
+        dict(mu_m=8.553, mu_k=0.187, zeta=0.00246, f2=0.910, omega=0.3737, R=0.0, b=0.19, tau=0.0),
+        (0.19, 0.0, -1.0, 0.3),
+    ),
+]
+
+
+@pytest.mark.parametrize("case", DEPARTURES)
+def test_the_opposite_stop_is_seen_from_the_start(case):
+    parameters, state = case
+    orbit = vs.simulate(vs.System(**parameters), state, periods=1)
+    exact = naive.simulate(parameters, state, impacts=2, digits=30).impacts
+    assert orbit.status == "ok" and len(exact) == 2
+    for found, hit in zip(orbit.impacts, exact, strict=False):
+        assert found["side"] == hit.side
+        assert abs(found["t"] - float(hit.t)) < 1e-13 * max(1.0, float(hit.t))
+        assert abs(found["v1"] - float(hit.v1)) < 1e-11 * abs(float(hit.v1)) + 1e-14
+
+
+@pytest.mark.parametrize("R", [1e-12, 1e-50, 1e-100, 1e-200, 1e-300])
+def test_a_restitution_next_to_none(R):
+    """What R leaves of the speed is below all rounding: impacts as with R = 0."""
+    system = vs.System(**PAPER, R=R, b=0.3)
+    orbit = vs.simulate(system, ORIGIN, 50)
+    plain = vs.simulate(system.replace(R=0.0), ORIGIN, 50)
+    assert orbit.status == "ok" and len(orbit.sticking) == len(plain.sticking) > 50
+    np.testing.assert_allclose(orbit.section, plain.section, atol=1e-9)
+
+
+def test_exponents_of_a_rest_that_outlasts_the_record():
+    """Resting from before the record on, M2 is a damped oscillator alone: eta = zeta (1 + mu_k)/mu_m, twice."""
+    system = vs.System(mu_m=1000, mu_k=0.01, zeta=0.05, f2=0, omega=1, R=0.8, b=1)
+    exponents = vs.lyapunov(system, (0.0, 0.0, 5.0, 0.0), transient=3, periods=3)
+    np.testing.assert_allclose(exponents[:2], -0.05 * 1.01 / 1000, rtol=1e-9)
+    assert np.isneginf(exponents[2:]).all()

@@ -3,14 +3,16 @@
 import math
 from dataclasses import FrozenInstanceError
 
-import naive
 import numpy as np
 import pytest
 import scipy.linalg
 from mpmath import mp, mpf
+from reference import naive
 
 import vibro_sweep as vs
-from vibro_sweep.system import ParameterError, modes, steady_response
+from vibro_sweep.model.grazing import steady_response
+from vibro_sweep.model.modes import modes
+from vibro_sweep.model.parameters import ParameterError
 
 PAPER = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 ORDINARY = [(10, 5), (1, 1), (0.2, 3), (30, 0.1)]

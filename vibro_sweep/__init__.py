@@ -1,34 +1,96 @@
-"""vibro_sweep: bifurcation sweeps of the impact oscillator, with certified impacts and Lyapunov exponents."""
+"""Bifurcation sweeps of impact oscillators, with certified impacts and Lyapunov exponents.
+
+At a prompt
+    System, grazing, simulate, lyapunov, discontinuity_map
+Sweeps
+    sweep (from Python), load_scene and run (from YAML to an HDF5 file), open (that file as an xarray.Dataset), plot
+Periodic orbits
+    periodic_orbit, continue_orbit, switch, born_at_grazing, sticking_onset, load_orbit
+Errors
+    ParameterError, SceneError, StoreError, PlotError (each is a ValueError), RunError
+"""
 
 from importlib import import_module
 from typing import TYPE_CHECKING
 
 __version__ = "0.1.0"
 
-_HOME = {
-    "System": "system",
-    "grazing": "system",
-    "simulate": "orbit",
-    "lyapunov": "orbit",
-    "discontinuity_map": "discontinuity",
-    "load_scene": "scene",
-    "run": "sweep",
-    "open": "store",
-}
-
-__all__ = ["System", "discontinuity_map", "grazing", "load_scene", "lyapunov", "open", "run", "simulate"]
+__all__ = [
+    "ParameterError",
+    "PlotError",
+    "RunError",
+    "SceneError",
+    "StoreError",
+    "System",
+    "born_at_grazing",
+    "continue_orbit",
+    "discontinuity_map",
+    "grazing",
+    "load_orbit",
+    "load_scene",
+    "lyapunov",
+    "open",
+    "periodic_orbit",
+    "plot",
+    "run",
+    "simulate",
+    "sticking_onset",
+    "sweep",
+    "switch",
+]
 
 if TYPE_CHECKING:
-    from vibro_sweep.discontinuity import discontinuity_map
-    from vibro_sweep.orbit import lyapunov, simulate
-    from vibro_sweep.scene import load_scene
-    from vibro_sweep.store import open
-    from vibro_sweep.sweep import run
-    from vibro_sweep.system import System, grazing
+    from vibro_sweep.analysis.continuation import continue_orbit
+    from vibro_sweep.analysis.discontinuity import discontinuity_map
+    from vibro_sweep.analysis.finding import periodic_orbit
+    from vibro_sweep.analysis.lcp import born_at_grazing
+    from vibro_sweep.analysis.orbit import lyapunov, simulate
+    from vibro_sweep.analysis.orbit_file import load_orbit
+    from vibro_sweep.analysis.sticking import sticking_onset
+    from vibro_sweep.analysis.switching import switch
+    from vibro_sweep.driver.compute import RunError
+    from vibro_sweep.driver.from_python import sweep
+    from vibro_sweep.driver.sweep import run
+    from vibro_sweep.model.grazing import grazing
+    from vibro_sweep.model.oscillator import System
+    from vibro_sweep.model.parameters import ParameterError
+    from vibro_sweep.plotting import PlotError
+    from vibro_sweep.plotting.front import plot
+    from vibro_sweep.scene import SceneError, load_scene
+    from vibro_sweep.store.opening import StoreError
+    from vibro_sweep.store.reading import open
+else:
+    _HOME = {
+        "ParameterError": "model.parameters",
+        "PlotError": "plotting",
+        "RunError": "driver.compute",
+        "SceneError": "scene",
+        "StoreError": "store",
+        "System": "model.oscillator",
+        "born_at_grazing": "analysis.lcp",
+        "continue_orbit": "analysis.continuation",
+        "discontinuity_map": "analysis.discontinuity",
+        "grazing": "model.grazing",
+        "load_orbit": "analysis.orbit_file",
+        "load_scene": "scene",
+        "lyapunov": "analysis.orbit",
+        "open": "store",
+        "periodic_orbit": "analysis.finding",
+        "plot": "plotting.front",
+        "run": "driver.sweep",
+        "simulate": "analysis.orbit",
+        "sticking_onset": "analysis.sticking",
+        "sweep": "driver.from_python",
+        "switch": "analysis.switching",
+    }
+
+    def __getattr__(name: str):
+        """Import what is asked for when it is asked for: `--help` must not wait for numba."""
+        if name not in _HOME:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
 
 
-def __getattr__(name: str):
-    """Import what is asked for when it is asked for: `--help` must not wait for numba."""
-    if name not in _HOME:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+def __dir__() -> list[str]:
+    """What users type; not what this module imports, nor the rooms of the package."""
+    return [*__all__, *(name for name in globals() if name.startswith("__"))]

@@ -1,5 +1,25 @@
 """``python -m vibro_sweep`` is the program ``vibro-sweep``."""
 
-from .cli import program
+import os
+import sys
 
-program()
+from . import interrupt
+from .console import INTERRUPTED, prepare_process
+
+
+def program() -> None:
+    """The command line as a process, which it ends."""
+    interrupt.install()
+    prepare_process()
+    from .cli import main  # takes time, in which there may be a Ctrl-C
+
+    status = main()
+    if status == INTERRUPTED:  # threads may be in the middle of a block, which may be long: do not wait for them
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+    sys.exit(status)
+
+
+if __name__ == "__main__":
+    program()

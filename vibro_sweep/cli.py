@@ -4,56 +4,56 @@ Commands import what they need when they run, so that `--help` answers at once.
 """
 
 import contextlib
-import os
 import shlex
-import sys
-import tempfile
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-BAD_POINTS, BAD_INPUT, INTERRUPTED = 1, 2, 130
+from . import interrupt
+from .console import BAD_INPUT, BAD_POINTS, InputError, ended, input_errors, messages, say
+from .usage import called
 
 app = typer.Typer(
     help="Parameter sweeps of the two-degree-of-freedom impact oscillator, with Lyapunov exponents.",
-    add_completion=False,
+    epilog=(
+        "Exit status: 0 done; 1 done, but some points have a bad status; 2 the input is wrong; "
+        "70 an internal error, which is a bug; 130 interrupted."
+    ),
     no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
+KINDS = (
+    "basins",
+    "coexistence",
+    "plane",
+    "bifurcation",
+    "lyapunov",
+    "impacts",
+    "phase-portrait",
+    "configuration",
+    "history",
+    "iteration",
+    "convergence",
+)  # of pictures, in order of preference; plotting is slow to import
+
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE.yaml", exists=True, dir_okay=False)]
 DataFile = Annotated[Path, typer.Argument(metavar="FILE.h5", exists=True, dir_okay=False)]
 
 
-class InputError(ValueError):
-    """The command line asks for something that cannot be done."""
-
-
 def main(argv: list[str] | None = None) -> int:
     """Run the program with `argv`, by default the arguments of the process; return its exit status."""
-    try:
-        app(args=argv, prog_name="vibro-sweep")
-    except SystemExit as stop:
-        return stop.code or 0
-    return 0
-
-
-def program() -> None:
-    """`main` as a process, which it ends."""
-    status = main()
-    if status == INTERRUPTED:  # threads may be in the middle of a block, which may be long: do not wait for them
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(status)
-    sys.exit(status)
+    return ended(lambda: called(app, argv))
 
 
 def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise typer.BadParameter(f"{text!r} is not a whole number >= 1")
+    from .driver import MOST_WORKERS
+
+    if not text.isdecimal() or len(text) > 9 or not 1 <= int(text) <= MOST_WORKERS:
+        raise typer.BadParameter(f"{text!r} is not a whole number >= 1 and <= {MOST_WORKERS}")
     return int(text)
 
 
@@ -61,7 +61,7 @@ def _show_version(wanted: bool):
     if wanted:
         from . import __version__
 
-        typer.echo(f"vibro-sweep {__version__}")
+        say(f"vibro-sweep {__version__}")
         raise typer.Exit
 
 
@@ -92,37 +92,54 @@ def run(
     resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")] = False,
     plot: Annotated[bool, typer.Option("--plot", help="Draw the result, next to the file.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but warnings and errors.")] = False,
 ):
     """Compute a scene and write its HDF5 file."""
+    output = output or Path(f"{scene_file.stem}.h5")
+    again = ["vibro-sweep", "run", str(scene_file), "-o", str(output)]
+    again += ["--scheduler", scheduler] if scheduler else ["--workers", str(workers)] if workers else []
+    again += ["--plot"] if plot else []
+    to_continue = f"to continue: {shlex.join([*again, '--resume'])}"
+    # until the run has begun, what is to be overwritten is there, and would be taken for its result
+    interrupt.tells(f"to continue: {shlex.join([*again, '--overwrite'])}" if overwrite else to_continue)
     from .scene import SceneError, load_scene
 
-    with _input_errors(SceneError):
+    with input_errors(SceneError):
         scene = load_scene(scene_file)
-        output = output or Path(f"{scene_file.stem}.h5")
-        _check_output(output, scene_file, resume, overwrite)
+    if resume and overwrite:
+        raise InputError("--resume and --overwrite exclude each other: continue the old file or replace it")
+    mode = "resume" if resume else "overwrite" if overwrite else "new"
+    picture = None
+    if plot:
+        from .plotting import default_name
 
-    from . import sweep
-    from .progress import progress_bar
+        picture = output.with_name(default_name(output))
+    from .places import check_output
     from .store import StoreError
 
-    mode = "resume" if resume else "overwrite" if overwrite else "new"
-    again = ["vibro-sweep", "run", str(scene_file), "-o", str(output), "--resume"]
-    again += ["--scheduler", scheduler] if scheduler else ["--workers", str(workers)] if workers else []
-    with _input_errors(StoreError):
+    with input_errors(StoreError):
+        check_output(output, scene_file, picture, mode)
+
+    from .driver import sweep
+    from .progress import progress_bar
+
+    workers_of_a_cluster = _executor(scheduler)
+    with input_errors(StoreError), interrupt.tidied_up():
+        interrupt.tells(to_continue)
         try:
-            with _executor(scheduler) as executor, progress_bar(scene.n_points, quiet) as progress:
+            bar = progress_bar(scene.n_points, quiet)
+            with messages(quiet), workers_of_a_cluster as executor, bar as progress:
                 report = sweep.run(scene, output, workers, executor, progress, mode)
-        except KeyboardInterrupt:
-            typer.echo(f"vibro-sweep: interrupted; to continue: {shlex.join(again)}", err=True)
-            raise typer.Exit(INTERRUPTED) from None
         except sweep.RunError as error:
-            text = f"{error}. Nothing that was computed is lost; to continue: {shlex.join(again)}"
-            raise InputError(text) from None
+            if error.internal:
+                raise
+            raise InputError(f"{error}. Nothing that was computed is lost; {to_continue}") from None
     if not quiet:
-        typer.echo(_summary(output, report))
+        from .summaries import summary
+
+        say(summary(output, report))
     if plot:
-        _draw(output, None, None, quiet)
+        _draw(output, picture, None, overwrite, quiet)
     if report.bad:
         raise typer.Exit(BAD_POINTS)
 
@@ -132,12 +149,20 @@ def plot_command(
     file: DataFile,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FIGURE.png|.svg|.pdf", help="By default FILE.png."),
+        typer.Option(
+            "-o", "--output", metavar="FIGURE.png|.svg|.pdf", help="By default FILE.png in the current folder."
+        ),
     ] = None,
-    kind: Annotated[str | None, typer.Option(help="One kind of picture that the file has data for.")] = None,
+    kind: Annotated[
+        str | None,
+        typer.Option(help=f"One of {', '.join(KINDS)} or all; by default the first that the file has data for."),
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an existing file, also one that is no picture of this program.")
+    ] = False,
 ):
     """Draw what a file holds."""
-    _draw(file, output, kind, quiet=False)
+    _draw(file, output, kind, overwrite, quiet=False)
 
 
 @app.command()
@@ -146,11 +171,13 @@ def info(file: DataFile):
 
     Also how accurate it says it is.
     """
-    from .store import StoreError, describe
+    from .store import StoreError, examine
 
-    with _input_errors(StoreError):
-        text = describe(file)
-    typer.echo(text)
+    with input_errors(StoreError):
+        found = examine(file)
+    say(found.text)
+    if found.damaged:
+        raise typer.Exit(BAD_INPUT)
 
 
 @app.command()
@@ -158,48 +185,61 @@ def check(scene_file: SceneFile):
     """Validate a scene; say what it computes, its size and time."""
     from .scene import SceneError, load_scene
 
-    with _input_errors(SceneError):
+    with input_errors(SceneError):
         scene = load_scene(scene_file)
 
-    from .compute import RunError
-    from .cost import estimate
+    from .driver.compute import RunError
+    from .driver.cost import duration, estimate
+    from .summaries import points, size_of
 
-    with _input_errors(RunError):
+    with input_errors(RunError):
         cost = estimate(scene)
-    typer.echo(f"{scene_file}: {scene}")
-    typer.echo(f"  file      {_points(cost.points)}, {_bytes(cost.bytes)}")
-    typer.echo(f"  work      {cost.orbits:,} orbits, {cost.periods:,} forcing periods in all")
-    typer.echo(f"  time      about {_duration(cost.seconds)} here, once compiled")
+    say(f"{scene_file}: {scene}")
+    say(f"  file      {points(cost.points)}, {size_of(cost.bytes)}")
+    say(f"  work      {cost.orbits:,} orbits, {cost.periods:,} forcing periods in all")
+    say(f"  time      about {duration(cost.seconds)} here, once compiled")
 
 
 @app.command()
 def grazing(scene_file: SceneFile):
-    """Theorem 1: the clearance and phase of the double grazing.
+    """Theorem 1: the clearance and phase of the grazing.
 
-    There the non-impacting steady motion just touches both stops. If the scene sweeps what they depend on: the curve.
+    There the non-impacting steady motion just touches its stops. If the scene sweeps what they depend on: the curve.
     """
-    from .scene import SceneError, load_scene
-    from .system import grazing
+    from vibro_sweep.model.grazing import grazing
+    from vibro_sweep.model.parameters import FREE_MOTION
 
-    with _input_errors(SceneError):
+    from .scene import SceneError, load_scene
+    from .summaries import grazing_text
+
+    with input_errors(SceneError):
         scene = load_scene(scene_file)
-    along = [key for key in scene.sweep if key in ("mu_m", "mu_k", "zeta", "f2", "omega")]
+    along = [key for key in scene.sweep if key in FREE_MOTION]
     if len(along) == 1:
-        typer.echo(f"# {along[0]} b* tau*")
+        say(f"# {along[0]} b* tau*")
         for value in scene.sweep[along[0]].tolist():
             touch = grazing(scene.system.replace(**{along[0]: value}))
-            typer.echo(f"{value!r} {touch.b!r} {touch.tau!r}")
+            say(f"{value!r} {touch.b!r} {touch.tau!r}")
         return
     touch = grazing(scene.system)
-    _, _, x2, v2 = touch.state
     if along:
         first = ", ".join(f"{key} = {getattr(scene.system, key)!r}" for key in along)
-        typer.echo(f"at the first point of the sweep: {first}")
-    typer.echo(f"b*    = {touch.b!r}")
-    typer.echo(f"tau*  = {touch.tau!r}")
-    typer.echo(f"state = x1: {touch.b!r}, v1: 0, x2: {x2!r}, v2: {v2!r}   (right stop; left stop: its negative)")
-    holds = "holds" if touch.satisfied else "does not hold"
-    typer.echo(f"the existence condition (19) {holds}; determinant (15): {touch.determinant:.6g}")
+        say(f"at the first point of the sweep: {first}")
+    say(grazing_text(touch, scene.system.stops))
+
+
+@app.command()
+def new(name: Annotated[str, typer.Argument(metavar="[NAME]", help="Of an example.")] = "quickstart"):
+    """Write an example scene to start from, NAME.yaml, into this folder.
+
+    Without a name the one of the README. Beside it scene.schema.json, by which editors complete and check scenes.
+    """
+    from .examples import ExampleError, write_example
+
+    with input_errors(ExampleError):
+        written = write_example(name)
+    for path in written:
+        say(str(path))
 
 
 @app.command()
@@ -209,92 +249,35 @@ def schema():
 
     from .scene import json_schema
 
-    typer.echo(json.dumps(json_schema(), indent=2))
+    say(json.dumps(json_schema(), indent=2))
 
 
-@contextlib.contextmanager
-def _input_errors(*kinds: type[Exception]):
-    """What the user can mend ends in one message and status 2; the rest is a bug and keeps its traceback."""
-    try:
-        yield
-    except (InputError, OSError, MemoryError, *kinds) as error:
-        text = str(error) or type(error).__name__
-        if isinstance(error, OSError) and error.filename is not None and error.strerror:
-            text = f"{error.filename}: {error.strerror}"
-        typer.echo(f"vibro-sweep: error: {text}", err=True)
-        raise typer.Exit(BAD_INPUT) from None
-
-
-def _check_output(output: Path, scene_file: Path, resume: bool, overwrite: bool):
-    """Raise InputError, before anything is computed, where `output` could not be written in the end."""
-    part = Path(f"{output}.part")
-    if resume and overwrite:
-        raise InputError("--resume and --overwrite exclude each other: continue the old file or replace it")
-    if output.is_dir():
-        raise InputError(f"--output {output} is a folder; it must be a file")
-    if output.exists() and output.samefile(scene_file):
-        raise InputError(f"--output {output} is the scene itself")
-    if output.exists() and not (resume or overwrite):
-        rest = f" ({part} is an interrupted run: --resume continues that)" if part.exists() else ""
-        raise InputError(f"{output} exists; --overwrite replaces it, or name another file with -o{rest}")
-    if part.exists() and not (resume or overwrite):
-        raise InputError(f"{part} is an interrupted run; --resume continues it, --overwrite starts again")
-    if not output.parent.is_dir():
-        raise InputError(f"--output {output}: there is no folder {output.parent}")
-    try:
-        with tempfile.TemporaryFile(dir=output.parent):
-            pass
-    except OSError as error:
-        raise InputError(f"--output {output}: cannot write into {output.parent}: {error.strerror}") from None
-
-
-@contextlib.contextmanager
-def _executor(scheduler: str | None):
+def _executor(scheduler: str | None) -> contextlib.AbstractContextManager:
+    """That of a Dask scheduler, or None for threads."""
     if scheduler is None:
-        yield None
-        return
+        return contextlib.nullcontext()
     try:
-        from .cluster import ClusterError, cluster
+        from .driver.cluster import ClusterError, cluster
     except ImportError:
         text = f"--scheduler {scheduler} needs the package dask.distributed: pip install distributed"
         raise InputError(text) from None
-    try:
-        with cluster(scheduler) as executor:
-            yield executor
-    except ClusterError as error:
-        raise InputError(f"--scheduler {scheduler}: {error}") from None
+
+    @contextlib.contextmanager
+    def connected():
+        try:
+            with cluster(scheduler) as executor:
+                yield executor
+        except ClusterError as error:
+            raise InputError(f"--scheduler {scheduler}: {error}") from None
+
+    return connected()
 
 
-def _draw(file: Path, output: Path | None, kind: str | None, quiet: bool):
+def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool):
     from .plotting import PlotError, plot
     from .store import StoreError
 
-    with _input_errors(PlotError, StoreError):
-        pictures = plot(file, output, kind)
+    with input_errors(PlotError, StoreError), interrupt.tidied_up():
+        pictures = plot(file, output, kind, overwrite)
     if not quiet:
-        typer.echo("\n".join(str(picture) for picture in pictures))
-
-
-def _summary(output: Path, report) -> str:
-    bad = {name: count for name, count in report.statuses.items() if name != "ok" and count}
-    named = ", ".join(f"{name} {count}" for name, count in bad.items())
-    state = f"{report.bad} with a bad status ({named})" if report.bad else "all ok"
-    return f"{output}: {_points(report.points)} in {_duration(report.seconds)}, {state}"
-
-
-def _points(count: int) -> str:
-    return f"{count:,} point" + "s" * (count != 1)
-
-
-def _duration(seconds: float) -> str:
-    if seconds < 100:
-        return f"{seconds:.2g} s"
-    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.3g} h"
-
-
-def _bytes(size: float) -> str:
-    for unit in ("B", "kB", "MB"):
-        if size < 1000:
-            return f"{size:.3g} {unit}"
-        size /= 1000
-    return f"{size:.3g} GB"
+        say("\n".join(str(picture) for picture in pictures))

@@ -1,24 +1,29 @@
-"""Pictures of a result file, from the file alone.
+"""Pictures of a result file or a Dataset, from these alone.
 
 `kinds` says what a file can show, `figure` draws one kind for a notebook, `plot` writes pictures. Nothing
 here computes an orbit: what is not in the file is not in the picture. No display is needed or touched.
 """
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib
 from matplotlib.figure import Figure
 
 from vibro_sweep.plotting import basins, coexistence, orbits, planes, sweeps
+from vibro_sweep.plotting.pictures import check_output, save
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import STYLE
 
-__all__ = ["SUFFIXES", "PlotError", "figure", "kinds", "plot"]
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["SUFFIXES", "PlotError", "check_output", "default_name", "figure", "kinds", "plot"]
 
 SUFFIXES = (".png", ".svg", ".pdf")
 
-# In order of preference: the first that a file can show is its default.
-_KINDS = {
+# In order of preference: the first that a file can show is its default. What each needs, and how it is drawn.
+KINDS = {
     "basins": (basins.shows, basins.basins),
     "coexistence": (coexistence.shows, coexistence.coexistence),
     "plane": (planes.shows, planes.plane),
@@ -33,44 +38,51 @@ _KINDS = {
 }
 
 
-def kinds(path) -> list[str]:
-    """Kinds of picture that the file can show, the default one first; empty where it has nothing to show.
+def kinds(data: "str | Path | xarray.Dataset") -> list[str]:
+    """Kinds of picture that a file, or a Dataset, can show, the default one first; empty where it has nothing to show.
 
-    Raises `PlotError` where the file is not one of vibro-sweep's.
+    Raises `PlotError` where it is none of vibro-sweep's.
     """
-    with Result(path) as result:
+    with Result(data) as result:
         return _kinds(result)
 
 
-def figure(path, kind: str | None = None) -> Figure:
-    """One picture of the file (default: the first of `kinds`), about 7 inches wide.
+def figure(data: "str | Path | xarray.Dataset", kind: str | None = None, at: dict[str, float] | None = None) -> Figure:
+    """One picture of a file or a Dataset (default: the first of `kinds`), about 7 inches wide.
 
-    Raises `PlotError` where the file cannot be read or cannot show that kind.
+    at : where single orbits are drawn, key -> value of the sweep; by default some, evenly spread
+
+    Raises `PlotError` where the data cannot be read or cannot show that kind.
     """
-    with Result(path) as result:
+    with Result(data, at) as result:
         return _draw(result, _chosen(result, kind)[0])
 
 
-def plot(path, output=None, kind: str | None = None) -> list[Path]:
+def plot(path, output=None, kind: str | None = None, overwrite: bool = False) -> list[Path]:
     """Write pictures of the file; the paths written.
 
-    `output` is FILE.png beside the file unless given; its suffix (one of `SUFFIXES`) is the format. `kind` is
+    `output` is FILE.png in the current folder unless given; its suffix (one of `SUFFIXES`) is the format. `kind` is
     one of `kinds` (default: the first) or "all": then each goes to its own file, named FILE-kind.
-    Raises `PlotError` for a file, a kind or an output that will not do.
+    Raises `PlotError` for a file, a kind or an output that will not do, and without `overwrite` for an output that
+    exists, unless it is a picture that this function drew and nobody has changed since.
     """
     path = Path(path)
-    output = _beside(path) if output is None else Path(output)
+    output = Path(default_name(path)) if output is None else Path(output)
     if output.suffix.lower() not in SUFFIXES:
         raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
+    if output.resolve() == path.resolve():
+        raise PlotError(f"output {output}: that is the result file itself")
     with Result(path) as result:
         chosen = _chosen(result, kind)
-        if kind != "all":
-            return [_save(_draw(result, chosen[0]), output, path)]
-        return [_save(_draw(result, one), output.with_stem(f"{output.stem}-{one}"), path) for one in chosen]
+        many = kind == "all"
+        places = [output.with_stem(f"{output.stem}-{one}") if many else output for one in chosen]
+        for place in places:  # before the work of drawing
+            check_output(place, overwrite)
+        return [save(_draw(result, one), place, overwrite) for one, place in zip(chosen, places, strict=True)]
 
 
 def _kinds(result: Result) -> list[str]:
-    return [kind for kind, (shows, _) in _KINDS.items() if shows(result)] if result.done.any() else []
+    return [kind for kind, (shows, _) in KINDS.items() if shows(result)] if result.done.any() else []
 
 
 def _chosen(result: Result, kind: str | None) -> list[str]:
@@ -90,7 +102,7 @@ def _chosen(result: Result, kind: str | None) -> list[str]:
 
 def _draw(result: Result, kind: str) -> Figure:
     with matplotlib.rc_context(STYLE):
-        fig = _KINDS[kind][1](result)
+        fig = KINDS[kind][1](result)
         if result.failed:
             for ax in fig.axes:
                 if ax.get_label() != "<colorbar>":
@@ -99,17 +111,6 @@ def _draw(result: Result, kind: str) -> Figure:
         return fig
 
 
-def _beside(path: Path) -> Path:
-    name = path.name.removesuffix(".part")
-    return path.with_name(name.removesuffix(".h5") + ".png")
-
-
-def _save(fig: Figure, output: Path, source: Path) -> Path:
-    if output.resolve() == source.resolve():
-        raise PlotError(f"output {output}: that is the result file itself")
-    try:
-        with matplotlib.rc_context(STYLE):  # some settings are looked up only when the picture is written
-            fig.savefig(output)
-    except OSError as error:
-        raise PlotError(f"output {output}: cannot be written ({error.strerror or error})") from error
-    return output
+def default_name(path: Path) -> str:
+    """Of the picture of a file, FILE.png."""
+    return path.name.removesuffix(".part").removesuffix(".h5") + ".png"

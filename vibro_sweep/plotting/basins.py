@@ -4,25 +4,32 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch
 
-from vibro_sweep.attractors import NOT_SETTLED, group
+from vibro_sweep.model.state import START
 from vibro_sweep.plotting.families import KINDS, describe, kind
 from vibro_sweep.plotting.result import Result
-from vibro_sweep.plotting.style import NOT_COMPUTED, SYMBOLS, axis_name, edges, page
+from vibro_sweep.plotting.style import NOT_COMPUTED, axis_name, edges, equation, page
 
 NAMED = 11  # attractors that the legend has room for
+OTHERS = np.inf  # number of all beyond these
 _SHADES = (0.0, 0.45, -0.35, 0.7)  # of attractors of one kind, towards white or black
 
 
 def shows(result: Result) -> bool:
+    """A sweep over two numbers of the start; attractors."""
     return len(result.sweep) == 2 and all(key.startswith("start_") for key in result.sweep) and "average" in result
 
 
 def basins(result: Result):
-    """The plane of initial states, each in the colour of the attractor that its orbit reaches."""
+    """The plane of initial states, each in the colour of the attractor that its orbit reaches, as the file numbers it.
+
+    A file without these numbers (of version 0.1, or not complete) shows of which kind the attractors are.
+    """
     (x_key, x), (y_key, y) = result.sweep.items()
     columns, rows = np.argsort(x), np.argsort(y)  # a sweep may run downwards; an axis does not
-    label, named = _attractors(result)
-    fig = page(5.6, result.title("Basins of attraction" + _rest(result)))
+    numbered = "attractor_id" in result and result.done.all()
+    label, named = (_attractors if numbered else _kinds)(result)
+    note = "" if numbered else "\nkinds of motion; this file does not number its attractors"
+    fig = page(5.6, result.title("Basins of attraction" + _rest(result) + note))
     ax = fig.subplots()
     picture = np.full((*label.shape, 3), to_rgb(NOT_COMPUTED))
     for number, (colour, _) in named.items():
@@ -38,25 +45,39 @@ def basins(result: Result):
 def _attractors(result):
     """The number of each state's attractor, of the sweep's shape; and for each number its colour and its name.
 
-    Those beyond `NAMED` share a number. 0: not settled; -1: not computed, or failed.
+    Those beyond the `NAMED` largest share a number. NaN: not computed, or failed.
     """
-    period, average, error = (result.array(name)[:, :, 0] for name in ("period", "average", "average_error"))
-    at_point = result.array("attractor")[:, :, 0]
-    average[~(at_point > NOT_SETTLED)] = np.nan
-    whole = np.nan_to_num(period).astype(int).ravel()
-    label = group(whole, average.reshape(-1, 7), error.reshape(-1, 7)).reshape(at_point.shape)
-    label[np.isnan(at_point)] = -1
-    label = np.minimum(label, NAMED + 1)
+    label, period = (result.array(name)[:, :, 0] for name in ("attractor_id", "period"))
+    average = result.array("average")[:, :, 0]
+    numbers, counts = np.unique(label[label > 0], return_counts=True)
+    others = numbers[np.argsort(-counts, kind="stable")][NAMED:]
+    label[np.isin(label, others)] = OTHERS
+    numbers, counts = np.unique(label[label >= 0], return_counts=True)
     named, seen = {}, {}
-    for number in np.unique(label[label >= 0]):
+    for number in sorted(numbers, key=lambda one: (one == 0, one == OTHERS, -counts[numbers == one])):
         members = label == number
-        least, of_it = int(period[members].min()), average[members].mean(axis=0)
-        which, text = kind(least, of_it), describe(least, of_it)
-        if number > NAMED:
-            which, text = "unsettled", "others"
+        least, of_it = period[members].min(), average[members].mean(axis=0)
+        which, text = str(kind(least, of_it)), describe(least, of_it)
+        if number in (0, OTHERS):
+            which, text = "unsettled", "others" if number else KINDS["unsettled"][0]
         seen[which] = seen.get(which, -1) + 1
         named[number] = (_shade(KINDS[which][1], seen[which]), f"{text} ({100 * members.mean():.3g} %)")
     return label, named
+
+
+def _kinds(result):
+    """As `_attractors`, for kinds of them."""
+    names = list(KINDS)
+    which = kind(result.array("period")[:, :, 0], result.array("average")[:, :, 0])
+    label = np.select([which == name for name in names], range(len(names)), np.nan)
+    rank = result.array("attractor")[:, :, 0]
+    label[rank == 0] = names.index("unsettled")
+    label[np.isnan(rank)] = np.nan
+    there = {number: np.mean(label == number) for number in np.unique(label[label >= 0])}
+    return label, {
+        number: (to_rgb(KINDS[names[int(number)]][1]), f"{KINDS[names[int(number)]][0]} ({100 * share:.3g} %)")
+        for number, share in there.items()
+    }
 
 
 def _shade(colour, n):
@@ -67,6 +88,6 @@ def _shade(colour, n):
 
 def _rest(result) -> str:
     """The part of the initial state that is the same everywhere."""
-    same = [key for key in SYMBOLS if key.startswith("start_") and key not in result.sweep]
-    given = {key: float(result.setting("start", key.removeprefix("start_")) or 0) for key in same}
-    return "; " + ", ".join(f"${SYMBOLS[key]} = {value:.6g}$" for key, value in given.items())
+    given = {key: result.number(key) for key in START.values() if key not in result.sweep}
+    known = [equation(key, value) for key, value in given.items() if value is not None]
+    return "; " + ", ".join(known) if known else ""

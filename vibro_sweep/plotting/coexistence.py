@@ -7,9 +7,10 @@ import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Patch
 
+from vibro_sweep.model.catalogue import BY_NAME
 from vibro_sweep.plotting.families import KINDS, kind
 from vibro_sweep.plotting.result import Point, Result
-from vibro_sweep.plotting.style import axis_name, edges, page
+from vibro_sweep.plotting.style import at_section, axis_name, edges, page
 from vibro_sweep.plotting.sweeps import mark_grazing
 
 NARROW = 0.012  # of the axis; the period of a window is written over it where it is wider
@@ -27,6 +28,7 @@ class Share(NamedTuple):
 
 
 def shows(result: Result) -> bool:
+    """A sweep over one key with several starts; attractors."""
     return len(result.sweep) == 1 and len(result.starts) > 1 and "attractor" in result
 
 
@@ -42,7 +44,7 @@ def coexistence(result: Result):
     _name_windows(below, values, found)
     if key == "b":
         mark_grazing(axes, result)
-    below.set(xlim=edges(values)[[0, -1]], ylim=(0, 1), xlabel=axis_name(key), ylabel="share of starts")
+    below.set(xlim=edges(values)[[0, -1]], ylim=(0, 1), xlabel=axis_name(key), ylabel=BY_NAME["share"].label)
     there = {one.kind for one in found}
     handles = [Patch(color=colour, label=name) for which, (name, colour) in KINDS.items() if which in there]
     handles += [line for line in above.lines if line.get_gid() == "grazing"]
@@ -54,24 +56,28 @@ def coexistence(result: Result):
 def _shares(result, order) -> list[Share]:
     """Every attractor at every value, in the order in which they are stacked."""
     label, share, period = (result.array(name)[order] for name in ("attractor", "share", "period"))
+    # where the file does not number the attractors (version 0.1, or not complete), by period and share
+    number = result.array("attractor_id")[order] if "attractor_id" in result else np.full(label.shape, np.nan)
     average = result.array("average")[order]
     rank = list(KINDS)
     found = []
     for place in range(len(label)):
         here = []
-        for number in np.unique(label[place][label[place] >= 0]):
-            members = np.flatnonzero(label[place] == number)
+        for one in np.unique(label[place][label[place] >= 0]):
+            members = np.flatnonzero(label[place] == one)
             first, least = members[0], int(period[place, members].min())
-            which, mean = kind(least, average[place, first]), average[place, members, 0].mean()
-            here.append(Share(place, (order[place], first), which, least, share[place, first], mean))
-        found += sorted(here, key=lambda one: (rank.index(one.kind), one.period, -one.share))
+            which, mean = str(kind(least, average[place, first])), average[place, members, 0].mean()
+            known = np.nan_to_num(number[place, first])
+            here.append((known, Share(place, (order[place], first), which, least, share[place, first], mean)))
+        here.sort(key=lambda one: (rank.index(one[1].kind), one[0], one[1].period, -one[1].share))
+        found += [one for _, one in here]
     return found
 
 
 def _points(ax, result, values, found):
     """x1 at the section, of one orbit on each attractor; its mean where the points are not stored."""
     stored = "x1" in result and "phase" not in result
-    ax.set_ylabel(r"$x_1$ at $t = 0$ mod $T$" if stored else r"mean of $x_1$ at $t = 0$ mod $T$")
+    ax.set_ylabel(at_section("x1") if stored else f"mean of {at_section('x1')}")
     size = np.clip(60 / np.sqrt(len(values)), 1.2, 6) * (0.5 if stored else 1)
     for which, (_, colour) in KINDS.items():
         chosen = [one for one in found if one.kind == which and which != "unsettled"]

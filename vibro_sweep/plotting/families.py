@@ -2,7 +2,10 @@
 
 import numpy as np
 
+from vibro_sweep.model.observables import AVERAGED
 from vibro_sweep.plotting.style import INK, LEFT, NOT_COMPUTED, RIGHT
+
+RATES = [AVERAGED.index(name) for name in ("impacts_right", "impacts_left")]  # places among the averages
 
 # In the order in which they are stacked: kind -> its name in a legend, its colour.
 KINDS = {
@@ -15,26 +18,27 @@ KINDS = {
 }
 
 
-def kind(period, average) -> str:
-    """The kind of an attractor with this period (0: none) and these averages (7,), as the file holds them."""
-    right, left = average[4:6]
-    if np.isnan(right):
-        return "unsettled"
-    if period == 0:
-        return "aperiodic"
-    if right == left:
-        return "even" if right > 0 else "free"
-    return "right" if right > left else "left"
+def kind(period, average) -> np.ndarray:
+    """The kinds of attractors with these periods (...), 0: none, and averages, as the file holds them."""
+    right, left = (average[..., place] for place in RATES)
+    known = [
+        (np.isnan(right), "unsettled"),
+        (period == 0, "aperiodic"),
+        ((right == left) & (right > 0), "even"),
+        (right == left, "free"),
+        (right > left, "right"),
+    ]
+    return np.select([where for where, _ in known], [name for _, name in known], "left")
 
 
 def describe(period, average) -> str:
     """An attractor in words: its period and its impacts."""
-    name = kind(period, average)
+    name, (right, left) = str(kind(period, average)), average[RATES]
     if name == "unsettled":
         return KINDS[name][0]
     if name == "aperiodic":
-        return f"{KINDS[name][0]}, {average[4]:.3g} + {average[5]:.3g} impacts / $T$"
-    right, left = (round(float(rate) * int(period)) for rate in average[4:6])
+        return f"{KINDS[name][0]}, {right:.3g} + {left:.3g} impacts / $T$"
+    right, left = (round(float(rate) * int(period)) for rate in (right, left))
     if name == "free":
         return f"{KINDS[name][0]}, period {int(period)}"
     return f"period {int(period)}, {right} {'impact' if right == 1 else 'impacts'} right, {left} left"

@@ -1,23 +1,35 @@
 """Pictures of single orbits: phase portrait, time history, section points one after another."""
 
-import math
-
 import numpy as np
 
-from vibro_sweep.plotting.breaks import break_at_impacts
+from vibro_sweep.plotting.paths import path
 from vibro_sweep.plotting.result import Result
-from vibro_sweep.plotting.style import DASHES, EXPONENTS, FAINT, INK, RIGHT, limits, page
+from vibro_sweep.plotting.style import (
+    DASHES,
+    EXPONENTS,
+    FAINT,
+    INK,
+    RIGHT,
+    before_impact,
+    exponent,
+    limits,
+    page,
+    symbol,
+)
 
 
 def shows_trajectory(result: Result) -> bool:
+    """A trajectory."""
     return all(name in result for name in ("trajectory_x1", "trajectory_v1", "time"))
 
 
 def shows_both_masses(result: Result) -> bool:
+    """A trajectory with the second mass."""
     return shows_trajectory(result) and "trajectory_x2" in result
 
 
 def shows_section(result: Result) -> bool:
+    """Section points."""
     return "x1" in result or "v1" in result
 
 
@@ -34,18 +46,16 @@ def _portraits(result, what):
 
 
 def phase_portrait(result: Result):
-    """x1 and v1 between the stops, one panel an orbit; the state at each forcing period marked."""
+    """x1 and v1 between the stops, one panel an orbit; its impacts, and the state at each forcing period, marked."""
     fig, panels = _portraits(result, "Phase portrait")
     for ax, point in panels:
-        t, x, v = _trajectory(result, point)
-        stops = result.stops(point.place)
-        path = break_at_impacts(t, x, v, stops)
-        ax.plot(path.x, path.v, color=INK, lw=0.7)
-        for stop, v_in, v_out in path.jumps:
-            ax.plot([stop, stop], [v_in, v_out], color=EXPONENTS[1], lw=1.2, ls=(0, (1, 1)), label="impact")
-        _walls(ax, stops)
-        _mark_sections(ax, result, point, t, x, v)
-        ax.set(title=point.label, xlabel="$x_1$", ylabel="$v_1$")
+        way = path(result, point)
+        _line(ax, way.x1, way.v1, way)
+        for stop, before, after in way.jumps:
+            ax.plot([stop, stop], [before, after], color=EXPONENTS[1], lw=1.2, ls=(0, (1, 1)), label="impact")
+        _walls(ax, result.stops(point.place))
+        _mark_sections(ax, result, point, "v1")
+        ax.set(title=point.label, xlabel=symbol("x1"), ylabel=symbol("v1"))
     _legend(fig)
     return fig
 
@@ -54,23 +64,28 @@ def configuration(result: Result):
     """Both masses' displacements against each other (the paper's figure 4), one panel an orbit."""
     fig, panels = _portraits(result, "Configuration plane")
     for ax, point in panels:
-        t, x1, _ = _trajectory(result, point)
-        x2 = result.one("trajectory_x2", point)
-        stops = result.stops(point.place)
-        ax.plot(x1, x2, color=INK, lw=0.7)
-        _walls(ax, stops)
-        _mark_sections(ax, result, point, t, x1, x2)
-        ax.set(title=point.label, xlabel="$x_1$", ylabel="$x_2$")
+        way = path(result, point).joined()
+        _line(ax, way.x1, way.x2, way)
+        _walls(ax, result.stops(point.place))
+        _mark_sections(ax, result, point, "x2")
+        ax.set(title=point.label, xlabel=symbol("x1"), ylabel=symbol("x2"))
     _legend(fig)
     return fig
 
 
-def _mark_sections(ax, result, point, t, x, y):
-    period = _forcing_period(result, point)
-    if period:
-        whole = np.arange(0, t[-1] + period / 2, period)
-        at = np.rint(np.interp(whole, t, np.arange(len(t)))).astype(int)
-        ax.plot(x[at], y[at], "o", color=EXPONENTS[0], markersize=3.5, label=r"$t = 0$ mod $T$", zorder=3)
+def _line(ax, x, y, way):
+    """The way as a line; as points where the file does not hold its impacts."""
+    if way.complete:
+        ax.plot(x, y, color=INK, lw=0.7)
+    else:
+        label = "samples; this file does not hold the impacts between them"
+        ax.plot(x, y, ".", color=INK, markersize=2, markeredgewidth=0, label=label)
+
+
+def _mark_sections(ax, result, point, name):
+    if "trajectory_section_x1" in result:
+        x, y = (result.one(f"trajectory_section_{one}", point) for one in ("x1", name))
+        ax.plot(x, y, "o", color=EXPONENTS[0], markersize=3.5, label=r"$t = 0$ mod $T$", zorder=3)
 
 
 def history(result: Result):
@@ -79,15 +94,10 @@ def history(result: Result):
     fig = page(1.5 * len(points) + 0.9 if len(points) > 1 else 3.2, result.title("Time history"))
     grid = fig.subplots(len(points), squeeze=False, sharex=True)[:, 0]
     for ax, point in zip(grid, points, strict=True):
-        t, x, v = _trajectory(result, point)
-        stops = result.stops(point.place)
-        period = _forcing_period(result, point)
-        unit = period or 1.0
-        path = break_at_impacts(t, x, v, stops)
-        met = np.isfinite(path.x)  # the displacement does not jump: the line goes on through the impact
-        ax.plot(path.t[met] / unit, path.x[met], color=INK, label="$x_1$")
+        way, stops = path(result, point).joined(), result.stops(point.place)
+        ax.plot(way.t, way.x1, color=INK, label=symbol("x1"))
         if "trajectory_x2" in result:
-            ax.plot(t / unit, result.one("trajectory_x2", point), color=RIGHT, label="$x_2$")
+            ax.plot(way.t, way.x2, color=RIGHT, label=symbol("x2"))
         for stop in stops.values():
             ax.axhline(stop, color=FAINT, lw=0.7, ls=DASHES, label="stops" if len(stops) > 1 else "stop")
         ax.margins(x=0)
@@ -108,24 +118,25 @@ def iteration(result: Result):
         values = result.one(name, point)
         ax.plot(values, "-", color=FAINT, lw=0.3)
         ax.plot(values, ".", color=INK, markersize=3, markeredgewidth=0)
-        ax.set(title=point.label, ylabel="$v_1$ before impact" if at_impact else "$x_1$")
+        ax.set(title=point.label, ylabel=before_impact("v1") if at_impact else symbol("x1"))
         ax.margins(x=0.01)
         if np.isfinite(values).any():
             ax.set_ylim(limits(values))
-    transient = result.setting("orbit", "transient")
-    after = f" after {transient} periods of transient" if isinstance(transient, int) else ""
+    transient = result.number("transient")
+    after = "" if transient is None else f" after {transient:.0f} periods of transient"
     grid[-1].set_xlabel(("impact" if at_impact else "iteration") + " $n$" + after)
     return fig
 
 
 def shows_convergence(result: Result) -> bool:
+    """Exponents as they converge."""
     return "lyapunov_running" in result
 
 
 def convergence(result: Result):
     """The spectrum as it was computed, period by period: lambda_1 beside zero, and below all four. Up to two orbits.
 
-    Where the file has them: a dashed line at each final value, a band of two standard errors around it.
+    Where the file has them: a dashed line at each final value, around it a band in which zero would not differ from it.
     """
     points = result.points(2)
     fig = page(5.0, result.title("Convergence of the Lyapunov exponents"))
@@ -135,7 +146,7 @@ def convergence(result: Result):
     for (largest, spectrum), point in zip(grid.T, points, strict=True):
         running = np.where(np.isfinite(values := result.one("lyapunov_running", point)), values, np.nan)
         for i in range(4):
-            spectrum.plot(periods, running[:, i], color=EXPONENTS[i], label=rf"$\lambda_{i + 1}$", zorder=3 - i / 9)
+            spectrum.plot(periods, running[:, i], color=EXPONENTS[i], label=exponent(i + 1), zorder=3 - i / 9)
         order = np.argsort(-np.nan_to_num(running[-1], nan=-np.inf))
         largest.plot(periods, running[:, order[0]], color=EXPONENTS[order[0]])
         text = point.label
@@ -151,15 +162,15 @@ def convergence(result: Result):
         ]
         finite = np.concatenate([v[np.isfinite(v)] for v in values] + [[0.0]])
         row[0].set_ylim(limits(finite))
-    grid[0, 0].set_ylabel(r"$\lambda_1$")
-    grid[1, 0].set_ylabel(r"$\lambda_i$")
+    grid[0, 0].set_ylabel(exponent(1))
+    grid[1, 0].set_ylabel(exponent("i"))
     _legend(fig)
     fig.align_ylabels(grid[:, 0])
     return fig
 
 
 def _final_values(panels, result, point) -> str:
-    """Draw the exponents of the file, with two standard errors; the first of them as text."""
+    """Draw the exponents of the file, and how far their errors reach; the first of them as text."""
     final = result.one("lyapunov", point)
     error = result.one("lyapunov_error", point) if "lyapunov_error" in result else np.full(4, np.nan)
     for ax, count in zip(panels, (1, 4), strict=True):
@@ -167,8 +178,9 @@ def _final_values(panels, result, point) -> str:
             if np.isfinite(value):
                 ax.axhline(value, color=colour, lw=0.7, ls=DASHES)
             if np.isfinite(value) and np.isfinite(spread):
-                ax.axhspan(value - 2 * spread, value + 2 * spread, color=colour, alpha=0.15, lw=0)
-    return rf"$\lambda_1 = {_scientific(final[0], 2)} \pm {_scientific(error[0], 0)}$"
+                reach = result.interval(spread)
+                ax.axhspan(value - reach, value + reach, color=colour, alpha=0.15, lw=0)
+    return exponent(1, rf" = {_scientific(final[0], 2)} \pm {_scientific(error[0], 0)}")
 
 
 def _scientific(value, digits) -> str:
@@ -177,18 +189,6 @@ def _scientific(value, digits) -> str:
         return f"{value:.{digits}f}".replace("inf", r"\infty").replace("nan", "?")
     mantissa, exponent = f"{value:.{digits}e}".split("e")
     return rf"{mantissa} \times 10^{{{int(exponent)}}}"
-
-
-def _trajectory(result, point):
-    """Nondimensional time, x1 and v1."""
-    return result.coordinate("time") * (_forcing_period(result, point) or 1.0), *(
-        result.one(f"trajectory_{name}", point) for name in ("x1", "v1")
-    )
-
-
-def _forcing_period(result, point):
-    omega = result.number("omega", point.place)
-    return 2 * math.pi / omega if omega else None
 
 
 def _walls(ax, stops):

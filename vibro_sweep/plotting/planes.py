@@ -5,7 +5,7 @@ from matplotlib import colormaps
 from matplotlib.colors import BoundaryNorm, ListedColormap, TwoSlopeNorm
 
 from vibro_sweep.plotting.result import Result
-from vibro_sweep.plotting.style import DASHES, INK, NOT_COMPUTED, axis_name, edges, page
+from vibro_sweep.plotting.style import DASHES, INK, NOT_COMPUTED, axis_name, edges, exponent, page
 
 LONGEST = 12  # periods with a colour of their own
 # Paired light and dark, so that a period and its double, 1 and 2 or 3 and 6, are told apart at a glance.
@@ -17,6 +17,7 @@ _NONE, _LONGER = "#26262e", "#8c8c94"
 
 
 def shows(result: Result) -> bool:
+    """A sweep over two keys; lyapunov, section or impacts."""
     return len(result.sweep) == 2 and any(name in result for name in ("lyapunov", "period", "impacts_right"))
 
 
@@ -46,12 +47,12 @@ def _grazing_curve(ax, result):
     if "b" not in keys:
         return
     other = keys[1 - keys.index("b")]
-    values = np.linspace(*sorted((min(result.sweep[other]), max(result.sweep[other]))), 800)
-    curve = result.grazing(**{other: values})
+    curve = result.grazing(other)
     if curve is None:
         return
+    order = np.argsort(result.sweep[other])
+    line = result.sweep[other][order], curve[order]
     frame = ax.get_xlim(), ax.get_ylim()
-    line = (values, np.broadcast_to(curve, values.shape))
     for style in ({"color": "white", "lw": 2.2}, {"color": INK, "lw": 1.0, "ls": DASHES, "label": "grazing, $b^*$"}):
         ax.plot(*(line if keys[1] == "b" else line[::-1]), **style)
     ax.set(xlim=frame[0], ylim=frame[1])
@@ -68,7 +69,7 @@ def _maps(result):
         largest = result.array("lyapunov")[..., 0]
         if starts > 1:
             chosen = np.argmax(np.where(np.isnan(largest), -np.inf, largest), axis=-1)[..., None]
-            note = rf"; of {starts} starts the one with the largest $\lambda_1$"
+            note = f"; of {starts} starts the one with the largest {exponent(1)}"
         maps.append((_exponent, np.take_along_axis(largest, chosen, -1)[..., 0]))
     if "period" in result:
         maps.append((_period, np.take_along_axis(result.array("period"), chosen, -1)[..., 0]))
@@ -87,7 +88,7 @@ def _exponent(ax, x, y, values):
     tiny = 1e-6 * max(abs(low), abs(high), 1e-300)
     norm = TwoSlopeNorm(0, min(low, -tiny), max(high, tiny))
     image = ax.pcolorfast(x, y, values, cmap="RdBu_r", norm=norm)
-    bar = _bar(ax, image, r"$\lambda_1$", extend="both")
+    bar = _bar(ax, image, exponent(1), extend="both")
     if -low > 1e-3 * high and high > -1e-3 * low:
         bar.set_ticks([*np.linspace(norm.vmin, 0, 3)[:-1], 0, *np.linspace(0, norm.vmax, 3)[1:]])
         bar.ax.xaxis.set_major_formatter(lambda value, _: f"${value:.2g}$")

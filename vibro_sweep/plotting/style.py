@@ -5,6 +5,8 @@ from matplotlib import colormaps
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
+from vibro_sweep.model.catalogue import BY_NAME, NUMBERS
+
 WIDTH = 7.0  # inches: a page's text width
 
 STYLE = {
@@ -39,39 +41,35 @@ DASHES = (0, (5, 3))
 RIGHT, LEFT = "#c26a00", "#2b5c8a"
 NOT_COMPUTED = "#dcdce0"
 
-SYMBOLS = {
-    "mu_m": r"\mu_m",
-    "mu_k": r"\mu_k",
-    "zeta": r"\zeta",
-    "f2": "f_2",
-    "omega": r"\omega",
-    "R": "R",
-    "b": "b",
-    "tau": r"\tau",
-    "start_x1": "x_1(0)",
-    "start_v1": "v_1(0)",
-    "start_x2": "x_2(0)",
-    "start_v2": "v_2(0)",
-}
-_NAMES = {
-    "mu_m": "mass ratio",
-    "mu_k": "stiffness ratio",
-    "zeta": "damping ratio",
-    "f2": "share of the force on $M_2$",
-    "omega": "forcing frequency",
-    "R": "coefficient of restitution",
-    "b": "clearance",
-    "tau": "forcing phase",
-    "start_x1": "initial displacement",
-    "start_v1": "initial velocity",
-    "start_x2": "initial displacement",
-    "start_v2": "initial velocity",
-}
+
+def symbol(name) -> str:
+    """A number or a variable of the table as in the paper, for mathtext."""
+    return f"${BY_NAME[name].symbol}$"
+
+
+def exponent(i, note="") -> str:
+    """The symbol of the i-th exponent, from 1, or of any; and what is to be said of it."""
+    return f"${BY_NAME['lyapunov'].symbol}_{i}{note}$"
 
 
 def axis_name(key) -> str:
-    """A system number as an axis label: its name and its symbol."""
-    return f"{_NAMES[key]} ${SYMBOLS[key]}$" if key in SYMBOLS else key
+    """A number of the system or of the start as an axis label: its name and its symbol."""
+    return f"{NUMBERS[key].label} {symbol(key)}" if key in NUMBERS else key
+
+
+def at_section(name) -> str:
+    """A coordinate of section points, as an axis label."""
+    return f"{symbol(name)} at $t = 0$ mod $T$"
+
+
+def before_impact(name) -> str:
+    """A coordinate of points of an impact section."""
+    return f"{symbol(name)} before impact"
+
+
+def equation(key, value) -> str:
+    """The value of a number, for a title."""
+    return f"${NUMBERS[key].symbol if key in NUMBERS else key} = {value:.6g}$"
 
 
 def page(height, title) -> Figure:

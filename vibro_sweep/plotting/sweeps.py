@@ -18,8 +18,11 @@ from vibro_sweep.plotting.style import (
     INK,
     LEFT,
     RIGHT,
+    at_section,
     axis_name,
+    before_impact,
     edges,
+    exponent,
     limits,
     page,
 )
@@ -32,14 +35,17 @@ _BRANCH_LINES = {
 
 
 def shows_bifurcation(result: Result) -> bool:
+    """A sweep over one key; section."""
     return len(result.sweep) == 1 and ("x1" in result or "v1" in result)
 
 
 def shows_lyapunov(result: Result) -> bool:
+    """A sweep over one key; lyapunov."""
     return len(result.sweep) == 1 and "lyapunov" in result
 
 
 def shows_impacts(result: Result) -> bool:
+    """A sweep over one key; impacts."""
     return len(result.sweep) == 1 and "impacts_right" in result and "impacts_left" in result
 
 
@@ -87,12 +93,13 @@ def _stack(result, panels, what):
 
 def mark_grazing(axes, result):
     """In each panel over b: b* of Theorem 1, and where else the map was expanded."""
-    marks = [(result.grazing(), "grazing, $b^*$", (0, (4, 2))), (result.scene.get("expand_at"), "expanded at", ":")]
+    marks = [("b_star", "grazing, $b^*$", (0, (4, 2))), ("expand_at", "expanded at", ":")]
     low, high = sorted((min(result.sweep["b"]), max(result.sweep["b"])))
-    for b, label, style in marks:
+    for name, label, style in marks:
+        b = result.number(name)
         if b is not None and low <= b <= high:
             for ax in axes:
-                ax.axvline(float(b), color=GRAZING, lw=0.8, ls=style, zorder=3, gid="grazing", label=label)
+                ax.axvline(b, color=GRAZING, lw=0.8, ls=style, zorder=3, gid="grazing", label=label)
 
 
 def _key(ax, result):
@@ -113,9 +120,9 @@ def _section(ax, result, values, order):
     points = result.array("v1" if at_impact else "x1")[order]  # (values, starts, samples)
     count = np.isfinite(points).sum()
     if at_impact:
-        ax.set_ylabel(f"$v_1$ before impact, {result.setting('section', 'stop') or 'right'} stop")
+        ax.set_ylabel(f"{before_impact('v1')}, {result.settings.get('section_stop', 'right')} stop")
     else:
-        ax.set_ylabel(r"$x_1$ at $t = 0$ mod $T$")
+        ax.set_ylabel(at_section("x1"))
     if result.failed:
         return
     if not count:
@@ -161,14 +168,14 @@ def _spectrum(ax, result, values, order):
     error = result.array("lyapunov_error")[order] if "lyapunov_error" in result else np.zeros(exponents.shape)
     _tint(ax, values, result.is_chaotic()[order].any(axis=1))
     ax.axhline(0, color=INK, lw=0.6, zorder=1)
-    ax.set_ylabel(r"$\lambda_1$" if result.follow else r"$\lambda_i$")
+    ax.set_ylabel(exponent(1 if result.follow else "i"))
     if result.follow:
         _branches(ax, values, exponents[:, :, 0])
         for i, name in enumerate(BRANCHES):
             _error_band(ax, values, exponents[:, i, 0], error[:, i, 0], BRANCHES[name])
         return
     for i in reversed(range(4)):  # lambda_1 on top
-        _curve(ax, values, exponents[:, :, i], color=EXPONENTS[i], label=rf"$\lambda_{i + 1}$")
+        _curve(ax, values, exponents[:, :, i], color=EXPONENTS[i], label=exponent(i + 1))
         if len(result.starts) == 1:
             _error_band(ax, values, exponents[:, 0, i], error[:, 0, i], EXPONENTS[i])
     _keep_the_leading_ones_legible(ax, exponents)
@@ -231,7 +238,7 @@ def _name_curves(ax, exponents):
             ends[i + 1] -= push
     for i, end in enumerate(ends):
         beyond = "" if known[i].size and known[i][-1] >= low else r"\,\downarrow" if known[i].size else r" = -\infty"
-        _margin_note(ax, max(end, 0.03), rf"$\lambda_{i + 1}{beyond}$", EXPONENTS[i])
+        _margin_note(ax, max(end, 0.03), exponent(i + 1, beyond), EXPONENTS[i])
 
 
 def _margin_note(ax, height, text, colour, **style):
@@ -239,8 +246,7 @@ def _margin_note(ax, height, text, colour, **style):
 
 
 def _impact_counts(ax, result, values, order):
-    periods = result.setting("orbit", "record")
-    per = periods if isinstance(periods, int) and periods > 0 else 1
+    per = result.number("record") or 1
     # (values, starts)
     right, left = (result.array(f"impacts_{side}")[order] / per for side in ("right", "left"))
     ax.set_ylabel("impacts" if per == 1 else "impacts / $T$")
@@ -251,7 +257,7 @@ def _impact_counts(ax, result, values, order):
     else:
         _curve(ax, values, right, color=RIGHT, label="right", lw=1.6, alpha=0.6)
         _curve(ax, values, left, color=LEFT, label="left", lw=0.8)
-        stops = result.setting("system", "stops")
+        stops = result.settings.get("stops")
         if stops != "left":
             _margin_note(ax, 0.75, "right", RIGHT, fontsize=8)
         if stops != "right":

@@ -1,13 +1,39 @@
-"""The HDF5 file: written by one process, block by block, and read by everybody.
+"""The HDF5 file: written by one process, block by block, and read by everybody; readers write nothing.
 
-While a run goes on the file is FILE.h5.part. A block changes several chunks, their checksums and the lists of chunks.
-HDF5 alone writes these one by one, so that a kill in between would damage finished blocks too; it therefore writes
-through a `vibro_sweep.journal`: a block is in the file as a whole or not at all.
+While a run goes on its blocks are appended to FILE.h5.part, which becomes the file at the end (docs/storage.md).
 """
 
-from vibro_sweep.store.layout import coordinates, quantities, size
-from vibro_sweep.store.opening import StoreError
-from vibro_sweep.store.reading import describe, open
-from vibro_sweep.store.writing import Writer, writer
+from importlib import import_module
 
-__all__ = ["StoreError", "Writer", "coordinates", "describe", "open", "quantities", "size", "writer"]
+_HOME = {
+    "Complete": "writing",
+    "StoreError": "opening",
+    "Writer": "writing",
+    "coordinates": "layout",
+    "describe": "reading",
+    "examine": "reading",
+    "open": "reading",
+    "quantities": "layout",
+    "size": "layout",
+    "writer": "beginning",
+}
+
+__all__ = [
+    "Complete",
+    "StoreError",
+    "Writer",
+    "coordinates",
+    "describe",
+    "examine",
+    "open",
+    "quantities",
+    "size",
+    "writer",
+]
+
+
+def __getattr__(name: str):
+    """Import what is asked for when it is asked for: drawing a file must not wait for the engine."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 import h5py
 import numpy as np
 
-from vibro_sweep.kernels.status import NOT_COMPUTED
-from vibro_sweep.scene import Scene
-from vibro_sweep.store.layout import coordinates
+from vibro_sweep.model.status import NOT_COMPUTED
+from vibro_sweep.store.attributes import texts
+from vibro_sweep.store.opening import axes_of, following_of
 
 Piece = tuple[slice, ...]  # the box of a chunk; () for a dataset of one number
 
@@ -43,7 +43,7 @@ def readable(dataset: h5py.Dataset) -> Iterator[tuple[Piece, np.ndarray]]:
 
 def damaged(file: h5py.File) -> list[tuple[str, Piece]]:
     """Every chunk whose checksum is wrong, with the name of its dataset, `status` first; () for all of a dataset."""
-    names = sorted(file, key=lambda name: name != "status")
+    names = ["status", *axes_of(file), *following_of(file), *texts(file, "quantities")]
     return [(name, piece) for name in names for piece, values in _read(file[name]) if values is None]
 
 
@@ -60,24 +60,6 @@ def _read(dataset: h5py.Dataset) -> Iterator[tuple[Piece, np.ndarray | None]]:
         except OSError:
             values = None
         yield piece, values
-
-
-def mend(file: h5py.File, scene: Scene, name: str, piece: Piece) -> None:
-    """Put a damaged chunk of a coordinate back; of a quantity, make it and its points not computed."""
-    dataset, axes = file[name], coordinates(scene)
-    values = np.full(dataset.chunks, dataset.fillvalue, dataset.dtype)
-    if name in axes:
-        values[: piece[0].stop - piece[0].start] = axes[name][piece]
-    dataset.id.write_direct_chunk(tuple(part.start for part in piece), _with_checksum(values))
-    if name not in axes:
-        file["status"][piece[: file["status"].ndim]] = NOT_COMPUTED
-
-
-def _with_checksum(values: np.ndarray) -> bytes:
-    """A chunk as HDF5 stores it."""
-    with h5py.File("chunk", "w", driver="core", backing_store=False) as file:
-        dataset = file.create_dataset("chunk", data=values, chunks=values.shape, fletcher32=True)
-        return dataset.id.read_direct_chunk((0,) * values.ndim)[1]
 
 
 def summary(found: list[tuple[str, Piece]]) -> str:

@@ -1,62 +1,244 @@
-"""Opening a file: is it one of ours, whole, and the scene's?"""
+"""Opening a file or a part for reading: is it one of ours, whole, and what the scene describes? Nothing is written."""
 
+import contextlib
 import difflib
+import errno
+import io
 import json
+import tempfile
+from collections.abc import Collection, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 
 import h5py
+import numpy as np
 
-from vibro_sweep import __version__, journal
-from vibro_sweep.kernels.jit import source_hash
-from vibro_sweep.scene import Scene
+from vibro_sweep import __version__
+from vibro_sweep.store import heap, parts
+from vibro_sweep.store.attributes import check_numbers, text, texts
+from vibro_sweep.store.image import Index, frame_of
+from vibro_sweep.store.parts import FORMAT, PartError
+from vibro_sweep.store.sink import Sink, changing
+
+if TYPE_CHECKING:
+    from vibro_sweep.scene import Scene
+
+IN_MEMORY = 2**26  # bytes of a part as HDF5; what is larger goes through a temporary file without a name
+TEXTS = ("title", "history", "scene", "provenance")
 
 
 class StoreError(ValueError):
     """A file that is in the way, is none of ours, is damaged or does not fit the scene; or a disk that fails."""
 
 
-def opened(path: Path) -> h5py.File:
-    """A file for reading, put right first if its run was killed. Raises StoreError."""
-    journal.recover(path)
-    return checked(path, path)
+class MissingError(StoreError, FileNotFoundError):
+    """There is no such file."""
+
+    def __init__(self, path: Path):
+        super().__init__(path)
+        self.errno, self.strerror, self.filename = errno.ENOENT, "there is no such file", str(path)
+
+    def __str__(self):
+        return f"{self.filename}: {self.strerror}"
 
 
-def checked(file: Path | journal.Journal, path: Path) -> h5py.File:
-    """A file, or what a journal makes of it for writing, if it is one of ours. Raises StoreError."""
+class Opened(NamedTuple):
+    """A file for reading; of a part, how many of its blocks are damaged and therefore not in it."""
+
+    file: h5py.File
+    lost: int
+
+
+@contextlib.contextmanager
+def opened(path: Path, names: Collection[str] | None = None) -> Iterator[Opened]:
+    """A file for reading, or what a part holds; of the part only the datasets in `names`. Raises StoreError."""
+    result = open_file(path, names)
+    with result.file:
+        yield result
+
+
+def open_file(path: Path, names: Collection[str] | None = None) -> Opened:
+    """As `opened`, for those who close it themselves."""
     try:
-        result = h5py.File(file, "r" if file is path else "r+")
+        with parts.open_regular(path) as raw:
+            if parts.is_part(raw):
+                return _from_part(raw, path, names)
+            return Opened(checked(path, path, raw), 0)
     except FileNotFoundError:
-        raise StoreError(f"{path}: there is no such file") from None
+        raise MissingError(path) from None
+    except PartError as error:
+        raise StoreError(f"{path} {error}") from None
+
+
+def _from_part(raw: BinaryIO, path: Path, names: Collection[str] | None) -> Opened:
+    """The part as HDF5, in memory or in a temporary file that has no name."""
+    head = parts.read_head(raw)
+    image = tempfile.SpooledTemporaryFile(IN_MEMORY)
+    try:
+        parts.copy_skeleton(raw, head, image)
+        with checked(image, path, image) as file:
+            index = Index(raw, head, frame_of(file, quantities_of(file)))
+        sink = Sink(image)
+        with changing(sink) as file:
+            index.fill(raw, file, sink, names)
+        return Opened(h5py.File(image, "r"), index.damaged)
     except OSError as error:
+        raise StoreError(f"{path} cannot be read by way of {tempfile.gettempdir()}: {error}") from None
+
+
+def skeleton(raw: BinaryIO, path: Path) -> h5py.File:
+    """The empty file that a part begins with, in memory. Raises StoreError."""
+    image = io.BytesIO()
+    try:
+        parts.copy_skeleton(raw, parts.read_head(raw), image)
+    except PartError as error:
+        raise StoreError(f"{path} {error}") from None
+    return checked(image, path, image)
+
+
+def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO) -> h5py.File:
+    """A file, if it is one of ours; `raw` are its bytes. Raises StoreError."""
+    try:
+        result = h5py.File(source, "r")
+    except OSError as error:
+        if path.suffix.lower() in (".yaml", ".yml"):
+            raise StoreError(f"{path} is a scene, not an HDF5 file: `vibro-sweep run {path}` makes that") from None
         raise StoreError(f"{path} is not an HDF5 file, or it is damaged ({error})") from None
     try:
-        headers = {name: dict(result[name].attrs) for name in result}  # each has a checksum of its own
-        if "status" in headers and "scene" in result.attrs:
-            json.loads(result.attrs["provenance"])
-            return result
-        problem = "is an HDF5 file, but none that vibro-sweep wrote"
-    except (OSError, RuntimeError, ValueError, KeyError) as error:
-        problem = f"is damaged ({error})"
-    result.close()
-    raise StoreError(f"{path} {problem}")
+        if "status" not in result or "scene" not in result.attrs:
+            raise StoreError(f"{path} is an HDF5 file, but none that vibro-sweep wrote")
+        if not 1 <= format_of(result) <= FORMAT:
+            raise StoreError(
+                f"{path} has the format {format_of(result)} of another version of vibro_sweep; this one, "
+                f"{__version__}, reads up to {FORMAT}"
+            )
+        _check_heap(result, raw)
+        _check(result)
+        return result
+    except StoreError:
+        result.close()
+        raise
+    except (OSError, RuntimeError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        result.close()
+        raise StoreError(f"{path} is damaged ({error})") from None
 
 
-def check_scene(file: h5py.File, path: Path, scene: Scene) -> None:
+def format_of(file: h5py.File) -> int:
+    """1 for files of version 0.1, which do not say it."""
+    return int(file.attrs.get("format", 1))
+
+
+def _check_heap(file: h5py.File, raw: BinaryIO) -> None:
+    if format_of(file) == 1:  # which has no checksum; but HDF5 must be able to walk through it
+        for at in heap.collections(raw):
+            heap.measured(raw, at)
+        return
+    for at, last, checksum in np.reshape(file.attrs["heap"], (-1, 3)).tolist():
+        heap.verify(raw, at, last, checksum)
+
+
+def _check(file: h5py.File) -> None:
+    """Raise ValueError and the like for what a file of ours has not; what else is in it does not matter."""
+    for name in TEXTS:
+        text(file, name)
+    provenance = json.loads(text(file, "provenance"))
+    if not isinstance(provenance, dict):
+        raise ValueError("its provenance is no JSON object")
+    check_numbers(file)
+    axes = texts(file, "sweep_dimensions")
+    for name in [*axes, *quantities_of(file)]:
+        check_dataset(file, name)
+    shape, sweep = file["status"].shape, tuple(len(file[name]) for name in axes)
+    if shape[: len(sweep)] != sweep or len(shape) - len(sweep) not in (0, 1):
+        raise ValueError("its datasets do not fit together: `status` and the sweep")
+    for name in quantities_of(file):
+        if file[name].dtype.kind not in "if" or file[name].shape[: len(shape)] != shape:
+            raise ValueError(f"its datasets do not fit together: `status` and `{name}`")
+        for axis, extent in zip(dimensions_of(file, name), file[name].shape, strict=True):
+            check_dataset(file, axis)
+            if file[axis].shape != (extent,):
+                raise ValueError(f"its datasets do not fit together: `{name}` and its axis `{axis}`")
+    for name in text(file, "coordinates").split() if "coordinates" in file.attrs else []:
+        check_dataset(file, name)
+    for name, along in following_of(file).items():
+        if not set(along) <= set(axes) or file[name].shape != tuple(len(file[axis]) for axis in along):
+            raise ValueError(f"its datasets do not fit together: `{name}` and its axes")
+    for name in axes:
+        if file[name].dtype.kind not in "if":
+            raise ValueError(f"the axis `{name}` holds no numbers")
+
+
+def check_dataset(file: h5py.File, name: str) -> None:
+    """Raise where it is missing, or leads to another place: links, virtual datasets, external storage."""
+    if not isinstance(file.get(name, getlink=True), h5py.HardLink):
+        raise KeyError(f"`{name}` is missing, or is a link")
+    dataset = file[name]
+    if not isinstance(dataset, h5py.Dataset):
+        raise ValueError(f"`{name}` is no dataset")
+    if dataset.is_virtual or dataset.external:
+        raise ValueError(f"the numbers of `{name}` are in another file")
+
+
+def dimensions_of(file: h5py.File, name: str) -> list[str]:
+    """Names of a dataset's dimensions: those of the sweep, `start` if there is one, its own by their scales."""
+    lead = texts(file, "sweep_dimensions")
+    lead += ["start"] * (file["status"].ndim - len(lead))
+    return [*lead, *(dimension[0].name.removeprefix("/") for dimension in list(file[name].dims)[len(lead) :])]
+
+
+def axes_of(file: h5py.File) -> list[str]:
+    """All dimensions of a file."""
+    return list(dict.fromkeys(axis for name in quantities_of(file) for axis in dimensions_of(file, name)))
+
+
+def following_of(file: h5py.File) -> dict[str, list[str]]:
+    """The coordinates that follow from the axes (b_star, tau), in a file that has any, and over which axes they are."""
+    names = text(file, "coordinates").split() if "coordinates" in file.attrs else []
+    return {name: [dimension[0].name.removeprefix("/") for dimension in file[name].dims] for name in names}
+
+
+def is_dataset(file: h5py.File, name: str) -> bool:
+    """Whether it has that dataset itself."""
+    try:
+        check_dataset(file, name)
+    except (OSError, RuntimeError, ValueError, KeyError):
+        return False
+    return True
+
+
+def blocks_lost(count: int) -> str:
+    """Damaged blocks of a part, in words."""
+    return f"{count} block{'s' if count > 1 else ''} of the run"
+
+
+def quantities_of(file: h5py.File) -> list[str]:
+    """The datasets that blocks fill."""
+    return [*texts(file, "quantities"), "status"]
+
+
+def check_scene(file: h5py.File, path: Path, scene: "Scene") -> None:
     """A run is continued by the scene that began it, or its points would not belong together."""
-    if file.attrs["scene"] != scene.text:
+    old = text(file, "scene")
+    if old != scene.text:
         raise StoreError(
             f"{path} was made from another scene; name another file, or overwrite it\n"
-            f"(- is that scene, + is this one)\n{_differences(file.attrs['scene'], scene.text)}"
+            f"(- is that scene, + is this one)\n{_differences(old, scene.text)}"
         )
 
 
-def check_kernels(file: h5py.File, path: Path) -> None:
-    """And by the kernels that began it."""
-    old = json.loads(file.attrs["provenance"])
-    if old["kernels"] != source_hash():
+def check_version(file: h5py.File, path: Path) -> None:
+    """And by the same format and kernels."""
+    old, code = json.loads(text(file, "provenance")), made_by()["code"]
+    begun = f"{path} was begun by vibro_sweep {old.get('vibro_sweep')}"
+    if format_of(file) != FORMAT:
         raise StoreError(
-            f"{path} was begun by vibro_sweep {old['vibro_sweep']} with the kernels {old['kernels']}, and this is "
-            f"vibro_sweep {__version__} with other kernels, {source_hash()}; overwrite it"
+            f"{begun} with the format {format_of(file)}, and this is vibro_sweep {__version__} with the format "
+            f"{FORMAT}; go on with that version, or overwrite it"
+        )
+    if old.get("code") != code:
+        raise StoreError(
+            f"{begun}, code {old.get('code')}, and this is vibro_sweep {__version__} with other code, {code}, "
+            "or another numpy or numba; overwrite it"
         )
 
 
@@ -68,4 +250,6 @@ def _differences(old: str, new: str, most: int = 8) -> str:
 
 def made_by() -> dict:
     """What must be the same for a run to be continued."""
-    return {"vibro_sweep": __version__, "kernels": source_hash()}
+    from vibro_sweep.identity import identity  # drawing a file must not wait for the engine
+
+    return {"vibro_sweep": __version__, "code": identity()}

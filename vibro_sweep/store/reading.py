@@ -2,79 +2,123 @@
 
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 import h5py
 import numpy as np
 
-from vibro_sweep.kernels.status import MEANINGS, NOT_COMPUTED, OK
+from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STANDING, meaning
 from vibro_sweep.store import checks
-from vibro_sweep.store.opening import StoreError, opened
+from vibro_sweep.store.attributes import text, texts
+from vibro_sweep.store.opening import StoreError, blocks_lost, open_file, opened, quantities_of
 
-
-def open(path):  # the name that users of xarray expect
-    """The file as an `xarray.Dataset`, with coordinates. It is read through once, for its checksums.
-
-    Raises StoreError for a file that is none of ours, and for a damaged one: it names the datasets.
-    """
+if TYPE_CHECKING:
     import xarray
 
+ACCURACY = ("status", "lyapunov", "lyapunov_residual", "contact_error", "min_impact_speed")  # what `describe` reads
+REMEDY = "`run --resume` computes that again"
+
+
+class Description(NamedTuple):
+    """What `describe` says, and whether it says `damaged`."""
+
+    text: str
+    damaged: bool
+
+
+def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray expect
+    """The file, or what is computed in a part, as an `xarray.Dataset` with coordinates; numbers are read when used.
+
+    It is read through once, for its checksums. Raises StoreError for a file that is none of ours, and for a damaged
+    one: it names the datasets. Of a missing file the StoreError is a FileNotFoundError too.
+    """
+    from vibro_sweep.store.lazy import dataset_of
+
+    check_type("path", path, (str, Path), "the path of a file")
     path = Path(path)
-    with opened(path) as file:
-        found = checks.damaged(file)
-    if found:
-        raise StoreError(f"{path} is damaged: {checks.summary(found)}; {_remedy(path)}")
-    return xarray.open_dataset(path, engine="h5netcdf")
+    file, lost = open_file(path)
+    try:
+        if found := _damage(file, lost):
+            raise StoreError(f"{path} is damaged: {found}; {REMEDY}")
+        return dataset_of(file)
+    except (OSError, RuntimeError, ValueError) as error:
+        file.close()
+        raise error if isinstance(error, StoreError) else StoreError(f"{path} is damaged ({error})") from None
 
 
-def _remedy(path: Path) -> str:
-    return "`run --resume` computes that again" + (", if no run is just writing it" if path.suffix == ".part" else "")
+def _damage(file: h5py.File, lost: int) -> str:
+    """What is damaged, in words; of a part, blocks."""
+    return blocks_lost(lost) if lost else checks.summary(checks.damaged(file))
 
 
 def describe(path: str | Path) -> str:
     """What is in a file, how it was made, how far it is, and how accurate it says it is. Raises StoreError."""
+    return examine(path).text
+
+
+def examine(path: str | Path) -> Description:
+    """As `describe`, and whether the file is damaged."""
     path = Path(path)
-    with opened(path) as file:
-        lines = [f"{path}: {file.attrs['title']}"]
-        found = checks.damaged(file)
-        broken = {name for name, _ in found}
-        for name in file.attrs["sweep_dimensions"]:
-            ends = "" if name in broken else f"{file[name][0]:g} .. {file[name][-1]:g} "
-            lines.append(f"  {name:<10} {ends}({len(file[name]):,} values)")
-        if "start" in file:
-            lines.append(f"  {'start':<10} {len(file['start'])} at each point")
-        lines.append("datasets")
-        for name in (*file.attrs["quantities"], "status"):
-            dataset = file[name]
-            lines.append(
-                f"  {name:<18} {' x '.join(map(str, dataset.shape)) or 'one':<16} {dataset.attrs['long_name']}"
-            )
-        lines += _progress(file)
-        lines.append(f"damaged      {checks.summary(found)}; {_remedy(path)}" if found else "checksums    all hold")
-        lines += _accuracy(file)
-        lines.append("made by")
-        lines += [
-            f"  {key:<12} {value}" for key, value in json.loads(file.attrs["provenance"]).items() if value is not None
-        ]
-        lines += [f"  {entry}" for entry in file.attrs["history"].splitlines()]
-        return "\n".join(lines)
+    with opened(path, ACCURACY) as (file, lost):
+        try:
+            return _examined(file, path, lost)
+        except (OSError, RuntimeError, ValueError, KeyError, TypeError) as error:
+            raise StoreError(f"{path} is damaged ({error})") from None
+
+
+def _examined(file: h5py.File, path: Path, lost: int) -> Description:
+    lines = [f"{path}: {text(file, 'title')}"]
+    found = _damage(file, lost)
+    for name in texts(file, "sweep_dimensions"):
+        lines.append(f"  {name:<10} {_ends(file[name])}({len(file[name]):,} values)")
+    if file["status"].ndim > len(texts(file, "sweep_dimensions")):
+        lines.append(f"  {'start':<10} {len(file['start'])} at each point")
+    lines.append("datasets")
+    for name in quantities_of(file):
+        dataset = file[name]
+        shape = " x ".join(map(str, dataset.shape)) or "one"
+        lines.append(f"  {name:<18} {shape:<16} {_described(dataset)}")
+    lines += _progress(file)
+    lines.append(f"damaged      {found}; {REMEDY}" if found else "checksums    all hold")
+    lines += _accuracy(file)
+    lines.append("made by")
+    provenance = json.loads(text(file, "provenance"))
+    lines += [f"  {key:<12} {value}" for key, value in provenance.items() if value is not None]
+    lines += [f"  {entry}" for entry in text(file, "history").splitlines()]
+    return Description("\n".join(lines), bool(found))
+
+
+def _ends(axis: h5py.Dataset) -> str:
+    try:
+        return f"{axis[0]:g} .. {axis[-1]:g} "
+    except OSError:  # damaged
+        return ""
+
+
+def _described(dataset: h5py.Dataset) -> str:
+    """What the dataset is; files of version 0.1 say it in `long_name`."""
+    return next((text(dataset, name) for name in ("description", "long_name") if name in dataset.attrs), "")
 
 
 def _progress(file: h5py.File) -> list[str]:
     """Done, missing and failed."""
     counts, total = checks.statuses(file), file["status"].size
     done = counts.total() - counts[NOT_COMPUTED]
-    failed = {MEANINGS[code]: count for code, count in sorted(counts.items()) if code not in (OK, NOT_COMPUTED)}
+    failed = {meaning(code): count for code, count in sorted(counts.items()) if code not in (*STANDING, NOT_COMPUTED)}
     return [
         f"computed     {done:,} of {total:,} orbits ({100 * done / total:.4g} %)",
         f"missing      {total - done:,}",
         f"failed       {sum(failed.values()):,}",
         *(f"  {meaning}: {count:,}" for meaning, count in failed.items()),
+        *([f"not settled  {counts[NOT_SETTLED]:,}"] if counts[NOT_SETTLED] else []),
     ]
 
 
 def _accuracy(file: h5py.File) -> list[str]:
     lines = []
-    if "lyapunov_residual" in file:
+    names = quantities_of(file)
+    if {"lyapunov", "lyapunov_residual"} <= set(names):
         total, known, largest = 0, 0, 0.0
         for _, exponents in checks.readable(file["lyapunov"]):
             total += np.count_nonzero(np.isfinite(exponents[..., 0]))
@@ -84,11 +128,11 @@ def _accuracy(file: h5py.File) -> list[str]:
             lines.append(f"accuracy     |sum of exponents - exact sum| <= {largest:.2g}")
         if known < total:
             lines.append(f"             not known where dimensions are lost: {total - known:,} of {total:,} orbits")
-    if "contact_error" in file:
+    if "contact_error" in names:
         missed = [np.max(values) for values in _finite(file["contact_error"])]
         if missed:
             lines.append(f"             impacts were found within {max(missed):.2g} of the stop")
-    if "min_impact_speed" in file:
+    if "min_impact_speed" in names:
         speeds = [np.min(values) for values in _finite(file["min_impact_speed"])]
         if speeds:
             lines.append(f"             slowest impact {min(speeds):.2g}: the nearest to a graze")

@@ -1,186 +1,170 @@
-"""Writing a file: made, continued or replaced by one run at a time, and given its name when it is complete."""
+"""Writing a file: blocks are kept in its part, and at the end the part becomes the file."""
 
 import contextlib
-import datetime
 import errno
-import io
 import json
 import os
-import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import BinaryIO
 
 import h5py
 import numpy as np
 
-from vibro_sweep import __version__
-from vibro_sweep.journal import CHECKPOINT_BYTES, DamagedError, Journal
-from vibro_sweep.kernels.status import NOT_COMPUTED
-from vibro_sweep.scene import Scene
-from vibro_sweep.store import checks, layout
-from vibro_sweep.store.opening import StoreError, check_kernels, check_scene, checked, made_by, opened
+from vibro_sweep.model.status import NOT_COMPUTED
+from vibro_sweep.store import checks, names, parts
+from vibro_sweep.store.appending import ChangedError, HeldPart, RemovedError
+from vibro_sweep.store.attributes import set_text, text
+from vibro_sweep.store.creating import now, units
+from vibro_sweep.store.done import Done
+from vibro_sweep.store.image import Frame, Index
+from vibro_sweep.store.opening import StoreError, made_by
+from vibro_sweep.store.parts import PartError
+from vibro_sweep.store.sink import Sink, changing
 
 
 class Writer:
-    """The open file of a run. All methods raise StoreError where the disk, or somebody on it, does not let them."""
+    """The file of a run. All methods raise StoreError where the disk, or somebody on it, does not let them."""
 
-    def __init__(self, file: h5py.File, journal: Journal, path: Path):
-        self._file, self._journal, self._path = file, journal, path
-        self._names = (*file.attrs["quantities"], "status")
-        self._starts = file["status"].ndim > len(file.attrs["sweep_dimensions"])
+    def __init__(self, part: HeldPart, frame: Frame, done: Done, path: Path):
+        self._part, self._frame, self._done, self._path = part, frame, done, path
 
-    def missing(self, box: tuple[slice, ...]) -> np.ndarray:
-        """Which points of a box of the sweep have an orbit that is not computed yet, bool of the box's shape."""
-        absent = np.asarray(self._file["status"][box] == NOT_COMPUTED)
-        return np.any(absent, axis=-1) if self._starts else absent
+    def missing(self, box: tuple[slice, ...]) -> bool:
+        """Whether an orbit in a box of the sweep is not computed yet."""
+        return not self._done.holds(box)
 
     def done(self) -> int:
         """Orbits computed so far."""
-        counts = checks.statuses(self._file)
-        return counts.total() - counts[NOT_COMPUTED]
+        return self._done.count()
 
     def write(self, box: tuple[slice, ...], arrays: dict[str, np.ndarray]) -> None:
-        """Put a block in its place: once this returns, a kill does not lose it."""
-        with _said(self._journal):
-            for name in self._names:
-                self._file[name][box] = arrays[name]
-            self._commit()
+        """Keep a block: once this returns, a kill does not lose it."""
+        box = self._frame.whole(box)
+        data = [_bytes(np.asarray(arrays[name], dtype)) for name, (dtype, _) in self._frame.datasets.items()]
+        if [len(raw) for raw in data] != list(self._frame.sizes(box).values()):
+            raise ValueError(f"a block of the box {box} has arrays of other shapes")
+        with said(self._part):
+            self._part.append({"box": [[part.start, part.stop] for part in box]}, data)
+        self._done.add(box)
 
-    def mend(self, scene: Scene) -> None:
-        """Mark as not computed what the checksums of the file do not confirm."""
-        found = _mendable(self._file, self._path)
-        if not found:
-            return
-        with _said(self._journal):
-            for name, piece in found:
-                checks.mend(self._file, scene, name, piece)
-            self._note(f"damage found, to be computed again: {checks.summary(found)}")
-            self._commit()
+    def finish(self, provenance: dict, last: Callable[[h5py.File], None]) -> dict[int, int]:
+        """Make the file of the part. Returns how many orbits have which status.
 
-    def finish(self, provenance: dict) -> dict[int, int]:
-        """Give the file its name. Returns how many orbits have which status."""
-        counts = checks.statuses(self._file)
-        if self._file.mode == "r":  # it was complete before
-            return counts
-        with _said(self._journal):
-            self._note("complete")
-            self._file.attrs["provenance"] = json.dumps(made_by() | provenance)
-            self._commit()
-            self._journal.rename(self._path)
-        return counts
+        last : writes what follows from the blocks, once all of them are in the file
+        """
+        new = unfinished(self._path, self._part.head.identity)
+        with said(self._part):
+            new.unlink(missing_ok=True)  # of a run that was killed here
+            try:
+                with open(new, "xb+") as file:
+                    statuses = self._make(file, provenance, last)
+                names.publish(new, self._path, self._part.head.replaces)
+            except FileExistsError:
+                raise StoreError(
+                    f"{self._path} has appeared during the run and is left alone; the result is complete in "
+                    f"{self._part.path}: move the other file away, then `resume` gives it its name"
+                ) from None
+            finally:
+                new.unlink(missing_ok=True)
+            self._part.remove()
+        return statuses
 
-    def _note(self, what: str) -> None:
-        self._file.attrs["history"] = f"{self._file.attrs['history']}\n{_now()} {what}"
+    def _make(self, new: BinaryIO, provenance: dict, last: Callable[[h5py.File], None]) -> dict[int, int]:
+        """In a thread of its own: Ctrl-C must not end HDF5 in the middle of a call."""
+        index = Index(self._part.file, self._part.head, self._frame)
+        if index.damaged:
+            raise StoreError(f"{self._part.path} was damaged during the run; `resume` computes again what is lost")
+        parts.copy_skeleton(self._part.file, self._part.head, new)
+        sink = Sink(new)
+        with ThreadPoolExecutor(1) as thread:
+            try:
+                statuses = thread.submit(self._fill, sink, index, provenance, last).result()
+            except BaseException as error:
+                sink.stop(error)
+                raise
+        new.flush()
+        os.fsync(new.fileno())
+        return statuses
 
-    def _commit(self) -> None:
-        self._file.flush()
-        self._journal.commit()
+    def _fill(self, sink: Sink, index: Index, provenance: dict, last: Callable[[h5py.File], None]) -> dict[int, int]:
+        with changing(sink) as file:
+            index.fill(self._part.file, file, sink)
+            last(file)
+            for what in (*index.notes, f"{now()} complete"):
+                set_text(file, "history", f"{text(file, 'history')}\n{what}")
+            set_text(file, "provenance", json.dumps(made_by() | provenance))
+            return checks.statuses(file)
 
+    def take_over(self, file: h5py.File, found: list[tuple[str, checks.Piece]]) -> None:
+        """Keep what is computed, and not damaged, of a file that has its name already."""
+        for box in units(file, self._frame):
+            if any(name in self._frame.datasets and _meet(box, piece) for name, piece in found):
+                continue
+            if not np.any(file["status"][box] == NOT_COMPUTED):
+                self.write(box, {name: file[name][box] for name in self._frame.datasets})
+        if found:
+            self.remark(f"damage found, to be computed again: {checks.summary(found)}")
 
-@contextlib.contextmanager
-def writer(scene: Scene, path: Path, mode: str) -> Iterator[Writer]:
-    """The `Writer` of a scene's file; `mode` is "new", "resume" or "overwrite". Raises StoreError."""
-    part = Path(f"{path}.part")
-    if mode == "new":
-        for old in (path, part):
-            if old.exists():
-                raise StoreError(f"{old} exists; `resume` continues it, `overwrite` replaces it")
-    with contextlib.closing(_held(part)) as journal:
-        if mode == "resume" and path.exists() and not part.exists():
-            with opened(path) as file:
-                check_scene(file, path, scene)
-                if not _mendable(file, path):
-                    yield Writer(file, journal, path)
-                    return
-                check_kernels(file, path)
-            os.replace(path, part)
-        begun = mode == "resume" and part.exists()
-        if not begun:
-            _create(scene, part, journal)
-        with _said(journal):
-            journal.open()
-        with checked(journal, part) as file:
-            check_scene(file, part, scene)
-            check_kernels(file, part)
-            result = Writer(file, journal, path)
-            if begun:
-                result.mend(scene)
-            yield result
-
-
-def _mendable(file: h5py.File, path: Path) -> list[tuple[str, checks.Piece]]:
-    """The damaged chunks; StoreError where a dataset's list of chunks is damaged itself."""
-    found = checks.damaged(file)
-    if not all(piece for _, piece in found):
-        raise StoreError(f"{path} is damaged beyond repair: {checks.summary(found)}; overwrite it")
-    return found
+    def remark(self, what: str) -> None:
+        """A line for the history of the file; damage that was found before it is known."""
+        with said(self._part):
+            self._part.append({"note": f"{now()} {what}"}, [])
 
 
-def _held(part: Path) -> Journal:
-    try:
-        return Journal(part)
-    except BlockingIOError:
-        raise StoreError(f"{part} is being written by another run") from None
+class Complete:
+    """A `Writer` of a file to which nothing is to be added; `seconds` is the wall time of the run that made it."""
+
+    def __init__(self, statuses: dict[int, int], seconds: float):
+        self._statuses, self.seconds = statuses, seconds
+
+    def missing(self, box: tuple[slice, ...]) -> bool:
+        return NOT_COMPUTED in self._statuses
+
+    def done(self) -> int:
+        return sum(self._statuses.values())
+
+    def finish(self, provenance: dict, last: Callable[[h5py.File], None]) -> dict[int, int]:
+        return self._statuses
 
 
-def _create(scene: Scene, part: Path, journal: Journal) -> None:
-    """The whole file with nothing computed yet, in place of what is there."""
-    _check_space(scene, part)
-    part.unlink(missing_ok=True)
-    journal.discard()
-    image = io.BytesIO()
-    with h5py.File(image, "w", libver="v110") as file:  # whose structure has checksums too
-        file.attrs["Conventions"] = "CF-1.11"
-        file.attrs["title"] = f"vibro_sweep: {scene.name}"
-        file.attrs["history"] = f"{_now()} begun by vibro_sweep {__version__}"
-        file.attrs["scene"] = scene.text
-        file.attrs["provenance"] = json.dumps(made_by())
-        names = [name for name in layout.quantities(scene) if name != "status"]
-        file.attrs["sweep_dimensions"] = list(scene.sweep) or np.empty(0, h5py.string_dtype())
-        file.attrs["quantities"] = names or np.empty(0, h5py.string_dtype())
-        layout.create(file, scene)
-    new = Path(f"{part}.new")  # a file that is killed here is not mistaken for one
-    with _said(journal):
-        with new.open("wb") as file:
-            file.write(image.getbuffer())
-            os.fsync(file.fileno())
-        os.replace(new, part)
+def _bytes(values: np.ndarray) -> memoryview:
+    return memoryview(np.ascontiguousarray(values).reshape(-1).view(np.uint8))
 
 
-def _check_space(scene: Scene, part: Path) -> None:
-    """A run that will not fit is not begun; other programs may still fill the disk later on."""
-    size = layout.size(scene)
-    need, free = size + min(size, CHECKPOINT_BYTES), shutil.disk_usage(part.parent).free
-    if part.exists():  # it makes room
-        free += part.stat().st_size
-    if need > free:
-        raise StoreError(f"{part} needs {need / 1e6:,.0f} MB, and only {free / 1e6:,.0f} MB are free in {part.parent}")
+def unfinished(path: Path, identity: bytes) -> Path:
+    """Where the file of a run grows at the end of the run, before it gets its name."""
+    return path.with_name(f".vibro_sweep-{identity.hex()}.h5")
+
+
+def _meet(one: checks.Piece, other: checks.Piece) -> bool:
+    """Whether two boxes have a point in common; axes that only one of them has do not count."""
+    return all(a.start < b.stop and b.start < a.stop for a, b in zip(one, other, strict=False))
 
 
 @contextlib.contextmanager
-def _said(journal: Journal) -> Iterator[None]:
+def said(part: HeldPart) -> Iterator[None]:
     """Faults of the disk, in words, and that nothing is lost."""
-    part = journal.path
     try:
         yield
-    except (FileNotFoundError, NotADirectoryError):
+    except RemovedError:
         try:
-            journal.put_back()
+            part.put_back()
         except OSError as error:
-            raise StoreError(f"{part} was removed during the run, and cannot be put back: {error}") from None
+            raise StoreError(f"{part.path} was removed during the run, and cannot be put back: {error}") from None
         raise StoreError(
-            f"{part} was removed during the run; it is there again, with all that was computed: `resume` continues it"
+            f"{part.path} was removed during the run; it is there again, with all that was computed: `resume` "
+            "continues it"
         ) from None
-    except BlockingIOError:
-        raise StoreError(f"{part} was taken over by another run; this one stops, nothing is lost") from None
-    except DamagedError as error:
-        raise StoreError(f"{part} is damaged: {error.strerror}; overwrite it") from None
+    except ChangedError:
+        raise StoreError(
+            f"{part.path} was changed by another program during the run; this one stops, and `resume` continues with "
+            "what is left"
+        ) from None
+    except PartError as error:
+        raise StoreError(f"{part.path} {error}") from None
     except OSError as error:
         kept = "what was computed until then is kept: `resume` continues it"
         reason = os.strerror(error.errno) if error.errno else str(error)
         full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-        raise StoreError(f"{part}: {reason}; {'make room; ' if full else ''}{kept}") from None
-
-
-def _now() -> str:
-    return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+        raise StoreError(f"{part.path}: {reason}; {'make room; ' if full else ''}{kept}") from None

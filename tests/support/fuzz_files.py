@@ -1,0 +1,285 @@
+"""Files and parts damaged or made up in every way: each command ends in a result or in one message, and in time.
+
+A case is a way to change a good file. Every command looks at the changed one in a process that is killed where it does
+not answer. What may come out of it is little: `OUTCOMES`. Everything else is a failure, and so is a changed bystander,
+a reader that writes, and a number that is read without complaint and is not the one that was written.
+"""
+
+import collections
+import contextlib
+import io
+import multiprocessing
+import os
+import shutil
+import traceback
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+import vibro_sweep as vs
+from support.files import EDITS, LINKS, TEXT, elsewhere
+from vibro_sweep.cli import main
+from vibro_sweep.store import StoreError, parts
+
+OUTCOMES = ("same numbers", "refused", "told damaged", "fewer points")
+COMMANDS = ("info", "plot", "open", "resume")
+SECONDS = 20  # for a command on a small file
+
+Change = Callable[[Path, np.random.Generator], None]
+
+
+def truncated(at: int) -> Change:
+    return lambda path, rng: os.truncate(path, at)
+
+
+def flipped(path: Path, rng: np.random.Generator) -> None:
+    overwrite(path, int(rng.integers(path.stat().st_size)), lambda old: bytes([old[0] ^ 1 << int(rng.integers(8))]))
+
+
+def range_overwritten(path: Path, rng: np.random.Generator) -> None:
+    """By zeros, by ones, or by anything."""
+    length, size = int(rng.integers(2, 600)), path.stat().st_size
+    with_what = (lambda n: bytes(n), lambda n: b"\xff" * n, lambda n: rng.bytes(n))[int(rng.integers(3))]
+    overwrite(path, int(rng.integers(size)), lambda old: with_what(len(old)), length)
+
+
+def header_byte(at: int) -> Change:
+    return lambda path, rng: overwrite(path, at, lambda old: bytes([(old[0] + int(rng.integers(1, 256))) % 256]))
+
+
+def overwrite(path: Path, at: int, new: Callable[[bytes], bytes], length: int = 1) -> None:
+    with open(path, "r+b") as file:
+        file.seek(at)
+        old = file.read(length)
+        file.seek(at)
+        file.write(new(old))
+
+
+def edited(change: Callable[[h5py.File], object]) -> Change:
+    """Also the skeleton of a part, with all its checksums right."""
+
+    def result(path: Path, rng: np.random.Generator) -> None:
+        if path.suffix != ".part":
+            with h5py.File(path, "a") as file:
+                change(file)
+            return
+        with parts.open_regular(path) as file, open("skeleton.h5", "w+b") as copy:
+            head = parts.read_head(file)
+            parts.copy_skeleton(file, head, copy)
+            file.seek(head.start + head.length)
+            rest = file.read()
+        with h5py.File("skeleton.h5", "a") as file:
+            change(file)
+        skeleton = Path("skeleton.h5").read_bytes()
+        os.unlink("skeleton.h5")
+        path.write_bytes(parts.new_head(skeleton, None, head.identity).packed() + skeleton + rest)
+
+    return result
+
+
+def records(*made: tuple[dict, int]) -> Change:
+    """More records at the end of a part, with their checksums right: (text, bytes of data)."""
+
+    def result(path: Path, rng: np.random.Generator) -> None:
+        with parts.open_regular(path) as file:
+            identity = parts.read_head(file).identity
+        with open(path, "ab") as file:
+            for text, length in made:
+                file.writelines(parts.record(identity, text, [memoryview(rng.bytes(length))]))
+
+    return result
+
+
+def grown(path: Path, rng: np.random.Generator) -> None:
+    os.truncate(path, 2**40)
+
+
+def random_edit(seed: int) -> Change:
+    """Remove, rename or replace something, as h5py lets anybody do."""
+
+    def change(file: h5py.File) -> None:
+        rng = np.random.default_rng(seed)
+        for _ in range(int(rng.integers(1, 4))):
+            name = str(rng.choice(sorted(file)))
+            attribute = str(rng.choice(sorted(file.attrs)))
+            what = int(rng.integers(7))
+            if what == 0:
+                del file[name]
+            elif what == 1:
+                del file.attrs[attribute]
+            elif what == 2:
+                file.attrs.create(attribute, rng.standard_normal(int(rng.integers(1, 5))))
+            elif what == 3:
+                file.move(name, f"moved_{name}")
+            elif what == 4:
+                del file[name]
+                file[name] = rng.integers(0, 9, tuple(rng.integers(0, 4, int(rng.integers(0, 3))).tolist()))
+            elif what == 5 and "DIMENSION_LIST" in file[name].attrs:
+                del file[name].attrs["DIMENSION_LIST"]
+            else:
+                file[name].attrs["units"] = rng.integers(0, 9, 3)
+
+    return edited(change)
+
+
+HOSTILE = {
+    **{f"edit: {name}": edited(change) for name, change in EDITS.items()},
+    **{
+        f"{how}: {name}": edited(lambda file, a=name, b=how: elsewhere(file, a, b))
+        for how in LINKS
+        for name in ("x1", "b")
+    },
+    **{f"random edit {seed}": random_edit(seed) for seed in range(22)},
+}
+HOSTILE_PARTS = {
+    "a terabyte long": grown,
+    "a box that is none": records(({"box": 3}, 0), ({"box": [[0, 1], [0, 1]]}, 0), ({"box": [["a", None]]}, 0)),
+    "a box outside": records(({"box": [[11, 13]]}, 100), ({"box": [[-1, 1]]}, 100), ({"box": [[10**30, 10**31]]}, 0)),
+    "a box too small": records(({"box": [[3, 3]]}, 0), ({"box": [[5, 4]]}, 10)),
+    "data of another length": records(({"box": [[0, 1]]}, 7), ({"box": [[0, 12]]}, 10**6)),
+    "texts of anything": records(({"note": 3}, 0), ({}, 9), ({"note": "a" * 10**5}, 0), ({"x": [[[[1]]]]}, 0)),
+    **{f"edit: {name}": edited(EDITS[name]) for name in list(EDITS)[:9]},
+    **{f"{how}: x1": edited(lambda file, b=how: elsewhere(file, "x1", b)) for how in LINKS},
+}
+
+
+def cases(size: int, part: bool, few: int | None) -> Iterator[tuple[str, Change]]:
+    """(kind, change); `few` of each kind, by default all that are asked for."""
+
+    def some(changes: list) -> list:
+        return changes if few is None else changes[:: max(1, len(changes) // few)][:few]
+
+    for kind, changes in {
+        "cut off": [truncated(at) for at in range(0, size, 1000)],
+        "a bit flipped": [flipped] * 300,
+        "a range overwritten": [range_overwritten] * 100,
+        "a byte of the header": [header_byte(at) for at in range(60)],
+        "made up": list((HOSTILE_PARTS if part else HOSTILE).values()),
+    }.items():
+        yield from ((kind, change) for change in some(changes))
+
+
+def command(name: str, path: Path, whole: dict[str, np.ndarray]) -> str:
+    """One of `OUTCOMES`, or what went wrong."""
+    if name == "open":
+        try:
+            with vs.open(path) as data:
+                return _compared(data, whole)
+        except StoreError:
+            return "refused"
+    target = path.with_suffix("") if path.suffix == ".part" else path
+    arguments = {"resume": ["run", "scene.yaml", "-o", str(target), "--resume", "--quiet", "--workers", "1"]}
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        status = main(arguments.get(name, [name, str(path)]))
+    told = err.getvalue()
+    if status == 2 and name == "info" and "\ndamaged" in out.getvalue() and not told:
+        return "told damaged"
+    if status == 2:
+        return "refused" if told.startswith("vibro-sweep: error: ") and "Traceback" not in told else f"said {told!r}"
+    if status or told:
+        return f"ended with {status}, said {told!r}"
+    if name == "resume":
+        with vs.open(target) as data:
+            return _compared(data, whole)
+    return "same numbers" if "12 of 12" in out.getvalue() or name == "plot" else "fewer points"
+
+
+def _compared(data, whole: dict[str, np.ndarray]) -> str:
+    done = data["status"].values != -1
+    for name, array in whole.items():
+        if name in data.data_vars and name != "status":
+            if np.asarray(data[name])[done].tobytes() != array[done].tobytes():
+                return f"other numbers in {name}"
+        elif name in data.coords and np.asarray(data[name]).tobytes() != array.tobytes():
+            return f"other numbers in {name}"
+    return "same numbers" if done.all() else "fewer points"
+
+
+def _work(pipe, whole: dict[str, np.ndarray]) -> None:
+    while True:
+        try:
+            folder, name, path = pipe.recv()
+        except EOFError:
+            return
+        os.chdir(folder)
+        try:
+            pipe.send(command(name, path, whole))
+        except BaseException:
+            pipe.send(f"traceback: {traceback.format_exc()}")
+
+
+class Worker:
+    """A process that runs commands, and is replaced where it hangs or dies."""
+
+    def __init__(self, whole: dict[str, np.ndarray]):
+        self._whole = whole
+        self._begin()
+
+    def _begin(self):
+        context = multiprocessing.get_context("spawn")
+        self._pipe, other = context.Pipe()
+        self._process = context.Process(target=_work, args=(other, self._whole), daemon=True)
+        self._process.start()
+        other.close()
+        self("none", Path())  # it is loaded then
+
+    def __call__(self, name: str, path: Path) -> str:
+        outcome = f"hung for {SECONDS} s"
+        with contextlib.suppress(OSError):
+            self._pipe.send((os.getcwd(), name, path))
+        try:
+            if self._pipe.poll(SECONDS if name in COMMANDS else 120):
+                return self._pipe.recv()
+        except (EOFError, OSError):
+            outcome = "killed the process"
+        self.close()
+        self._begin()
+        return outcome
+
+    def close(self):
+        self._process.kill()
+        self._process.join()
+
+
+def _stamp(path: Path) -> tuple[int, ...]:
+    status = path.lstat()
+    return status.st_ino, status.st_size, status.st_mtime_ns
+
+
+def fuzz(folder: Path, good: Path, few: int | None, seed: int = 1) -> tuple[collections.Counter, list[str]]:
+    """How many cases of which kind had which outcome with which command; and what failed. In the current folder."""
+    counts, failures, rng = collections.Counter(), [], np.random.default_rng(seed)
+    part = good.suffix == ".part"
+    with vs.open(folder / "whole.h5") as data:
+        whole = {name: np.asarray(data[name]) for name in data.variables}
+    worker = Worker(whole)
+    for number, (kind, change) in enumerate(cases(good.stat().st_size, part, few)):
+        place = Path(str(number))
+        place.mkdir()
+        os.chdir(place)
+        try:
+            path = Path(f"x{''.join(good.suffixes)}")
+            Path("scene.yaml").write_text(TEXT)
+            Path("victim").write_bytes(bytes(range(256)) * 20)
+            shutil.copy(folder / "whole.h5", "other.h5")
+            shutil.copy(good, path)
+            change(path, rng)
+            bystanders = {name: Path(name).read_bytes() for name in ("scene.yaml", "victim", "other.h5")}
+            before = _stamp(path)
+            for name in COMMANDS:
+                outcome = worker(name, path)
+                counts[kind, name, outcome if outcome in OUTCOMES else "FAILED"] += 1
+                if outcome not in OUTCOMES:
+                    failures.append(f"{kind} {number}, {name}: {outcome}")
+                if name != "resume" and _stamp(path) != before:
+                    failures.append(f"{kind} {number}, {name}: the file was changed")
+            if any(Path(name).read_bytes() != content for name, content in bystanders.items()):
+                failures.append(f"{kind} {number}: another file was changed")
+        finally:
+            os.chdir("..")
+            shutil.rmtree(place)
+    worker.close()
+    return counts, failures

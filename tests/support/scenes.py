@@ -1,0 +1,88 @@
+"""Scenes of every kind, and their numbers as arrays that can be compared bit for bit."""
+
+import h5py
+import numpy as np
+
+import vibro_sweep as vs
+from vibro_sweep.driver import blocks
+from vibro_sweep.driver.compute import CHAIN_ENDS, compute
+from vibro_sweep.scene import parse_scene
+from vibro_sweep.store import StoreError
+
+PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
+ALL = "observe: [section, lyapunov, impacts]"
+
+# every kind of sweep, of start and of observation among them
+SCENES = {
+    "random": f"""
+sweep: {{b: {{start: 6.5, stop: 6.8, num: 23}}}}
+start: {{random: 3, seed: 5}}
+orbit: {{transient: 100, record: 40}}
+section: {{kind: impact, stop: right}}
+trajectory: {{periods: 2, samples: 50}}
+{ALL}""",
+    "plane": f"""
+sweep: {{omega: {{start: 0.5, stop: 0.8, num: 5}}, b: {{start: 0.3, stop: 6.8, num: 7}}}}
+orbit: {{transient: 60, record: 40}}
+{ALL}""",
+    "follow": f"""
+sweep: {{b: {{start: 6.5, stop: 6.8, num: 9}}, R: {{values: [0.9, 0.8, 0.3]}}}}
+start: {{follow: both}}
+orbit: {{transient: 60, record: 40}}
+{ALL}""",
+    "attractors": """
+sweep: {b: {start: 6.6, stop: 6.8, num: 9}}
+start: {random: 5, seed: 2}
+orbit: {transient: 1500, record: 100}
+observe: [attractors]""",
+    "basins": """
+sweep: {x1: {values: [-6, 0, 6]}, v1: {start: -1, stop: 1, num: 5}}
+orbit: {transient: 100, record: 40}
+observe: [attractors, section]""",
+}
+
+
+def scene_of(text, system=PAPER):
+    return parse_scene(f"system: {{{system}}}\n{text}")
+
+
+def arrays_of(path):
+    with h5py.File(path) as file:
+        return {name: dataset[()] for name, dataset in file.items()}
+
+
+def done(output):
+    """Orbits in the part of a run."""
+    try:
+        with vs.open(f"{output}.part") as data:
+            return np.count_nonzero(data["status"].values != -1)
+    except StoreError:  # it is being made
+        return 0
+
+
+def assert_same_bits(one, other):
+    assert one.keys() == other.keys()
+    for name in one:
+        if one[name].dtype == object:  # the names of starts
+            assert one[name].tolist() == other[name].tolist()
+        else:
+            assert one[name].shape == other[name].shape and one[name].tobytes() == other[name].tobytes(), name
+
+
+def computed(scene, points, orbits):
+    """The scene's arrays by blocks of so many points and orbits, chains gone on with, put together in its order."""
+    todo, whole = list(blocks.blocks(scene, points, orbits)), {}
+    most = 0
+    while todo:
+        block = todo.pop()
+        box, arrays = compute(block)
+        ends = arrays.pop(CHAIN_ENDS, None)
+        assert (ends is None) == block.last
+        if ends is not None:
+            todo.append(blocks.next_part(scene, block, ends))
+        most = max(most, arrays["status"].size)
+        for name, values in arrays.items():
+            extra = values.shape[arrays["status"].ndim :]
+            target = whole.setdefault(name, np.full(scene.shape + extra, 99, values.dtype))
+            target[box] = values
+    return whole, most

@@ -1,0 +1,64 @@
+"""Who may import whom (docs/architecture.md)."""
+
+import ast
+
+import pytest
+from support import ROOT
+
+HOME = ROOT / "vibro_sweep"
+ALLOWED = {
+    "model": set(),
+    "engine": {"model"},
+    "analysis": {"engine", "model", "plotting"},
+    "scene": {"model"},
+    "store": {"model", "scene"},
+    "driver": {"model", "engine", "analysis", "scene", "store"},
+    "plotting": {"store", "model"},
+}
+EVERYWHERE = {"identity", "__version__"}  # what numbers depend on, and the version
+TABLES = {"catalogue", "observables", "parameters", "state", "status"}  # of model/: names and labels
+
+
+def imported(path):
+    """Rooms of the package that a module imports, with the lines; those inside of functions too."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.ImportFrom):
+            here = ["vibro_sweep", *path.relative_to(HOME).parts[:-1]]
+            base = here[: len(here) + 1 - node.level] if node.level else []
+            whole = [*base, *(node.module or "").split(".")]
+            if whole[0] == "vibro_sweep":
+                for name in [whole[1]] if len(whole) > 1 and whole[1] else [alias.name for alias in node.names]:
+                    yield name, node
+        elif isinstance(node, ast.Import):
+            assert not any(alias.name.startswith("vibro_sweep") for alias in node.names), path
+
+
+@pytest.mark.parametrize("room", ALLOWED)
+def test_imports_lead_only_where_the_table_says(room):
+    modules = sorted((HOME / room).rglob("*.py"))
+    assert modules
+    for path in modules:
+        for other, node in imported(path):
+            assert other in {room, *EVERYWHERE} | ALLOWED[room], f"{path}:{node.lineno} imports {other}"
+
+
+def test_pictures_are_drawn_only_where_they_are_asked_for():
+    """analysis/ imports plotting/ inside of functions alone."""
+    for path in (HOME / "analysis").rglob("*.py"):
+        for node in ast.parse(path.read_text()).body:
+            assert not (isinstance(node, ast.ImportFrom) and "plotting" in (node.module or "")), path
+
+
+def test_pictures_recompute_no_physics():
+    """plotting/ has tables of the model alone, and of the store what reads: no scene is parsed there."""
+    for path in (HOME / "plotting").rglob("*.py"):
+        for other, node in imported(path):
+            if other == "model":
+                assert node.module.split(".")[2] in TABLES, f"{path}:{node.lineno} imports {node.module}"
+
+
+def test_every_room_is_in_the_table():
+    rooms = {path.name for path in HOME.iterdir() if path.is_dir() and path.name != "__pycache__"}
+    assert rooms == ALLOWED.keys()
+    text = (ROOT / "docs" / "architecture.md").read_text()
+    assert all(f"`{room}/`" in text for room in rooms)

@@ -1,0 +1,107 @@
+"""The folder of compiled kernels: where it cannot be used they are compiled anew, and that is said once."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PROGRAM = """
+from vibro_sweep.engine.simd import jit
+
+@jit.entry
+def double(x):
+    return 2.0 * x
+
+@jit.entry
+def triple(x):
+    return 3.0 * x
+
+print(double(1.5), triple(1.5), sum(double._whole.stats.cache_hits.values()))
+"""
+
+
+@pytest.fixture
+def program(tmp_path):
+    (tmp_path / "program.py").write_text(PROGRAM)
+
+    def run(**environment):
+        everything = {name: value for name, value in (os.environ | environment).items() if value is not None}
+        done = subprocess.run(
+            [sys.executable, "program.py"], cwd=tmp_path, env=everything, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+        double, triple, hits = done.stdout.split()
+        assert (double, triple) == ("3.0", "4.5")
+        return int(hits), done.stderr.splitlines()
+
+    return run
+
+
+def entries(folder, ending):
+    found = sorted(Path(folder).rglob(f"program.double*{ending}"))
+    assert found
+    return found
+
+
+def test_a_second_start_compiles_nothing(program, tmp_path):
+    folder = str(tmp_path / "cache")
+    assert program(NUMBA_CACHE_DIR=folder) == (0, [])
+    assert program(NUMBA_CACHE_DIR=folder) == (1, [])
+
+
+def test_a_cut_entry_is_named_and_mended(program, tmp_path):
+    """Index or code, empty or halved; what each start has mended the next one finds whole."""
+    folder = str(tmp_path / "cache")
+    program(NUMBA_CACHE_DIR=folder)
+    for ending in (".nbi", ".nbc"):
+        for keep in (0, 0.5):
+            for path in entries(folder, ending):
+                path.write_bytes(path.read_bytes()[: int(keep * path.stat().st_size)])
+            hits, told = program(NUMBA_CACHE_DIR=folder)
+            assert hits == 0 and len(told) == 1 and folder in told[0] and "compiled anew" in told[0], (ending, keep)
+    assert program(NUMBA_CACHE_DIR=folder) == (1, [])
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A full disk, as a file system of its own."""
+    place = tmp_path / "small"
+    place.mkdir()
+    made = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "none", place], capture_output=True, check=False)
+    if made.returncode:
+        pytest.skip("no file system can be mounted here")
+    yield place
+    subprocess.run(["umount", place], check=True)
+
+
+def test_a_full_disk(program, small_disk):
+    with (small_disk / "full").open("wb", buffering=0) as file:
+        while file.write(b"\0" * 512) == 512:
+            if shutil.disk_usage(small_disk).free == 0:
+                break
+    hits, told = program(NUMBA_CACHE_DIR=str(small_disk / "cache"))
+    assert hits == 0 and len(told) == 1 and str(small_disk) in told[0] and "No space left on device" in told[0]
+
+
+def test_a_folder_that_cannot_be(program, tmp_path):
+    (tmp_path / "file").write_text("")
+    hits, told = program(NUMBA_CACHE_DIR=str(tmp_path / "file"))
+    assert hits == 0 and len(told) == 1 and str(tmp_path / "file") in told[0]
+
+
+def test_no_home(program, tmp_path, monkeypatch):
+    """No HOME and nobody of this number: no folder `~` in the current one."""
+    (tmp_path / "sitecustomize.py").write_text("import os\nos.path.expanduser = lambda path: path\n")
+    before = {path.name for path in tmp_path.iterdir()}
+    hits, told = program(NUMBA_CACHE_DIR=None, XDG_CACHE_HOME=None, HOME=None, PYTHONPATH=str(tmp_path))
+    assert hits == 0 and len(told) == 1 and "NUMBA_CACHE_DIR" in told[0]
+    assert {path.name for path in tmp_path.iterdir()} - before <= {"__pycache__"}
+
+
+def test_a_relative_cache_home_is_ignored(program, tmp_path):
+    before = {path.name for path in tmp_path.iterdir()}
+    hits, told = program(NUMBA_CACHE_DIR=None, XDG_CACHE_HOME="relative", HOME=str(tmp_path / "home"))
+    assert (hits, told) == (0, []) and {path.name for path in tmp_path.iterdir()} - before == {"home"}

@@ -1,0 +1,70 @@
+"""Eigenvalues of small matrices against numpy and, where these are graded, against 40 digits."""
+
+import mpmath
+import numpy as np
+import pytest
+from numpy.random import default_rng
+
+from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.variational.eigenvalues import eigenvalues
+
+SIZES = (1, 2, 3, 4, 6, 8, 16)
+
+
+@entry
+def all_eigenvalues(matrices, n, re, im):
+    found = 0
+    for k in range(len(matrices)):
+        found += eigenvalues(matrices[k], n, re[k], im[k])
+    return found
+
+
+def ours(matrices):
+    matrices = np.array(matrices, float)
+    re, im = np.full((2, *matrices.shape[:2]), np.nan)
+    assert all_eigenvalues(matrices, matrices.shape[1], re, im) == len(matrices)
+    return re + 1j * im
+
+
+def matched(found, expected):
+    """`found` in the order of `expected`: each takes the nearest that is left."""
+    left, result = list(found), []
+    for value in expected:
+        result.append(left.pop(int(np.argmin([abs(other - value) for other in left]))))
+    return np.array(result)
+
+
+@pytest.mark.parametrize("n", SIZES)
+def test_random_matrices(n):
+    matrices = default_rng(n).normal(size=(300, n, n))
+    for found, expected in zip(ours(matrices), np.linalg.eigvals(matrices), strict=True):
+        np.testing.assert_allclose(matched(found, expected), expected, atol=1e-10)
+        pairs = found[found.imag != 0]
+        assert (pairs[::2] == pairs[1::2].conj()).all() and (pairs[::2].imag > 0).all()
+
+
+def test_special_matrices():
+    rotation = [[0, -1, 0], [1, 0, 0], [0, 0, 2]]
+    companion = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]  # the cube roots of 1: a plain double shift never converges
+    for matrix in (np.zeros((3, 3)), np.eye(3), rotation, companion, np.triu(np.ones((3, 3)))):
+        expected = np.linalg.eigvals(np.array(matrix, float))
+        np.testing.assert_allclose(matched(ours([matrix])[0], expected), expected, atol=1e-9)
+
+
+def test_small_eigenvalues_of_graded_matrices_keep_their_digits():
+    """D^1/2 B D^1/2 with D from 1e6 to 1e-18 and a well-conditioned B, as products of factors give it."""
+    rng = default_rng(3)
+    worst = 0.0
+    for _ in range(60):
+        n = rng.integers(2, 7)
+        b = np.eye(n) + 0.5 / n * rng.uniform(-1, 1, (n, n))
+        d = np.sort(10.0 ** rng.uniform(-18, 6, n))[::-1]
+        graded = np.sqrt(d)[:, None] * b * np.sqrt(d)
+        with mpmath.workdps(60):
+            exact = mpmath.eig(mpmath.matrix(graded.tolist()), left=False, right=False)
+            expected = np.array([complex(value) for value in exact])
+        found = ours([graded])[0]
+        order = np.argsort(-np.abs(expected))
+        for value in expected[order]:
+            worst = max(worst, np.min(np.abs(found - value)) / abs(value))
+    assert worst < 1e-9

@@ -1,0 +1,59 @@
+"""Example scenes: they come with the package, can be copied, and run where they are copied to."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from support import ROOT
+
+import vibro_sweep as vs
+from vibro_sweep import examples
+from vibro_sweep.cli import main
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_without_a_name_it_is_the_one_of_the_readme(folder, capsys):
+    assert main(["new"]) == 0
+    assert capsys.readouterr().out.splitlines() == ["quickstart.yaml", "scene.schema.json"]
+    assert vs.load_scene("quickstart.yaml").to_yaml() == vs.load_scene(ROOT / "configs/quickstart.yaml").to_yaml()
+    schema = ROOT / "configs" / "scene.schema.json"
+    assert Path("scene.schema.json").read_bytes() == schema.read_bytes()
+    assert main(["check", "quickstart.yaml"]) == 0
+
+
+@pytest.mark.parametrize("name", examples.examples())
+def test_every_example_is_a_scene_that_finds_its_schema(folder, name):
+    assert main(["new", name]) == 0
+    text = Path(f"{name}.yaml").read_text()
+    assert text.startswith("# yaml-language-server: $schema=./scene.schema.json\n") and "configs/" not in text
+    assert vs.load_scene(f"{name}.yaml").n_points > 0
+
+
+def test_what_exists_is_kept(folder, capsys):
+    Path("quickstart.yaml").write_text("mine")
+    Path("scene.schema.json").write_text("mine too")
+    assert main(["new"]) == 2
+    assert "quickstart.yaml exists" in capsys.readouterr().err
+    assert main(["new", "basins"]) == 0
+    assert capsys.readouterr().out == "basins.yaml\n"
+    assert Path("quickstart.yaml").read_text() == "mine" and Path("scene.schema.json").read_text() == "mine too"
+
+
+def test_unknown_name(folder, capsys):
+    assert main(["new", "quickstat"]) == 2
+    error = capsys.readouterr().err
+    assert "did you mean quickstart?" in error and "hysteresis" in error and not list(folder.iterdir())
+
+
+def test_what_is_packed():
+    """The wheel takes what `new` copies; sdist all that tests need."""
+    build = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]
+    assert {"configs", "docs", "CHANGELOG.md"} <= build["wheel"]["force-include"].keys()
+    assert {"configs", "docs", "tests", "CHANGELOG.md", "CITATION.cff"} <= set(build["sdist"]["include"])
+    for name in [*build["wheel"]["force-include"], *build["sdist"]["include"]]:
+        assert (ROOT / name).exists()

@@ -1,0 +1,276 @@
+"""Sweeps without YAML: the same numbers as a scene gives, and scenes that cannot say what they are not."""
+
+import dataclasses
+import pickle
+
+import numpy as np
+import pytest
+import xarray
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from support import ROOT
+
+import vibro_sweep as vs
+from vibro_sweep import plotting
+from vibro_sweep.scene import Section, Start, Trajectory, load_scene, parse_scene
+
+SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
+NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
+SCENES = sorted(ROOT.glob("configs/**/*.yaml"))
+SHORT = dict(transient=20, record=10)
+
+
+def scene(more, orbit="{transient: 20, record: 10}"):
+    return parse_scene(f"system: {{{NUMBERS}}}\norbit: {orbit}\n{more}")
+
+
+def assert_same(one, other):
+    """Two scenes, number by number."""
+    for field in dataclasses.fields(one):
+        if field.name == "sweep":
+            assert list(one.sweep) == list(other.sweep)
+            assert all(np.array_equal(one.sweep[key], other.sweep[key]) for key in one.sweep)
+        elif field.name not in ("name", "given"):
+            assert getattr(one, field.name) == getattr(other, field.name), field.name
+
+
+# Scenes and their text
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+def test_yaml_and_back(path):
+    one = load_scene(path)
+    assert one.text == path.read_text()
+    assert_same(parse_scene(one.to_yaml()), one)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "sweep: {b: {values: [6, 7, 6.5e300]}}",
+        "sweep: {b: {values: [1e-9, 0.1]}}\nobserve: []\ntrajectory: {periods: 2, samples: 30}",
+        "sweep: {b: {start: 5, stop: 6, step: 0.3}, x1: {values: [1, 2]}}\nstart: {v1: 0.1}",
+        "sweep: {b: {values: [6, 7]}, tau: {start: 1, stop: 0, num: 7}}\nsection: {kind: impact, stop: left}",
+        "sweep: {b: {values: [6, 7]}}\nstart: {follow: both, x1: 0.5, v2: -1e-7}",
+        "sweep: {b: {values: [6]}}\nstart: {random: 7, seed: 3}\nobserve: [attractors, impacts]",
+        "sweep: {b: {values: [6]}}\nmodel: map\norder: 2\nexpand_at: 6.71",
+    ],
+)
+def test_all_kinds_of_scenes_and_back(text):
+    one = scene(text)
+    assert_same(parse_scene(one.to_yaml()), one)
+
+
+def test_text_never_says_something_else():
+    given = scene("sweep: {b: {values: [6, 7]}}  # mine")
+    assert given.text == given.given and "# mine" in given.text
+    for changed in (
+        dataclasses.replace(given, record=50),
+        given.replace(record=50),
+        given.replace(record=np.int64(50)),
+    ):
+        assert "# mine" not in changed.text and parse_scene(changed.text).record == 50
+    assert_same(given.replace(record=50).replace(record=10), given)
+    assert pickle.loads(pickle.dumps(given)).text == given.text
+    with pytest.raises(vs.SceneError, match=r"orbit\.record = 0: must be a whole number >= 1"):
+        _ = dataclasses.replace(given, record=0).text
+
+
+def test_file_of_a_changed_scene_says_what_was_computed(tmp_path):
+    changed = dataclasses.replace(scene("sweep: {b: {values: [6, 7]}}"), record=5)
+    vs.run(changed, tmp_path / "a.h5")
+    with vs.open(tmp_path / "a.h5") as data:
+        assert data.sizes["sample"] == 5 and parse_scene(data.attrs["scene"]).record == 5
+    vs.run(parse_scene(changed.text), tmp_path / "a.h5")  # the same scene
+
+
+@pytest.mark.parametrize(
+    "changes, expected",
+    [
+        (dict(system=SYSTEM.replace(R=0.5)), "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.5"),
+        (dict(sweep={"omega": np.array([0.6, 0.7])}), "sweep: {omega: {values: [0.6, 0.7]}}"),
+        (dict(sweep={"b": {"start": 5, "stop": 6, "num": 11}}), "sweep: {b: {start: 5, stop: 6, num: 11}}"),
+        (dict(sweep=None), "b: 6, tau: grazing"),
+        (dict(start=(0.5, 0, 0, 1)), "start: {x1: 0.5, v2: 1}"),
+        (dict(start=Start("random", count=3, seed=2)), "start: {random: 3, seed: 2}"),
+        (dict(start={"follow": "up"}), "start: {follow: up}"),
+        (dict(section=Section("impact", "left")), "section: {kind: impact, stop: left}"),
+        (dict(observe=("impacts",)), "observe: [impacts]"),
+        (dict(trajectory=Trajectory(3, 40)), "trajectory: {periods: 3, samples: 40}"),
+        (dict(model="map", order=2), "order: 2"),
+        (dict(transient=7.0), "orbit: {transient: 7, record: 10}"),
+    ],
+    ids=str,
+)
+def test_replace(changes, expected):
+    assert expected in scene("sweep: {b: {values: [6, 7]}}").replace(**changes).to_yaml()
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        (dict(rekord=5), "rekord: unknown; allowed here: system, model"),
+        (dict(record=0), "orbit.record = 0: must be a whole number >= 1"),
+        (dict(record="ten"), 'orbit.record = "ten"'),
+        (dict(sweep={"beta": [1, 2]}), "sweep.beta"),
+        (dict(sweep={"b": [2, 1, 3]}), "sweep.b.values = [2, 1, 3]: must rise or fall"),
+        (dict(sweep={"b": "all"}), 'sweep.b = "all"'),
+        (dict(start="rest"), 'start = "rest"'),
+        (dict(start=(1, 2, 3)), "start = [1, 2, 3]"),
+        (dict(observe="lyapunov"), 'observe = "lyapunov"'),
+        (dict(system=3), "system = 3"),
+    ],
+    ids=str,
+)
+def test_replace_refuses(changes, message):
+    with pytest.raises(vs.SceneError) as caught:
+        scene("sweep: {b: {values: [6, 7]}}").replace(**changes)
+    assert message in str(caught.value)
+
+
+# vs.sweep
+
+
+def test_sweep_is_what_a_scene_gives(tmp_path):
+    values = np.linspace(6.5, 6.9, 7)
+    found = vs.sweep(SYSTEM, {"b": values}, observe=("section", "lyapunov", "impacts"), **SHORT)
+    yaml = f"sweep: {{b: {{values: {values.tolist()}}}}}\nobserve: [section, lyapunov, impacts]"
+    vs.run(scene(yaml), tmp_path / "a.h5")
+    with vs.open(tmp_path / "a.h5") as data:
+        assert set(found.variables) == set(data.variables)
+        for name in data.variables:
+            assert np.array_equal(found[name].values, data[name].values, equal_nan=found[name].dtype.kind == "f"), name
+    assert np.array_equal(found.b, values)
+    assert_same(parse_scene(found.attrs["scene"]), scene(yaml).replace(system=SYSTEM))
+
+
+def test_sweep_of_two_numbers_into_a_file(tmp_path):
+    axes = {"omega": {"start": 0.6, "stop": 0.61, "step": 0.005}, "b": [5, 6]}
+    calls = []
+    data = vs.sweep(
+        SYSTEM,
+        axes,
+        observe=["impacts"],
+        output=tmp_path / "a.h5",
+        progress=lambda *done: calls.append(done),
+        workers=1,
+        **SHORT,
+    )
+    assert data.impacts_right.shape == (3, 2) and data.omega.values.tolist() == [0.6, 0.605, 0.61]
+    assert (tmp_path / "a.h5").exists() and calls[-1] == (6, 6)
+    again = vs.sweep(SYSTEM, axes, observe=["impacts"], output=tmp_path / "a.h5", **SHORT)
+    assert again.equals(data)
+    with pytest.raises(vs.StoreError, match="another scene"):
+        vs.sweep(SYSTEM, axes, observe=["impacts"], output=tmp_path / "a.h5", transient=20, record=11)
+
+
+def test_sweep_leaves_nothing_behind(tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    found = vs.sweep(SYSTEM, {"b": [6.5, 6.6]}, **SHORT)
+    assert not list(tmp_path.iterdir()) and found.x1.shape == (2, 10)
+
+
+def test_sweep_of_more_than_a_gigabyte_needs_a_file():
+    with pytest.raises(ValueError, match=r"output: None is not allowed; it must be a file"):
+        vs.sweep(SYSTEM, {"b": {"start": 5, "stop": 6, "num": 10**6}}, transient=0, record=1000)
+
+
+@pytest.mark.parametrize("direction, first", [("up", 0), ("down", -1)])
+def test_follow_from_a_given_state(direction, first):
+    start = {"follow": direction, "x1": 1.5, "v1": -0.25, "x2": 0.5, "v2": 0.125}
+    found = vs.sweep(SYSTEM, {"b": [6.5, 6.55, 6.6]}, start=start, **SHORT)
+    orbit = vs.simulate(SYSTEM.replace(b=float(found.b[first])), (1.5, -0.25, 0.5, 0.125), 30)
+    assert np.allclose(found.x1[first], orbit.section[21:, 0], rtol=0, atol=1e-9)
+    assert found.attrs["start_x1"] == 1.5 and found.attrs["start_v2"] == 0.125
+    from_rest = vs.sweep(SYSTEM, {"b": [6.5, 6.55, 6.6]}, start={"follow": direction}, **SHORT)
+    assert not np.allclose(found.x1[first], from_rest.x1[first], atol=1e-3)
+
+
+def test_follow_does_not_begin_behind_a_stop():
+    with pytest.raises(vs.SceneError, match=r"start\.x1 = 6\.55: is behind a stop"):
+        vs.sweep(SYSTEM, {"b": [6.5, 6.6]}, start={"follow": "up", "x1": 6.55}, **SHORT)
+
+
+# Pictures and datasets
+
+
+def drawn(fig):
+    canvas = FigureCanvasAgg(fig)
+    canvas.draw()
+    return np.array(canvas.buffer_rgba())
+
+
+@pytest.mark.parametrize("kind", ["bifurcation", "lyapunov", "phase-portrait", "history", "configuration", "iteration"])
+def test_pictures_of_a_dataset_are_those_of_its_file(tmp_path, kind):
+    orders = dict(trajectory={"periods": 2, "samples": 50}, start={"follow": "both"}, observe=["section", "lyapunov"])
+    data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7]}, output=tmp_path / "a.h5", **orders, **SHORT)
+    assert plotting.kinds(data) == plotting.kinds(tmp_path / "a.h5")
+    assert np.array_equal(drawn(vs.plot(data, kind)), drawn(vs.plot(tmp_path / "a.h5", kind)))
+    assert np.array_equal(drawn(vs.plot(data.transpose(), kind)), drawn(vs.plot(data, kind)))
+
+
+def test_picture_of_a_part_of_a_dataset():
+    orders = dict(trajectory={"periods": 2, "samples": 50}, observe=["section", "lyapunov"])
+    data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7]}, **orders, **SHORT)
+    one = data.sel(b=6.6)
+    assert plotting.kinds(one) == ["phase-portrait", "configuration", "history", "iteration"]
+    assert "b = 6.6" in vs.plot(one, "history").get_suptitle()
+    assert len(vs.plot(data.isel(b=slice(1, 3)), "history").axes) == 2
+    (ax,) = vs.plot(data, "history", at={"b": 6.61}).axes
+    assert "6.6" in ax.get_title()
+
+
+@pytest.mark.parametrize(
+    "call, message",
+    [
+        (lambda data: vs.plot(data, "plane"), "this dataset can show bifurcation, lyapunov, iteration"),
+        (lambda data: vs.plot(data, "iteration", at={"omega": 3}), "at: 'omega' is not swept; allowed: b"),
+        (lambda data: vs.plot(data, "iteration", at={"b": "here"}), "at: b = 'here' is not allowed"),
+        (lambda data: vs.plot(xarray.Dataset()), "it has no status"),
+    ],
+)
+def test_pictures_that_cannot_be(call, message):
+    data = vs.sweep(SYSTEM, {"b": [6.5, 6.6]}, **SHORT)
+    with pytest.raises(vs.PlotError) as caught:
+        call(data)
+    assert message in str(caught.value)
+
+
+def test_orbit_as_dataset():
+    orbit = vs.simulate(SYSTEM, (0, 0, 0, 0), 50, start_time=1.0)
+    data = orbit.to_xarray()
+    assert np.array_equal(data.x1, orbit.section[:, 0]) and np.array_equal(data.t, orbit.section_times)
+    assert np.array_equal(data.impact_v1, orbit.impacts["v1"]) and data.impact_t.dims == ("impact",)
+    assert data.attrs["b"] == 6.6 and data.attrs["status"] == "ok" and data.attrs["start_time"] == 1.0
+    rest = vs.simulate(SYSTEM.replace(R=0.0, b=1.0), (0, 0, 0, 0), 20)
+    assert len(rest.sticking) and rest.to_xarray().rest_t_on.shape == rest.sticking.shape
+
+
+def test_picture_of_an_orbit():
+    orbit = vs.simulate(SYSTEM, (0, 0, 0, 0), 50)
+    portrait, history = orbit.plot(periods=3).axes
+    begin, end = orbit.section_times[-4], orbit.section_times[-1]
+    t = history.lines[0].get_xdata()
+    assert (t[0], t[-1]) == (begin, end)
+    inside = orbit.impacts[(orbit.impacts["t"] >= begin) & (orbit.impacts["t"] <= end)]
+    marks = np.concatenate([line.get_xdata() for line in history.lines[1:3]])
+    assert len(inside) > 1 and np.array_equal(np.sort(marks), inside["t"])
+    jumps = [line for line in portrait.lines if list(line.get_xdata()) in ([6.6, 6.6], [-6.6, -6.6])]
+    assert [tuple(line.get_ydata()) for line in jumps][: len(inside)] == [(v, -0.8 * v) for v in inside["v1"]]
+    with pytest.raises(ValueError, match="no motion to draw"):
+        vs.simulate(SYSTEM, (0, 0, 0, 0), 0).plot()
+
+
+def test_exponents_with_their_error():
+    found = vs.lyapunov(SYSTEM, (0, 0, 0, 0), transient=200, periods=2000)
+    assert isinstance(found, np.ndarray) and found.shape == (4,) and (np.diff(found) <= 0).all()
+    assert found.error.shape == (4,) and (found.error >= 0).all()
+    assert abs(found.residual) < 1e-9
+    longer = vs.lyapunov(SYSTEM, (0, 0, 0, 0), transient=200, periods=200_000)
+    assert (abs(longer - found) < 6 * found.error + 1e-9).all()
+    again = pickle.loads(pickle.dumps(found))
+    assert np.array_equal(again, found) and np.array_equal(again.error, found.error)
+    assert again.residual == found.residual
+    for derived in (found + 1, found[:2], found.sum(), np.exp(found)):
+        assert not hasattr(derived, "residual")
+    sweep = vs.sweep(SYSTEM, {"b": [6.6]}, transient=200, record=2000)
+    assert np.array_equal(sweep.lyapunov_error[0], found.error)

@@ -1,0 +1,51 @@
+"""Orbits with many impacts: the sparse equations give what the dense ones give, at a cost that grows like K."""
+
+import numpy as np
+import pytest
+from support.oscillators import CHAIN, PAPER
+
+import vibro_sweep as vs
+from vibro_sweep.analysis import long_orbits
+from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.analysis.walk import Walk
+
+
+def repeated(orbit, times):
+    """The orbit as one of `times` its period: as many impacts more."""
+    s = orbit._solution.whole()
+    shifts = np.repeat(np.arange(times) * s.equations.P, s.K)
+    u = np.concatenate([np.tile(s.times, times) + shifts, np.tile(s.jumps, times)])
+    return Solution(s.family, 1, s.halves * times, s.sides * times, u)
+
+
+@pytest.mark.parametrize("system", [PAPER, CHAIN])
+@pytest.mark.parametrize("count", [1, 7, 40])
+def test_sparse_equations_are_the_dense_ones(system, count):
+    solution = repeated(vs.periodic_orbit(system, itinerary="LR"), count)
+    e, K = solution.equations, solution.K
+    _, J, _, motion = e.evaluate(solution.sides, solution.u)
+    rng = np.random.default_rng(0)
+    column, row, F = rng.normal(size=2 * K), rng.normal(size=2 * K + 1), rng.normal(size=2 * K)
+    expected = np.linalg.solve(np.vstack([np.column_stack([J, column]), row]), np.append(F, 0.3))
+    found = long_orbits.solve_bordered(e, solution.sides, solution.u, motion, column, row, F, 0.3)
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-11)
+    for mu in (1, -1):
+        sign, size = np.linalg.slogdet(e.linearised(mu, solution.sides, solution.u, motion))
+        A = long_orbits.flow(e.q).B[: 2 * len(e.q.along), : 2 * len(e.q.along)]
+        states = np.prod(1 - np.exp(np.linalg.eigvals(A) * e.P) / mu).real
+        found = long_orbits.sign_and_log_det(e, solution.sides, solution.u, motion, mu)
+        assert found[0] == sign * np.sign(states)
+        assert found[1] == pytest.approx(size + np.log(abs(states)), abs=1e-8)
+
+
+def test_long_orbit_is_followed_like_the_short_one():
+    """61 periods of the one-sided orbit written out: each of them is what the short orbit is."""
+    short = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
+    long = repeated(short, 61)
+    assert long_orbits.is_long(long.equations, long.sides)
+    walk = Walk(long, "b", 1.0)
+    start = walk.first(1.0)
+    point = walk.step(start, 0.01)
+    found = vs.periodic_orbit(PAPER.replace(b=point.p), itinerary="R")
+    assert point.solution.jumps == pytest.approx(-1.8 * found.impacts["v1"][0], rel=1e-12)
+    assert point.reflection[0] == start.reflection[0]

@@ -1,0 +1,196 @@
+"""Memory is known before it is taken: parts of points and of chains give the same bits, the rest is refused."""
+
+import itertools
+import subprocess
+import sys
+import tracemalloc
+
+import numpy as np
+import pytest
+from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, computed, scene_of
+
+import vibro_sweep as vs
+from vibro_sweep.driver import cost, memory, sweep
+from vibro_sweep.engine.one_system import points_of
+from vibro_sweep.scene import SceneError, parse_scene
+from vibro_sweep.scene.size import MAX_AT_ONCE, numbers_at_once
+
+# one number too large for a machine each, and the key that is to be named
+TOO_LARGE = {
+    "record": ("orbit: {transient: 0, record: 1e9}", "orbit.record = 1000000000: one orbit needs"),
+    "samples": (
+        "orbit: {transient: 0, record: 1}\ntrajectory: {periods: 1, samples: 1e9}",
+        "trajectory.samples = 1000000000: one orbit needs",
+    ),
+    "exponents": ("orbit: {transient: 0, record: 1e12}\nobserve: [lyapunov]", "orbit.record = 1000000000000: one"),
+    "impacts": (
+        "orbit: {transient: 0, record: 2e6}\nsection: {kind: impact}",
+        "orbit.record = 2000000: one orbit needs 496 MB",
+    ),
+    "attractors": (
+        "orbit: {transient: 0, record: 20}\nstart: {random: 100000}\nobserve: [attractors, section]",
+        "start.random = 100000: to find attractors, the 100000 orbits of a point need",
+    ),
+}
+# chains that begin anew after a point that cannot be computed
+FAILING = """
+sweep: {omega: {values: [0.5, 0.6, 0.63, 0.7, 0.9, 1.1]}, b: {start: 0.4, stop: 6, num: 11}}
+start: {follow: both}
+orbit: {transient: 5, record: 10}
+observe: [section, lyapunov, impacts]"""
+
+
+@pytest.mark.parametrize("name", TOO_LARGE)
+def test_what_does_not_fit_is_refused_by_name(name):
+    text, words = TOO_LARGE[name]
+    tracemalloc.start()
+    with pytest.raises(SceneError, match=words):
+        scene_of(text)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 2e6
+
+
+def test_impacts_alone_need_no_memory_for_their_periods():
+    assert numbers_at_once(scene_of("orbit: {transient: 0, record: 1e12}\nobserve: [impacts]")) < 1000
+
+
+@pytest.mark.parametrize("axes", ["zeta: {start: 0, stop: 1, num: 30001}, omega: {start: 2, stop: 4, num: 30001}"])
+def test_a_plane_without_damping_is_checked_without_holding_it(axes):
+    system = "mu_m: 1, mu_k: 7.875, f2: 0, R: 0.8, b: 1"  # its mode omega_2 = 3 exactly
+    text = f"system: {{{system}}}\nsweep: {{{axes}}}\norbit: {{transient: 0, record: 1}}\n"
+    tracemalloc.start()
+    with pytest.raises(SceneError, match="resonance"):
+        parse_scene(text)
+    scene = parse_scene(text.replace("stop: 4", "stop: 2.5"))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert scene.n_points == 30001**2 and peak < 50e6
+
+
+@pytest.mark.parametrize("axes", list(itertools.permutations(["mu_m", "mu_k", "omega"], 2)), ids="-".join)
+def test_resonance_is_found_wherever_it_is_in_a_plane(axes):
+    """mu_m = 1, mu_k = 7.875 has the mode omega_2 = 3 exactly."""
+    numbers = dict(mu_m=1.0, mu_k=7.875, omega=3.0, f2=0.0, R=0.8, b=1.0, zeta=0.0)
+    rest = ", ".join(f"{name}: {value}" for name, value in numbers.items() if name not in axes)
+    for at, width in itertools.product([0, 3, 6], [0.01, 1.5]):
+        sweep = []
+        for name in axes:
+            values = [numbers[name] * 2 ** (width * (i - at)) for i in range(7)]
+            sweep.append(f"{name}: {{values: {values}}}")
+        text = f"system: {{{rest}}}\nsweep: {{{', '.join(sweep)}}}\norbit: {{transient: 0, record: 1}}\n"
+        with pytest.raises(SceneError, match="resonance"):
+            parse_scene(text)
+        parse_scene(text.replace("zeta: 0.0", "zeta: 0.1"))
+
+
+# chains with points whose orbits are still on their way
+HASTY = """
+sweep: {omega: {values: [0.5, 0.6, 0.63, 0.7, 0.9, 1.1]}, b: {start: 0.4, stop: 6, num: 11}}
+start: {follow: both}
+orbit: {transient: 0, record: 60}
+observe: [section, lyapunov, impacts]"""
+MORE = {"failing": FAILING, "hasty": HASTY}
+
+
+@pytest.mark.parametrize("name", [*(name for name in SCENES if name != "attractors"), *MORE])
+def test_parts_of_points_and_chains_give_the_same_bits(name, monkeypatch):
+    def too_stiff(parameters):
+        table = points_of(parameters)
+        table["cells"][table["omega"] == 0.63] = 0
+        return table
+
+    if name == "failing":
+        monkeypatch.setattr("vibro_sweep.driver.compute.points_of", too_stiff)
+    scene = scene_of((SCENES | MORE)[name])
+    whole, _ = computed(scene, 10**6, None)
+    if name == "failing":
+        assert len(np.unique(whole["status"])) > 1
+    for points, orbits in ((1, 1), (3, 2), (10**6, 9), (5, 17)):
+        parts, most = computed(scene, points, orbits)
+        assert most <= max(orbits, points) or not (scene.start.kind == "follow" or points == 1)
+        assert_same_bits(parts, whole)
+
+
+def test_a_run_in_parts_is_resumed(tmp_path, monkeypatch):
+    """Chains in parts of two points: those that are there already are computed again for their ends, and only that."""
+    scene, path = scene_of(SCENES["follow"]), tmp_path / "out.h5"
+    vs.run(scene, tmp_path / "whole.h5")
+    monkeypatch.setattr(sweep, "orbits_per_block", lambda *_: 6)
+
+    class StopError(Exception):
+        pass
+
+    def stop(done, total):
+        if done >= total // 3:
+            raise StopError
+
+    with pytest.raises(StopError):
+        vs.run(scene, path, workers=1, progress=stop)
+    seen = []
+    vs.run(scene, path, workers=1, mode="resume", progress=lambda done, total: seen.append(done))
+    assert seen[0] > 0 and seen[-1] == scene.n_points
+    assert_same_bits(arrays_of(path), arrays_of(tmp_path / "whole.h5"))
+
+
+def test_few_large_blocks_at_a_time():
+    text = (
+        "sweep: {b: {start: 5, stop: 6, num: 40}}\norbit: {transient: 0, record: RECORD}\nobserve: [section, lyapunov]"
+    )
+    small, large = (scene_of(text.replace("RECORD", str(record))) for record in (100, 2_400_000))
+    assert numbers_at_once(large) <= MAX_AT_ONCE
+    assert memory.orbits_per_block(large, 2) == 1
+    assert memory.blocks_under_way(large, 1, here=True) == 1
+    assert memory.blocks_under_way(small, memory.orbits_per_block(small, 2), here=True) > 8
+
+
+def test_a_stiff_orbit_is_measured_in_one_period(monkeypatch):
+    """Two seconds a period: what it will take is known after two of them, not after minutes."""
+    scene = scene_of("orbit: {transient: 10, record: 70}\nsweep: {b: {start: 5, stop: 6, num: 10}}")
+    clock = [0.0]
+
+    def counting(block):
+        clock[0] += 2.0 * (block.plan.transient + block.plan.record)
+        return block.box, {"status": np.zeros(block.box[0].stop - block.box[0].start)}
+
+    monkeypatch.setattr(cost, "compute", counting)
+    monkeypatch.setattr(cost.time, "thread_time", lambda: clock[0])
+    assert cost.orbit_seconds(scene) == pytest.approx(2.0 * 80)
+    assert clock[0] <= 4.0
+
+
+def test_an_estimate_knows_what_runs_side_by_side(monkeypatch):
+    monkeypatch.setattr(cost, "orbit_seconds", lambda _: 1.0)
+    monkeypatch.setattr(cost, "LOADING", 0.0)
+    monkeypatch.setattr(cost, "WRITING", float("inf"))
+    monkeypatch.setattr(cost, "available_cores", lambda: 8)
+    one = scene_of("orbit: {transient: 0, record: 1}")
+    chains = scene_of(SCENES["follow"])
+    assert cost.estimate(one).seconds == 1.0
+    assert cost.estimate(chains).seconds == 9.0  # six chains of nine points
+    assert cost.estimate(chains, workers=2).seconds == 27.0
+
+
+PLANES = (
+    "zeta: {start: 0, stop: 1, num: 30000}, f2: {start: 0, stop: 1, num: 30000}",
+    "mu_m: {start: 1, stop: 2, num: 30000}, mu_k: {start: 0.1, stop: 0.9, num: 30000}",
+)
+
+
+def test_check_allocates_little(tmp_path):
+    numbers = dict(part.split(": ") for part in PAPER.split(", ")) | {"zeta": "0"}
+    system = ", ".join(f"{name}: {value}" for name, value in numbers.items())
+    for n, plane in enumerate(PLANES):
+        text = f"system: {{{system}}}\nsweep: {{{plane}}}\norbit: {{transient: 0, record: 1}}\nobserve: [impacts]\n"
+        (tmp_path / f"{n}.yaml").write_text(text)
+    # the peak of this process alone: `ru_maxrss` would also count the process that started it
+    program = (
+        "import sys; from vibro_sweep.cli import main; status = max(main(['check', file]) for file in sys.argv[1:]);"
+        "print(next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM')));"
+        "sys.exit(status)"
+    )
+    command = [sys.executable, "-c", program, tmp_path / "0.yaml", tmp_path / "1.yaml"]
+    for _ in range(2):  # the first compiles, where no other test has, and that takes memory of its own
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    assert int(done.stdout.splitlines()[-1]) < 600_000

@@ -1,0 +1,175 @@
+"""A file says with which numbers it was computed: nobody has to read the scene again."""
+
+import shutil
+
+import h5py
+import numpy as np
+import pytest
+import xarray
+from support.old_files import OLD
+
+import vibro_sweep as vs
+from vibro_sweep import plotting
+from vibro_sweep.driver import blocks
+from vibro_sweep.model.parameters import NAMES
+from vibro_sweep.scene import load_scene, parse_scene
+from vibro_sweep.store import StoreError
+
+PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
+ORBIT = "orbit: {transient: 3, record: 4}\nobserve: [impacts]"
+SWEEPS = {
+    "one orbit": "",
+    "b": "sweep: {b: {values: [6.5, 6.6, 6.7]}}",
+    "omega": "sweep: {omega: {values: [0.6, 0.63, 0.65]}}",
+    "tau": "sweep: {tau: {values: [0, 1, 2]}}",
+    "R, zeta": "sweep: {R: {values: [0.7, 0.8]}, zeta: {values: [0.05, 0.1, 0.2]}}",
+    "omega, b": "sweep: {omega: {values: [0.65, 0.6]}, b: {values: [6.5, 6.6, 6.7]}}",
+    "omega, mu_m": "sweep: {omega: {values: [0.6, 0.63, 0.65]}, mu_m: {values: [1, 10]}}\nstart: {random: 2}",
+    "x1, f2": "sweep: {x1: {values: [0, 1]}, f2: {values: [0, 0.5, 1]}}\nstart: {v1: 0.5}",
+    "follow": "sweep: {mu_k: {values: [5, 4]}}\nstart: {follow: both}",
+}
+
+
+def run(folder, text, system=PAPER, orbit=ORBIT):
+    path = folder / "out.h5"
+    scene = parse_scene(f"system: {{{system}}}\n{text}\n{orbit}")
+    vs.run(scene, path)
+    return scene, path
+
+
+@pytest.mark.parametrize("tau", ["grazing", "1.25"])
+@pytest.mark.parametrize("kind", SWEEPS)
+def test_every_number_of_every_point_is_in_the_file(tmp_path, kind, tau):
+    """As an attribute or a coordinate, what the block of the point was computed with; b* is that of `vs.grazing`."""
+    scene, path = run(tmp_path, SWEEPS[kind], f"{PAPER}, tau: {tau}" if kind != "tau" else PAPER)
+    used = next(blocks.blocks(scene, 100)).parameters
+    with vs.open(path) as data, xarray.open_dataset(path, engine="h5netcdf") as plain:
+        assert set(plain.coords) == set(data.coords)
+        lead = [name for name in data.status.dims if name != "start"]
+        stars = np.empty(scene.sweep_shape)
+        for place in np.ndindex(stars.shape):
+            system = scene.system.replace(**{name: float(used[name][place]) for name in NAMES if name != "tau"})
+            stars[place] = vs.grazing(system).b
+        for name, values in {**used, "b_star": stars}.items():
+            assert (name in data.attrs) != (name in data.coords), name
+            if name in data.attrs:
+                assert isinstance(data.attrs[name], float)
+                np.testing.assert_allclose(values, data.attrs[name], rtol=4e-16)
+            else:
+                stored = data[name].broadcast_like(data.status).transpose(*data.status.dims)
+                if "start" in stored.dims:
+                    stored = stored.isel(start=0)
+                assert list(stored.dims) == lead
+                np.testing.assert_allclose(stored, values, rtol=4e-16, err_msg=name)
+        assert (data.attrs["transient"], data.attrs["record"], data.attrs["stops"]) == (3, 4, "both")
+        given = {name for name in data.attrs if name.startswith("start_")}
+        assert given == (set() if "random" in scene.text else {
+            f"start_{name}" for name in ("x1", "v1", "x2", "v2")
+        } - set(scene.sweep))  # fmt: skip
+
+
+def test_words_of_maps_and_impact_sections(tmp_path):
+    text = "model: map\norder: 2\nexpand_at: 6.7107356\norbit: {transient: 3, record: 4}"
+    _, path = run(tmp_path, text, orbit="")
+    with h5py.File(path) as file:
+        assert (file.attrs["model"], file.attrs["order"], file.attrs["expand_at"]) == ("map", 2, 6.7107356)
+        assert file.attrs["section"] == "phase" and "section_stop" not in file.attrs
+    path.unlink()
+    _, path = run(tmp_path, "section: {kind: impact, stop: left}\norbit: {transient: 3, record: 4}", orbit="")
+    with h5py.File(path) as file:
+        assert (file.attrs["section"], file.attrs["section_stop"], file.attrs["model"]) == ("impact", "left", "flow")
+        assert "order" not in file.attrs
+
+
+def test_a_damaged_number_is_mended(tmp_path):
+    """As coordinates of the sweep are: from the scene."""
+    scene, path = run(tmp_path, SWEEPS["omega, mu_m"], f"{PAPER}")
+    with h5py.File(path) as file:
+        whole = file["b_star"][()]
+        (info,) = [file["b_star"].id.get_chunk_info(0)]
+    with path.open("r+b") as file:
+        file.seek(info.byte_offset + 5)
+        file.write(b"\xff\x00\xff")
+    with pytest.raises(StoreError, match="b_star"):
+        vs.open(path)
+    vs.run(scene, path, mode="resume")
+    with vs.open(path) as data:
+        assert np.array_equal(data.b_star, whole) and np.all(data.status == 0)
+
+
+# What YAML 1.1 reads otherwise: 2e2 is a text there, 010 is eight and 0100 is 64
+
+ODD = PAPER.replace("10,", "010,", 1)
+
+
+@pytest.mark.parametrize(("record", "count"), [("2e2", 200), ("0100", 100), ("40", 40)])
+def test_impacts_are_drawn_by_the_record_of_the_run(tmp_path, record, count):
+    orbit = f"orbit: {{transient: 100, record: {record}}}\nobserve: [impacts]"
+    _, path = run(tmp_path, SWEEPS["b"], ODD, orbit)
+    ax = plotting.figure(path, "impacts").axes[0]
+    with h5py.File(path) as file:
+        assert file.attrs["record"] == count and file.attrs["mu_m"] == 10
+        right = {line.get_label(): line.get_ydata() for line in ax.lines}["right"]
+        assert np.array_equal(right, file["impacts_right"][()] / count) and right.max() > 0
+    assert ax.get_ylabel() == "impacts / $T$" and r"\mu_m = 10" in ax.figure.get_suptitle()
+
+
+def test_a_text_of_the_scene_that_says_something_else_is_not_asked(tmp_path):
+    """The numbers are those of the attributes."""
+    _, path = run(tmp_path, SWEEPS["b"])
+    with h5py.File(path, "r+") as file:
+        file.attrs["scene"] = "system: {mu_m: 3"
+    assert r"\mu_m = 10" in plotting.figure(path).get_suptitle()
+
+
+# Files of version 0.1, computed by it: mu_m: 010, transient: 2e2, record: 0040
+
+
+def test_an_old_file_is_read_as_the_run_read_it():
+    ax = plotting.figure(OLD / "sweep.h5", "impacts").axes[0]
+    right = {line.get_label(): line.get_ydata() for line in ax.lines}["right"]
+    with h5py.File(OLD / "sweep.h5") as file:
+        assert "record: 0040" in file.attrs["scene"]
+        assert np.array_equal(right, file["impacts_right"][()] / 40) and right.max() > 0
+    assert r"\mu_m = 10" in ax.figure.get_suptitle()
+    (graze,) = (line for line in ax.lines if line.get_gid() == "grazing")
+    assert graze.get_xdata()[0] == pytest.approx(6.70571674097302, rel=1e-14)
+
+
+def test_old_files_show_what_they_showed(tmp_path):
+    assert plotting.kinds(OLD / "sweep.h5") == ["lyapunov", "impacts"]
+    assert plotting.kinds(OLD / "basins.h5") == ["basins", "plane"]
+    assert plotting.kinds(OLD / "orbit.h5") == ["phase-portrait", "configuration", "history", "iteration"]
+    for name in ("sweep", "basins", "orbit"):
+        path = shutil.copy(OLD / f"{name}.h5", tmp_path)
+        assert all(picture.stat().st_size > 1000 for picture in plotting.plot(path, kind="all"))
+        with vs.open(path) as data:
+            assert np.all(data.status == 0)
+
+
+def test_an_old_file_along_a_frequency(tmp_path):
+    """What depends on a swept number is found again, too."""
+    path = shutil.copy(OLD / "sweep.h5", tmp_path)
+    with h5py.File(path, "r+") as file:
+        file.move("b", "omega")
+        file.attrs["sweep_dimensions"] = ["omega"]
+        text = file.attrs["scene"].replace("R: 0.8}", "R: 0.8, b: 6.6}")
+        file.attrs["scene"] = text.replace("b: {start: 6.6, stop: 6.75", "omega: {start: 0.6, stop: 0.65")
+    with plotting.Result(path) as result:
+        scene = parse_scene(result._source.scene)
+        for place, omega in enumerate(scene.sweep["omega"]):
+            touch = vs.grazing(scene.system.replace(omega=omega))
+            assert result.number("b_star", (place,)) == pytest.approx(touch.b, rel=1e-14)
+            assert result.number("tau", (place,)) == pytest.approx(touch.tau, rel=1e-14)
+
+
+def test_every_example_has_its_numbers():
+    """What a file would say of each scene that comes with the package."""
+    from vibro_sweep.store import numbers
+
+    scenes = sorted((OLD.parents[2] / "configs").rglob("*.yaml"))
+    assert len(scenes) > 10
+    for path in scenes:
+        scene = load_scene(path)
+        known = {*numbers.attributes(scene), *numbers.dimensions(scene), *scene.sweep}
+        assert {*NAMES, "b_star", "transient", "record", "stops"} <= known, path.name

@@ -1,0 +1,288 @@
+"""`periodic_orbit`: orbits with impacts by Newton's method, their multipliers, certificate and file."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from reference.shooting import Shooting
+from support.oscillators import BALL, CAVITY, CHAIN, ONE_MASS, PAPER
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.itinerary import canonical_start
+
+
+def agrees_with_simulation(orbit, tolerance):
+    simulated = vs.simulate(orbit.system, orbit.state, orbit.period)
+    assert np.abs(simulated.section[-1] - orbit.state).max() < tolerance
+    length = orbit.period * orbit.system.period
+    mine = np.sort(orbit.impacts["t"] % length)
+    assert simulated.impacts["t"] == pytest.approx(mine, abs=tolerance)
+    times = np.linspace(0, length, 300)
+    assert np.abs(orbit.sample(times) - simulated.sample(times)).max() < tolerance
+
+
+@pytest.fixture(scope="module")
+def thirteen():
+    """The period-13 attractor at b = 6.6 as a sweep records it."""
+    system = PAPER.replace(b=6.6)
+    return system, vs.simulate(system, (0, 0, 0, 0), 3000).section[-1]
+
+
+def test_orbit_from_an_itinerary_is_symmetric_and_is_what_the_engine_simulates():
+    orbit = vs.periodic_orbit(PAPER, itinerary="LR")
+    assert orbit.ok and orbit.symmetric and orbit.stable and orbit.half == 1
+    assert orbit.impacts["side"].tolist() == [-1, 1]
+    assert orbit.impacts["t"][1] - orbit.impacts["t"][0] == pytest.approx(PAPER.period / 2, abs=1e-13)
+    assert orbit.residual < 1e-14
+    agrees_with_simulation(orbit, 1e-12)
+
+
+def test_orbit_from_a_recorded_state(thirteen):
+    system, state = thirteen
+    orbit = vs.periodic_orbit(system, state=state, periods=13)
+    assert (orbit.status, orbit.period, orbit.symmetric, orbit.stable) == ("ok", 13, False, True)
+    assert orbit.itinerary in ("RRRR", "LLLL")
+    assert 0 <= orbit.impacts["t"][0] < system.period
+    agrees_with_simulation(orbit, 1e-11)
+
+
+@pytest.mark.parametrize("late", [0.0, 1e-12, -1e-12])
+def test_impact_at_the_section(late):
+    """The state at t = 0 is the one before an impact there, which comes again at the end of the period."""
+    orbit = vs.periodic_orbit(PAPER, itinerary="LR")
+    first = orbit.impacts["t"][1]
+    shifted = PAPER.replace(tau=PAPER.phase + PAPER.omega * (first + late))
+    again = vs.periodic_orbit(shifted, itinerary="LR")
+    turn = 2 * math.pi * again.impacts["t"][1] / PAPER.period
+    assert again.ok and abs(math.sin(turn / 2)) < 1e-11
+    found = vs.periodic_orbit(shifted, state=orbit.sample([first + late])[0].clip(-PAPER.b, PAPER.b))
+    assert found.ok and found.itinerary == "LR"
+    assert found.impacts["v1"] == pytest.approx(orbit.impacts["v1"], abs=1e-11)
+
+
+def test_least_period_is_found(thirteen):
+    system, state = thirteen
+    once, twice = (vs.periodic_orbit(system, state=state, periods=n) for n in (13, 26))
+    assert twice.period == 13
+    assert twice.impacts["t"] == pytest.approx(once.impacts["t"], abs=1e-11)
+
+
+def test_canonical_itinerary_does_not_depend_on_where_the_orbit_is_met(thirteen):
+    system, state = thirteen
+    later = vs.simulate(system, state, 5).section[-1]
+    a, b = (vs.periodic_orbit(system, state=x, periods=13) for x in (state, later))
+    assert a.itinerary == b.itinerary
+    assert a.impacts["t"] == pytest.approx(b.impacts["t"], abs=1e-10)
+    assert canonical_start([1, -1, 1, -1, -1], [0, 1, 2, 3, 4], 10) == 3
+    assert canonical_start([1, 1], [3.5, 5.2], 1.0) == 1
+
+
+def test_multipliers_over_ten_decades_against_40_digits():
+    """b = 6.705, orbits.md: -9869, 0.7852 +- 0.4149i, -3.7e-5 of the half map."""
+    system = PAPER.replace(b=6.705)
+    orbit = vs.periodic_orbit(system, itinerary="LR")
+    with mp.workdps(40):
+        numbers = {name: getattr(system, name) for name in ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")}
+        shooting = Shooting(numbers, sigma=-1, halves=1, sides=[-1])
+        first = orbit.impacts[0]
+        u = shooting.unknowns([first["t"]], [-system.b, first["v1"], first["x2"], first["v2"]])
+        A, n = shooting.system()
+        mu = mp.eig(shooting.monodromy(A, n, shooting.solve(u)), left=False, right=False)
+        expected = sorted((complex(m) for m in mu), key=lambda m: (-round(abs(m), 12), -m.imag))
+    assert orbit.half_multipliers == pytest.approx(np.array(expected), rel=1e-10)
+    assert not orbit.stable
+
+
+@pytest.mark.parametrize("R", [1.0, 0.8, 0.3, 0.01, 1e-5])
+def test_product_of_the_multipliers_is_known(R):
+    """det S = R^2 and the divergence, physics.md."""
+    system = PAPER.replace(b=4.0, R=R)
+    orbit = vs.periodic_orbit(system, itinerary="LR")
+    assert orbit.ok
+    expected = R**4 * math.exp(system.divergence * system.period)
+    assert np.prod(orbit.multipliers) == pytest.approx(expected, rel=1e-11)
+
+
+def test_impact_without_restitution():
+    """R = 0: one dimension is lost at every impact that leaves the stop at once."""
+    orbit = vs.periodic_orbit(PAPER.replace(b=5.0, R=0.0), itinerary="LR")
+    assert orbit.ok
+    assert np.abs(orbit.half_multipliers[-1]) < 1e-15
+    agrees_with_simulation(orbit, 1e-12)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 1e-6, "critical", 2.0])
+def test_any_damping(zeta):
+    system = PAPER.replace(tau=0.0, b=1.0)
+    if zeta == "critical":
+        zeta = 1 / math.sqrt(system.modes.omega_squared[1])
+    system = system.replace(zeta=zeta)
+    grazing = vs.grazing(system).b
+    system = system.replace(b=0.8 * grazing)
+    if zeta == 2.0:
+        orbit = vs.periodic_orbit(system, state=vs.simulate(system, (0, 0, 0, 0), 100).section[-1])
+        assert orbit.itinerary == "LLLRRR"
+    else:
+        orbit = vs.periodic_orbit(system, itinerary="LR")
+    assert orbit.ok and orbit.symmetric
+    simulated = vs.simulate(orbit.system, orbit.state, 1)
+    assert np.abs(simulated.section[-1] - orbit.state).max() < 1e-11 * max(1, abs(orbit.multipliers[0]))
+
+
+@pytest.mark.parametrize(("n", "R"), [(1, 0.8), (2, 0.5)])
+def test_bouncing_ball_in_closed_form(n, R):
+    """physics.md: impact speed G n T/(1 + R), phase cos(phi) = n pi (1 - R)/((1 + R) Gamma)."""
+    least = n * math.pi * (1 - R) / (1 + R)
+    ball = BALL.replace(A=1.05 * least, R=R)
+    speed, phase = n * 2 * math.pi / (1 + R), math.acos(1 / 1.05)
+    orbit = vs.periodic_orbit(ball, guess=[(phase + 0.01, -1, -0.99 * speed)], periods=n)
+    assert orbit.ok and orbit.period == n
+    assert orbit.impacts["v1"] == pytest.approx(-speed, rel=1e-13)
+    assert orbit.impacts["t"] == pytest.approx(phase, rel=1e-12)
+    assert np.prod(orbit.multipliers) == pytest.approx(R**2, rel=1e-12)
+    assert vs.periodic_orbit(ball, itinerary="L", periods=n).ok
+
+
+@pytest.mark.parametrize("family", [CAVITY, CHAIN, ONE_MASS.replace(F=0.5)])
+def test_motion_obeys_the_equation_of_motion(family):
+    """M x'' + C x' + K x = force along flights, by differences of `sample`; the impact law; periodicity."""
+    q = family.linear
+    orbit = vs.periodic_orbit(family, itinerary="LR" if np.isfinite(q.low) else "R")
+    assert orbit.ok
+    times = np.linspace(0.05, 2 * math.pi / q.omega * orbit.period, 40)
+    h = 1e-4
+    near = np.abs(np.subtract.outer(times, orbit.impacts["t"])) % (orbit.period * 2 * math.pi / q.omega)
+    times = times[(near > 2 * h).all(axis=1)]
+    before, now, after = (orbit.sample(times + d) for d in (-h, 0, h))
+    x, v = now[:, ::2], now[:, 1::2]
+    assert (after - before)[:, ::2] / (2 * h) == pytest.approx(v, abs=1e-6)
+    phase = q.omega * times[:, None] + q.tau
+    force = q.constant + q.sine * np.sin(phase) + q.cosine * np.cos(phase)
+    acceleration = (after - before)[:, 1::2] / (2 * h)
+    assert acceleration @ q.M + v @ q.C + x @ q.K == pytest.approx(force, abs=1e-6)
+    for impact in orbit.impacts:
+        t = impact["t"]
+        jump = orbit.sample([t + 1e-9])[0, 1::2] - orbit.sample([t])[0, 1::2]
+        assert q.along @ jump == pytest.approx(-(1 + q.restitution(impact["side"])) * impact["v1"], abs=1e-7)
+        assert np.linalg.matrix_rank(np.array([q.M @ jump, q.along]), tol=1e-6) == 1
+    length = orbit.period * 2 * math.pi / q.omega
+    assert orbit.sample(times + length) == pytest.approx(orbit.sample(times), abs=1e-12)
+
+
+def test_margin_is_the_least_distance_of_a_turning_point(thirteen):
+    system, state = thirteen
+    orbit = vs.periodic_orbit(system, state=state, periods=13)
+    times = np.linspace(0, 13 * system.period, 200_001)
+    states = orbit.sample(times)
+    gap, rate = states[:, 0], states[:, 1]
+    away = np.abs(np.subtract.outer(times, orbit.impacts["t"] % (13 * system.period))).min(axis=1) > 1e-3
+    turns = np.flatnonzero((rate[:-1] * rate[1:] < 0) & away[:-1] & away[1:])
+    least = min(system.b - abs(gap[i]) for i in turns)
+    assert orbit.margin == pytest.approx(least, abs=1e-6) and orbit.margin <= least + 1e-15
+
+
+def test_margin_of_the_free_motion_is_the_distance_from_the_graze():
+    orbit = vs.periodic_orbit(PAPER.replace(b=6.8), itinerary="")
+    assert orbit.ok and orbit.symmetric and orbit.itinerary == "" and len(orbit.impacts) == 0
+    assert orbit.margin == pytest.approx(6.8 - vs.grazing(PAPER).b, abs=1e-13)
+    assert np.abs(orbit.multipliers) == pytest.approx(np.exp(-np.repeat(PAPER.eta, 2) * PAPER.period), rel=1e-12)
+    virtual = vs.periodic_orbit(PAPER.replace(b=6.7), itinerary="")
+    assert virtual.status == "not_real" and virtual.margin < 0
+
+
+def test_orbit_close_to_the_graze_where_shooting_has_a_square_root():
+    """The one-mass oscillator of arXiv 2510.16218 down to impact speeds of 1e-8 and less."""
+    grazing = 0.34542288575020583
+    for distance in (1e-6, 1e-9, 1e-12):
+        family = ONE_MASS.replace(F=grazing + distance)
+        orbit = vs.periodic_orbit(family, guess=[(0.116, 1, distance)], periods=2)
+        assert orbit.ok and orbit.residual < 1e-13
+    assert 0 < orbit.impacts["v1"][0] < 1e-8
+
+
+def test_thousand_guesses_give_the_orbit_or_an_honest_failure():
+    orbit = vs.periodic_orbit(PAPER.replace(b=3.0), itinerary="LR")
+    rng = np.random.default_rng(1)
+    solution = orbit._solution
+    guesses = solution.u * (1 + rng.uniform(-0.3, 0.3, (1000, 2)))
+    ends, change = solution.equations.newton(solution.sides, guesses)
+    found = np.isfinite(change)
+    assert found.mean() > 0.9
+    for end in np.unique(np.round(ends[found], 6), axis=0):
+        residual = solution.equations.evaluate(solution.sides, end)[0]
+        assert np.abs(residual).max() < 1e-4
+    residuals = [np.abs(solution.equations.evaluate(solution.sides, end)[0]).max() for end in ends[found]]
+    assert max(residuals) < 1e-12
+
+
+def test_failures_are_told_by_status():
+    assert vs.periodic_orbit(PAPER.replace(b=9.0), guess=[(0.0, 1, 3.0)]).status in ("not_converged", "not_real")
+    resonant = PAPER.replace(zeta=0.0, tau=0.0, omega=math.sqrt(PAPER.modes.omega_squared[0]))
+    orbit = vs.periodic_orbit(resonant, itinerary="")
+    assert orbit.status == "resonance" and not orbit.ok and len(orbit.impacts) == 0 and math.isnan(orbit.margin)
+    resting = PAPER.replace(b=0.03)
+    state = vs.simulate(resting, (0, 0, 0, 0), 200).section[-1]
+    assert vs.periodic_orbit(resting, state=state).status == "sticking"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({}, "give either"),
+        ({"state": (0, 0, 0, 0), "itinerary": "R"}, "give either"),
+        ({"itinerary": "RX"}, "word of R and L"),
+        ({"itinerary": "R", "periods": 0}, "whole number"),
+        ({"guess": [(1.0, 1, 0.1), (0.5, -1, -0.1)]}, "must rise"),
+        ({"guess": [(1.0, 2, 0.1)]}, "side 1 or -1"),
+        ({"guess": [(1.0, 1, 0.1)], "itinerary": "L"}, "differs"),
+        ({"guess": [(1.0, 1, 0.1), (50.0, 1, 0.1)]}, "one period"),
+    ],
+)
+def test_bad_input_is_refused(arguments, said):
+    with pytest.raises(ValueError, match=said):
+        vs.periodic_orbit(PAPER, **arguments)
+    with pytest.raises(ValueError, match="does not have"):
+        vs.periodic_orbit(PAPER.replace(stops="right"), itinerary="L")
+
+
+def test_orbit_survives_its_file(tmp_path):
+    orbit = vs.periodic_orbit(PAPER.replace(b=1.0), itinerary="LLRR")
+    path = orbit.save(tmp_path / "orbit.json")
+    again = vs.load_orbit(path)
+    assert again.status == "ok" and again.system == orbit.system
+    assert again.impacts.tobytes() == orbit.impacts.tobytes()
+    with pytest.raises(FileExistsError):
+        orbit.save(path)
+    record = json.loads(path.read_text())
+    for damage in ({"format": "x"}, {"sides": [1, 5]}, {"unknowns": [1.0]}, {"system": {"b": 1}}, {"halves": 2}):
+        path.write_text(json.dumps(record | damage))
+        with pytest.raises(ValueError, match=path.name):
+            vs.load_orbit(path)
+    path.write_bytes(b"\xff\x00")
+    with pytest.raises(ValueError, match=path.name):
+        vs.load_orbit(path)
+
+
+def test_picture(tmp_path):
+    figure = vs.periodic_orbit(PAPER, itinerary="LR").plot()
+    portrait, history = figure.axes
+    gap = history.lines[0].get_ydata()
+    assert np.nanmax(np.abs(gap)) <= PAPER.b * (1 + 1e-12)
+    figure.savefig(tmp_path / "orbit.png")
+    assert len(portrait.lines) >= 3
+    with pytest.raises(ValueError, match="no motion"):
+        vs.periodic_orbit(PAPER.replace(b=9.0), guess=[(0.0, 1, 3.0), (0.1, 1, 1e9)]).plot()
+
+
+def test_shooting_of_the_reference_finds_the_same_orbit():
+    orbit = vs.periodic_orbit(PAPER, itinerary="R")
+    orbit = orbit if orbit.ok else vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
+    with mp.workdps(30):
+        names = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")
+        shooting = Shooting({name: getattr(orbit.system, name) for name in names}, sigma=1, halves=2, sides=[1])
+        i = orbit.impacts[0]
+        x = shooting.solve(shooting.unknowns([i["t"]], [orbit.system.b, i["v1"], i["x2"], i["v2"]]))
+        for mine, exact in zip((i["t"], i["x2"], i["v1"], i["v2"]), (x[0], x[2], x[3], x[4]), strict=True):
+            assert abs(mpf(float(mine)) - exact) < 2e-14

@@ -1,0 +1,149 @@
+"""Each number and each variable is declared once: what is made of the tables of model/ follows them."""
+
+import ast
+import dataclasses
+import io
+
+import h5py
+import numpy as np
+import pytest
+from support import ROOT
+
+import vibro_sweep as vs
+from vibro_sweep import reference
+from vibro_sweep.driver.blocks import plan_of
+from vibro_sweep.engine.points import POINT, RESULT, new_results
+from vibro_sweep.engine.simd.jit import ENGINE, SHARED
+from vibro_sweep.model.catalogue import AXES
+from vibro_sweep.model.exponents import CERTAIN
+from vibro_sweep.model.observables import DIMENSIONS, TRAJECTORY, VARIABLES, WORDS, asked_for
+from vibro_sweep.model.parameters import BY_NAME, FREE_MOTION, NAMES
+from vibro_sweep.model.state import STATE
+from vibro_sweep.scene import parse_scene
+from vibro_sweep.store.creating import skeleton_of
+
+SYSTEM = {"mu_m": 10, "mu_k": 5, "zeta": 0.05, "f2": 0.1, "omega": 0.63, "R": 0.8, "b": 6.6}
+SCENE = f"system: {SYSTEM}\norbit: {{transient: 3, record: 60}}\n".replace("'", "")
+JIT = {"jit", "inline", "aside", "entry"}
+LONGEST_LABEL = 30  # characters, beside an axis
+
+
+def scene_of(observe, more=""):
+    return parse_scene(f"{SCENE}observe: [{', '.join(observe)}]\n{more}")
+
+
+def skeleton(scene):
+    return h5py.File(io.BytesIO(skeleton_of(scene, b"0" * 16)), "r")
+
+
+class TestTheTablesThemselves:
+    def test_names_are_there_once(self):
+        names = [*NAMES, *DIMENSIONS, *(one.name for one in VARIABLES)]
+        assert len(names) == len(set(names))
+
+    @pytest.mark.parametrize("one", VARIABLES, ids=lambda one: one.name)
+    def test_a_variable_has_known_dimensions_and_words(self, one):
+        assert set(one.asked_by) <= {*WORDS, TRAJECTORY} and set(one.dimensions) <= DIMENSIONS.keys()
+        assert one.asked_by or one.name == "status"
+
+    def test_labels_are_short_enough_for_axes_and_texts_say_more(self):
+        for one in (*AXES.values(), *VARIABLES):
+            assert 0 < len(one.long_name) <= LONGEST_LABEL and one.text and "\n" not in one.text, one
+
+    def test_the_state_is_interleaved(self):
+        assert STATE == ("x1", "v1", "x2", "v2")
+
+
+class TestWhatFollows:
+    def test_the_system_has_each_parameter_with_its_default(self):
+        fields = {one.name: one.default for one in dataclasses.fields(vs.System) if one.name != "stops"}
+        given = {name: one.default for name, one in BY_NAME.items()}
+        assert tuple(fields) == NAMES
+        assert {name: None if value is dataclasses.MISSING else value for name, value in fields.items()} == given
+
+    def test_help_names_each_parameter_with_its_range(self):
+        for one in BY_NAME.values():
+            assert f"{one.name} : {one.text}" in vs.System.__doc__ and one.range.text in vs.System.__doc__
+
+    def test_the_free_motion_depends_on_its_five_numbers_alone(self):
+        system = vs.System(**SYSTEM)
+        before = vs.grazing(system)
+        for name in NAMES:
+            other = vs.grazing(system.replace(**{name: 0.5 if name == "tau" else 1.1 * getattr(system, name)}))
+            assert ((other.b, other.tau) != (before.b, before.tau)) == (name in FREE_MOTION), name
+
+    def test_records_of_the_kernels_have_the_files_types(self):
+        assert POINT.names[: len(NAMES)] == NAMES
+        empty = new_results(())
+        for one in VARIABLES:
+            if one.in_kernel:
+                own = tuple(DIMENSIONS[name].extent for name in one.dimensions)
+                assert (RESULT[one.name].base, RESULT[one.name].shape) == (np.dtype(one.dtype), own)
+                np.testing.assert_array_equal(empty[one.name], np.full(own, one.fill))
+
+    def test_the_reference_page_is_up_to_date(self):
+        text = (ROOT / "docs" / "reference.md").read_text()
+        assert text == reference.page(), "python -m vibro_sweep.reference > docs/reference.md"
+
+    def test_the_reference_page_has_everything(self):
+        page = reference.page()
+        for name in (*NAMES, *DIMENSIONS, *WORDS, *(one.name for one in VARIABLES)):
+            assert f"`{name}`" in page, name
+
+    def test_kernels_compile_in_only_what_names_their_cache(self):
+        """An edit to any other module of the model leaves the compiled kernels as they are."""
+        count = 0
+        for path in ENGINE.rglob("*.py"):
+            tree = ast.parse(path.read_text())
+            homes = {}  # name -> the module of the model that it, or its contents, come from
+            for node in ast.walk(tree):
+                if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("vibro_sweep.model"):
+                    module = node.module.removeprefix("vibro_sweep.model").removeprefix(".")
+                    homes |= {alias.name: f"{module or alias.name}.py" for alias in node.names}
+            for node in tree.body:
+                if isinstance(node, ast.FunctionDef) and any(ast.unparse(one) in JIT for one in node.decorator_list):
+                    count += 1
+                    used = {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
+                    assert {homes[name] for name in used & homes.keys()} <= set(SHARED), (path, node.name)
+        assert count > 100
+
+
+class TestOnlyWhatIsAskedFor:
+    @pytest.mark.parametrize("word", WORDS)
+    def test_a_file_has_the_variables_of_its_words(self, word):
+        with skeleton(scene_of([word])) as file:
+            expected = {one.name for one in VARIABLES if word in one.asked_by and not one.at_impacts} | {"status"}
+            own = {name for one in VARIABLES if one.name in expected for name in one.dimensions}
+            assert set(file) == expected | own
+
+    def test_the_phase_belongs_to_sections_at_impacts(self):
+        assert "phase" in asked_for(frozenset({"section"}), True)
+        assert "phase" not in asked_for(frozenset({"section"}), False)
+        assert "phase" not in asked_for(frozenset({"lyapunov"}), True)
+
+    def test_each_dataset_is_described(self):
+        more = "sweep: {b: {values: [6, 7]}, omega: {values: [0.6, 0.7]}}\ntrajectory: {periods: 2, samples: 5}\n"
+        with skeleton(scene_of(WORDS, more)) as file:
+            by_name = AXES | {one.name: one for one in VARIABLES}
+            assert {"b", "omega", "tau", "b_star", "sample", "elapsed"} <= set(file)
+            for name, dataset in file.items():
+                one = by_name[name]
+                for attribute, value in (("long_name", one.long_name), ("description", one.text), ("units", one.units)):
+                    assert dataset.attrs[attribute].decode() == value, name
+            assert file["lyapunov_error"].attrs["significant"] == CERTAIN == 2.0
+
+    @pytest.mark.parametrize(
+        ("word", "states", "lyapunov", "impacts", "attractors"),
+        [
+            ("section", True, False, False, False),
+            ("lyapunov", True, True, False, False),
+            ("multipliers", True, True, False, False),
+            ("impacts", False, False, True, False),
+            ("attractors", True, True, False, True),
+            ("convergence", True, True, False, False),
+        ],
+    )
+    def test_nothing_else_is_computed(self, word, states, lyapunov, impacts, attractors):
+        plan = plan_of(scene_of([word]))
+        assert (plan.states, plan.lyapunov, plan.impacts, plan.attractors) == (states, lyapunov, impacts, attractors)
+        assert bool(plan.parts) == bool(plan.lyapunov)

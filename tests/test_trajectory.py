@@ -1,0 +1,156 @@
+"""The continuous orbit of a file: against `simulate` from where the record ends."""
+
+import h5py
+import numpy as np
+import pytest
+
+import vibro_sweep as vs
+from vibro_sweep import plotting
+from vibro_sweep.driver import blocks
+from vibro_sweep.engine import points
+from vibro_sweep.engine.one_system import points_of
+from vibro_sweep.engine.trajectory import new_trajectories, run_trajectories
+from vibro_sweep.scene import parse_scene
+
+PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
+STATE = ("x1", "v1", "x2", "v2")
+
+
+def run(folder, text, system=PAPER):
+    """The scene, and its file."""
+    scene = parse_scene(f"system: {{{system}}}\n{text}")
+    path = folder / "out.h5"
+    vs.run(scene, path, mode="overwrite")
+    return scene, path
+
+
+@pytest.fixture(scope="module")
+def orbits(tmp_path_factory):
+    """Sticking, chaos, a symmetric orbit of period 1 and one that strikes seldom."""
+    text = """
+sweep: {b: {values: [0.02, 0.5, 3, 6.6]}}
+orbit: {transient: 300, record: 2}
+trajectory: {periods: 4, samples: 200}"""
+    return run(tmp_path_factory.mktemp("trajectory"), text)
+
+
+def simulated(scene, data, i):
+    """`simulate` from the last section point of the record. Of a rest only the state is known, and that is enough."""
+    system = scene.system.replace(b=float(data["b"][i]))
+    return vs.simulate(system, [data[name][i, -1] for name in STATE], 4)
+
+
+def test_impacts_are_those_of_simulate(orbits):
+    scene, path = orbits
+    with h5py.File(path) as file:
+        data = {name: dataset[()] for name, dataset in file.items()}
+    counts = []
+    for i, b in enumerate(data["b"]):
+        orbit = simulated(scene, data, i)
+        assert orbit.status == "ok" and data["trajectory_impacts"][i] == len(orbit.impacts)
+        hits = orbit.impacts
+        if len(hits) > 200:  # the ends of chatter sequences are left out
+            hits = hits[abs(hits["v1"]) > np.sort(abs(hits["v1"]))[-201]]
+        stored = {name: data[f"trajectory_impact_{name}"][i] for name in ("time", "side", "v1", "v1_after", "x2", "v2")}
+        there = np.isfinite(stored["time"])
+        assert there[: len(hits)].all() and not there[len(hits) :].any()
+        assert np.all(stored["side"][~there] == 0)
+        np.testing.assert_allclose(stored["time"][there], hits["t"] / scene.system.period, rtol=1e-13)
+        np.testing.assert_array_equal(stored["side"][there], hits["side"])
+        for name in ("v1", "x2", "v2"):
+            np.testing.assert_allclose(stored[name][there], hits[name], rtol=0, atol=1e-12 * b)
+        np.testing.assert_array_equal(stored["v1_after"][there], -0.8 * stored["v1"][there])
+        counts.append(len(orbit.impacts))
+    assert counts[0] > 400 and min(counts) > 0  # the room of 200 is too small once, and that is seen
+
+
+def test_section_points_are_exact(orbits):
+    scene, path = orbits
+    with h5py.File(path) as file:
+        data = {name: dataset[()] for name, dataset in file.items()}
+    for i in range(4):
+        expected = simulated(scene, data, i).section
+        stored = np.stack([data[f"trajectory_section_{name}"][i] for name in STATE], axis=-1)
+        np.testing.assert_allclose(stored, expected, rtol=0, atol=1e-12)
+        ends = np.stack([data[f"trajectory_{name}"][i, [0, -1]] for name in STATE], axis=-1)
+        np.testing.assert_allclose(ends, stored[[0, -1]], rtol=0, atol=1e-14)
+        assert np.array_equal(stored[0], [data[name][i, -1] for name in STATE])
+
+
+def test_samples_lie_between_the_stops_without_being_cut_there(orbits):
+    """Rounding may pass a stop, and is left as it is: a larger error would be seen."""
+    with h5py.File(orbits[1]) as file:
+        beyond = abs(file["trajectory_x1"][()]) - file["b"][()][:, None]
+    assert beyond.max() < 1e-14
+
+
+def test_an_orbit_of_period_1_shows_one_dot(orbits):
+    """Not one for each period, beside each other, as samples that do not meet the sections would."""
+    path = orbits[1]
+    fig = plotting.figure(path, "phase-portrait")
+    dots = [line for line in fig.axes[2].lines if line.get_label() == r"$t = 0$ mod $T$"]
+    (line,) = dots
+    assert len(line.get_xdata()) == 5 and np.ptp(line.get_xydata(), axis=0).max() < 1e-9
+    with h5py.File(path) as file:
+        t, x1 = file["time"][()], file["trajectory_x1"][2]
+        nearest = x1[[np.argmin(abs(t - n)) for n in range(5)]]
+        assert np.ptp(nearest) > 1e-2  # what was drawn before
+        assert np.array_equal(line.get_xdata(), file["trajectory_section_x1"][2])
+
+
+def test_portraits_reach_the_walls_where_the_orbit_does(orbits):
+    """Between samples too, on both sides of each impact, and nowhere else."""
+    fig = plotting.figure(orbits[1], "phase-portrait")
+    with h5py.File(orbits[1]) as file:
+        for i in (1, 2, 3):
+            ax, count = fig.axes[i], int(file["trajectory_impacts"][i])
+            x, v = ax.lines[0].get_data()
+            at = np.flatnonzero(np.isnan(x))
+            assert len(at) == count
+            assert np.array_equal(v[at - 1], file["trajectory_impact_v1"][i, :count])
+            assert np.array_equal(v[at + 1], file["trajectory_impact_v1_after"][i, :count])
+            assert np.all(abs(x[at - 1]) == file["b"][i]) and np.array_equal(x[at - 1], x[at + 1])
+
+
+def test_a_trajectory_that_fails_says_nothing():
+    """Its status says what went wrong; neither zeros nor what came before look like results."""
+    text = f"system: {{{PAPER}, b: 6.6}}\norbit: {{transient: 0, record: 1}}\ntrajectory: {{periods: 2, samples: 5}}"
+    (block,) = blocks.blocks(parse_scene(text), 1)
+    table = points_of(block.parameters)
+    results, kept = points.new_results((1, 1)), new_trajectories((1, 1), 5, 2, 5)
+    results["status"], results["end"], results["resting"] = 0, (0.0, np.inf, 0.0, 0.0), 0.0
+    workspace = points.new_workspace(block.plan, int(table["cells"]), 5)
+    run_trajectories(table.reshape(1), results, np.empty((1, 5, 7)), kept, workspace, block.plan)
+    assert results["status"] > 0 and kept.counts == -1
+    for values in kept[:3]:
+        assert np.isnan(values).all()
+
+
+@pytest.mark.parametrize("start", ["{follow: both}", "{random: 3}"])
+def test_every_start_has_its_own(tmp_path, start):
+    text = f"""
+sweep: {{b: {{values: [5, 6.6]}}}}
+start: {start}
+orbit: {{transient: 20, record: 3}}
+trajectory: {{periods: 2, samples: 9}}"""
+    scene, path = run(tmp_path, text)
+    with h5py.File(path) as file:
+        data = {name: dataset[()] for name, dataset in file.items()}
+    for i, b in enumerate(data["b"]):
+        for n in range(len(data["start"])):
+            state = [data[name][i, n, -1] for name in STATE]
+            orbit = vs.simulate(scene.system.replace(b=b), state, 2)
+            count = len(orbit.impacts)
+            assert data["trajectory_impacts"][i, n] == count
+            np.testing.assert_allclose(data["trajectory_impact_v1"][i, n, :count], orbit.impacts["v1"], atol=1e-12)
+            np.testing.assert_allclose(data["trajectory_section_v2"][i, n], orbit.section[:, 3], atol=1e-12)
+
+
+def test_old_files_show_no_guessed_impacts():
+    """Version 0.1 stored samples alone: they are points without a line, and nothing else is drawn."""
+    from support.old_files import OLD
+
+    ax = plotting.figure(OLD / "orbit.h5", "phase-portrait").axes[0]
+    labels = [line.get_label() for line in ax.lines if not line.get_label().startswith("_")]
+    assert labels == ["samples; this file does not hold the impacts between them"]
+    assert ax.lines[0].get_linestyle() == "None" and len(ax.lines[0].get_xdata()) == 200

@@ -1,0 +1,1 @@
+"""What is computed of single systems at a prompt, standing on the engine."""

@@ -1,0 +1,149 @@
+"""`periodic_orbit`: finds an orbit by Newton's method, whether it attracts or repels.
+
+The unknowns are the times and impulses of the impacts (engine/impulses), so that nothing is singular at a graze.
+"""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from vibro_sweep.analysis.itinerary import SIDES, is_mirrored, repetitions, word
+from vibro_sweep.analysis.orbit import simulate
+from vibro_sweep.analysis.periodic import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.engine.impulses.green import ResonanceError, TooStiffError
+from vibro_sweep.model.linear import family_of, forcing_period
+from vibro_sweep.model.oscillator import System
+
+SEEDS = 4000
+
+
+def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None = None, guess=None) -> PeriodicOrbit:
+    """Find a periodic orbit by Newton's method on its impact times and impulses.
+
+    Parameters
+    ----------
+    state : near the orbit at t = 0 mod T: the orbit simulated from here over `periods` gives the impacts to start from
+    periods : its period in forcing periods, or a multiple of it
+    itinerary : the stops it hits, such as "LR", instead of a state; "" for the orbit without impacts
+    guess : [(t, side, v), ...] with it or without: impacts of the whole orbit in order, v the gap velocity before.
+        Without a guess fixed seeds are tried; the first real orbit with this itinerary counts.
+
+    Raises ValueError for arguments that say nothing or contradict each other. What fails is told by `.status`.
+    """
+    family = family_of(system)
+    if periods != int(periods) or periods < 1:
+        raise ValueError(f"periods: {periods!r} is not allowed; it must be a whole number >= 1")
+    periods = int(periods)
+    if (state is None) == (itinerary is None and guess is None):
+        raise ValueError("give either state, or itinerary or guess")
+    try:
+        if state is not None:
+            return _from_state(system, family, state, periods)
+        if guess is not None:
+            return _from_guess(system, family, _checked_guess(family.linear, guess, itinerary), periods)
+        return _from_itinerary(system, family, _checked_sides(family.linear, itinerary), periods)
+    except ResonanceError:
+        return PeriodicOrbit(system, "resonance")
+    except TooStiffError:
+        return PeriodicOrbit(system, "too_stiff")
+
+
+def _checked_sides(q, itinerary) -> tuple[int, ...]:
+    if not isinstance(itinerary, str) or set(itinerary) - set(SIDES):
+        raise ValueError(f"itinerary: {itinerary!r} is not allowed; it must be a word of R and L")
+    sides = tuple(SIDES[letter] for letter in itinerary)
+    if not np.all(np.isfinite(q.stop(sides))):
+        raise ValueError(f"itinerary: {itinerary!r} hits a stop that the system does not have")
+    return sides
+
+
+def _checked_guess(q, guess, itinerary):
+    rows = [(float(t), int(side), float(v)) for t, side, v in guess]
+    if not np.all(np.isfinite(rows)) or any(side not in (1, -1) for _, side, _ in rows):
+        raise ValueError("guess: must be (t, side, v) for each impact, finite, with side 1 or -1")
+    if any(b[0] <= a[0] for a, b in pairwise(rows)):
+        raise ValueError("guess: the times of the impacts must rise")
+    sides = word([side for _, side, _ in rows])
+    _checked_sides(q, sides)
+    if itinerary is not None and itinerary != sides:
+        raise ValueError(f"itinerary: {itinerary!r} differs from the sides of the guess, {sides!r}")
+    return rows
+
+
+def _from_state(system, family, state, periods) -> PeriodicOrbit:
+    if not isinstance(system, System):
+        raise ValueError("state: only a System can be simulated; give an itinerary or a guess")
+    simulated = simulate(system, state, periods)
+    if str(simulated.status) != "ok":
+        return PeriodicOrbit(system, "not_converged")
+    if len(simulated.sticking):
+        return PeriodicOrbit(system, "sticking")
+    impacts = simulated.impacts
+    if len(impacts):  # an impact at t = 0 comes again at the end
+        impacts = impacts[impacts["t"] < impacts["t"][0] + periods * system.period * (1 - 1e-9)]
+    return _from_guess(system, family, [(i["t"], i["side"], i["v1"]) for i in impacts], periods)
+
+
+def _from_guess(system, family, rows, periods) -> PeriodicOrbit:
+    sides = tuple(int(side) for _, side, _ in rows)
+    R = family.linear.restitution(sides)
+    t, v = np.array([row[0] for row in rows]), np.array([row[2] for row in rows])
+    u = np.concatenate([t, -(1 + R) * v])
+    start = Solution(family, 1, 2 * periods, sides, u)
+    if start.equations.free:
+        if not sides:
+            return PeriodicOrbit(system, "resonance")
+        u = np.append(u, 0.0)
+        u[-1] = -np.mean(start.equations.evaluate(sides, u)[0][: len(sides)])
+        start = Solution(family, 1, 2 * periods, sides, u)
+    if sides and t[-1] >= t[0] + start.equations.P:
+        raise ValueError("guess: the impacts do not fit into one period")
+    found = start.corrected()
+    return orbit_of(system, found and found.reduced())
+
+
+def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
+    if not sides:
+        return _from_guess(system, family, [], periods)
+    symmetric = family.linear.symmetric and periods % 2 == 1 and is_mirrored(sides)
+    kinds = [(-1, periods, sides[: len(sides) // 2])] if symmetric else []
+    least = [d for d in repetitions(sides) if periods % d == 0]
+    virtual = None
+    for sigma, halves, part in [*kinds, (1, 2 * periods, sides)]:
+        for found in _seeded(Solution(family, sigma, halves, part, np.empty(0))):
+            found = found.reduced()
+            if least and len(found.whole().sides) != len(sides):
+                continue
+            if found.real:
+                return orbit_of(system, found)
+            virtual = virtual or found
+    return orbit_of(system, virtual)
+
+
+def _seeded(start: Solution):
+    """Solutions from fixed seeds, different ones, those whose impulses push first."""
+    e, K = start.equations, start.K
+    rng = np.random.default_rng(0)
+    q = e.q
+    steady_speed = q.omega * math.hypot(e.steady.real, e.steady.imag)
+    size = max(steady_speed, abs(e.steady.momentum) / K, *(q.omega * abs(x) for x in q.stop(start.sides)))
+    t = np.sort(rng.uniform(0, e.P, (SEEDS, K)), axis=1)
+    t += rng.uniform(0, e.P, (SEEDS, 1)) - t[:, :1]
+    D = -np.array(start.sides) * size * 10 ** rng.uniform(-2, 0.5, (SEEDS, K))
+    guesses = np.concatenate([t, D], axis=1)
+    if e.free:
+        guesses = np.column_stack([guesses, q.stop(start.sides).mean() * np.ones(SEEDS)])
+    ends, change = e.newton(start.sides, guesses)
+    ends, change = ends[np.isfinite(change)], change[np.isfinite(change)]
+    T = forcing_period(q)
+    shift = np.zeros(ends.shape[1])
+    shift[:K] = T
+    ends = ends - np.floor(ends[:, :1] / T) * shift if start.sigma == 1 else ends
+    pushing = np.all(-np.array(start.sides) * ends[:, K : 2 * K] > 0, axis=1)
+    known = []
+    for i in np.argsort(~pushing, kind="stable"):
+        if not any(np.allclose(ends[i], other, rtol=1e-7, atol=1e-7) for other in known):
+            known.append(ends[i])
+            yield Solution(start.family, start.sigma, start.halves, start.sides, ends[i], float(change[i]))

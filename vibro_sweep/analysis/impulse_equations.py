@@ -1,0 +1,192 @@
+"""The equations of periodic orbits for one oscillator, period and symmetry: tables, Newton, motion, multipliers."""
+
+from copy import copy
+from functools import lru_cache
+
+import numpy as np
+
+from vibro_sweep.engine.impulses import equations, extremes, flights, multipliers
+from vibro_sweep.engine.impulses.green import ResonanceError, free_modes, has_free_gap, space, space_slopes, train
+from vibro_sweep.model.linear import Linear, amplitude_slopes, amplitudes, forcing_period
+
+
+class Equations:
+    """Orbits of `q` with z(t + P) = sigma z(t), P = halves T/2; derivatives where q changes by `slope`.
+
+    sigma = +1 and an even number of halves, or sigma = -1 and an odd one (symmetric orbits).
+    Raises ResonanceError, TooStiffError (green.py).
+    """
+
+    def __init__(self, q: Linear, sigma: int, halves: int, slope: Linear | None = None):
+        self.q, self.sigma, self.halves, self.slope = q, sigma, halves, slope
+        self.P = forcing_period(q) / 2 * halves
+        self.train = train(q, sigma, halves, slope)
+        self.steady = steady(q, sigma, halves, slope)
+
+    def with_stops(self, q: Linear, slope: Linear) -> "Equations":
+        """The same tables for an oscillator that differs in its stops or restitution only."""
+        changed = copy(self)
+        changed.q, changed.slope = q, slope
+        return changed
+
+    @property
+    def free(self) -> bool:
+        return bool(self.steady.free)
+
+    def contacts(self, sides) -> np.ndarray:
+        """(K, 4) stop, 1 + R, and their derivatives by the parameter."""
+        result = np.zeros((len(sides), 4))
+        result[:, equations.STOP], result[:, equations.GAIN] = self.q.stop(sides), 1 + self.q.restitution(sides)
+        if self.slope is not None:
+            result[:, equations.STOP_SLOPE] = self.slope.stop(sides)
+            result[:, equations.GAIN_SLOPE] = self.slope.restitution(sides)
+        return result
+
+    def size(self, sides) -> int:
+        return 2 * len(sides) + self.free
+
+    def evaluate(self, sides, u):
+        """F, dF/du, dF/dp, and (K, 3) gap velocity, acceleration and jerk before each impact."""
+        n, K = self.size(sides), len(sides)
+        F, J, Fp, motion = np.empty(n), np.empty((n, n)), np.empty(n), np.empty((K, 3))
+        equations.evaluate(self.train, self.steady, self.contacts(sides), u, F, J, Fp, motion, np.empty((2, 4)))
+        return F, J, Fp, motion
+
+    def newton(self, sides, guesses) -> tuple[np.ndarray, np.ndarray]:
+        """Newton's method from guesses (m, 2K) or (m, 2K + free): solutions, and the last change, NaN: none found."""
+        n, K = self.size(sides), len(sides)
+        starts = np.zeros((len(guesses), n))
+        starts[:, : np.shape(guesses)[1]] = guesses
+        ends, change = np.empty_like(starts), np.full(len(starts), 0.0)
+        if K:
+            contacts = np.repeat(self.contacts(sides)[None], len(starts), 0)
+            work = np.empty(n), np.empty((n, n)), np.empty(n), np.empty((K, 3)), np.empty((2, 4)), np.empty(n)
+            equations.newton_batch(self.train, self.steady, contacts, starts, ends, change, *work)
+        return ends, change
+
+    def linearised(self, mu: int, sides, u, motion) -> np.ndarray:
+        """J(mu) for mu = +1 or -1: singular where the orbit has the multiplier mu; bordered for mu = 1, free modes."""
+        K = len(sides)
+        if mu == 1:
+            return self.evaluate(sides, u)[1]
+        J = np.empty((2 * K, 2 * K))
+        other = train(self.q, self.sigma / mu, self.halves)
+        equations.linearised(other, self.contacts(sides), u, motion, J, np.empty((2, 4)))
+        if self.sigma / mu == 1 and has_free_gap(self.q):
+            J = np.block([[J, np.repeat([[1.0], [0.0]], K, 0)], [np.repeat([[0.0, 1.0]], K, 1), np.zeros((1, 1))]])
+        return J
+
+    def fly(self, sides, u) -> tuple[np.ndarray, np.ndarray]:
+        """States (max(K, 1), 2N + 3) before each impact, in contact coordinates; and (distance, t, side) of the turning
+        point of the gap nearest to its stop, inf where there is none."""
+        f, close = flow(self.q), closing(self.q, self.sigma, self.halves)
+        m, K = f.B.shape[0], len(sides)
+        states, nearest = np.empty((max(K, 1) + 1, m)), np.empty(3)
+        waiting, work = np.empty((extremes.PIECES, 2)), np.empty((3, max(m, equations.ORDER + 1)))
+        low, high = self.q.low, self.q.high
+        flights.fly_orbit(f, close, self.contacts(sides), u, self.P, low, high, states, nearest, waiting, work)
+        return states[:-1], nearest
+
+    def multipliers(self, sides, u, motion) -> np.ndarray:
+        """(2N,) of the map over P, with the mirror for sigma = -1; by falling modulus, of a pair +im first."""
+        f = flow(self.q)
+        n = f.B.shape[0] - 3
+        if len(sides) == 0:
+            values = self.sigma * np.exp(np.linalg.eigvals(f.B[:n, :n]).astype(complex) * self.P)
+            return values[np.lexsort((-values.imag, -np.abs(values)))]
+        product, columns, couplings = np.empty((n, n)), np.empty((n, n)), np.zeros(n)
+        order, work = np.empty(n, np.int64), np.empty((4, n + 3, n + 3))
+        pieces = len(sides) + int(self.P * f.spread / 4.0)
+        contacts, motion = self.contacts(sides), np.ascontiguousarray(motion)
+        factors = np.empty((pieces, n, n))
+        multipliers.multiply(f, contacts, u, self.P, motion, product, columns, couplings, order, factors, work)
+        values = self.sigma * multipliers.eigenvalues(product, columns, couplings)
+        return values[np.lexsort((-values.imag, -np.abs(values)))]
+
+
+def steady(q: Linear, sigma: int, halves: int, slope: Linear | None) -> equations.Steady:
+    """g_lin of the equations. Raises ResonanceError where an undamped mode is driven at its own frequency."""
+    try:
+        X = amplitudes(q)
+    except np.linalg.LinAlgError:
+        raise ResonanceError("the force drives an undamped mode at its own frequency") from None
+    turn = np.exp(1j * q.tau)
+    gain = q.along @ X * turn
+    shapes, seen = free_modes(q)
+    P = forcing_period(q) / 2 * halves
+    s = space(q)
+    free = bool(sigma == 1 and np.any(seen))
+    if sigma == 1 and np.any(np.abs(q.constant @ shapes[:, int(free) :]) > 1e-13 * np.abs(q.constant).max(initial=0)):
+        raise ResonanceError("a constant force acts on a free mode that the contact does not hold")
+    rest = _static(q, q.constant)
+    mean = 0.0 if free else q.along @ rest
+    momentum = P * (shapes[:, 0] @ q.constant) / (s.effective_mass * seen[0]) if free else 0.0
+    d_gain, d_mean, d_momentum, d_omega = 0j, 0.0, 0.0, 0.0
+    if slope is not None:
+        d_omega = float(slope.omega)
+        d_gain = (slope.along @ X + q.along @ amplitude_slopes(q, slope)) * turn + 1j * slope.tau * gain
+        if free:
+            d_momentum = _momentum_slope(q, slope, shapes[:, 0], seen[0], P)
+        else:
+            d_mean = slope.along @ rest + q.along @ _static(q, slope.constant - slope.K @ rest)
+    if not np.isfinite(gain):
+        raise ResonanceError("the force drives an undamped mode at its own frequency")
+    numbers = (q.omega, mean, gain.real, gain.imag, d_omega, d_mean, d_gain.real, d_gain.imag)
+    return equations.Steady(*map(float, numbers), free, float(momentum), float(d_momentum))
+
+
+def _static(q: Linear, force: np.ndarray) -> np.ndarray:
+    """Displacement under a constant force, without free modes."""
+    return np.linalg.lstsq(q.K, force)[0] if np.any(force) else np.zeros(len(force))
+
+
+def _momentum_slope(q: Linear, slope: Linear, shape, seen, P) -> float:
+    if abs(shape @ slope.K @ shape) > 1e-13 * np.abs(slope.K).max(initial=0):
+        raise ValueError("this parameter holds a free mode: the equations change their kind here")
+    d_shape = -np.linalg.lstsq(q.K, slope.K @ shape)[0]
+    s, ds = space(q), space_slopes(q, slope).effective_mass
+    force, weight = shape @ q.constant, s.effective_mass * seen
+    d_force = d_shape @ q.constant + shape @ slope.constant
+    d_weight = ds * seen + s.effective_mass * (d_shape @ q.along + shape @ slope.along)
+    dP = -P * slope.omega / q.omega
+    return (dP * force + P * d_force) / weight - P * force * d_weight / weight**2
+
+
+class _Keyed:
+    """An oscillator as a key: equal where all that the tables depend on is equal; stops and restitution are not."""
+
+    def __init__(self, q: Linear, names):
+        self.q = q
+        self.key = tuple(np.asarray(getattr(q, name), float).tobytes() for name in names)
+
+    def __hash__(self):
+        return hash(self.key)
+
+    def __eq__(self, other):
+        return self.key == other.key
+
+
+TABLES = ("M", "K", "C", "along", "constant", "sine", "cosine", "omega", "tau")
+
+
+def moves_stops_only(slope: Linear) -> bool:
+    """Whether a parameter changes the stops and the restitution, and no table."""
+    return not any(np.any(getattr(slope, name)) for name in TABLES)
+
+
+@lru_cache(maxsize=16)
+def _flow(key: _Keyed) -> flights.Flow:
+    return flights.flow(key.q)
+
+
+@lru_cache(maxsize=64)
+def _closing(key: _Keyed, sigma: int, halves: int) -> np.ndarray:
+    return flights.closing(key.q, sigma, halves)
+
+
+def flow(q: Linear) -> flights.Flow:
+    return _flow(_Keyed(q, TABLES))
+
+
+def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
+    return _closing(_Keyed(q, ("M", "K", "C", "along", "omega")), sigma, halves)

@@ -1,0 +1,114 @@
+"""What holds for every command: its streams, messages of the package, and how the program ends.
+
+Exit status: 0 done; 1 done, but some points have a bad status; 2 the input is wrong; 70 a bug; 130 interrupted.
+"""
+
+import contextlib
+import logging
+import os
+import sys
+import traceback
+from collections.abc import Callable, Iterator
+
+BAD_POINTS, BAD_INPUT, INTERNAL, INTERRUPTED = 1, 2, 70, 130
+
+
+class InputError(ValueError):
+    """The command line asks for something that cannot be done."""
+
+
+def prepare_process() -> None:
+    """Streams that exist and take any text, before anything else is done.
+
+    A closed stream becomes one that nobody reads: its descriptor would else go to the next file that is opened, and
+    messages of C libraries into that file.
+    """
+    for descriptor in (0, 1, 2):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+    sys.stdout = sys.stdout or open(1, "w", closefd=False)  # for as long as the process lasts
+    sys.stderr = sys.stderr or open(2, "w", closefd=False)
+    sys.stdout.reconfigure(errors="backslashreplace")  # names of files need not be UTF-8
+
+
+def ended(command: Callable[[], None]) -> int:
+    """The exit status of a command, which ends itself or is ended by an error."""
+    try:
+        command()
+    except SystemExit as stop:
+        return stop.code or 0
+    except (OSError, InputError) as error:
+        return _refused(error)
+    except Exception as error:
+        print_error(f"internal error, a bug of this program; please report it: {type(error).__name__}: {error}")
+        with contextlib.suppress(OSError):
+            traceback.print_exc()
+        return INTERNAL
+    return 0
+
+
+@contextlib.contextmanager
+def input_errors(*kinds: type[Exception]) -> Iterator[None]:
+    """What the user can mend ends in one message and status 2; the rest is a bug."""
+    try:
+        yield
+    except (InputError, OSError, MemoryError, *kinds) as error:
+        if getattr(error, "internal", False):
+            raise
+        raise SystemExit(_refused(error)) from None
+
+
+def _refused(error: Exception) -> int:
+    text = str(error) or ("not enough memory" if isinstance(error, MemoryError) else type(error).__name__)
+    if isinstance(error, OSError) and error.filename is not None and error.strerror:
+        text = f"{error.filename}: {error.strerror}"
+    for mode in ("resume", "overwrite"):  # in Python an argument, here an option
+        text = text.replace(f"`{mode}`", f"--{mode}")
+    print_error(f"error: {text}")
+    return BAD_INPUT
+
+
+def print_error(text: str) -> None:
+    """A message on stderr, which need not take it."""
+    with contextlib.suppress(OSError):
+        print(f"vibro-sweep: {text}", file=sys.stderr, flush=True)
+
+
+def say(text: str) -> None:
+    """Print a result. Raises InputError where it cannot be written; whoever closes a pipe has read enough."""
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        _stop_writing()
+    except OSError as error:
+        _stop_writing()
+        raise InputError(f"the standard output: {error.strerror}") from None
+
+
+def _stop_writing() -> None:
+    """What is left in the buffer would fail again at the end of the process."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+@contextlib.contextmanager
+def messages(quiet: bool) -> Iterator[None]:
+    """Show what the package has to say meanwhile: warnings, and unless quiet what it is about to do."""
+    logger, handler = logging.getLogger("vibro_sweep"), _Printer()
+    before, propagate = logger.level, logger.propagate
+    logger.setLevel(logging.WARNING if quiet else logging.INFO)
+    logger.propagate = False
+    logger.addHandler(handler)
+    try:
+        yield
+    finally:
+        logger.removeHandler(handler)
+        logger.setLevel(before)
+        logger.propagate = propagate
+
+
+class _Printer(logging.Handler):
+    def emit(self, record: logging.LogRecord) -> None:
+        level = "" if record.levelno < logging.WARNING else f"{record.levelname.lower()}: "
+        print_error(level + record.getMessage())

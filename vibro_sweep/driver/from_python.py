@@ -1,0 +1,65 @@
+"""A sweep from Python, without YAML: from a system and axes to an `xarray.Dataset`."""
+
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vibro_sweep import store
+from vibro_sweep.driver.sweep import run
+from vibro_sweep.model.oscillator import System, checked_system
+from vibro_sweep.scene import Section, Start, Trajectory, scene_of
+from vibro_sweep.scene.written import changed
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray
+
+MOST = 10**9  # bytes of results without a file of the caller's
+
+
+def sweep(
+    system: System,
+    axes: "Mapping[str, np.ndarray | Sequence[float] | Mapping[str, Any]]",
+    *,
+    observe: Iterable[str] = ("section", "lyapunov"),
+    start: "Start | Mapping[str, Any] | Sequence[float] | None" = None,
+    transient: int = 1300,
+    record: int = 200,
+    section: "Section | Mapping[str, Any] | None" = None,
+    trajectory: "Trajectory | Mapping[str, Any] | None" = None,
+    workers: int | None = None,
+    output: str | Path | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> "xarray.Dataset":
+    """Sweep one number or two of a system, or of the initial state; the results as an `xarray.Dataset`.
+
+    Parameters
+    ----------
+    axes : name -> values (n,), rising or falling, as {"b": np.linspace(6.5, 6.9, 2001)}; or an axis as in YAML, as
+        {"b": {"start": 6.5, "stop": 6.9, "step": 0.0002}}, whose values are the decimal numbers
+    observe, start, section, trajectory : as the keys of a scene in YAML; `start` may be a state (x1, v1, x2, v2) too
+    transient, record : forcing periods
+    workers, progress : as of `run`
+    output : a file, which is kept and read when numbers are used; needed where the results take more than 1 GB
+
+    Outcomes of points are in `status`. Raises TypeError where `system` is no System, `SceneError` for what is no
+    scene, ValueError for more results than go without a file, and what `run` raises.
+    """
+    checked_system(system)
+    given = {"system": system, "sweep": axes, "start": start, "transient": transient, "record": record}
+    given |= {"section": section, "observe": observe, "trajectory": trajectory}
+    scene = scene_of(changed({}, given), "sweep")
+    if output is not None:
+        run(scene, output, workers, progress=progress)
+        return store.open(output)
+    if store.size(scene) > MOST:
+        size, most = store.size(scene) / 1e9, MOST / 1e9
+        raise ValueError(
+            f"output: None is not allowed; it must be a file, the results take {size:.3g} GB > {most:g} GB"
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "sweep.h5")
+        run(scene, file, workers, progress=progress)
+        with store.open(file) as data:
+            return data.load()

@@ -1,0 +1,183 @@
+"""From a scene to its file: blocks of points, computed by an executor, handed to the store as they come."""
+
+import logging
+import platform
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import closing
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Literal
+
+import h5py
+
+from vibro_sweep import store
+from vibro_sweep.driver import MOST_WORKERS
+from vibro_sweep.driver.attractor_ids import number_attractors
+from vibro_sweep.driver.blocks import Block, blocks, next_part, whole_chains
+from vibro_sweep.driver.compute import CHAIN_ENDS, RunError
+from vibro_sweep.driver.cost import duration, orbit_seconds, points_per_block, side_by_side
+from vibro_sweep.driver.memory import available_cores, blocks_under_way, orbits_per_block
+from vibro_sweep.driver.pool import as_computed
+from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.status import STANDING, meaning
+from vibro_sweep.scene import Scene
+from vibro_sweep.store.layout import write_following
+
+__all__ = ["RunError", "RunReport", "run"]
+
+_log = logging.getLogger("vibro_sweep")
+
+WORTH_SAYING = 10.0  # seconds that a run will take from which on that is said before
+THREAD_SECONDS, SECONDS = 1.0, 4.0  # of a block: long enough for its overhead not to count, short enough to lose
+
+
+@dataclass
+class RunReport:
+    """What is in a file that `run` has made: orbits, how many have a bad status, how many have which, the wall time.
+
+    `not_settled` is a remark and no bad status: the numbers stand. `computed`: orbits that this call has computed, 0
+    where the file was complete already; reports of equal files are equal.
+    """
+
+    points: int
+    bad: int
+    statuses: dict[str, int]
+    seconds: float
+    computed: int = field(compare=False)
+
+
+def run(
+    scene: Scene,
+    output: str | Path,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    mode: Literal["new", "resume", "overwrite"] = "new",
+) -> RunReport:
+    """Compute a scene and write its file.
+
+    Parameters
+    ----------
+    output : the HDF5 file; while it is computed it is `output`.part, which `open`, `info` and `plot` read at any moment
+    workers : threads, by default one for each core; of an `executor` that does not say how many it has, its workers
+    executor : any `concurrent.futures.Executor` instead
+    progress : called as progress(done, total) in orbits, from this thread
+    mode : "new" (nothing that exists is replaced), "resume" (continue `output`.part where it stopped) or "overwrite"
+
+    An `output` that is complete, and made by the same scene and code, is left as it is: the report is that of its run.
+    Results do not depend on workers, executor, block size or interruptions, bit for bit. Memory is that of the blocks
+    under way, whatever the size of the sweep. Raises `store.StoreError` for a file that is in the way or does not fit
+    the scene, ValueError for a number of workers that cannot be, TypeError for arguments of other kinds, RunError where
+    workers fail, and lets KeyboardInterrupt
+    through once the file is safe; threads that are in a block then, end with it.
+    """
+    began = time.perf_counter()
+    check_type("scene", scene, Scene, "a Scene, as `load_scene` returns it")
+    check_type("output", output, (str, Path), "the path of a file")
+    if executor is not None and not callable(getattr(executor, "submit", None)):
+        raise TypeError(f"executor: {executor!r} is not allowed; it must be a concurrent.futures.Executor")
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress: {progress!r} is not allowed; it must be callable as progress(done, total)")
+    if workers is not None and (type(workers) is not int or not 1 <= workers <= MOST_WORKERS):
+        raise ValueError(f"workers: {workers!r} is not allowed; it must be a whole number from 1 to {MOST_WORKERS}")
+    with store.writer(scene, Path(output), mode) as file:
+        total, done = scene.n_points, file.done()
+        missing = total - done
+        if progress:
+            progress(done, total)
+        if missing:
+            with closing(_results(scene, file, missing, workers or available_cores(), executor)) as results:
+                for box, arrays in results:
+                    file.write(box, arrays)
+                    done += arrays["status"].size
+                    if progress:
+                        progress(min(done, total), total)
+        seconds = file.seconds if isinstance(file, store.Complete) else round(time.perf_counter() - began, 3)
+        threads = (workers or available_cores()) if executor is None else None
+        statuses = file.finish(_provenance(scene, threads, executor, seconds), partial(_complete, scene))
+    bad = sum(number for code, number in statuses.items() if code not in STANDING)
+    named = {meaning(code): number for code, number in statuses.items()}
+    return RunReport(total, bad, named, seconds, missing)
+
+
+def _complete(scene: Scene, file: h5py.File) -> None:
+    """What a file holds besides the results of blocks."""
+    write_following(file, scene)
+    if "attractors" in scene.observe:
+        number_attractors(scene, file)
+
+
+def _results(
+    scene: Scene, file: store.Writer, missing: int, workers: int, executor: Executor | None
+) -> Iterator[tuple]:
+    """Results of all blocks with one of the missing orbits, as they come."""
+    cost = off_the_main_thread(orbit_seconds, scene)
+    count = workers if executor is None else _worker_count(executor, workers)
+    orbits = orbits_per_block(scene, count)
+    most = blocks_under_way(scene, orbits, here=executor is None)
+    pool = executor or ThreadPoolExecutor(min(workers, most))
+    size = points_per_block(scene, cost, count, THREAD_SECONDS if executor is None else SECONDS)
+    seconds = cost * missing / side_by_side(scene, count)
+    if seconds > WORTH_SAYING:
+        _log.info("%s orbits, about %s with %s workers", f"{missing:,}", duration(seconds), count)
+    todo = (block for block in blocks(scene, size, orbits) if file.missing(whole_chains(block)))
+
+    def window() -> int:  # one block for each worker: it gets its next when the one before is safe in the file
+        return min(_worker_count(pool, workers), most)
+
+    def go_on(block: Block, arrays: dict) -> Block:
+        return next_part(scene, block, arrays.pop(CHAIN_ENDS))
+
+    try:
+        for box, arrays in as_computed(pool, todo, window, go_on):
+            if file.missing(box):  # parts of chains may only lead to the one that is missing
+                yield box, arrays
+    finally:
+        if executor is None:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def off_the_main_thread(function: Callable, *arguments):
+    """Its result; meanwhile Ctrl-C is answered, which neither the compiler nor compiled code do."""
+    pool = ThreadPoolExecutor(1)
+    try:
+        return pool.submit(function, *arguments).result()
+    finally:
+        pool.shutdown(wait=False)
+
+
+def _worker_count(pool: Executor, default: int) -> int:
+    """Blocks that an executor computes at a time, now: it may grow. mpi4py and `cluster` call it `num_workers`."""
+    return getattr(pool, "num_workers", None) or getattr(pool, "_max_workers", None) or default
+
+
+def _provenance(scene: Scene, threads: int | None, executor: Executor | None, seconds: float) -> dict:
+    """How the file was made, as one JSON record."""
+    from importlib.metadata import version
+
+    from vibro_sweep import __version__
+
+    packages = ("numpy", "numba", "llvmlite", "h5py")
+    return {
+        "vibro_sweep": __version__,
+        "python": platform.python_version(),
+        **{name: version(name) for name in packages},
+        "cpu": _cpu_name(),
+        "executor": "threads" if executor is None else type(executor).__name__,
+        "threads": threads,
+        "seed": scene.start.seed if scene.start.kind == "random" else None,
+        "wall_time_s": seconds,
+    }
+
+
+def _cpu_name() -> str:
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()

@@ -1,0 +1,60 @@
+"""What an attractor is known by: averages that every orbit on it has, and how well they are known."""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.simd.jit import jit
+
+COARSEST, FINEST = 5, 20  # parts of the record; the longer ones show correlations that the shorter ones miss
+
+
+@jit
+def keep_averages(section, T, repeat, o, result):
+    """Keep the averages of an orbit that has settled, and their errors.
+
+    (7,): x1, v1, x2, v2 of the section points, impacts in a forcing period on the right and on the left, lambda_1. Of
+    a periodic orbit over one period, the one that o has just counted impacts in; the error is how far it can be from
+    where it converges to, if its points change by no more than the part `repeat` in a period. Else over the record,
+    with the standard error.
+    """
+    mean, error, period = result.average, result.average_error, result.period
+    length = period if period > 0 else len(section)
+    right = o.impacts_right if period > 0 else result.impacts_right
+    left = o.impacts_left if period > 0 else result.impacts_left
+    largest, memory = 0.0, 1.0
+    for i in range(4):
+        mean[i], square = 0.0, 0.0
+        for n in range(len(section) - length, len(section)):
+            mean[i] += section[n, i] / length
+            square += section[n, i] ** 2 / length
+            largest = max(largest, abs(section[n, i]))
+        error[i] = standard_error(section, i, mean[i])
+        spread = square - mean[i] ** 2
+        if spread > error[i] ** 2:
+            memory = max(memory, error[i] ** 2 * length / spread)
+    mean[4], mean[5] = right / length, left / length
+    mean[6], error[6] = result.lyapunov[0], result.lyapunov_error[0]
+    # as if impacts came in bunches, one in each time in which the orbit forgets itself
+    error[4], error[5] = math.sqrt(max(right, 1) * memory) / length, math.sqrt(max(left, 1) * memory) / length
+    if period > 0:
+        error[4] = error[5] = o.chatters / length  # rounding may end a listed sequence one impact earlier
+        for i in range(4):  # steps that shrink by the greatest multiplier, summed up
+            error[i] = repeat * largest / max(-math.expm1(mean[6] * period * T), repeat)
+
+
+@jit
+def standard_error(section, i, mean):
+    """Of the mean of coordinate i, from the scatter over parts of several lengths; NaN of a short record."""
+    largest, parts = np.nan, COARSEST
+    while parts <= min(FINEST, len(section)):
+        size, scatter = len(section) // parts, 0.0
+        for m in range(parts):
+            part = 0.0
+            for n in range(m * size, (m + 1) * size):
+                part += section[n, i] / size
+            scatter += (part - mean) ** 2
+        error = math.sqrt(scatter / (parts * (parts - 1.0)))
+        largest = error if not largest >= error else largest
+        parts *= 2
+    return largest

@@ -1,0 +1,1 @@
+"""Periodic orbits as impact sequences: a branch runs smoothly through a graze, where shooting with the state fails."""

@@ -1,0 +1,104 @@
+"""Turning points of the gap on one cell of a flight, where it is a Taylor polynomial; certified by bounds."""
+
+from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.simd.jit import jit
+
+
+@jit
+def value_of(c, u):
+    p = c[ORDER]
+    for n in range(ORDER - 1, -1, -1):
+        p = p * u + c[n]
+    return p
+
+
+@jit
+def slope_of(c, u):
+    p = ORDER * c[ORDER]
+    for n in range(ORDER - 1, 0, -1):
+        p = p * u + n * c[n]
+    return p
+
+
+@jit
+def curve_of(c, u):
+    p = ORDER * (ORDER - 1) * c[ORDER]
+    for n in range(ORDER - 1, 1, -1):
+        p = p * u + n * (n - 1) * c[n]
+    return p
+
+
+@jit
+def turning_point(c, a, b):
+    """The zero of p' in [a, b], where p' is monotone and changes sign: bisection and Newton's method."""
+    fa = slope_of(c, a)
+    u = 0.5 * (a + b)
+    for _ in range(100):
+        f = slope_of(c, u)
+        if f == 0.0:
+            return u
+        if (f > 0.0) == (fa > 0.0):
+            a = u
+        else:
+            b = u
+        d = curve_of(c, u)
+        new = u - f / d if d != 0.0 else 0.5 * (a + b)
+        if not (a < new < b):
+            new = 0.5 * (a + b)
+        if abs(new - u) <= 1e-16 * b:
+            return new
+        u = new
+    return u
+
+
+PIECES = 64  # intervals waiting in the subdivision of a cell
+
+
+@jit
+def extremes_of_cell(c, length, low, high, nearest, waiting):
+    """Lower `nearest` (distance, u, side) to the least distance of a turning point of p on (0, length) from its stop.
+
+    A maximum is compared with `high`, a minimum with `low`. Certified: an interval is left only where |p'| or |p''|
+    exceeds a bound of what its change can be. An inflection that cannot be told from a turning point counts as one.
+    True if `nearest` was lowered.
+    """
+    bound, third, power = 0.0, 0.0, 1.0
+    for n in range(1, ORDER + 1):
+        bound += abs(c[n]) * power * length
+        if n >= 3:
+            third += n * (n - 1) * (n - 2) * abs(c[n]) * power / (length * length)
+        power *= length
+    if high - c[0] - bound > nearest[0] and c[0] - bound - low > nearest[0]:
+        return False
+    found = False
+    waiting[0, 0], waiting[0, 1] = 0.0, length
+    count = 1
+    while count > 0:
+        count -= 1
+        a, b = waiting[count, 0], waiting[count, 1]
+        middle, r = 0.5 * (a + b), 0.5 * (b - a)
+        slope, curve = slope_of(c, middle), curve_of(c, middle)
+        if abs(slope) > abs(curve) * r + 0.5 * third * r * r:
+            continue
+        monotone = abs(curve) > third * r
+        if not monotone and r > 1e-9 * length and count < PIECES - 2:
+            waiting[count, 0], waiting[count, 1] = a, middle
+            waiting[count + 1, 0], waiting[count + 1, 1] = middle, b
+            count += 2
+            continue
+        u = middle
+        if monotone:
+            fa, fb = slope_of(c, a), slope_of(c, b)
+            if not ((fa > 0.0 and fb <= 0.0) or (fa < 0.0 and fb >= 0.0)):
+                continue
+            u = turning_point(c, a, b)
+        p = value_of(c, u)
+        side = 1.0 if curve < 0.0 else -1.0
+        distance = high - p if side > 0.0 else p - low
+        if not monotone:
+            side = 1.0 if high - p < p - low else -1.0
+            distance = min(high - p, p - low)
+        if distance < nearest[0]:
+            nearest[0], nearest[1], nearest[2] = distance, u, side
+            found = True
+    return found

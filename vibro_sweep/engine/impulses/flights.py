@@ -1,0 +1,270 @@
+"""The motion between the impacts of a periodic orbit: states, and the certified extremes of the gap.
+
+State zeta = (y, y', cos(omega t + tau), sin(omega t + tau), 1) in contact coordinates y = T x (physics.md): y_1 is the
+gap, and an impulse changes y_1' and nothing else. zeta' = B zeta.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.engine.impulses.extremes import extremes_of_cell
+from vibro_sweep.engine.impulses.green import (
+    MOST_CELLS,
+    ResonanceError,
+    TooStiffError,
+    cells_needed,
+    free_modes,
+    has_free_gap,
+)
+from vibro_sweep.engine.impulses.tables import ORDER, REAL, exponential, power, taylor_rows
+from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.model.linear import Linear, forcing_period
+
+DOUBLINGS = 18
+OVERLAP = 1.0 + 1e-9
+
+
+class Flow(NamedTuple):
+    """Free flight of one oscillator in contact coordinates; n = 2N, m = n + 3."""
+
+    B: np.ndarray  # (m, m)
+    width: float  # of a cell
+    powers: np.ndarray  # (DOUBLINGS, m, m): exp(B width 2^j)
+    rows: np.ndarray  # (ORDER + 1, m): the gap's Taylor coefficients
+    omega: float
+    tau: float
+    spread: float  # between the fastest and the slowest decay, per unit time
+
+
+class Coordinates(NamedTuple):
+    """y = T x, x = inverse y."""
+
+    T: np.ndarray  # (N, N)
+    inverse: np.ndarray
+
+
+def contact_coordinates(q: Linear) -> Coordinates:
+    """T with first row n and other rows w_i, w_i M^-1 n = 0; the identity where n = e_1 and M is diagonal."""
+    N = len(q.along)
+    direction = np.linalg.solve(q.M, q.along)
+    T = np.eye(N)
+    T[0] = q.along
+    if np.count_nonzero(q.along[1:]) or np.count_nonzero(direction[1:]):
+        T[1:] = np.linalg.qr(np.column_stack([direction, np.eye(N)]))[0].T[1:]
+    return Coordinates(T, np.linalg.inv(T))
+
+
+def flow(q: Linear) -> Flow:
+    """Tables of the free flight. Raises TooStiffError."""
+    N = len(q.along)
+    T, inverse = contact_coordinates(q)
+    to_y = T @ np.linalg.inv(q.M)
+    n = 2 * N
+    B = np.zeros((n + 3, n + 3))
+    B[:N, N:n] = np.eye(N)
+    B[N:n, :N], B[N:n, N:n] = -to_y @ q.K @ inverse, -to_y @ q.C @ inverse
+    B[N:n, n], B[N:n, n + 1], B[N:n, n + 2] = to_y @ q.cosine, to_y @ q.sine, to_y @ q.constant
+    B[n, n + 1], B[n + 1, n] = -q.omega, q.omega
+    cells = 2 * cells_needed(q)
+    if cells > MOST_CELLS:
+        raise TooStiffError(f"a forcing period needs {cells} cells, at most {MOST_CELLS} are allowed")
+    width = REAL(forcing_period(q)) / cells
+    step = exponential(B.astype(REAL), width)
+    powers = []
+    for _ in range(DOUBLINGS):
+        powers.append(step.astype(float))
+        step = step @ step
+    row = np.zeros(n + 3, REAL)
+    row[0] = 1
+    rows = taylor_rows(B.astype(REAL), row).astype(float)
+    rates = np.linalg.eigvals(B[:n, :n]).real
+    return Flow(B, float(width), np.array(powers), rows, q.omega, float(q.tau), float(np.ptp(rates)))
+
+
+def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
+    """(n, n + 1): from what a period adds to a zero state, and the gap, the state that repeats itself with sigma.
+
+    The gap is used only where the contact sees a free mode. Raises ResonanceError.
+    """
+    N = len(q.along)
+    n = 2 * N
+    T, inverse = contact_coordinates(q)
+    to_y = T @ np.linalg.inv(q.M)
+    A = np.zeros((n, n), REAL)
+    A[:N, N:] = np.eye(N)
+    A[N:, :N], A[N:, N:] = -to_y @ q.K @ inverse, -to_y @ q.C @ inverse
+    cells = cells_needed(q)
+    half = power(exponential(A, REAL(forcing_period(q)) / 2 / cells), cells)
+    matrix = (sigma * np.eye(n) - power(half, halves)).astype(float)
+    result = np.zeros((n, n + 1))
+    if sigma == 1 and has_free_gap(q):
+        shapes, _ = free_modes(q)
+        count = shapes.shape[1]
+        momentum = np.block([[inverse.T @ q.C @ shapes], [inverse.T @ q.M @ shapes]])
+        gauge = np.concatenate([T @ shapes, np.zeros_like(shapes)]).T
+        gauge[0] = np.eye(n)[0]
+        bordered = np.block([[matrix, momentum], [gauge, np.zeros((count, count))]])
+        result[:] = np.linalg.inv(bordered)[:n, : n + 1]
+        return result
+    if np.linalg.cond(matrix) > 1e14:
+        raise ResonanceError(f"an undamped mode repeats itself, with sign {sigma:+d}, after {halves} half periods")
+    result[:, :n] = np.linalg.inv(matrix)
+    return result
+
+
+@jit
+def advance(f, z, length, work):
+    """zeta over a time `length` >= 0, in place. work: (2, m)."""
+    m = len(z)
+    cells = int(length / f.width)
+    u = length - cells * f.width
+    j = 0
+    while cells > 0:
+        last = j == len(f.powers) - 1
+        for _ in range(cells if last else cells & 1):
+            for i in range(m):
+                total = 0.0
+                for k in range(m):
+                    total += f.powers[j, i, k] * z[k]
+                work[0, i] = total
+            for i in range(m):
+                z[i] = work[0, i]
+        cells = 0 if last else cells >> 1
+        j += 1
+    for i in range(m):
+        work[0, i] = z[i]
+    for n in range(1, ORDER + 1):
+        largest = 0.0
+        for i in range(m):
+            total = 0.0
+            for k in range(m):
+                total += f.B[i, k] * work[0, k]
+            work[1, i] = total * u / n
+        for i in range(m):
+            work[0, i] = work[1, i]
+            z[i] += work[1, i]
+            largest = max(largest, abs(work[1, i]))
+        if largest == 0.0:
+            break
+
+
+@jit
+def set_phase(f, z, t):
+    """The forcing at the time t."""
+    m = len(z)
+    z[m - 3], z[m - 2], z[m - 1] = math.cos(f.omega * t + f.tau), math.sin(f.omega * t + f.tau), 1.0
+
+
+@jit
+def extremes(f, z, length, low, high, nearest, waiting, work):
+    """Fly `length` from zeta in place; lower `nearest` (distance, time from the start, side) to its turning points'."""
+    m = len(z)
+    c = work[2]
+    cells = int(length / f.width)
+    for k in range(cells + 1):
+        start = k * f.width
+        width = min(f.width * OVERLAP, length - start)  # or a turning point between two cells could be lost to both
+        if not width > 0.0:
+            break
+        for n in range(ORDER + 1):
+            total = 0.0
+            for i in range(m):
+                total += f.rows[n, i] * z[i]
+            c[n] = total
+        if extremes_of_cell(c, width, low, high, nearest, waiting):
+            nearest[1] += start
+        if k < cells:
+            for i in range(m):
+                total = 0.0
+                for j in range(m):
+                    total += f.powers[0, i, j] * z[j]
+                work[0, i] = total
+            for i in range(m):
+                z[i] = work[0, i]
+        else:
+            advance(f, z, width, work)
+
+
+@jit
+def start_of_orbit(f, close, u, K, P, gap, z, work):
+    """zeta before the first impact (at t = 0 without impacts) of the orbit with these times and impulses."""
+    m = len(z)
+    n, N = m - 3, (m - 3) // 2
+    for i in range(n):
+        z[i] = 0.0
+    first = u[0] if K > 0 else 0.0
+    set_phase(f, z, first)
+    for k in range(K):
+        z[N] += u[K + k]
+        advance(f, z, (u[k + 1] if k + 1 < K else first + P) - u[k], work)
+    if K == 0:
+        advance(f, z, P, work)
+    for i in range(n):
+        work[0, i] = z[i]
+    for i in range(n):
+        total = close[i, n] * gap
+        for j in range(n):
+            total += close[i, j] * work[0, j]
+        z[i] = total
+    set_phase(f, z, first)
+
+
+@entry
+def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, waiting, work):
+    """States before each impact, (max(K, 1), m), and the turning point nearest to its stop: (distance, t, side).
+
+    Without impacts: the state at t = 0. work: (3, max(m, ORDER + 1)).
+    """
+    K = len(contacts)
+    z = states[0]
+    m = len(z)
+    work = work[:, : max(m, ORDER + 1)]
+    start_of_orbit(f, close, u, K, P, contacts[0, 0] if K > 0 else 0.0, z, work)
+    nearest[0], nearest[1], nearest[2] = np.inf, 0.0, 0.0
+    N = (m - 3) // 2
+    flying = states[max(K, 1)]
+    first = u[0] if K > 0 else 0.0
+    for i in range(m):
+        flying[i] = z[i]
+    for k in range(max(K, 1)):
+        begin = u[k] if K > 0 else 0.0
+        end = u[k + 1] if k + 1 < K else first + P
+        for i in range(m):
+            states[k, i] = flying[i]
+        set_phase(f, flying, begin)
+        set_phase(f, states[k], begin)
+        if K > 0:
+            flying[N] = flying[N] + u[K + k] if contacts[k, 1] > 1.0 else 0.0
+        distance = nearest[0]
+        if K == 0:  # a turning point at t = 0 must not be lost between the ends
+            end += 0.5 * f.width
+        extremes(f, flying, end - begin, low, high, nearest, waiting, work)
+        if nearest[0] < distance:
+            nearest[1] += begin
+
+
+@entry
+def flight_matrices(f, lengths, out, work):
+    """exp(A length) of each flight: out (flights, n, n). work: (3, n + 3)."""
+    n = out.shape[1]
+    z = work[2]
+    for k in range(len(lengths)):
+        for j in range(n):
+            for i in range(n + 3):
+                z[i] = 1.0 if i == j else 0.0
+            advance(f, z, lengths[k], work)
+            for i in range(n):
+                out[k, i, j] = z[i]
+
+
+@entry
+def sample_flights(f, starts, begins, which, times, out, work):
+    """zeta at `times` of the flights that start with starts[which] at begins[which]: out (samples, m)."""
+    for i in range(len(times)):
+        k = which[i]
+        for j in range(out.shape[1]):
+            out[i, j] = starts[k, j]
+        set_phase(f, out[i], begins[k])
+        advance(f, out[i], times[i] - begins[k], work)

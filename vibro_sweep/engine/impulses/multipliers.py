@@ -1,0 +1,191 @@
+"""Multipliers of a periodic orbit with impacts: eigenvalues of the product of its saltation and flight factors.
+
+They may span twenty decades, so that the product itself is never formed. Orthogonal iteration runs through the
+factors; each pass gives triangular factors whose product of diagonal blocks has the multipliers, each as accurate as
+its own condition allows. Moduli within a factor 2 stay together in a block.
+
+The saltation matrix in contact coordinates, with v, a the gap velocity and acceleration before the impact:
+
+    S = 1 - (1 + R) (e_v e_v^T + A e_v e_g^T) + (1 + R) (a/v) e_v e_g^T
+
+Only the last term grows near a graze. For R > 0 it is split off, S = S_0 (1 - (1 + R) a/(R v) e_v e_g^T), and the
+shear is written as rotation, stretch, rotation, so that its small singular value keeps its digits.
+"""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from vibro_sweep.engine.impulses.flights import advance
+from vibro_sweep.engine.simd.jit import entry, jit
+
+PASSES = 40
+EARLIEST = 12  # pass after which moduli closer than 0.01^(1/12) = 0.68 need not be told apart
+
+
+@jit
+def factorise(Y, order, T, product, columns):
+    """Replace Y (n, n) by Q of its QR factors, rows taken in `order` (large ones first); product <- T product."""
+    n = len(order)
+    for j in range(n):
+        for i in range(n):
+            columns[i, j] = Y[order[i], j]
+    for i in range(n):
+        for j in range(n):
+            T[i, j] = 0.0
+            Y[i, j] = 1.0 if i == j else 0.0  # becomes Q
+    # Givens rotations from below: small rows are turned into large ones, never the other way
+    for j in range(n):
+        for i in range(n - 1, j, -1):
+            a, b = columns[i - 1, j], columns[i, j]
+            if b == 0.0:
+                continue
+            r = math.hypot(a, b)
+            c, s = a / r, b / r
+            for k in range(n):
+                x, y = columns[i - 1, k], columns[i, k]
+                columns[i - 1, k], columns[i, k] = c * x + s * y, c * y - s * x
+                x, y = Y[k, i - 1], Y[k, i]
+                Y[k, i - 1], Y[k, i] = c * x + s * y, c * y - s * x
+            columns[i, j] = 0.0
+    for i in range(n):
+        for j in range(n):
+            T[i, j] = Y[i, j]
+    for i in range(n):
+        for j in range(n):
+            Y[order[i], j] = T[i, j]
+    for i in range(n):  # an upper triangle, so that rows may be replaced from above
+        for j in range(n):
+            total = 0.0
+            for k in range(i, n):
+                total += columns[i, k] * product[k, j]
+            product[i, j] = total
+
+
+@jit
+def turn(Y, i, j, c, s):
+    """Rotate rows i and j."""
+    for k in range(Y.shape[1]):
+        x, y = Y[i, k], Y[j, k]
+        Y[i, k], Y[j, k] = c * x + s * y, c * y - s * x
+
+
+@jit
+def salt(f, gain, v, a, Y, order, T, product, columns):
+    """Y <- S Y for one impact, factorised. gain: 1 + R."""
+    n = len(order)
+    N = n // 2
+    R = gain - 1.0
+    shear = gain * a / v
+    if R > 0.0:
+        beta = -shear / R
+        size = 0.5 * (abs(beta) + math.hypot(beta, 2.0))
+        c, s = 1.0 / math.hypot(1.0, 1.0 / size), math.copysign(1.0 / math.hypot(1.0, size), beta)
+        turn(Y, 0, N, c, s)  # V^T: the right singular vector of the large singular value first
+        for k in range(n):
+            Y[0, k] *= size
+            Y[N, k] /= size
+        for i in range(n - 1):
+            order[i] = i if i < N else i + 1
+        order[n - 1] = N
+        factorise(Y, order, T, product, columns)
+        turn(Y, 0, N, abs(s), -math.copysign(c, beta))  # U
+        shear = 0.0
+    for k in range(n):
+        g, speed = Y[0, k], Y[N, k]
+        Y[0, k] -= gain * g  # A e_v has the gap component 1
+        for i in range(N, n):
+            Y[i, k] -= gain * f.B[i, N] * g
+        Y[N, k] += shear * g - gain * speed
+
+
+@jit
+def flight_length(u, P, K, k):
+    """Time from impact k to the next."""
+    return (u[k + 1] if k + 1 < K else u[0] + P) - u[k]
+
+
+@jit
+def flight_pieces(spread, length):
+    """Pieces of a flight in each of which no direction shrinks by more than e^-4 against another."""
+    return 1 + int(length * spread / 4.0)
+
+
+@entry
+def multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work):
+    """The product of all factors as `columns` times `product`, both (n, n), in the last basis of the iteration.
+
+    `product` is an upper triangle, `columns` falls apart into diagonal blocks where `couplings` (n,) vanish. motion:
+    (K, 3), gap velocity and acceleration before each impact. order: (n,) integers. factors: (pieces, n, n), room for
+    the flights in `flight_pieces` pieces each. work: (4, n + 3, n + 3).
+    """
+    K = len(contacts)
+    n = len(order)
+    Y, T, start = work[0, :n, :n], work[1, :n, :n], work[2, :n, :n]
+    flying, helper = work[3, 0], work[3, 1:3]
+    for i in range(n):
+        for j in range(n):
+            Y[i, j] = 1.0 if i == j else 0.0
+    count = 0
+    for k in range(K):
+        length = flight_length(u, P, K, k)
+        pieces = flight_pieces(f.spread, length)
+        for j in range(n):
+            for i in range(n + 3):
+                flying[i] = 1.0 if i == j else 0.0
+            advance(f, flying, length / pieces, helper)
+            for i in range(n):
+                factors[count, i, j] = flying[i]
+        for piece in range(1, pieces):
+            for i in range(n):
+                for j in range(n):
+                    factors[count + piece, i, j] = factors[count, i, j]
+        count += pieces
+    for turn_number in range(PASSES):
+        for i in range(n):
+            for j in range(n):
+                start[i, j], product[i, j] = Y[i, j], 1.0 if i == j else 0.0
+        count = 0
+        for k in range(K):
+            salt(f, contacts[k, 1], motion[k, 0], motion[k, 1], Y, order, T, product, columns)
+            for i in range(n):
+                order[i] = i
+            for _ in range(flight_pieces(f.spread, flight_length(u, P, K, k))):
+                for i in range(n):
+                    for j in range(n):
+                        total = 0.0
+                        for m in range(n):
+                            total += factors[count, i, m] * Y[m, j]
+                        T[i, j] = total
+                for i in range(n):
+                    for j in range(n):
+                        Y[i, j] = T[i, j]
+                count += 1
+                factorise(Y, order, T, product, columns)
+        settled = True
+        for i in range(n):
+            for j in range(n):
+                total = 0.0
+                for k in range(n):
+                    total += start[k, i] * Y[k, j]
+                columns[i, j] = total
+        for split in range(1, n):
+            couplings[split] = 0.0
+            for i in range(split, n):
+                for j in range(split):
+                    couplings[split] = max(couplings[split], abs(columns[i, j]))
+            settled = settled and (couplings[split] < 1e-14 or (turn_number >= EARLIEST and couplings[split] > 1e-2))
+        if settled:
+            break
+
+
+def eigenvalues(product: np.ndarray, columns: np.ndarray, couplings: np.ndarray) -> np.ndarray:
+    """The multipliers (n,) from what `multiply` gives: by falling modulus, of a pair +im first."""
+    n = len(product)
+    cuts = [0, *(i for i in range(1, n) if couplings[i] < 1e-13), n]
+    values = np.empty(n, complex)
+    for a, b in pairwise(cuts):
+        block = columns[a:b, a:b] @ product[a:b, a:b]
+        values[a:b] = block if b - a == 1 else np.linalg.eigvals(block)
+    return values[np.lexsort((-values.imag, -np.abs(values)))]

@@ -1,0 +1,1 @@
+"""Orbits: exclusion test, first contact, impact, chatter, sticking, and the event loop."""

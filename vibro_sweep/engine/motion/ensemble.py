@@ -1,0 +1,261 @@
+"""The loop: eight orbits from section to section over the phase grid.
+
+Each goes on by itself, over whole cells and periods, to the next cell in which it may strike (`seek`); there all of
+them strike at once. None waits for another at a section, and none depends on another.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.engine.motion.discontinuity import map_period
+from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
+from vibro_sweep.engine.motion.orbits import ORBIT, Records, Stops, add_count, keep_start, new_records, sample, take_off
+from vibro_sweep.engine.motion.scan import careful_state, first_suspect, suspect_state
+from vibro_sweep.engine.motion.strike import STRIKE, start_count, strike
+from vibro_sweep.engine.simd.jit import aside, entry, inline
+from vibro_sweep.engine.simd.lanes import LANES, lanes_of, leading, new_lines, put, put_four, row, select
+from vibro_sweep.engine.tables.flight import Flight, load, new_flight
+from vibro_sweep.engine.variational import tangent
+from vibro_sweep.engine.variational.tangent import TANGENT
+from vibro_sweep.model import status
+
+
+class Ensemble(NamedTuple):
+    """Eight orbits on their way."""
+
+    flights: Flight  # with a first axis: the tables of each oscillator
+    orbits: np.ndarray  # (LANES,) ORBIT
+    strike: np.ndarray  # (1,) STRIKE
+    tangent: np.ndarray  # (1,) TANGENT
+    records: Records  # with a first axis: one for each orbit
+
+
+def new_ensemble(cells: int, impacts: int = 0, rests: int = 0, samples: int = 0) -> Ensemble:
+    """Orbits of oscillators with at most so many cells, and room for what is kept of each."""
+    orbits = new_lines(LANES, ORBIT)
+    orbits["lane"] = np.arange(LANES)
+    return Ensemble(
+        new_flight(LANES, cells),
+        orbits,
+        new_lines(1, STRIKE),
+        new_lines(1, TANGENT),
+        new_records(LANES, impacts, rests, samples),
+    )
+
+
+@inline
+def flight_of(e, o):
+    """The tables of an orbit's oscillator."""
+    n = np.uint64(o.table)  # unsigned: else numba looks for negative indices
+    return Flight(e.flights.oscillator[n], e.flights.nodes[n], e.flights.scan[n])
+
+
+@inline
+def stops_of(o):
+    """The stops of an orbit."""
+    return Stops(o.stops[0], o.stops[1], o.stops[2])
+
+
+@inline
+def records_of(e, o):
+    """What is kept of an orbit."""
+    n = o.lane
+    return Records(e.records.impacts[n], e.records.rests[n], e.records.times, e.records.samples)
+
+
+@inline
+def end_period(e, o, q, nodes, X, section, keep, growth, parts):
+    """Take the orbit over the section, where its state is X."""
+    o.cell = o.events = o.samples_taken = 0
+    take_off(o, nodes, X)
+    o.period += 1
+    if keep:
+        largest = row(o.largest, 0)
+        put_four(section[np.uint64(o.lane)], o.done, X)
+        put(o.largest, 0, select(abs(X) > largest, abs(X), largest))
+    o.done += 1
+    t = e.tangent[0]
+    if t.wanted:
+        t.cell[o.lane] -= q.cells
+        if parts > 0 and o.done * parts >= (o.read + 1) * o.periods:
+            tangent.read_growth(t, o.lane, q, nodes, growth[o.lane, o.read])
+            o.read += 1
+
+
+@inline
+def under_way(o):
+    """Whether an orbit has periods to go."""
+    return o.done < o.periods and o.status == status.OK
+
+
+@aside
+def hold(o, X):
+    """X at the node that the orbit has reached, from which it goes the long way."""
+    if o.careful:
+        keep_start(o)
+    put(o.X, 0, X)
+
+
+@aside
+def go_long_way(e, o, f, section, keep, growth, parts):
+    """Follow the orbit through all that happens, to the end of its cell or of the one in which M1 leaves the stop."""
+    q = f.oscillator[0]
+    if o.careful and o.offset == 0.0 and o.resting == 0.0:
+        put(o.X, 0, careful_state(o, f.nodes, o.cell))
+        if o.cell == q.cells:
+            end_period(e, o, q, f.nodes, row(o.X, 0), section, keep, growth, parts)
+            return
+    while True:
+        events, rested = o.events, o.offset > 0.0 or o.resting != 0.0
+        o.status = cross_cell(f, stops_of(o), o, records_of(e, o), e.tangent[0], o.cell, o.offset)
+        free = not (rested or o.events > events)
+        o.cell += 1
+        if not free:
+            take_off(o, f.nodes, row(o.X, 0))
+        elif o.careful:
+            X = careful_state(o, f.nodes, o.cell)
+            put(o.X, 0, X)
+            o.origin = o.cell
+            put(o.y, 0, X - row(f.nodes[np.uint64(o.cell)].z, 0))
+        o.offset = 0.0
+        if o.resting == 0.0 or o.status != status.OK:
+            return
+        if o.cell == q.cells:
+            end_period(e, o, q, f.nodes, row(o.X, 0), section, keep, growth, parts)
+            if o.done == o.periods:
+                return
+
+
+@aside
+def put_carefully(e, waiting):
+    """The states from which orbits strike, for those where r is large."""
+    for i in range(LANES):
+        if waiting >> i & 1:
+            o = e.orbits[i]
+            keep_start(o)
+            put(e.strike[0].z, i, careful_state(o, flight_of(e, o).nodes, o.cell))
+
+
+@inline
+def seek(e, section, keep, growth, parts):
+    """Carry all orbits on to the next cells in which they may strike. Returns who has one, as bits.
+
+    Each step is done for all of them before the next, so that the processor has work while one waits for its numbers.
+    """
+    sampled, t = len(e.records.times) > 0, e.strike[0]
+    waiting = seeking = 0
+    for i in range(LANES):
+        if under_way(e.orbits[i]):
+            seeking |= 1 << i
+    while seeking != 0:
+        for i in range(LANES):
+            if seeking >> i & 1:
+                o = e.orbits[i]
+                o.suspect = o.cell if sampled else first_suspect(flight_of(e, o), o)
+        for i in range(LANES):
+            if seeking >> i & 1:
+                o = e.orbits[i]
+                f = flight_of(e, o)
+                q = f.oscillator[0]
+                k, X = suspect_state(o, f.nodes)
+                o.cell = k
+                if k < q.cells and o.stops[0] < leading(X) < o.stops[1] and not q.stiff:
+                    put(t.z, i, X)
+                    waiting |= 1 << i
+                    seeking ^= 1 << i
+                    continue
+                if k == o.section:
+                    end_period(e, o, q, f.nodes, X, section, keep, growth, parts)
+                    if o.done < o.periods:
+                        continue
+                else:
+                    hold(o, X)
+                    go_long_way(e, o, f, section, keep, growth, parts)
+                    if under_way(o):
+                        continue
+                seeking ^= 1 << i
+    return waiting
+
+
+@inline
+def settle(e, o, free, struck, section, keep, growth, parts):
+    """Go on to the end of the cell in which the orbit may have struck."""
+    f, t, i = flight_of(e, o), e.strike[0], o.lane
+    if not (free or struck):
+        hold(o, row(t.z, i))
+        go_long_way(e, o, f, section, keep, growth, parts)
+        return
+    q, records = f.oscillator[0], records_of(e, o)
+    watched = len(records.times) > 0 or (struck and len(records.impacts) > 0)
+    if watched:
+        z = t.z[i]
+        load(q.series1, z[0], z[1], z[2], z[3], z[4], z[5], o.c1)
+        load(q.series2, z[0], z[1], z[2], z[3], z[4], z[5], o.c2)
+    if free:
+        if watched:
+            sample(o, records, o.cell, 0.0, q.width)
+        o.cell += 1
+        return
+    if watched:
+        watch_rebound(q, o, records, o.cell, t.offset[i], t.side[i], t.speed[i], t.impulse[i])
+    o.cell += 1
+    take_off(o, f.nodes, row(t.X, i))
+
+
+@entry
+def carry(e, mapped, section, keep, growth, parts):
+    """Carry each orbit over its `periods`, of forcing or iterations of the discontinuity mapping; see its `status`.
+
+    mapped: None for the flow, for which the mapping then need not be compiled. section: (LANES, periods, 4) for the
+    states at their ends, if they are to be kept. growth: (LANES, parts, 4) for the logarithms of the growth of the
+    tangent vectors, read after each of so many parts of the periods.
+    """
+    t, s = e.tangent[0], e.strike[0]
+    careful = 0
+    for i in range(LANES):
+        o = e.orbits[i]
+        o.done = o.read = 0
+        if under_way(o):  # of others there may be no tables
+            o.section = -1 if o.careful else flight_of(e, o).oscillator[0].cells
+            careful |= int(o.careful) << i
+    start_count(s)
+    if mapped is not None:
+        for i in range(LANES):
+            iterate(e, e.orbits[i], section, keep, growth, parts)
+        return
+    for i in range(LANES):
+        o = e.orbits[i]
+        if under_way(o) and (o.offset > 0.0 or o.resting != 0.0):
+            go_long_way(e, o, flight_of(e, o), section, keep, growth, parts)
+    while True:
+        waiting = seek(e, section, keep, growth, parts)
+        if waiting == 0:
+            break
+        if waiting & careful != 0:
+            put_carefully(e, waiting & careful)
+        free, struck = strike(s, lanes_of(waiting))
+        if t.wanted and struck != 0:
+            for i in range(LANES):
+                if struck >> i & 1:
+                    o = e.orbits[i]
+                    f = flight_of(e, o)
+                    tangent.aim(t, i, f.oscillator[0], f.nodes, o.cell, s.offset[i])
+            tangent.fly(t, lanes_of(struck))
+            tangent.saltate(t, lanes_of(struck), row(s.jump, 0) / row(s.speed, 0))
+        for i in range(LANES):
+            if waiting >> i & 1:
+                settle(e, e.orbits[i], free >> i & 1, struck >> i & 1, section, keep, growth, parts)
+    for i in range(LANES):
+        add_count(e.orbits[i], s.hits[0, i], s.hits[1, i], s.slowest[i], s.miss[i])
+
+
+@aside
+def iterate(e, o, section, keep, growth, parts):
+    """Carry one orbit over its `periods` of the discontinuity mapping."""
+    f = flight_of(e, o)
+    stops, records = stops_of(o), records_of(e, o)
+    while o.done < o.periods and o.status == status.OK:
+        o.status = map_period(f, stops, o, records, e.tangent[0])
+        if o.status == status.OK:
+            end_period(e, o, f.oscillator[0], f.nodes, row(o.X, 0), section, keep, growth, parts)

@@ -1,0 +1,187 @@
+"""One orbit through one cell, the long way: from contact to contact to the cell's end."""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.motion.contact import first_contact, set_gap
+from vibro_sweep.engine.motion.orbits import advance, sample
+from vibro_sweep.engine.motion.rest import begin_rest, chatter, leading, stay_at_rest
+from vibro_sweep.engine.simd.jit import aside, jit
+from vibro_sweep.engine.simd.lanes import alike
+from vibro_sweep.engine.tables.flight import ORDER, bounds, evaluate, load
+from vibro_sweep.engine.variational import tangent
+from vibro_sweep.model import status
+
+MOST_EVENTS = 100_000  # impacts, grazes and rests in one forcing period; an orbit that needs more gets a status
+EXPLAINED = 64.0 * 2.0**-52  # of the sizes of the terms of x1: a distance from a stop that rounding can explain
+
+
+@jit
+def contact_on(q, o, stops, side, n, reach, left):
+    """Offset of the first contact with the stop on `side`, infinite if there is none; n: as in `set_gap`."""
+    gap = stops.right - o.c1[0] if side > 0.0 else o.c1[0] - stops.left
+    if n == 0 and gap > reach:
+        return np.inf
+    set_gap(o.gap, o.c1, gap, side, n)
+    return first_contact(o.gap, bounds(q, o.gap)[1], left)
+
+
+@jit
+def next_contact(q, o, stops, side, n, reach, left):
+    """Offset and side of the first contact in the rest of the cell.
+
+    side: of the stop that M1 leaves, or 0; the gap to it has a zero of order n.
+    """
+    right = contact_on(q, o, stops, 1.0, n if side > 0.0 else 0, reach, left)
+    other = contact_on(q, o, stops, -1.0, n if side < 0.0 else 0, reach, min(left, right))
+    if not (other >= right or right != right):  # NaN, too, is passed on
+        return other, -1.0
+    return right, 1.0
+
+
+@jit
+def log_impact(o, records, k, s, side, v1, x2, v2):
+    if o.log_side == 0.0 or o.log_side == side:
+        if o.impacts_logged < len(records.impacts):
+            row = records.impacts[o.impacts_logged]
+            row[0], row[1], row[2], row[3], row[4], row[5], row[6] = o.period, k, s, side, v1, x2, v2
+        o.impacts_logged += 1
+
+
+@jit
+def count_impact(o, side, v):
+    o.events += 1
+    if side > 0.0:
+        o.impacts_right += 1
+    else:
+        o.impacts_left += 1
+    o.slowest = min(o.slowest, abs(v))
+
+
+@aside
+def watch_rebound(q, o, records, k, d, side, v, impulse):
+    """Keep an impact at offset d of cell k, and samples in the cell: of the old flight, and what the impulse adds."""
+    x2, v2 = evaluate(o.c2, d)
+    log_impact(o, records, k, d, side, v, x2, v2)
+    sample(o, records, k, 0.0, d)
+    times, samples = records.times, records.samples
+    first = o.samples_taken
+    sample(o, records, k, 0.0, q.width)
+    for i in range(first, o.samples_taken):
+        x1, v1 = evaluate(q.series1[1], times[i, 1] - d)
+        x2, v2 = evaluate(q.series2[1], times[i, 1] - d)
+        samples[i, 0] += impulse * x1
+        samples[i, 1] += impulse * v1
+        samples[i, 2] += impulse * x2
+        samples[i, 3] += impulse * v2
+
+
+@jit
+def impact(f, stops, o, records, t, k, s, side, sin, cos):
+    """v1 -> -R v1, and what is observed of it."""
+    q, X, R = f.oscillator[0], o.X, stops.R
+    before = X[1]
+    log_impact(o, records, k, s, side, before, X[2], X[3])
+    count_impact(o, side, before)
+    X[1] = -R * before
+    if t.wanted:
+        a = q.force
+        after = (a[0] * X[0] + a[1] * X[1]) + (a[2] * X[2] + a[3] * X[3]) + (a[4] * sin + a[5] * cos)
+        tangent.fly_to(t, o.lane, q, f.nodes, k, s)
+        # a1+ + R a1-, since a1+ - a1- = 2 zeta (1 + R) v1-
+        steepness = (1.0 + R) * (after / before - 2.0 * q.zeta * R)
+        tangent.saltate(t, tangent.only(o.lane), alike(steepness))
+
+
+@jit
+def size_at(c, u):
+    """The sum of the sizes of the terms of the polynomial c at u."""
+    size = 0.0
+    for n in range(ORDER - 1, -1, -1):
+        size = size * u + abs(c[n])
+    return size
+
+
+@jit
+def is_beyond(stops, o, nodes, k):
+    """Whether M1 is further behind a stop at node k than the rounding of its flight from node `base` explains."""
+    beyond = max(o.X[0] - stops.right, stops.left - o.X[0])
+    if beyond <= 0.0:
+        return False
+    size = abs(o.X[0])
+    if k > o.base:
+        E = nodes[k - o.base].E
+        size += 0.0 if o.careful else abs(nodes[k].z[0])
+        for j in range(6):
+            size += abs(E[j, 0] * (o.start[j] if o.careful else o.y[j]))
+    return beyond > EXPLAINED * size
+
+
+@aside
+def cross_cell(f, stops, o, records, t, k, s):
+    """Follow the orbit from offset s in cell k to the cell's end, through all that happens. Returns a status."""
+    q, node, X, c1 = f.oscillator[0], f.nodes[k], o.X, o.c1
+    released = False
+    if s == 0.0 and is_beyond(stops, o, f.nodes, k):
+        return status.BEYOND_STOP
+    while o.events < MOST_EVENTS:
+        left = q.width - s
+        last = left <= 1.001 * q.step
+        left = left if last else q.step
+        sin, cos = node.z[4], node.z[5]
+        if s > 0.0:
+            swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
+            sin, cos = sin * turn + cos * swing, cos * turn - sin * swing
+        if o.resting != 0.0:
+            d = stay_at_rest(f, o, records, t, k, s, left, sin, cos)
+            if d != d:
+                return status.UNRESOLVED
+            released = d < np.inf
+            if last and not released:
+                return status.OK
+            s += min(d, left)
+            continue
+        side = 1.0 if X[0] >= stops.right else (-1.0 if X[0] <= stops.left else 0.0)
+        if side * X[1] > 0.0:
+            impact(f, stops, o, records, t, k, s, side, sin, cos)
+        load(q.series1, X[0], X[1], X[2], X[3], sin, cos, c1)
+        load(q.series2, X[0], X[1], X[2], X[3], sin, cos, o.c2)
+        reach, third = bounds(q, c1)
+        n = 1
+        if side != 0.0 and X[1] == 0.0:
+            n = leading(c1, 3 if released else 2)
+            if side * c1[n] > 0.0:
+                begin_rest(f, o, records, t, k, s, side, 0.0)
+                continue
+        elif side != 0.0:
+            w = chatter(q, stops, o, third, side, left)
+            if w < np.inf:
+                sample(o, records, k, s, s + w)
+                advance(o, w)
+                X[0] = stops.right if side > 0.0 else stops.left
+                s += w
+                o.chatters += 1
+                begin_rest(f, o, records, t, k, s, side, w)
+                continue
+        d, side = next_contact(q, o, stops, side, n, reach, left)
+        if d != d:
+            return status.UNRESOLVED
+        sample(o, records, k, s, s + min(d, left))
+        advance(o, min(d, left))
+        if d == np.inf and (last or not math.isfinite(X[1] + X[3])):
+            return status.OK if math.isfinite(X[1] + X[3]) else status.NOT_FINITE
+        s += min(d, left)
+        released = False
+        if d == np.inf:
+            continue
+        wall = stops.right if side > 0.0 else stops.left
+        miss = abs(X[0] - wall)
+        if miss > EXPLAINED * size_at(c1, d):
+            return status.BEYOND_STOP
+        o.miss = max(o.miss, miss)
+        X[0] = wall
+        if side * X[1] <= 0.0:  # it touched the stop without speed: a graze is no impact
+            X[1] = 0.0
+            o.events += 1
+    return status.EVENT_LIMIT

@@ -1,0 +1,129 @@
+"""What a scene observes of orbits: section points, their period, impacts, exponents.
+
+An orbit goes through phases: its transient, at the end of which tangent vectors warm up; the record; and, if it turns
+out to be periodic and exponents are wanted, twice one more period.
+"""
+
+import numpy as np
+
+from vibro_sweep.engine.averages import keep_averages
+from vibro_sweep.engine.motion.orbits import start_count
+from vibro_sweep.engine.periods import REPEAT, find_period, has_settled
+from vibro_sweep.engine.simd.jit import aside, jit
+from vibro_sweep.engine.simd.lanes import LANES, put
+from vibro_sweep.engine.variational.multipliers import begin_period, end_period
+from vibro_sweep.engine.variational.spectrum import (
+    begin_warm_up,
+    close_spectrum,
+    end_warm_up,
+    period_of,
+    periods_read,
+    time_average,
+)
+from vibro_sweep.model import status
+from vibro_sweep.model.exponents import CERTAIN
+
+LEAST_RECORD = 50  # periods from which on a record can tell whether its orbit has settled
+TRANSIENT, WARM_UP, RECORD, FLOQUET, PHASES = 0, 1, 2, 3, 5
+
+
+@aside
+def begin_phase(e, w, plan, phase, results):
+    """Set the orbits out. Returns how often the growth of their tangent vectors is to be read, or -1: nothing to do."""
+    if phase == TRANSIENT:
+        e.tangent[0].wanted = e.strike[0].measured = False
+        set_out(e, plan.transient - plan.warm_up)
+        return 0
+    if phase == RECORD:
+        e.strike[0].measured = plan.impacts
+        set_out(e, plan.record)
+        for i in range(len(results)):
+            start_count(e.orbits[i])
+            put(e.orbits[i].largest, 0, 0.0)
+            e.orbits[i].impacts_logged, e.orbits[i].log_side = 0, plan.section_side
+        return plan.parts
+    if not plan.lyapunov:
+        return -1
+    if phase == WARM_UP:
+        begin_warm_up(e, len(results))
+        set_out(e, plan.warm_up)
+        return 0
+    set_out(e, 0)
+    begin_period(e, w, results)
+    return 1
+
+
+@jit
+def set_out(e, periods):
+    """The orbits are to be carried over so many periods."""
+    for i in range(LANES):
+        e.orbits[i].periods = periods
+
+
+@aside
+def end_phase(e, w, plan, phase, points, results, sections, phases, running):
+    """Keep what the phase has shown. One row for each orbit."""
+    if phase == WARM_UP:
+        end_warm_up(e, len(results))
+    elif phase == RECORD:
+        for i in range(len(results)):
+            if e.orbits[i].status == status.OK:
+                keep_record(e, w, plan, points[i], results[i], sections[i], phases[i], running[i], e.orbits[i])
+    elif phase >= FLOQUET:
+        end_period(e, w, results, phase > FLOQUET)
+
+
+@aside
+def keep_record(e, w, plan, point, result, section, phase, running, o):
+    """What the record of an orbit shows."""
+    result.impacts_right, result.impacts_left = o.impacts_right, o.impacts_left
+    result.min_impact_speed = o.slowest if o.slowest < np.inf else np.nan
+    result.contact_error = o.miss if o.slowest < np.inf else np.nan
+    result.sticking_time = o.rest_time
+    states, growth, T = w.section[o.lane], w.growth[o.lane], period_of(e, o)
+    for j in range(4):
+        result.end[j] = o.X[j]
+    if len(phase) > 0:
+        keep_impacts(e, o, point.omega, section, phase)
+    else:
+        for n in range(len(section)):
+            for j in range(4):
+                section[n, j] = states[n, j]
+    result.resting = o.resting
+    if plan.states:
+        result.period = find_period(states, o.largest, w.axes[o.lane])
+    for n in range(len(running)):
+        for j in range(4):
+            running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
+    if plan.lyapunov:
+        time_average(growth, plan.record, T, result.lyapunov, result.lyapunov_error)
+
+
+@aside
+def close(e, w, plan, points, results):
+    """What remains to be said of the orbits after all phases, and how they went."""
+    for i in range(len(results)):
+        o, result = e.orbits[i], results[i]
+        if plan.lyapunov and o.status == status.OK:
+            close_spectrum(e, o, w, points[i], result)
+        if o.status != status.NOT_COMPUTED:
+            result.status = o.status
+        if plan.states and o.status == status.OK:
+            states, known = w.section[i], (result.lyapunov, result.lyapunov_error)
+            settled = has_settled(result.period, states, o.largest, w.axes[i], *known, CERTAIN)
+            result.period = max(result.period, 0)
+            if settled and plan.attractors:
+                keep_averages(states, period_of(e, o), REPEAT, o, result)
+            elif not settled and plan.record >= LEAST_RECORD:
+                result.status = status.NOT_SETTLED
+
+
+@jit
+def keep_impacts(e, o, omega, section, phase):
+    """The logged impacts as points of an impact section; phase: omega t mod 2 pi."""
+    width = e.flights.oscillator[o.table, 0].width
+    for n in range(min(o.impacts_logged, len(phase))):
+        row = e.records.impacts[o.lane, n]
+        section[n, 0], section[n, 1] = o.stops[1] if row[3] > 0.0 else o.stops[0], row[4]
+        section[n, 2], section[n, 3] = row[5], row[6]
+        phase[n] = omega * (row[1] * width + row[2])

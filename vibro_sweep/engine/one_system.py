@@ -1,0 +1,142 @@
+"""The tables of one system, and eight of its orbits on their way: what `simulate` and `PeriodMap` stand on."""
+
+import numpy as np
+
+from vibro_sweep.engine import points
+from vibro_sweep.engine.motion import ensemble, orbits
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.tables import cells
+from vibro_sweep.engine.tables.flight import Flight
+from vibro_sweep.engine.variational.spectrum import BATCHES
+from vibro_sweep.model import status
+from vibro_sweep.model.arguments import checked_state
+from vibro_sweep.model.modes import modes
+from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.parameters import NAMES, ParameterError
+
+IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float), ("v2", float)])
+STICKING = np.dtype([("t_on", float), ("t_off", float), ("side", np.int8)])
+
+ROOM = 256  # impacts and rests of each of eight orbits there is room for at first
+
+
+def points_of(parameters: dict[str, np.ndarray]) -> np.ndarray:
+    """Systems with these numbers (arrays of one shape, tau resolved) as POINTs of the kernels, of that shape."""
+    result = np.zeros(np.shape(parameters["b"]), points.POINT)
+    for name in NAMES:
+        result[name] = parameters[name]
+    result["psi"], result["omega_squared"] = modes(result["mu_m"], result["mu_k"])
+    result["cells"] = cells.cells_needed(result["omega_squared"], result["zeta"], result["omega"])
+    return result
+
+
+def plan_of(system: System, transient: int = 0, record: int = 0, lyapunov: bool = False) -> points.Plan:
+    """What the kernels are asked for."""
+    return points.Plan(
+        transient=transient,
+        record=record,
+        warm_up=min(transient, points.WARM_UP) if lyapunov else 0,
+        states=lyapunov,
+        lyapunov=lyapunov,
+        impacts=False,
+        attractors=False,
+        right=system.stops != "left",
+        left=system.stops != "right",
+        section_side=0.0,
+        periods=0,
+        parts=min(record, BATCHES) if lyapunov else 0,
+        order=0,
+    )
+
+
+class Engine:
+    """The tables of one system, and eight orbits on their way, of which `orbit` is the first.
+
+    later : radians by which the phase of the force at t = 0 is moved on
+
+    Raises `ParameterError` where the rates of the system lie too far apart.
+    """
+
+    def __init__(self, system: System, later: float = 0.0):
+        parameters = system.parameters()
+        self.point = points_of(parameters | {"tau": parameters["tau"] + later}).reshape(1)
+        self.cells = int(self.point["cells"][0])
+        if self.cells == 0:
+            allowed = f"such that the fastest rate times the period is at most {cells.LONGEST:g}"
+            raise ParameterError("omega", system.omega, allowed)
+        self.period = system.period
+        self.width = self.period / self.cells
+        plan = plan_of(system)
+        workspace = points.new_workspace(plan, self.cells, 0)
+        for lane in range(LANES):
+            self.stops = points.prepare(self.point.repeat(LANES), lane, workspace, plan)
+        self.ensemble = workspace.ensemble
+        self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
+        self.orbit = self.ensemble.orbits[:1]
+        self.flight = Flight(*(table[0] for table in self.ensemble.flights))
+
+    def place(self, state) -> None:
+        values = checked_state(state)
+        if not self.stops.left <= values[0] <= self.stops.right:
+            allowed = f"{self.stops.left!r} .. {self.stops.right!r}"
+            raise ValueError(f"state: x1 = {float(values[0])!r} is behind a stop; allowed: {allowed}")
+        self.put(values)
+
+    def put(self, state, cell: int = 0, offset: float = 0.0, lane: int = 0) -> None:
+        """Start a new orbit from a state that is known to be allowed, at this offset of this cell."""
+        nodes = self.ensemble.flights.nodes[0]
+        orbits.place(self.ensemble.orbits[lane], nodes, self.stops, int(cell), float(offset), *map(float, state))
+
+    def carry(self, records: orbits.Records, section: np.ndarray) -> int:
+        """Carry the orbit over as many periods as `section` (n, 4) has rows. Returns a status."""
+        self.orbit["periods"] = len(section)
+        self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
+        ensemble.carry(self.ensemble._replace(records=records), None, section[None], True, np.empty((1, 0, 4)), 0)
+        return int(self.orbit["status"][0])
+
+    def carry_eight(self, states: np.ndarray, cell: int, periods: int) -> tuple[np.ndarray, orbits.Records]:
+        """Carry orbits from up to eight states (n, 4), none behind a stop, at this cell over the ends of so many
+        periods. Returns their records (ORBIT), and all impacts and rests of each."""
+        eight, room = self.ensemble.orbits, ROOM
+        while True:
+            eight["status"] = status.NOT_COMPUTED
+            for lane, state in enumerate(states):
+                self.put(state, cell, lane=lane)
+            eight["periods"] = periods
+            records = orbits.new_records(LANES, impacts=room, rests=room)
+            nothing = np.empty((1, 0, 4))
+            ensemble.carry(self.ensemble._replace(records=records), None, nothing, False, nothing, 0)
+            here = eight[: len(states)]
+            logged = max(here["impacts_logged"].max(), here["rests_logged"].max())
+            if logged <= room:
+                return here, records
+            room = int(logged)
+
+    def locate(self, times) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Period, cell and offset of absolute times."""
+        times = np.asarray(times, float)
+        period = np.floor(times / self.period)
+        cell, offset = np.divmod(times - period * self.period, self.width)
+        late = cell >= self.cells
+        return (period + late).astype(np.int64), np.where(late, 0, cell).astype(np.int64), np.where(late, 0.0, offset)
+
+    def time(self, period, cell, offset):
+        return period * self.period + (cell * self.width + offset)
+
+    def impacts(self, rows: np.ndarray, start: float = -np.inf) -> np.ndarray:
+        """Recorded impacts (m, 7) as a structured array `IMPACT` with absolute times, none before `start`."""
+        result = np.empty(len(rows), IMPACT)
+        result["t"] = np.maximum(self.time(rows[:, 0], rows[:, 1], rows[:, 2]), start)  # cell and offset round it
+        for column, name in enumerate(("side", "v1", "x2", "v2"), start=3):
+            result[name] = rows[:, column]
+        return result
+
+    def sticking(self, rows: np.ndarray, end: float) -> np.ndarray:
+        """Recorded rests (m, 4) as a structured array `STICKING`; t_off is `end` for one that outlasts the record."""
+        times, sides = self.time(rows[:, 0], rows[:, 1], rows[:, 2]), rows[:, 3]
+        result = np.empty(np.count_nonzero(sides), STICKING)
+        result["t_on"], result["side"] = times[sides != 0], sides[sides != 0]
+        result["t_off"] = end
+        released = times[sides == 0]
+        result["t_off"][: len(released)] = released
+        return result

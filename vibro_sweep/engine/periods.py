@@ -1,0 +1,128 @@
+"""Whether the section points of an orbit repeat themselves, after how many, and whether they have settled.
+
+An orbit that still approaches a periodic one slowly and on a spiral comes near to itself after several periods before
+it does so after the least one. So the distance of a point from the one d before it is followed along the record: where
+it fades away like a geometric sequence, d is a period, however small the distance after a multiple of d is already;
+and where the distance after the found period itself does not fade, the points only seem to repeat themselves.
+"""
+
+import numpy as np
+
+from vibro_sweep.engine.simd.jit import jit
+
+REPEAT = 1e-6  # section points this near to each other, relative to their size, are the same point
+ROUNDING = 1e-10  # relative distance that rounding may leave of it
+FADED = 0.7  # part of the last distance that may be left in the end
+LEAST_WINDOW = 12  # points over which distances are averaged
+WINDOWS = 5
+NEAR = 1e-2  # relative distance below which an orbit approaches a periodic one as a linear map would
+UNEVEN = 1.3  # by which the distance may rise from window to window all the same
+NOT_CONVERGING = -1
+
+
+@jit
+def distance(section, size, n, p):
+    """Between point n and the one p before it, relative to `size` (4,)."""
+    largest = 0.0
+    for i in range(4):
+        largest = max(largest, abs(section[n, i] - section[n - p, i]) / size[i])
+    return largest if largest == largest else np.inf
+
+
+@jit
+def window_distance(section, size, p, window, m, windows):
+    """Mean distance of points from those p before them, in the m-th of so many windows along the record."""
+    first, total = p + m * (len(section) - p - window) // (windows - 1), 0.0
+    for n in range(first, first + window):
+        total += distance(section, size, n, p)
+    return total / window
+
+
+@jit
+def window_of(p):
+    """Points of a window over which an orbit that nearly repeats itself after p comes through all of its phases."""
+    return p * ((LEAST_WINDOW + p - 1) // p)
+
+
+@jit
+def repeats(section, size, p):
+    """Whether all points are near to those p before them."""
+    s0, s1, s2, s3 = REPEAT * size[0], REPEAT * size[1], REPEAT * size[2], REPEAT * size[3]
+    for n in range(p, len(section)):  # from the beginning: where the orbit has not settled, the first point tells
+        x, y = section[n], section[n - p]
+        if not (
+            abs(x[0] - y[0]) <= s0 and abs(x[1] - y[1]) <= s1 and abs(x[2] - y[2]) <= s2 and abs(x[3] - y[3]) <= s3
+        ):
+            return False
+    return True
+
+
+@jit
+def fades(section, size, d, p):
+    """Whether the distance after d points fades away; points nearly repeat themselves after p, a multiple of d."""
+    window = min(window_of(p), len(section) - d)
+    after = window_distance(section, size, d, window, 2, 3)
+    if after <= ROUNDING:
+        return True
+    if len(section) - d - window < window // 4:  # too few points to tell
+        return d == p
+    before = window_distance(section, size, d, window, 0, 3)
+    between = window_distance(section, size, d, window, 1, 3)
+    if not before > between > after:
+        return False
+    limit = after - (after - between) ** 2 / ((after - between) - (between - before))
+    return abs(limit) < FADED * after
+
+
+@jit
+def find_period(section, sizes, size):
+    """Least period of the points, (n, 4), up to half of them; 0 if there is none.
+
+    `NOT_CONVERGING` where points seem to repeat themselves but do not come nearer to doing so. sizes: of the points,
+    (4,) or longer. size: scratch of the same length.
+    """
+    count, largest = len(section), max(max(sizes[0], sizes[1]), max(sizes[2], sizes[3]))
+    for i in range(4):
+        size[i] = max(sizes[i], 1e-3 * largest)
+    for p in range(1, count // 2 + 1):
+        if repeats(section, size, p):
+            for d in range(1, p):
+                if p % d == 0 and fades(section, size, d, p):
+                    return d
+            return p if fades(section, size, p, p) else NOT_CONVERGING
+    return 0
+
+
+@jit
+def is_approaching(section, size):
+    """Whether the points, without a period yet, approach one: near to those some number before, and ever nearer."""
+    count = len(section)
+    nearest, p = NEAR, 0
+    for d in range(1, count // 2 - LEAST_WINDOW):
+        here = distance(section, size, count - 1, d)
+        if here < nearest:
+            nearest, p = here, d
+    if p == 0 or count - p - window_of(p) < WINDOWS:
+        return False
+    first = before = window_distance(section, size, p, window_of(p), 0, WINDOWS)
+    for m in range(1, WINDOWS):
+        after = window_distance(section, size, p, window_of(p), m, WINDOWS)
+        if before > NEAR or after > UNEVEN * before:
+            return False
+        before = after
+    return before < 0.9 * first
+
+
+@jit
+def has_settled(period, section, sizes, size, spectrum, error, certain):
+    """Whether an orbit is on its attractor, and not on its way there.
+
+    Without a period, one that contracts (lambda_1 is below zero by `certain` of its errors) is on its way, or its
+    period is too long to be found; and one that repeats itself in the end, or comes steadily nearer to doing so, too.
+    spectrum: NaN where unknown.
+    """
+    if period != 0:
+        return True
+    if spectrum[0] < -certain * error[0]:
+        return False
+    return find_period(section[-(len(section) // 4) :], sizes, size) <= 0 and not is_approaching(section, size)

@@ -1,0 +1,169 @@
+"""A block: for each orbit the tables of its point, its way, and what the scene observes of it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.engine.motion import strike
+from vibro_sweep.engine.motion.ensemble import Ensemble, carry, flight_of, new_ensemble
+from vibro_sweep.engine.motion.orbits import Stops, new_records, place
+from vibro_sweep.engine.observe import PHASES, RECORD, begin_phase, close, end_phase
+from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.tables.build import build
+from vibro_sweep.engine.variational import tangent
+from vibro_sweep.model import status
+from vibro_sweep.model.observables import DIMENSIONS, OF_AN_ORBIT
+from vibro_sweep.model.parameters import NAMES
+
+POINT = np.dtype(
+    [(name, float) for name in NAMES]
+    + [("psi", float, (2, 2)), ("omega_squared", float, 2), ("cells", np.int64)]
+    + [("graze", float, 4)]  # the point at which the discontinuity mapping is expanded
+)
+
+RESULT = np.dtype(
+    [
+        (one.name, one.dtype, tuple(DIMENSIONS[name].extent for name in one.dimensions))
+        for one in OF_AN_ORBIT  # what files can hold, and what is needed beside it:
+    ]
+    + [
+        ("log_multiplier", float, 4),  # logarithm of the modulus: of multipliers that floats cannot hold, too; and
+        ("log_error", float, 4),  # its error
+        ("end", float, 4),  # the state at the last section, and
+        ("resting", float),  # the side of the stop that M1 rests on there, or 0
+    ]
+)
+
+LARGE = 8.0  # clearances that the motion r may measure before flights from a later node are formed without it
+WARM_UP = 200  # periods for the tangent vectors to find their directions
+
+
+def new_results(shape: tuple[int, ...]) -> np.ndarray:
+    """Results of points that are not computed yet."""
+    results = np.zeros(shape, RESULT)
+    for one in OF_AN_ORBIT:
+        results[one.name] = one.fill
+    for name in ("log_multiplier", "log_error", "end"):
+        results[name] = np.nan
+    return results
+
+
+class Plan(NamedTuple):
+    """What is asked of every orbit of a sweep."""
+
+    transient: int
+    record: int
+    warm_up: int  # periods of the transient with tangent vectors
+    states: bool  # of every recorded section, for the scene or to find the period of the orbit
+    lyapunov: bool  # with `states`
+    impacts: bool
+    attractors: bool  # with `lyapunov`
+    right: bool
+    left: bool
+    section_side: float  # 0: the section is t = 0 mod T; else the stop of an impact section
+    periods: int  # of the trajectory
+    parts: int  # of the record, at which the growth of tangent vectors is read
+    order: int  # of the discontinuity mapping; 0: the flow itself
+
+
+class Workspace(NamedTuple):
+    """What one thread needs besides its points; allocated once for many blocks."""
+
+    ensemble: Ensemble
+    built: np.ndarray  # (LANES,) POINT: whose tables these are
+    section: np.ndarray  # (orbits, record, 4)
+    growth: np.ndarray  # (LANES, parts, 4)
+    axes: np.ndarray  # (LANES, 16)
+    matrix: np.ndarray  # (4, 4)
+    scratch: np.ndarray  # (7, 6)
+
+
+def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES) -> Workspace:
+    """Room for points with at most so many cells, and for the records of so many orbits side by side."""
+    impacts = plan.record if plan.section_side else 0
+    return Workspace(
+        new_ensemble(cells)._replace(records=new_records(orbits, impacts=impacts, samples=samples)),
+        np.zeros(LANES, POINT),
+        np.empty((orbits, plan.record if plan.states else 0, 4)),
+        np.empty((LANES, plan.parts, 4)),
+        np.empty((LANES, 16)),
+        np.empty((4, 4)),
+        np.empty((7, 6)),
+    )
+
+
+@jit
+def same_oscillator(a, b):
+    """Whether two points share their tables: they may differ in b and R."""
+    same = a.mu_m == b.mu_m and a.mu_k == b.mu_k and a.zeta == b.zeta and a.cells == b.cells
+    return same and a.f2 == b.f2 and a.omega == b.omega and a.tau == b.tau
+
+
+@entry
+def prepare(points, i, w, plan):
+    """Orbit i gets the tables of its point, those of the orbit before it if they are the same; and its stops."""
+    e, point, o, table = w.ensemble, points[i], w.ensemble.orbits[i], i
+    if i > 0 and same_oscillator(point, w.built[e.orbits[i - 1].table]):
+        table = e.orbits[i - 1].table
+    o.table = table
+    f = flight_of(e, o)
+    q = f.oscillator[0]
+    if not same_oscillator(point, w.built[table]):
+        build(
+            f, w.scratch, point.cells, point.psi, point.omega_squared,
+            point.mu_m, point.mu_k, point.zeta, point.f2, point.omega, point.tau,
+        )  # fmt: skip
+        w.built[table] = point
+    q.order = plan.order
+    for j in range(4):
+        q.graze[j] = point.graze[j]
+    o.careful = q.stiff or q.largest > LARGE * point.b
+    stops = Stops(-point.b if plan.left else -np.inf, point.b if plan.right else np.inf, point.R)
+    strike.deal(e.strike[0], i, q, stops)
+    if plan.lyapunov:
+        tangent.deal(e.tangent[0], i, q, point.R)
+    return stops
+
+
+@entry
+def run_points(points, starts, results, sections, phases, running, w, plan, mapped):
+    """Compute a block. n = steps, m = orbits; observations that nobody wants have no samples.
+
+    points: (n, m) POINT. starts: (2, m, 4), at the first step, and at a step after one that failed; at the others an
+    orbit goes on from where it ended, with the next point's numbers. results: (n, m) RESULT. sections: (n, m, record,
+    4). phases: (n, m, record), for an impact section. running: (n, m, parts, 4), the exponents as they converge.
+    mapped: None for the flow, 1 for the discontinuity mapping.
+    """
+    e = w.ensemble
+    for first in range(0, points.shape[1], LANES):
+        last = min(first + LANES, points.shape[1])
+        for n in range(len(points)):
+            for i in range(LANES):
+                o = e.orbits[i]
+                o.status = status.NOT_COMPUTED
+                if first + i >= last:
+                    continue
+                point, result = points[n, first + i], results[n, first + i]
+                if point.cells == 0:
+                    result.status = status.TOO_STIFF
+                    continue
+                stops = prepare(points[n, first:last], i, w, plan)
+                x = starts[min(n, 1), first + i]
+                x1, v1, x2, v2 = x[0], x[1], x[2], x[3]
+                if n > 0 and results[n - 1, first + i].status in status.STANDING:
+                    end = results[n - 1, first + i].end
+                    x1, v1, x2, v2 = end[0], end[1], end[2], end[3]
+                if plan.order == 0:  # points of the map may lie beyond the stops
+                    x1 = min(max(x1, stops.left), stops.right)
+                place(o, e.flights.nodes[o.table], stops, 0, 0.0, x1, v1, x2, v2)
+            rows, row = points[n, first:last], results[n, first:last]
+            for phase in range(PHASES):
+                parts = begin_phase(e, w, plan, phase, row)
+                if parts >= 0:
+                    carry(e, mapped, w.section, phase == RECORD and plan.states, w.growth, parts)
+                    end_phase(
+                        e, w, plan, phase, rows, row,
+                        sections[n, first:last], phases[n, first:last], running[n, first:last],
+                    )  # fmt: skip
+            close(e, w, plan, rows, row)

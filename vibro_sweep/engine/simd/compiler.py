@@ -1,0 +1,137 @@
+"""numba's compiler, so that a first run waits half as long.
+
+By itself numba optimises each kernel, turns it into machine code, and does all of that again with what it calls, in
+every kernel that calls it. Here that is done once: for an entry, together with all that it reaches.
+
+This leans on the inside of numba, as it is in 0.68; the import fails where what it needs is not there.
+"""
+
+import gc
+
+from llvmlite.binding import Linkage
+from numba.core.codegen import CPUCodegen, JITCodeLibrary
+from numba.core.compiler import Compiler, Flags
+
+NEEDED = {JITCodeLibrary: "_optimize_functions", CPUCodegen: "_pass_builder", Flags(): "_values"}
+if not all(hasattr(where, name) for where, name in NEEDED.items()):
+    raise ImportError("this numba is another inside")
+
+# Passes for what kernels do not hold: closures, array expressions, literal arguments; and inlining, which LLVM does.
+SPARED = frozenset(
+    "with_lifting inline_closure_likes inline_inlinables find_literally literal_unroll LiteralPropagation "
+    "inline_overloads nopython_rewrites annotate_types".split()
+)
+
+
+class LinkError(RuntimeError):
+    """A kernel that another one calls was not linked with it."""
+
+
+class _Part(JITCodeLibrary):
+    """A kernel that only kernels call: code to be linked, and not yet optimised."""
+
+    def _optimize_functions(self, ll_module):
+        ll_module.data_layout = self._codegen._data_layout
+        for function in ll_module.functions:
+            passes, builder = self._codegen._function_pass_manager(opt=1)
+            passes.run(function, builder)
+
+    def finalize(self):
+        self._finalized = True
+
+    def _get_module_for_linking(self):
+        """Weak, where numba itself has `linkonce_odr`: of such LLVM links only what is referred to at that moment."""
+        if self._shared_module is None:
+            self._shared_module = _relinked(self._final_module.clone(), Linkage.external, "weak_odr")
+        return self._shared_module
+
+
+def _relinked(module, before, after):
+    """The module, whose functions of the one linkage get the other."""
+    for function in module.functions:
+        if not function.is_declaration and function.linkage == before:
+            function.linkage = after
+    return module
+
+
+class _Aside(_Part):
+    """One that stays a call: within what is on the way of all orbits it would take registers and room from that."""
+
+    def add_ir_module(self, ir_module):
+        for function in ir_module.functions:
+            if not function.is_declaration:
+                function.attributes.add("noinline")
+        super().add_ir_module(ir_module)
+
+
+class _Whole(JITCodeLibrary):
+    """An entry, with all parts that it reaches."""
+
+    def add_linking_library(self, library):
+        if library not in self._linking_libraries:
+            super().add_linking_library(library)
+            for other in library._linking_libraries:
+                self.add_linking_library(other)
+
+    def _optimize_final_module(self):
+        """What is not used, or only where it was inlined, need not stay."""
+        _relinked(self._final_module, Linkage.weak_odr, "linkonce_odr")
+        super()._optimize_final_module()
+        lost = [f.name for f in self._final_module.functions if f.is_declaration and f.name.startswith("_ZN")]
+        if lost:  # a call of it would go nowhere
+            raise LinkError(f"{self.name} refers to {', '.join(lost)}")
+
+
+class _Flags(Flags):
+    """Compared as a whole: numba goes through them whenever it looks for a function, tens of thousands of times."""
+
+    __slots__ = ()
+
+    def __eq__(self, other):
+        return isinstance(other, _Flags) and self._values == other._values
+
+    def __hash__(self):
+        return len(self._values)
+
+
+class WholeCompiler(Compiler):
+    """For an entry."""
+
+    library = _Whole
+
+    def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
+        super().__init__(typingctx, targetctx, library, args, return_type, _Flags(flags), locals)
+
+    def define_pipelines(self):
+        [pipeline] = super().define_pipelines()
+        pipeline.passes = [(step, why) for step, why in pipeline.passes if step.name() not in SPARED]
+        pipeline.finalize()
+        return [pipeline]
+
+    def compile_extra(self, func):
+        self.state.library = self.library(self.state.targetctx.codegen(), func.__qualname__)
+        self.state.library.enable_object_caching()
+        collecting = gc.isenabled()
+        gc.disable()  # a tenth of the time, and there is little to collect
+        try:
+            return super().compile_extra(func)
+        finally:
+            if collecting:
+                gc.enable()
+
+
+class PartCompiler(WholeCompiler):
+    """For a kernel that only kernels call."""
+
+    library = _Part
+
+    def __init__(self, *args):
+        super().__init__(*args)
+        # There is nothing for Python to call; numba still wants something callable to know the kernel by.
+        self.state.targetctx.get_executable = lambda library, fndesc, env: [].append
+
+
+class AsideCompiler(PartCompiler):
+    """For one of those that is no part of its callers."""
+
+    library = _Aside

@@ -1,0 +1,183 @@
+"""All jit policy in one place: nogil, no fastmath but fused multiply-adds, no reference counts, cached on disk.
+
+numba's cache does not see an edit in a helper's file, so the cache folder is named by a hash of all kernel sources:
+those of the engine, and what kernels have of the model.
+"""
+
+import contextlib
+import functools
+import hashlib
+import logging
+import os
+import tempfile
+from pathlib import Path
+
+import llvmlite
+import numba
+from numba.core import config
+from numba.core.caching import FunctionCache
+from numba.core.cpu import CPUTargetOptions
+
+try:
+    from vibro_sweep.engine.simd.compiler import AsideCompiler, PartCompiler, WholeCompiler
+except Exception:  # another numba: kernels compile as it does by itself, in twice the time
+    AsideCompiler = PartCompiler = WholeCompiler = None
+
+
+ENGINE, MODEL = Path(__file__).parents[1], Path(__file__).parents[2] / "model"
+SHARED = ("exponents.py", "status.py")  # of the model: constants and formulas that are compiled into kernels
+
+
+@functools.cache  # of the sources as they were imported
+def source_hash() -> str:
+    """Names the folder of compiled kernels; what all numbers depend on is said by vibro_sweep/identity.py."""
+    digest = hashlib.sha256()
+    for source in [*sorted(ENGINE.rglob("*.py")), *(MODEL / name for name in SHARED)]:
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _cache_folder() -> str | None:
+    """Where compiled kernels are kept; None where there is no such place."""
+    home = os.environ.get("XDG_CACHE_HOME", "")
+    if not os.path.isabs(home):  # to be ignored, says the XDG base directory specification
+        home = os.path.expanduser("~/.cache")
+    folder = os.path.join(config.CACHE_DIR or os.path.join(home, "vibro_sweep"), source_hash())
+    try:
+        if not (config.CACHE_DIR or os.path.isabs(home)):
+            raise OSError("there is no home folder; set NUMBA_CACHE_DIR")
+        os.makedirs(folder, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError as error:
+        _tell(folder, error)
+        return None
+
+
+def _tell(folder: str, error: Exception) -> None:
+    """Say once why a folder does not serve."""
+    global _told
+    if not _told:
+        _told = True
+        reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        _log.warning("compiled kernels cannot be kept in %s (%s): they are compiled anew", folder, reason)
+
+
+class _Cache(FunctionCache):
+    """numba's, but what cannot be read is compiled anew and put in its place, and what cannot be written is not."""
+
+    def load_overload(self, sig, target_context):
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception as error:  # of pickle, any: the entry is empty or cut off
+            _tell(self.cache_path, error)
+            with contextlib.suppress(OSError):
+                self.flush()
+            return None
+
+    def save_overload(self, sig, data):
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            _tell(self.cache_path, error)
+
+
+_log = logging.getLogger("vibro_sweep")
+_told = False
+_FOLDER = _cache_folder()
+
+
+def jit(function):
+    """`numba.njit` for a kernel that other kernels call."""
+    return _compiled(function, PartCompiler, no_cpython_wrapper=True)
+
+
+def inline(function):
+    """`jit` for what is on the way of all orbits: a call would pass vectors, and the tables' many words, by memory."""
+    return _compiled(function, PartCompiler, no_cpython_wrapper=True, forceinline=True)
+
+
+def aside(function):
+    """`jit` for what is rare: inlined, it would take registers and room from what is on the way."""
+    return _compiled(function, AsideCompiler, no_cpython_wrapper=True)
+
+
+class entry:  # noqa: N801  # a decorator
+    """`numba.njit` for a kernel that Python calls, too: one for Python, cached, and a `jit` for other kernels."""
+
+    def __init__(self, function):
+        functools.update_wrapper(self, function)
+        self._part, self._whole = jit(function), _compiled(function, WholeCompiler)
+        _enable_caching(self._whole)
+
+    def __call__(self, *args):
+        return self._whole(*args)
+
+    @property
+    def _numba_type_(self):  # what other kernels see of it
+        return self._part._numba_type_
+
+
+def _compiled(function, compiler, forceinline=False, **options):
+    """`contract` alone is allowed of fastmath: it fuses multiply-adds and keeps every NaN check.
+
+    Kernels allocate nothing, and so are compiled without numba's reference counts: they took a third of the time, and
+    threads would share them.
+    """
+    if hasattr(CPUTargetOptions, "_nrt"):
+        options["_nrt"] = False
+    if compiler:
+        options["pipeline_class"] = compiler
+    options |= {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy", "no_cfunc_wrapper": True}
+    return numba.njit(forceinline=forceinline, **options)(function)  # said, or a kernel would have it from its caller
+
+
+def _works() -> bool:
+    """Whether an entry, a part and an aside compile as one and compute what they should: numba may differ inside."""
+
+    def double(x):
+        return 2.0 * x
+
+    def half(x):
+        return 0.5 * x
+
+    double, half = jit(double), aside(half)
+
+    def both(x):
+        return double(x) - half(x)
+
+    try:
+        return _compiled(both, WholeCompiler)(3.0) == 4.5
+    except Exception:  # whatever numba's inside says to what it does not expect
+        return False
+
+
+def _usable() -> bool:
+    """`_works`, tried once for each numba and kept beside the compiled kernels."""
+    if WholeCompiler is None:
+        return False
+    kept = _FOLDER and Path(_FOLDER, f"compiles-as-one-{numba.__version__}-{llvmlite.__version__}")
+    try:
+        return kept.read_text() == "yes"
+    except (AttributeError, OSError, ValueError):
+        pass
+    works = _works()
+    with contextlib.suppress(AttributeError, OSError):
+        kept.write_text("yes" if works else "no")
+    return works
+
+
+def _enable_caching(dispatcher):
+    if _FOLDER is None:
+        return
+    before, config.CACHE_DIR = config.CACHE_DIR, _FOLDER
+    try:
+        dispatcher._cache = _Cache(dispatcher.py_func)
+    finally:
+        config.CACHE_DIR = before
+
+
+if not _usable():
+    AsideCompiler = PartCompiler = WholeCompiler = None
+
+AS_ONE = WholeCompiler is not None  # else other multiply-adds are fused, and last digits differ

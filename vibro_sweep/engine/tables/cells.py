@@ -1,0 +1,27 @@
+"""How many cells the forcing period is cut into."""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.tables.flight import WIDTH
+
+LEAST_CELLS = 24
+MOST_CELLS = 16384
+STIFF_CELLS = 2048
+LONGEST = 1e7  # the fastest rate times the period beyond which a system is refused: two seconds of work at worst
+
+
+@np.errstate(all="ignore")
+def cells_needed(omega_squared: np.ndarray, zeta: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """Cells for which every rate of a system times the cell width is at most `WIDTH`; omega_squared is (..., 2).
+
+    `STIFF_CELLS` where that would be too many, 0 where the rates are too far apart altogether.
+    """
+    eta = np.asarray(zeta)[..., None] * omega_squared
+    overdamped = np.sqrt(np.maximum(eta**2 - omega_squared, 0.0))
+    rate = np.where(eta**2 <= omega_squared, np.sqrt(omega_squared), eta + overdamped).max(-1)
+    turns = 2 * math.pi * np.maximum(rate / omega, 1.0)
+    turns = np.where(turns <= LONGEST, turns, np.inf)  # also where they are no number
+    cells = np.maximum(LEAST_CELLS, 8 * np.ceil(np.minimum(turns, LONGEST) / WIDTH / 8)).astype(np.int64)
+    return np.where(turns > LONGEST, 0, np.where(cells > MOST_CELLS, STIFF_CELLS, cells))

@@ -1,0 +1,150 @@
+"""Free flight in closed form: over whole cells of a grid on the forcing period, and by Taylor series within a cell.
+
+Between impacts the state X = (x1, v1, x2, v2) obeys a linear system with constant coefficients, so
+
+    X(t_k + u) = E(u) (X(t_k) - r(t_k)) + r(t_k + u),      E(u) = exp(A u),
+
+for any one solution r. Here r is the motion that starts from rest at the section; unlike the steady response (eq. 7)
+it exists in resonance without damping too, and is nowhere much larger than the motion itself. The period is cut into
+`cells` equal cells; E and r are tabulated at their nodes, once for each set of parameters.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.lanes import LANES, new_lines, record
+
+ORDER = 16  # Taylor coefficients of a cell: with rate * width <= WIDTH the first one left out is below 2^-53 / 1000
+WIDTH = 0.5
+CHUNK = 16  # control points examined together: two to a cell
+
+
+# One oscillator. Structured arrays let the kernels pass it by one pointer, and need no reference counts.
+OSCILLATOR = record(
+    [
+        ("cells", np.int64),
+        ("width", float),  # of a cell
+        ("step", float),  # width of a series: a cell, or where stiff a part of one
+        ("omega", float),
+        ("zeta", float),
+        ("kappa", float),  # 2 zeta/mu_m
+        ("order", np.int64),  # of the discontinuity mapping; 0: the flow itself
+        ("graze", float, 4),  # the point at which it is expanded
+        ("remainder", float, 5),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
+        ("series1", float, (6, ORDER)),  # Taylor coefficients of x1 as a function of (x1, v1, x2, v2, sin, cos)
+        ("series2", float, (6, ORDER)),  # of x2
+        ("force", float, 6),  # acceleration of M1 as a function of them
+        ("resting1", float, (5, ORDER)),  # free acceleration of M1 while it rests, of (x1, x2, v2, sin, cos)
+        ("resting2", float, (5, ORDER)),  # x2 meanwhile
+        ("reach", float, ORDER),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
+        ("impulse_third", float),  # bound on |d3 x1/du3| over a cell after a unit impulse on M1
+        ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell
+        ("frame_series", float, (ORDER, 4)),  # of tangent.py, like all that follow
+        ("vanishing", np.int64),  # directions that a flight over a cell takes below the rounding of the others
+        ("stretch", np.int64),  # cells that may be flown between looks at the tangent vectors, and
+        ("leash", np.int64),  # while each lies in the plane of one mode
+        ("frame_scale", float, 2),  # g_j
+        ("frame_square", float, 2),  # omega_dj^2
+        ("to_frame", float, (4, 4)),
+        ("from_frame", float, (4, 4)),
+        ("stiff", np.bool_),  # cells do not resolve every rate
+        ("largest", float),  # |x1| of the motion r
+    ]
+)
+
+# One node of the grid.
+NODE = record(
+    [
+        ("E", float, (6, LANES)),  # flight from node 0: row j is X here of the unit state j there, rows 4 and 5 that of
+        # the force's sin and cos there, from rest; padded
+        ("z", float, LANES),  # r, a motion under the force: from rest at node 0; of a fast mode the steady one;
+        # then sin and cos of omega t + tau
+        ("forced", float, (2, 2, 2)),  # modal motion from rest at node 0: mode; xi, xi'; to the force's sin, cos there
+        ("frame", float, 4),  # c_1, s_1, c_2, s_2 of a flight from node 0
+    ]
+)
+
+
+class Flight(NamedTuple):
+    """The tables of one oscillator over one forcing period."""
+
+    oscillator: np.ndarray  # (1,) OSCILLATOR
+    nodes: np.ndarray  # (cells + 1,) NODE
+    scan: (
+        np.ndarray
+    )  # (5, 2 cells + CHUNK): control points, two to a cell, as a function of X - r at node 0; those of r
+
+
+def new_flight(count: int, cells: int) -> Flight:
+    """Space for the tables of so many oscillators with at most so many cells."""
+    points = 2 * cells + CHUNK
+    return Flight(
+        new_lines((count, 1), OSCILLATOR), new_lines((count, cells + 1), NODE), new_lines((count, 5, points), float)
+    )
+
+
+@jit
+def decaying(eta, omega_squared, u):
+    """e^{-eta u} times (c, s, c + eta s, c - eta s): c and s are entire functions of omega_d^2 (physics of eq. 6).
+
+    c = cos(omega_d u) and s = sin(omega_d u)/omega_d; cosh and sinh/|omega_d| when overdamped, where the exponentials
+    are joined before they can overflow and c - eta s is formed without cancellation.
+    """
+    square = omega_squared - eta * eta
+    if square >= 0.0:
+        root = math.sqrt(square)
+        decay = math.exp(-eta * u)
+        c = decay * math.cos(root * u)
+        s = decay * (math.sin(root * u) / root if root > 0.0 else u)
+        return c, s, c + eta * s, c - eta * s
+    root = math.sqrt(-square)
+    slow = math.exp(-omega_squared / (eta + root) * u)
+    fast = math.exp(-(eta + root) * u)
+    c = 0.5 * (slow + fast)
+    s = -slow * math.expm1(-2.0 * root * u) / (2.0 * root)
+    return c, s, c + eta * s, fast - omega_squared / (eta + root) * s
+
+
+@jit
+def load(series, x1, v1, x2, v2, sin, cos, c):
+    """Taylor coefficients c of the flight from (x1, v1, x2, v2) at the phase (sin, cos)."""
+    for n in range(ORDER):
+        c[n] = (
+            (series[0, n] * x1 + series[1, n] * v1)
+            + (series[2, n] * x2 + series[3, n] * v2)
+            + (series[4, n] * sin + series[5, n] * cos)
+        )
+
+
+@jit
+def evaluate(c, u):
+    """Polynomial with coefficients c at u, and its derivative; even and odd terms go side by side."""
+    v = u * u
+    odd, slope_odd, even, slope_even = c[ORDER - 1], 0.0, c[ORDER - 2], 0.0
+    for n in range(ORDER - 4, -1, -2):
+        slope_odd = slope_odd * v + odd
+        odd = odd * v + c[n + 1]
+        slope_even = slope_even * v + even
+        even = even * v + c[n]
+    return even + u * odd, odd + 2.0 * u * (slope_even + u * slope_odd)
+
+
+@jit
+def bounds(q, c):
+    """Over a cell: how far x can move, and a bound on its third derivative. Summed by fours, for the vector unit."""
+    reach, third = q.reach, q.third
+    r0, r1, r2, r3, t0, t1, t2, t3 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for n in range(0, ORDER, 4):
+        a0, a1, a2, a3 = abs(c[n]), abs(c[n + 1]), abs(c[n + 2]), abs(c[n + 3])
+        r0 += reach[n] * a0
+        r1 += reach[n + 1] * a1
+        r2 += reach[n + 2] * a2
+        r3 += reach[n + 3] * a3
+        t0 += third[n] * a0
+        t1 += third[n + 1] * a1
+        t2 += third[n + 2] * a2
+        t3 += third[n + 3] * a3
+    return (r0 + r1) + (r2 + r3), (t0 + t1) + (t2 + t3)

@@ -1,0 +1,103 @@
+"""The motion r under the force, and what the force does from rest, at each node (eqs. 5, 7)."""
+
+import math
+
+from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.tables.flight import ORDER, decaying
+from vibro_sweep.engine.tables.stiff import is_fast
+
+
+@jit
+def forced_series(eta, omega_squared, omega, width, sin, cos):
+    """xi and xi' after `width`, from rest, of xi'' + 2 eta xi' + omega_j^2 xi = sin(omega t + phase)."""
+    now, before, total, rate = 0.0, 0.0, 0.0, 0.0  # Taylor terms c_(n+1) width^(n+1) and c_n width^n, and the sums
+    square, force, turned = width * width, sin, omega * width * cos
+    for n in range(ORDER - 2):
+        # (5), term by term
+        after = force * square - 2.0 * eta * width * (n + 1.0) * now - omega_squared * square * before
+        after /= (n + 1.0) * (n + 2.0)
+        total += after
+        rate += (n + 2.0) * after / width
+        before, now = now, after
+        # derivatives of the force, over n!
+        force, turned = turned / (n + 1.0), -omega * omega * square * force / (n + 1.0)
+    return total, rate
+
+
+@jit
+def fill_motion(q, nodes, psi, omega_squared, f2, tau):
+    """The phase at the nodes, and the motion r.
+
+    The flight to node k = rest + step, with step its lowest binary digit, is one to `rest` and one of `step` cells:
+    rounding errors grow with the number of digits of k, not with k.
+    """
+    cells = q.cells
+    for k in range(cells + 1):
+        phase = tau + 2.0 * math.pi * (k / cells)
+        z = nodes[k].z
+        for i in range(LANES):
+            z[i] = 0.0
+        z[4], z[5] = math.sin(phase), math.cos(phase)
+    for j in range(2):
+        eta, square = q.zeta * omega_squared[j], omega_squared[j]
+        force = psi[0, j] * (1.0 - f2) + psi[1, j] * f2
+        if is_fast(q, square):
+            detuning, damping = square - q.omega * q.omega, 2.0 * eta * q.omega
+            size = force / (detuning * detuning + damping * damping)
+            for k in range(cells + 1):
+                sin, cos = nodes[k].z[4], nodes[k].z[5]
+                # (7): xi = A_j sin + B_j cos
+                xi = size * (detuning * sin - damping * cos)
+                rate = size * q.omega * (detuning * cos + damping * sin)
+                add_mode(nodes[k].z, psi, j, xi, rate)
+                add_fast_response(q, nodes[k].E, psi, j, square, size * detuning, size * damping, k)
+            continue
+        first, one = nodes[0].forced[j], nodes[1].forced[j]
+        first[0, 0] = first[0, 1] = first[1, 0] = first[1, 1] = 0.0
+        one[0, 0], one[1, 0] = forced_series(eta, square, q.omega, q.width, 1.0, 0.0)
+        one[0, 1], one[1, 1] = forced_series(eta, square, q.omega, q.width, 0.0, 1.0)
+        for k in range(cells + 1):
+            if k > 1:
+                step = k & -k if k & (k - 1) else k // 2
+                before, after, out = nodes[k - step].forced[j], nodes[step].forced[j], nodes[k].forced[j]
+                _, s, xi, rate = decaying(eta, square, step * q.width)
+                angle = 2.0 * math.pi * ((k - step) / cells)
+                swing, turn = math.sin(angle), math.cos(angle)
+                for i in range(2):  # to sin and cos at node 0
+                    there = (
+                        after[0, 0] * turn - after[0, 1] * swing if i == 0 else after[0, 0] * swing + after[0, 1] * turn
+                    )
+                    moving = (
+                        after[1, 0] * turn - after[1, 1] * swing if i == 0 else after[1, 0] * swing + after[1, 1] * turn
+                    )
+                    out[0, i] = xi * before[0, i] + s * before[1, i] + there
+                    out[1, i] = rate * before[1, i] - square * s * before[0, i] + moving
+            g, sin, cos = nodes[k].forced[j], nodes[0].z[4], nodes[0].z[5]
+            add_mode(nodes[k].E[4], psi, j, force * g[0, 0], force * g[1, 0])
+            add_mode(nodes[k].E[5], psi, j, force * g[0, 1], force * g[1, 1])
+            add_mode(
+                nodes[k].z, psi, j, force * (g[0, 0] * sin + g[0, 1] * cos), force * (g[1, 0] * sin + g[1, 1] * cos)
+            )
+
+
+@jit
+def add_fast_response(q, E, psi, j, omega_squared, a, b, k):
+    """What sin and cos of the force do to a fast mode in k cells, from rest: a sin - b cos less what it begins with."""
+    angle = 2.0 * math.pi * (k / q.cells)
+    sin, cos = math.sin(angle), math.cos(angle)
+    _, s, xi, rate = decaying(q.zeta * omega_squared, omega_squared, k * q.width)
+    for row, (first, moving) in enumerate(((a, q.omega * b), (-b, q.omega * a))):
+        turned, after = (a * cos + b * sin, b * cos - a * sin) if row == 0 else (a * sin - b * cos, a * cos + b * sin)
+        x = turned - (xi * first + s * moving)
+        v = q.omega * after - (rate * moving - omega_squared * s * first)
+        add_mode(E[4 + row], psi, j, x, v)
+
+
+@jit
+def add_mode(X, psi, j, xi, rate):
+    """Add a mode's motion to a state."""
+    X[0] += psi[0, j] * xi
+    X[1] += psi[0, j] * rate
+    X[2] += psi[1, j] * xi
+    X[3] += psi[1, j] * rate

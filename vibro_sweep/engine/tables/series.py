@@ -1,0 +1,57 @@
+"""Taylor series of flight and of rest over a cell (eq. 3)."""
+
+from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.tables.flight import ORDER
+
+
+@jit
+def derive(A, row, size, series):
+    """series[i, n]: Taylor coefficient n of (row . z) as a function of z_i, for z' = A z."""
+    for i in range(size):
+        series[i, 0] = row[i]
+    for n in range(1, ORDER):
+        for i in range(size):
+            total = 0.0
+            for j in range(size):
+                total += series[j, n - 1] * A[j, i]
+            series[i, n] = total / n
+
+
+@jit
+def clear(a):
+    for i in range(a.shape[0]):
+        for j in range(a.shape[1]):
+            a[i, j] = 0.0
+
+
+@jit
+def fill_series(q, A, row, mu_m, mu_k, f2):
+    """Taylor series of x1 and x2 in flight, and of M1's free acceleration and x2 while M1 rests on a stop (eq. 3).
+
+    A (6, 6) and row (6,) are scratch.
+    """
+    zeta, omega = q.zeta, q.omega
+    clear(A)
+    # (3) as z' = A z for z = (x1, v1, x2, v2, sin(omega t + tau), cos(omega t + tau))
+    A[0, 1] = A[2, 3] = 1.0
+    A[1, 0], A[1, 1], A[1, 2], A[1, 3], A[1, 4] = -1.0, -2.0 * zeta, 1.0, 2.0 * zeta, 1.0 - f2
+    A[3, 0], A[3, 1] = 1.0 / mu_m, 2.0 * zeta / mu_m
+    A[3, 2], A[3, 3], A[3, 4] = -(1.0 + mu_k) / mu_m, -2.0 * zeta * (1.0 + mu_k) / mu_m, f2 / mu_m
+    A[4, 5], A[5, 4] = omega, -omega
+    for i in range(6):
+        q.force[i] = A[1, i]
+        row[i] = 0.0
+    row[0] = 1.0
+    derive(A, row, 6, q.series1)
+    row[0], row[2] = 0.0, 1.0
+    derive(A, row, 6, q.series2)
+    # at rest z = (x1, x2, v2, sin, cos)
+    spring, damper, push = A[3, 2], A[3, 3], A[3, 4]
+    clear(A)
+    A[1, 2] = 1.0
+    A[2, 0], A[2, 1], A[2, 2], A[2, 3] = 1.0 / mu_m, spring, damper, push
+    A[3, 4], A[4, 3] = omega, -omega
+    row[0], row[1], row[2], row[3], row[4] = q.force[0], q.force[2], q.force[3], q.force[4], 0.0
+    derive(A, row, 5, q.resting1)
+    row[0], row[1], row[2], row[3] = 0.0, 1.0, 0.0, 0.0
+    derive(A, row, 5, q.resting2)

@@ -1,0 +1,125 @@
+"""The continuous motion of orbits that have been computed, over some periods more.
+
+Sampled uniformly, with the exact states at the sections and the impacts, between which the samples are smooth.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.engine.motion.ensemble import Ensemble, carry
+from vibro_sweep.engine.motion.orbits import Records, place
+from vibro_sweep.engine.points import prepare
+from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.model import status
+
+
+class Trajectories(NamedTuple):
+    """What is kept of p points with s starts each. Times are in forcing periods since the last recorded section."""
+
+    samples: np.ndarray  # (p, s, samples, 4)
+    sections: np.ndarray  # (p, s, periods + 1, 4), the last recorded section first
+    impacts: np.ndarray  # (p, s, m, 6): time, side, v1 before, v1 after, x2, v2; in order, the m fastest of them
+    counts: np.ndarray  # (p, s): impacts, also where there are more than m; -1: not computed
+
+
+def new_trajectories(shape: tuple[int, int], samples: int, periods: int, impacts: int) -> Trajectories:
+    """Room for so much, with nothing computed yet."""
+    return Trajectories(
+        np.full((*shape, samples, 4), np.nan),
+        np.full((*shape, periods + 1, 4), np.nan),
+        np.full((*shape, impacts, 6), np.nan),
+        np.full(shape, -1, np.int64),
+    )
+
+
+@jit
+def follow(w, periods, hits, samples, sections, impacts):
+    """The motion of the first orbit over the next `periods`. hits: scratch, (1, m, 7). Returns how many impacts."""
+    e = w.ensemble
+    o, records, last = e.orbits[0], e.records, len(samples) - 1
+    q = e.flights.oscillator[o.table, 0]
+    o.periods, o.log_side = 1, 0.0
+    for j in range(4):
+        sections[0, j] = o.X[j]
+    i = 0
+    for n in range(periods):
+        first = i
+        while i < last and i * periods < (n + 1) * last:
+            cells = (i * periods - n * last) / last * q.cells
+            records.times[i, 0] = math.floor(cells)
+            records.times[i, 1] = (cells - math.floor(cells)) * q.width
+            i += 1
+        part = Records(hits, records.rests, records.times[first:i], records.samples[first:i])
+        part = Ensemble(e.flights, e.orbits, e.strike, e.tangent, part)
+        carry(part, None, w.section, False, w.growth, 0)
+        if o.status != status.OK:
+            sections[: n + 1] = np.nan
+            return 0
+        for j in range(4):
+            sections[n + 1, j] = o.X[j]
+    for i in range(last):
+        for j in range(4):
+            samples[i, j] = records.samples[i, j]
+    for j in range(4):
+        samples[last, j] = o.X[j]
+    keep_fastest(hits[0, : min(o.impacts_logged, hits.shape[1])], impacts, q, o.stops[2])
+    return o.impacts_logged
+
+
+@jit
+def count_faster(hits, speed):
+    """Logged impacts with more than this speed."""
+    n = 0
+    for i in range(len(hits)):
+        n += abs(hits[i, 4]) > speed
+    return n
+
+
+@jit
+def keep_fastest(hits, impacts, q, R):
+    """Of the logged impacts, (n, 7), as many as there is room for: those that are left out end chatter sequences."""
+    slow = -1.0
+    if len(hits) > len(impacts):
+        below, slow = 0.0, 0.0
+        for i in range(len(hits)):
+            slow = max(slow, abs(hits[i, 4]))
+        for _ in range(60):
+            middle = 0.5 * (below + slow)
+            if count_faster(hits, middle) > len(impacts):
+                below = middle
+            else:
+                slow = middle
+    n = 0
+    for i in range(len(hits)):
+        if abs(hits[i, 4]) > slow:
+            hit = hits[i]
+            impacts[n, 0] = hit[0] + (hit[1] + hit[2] / q.width) / q.cells
+            impacts[n, 1], impacts[n, 2], impacts[n, 3] = hit[3], hit[4], -R * hit[4]
+            impacts[n, 4], impacts[n, 5] = hit[5], hit[6]
+            n += 1
+
+
+@entry
+def run_trajectories(points, results, hits, kept, w, plan):
+    """Go on from where `run_points` left the orbits of a block. hits: scratch, (1, m, 7)."""
+    e = w.ensemble
+    e.tangent[0].wanted = e.strike[0].measured = False
+    for i in range(1, LANES):
+        e.orbits[i].status = status.NOT_COMPUTED
+    for p in range(len(points)):
+        for s in range(results.shape[1]):
+            result, o = results[p, s], e.orbits[0]
+            if result.status in status.STANDING:
+                stops = prepare(points[p : p + 1], 0, w, plan)
+                end = result.end
+                place(o, e.flights.nodes[o.table], stops, 0, 0.0, end[0], end[1], end[2], end[3])
+                o.resting = result.resting
+                samples, sections, impacts = kept.samples[p, s], kept.sections[p, s], kept.impacts[p, s]
+                count = follow(w, plan.periods, hits, samples, sections, impacts)
+                if o.status == status.OK:
+                    kept.counts[p, s] = count
+                else:
+                    result.status = o.status

@@ -1,0 +1,1 @@
+"""Tangent vectors along orbits, and the Lyapunov spectrum from their growth."""

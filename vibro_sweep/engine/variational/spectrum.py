@@ -1,0 +1,118 @@
+"""Lyapunov spectra: from the growth of tangent vectors over a record, or over one period of a periodic orbit."""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.variational import tangent
+from vibro_sweep.engine.variational.orthonormal import CONDITION
+from vibro_sweep.model import exponents, status
+
+BATCHES = 20  # parts of the recorded time whose scatter gives the error of an exponent
+MOST_CORRELATION = 0.8  # of neighbouring parts, that is allowed for
+
+periods_read = jit(exponents.periods_read)  # after which `carry` reads the growth
+
+
+@jit
+def begin_warm_up(e, count):
+    """The last part of the transient, on which tangent vectors find their directions."""
+    e.tangent[0].wanted = True
+    for i in range(count):
+        tangent.begin(e.tangent[0], i)
+        keep_at_rest(e, i)
+
+
+@jit
+def end_warm_up(e, count):
+    """Count growth from here on."""
+    t = e.tangent[0]
+    for i in range(count):
+        o = e.orbits[i]
+        if o.status == status.OK:
+            n = o.table
+            tangent.fly_to(t, i, e.flights.oscillator[n, 0], e.flights.nodes[n], 0, 0.0)
+            tangent.catch_up(t, tangent.only(i))
+            if t.lost[i] > 0.0:  # on the way here; what the attractor itself loses shows again
+                tangent.begin(t, i)
+                keep_at_rest(e, i)
+            tangent.start_record(t, i)
+
+
+@jit
+def keep_at_rest(e, i):
+    """Where M1 rests on a stop, two of the four directions are lost already."""
+    if e.orbits[i].resting != 0.0:
+        tangent.rest(e.tangent[0], i, e.flights.oscillator[e.orbits[i].table, 0].kappa)
+
+
+@jit
+def time_average(growth, periods, T, spectrum, error):
+    """Exponents after so many periods, and their standard errors from the scatter over parts; growth as in `carry`.
+
+    Neighbouring parts are joined until `BATCHES` are left. Where the scatter of one part is like that of the part
+    before it (correlation c), the parts know less than so many independent ones would: by (1 + c)/(1 - c).
+    """
+    parts = len(growth)
+    size = max(1, parts // BATCHES)
+    batches = parts // size
+    for i in range(4):
+        spectrum[i] = growth[parts - 1, i] / (periods * T)
+        scatter, together, last, before, began = 0.0, 0.0, 0.0, 0.0, 0
+        for m in range(size - 1, parts, size):
+            ended = periods_read(m, parts, periods)
+            deviation = (growth[m, i] - before) / ((ended - began) * T) - spectrum[i]
+            scatter += deviation * deviation
+            together += deviation * last
+            before, began, last = growth[m, i], ended, deviation
+        error[i] = np.nan
+        if batches > 1:
+            # a correlation found from few parts is low by 1/batches on the mean
+            c = together / scatter + 1.0 / batches if scatter > 0.0 else 0.0
+            c = min(max(c, 0.0), MOST_CORRELATION)
+            rounding = 2.0**-52 * (abs(spectrum[i]) + CONDITION / (periods * T))
+            error[i] = math.sqrt(scatter / (batches * (batches - 1.0)) * (1.0 + c) / (1.0 - c)) + rounding
+        if spectrum[i] == -np.inf:
+            error[i] = 0.0
+
+
+@jit
+def period_of(e, o):
+    """The forcing period T."""
+    q = e.flights.oscillator[o.table, 0]
+    return q.width * q.cells
+
+
+@jit
+def close_spectrum(e, o, w, point, result):
+    """Floquet exponents in place of averages; the residual of the sum rule, which is part of the last one's error."""
+    q, spectrum, error = e.flights.oscillator[o.table, 0], result.lyapunov, result.lyapunov_error
+    periods = result.period if result.period > 0 else w.section.shape[1]
+    time = periods * period_of(e, o)
+    if result.period > 0:
+        for j in range(4):
+            spectrum[j], error[j] = result.log_multiplier[j] / time, result.log_error[j] / time
+    exact = -2.0 * point.zeta * (1.0 + (1.0 + point.mu_k) / point.mu_m) + o.log_volume / time
+    hits = o.impacts_right + o.impacts_left
+    if hits > 0 and q.order == 0:
+        exact += 2.0 * (hits / time) * np.log(point.R)
+    sort(spectrum, error)
+    residual = ((spectrum[0] + spectrum[1]) + (spectrum[2] + spectrum[3])) - exact
+    for j in range(4 - q.vanishing, 4):
+        spectrum[j], error[j], residual = -np.inf, 0.0, -np.inf
+        result.multiplier_re[j] = result.multiplier_im[j] = result.multiplier_error[j] = 0.0
+    result.lyapunov_residual = residual if residual > -np.inf else np.nan
+    if residual > -np.inf:
+        error[3] = max(error[3], abs(residual))
+
+
+@jit
+def sort(spectrum, error):
+    """Descending; the vectors find their order only as far as the exponents differ."""
+    for i in range(1, 4):
+        value, doubt, j = spectrum[i], error[i], i
+        while j > 0 and spectrum[j - 1] < value:
+            spectrum[j], error[j] = spectrum[j - 1], error[j - 1]
+            j -= 1
+        spectrum[j], error[j] = value, doubt

@@ -1,0 +1,271 @@
+"""Tangent vectors along eight orbits, and from them the Lyapunov spectra.
+
+Four vectors of each orbit are kept as the columns of Z, in the frame z = (g_1 xi_1, xi_1' + eta_1 xi_1, g_2 xi_2, xi_2'
++ eta_2 xi_2) with g_j = |omega_dj|, in which the flight of mode j is e^{-eta_j u} times a rotation: in this metric the
+exponents of a non-impacting orbit are exact after any time, where those of (x, v) would only converge like 1/t.
+(Overdamped: times a symmetric matrix, and exact as soon as its eigenvectors are found.)
+
+Flight is not applied step by step but collected as four numbers (c_1, s_1, c_2, s_2), and applied at the next impact.
+`who` is the mask of the orbits to which something happens; i is one of them.
+"""
+
+import numpy as np
+
+from vibro_sweep.engine.simd.jit import aside, entry, inline, jit
+from vibro_sweep.engine.simd.lanes import LANES, bits, lanes_of, put, record, row, select
+from vibro_sweep.engine.tables.flight import ORDER, decaying
+from vibro_sweep.engine.variational.orthonormal import orthonormalise, watch
+
+# Tangent vectors of eight orbits; one column each.
+TANGENT = record(
+    [
+        # of the oscillator
+        ("series", float, (4 * ORDER, LANES)),
+        ("scale", float, (2, LANES)),  # g_j
+        ("square", float, (2, LANES)),  # omega_dj^2
+        ("to_frame", float, (16, LANES)),
+        ("from_frame", float, (16, LANES)),
+        ("kick", float, (4, LANES)),  # to_frame of a step of x1 by 1 and of v2 by kappa = 2 zeta/mu_m
+        ("R", float, LANES),
+        # of the orbit
+        ("lost", float, LANES),  # dimensions: two by sticking, one by an impact without restitution
+        ("cell", np.int64, LANES),  # the cell, counted from the section, and
+        ("offset", float, LANES),  # the offset in it, up to which `flight` reaches
+        ("leap", float, (4, LANES)),  # c_1, s_1, c_2, s_2 of a flight over whole cells
+        ("part", float, LANES),  # of a cell, to fly after it
+        ("flight", float, (4, LANES)),  # c_1, s_1, c_2, s_2 of the flight since Z was last touched
+        ("stretch", np.int64, LANES),  # whole cells of that flight
+        ("mixed", float, LANES),  # 0: each vector lies in the plane of one mode, where free flight turns it
+        ("Z", float, (16, LANES)),  # columns of Z (4, 4) are vectors
+        ("volume", float, LANES),  # |det Z|, from the identity det S = R^2
+        ("growth", float, (4, LANES)),  # products of the diagonals of R in Z = Q R
+        ("logs", float, (4, LANES)),  # their logarithms, taken before they leave the range of the floats
+        ("length", float, (4, LANES)),  # diagonal of R in the last Z = Q R, and
+        ("along", float, (6, LANES)),  # what stands beside it, over it: 01, 02, 03, 12, 13, 23;
+        ("shear", float, (6, LANES)),  # the same of the product of all R, where they are `collected`
+        ("wanted", np.bool_),  # else nothing is computed
+        ("collected", np.bool_),
+    ]
+)
+
+
+@inline
+def only(i):
+    """The mask of one orbit."""
+    return lanes_of(1 << i)
+
+
+@jit
+def deal(t, i, q, R):
+    """Give orbit i its oscillator."""
+    for n in range(ORDER):
+        for j in range(4):
+            t.series[4 * n + j, i] = q.frame_series[n, j]
+    for m in range(4):
+        for j in range(4):
+            t.to_frame[4 * m + j, i], t.from_frame[4 * m + j, i] = q.to_frame[m, j], q.from_frame[m, j]
+    for j in range(2):
+        t.scale[j, i], t.square[j, i] = q.frame_scale[j], q.frame_square[j]
+    for m in range(4):
+        t.kick[m, i] = q.to_frame[m, 0] + q.kappa * q.to_frame[m, 3]
+    t.R[i] = R
+
+
+@entry
+def begin(t, i):
+    """Four orthonormal vectors at the section."""
+    for m in range(4):
+        for j in range(4):
+            t.Z[4 * m + j, i] = 1.0 if m == j else 0.0
+        t.flight[m, i] = 1.0 - m % 2
+    t.lost[i], t.volume[i], t.offset[i], t.mixed[i] = 0.0, 1.0, 0.0, 0.0
+    t.cell[i] = t.stretch[i] = 0
+    start_record(t, i)
+
+
+@jit
+def start_record(t, i):
+    """Count growth from here on."""
+    for j in range(4):
+        t.growth[j, i], t.logs[j, i] = 1.0, 0.0
+
+
+@inline
+def join(t, who, c1, s1, c2, s2):
+    """Lengthen the collected flight by a flight with these factors."""
+    a, b, flight = row(t.flight, 0), row(t.flight, 1), t.flight
+    put(flight, 0, select(who, a * c1 - row(t.square, 0) * (b * s1), a))
+    put(flight, 1, select(who, a * s1 + b * c1, b))
+    a, b = row(flight, 2), row(flight, 3)
+    put(flight, 2, select(who, a * c2 - row(t.square, 1) * (b * s2), a))
+    put(flight, 3, select(who, a * s2 + b * c2, b))
+
+
+@jit
+def fly(t, who):
+    """Lengthen the collected flight by `leap` and `part`."""
+    leap, series, u = t.leap, t.series, row(t.part, 0)
+    join(t, who, row(leap, 0), row(leap, 1), row(leap, 2), row(leap, 3))
+    last = 4 * (ORDER - 1)
+    c1, s1, c2, s2 = row(series, last), row(series, last + 1), row(series, last + 2), row(series, last + 3)
+    for n in range(last - 4, -1, -4):
+        c1 = c1 * u + row(series, n)
+        s1 = s1 * u + row(series, n + 1)
+        c2 = c2 * u + row(series, n + 2)
+        s2 = s2 * u + row(series, n + 3)
+    join(t, who, c1, s1, c2, s2)
+
+
+@inline
+def leap_over(t, i, q, nodes, cells):
+    """The factors of a flight over whole cells."""
+    t.part[i] = 0.0
+    if cells <= q.cells:
+        frame = nodes[cells].frame
+        for j in range(4):
+            t.leap[j, i] = frame[j]
+    else:
+        decay_over(t, i, q, cells * q.width)
+
+
+@jit
+def decay_over(t, i, q, u):
+    """The factors of a flight of any length."""
+    for j in range(2):
+        eta = -q.frame_series[1, 2 * j]
+        t.leap[2 * j, i], t.leap[2 * j + 1, i], _, _ = decaying(eta, q.frame_square[j] + eta * eta, u)
+
+
+@inline
+def most_cells(t, i, q):
+    """Cells that may be flown between looks at the vectors."""
+    return q.stretch if t.mixed[i] > 0.0 else q.leash
+
+
+@aside
+def stop_over(t, i, q, nodes, cells):
+    """Fly on, with looks at the vectors, or all would become the one that decays least. Returns the cells left."""
+    limit = most_cells(t, i, q)
+    while t.stretch[i] + cells > limit:
+        part = limit - t.stretch[i]
+        leap_over(t, i, q, nodes, part)
+        fly(t, only(i))
+        catch_up(t, only(i))
+        cells -= part
+    return cells
+
+
+@inline
+def aim(t, i, q, nodes, k, s):
+    """What `fly` is to do to bring the collected flight of orbit i to offset s of cell k of this period."""
+    cells, u = k - t.cell[i], s - t.offset[i]
+    if u < 0.0:
+        cells -= 1
+        u += q.width
+    t.cell[i], t.offset[i] = k, s
+    if t.stretch[i] + cells > most_cells(t, i, q):
+        cells = stop_over(t, i, q, nodes, cells)
+    t.stretch[i] += cells
+    leap_over(t, i, q, nodes, cells)
+    if not q.stiff:
+        t.part[i] = u
+    elif u > 0.0:  # too far for the series
+        fly(t, only(i))
+        decay_over(t, i, q, u)
+
+
+@jit
+def fly_to(t, i, q, nodes, k, s):
+    """Lengthen the collected flight of orbit i to offset s of cell k of this period."""
+    aim(t, i, q, nodes, k, s)
+    fly(t, only(i))
+
+
+@jit
+def apply_flight(t, who):
+    """Z after the collected flight."""
+    Z, flight, volume = t.Z, t.flight, row(t.volume, 0)
+    for j in range(2):
+        c, s = row(flight, 2 * j), row(flight, 2 * j + 1)
+        above, below = row(t.scale, j) * s, -row(t.square, j) / row(t.scale, j) * s
+        for m in range(4):
+            first, second = row(Z, 8 * j + m), row(Z, 8 * j + 4 + m)
+            put(Z, 8 * j + m, select(who, c * first + above * second, first))
+            put(Z, 8 * j + 4 + m, select(who, below * first + c * second, second))
+        volume = volume * (c * c - above * below)
+        put(flight, 2 * j, select(who, 1.0, c))
+        put(flight, 2 * j + 1, select(who, 0.0, s))
+    put(t.volume, 0, select(who, volume, row(t.volume, 0)))
+    for i in range(LANES):
+        if bits(who) >> i & 1:
+            t.stretch[i] = 0
+
+
+@jit
+def catch_up(t, who):
+    """Bring Z to where the collected flight ends, orthonormal."""
+    apply_flight(t, who)
+    orthonormalise(t, who)
+
+
+@jit
+def saltate(t, who, steepness):
+    """Z across an impact, by the saltation matrix S = DG + (F+ - DG F-) n^T/(n . F-).
+
+    In (x1, v1, x2, v2), with steepness = (a1+ + R a1-)/v1- and kappa = 2 zeta/mu_m: dx1 -> -R dx1, dv1 -> steepness
+    dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
+    """
+    apply_flight(t, who)
+    Z, back, to, R = t.Z, t.from_frame, t.to_frame, row(t.R, 0)
+    for j in range(4):
+        z0, z1, z2, z3 = row(Z, j), row(Z, 4 + j), row(Z, 8 + j), row(Z, 12 + j)
+        dx = row(back, 0) * z0 + row(back, 2) * z2
+        dv = (row(back, 4) * z0 + row(back, 5) * z1) + (row(back, 6) * z2 + row(back, 7) * z3)
+        to_x1 = -(1.0 + R) * dx
+        to_v1 = steepness * dx - (1.0 + R) * dv
+        for m in range(4):
+            z = row(Z, 4 * m + j)
+            after = z + row(t.kick, m) * to_x1 + row(to, 4 * m + 1) * to_v1
+            put(Z, 4 * m + j, select(who, after, z))
+    put(t.mixed, 0, select(who, 1.0, row(t.mixed, 0)))
+    watch(t, who, R * R)
+
+
+@jit
+def rest(t, i, kappa):
+    """Z when M1 comes to rest on a stop: dx1 = dv1 = 0, and two of the four dimensions are lost for good.
+
+    M2 receives through the damper what moves M1 to the stop at once: dv2 -> dv2 - kappa dx1, with kappa = 2 zeta/mu_m.
+    """
+    apply_flight(t, only(i))
+    t.lost[i] = 2.0
+    Z, back, to = t.Z, t.from_frame, t.to_frame
+    for j in range(4):
+        push = kappa * (back[0, i] * Z[j, i] + back[2, i] * Z[8 + j, i])
+        for m in range(4):
+            Z[4 * m + j, i] -= to[4 * m + 3, i] * push
+    release(t, i, 1.0, 0.0, 0.0, 1.0)
+
+
+@jit
+def release(t, i, xx, xv, vx, vv):
+    """Z after a rest on the stop during which (dx2, dv2) is multiplied by ((xx, xv), (vx, vv))."""
+    Z, back, to = t.Z, t.from_frame, t.to_frame
+    t.mixed[i] = 1.0
+    for j in range(4):
+        z0, z1, z2, z3 = Z[j, i], Z[4 + j, i], Z[8 + j, i], Z[12 + j, i]
+        dx = back[8, i] * z0 + back[10, i] * z2
+        dv = (back[12, i] * z0 + back[13, i] * z1) + (back[14, i] * z2 + back[15, i] * z3)
+        dx, dv = xx * dx + xv * dv, vx * dx + vv * dv
+        for m in range(4):
+            Z[4 * m + j, i] = to[4 * m + 2, i] * dx + to[4 * m + 3, i] * dv
+    orthonormalise(t, only(i))
+
+
+@aside
+def read_growth(t, i, q, nodes, out):
+    """Logarithms of the growth of the four vectors up to this section, -inf for dimensions lost by sticking."""
+    fly_to(t, i, q, nodes, 0, 0.0)
+    catch_up(t, only(i))
+    for j in range(4):
+        out[j] = t.logs[j, i] + np.log(t.growth[j, i])

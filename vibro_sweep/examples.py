@@ -1,0 +1,43 @@
+"""Example scenes, which come with the package, and copies of them to start from."""
+
+import difflib
+import re
+from pathlib import Path
+
+SCHEMA = "scene.schema.json"
+HOME = Path(__file__).parent
+
+
+class ExampleError(ValueError):
+    """An example that there is not, or whose copy would replace a file."""
+
+
+def examples() -> dict[str, Path]:
+    """Scenes by name."""
+    folder = HOME / "configs"
+    folder = folder if folder.is_dir() else HOME.parent / "configs"  # not installed, or installed to be edited
+    return {path.stem: path for path in sorted(folder.glob("**/*.yaml"))}
+
+
+def write_example(name: str) -> list[Path]:
+    """Copy a scene into the current folder, and the schema beside it; the files that are new. Raises ExampleError."""
+    known = examples()
+    name = name.removesuffix(".yaml")
+    if name not in known:
+        close = difflib.get_close_matches(name, known, n=1)
+        hint = f"did you mean {close[0]}? " if close else ""
+        raise ExampleError(f"NAME {name!r}: there is no such example; {hint}there are {', '.join(known)}")
+    scene = Path(f"{name}.yaml")
+    text = known[name].read_text(encoding="utf-8")
+    text = re.sub(r"configs/(paper/)?", "", text).replace("../", "./")  # the files are in this folder now
+    try:
+        with open(scene, "x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise ExampleError(f"{scene} exists; move it away, or work in another folder") from None
+    schema = Path(SCHEMA)
+    if schema.exists():
+        return [scene]
+    folder = next(path for path in known[name].parents if (path / SCHEMA).exists())
+    schema.write_bytes((folder / SCHEMA).read_bytes())
+    return [scene, schema]

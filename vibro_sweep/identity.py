@@ -1,0 +1,43 @@
+"""What numbers depend on, in one word: equal identities give equal numbers on equal machines.
+
+Files and workers are compared by it. The folder of compiled kernels is named by the engine's sources alone
+(engine/simd/jit.py), so that other edits compile nothing anew.
+"""
+
+import functools
+import hashlib
+from importlib.metadata import version
+from pathlib import Path
+
+from vibro_sweep.engine.simd import jit
+
+HOME = Path(__file__).parent
+
+# All that lies on the way from a scene's text to a file's numbers; what moves, stores or shows them is left out.
+SOURCES = (
+    "model",
+    "engine",
+    "analysis",
+    "scene",
+    "driver/blocks.py",
+    "driver/compute.py",
+    "driver/attractor_ids.py",
+    "store/numbers.py",
+)
+LIBRARIES = ("numpy", "numba", "llvmlite")
+
+
+def sources() -> list[Path]:
+    """The modules that numbers depend on."""
+    found = (HOME / name for name in SOURCES)
+    return sorted(path for one in found for path in (one.rglob("*.py") if one.is_dir() else [one]))
+
+
+@functools.cache  # of the sources as they were imported
+def identity() -> str:
+    """A hash of the sources that numbers depend on, of the libraries that compute them and of how kernels compile."""
+    digest = hashlib.sha256()
+    for path in sources():
+        digest.update(path.relative_to(HOME).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    digest.update(repr([*(version(name) for name in LIBRARIES), jit.AS_ONE]).encode())
+    return digest.hexdigest()[:16]

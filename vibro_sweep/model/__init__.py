@@ -1,0 +1,1 @@
+"""The oscillator: its parameters, modes, steady motion and Theorem 1."""

@@ -1,0 +1,9 @@
+"""How Lyapunov exponents are read off a record: what kernels, attractors and files must agree on."""
+
+CERTAIN = 2.0  # standard errors by which an exponent must differ from zero to be above or below it
+RUNNING = 200  # points at which exponents that converge are stored
+
+
+def periods_read(m, parts, periods):
+    """Forcing periods of a record after which the growth of tangent vectors is read for the m-th of `parts` times."""
+    return -(-(m + 1) * periods // parts)

@@ -1,0 +1,220 @@
+"""What can be observed of orbits, declared once: the kernels' records, files, scene words and the reference follow.
+
+A variable of a file has the dimensions of the sweep, `start` if there are several, and then its own.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from vibro_sweep.model.exponents import CERTAIN
+from vibro_sweep.model.state import COORDINATES, STATE
+from vibro_sweep.model.status import NOT_COMPUTED, STATUSES
+
+TRAJECTORY = "trajectory"  # the scene's key that asks for some variables; all other keys below are words of `observe`
+AVERAGED = (*STATE, "impacts_right", "impacts_left", "lyapunov")  # what all orbits of an attractor have in common
+
+
+class Word(NamedTuple):
+    """A word of `observe`, and what must be done for it while an orbit is computed."""
+
+    text: str
+    states: bool = True  # keep the section points of the record
+    tangents: bool = False  # carry tangent vectors
+
+
+WORDS = {
+    "section": Word("section points and their period"),
+    "lyapunov": Word("Lyapunov spectrum, its standard errors and the residual of its sum rule", tangents=True),
+    "multipliers": Word("Floquet multipliers of periodic orbits", tangents=True),
+    "impacts": Word("counts and speeds of impacts, time at rest on a stop", states=False),
+    "attractors": Word("which starts end on the same attractor", tangents=True),
+    "convergence": Word("Lyapunov exponents as they converge along the record", tangents=True),
+}
+
+
+class Dimension(NamedTuple):
+    """A variable's own dimension, with its coordinate; without `extent` the scene decides how long it is."""
+
+    label: str
+    text: str
+    extent: int | None = None
+    units: str = "1"
+
+    @property
+    def long_name(self) -> str:
+        return self.label
+
+
+DIMENSIONS = {
+    "start": Dimension("start", "start of the orbit"),
+    "sample": Dimension("section point", "section point, counted from the end of the transient"),
+    "exponent": Dimension("exponent", "Lyapunov exponent, counted from the largest", len(STATE)),
+    "multiplier": Dimension("multiplier", "Floquet multiplier, counted from that of largest modulus", len(STATE)),
+    "averaged": Dimension("average of", "section points, impacts in a forcing period, lambda_1", len(AVERAGED)),
+    "elapsed": Dimension("forcing periods recorded", "forcing periods since the end of the transient"),
+    "time": Dimension("time t/T", "forcing periods since the last section point"),
+    "trajectory_section": Dimension("time t/T", "forcing periods since the last section point"),
+    "trajectory_impact": Dimension("impact", "impact along the orbit, counted from the last section point"),
+}
+
+
+class Variable(NamedTuple):
+    """A variable of a file."""
+
+    name: str
+    asked_by: tuple[str, ...]  # words of `observe`, or TRAJECTORY; of none: it is always there
+    label: str  # short: of an axis; `long_name` in the file
+    text: str  # `description` in the file
+    dimensions: tuple[str, ...] = ()
+    dtype: str = "f8"
+    units: str = "1"
+    missing: float | None = None  # by default NaN, or -1 of integers
+    in_kernel: bool = True  # a field of the record that kernels fill for each orbit
+    at_impacts: bool = False  # only of sections at impacts
+    symbol: str = ""  # TeX, where it has one
+    attributes: dict[str, Any] = {}  # noqa: RUF012  # more attributes in the file; read only
+
+    @property
+    def long_name(self) -> str:
+        return self.label
+
+    @property
+    def fill(self) -> float:
+        """Its value where nothing is computed."""
+        if self.missing is not None:
+            return self.missing
+        return np.nan if np.dtype(self.dtype).kind == "f" else -1
+
+
+def _section(name: str, label: str, text: str, **more: Any) -> Variable:
+    return Variable(name, ("section",), label, text, ("sample",), in_kernel=False, **more)
+
+
+def _attractor(name: str, label: str, text: str, dtype: str = "f8") -> Variable:
+    return Variable(name, ("attractors",), label, text, (), dtype, in_kernel=False)
+
+
+def _trajectory(name: str, label: str, text: str, dimension: str | None, *more: Any) -> Variable:
+    dimensions = (dimension,) if dimension else ()
+    return Variable(f"trajectory_{name}", (TRAJECTORY,), label, text, dimensions, *more, in_kernel=False)
+
+
+_EXPONENTS, _MULTIPLIERS, _IMPACTS = ("lyapunov",), ("multipliers",), ("impacts",)
+
+VARIABLES = (
+    *(_section(name, label, f"{text} at the section", symbol=symbol) for name, symbol, label, text in COORDINATES),
+    _section("phase", "forcing phase", "forcing phase omega t mod 2 pi at the impact", units="rad", at_impacts=True),
+    Variable(
+        "period", ("section", "multipliers", "attractors"), "period in T",
+        "period of the orbit in forcing periods, 0: none up to half of `record`", dtype="i8",
+    ),
+    Variable(
+        "lyapunov", _EXPONENTS, "Lyapunov exponent", "Lyapunov exponents per unit time, natural logarithm",
+        ("exponent",), symbol=r"\lambda",
+    ),
+    Variable(
+        "lyapunov_error", _EXPONENTS, "error of the exponent",
+        "standard error of the exponents; of a periodic orbit: what one more period changes", ("exponent",),
+        attributes={"significant": CERTAIN},  # so many of these errors tell an exponent from zero
+    ),
+    Variable(
+        "lyapunov_residual", _EXPONENTS, "residual of the sum rule", "sum of the exponents minus its exact value",
+    ),
+    Variable(
+        "multiplier_re", _MULTIPLIERS, "multiplier, real part",
+        "Floquet multipliers of the periodic orbit by falling modulus, real part", ("multiplier",),
+    ),
+    Variable(
+        "multiplier_im", _MULTIPLIERS, "multiplier, imaginary part",
+        "their imaginary part; of a pair the positive one first", ("multiplier",),
+    ),
+    Variable("multiplier_error", _MULTIPLIERS, "error of the multiplier", "error of the multipliers", ("multiplier",)),
+    _attractor(
+        "attractor", "attractor",
+        "attractor of the orbit, from 1, the one that most starts reach; 0: not settled", "i8",
+    ),
+    _attractor(
+        "attractor_id", "number of the attractor",
+        "number of the attractor in all of the file, in the order of the sweep; 0: not settled", "i4",
+    ),
+    _attractor("share", "share of starts", "share of the starts that reach the attractor of this one"),
+    Variable(
+        "average", ("attractors",), "average", "averages that orbits of one attractor share", ("averaged",),
+    ),
+    Variable(
+        "average_error", ("attractors",), "error of the average", "how well the averages are known", ("averaged",),
+    ),
+    Variable(
+        "lyapunov_running", ("convergence",), "Lyapunov exponent",
+        "Lyapunov exponents as they converge, in the order of their vectors", ("elapsed", "exponent"),
+        in_kernel=False,
+    ),
+    Variable(
+        "impacts_right", _IMPACTS, "impacts on the right", "impacts on the right stop in the recorded periods",
+        dtype="i8",
+    ),
+    Variable(
+        "impacts_left", _IMPACTS, "impacts on the left", "impacts on the left stop in the recorded periods", dtype="i8",
+    ),
+    Variable(
+        "min_impact_speed", _IMPACTS, "smallest impact speed",
+        "smallest |v1| before an impact in the recorded periods; NaN without impacts",
+    ),
+    Variable(
+        "contact_error", _IMPACTS, "contact error", "largest distance from the stop at which an impact was computed",
+    ),
+    Variable("sticking_time", _IMPACTS, "sticking time", "time at rest on a stop in the recorded periods"),
+    *(
+        variable
+        for name, _, label, text in COORDINATES
+        for variable in (
+            _trajectory(name, label, f"{text} along the orbit", "time"),
+            _trajectory(
+                f"section_{name}", label, f"{text} at the section t = 0 mod T along the orbit", "trajectory_section",
+            ),
+        )
+    ),
+    _trajectory("impacts", "impacts", "impacts along the orbit; of too many the fastest are stored", None, "i8"),
+    _trajectory(
+        "impact_time", "time of impact, t/T", "forcing periods from the last section point to an impact",
+        "trajectory_impact",
+    ),
+    _trajectory(
+        "impact_side", "stop of impact", "stop of an impact: 1 right, -1 left; 0: none", "trajectory_impact",
+        "i1", "1", 0,
+    ),
+    _trajectory("impact_v1", "velocity v1 before impact", "velocity of mass 1 before an impact", "trajectory_impact"),
+    _trajectory(
+        "impact_v1_after", "velocity v1 after impact", "velocity of mass 1 after an impact", "trajectory_impact",
+    ),
+    *(
+        _trajectory(f"impact_{name}", f"{label} at impact", f"{text} at an impact", "trajectory_impact")
+        for name, _, label, text in COORDINATES[2:]
+    ),
+    Variable(
+        "status", (), "status", "outcome of the computation", dtype="i1", missing=NOT_COMPUTED,
+        attributes={
+            "flag_values": np.array(list(STATUSES), np.int8),  # as CF has them
+            "flag_meanings": " ".join(status.name for status in STATUSES.values()),
+        },
+    ),
+)  # fmt: skip
+
+OF_AN_ORBIT = tuple(variable for variable in VARIABLES if variable.in_kernel)
+OF_AN_IMPACT = tuple(  # along a trajectory, in the order in which kernels keep them
+    variable.name for variable in VARIABLES if variable.dimensions == ("trajectory_impact",)
+)
+
+
+def asked_for(keys: frozenset[str], at_impacts: bool) -> dict[str, Variable]:
+    """The variables of a file, by name, in order.
+
+    keys : words of `observe`, and TRAJECTORY where the scene asks for one
+    at_impacts : whether the section is at impacts
+    """
+    return {
+        variable.name: variable
+        for variable in VARIABLES
+        if (not variable.asked_by or keys.intersection(variable.asked_by)) and (at_impacts or not variable.at_impacts)
+    }

@@ -1,0 +1,133 @@
+"""The numbers of the oscillator, declared once: records, scene keys, JSON Schema, files and plot labels follow."""
+
+import operator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+STOPS = ("both", "right", "left")
+
+_HOLDS = {
+    "exclusiveMinimum": operator.gt,
+    "minimum": operator.ge,
+    "maximum": operator.le,
+}
+
+
+class Range(NamedTuple):
+    """What a number may be, in words and as JSON Schema says it."""
+
+    text: str
+    bounds: dict[str, float]
+
+    def holds(self, numbers: np.ndarray) -> np.ndarray:
+        """Where finite numbers are in the range; of the shape of `numbers`."""
+        good = np.isfinite(numbers)
+        for bound, value in self.bounds.items():
+            good = good & _HOLDS[bound](numbers, value)
+        return good
+
+
+POSITIVE = Range("a number > 0", {"exclusiveMinimum": 0})
+NOT_NEGATIVE = Range("a number >= 0", {"minimum": 0})
+FRACTION = Range("a number from 0 to 1", {"minimum": 0, "maximum": 1})
+NUMBER = Range("a number", {})
+
+
+class Parameter(NamedTuple):
+    name: str  # of the Python argument, the scene key and the variable of the file
+    symbol: str  # TeX, as in the paper
+    units: str
+    range: Range
+    label: str  # short: of an axis
+    text: str
+    equation: str = ""  # in which it first appears
+    default: Any = None  # None: it must be given
+    words: dict[str, str] = {}  # noqa: RUF012  # what may stand in place of a number, and what it means; read only
+    free_motion: bool = False  # whether the non-impacting motion depends on it (tau only shifts that in time)
+
+    @property
+    def described(self) -> str:
+        """Text and words."""
+        return ", or ".join([self.text, *(f"`{word}`: {meaning}" for word, meaning in self.words.items())])
+
+    @property
+    def long_name(self) -> str:
+        """Label and name, as plain text."""
+        return f"{self.label} {self.name.removeprefix('start_')}"
+
+
+PARAMETERS = (
+    Parameter("mu_m", r"\mu_m", "1", POSITIVE, "mass ratio", "mass ratio M2/M1", "(3)", free_motion=True),
+    Parameter("mu_k", r"\mu_k", "1", POSITIVE, "stiffness ratio", "stiffness ratio K2/K1", "(3)", free_motion=True),
+    Parameter(
+        "zeta", r"\zeta", "1", NOT_NEGATIVE, "damping ratio",
+        "damping ratio C1/(2 sqrt(K1 M1)); damping is proportional, so C2/C1 = mu_k", "(3)", free_motion=True,
+    ),
+    Parameter(
+        "f2", "f_2", "1", FRACTION, "share of force on mass 2",
+        "share of the force on the second mass, P2/(P1 + P2)", "(3)", free_motion=True,
+    ),
+    Parameter(
+        "omega", r"\omega", "1", POSITIVE, "forcing frequency", "forcing frequency Omega sqrt(M1/K1)", "(3)",
+        free_motion=True,
+    ),
+    Parameter("R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution", "(4)"),
+    Parameter("b", "b", "1", POSITIVE, "clearance", "clearance on each side, B K1/(P1 + P2)", "(4)"),
+    Parameter(
+        "tau", r"\tau", "rad", Range("a number (radians) or 'grazing'", {}), "forcing phase",
+        "phase of the force at t = 0 in radians", "(3)", "grazing",
+        {"grazing": "the phase at which the non-impacting steady motion is at its right extreme, eq. (18)"},
+    ),
+)  # fmt: skip
+
+# Physical quantities, in any consistent units, from which these follow (section 2 of the paper).
+PHYSICAL = (
+    Parameter("M1", "M_1", "", POSITIVE, "mass 1", "mass between the stops"),
+    Parameter("M2", "M_2", "", POSITIVE, "mass 2", "second mass"),
+    Parameter("K1", "K_1", "", POSITIVE, "stiffness 1", "stiffness between the masses"),
+    Parameter("K2", "K_2", "", POSITIVE, "stiffness 2", "stiffness between the second mass and the ground"),
+    Parameter("C1", "C_1", "", NOT_NEGATIVE, "damping 1", "damping between the masses"),
+    Parameter("C2", "C_2", "", NOT_NEGATIVE, "damping 2", "damping between the second mass and the ground"),
+    Parameter("P1", "P_1", "", NOT_NEGATIVE, "force 1", "amplitude of the force on the first mass"),
+    Parameter("P2", "P_2", "", NOT_NEGATIVE, "force 2", "amplitude of the force on the second mass"),
+    Parameter("Omega", r"\Omega", "", POSITIVE, "forcing frequency", "angular frequency of the force"),
+    Parameter("R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution"),
+    Parameter("B", "B", "", POSITIVE, "clearance", "clearance on each side"),
+)
+
+B_STAR = Parameter(
+    "b_star", "b^*", "1", POSITIVE, "grazing clearance",
+    "clearance b* at which the non-impacting motion touches the stops (Theorem 1)", "(16)",
+)  # fmt: skip
+
+NAMES = tuple(parameter.name for parameter in PARAMETERS)
+FREE_MOTION = tuple(parameter.name for parameter in PARAMETERS if parameter.free_motion)
+FOLLOWING = ("tau", B_STAR.name)  # of a system whose other numbers are swept, these may follow from them
+BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
+
+
+class ParameterError(ValueError):
+    """A parameter outside its range; carries `key`, `value` and `allowed`."""
+
+    def __init__(self, key: str, value: object, allowed: str):
+        super().__init__(f"{key}: {value!r} is not allowed; it must be {allowed}")
+        self.key, self.value, self.allowed = key, value, allowed
+
+
+def check_value(key: str, value: object) -> None:
+    """Raise `ParameterError` unless `value` (a number or an array of numbers) is allowed for the parameter `key`."""
+    allowed = BY_NAME[key].range
+    numbers = np.asarray(value)
+    if numbers.dtype.kind not in "fiu":
+        raise ParameterError(key, value, allowed.text)
+    good = allowed.holds(numbers)
+    if not np.all(good):
+        wanted = allowed.text.replace("a number", "a finite number", 1)
+        raise ParameterError(key, numbers[~good].flat[0].item(), wanted)
+
+
+def physical_range(name: str) -> Range:
+    """That of a physical quantity, which must be finite."""
+    found = next(quantity.range for quantity in PHYSICAL if quantity.name == name)
+    return found._replace(text=found.text.replace("a number", "a finite number"))

@@ -1,0 +1,86 @@
+"""Pictures as files: each carries a seal, a checksum of itself, by which one that nobody has changed is known.
+
+Such a picture is drawn anew without a question. Everything else that exists is replaced only when asked for.
+"""
+
+import contextlib
+import hashlib
+import io
+import re
+import secrets
+import zlib
+from pathlib import Path
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from vibro_sweep.plotting.result import PlotError
+from vibro_sweep.plotting.style import STYLE
+from vibro_sweep.store import names, parts
+
+MOST = 2**28  # bytes of a picture that is looked at
+
+_DIGEST = re.compile(rb"sha256:([0-9a-f]{64})")
+_END = 12  # bytes of the last chunk of a PNG file, which the seal comes before
+
+
+def save(fig: Figure, output: Path, overwrite: bool) -> Path:
+    """Write a picture. Raises PlotError for an output that exists and is not to be replaced, or cannot be written."""
+    old = _replaceable(output, overwrite)
+    suffix = output.suffix.lower()
+    picture = io.BytesIO()
+    with matplotlib.rc_context(STYLE):  # some settings are looked up only when the picture is written
+        fig.savefig(picture, format=suffix[1:])
+    new = output.with_name(f".vibro_sweep-{secrets.token_hex(16)}{suffix}")
+    try:
+        with open(new, "xb") as file:
+            file.write(_sealed(picture.getvalue(), suffix))
+        names.publish(new, output, old)
+    except FileExistsError:
+        raise PlotError(f"output {output}: it has just appeared; --overwrite replaces it") from None
+    except OSError as error:
+        raise PlotError(f"output {output}: cannot be written ({error.strerror or error})") from error
+    finally:
+        with contextlib.suppress(OSError):
+            new.unlink()
+    return output
+
+
+def check_output(output: Path, overwrite: bool) -> None:
+    """Raise PlotError where `save` would, as far as it can be told before."""
+    _replaceable(output, overwrite)
+
+
+def _replaceable(output: Path, overwrite: bool) -> names.Stamp | None:
+    if why := names.obstacle(output):
+        raise PlotError(f"output {output} {why}")
+    found = names.stamp(output)
+    if found and not overwrite and not unchanged(output):
+        raise PlotError(f"output {output} exists, and is no picture that vibro-sweep drew; --overwrite replaces it")
+    return found
+
+
+def unchanged(path: Path) -> bool:
+    """Whether this is a picture by `save`, byte for byte."""
+    with parts.open_regular(path) as file:
+        content = file.read(MOST)
+    suffix = path.suffix.lower()
+    for digest in _DIGEST.findall(content)[-1:]:
+        before, seal, after = content.partition(_seal(digest, suffix))
+        return bool(seal) and _sealed(before + after, suffix) == content
+    return False
+
+
+def _sealed(picture: bytes, suffix: str) -> bytes:
+    """A picture with its seal, which is a comment in its format."""
+    end = len(picture) - _END if suffix == ".png" else len(picture)
+    seal = _seal(hashlib.sha256(picture).hexdigest().encode(), suffix)
+    return picture[:end] + seal + picture[end:]
+
+
+def _seal(digest: bytes, suffix: str) -> bytes:
+    if suffix == ".png":
+        chunk = b"tEXtvibro_sweep\0sha256:" + digest
+        return (len(chunk) - 4).to_bytes(4) + chunk + zlib.crc32(chunk).to_bytes(4)
+    first, last = (b"<!--", b"-->") if suffix == ".svg" else (b"%", b"")
+    return first + b" vibro_sweep sha256:" + digest + b" " + last + b"\n"

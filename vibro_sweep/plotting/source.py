@@ -1,0 +1,129 @@
+"""Where a picture takes its numbers from: an HDF5 file, read in pieces, or an `xarray.Dataset` in memory."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vibro_sweep.store.attributes import text, texts
+from vibro_sweep.store.opening import StoreError, is_dataset, open_file, quantities_of
+
+if TYPE_CHECKING:
+    import xarray
+
+
+class PlotError(ValueError):
+    """What was asked for cannot be drawn; the message says what can."""
+
+
+class FileSource:
+    """A file of a run, or the part of one that is not complete."""
+
+    def __init__(self, path: str | Path):
+        self.name = str(path)
+        try:
+            self._file = open_file(Path(path)).file
+        except StoreError as error:
+            raise PlotError(str(error)) from error
+
+    def close(self) -> None:
+        self._file.close()
+
+    @property
+    def sweep(self) -> list[str]:
+        """Names of the sweep's dimensions, in order."""
+        return texts(self._file, "sweep_dimensions")
+
+    @property
+    def quantities(self) -> list[str]:
+        return quantities_of(self._file)
+
+    @property
+    def scene(self) -> str:
+        return text(self._file, "scene")
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Of the file, texts as `str`."""
+        return {key: _told(value) for key, value in self._file.attrs.items()}
+
+    def attribute(self, name: str, key: str) -> Any:
+        """Of a dataset; None where it has no such."""
+        return _told(self._file[name].attrs.get(key))
+
+    def __contains__(self, name: str) -> bool:
+        return is_dataset(self._file, name)
+
+    def dimensions(self, name: str) -> tuple[str, ...]:
+        return tuple(one[0].name.rpartition("/")[2] for one in self._file[name].dims)
+
+    def number_of_dimensions(self, name: str) -> int:
+        return self._file[name].ndim
+
+    def read(self, name: str, index=()) -> np.ndarray:
+        try:
+            return self._file[name][index]
+        except OSError as error:  # h5py's word for what it cannot read back
+            raise PlotError(f"{self.name}: `{name}` cannot be read, it is damaged or being written") from error
+
+
+class DatasetSource:
+    """What `vibro_sweep.open` or `vibro_sweep.sweep` returned, or a part of it that `sel` and the like have cut out."""
+
+    name = "this dataset"
+
+    def __init__(self, data: "xarray.Dataset"):
+        if not hasattr(data, "data_vars"):
+            raise TypeError(f"data: {data!r} is not allowed; it must be the path of a file, or a Dataset")
+        if "status" not in data or "sweep_dimensions" not in data.attrs:
+            raise PlotError("this dataset is none of `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
+        self._data = data
+
+    def close(self) -> None:
+        """It stays open for its owner."""
+
+    @property
+    def sweep(self) -> list[str]:
+        return [name for name in np.atleast_1d(self._data.attrs["sweep_dimensions"]) if name in self._data.dims]
+
+    @property
+    def quantities(self) -> list[str]:
+        return [str(name) for name in self._data.data_vars]
+
+    @property
+    def scene(self) -> str:
+        return self._data.attrs["scene"]
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        chosen = {name: one.item() for name, one in self._data.coords.items() if one.ndim == 0}
+        return dict(self._data.attrs) | chosen
+
+    def attribute(self, name: str, key: str) -> Any:
+        return self._data[name].attrs.get(key)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._data.variables and not (name in self._data.coords and self._data[name].ndim == 0)
+
+    def dimensions(self, name: str) -> tuple[str, ...]:
+        return self._in_order(name).dims
+
+    def number_of_dimensions(self, name: str) -> int:
+        return self._data[name].ndim
+
+    def read(self, name: str, index=()) -> np.ndarray:
+        return np.asarray(self._in_order(name).values[index])
+
+    def _in_order(self, name: str):
+        """The dimensions as files have them."""
+        lead = [one for one in (*self.sweep, "start") if one in self._data[name].dims]
+        return self._data[name].variable.transpose(*lead, ...)
+
+
+def source_of(given) -> FileSource | DatasetSource:
+    """A path or a Dataset. Raises PlotError where it is missing or no result."""
+    return FileSource(given) if isinstance(given, (str, Path)) else DatasetSource(given)
+
+
+def _told(value):
+    return value.decode() if isinstance(value, bytes) else value

@@ -1,0 +1,154 @@
+"""The reference page, made from the declarations:  python -m vibro_sweep.reference > docs/reference.md"""
+
+import inspect
+from collections.abc import Iterable, Iterator
+
+from vibro_sweep.model.catalogue import NUMBERS
+from vibro_sweep.model.observables import DIMENSIONS, TRAJECTORY, VARIABLES, WORDS
+from vibro_sweep.model.status import STATUSES
+from vibro_sweep.plotting import KINDS
+from vibro_sweep.scene import json_schema
+
+HEAD = """# Reference
+
+Made from the tables of `vibro_sweep/model/` by `python -m vibro_sweep.reference > docs/reference.md`; not edited by
+hand. What a number in a file allows to conclude is said in [accuracy.md](accuracy.md), how files are laid out in
+[files.md](files.md).
+"""
+
+_SEVERAL = ("anyOf", "oneOf", "allOf")
+_BOUNDS = {"exclusiveMinimum": "> {}", "minimum": ">= {}", "maximum": "<= {}"}
+
+
+def page() -> str:
+    """The page as Markdown."""
+    return "\n".join([HEAD, *_scene(), *_words(), *_variables(), *_numbers(), *_statuses(), *_pictures()])
+
+
+def _table(head: tuple[str, ...], rows: Iterable[tuple]) -> Iterator[str]:
+    for row in (head, ["---"] * len(head), *rows):
+        yield f"| {' | '.join(str(cell).replace('|', '&#124;') for cell in row)} |"
+    yield ""
+
+
+def _scene() -> Iterator[str]:
+    """Each form of the scene as a table of its keys."""
+    schema = json_schema()
+    yield "## Keys of a scene\n"
+    yield from _keys(schema)
+    for name, path in _paths(schema, schema["definitions"]).items():
+        form = schema["definitions"][name]
+        yield f"### `{path}`\n\n{form['description']}\n"
+        yield from _keys(form)
+
+
+def _paths(form: dict, definitions: dict, path: str = "") -> dict[str, str]:
+    """Where in a scene each definition stands, in order; one that several keys share, at KEY."""
+    found = {}
+    for key, schema in form["properties"].items():
+        for name in _references(schema):
+            here = f"{path}{'KEY' if name in found else key}"
+            found[name] = here
+            found |= _paths(definitions[name], definitions, f"{here}.")
+    return found
+
+
+def _references(schema: dict) -> list[str]:
+    """Names of the definitions that a value may follow."""
+    if "$ref" in schema:
+        return [schema["$ref"].rpartition("/")[2]]
+    return [name for several in _SEVERAL for one in schema.get(several, ()) for name in _references(one)]
+
+
+def _keys(form: dict) -> Iterator[str]:
+    required = form.get("required", ())
+    rows = (
+        (
+            f"`{key}`",
+            _value(schema),
+            "(required)" if key in required else f"`{_yaml(schema['default'])}`" if "default" in schema else "",
+            schema.get("description", ""),
+        )
+        for key, schema in form["properties"].items()
+    )
+    return _table(("key", "value", "default", "meaning"), rows)
+
+
+def _value(schema: dict) -> str:
+    """What may stand there, in words."""
+    if _references(schema):
+        return "mapping, see below"
+    for several in _SEVERAL:
+        if several in schema:
+            return " or ".join(_value(one) for one in schema[several])
+    if "const" in schema:
+        return f"`{schema['const']}`"
+    if "enum" in schema:
+        return " or ".join(f"`{word}`" for word in schema["enum"])
+    if schema["type"] == "array":
+        return f"list of {_value(schema['items'])}".replace(" or ", ", ").replace("of number", "of numbers")
+    bounds = " and ".join(text.format(schema[key]) for key, text in _BOUNDS.items() if key in schema)
+    return " ".join(filter(None, [{"integer": "whole number"}.get(schema["type"], schema["type"]), bounds]))
+
+
+def _yaml(value: object) -> str:
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {_yaml(one)}" for key, one in value.items()) + "}"
+    return f"[{', '.join(map(_yaml, value))}]" if isinstance(value, list) else f"{value}"
+
+
+def _words() -> Iterator[str]:
+    yield "## Words of `observe`\n"
+    asked = {
+        word: [one.name for one in VARIABLES if word in one.asked_by and not one.at_impacts]
+        for word in (*WORDS, TRAJECTORY)
+    }
+    rows = [(f"`{word}`", one.text, _names(asked[word])) for word, one in WORDS.items()]
+    yield from _table(("word", "what is computed", "variables of the file"), rows)
+    yield f"The key `{TRAJECTORY}` asks for {_names(asked[TRAJECTORY])}; `status` is always there.\n"
+
+
+def _variables() -> Iterator[str]:
+    yield "## Variables of a file\n\nDimensions after those of the sweep, and `start` if there are several.\n"
+    rows = (
+        (f"`{one.name}`", ", ".join(one.dimensions), one.dtype, one.units, one.label, one.text) for one in VARIABLES
+    )
+    yield from _table(("name", "dimensions", "type", "units", "`long_name`", "`description`"), rows)
+    yield "## Dimensions\n"
+    yield from _table(("name", "meaning"), ((f"`{name}`", one.text) for name, one in DIMENSIONS.items()))
+
+
+def _numbers() -> Iterator[str]:
+    yield "## Numbers of a system and a start\n"
+    yield "In a file: an attribute where it is the same at all points, else a coordinate.\n"
+    rows = (
+        (f"`{one.name}`", f"${one.symbol}$", one.units, one.range.text, one.equation, one.described)
+        for one in NUMBERS.values()
+    )
+    yield from _table(("name", "symbol", "units", "range", "equation", "meaning"), rows)
+
+
+def _statuses() -> Iterator[str]:
+    yield "## Status codes\n"
+    rows = ((code, f"`{one.name}`", one.text) for code, one in STATUSES.items())
+    yield from _table(("code", "name", "meaning"), rows)
+
+
+def _pictures() -> Iterator[str]:
+    yield "## Kinds of pictures\n"
+    yield "`vibro-sweep plot FILE.h5 --kind KIND`; the first that a file can show is its default.\n"
+    rows = ((f"`{kind}`", _summary(shows), _summary(draw)) for kind, (shows, draw) in KINDS.items())
+    yield from _table(("kind", "needs", "what it shows"), rows)
+
+
+def _summary(function) -> str:
+    """The first paragraph of a docstring."""
+    return " ".join(inspect.getdoc(function).partition("\n\n")[0].split())
+
+
+def _names(names: Iterable[str]) -> str:
+    return ", ".join(f"`{name}`" for name in names)
+
+
+if __name__ == "__main__":
+    print(page(), end="")

@@ -1,0 +1,44 @@
+"""How the keys of a scene must fit each other: none contradicts another, none is without effect."""
+
+from vibro_sweep.model.observables import WORDS
+
+from .form import SceneForm
+from .problems import problem
+
+
+def combination_problems(form: SceneForm, data: dict) -> list[str]:
+    """What is wrong with a scene of the right form; data: as it was read."""
+    section, stops = form.section, form.system.stops
+    problems = _map_problems(form)
+    for name in sorted(form.observe):
+        if data.get("observe", []).count(name) > 1:
+            problems.append(problem("observe", data["observe"], f"names {name} twice"))
+    if section.kind == "impact" and "section" not in form.observe:
+        text = "the section is not observed, and would have no effect; leave it out, or observe section"
+        problems.append(problem("section.kind", section.kind, text))
+    if section.kind == "impact" and stops not in ("both", section.stop):
+        problems.append(problem("section.stop", section.stop, f"the system has no such stop (stops: {stops})"))
+    if section.kind == "phase" and "stop" in section.model_fields_set:
+        problems.append(problem("section.stop", section.stop, "belongs to `kind: impact`; leave it out"))
+    if not form.observe and form.trajectory is None:
+        text = f"nothing would be computed; name some of {', '.join(WORDS)}, or ask for a trajectory"
+        problems.append(problem("observe", [], text))
+    return problems
+
+
+def _map_problems(form: SceneForm) -> list[str]:
+    if form.model == "flow":
+        text = "belongs to `model: map`; leave it out"
+        return [
+            problem(key, getattr(form, key), text) for key in ("order", "expand_at") if key in form.model_fields_set
+        ]
+    problems = []
+    if form.expand_at is not None and form.expand_at <= 0:
+        problems.append(problem("expand_at", form.expand_at, "must be a number > 0"))
+    if form.system.tau != "grazing" or (form.sweep and "tau" in form.sweep.model_fields_set):
+        text = "the map's section is the phase of the graze; leave tau out, or say grazing"
+        problems.append(problem("system.tau", form.system.tau, text))
+    if form.trajectory:
+        text = "the map has no motion between its points; leave it out"
+        problems.append(problem("trajectory", form.trajectory.model_dump(), text))
+    return problems

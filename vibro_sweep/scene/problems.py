@@ -1,0 +1,171 @@
+"""What is wrong with a scene, in words: one line per problem, with key path, value and what is allowed."""
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+
+from pydantic import ValidationError
+
+from vibro_sweep.model.observables import WORDS
+
+from . import slips
+from .form import (
+    CountAxis,
+    FollowStart,
+    Form,
+    ListAxis,
+    PhysicalSystemForm,
+    RandomStart,
+    SceneForm,
+    StateStart,
+    StepAxis,
+    SystemForm,
+)
+from .slips import meant
+
+MAX_LINES = 20
+OBSERVATIONS = tuple(WORDS)
+
+_TAGGED = {
+    "numbers": SystemForm,
+    "physical units": PhysicalSystemForm,
+    "axis by step": StepAxis,
+    "axis by number": CountAxis,
+    "axis of values": ListAxis,
+    "one start": StateStart,
+    "random start": RandomStart,
+    "followed start": FollowStart,
+}
+_TAGS = {*_TAGGED, "tau as a number", "tau as a word"}
+_AXIS_FORMS = "{start, stop, step}, {start, stop, num} or {values}"
+_YAML_WORDS = {"NaN": ".nan", "Infinity": ".inf", "-Infinity": "-.inf"}
+
+
+class SceneError(ValueError):
+    """A scene that cannot be computed; `problems` holds one line for each thing that is wrong with it."""
+
+    def __init__(self, name: str, problems: list[str]):
+        self.name, self.problems = name, tuple(problems)
+        super().__init__(name, self.problems)
+
+    def __str__(self):
+        if len(self.problems) == 1:
+            return f"{self.name}: {self.problems[0]}"
+        shown = [f"  {line}" for line in self.problems[:MAX_LINES]]
+        if len(self.problems) > MAX_LINES:
+            shown.append(f"  and {len(self.problems) - MAX_LINES} more")
+        return "\n".join([f"{self.name}: {len(self.problems)} problems", *shown])
+
+
+def problem(path: str, value: object, text: str) -> str:
+    """One line: the key path, the value as the user would write it, what is wrong and what is allowed."""
+    shown = json.dumps(_whole(value), ensure_ascii=False, default=repr)
+    shown = _YAML_WORDS.get(shown, shown)
+    return f"{path} = {shown if len(shown) <= 60 else shown[:57] + '...'}: {text}"
+
+
+def _whole(value):
+    if isinstance(value, list):
+        return [_whole(item) for item in value]
+    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < 1e16 else value
+
+
+def form_problems(error: ValidationError, data: object = None) -> list[str]:
+    """One line per problem that pydantic found in the data of a scene."""
+    items = error.errors()
+    unknown = {item["loc"]: item for item in items if item["type"] == "extra_forbidden"}
+    instead = {(*loc[:-1], meant(loc[-1], _place(loc)[0].model_fields)) for loc in unknown}
+    physical = [loc for loc in unknown if loc[:-1] == ("system", "numbers") and loc[-1] in slips.PHYSICAL]
+    lines = []
+    for item in items:
+        if item["type"] == "missing" and item["loc"] in instead:
+            continue  # the unknown key says it
+        if len(physical) > 1 and item["loc"] in physical:
+            names = ", ".join(str(loc[-1]) for loc in physical)
+            lines.append(
+                f"system: {names} are physical quantities; write system: {{physical: {{M1: ..., M2: ..., ...}}}}"
+            )
+        else:
+            lines.append(_line(item, data))
+    return list(dict.fromkeys(lines))
+
+
+def _line(item, data) -> str:
+    kind, given, ctx = item["type"], item["input"], item.get("ctx", {})
+    model, path = _place(item["loc"])
+    keys = list(model.model_fields)
+    if kind == "missing":
+        both = path.startswith("sweep.") and path.endswith(".step")
+        return f"{path}: missing; {'step or num' if both else 'it'} must be given"
+    if kind == "extra_forbidden":
+        return problem(path, given, _unknown(item["loc"], keys, given, data))
+    if kind == "literal_error":
+        words = [word.strip("'") for word in ctx["expected"].replace(" or ", ", ").split(", ")]
+        also = " or a number (radians)" if "tau as a word" in item["loc"] else ""
+        hint = slips.other_form(path, given) or (slips.number_in_text(given) if also else None)
+        return problem(path, given, f"{_suggest(given, words)}allowed: {', '.join(words)}{also}{_and(hint)}")
+    if kind == "model_type":
+        form = _AXIS_FORMS if model is StepAxis else f"the keys {', '.join(keys)}"
+        return problem(path, given, f"must be a mapping with {form}{_and(slips.other_form(path, given))}")
+    beyond = isinstance(given, int) and not isinstance(given, bool)
+    text = {
+        "float_type": "must be a number in the range of the floats" if beyond else "must be a number",
+        "int_type": "must be a whole number",
+        "finite_number": "must be a finite number",
+        "list_type": "must be a list of numbers",
+        "frozen_set_type": f"must be a list of {', '.join(WORDS)}",
+        "greater_than_equal": f"must be a whole number >= {ctx.get('ge')}",
+        "less_than_equal": f"must be a whole number <= {ctx.get('le')}",
+    }.get(kind, item["msg"])
+    if kind in ("frozen_set_type", "list_type"):
+        text += _and(slips.other_form(path, given, OBSERVATIONS))
+    is_text = isinstance(given, str) and kind in ("float_type", "int_type")
+    return problem(path, given, text + (f", not text{_and(slips.number_in_text(given))}" if is_text else ""))
+
+
+def _unknown(loc, keys: list[str], given, data) -> str:
+    """What is wrong with a key that is none, and what it may stand for."""
+    key, place = str(loc[-1]), loc[0]
+    if given is None and (hint := slips.key_without_value(key)):
+        return hint
+    if key in ("step", "num") and {"step", "num"} & set(keys):
+        return f"step and num exclude each other; write {_AXIS_FORMS}"
+    if place == "sweep" and len(loc) == 2 and (hint := slips.of_physical(key, data.get("system"))):
+        return f"unknown key; {hint}"
+    return f"unknown key; {_suggest(key, keys)}allowed here: {', '.join(keys)}"
+
+
+def _and(hint: str | None) -> str:
+    return f"; {hint}" if hint else ""
+
+
+def located(problems: Iterable[str], lines: Mapping[str, int]) -> list[str]:
+    """The same problems, with the line of the text at which the key stands, or where it is missing."""
+    return [f"{text} (line {line})" if (line := _line_of(text, lines)) else text for text in problems]
+
+
+def _line_of(text: str, lines: Mapping[str, int]) -> int | None:
+    paths = [text[: end.start()] for end in re.finditer(r" =|:", text)]  # a key may hold either
+    found = [path for path in paths if path in lines]
+    return lines.get(found[-1] if found else re.split(r" =|: ", text)[0].rpartition(".")[0])
+
+
+def _place(loc) -> tuple[type[Form], str]:
+    """The form in which the last key of `loc` stands (or which it is), and the key path without tags."""
+    model, path = SceneForm, ""
+    for part in loc:
+        if part in _TAGGED:
+            model = _TAGGED[part]
+        elif isinstance(part, int):
+            path += f"[{part}]"
+        elif part not in _TAGS:
+            path += f".{part}" if path else part
+            field = model.model_fields.get(part)
+            if field and isinstance(field.annotation, type) and issubclass(field.annotation, Form):
+                model = field.annotation
+    return model, path or "scene"
+
+
+def _suggest(word: object, options: list[str]) -> str:
+    found = meant(word, options)
+    return f"did you mean `{found}`? " if found else ""

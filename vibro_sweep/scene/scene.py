@@ -1,0 +1,289 @@
+"""From a YAML text to a Scene: everything that a computation needs to know, checked as a whole."""
+
+import math
+import os
+import stat
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from pydantic import ValidationError
+
+from vibro_sweep.model.grazing import with_phase
+from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.parameters import NAMES, ParameterError, check_value
+from vibro_sweep.model.state import START
+
+from .axes import axis_values
+from .combinations import combination_problems
+from .form import PhysicalSystemForm, SceneForm
+from .problems import SceneError, form_problems, located, problem
+from .resonance import phase_problems
+from .size import size_problems
+from .starts import Start, start_of, start_problems
+from .written import changed, data_of, yaml_of
+from .yaml_text import MAX_BYTES, YAMLTextError, lines_of, read_yaml
+
+HDF5 = b"\x89HDF\r\n\x1a\n"  # how such files begin
+
+
+@dataclass(frozen=True)
+class Section:
+    """`kind`: "phase" (t = 0 mod T) | "impact" (just before each impact on `stop`: "right" | "left")."""
+
+    kind: str = "phase"
+    stop: str = "right"
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """The continuous orbit after the last section point: `samples` times over `periods` forcing periods."""
+
+    periods: int
+    samples: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Scene:
+    """What to compute. `system` is the base; at each point of the sweep the swept numbers replace its own."""
+
+    name: str
+    given: str | None  # the YAML text that it was read from
+    system: System
+    model: str
+    order: int  # of the map
+    expand_at: float | None  # clearance at which the map is expanded; None: b*
+    sweep: dict[str, np.ndarray]  # 0, 1 or 2 in the order of the file's dimensions; of the start: start_x1, ...
+    start: Start
+    transient: int  # forcing periods
+    record: int  # forcing periods
+    section: Section
+    observe: frozenset[str]
+    trajectory: Trajectory | None
+
+    @cached_property
+    def text(self) -> str:
+        """The YAML text as given, if that is what this scene says; else generated. Raises SceneError for no scene."""
+        if self.given is not None and _equal(parse_scene(self.given), self):
+            return self.given
+        return parse_scene(self.to_yaml(), self.name).given
+
+    def to_yaml(self) -> str:
+        """This scene as YAML, from its numbers; `text` is what it was read from."""
+        return yaml_of(data_of(self))
+
+    def replace(self, **changes) -> "Scene":
+        """A copy with other values of `system`, `sweep`, `start`, `transient`, `record` and the other attributes.
+
+        Each is given as in YAML or as a Scene has it; None: the default.
+
+        Raises SceneError for what is no scene.
+        """
+        known = [field.name for field in fields(self) if field.name not in ("name", "given")]
+        for key in changes:
+            if key not in known:
+                raise SceneError(self.name, [f"{key}: unknown; allowed here: {', '.join(known)}"])
+        data = data_of(self)
+        if "sweep" in changes:  # what is swept no longer keeps its first value
+            data["system"] = data_of(replace(self, sweep={}))["system"]
+        return scene_of(changed(data, changes), self.name)
+
+    @property
+    def n_starts(self) -> int:
+        """Orbits at each point of the sweep."""
+        return 2 if self.start.direction == "both" else self.start.count
+
+    @property
+    def sweep_shape(self) -> tuple[int, ...]:
+        return tuple(len(values) for values in self.sweep.values())
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The sweep's dimensions, then the starts if there are several."""
+        return self.sweep_shape + ((self.n_starts,) if self.n_starts > 1 else ())
+
+    @property
+    def n_points(self) -> int:
+        """Orbits in all."""
+        return math.prod(self.shape)
+
+    def __repr__(self) -> str:
+        axes = ", ".join(f"{key} = {v[0]:g} .. {v[-1]:g} ({len(v):,} values)" for key, v in self.sweep.items())
+        name = self.name if len(self.name) <= 40 else f"{self.name[:37]}..."
+        periods = f"{self.transient:,} + {self.record:,} forcing periods"
+        return f"<Scene {name!r}: {axes or 'one point'}; {periods}; {', '.join(sorted(self.observe)) or 'nothing'}>"
+
+    def __str__(self) -> str:
+        """What is computed, in a few lines."""
+        system = ", ".join(f"{name} = {getattr(self.system, name)}" for name in NAMES if name not in self.sweep)
+        axes = [f"{key} = {v[0]:g} .. {v[-1]:g} ({len(v):,} values)" for key, v in self.sweep.items()]
+        state = dict(zip(START.values(), self.start.state, strict=True))
+        starts = {
+            "state": "from x1, v1, x2, v2 = "
+            + ", ".join("swept" if name in self.sweep else f"{value:g}" for name, value in state.items()),
+            "random": f"from {self.start.count:,} random states, seed {self.start.seed}",
+            "follow": f"following the sweep ({self.start.direction}), the first from x1, v1, x2, v2 = "
+            + ", ".join(f"{value:g}" for value in state.values()),
+        }
+        section = "t = 0 mod T" if self.section.kind == "phase" else f"impacts on the {self.section.stop} stop"
+        lines = [
+            " x ".join(axes) or "one point",
+            f"  system    {system}, stops = {self.system.stops}",
+            f"  orbits    {starts[self.start.kind]}; {self.transient:,} + {self.record:,} forcing periods",
+            f"  section   {section}",
+            f"  observe   {', '.join(sorted(self.observe)) or 'nothing'}",
+        ]
+        if self.trajectory:
+            samples, periods = self.trajectory.samples, self.trajectory.periods
+            lines.append(f"  trajectory {samples:,} samples over {periods:,} forcing periods")
+        return "\n".join(lines)
+
+    def parameters(self) -> dict[str, np.ndarray]:
+        """Every number of the system by name, `tau` resolved, and swept numbers of the start (start_x1, ...).
+
+        Arrays of `sweep_shape`, read-only.
+        """
+        return grid(self.system, self.sweep)
+
+
+def grid(system: System, axes: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Every number of the system by name, `tau` resolved, and the axes, at each point of a grid of values for some.
+
+    Read-only arrays with one dimension for each of `axes`, in their order.
+    """
+    numbers = {name: getattr(system, name) for name in NAMES}
+    numbers.update(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
+    numbers = with_phase(numbers)
+    shape = tuple(len(values) for values in axes.values())
+    return {name: np.broadcast_to(value, shape) for name, value in numbers.items()}
+
+
+def load_scene(path: str | Path) -> Scene:
+    """Read a scene from a YAML file.
+
+    Raises SceneError for what is wrong with it, OSError where the file cannot be read.
+    """
+    path = Path(path)
+    name = os.fsencode(path.name).decode(errors="replace")  # the name of a file need not be text
+    with open(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)), "rb") as file:  # waits for no pipe
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise SceneError(name, ["is no regular file"])
+        data = file.read(MAX_BYTES + 1)
+    if data.startswith(HDF5):
+        raise SceneError(name, ["is a data file, not a scene: `vibro-sweep info` and `plot` read it"])
+    if len(data) > MAX_BYTES:
+        raise SceneError(name, [f"longer than {MAX_BYTES} bytes"])
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise SceneError(name, [f"byte {error.start} is not UTF-8 text"]) from None
+    return parse_scene(text, name)
+
+
+def _equal(one: Scene, other: Scene) -> bool:
+    """Whether two scenes say the same; their names and texts do not count."""
+    names = [field.name for field in fields(one) if field.name not in ("name", "given", "sweep")]
+    return (
+        all(getattr(one, name) == getattr(other, name) for name in names)
+        and list(one.sweep) == list(other.sweep)
+        and all(np.array_equal(one.sweep[key], other.sweep[key]) for key in one.sweep)
+    )
+
+
+def parse_scene(text: str, name: str = "scene") -> Scene:
+    """A Scene from YAML text; `name` stands in messages, its stem in the scene. Raises SceneError."""
+    try:
+        return scene_of(read_yaml(text), name, text)
+    except YAMLTextError as error:
+        raise SceneError(name, [str(error)]) from None
+    except SceneError as error:
+        raise SceneError(name, located(error.problems, lines_of(text))) from None
+
+
+def scene_of(data: object, name: str, given: str | None = None) -> Scene:
+    """A Scene from the data that its YAML text, if there is one, holds. Raises SceneError."""
+    try:
+        form = SceneForm.model_validate(data)
+    except ValidationError as error:
+        raise SceneError(name, form_problems(error, data)) from None
+
+    sweep, problems = _sweep(form, data.get("sweep"))
+    system, more = _system(form, sweep)
+    problems += more + start_problems(form, sweep, system) + combination_problems(form, data)
+    if problems:
+        raise SceneError(name, problems)
+    trajectory = form.trajectory and Trajectory(form.trajectory.periods, form.trajectory.samples)
+    scene = Scene(
+        name=Path(name).stem,
+        given=given,
+        system=system,
+        model=form.model,
+        order=form.order,
+        expand_at=form.expand_at,
+        sweep=sweep,
+        start=start_of(form.start),
+        transient=form.orbit.transient,
+        record=form.orbit.record,
+        section=Section(form.section.kind, form.section.stop),
+        observe=form.observe,
+        trajectory=trajectory,
+    )
+    problems = size_problems(scene) or phase_problems(scene)
+    if problems:
+        raise SceneError(name, problems)
+    return scene
+
+
+def _sweep(form: SceneForm, keys) -> tuple[dict[str, np.ndarray], list[str]]:
+    """The axes in the order of the text, and what is wrong with them; an axis with a problem is left out."""
+    if form.sweep is None:
+        return {}, []
+    if not 1 <= len(keys) <= 2:
+        return {}, [problem("sweep", list(keys), "must have one key or two, or be left out")]
+    sweep, problems = {}, []
+    for key in keys:
+        values, wrong = axis_values(f"sweep.{key}", getattr(form.sweep, key))
+        if values is not None and key in NAMES:
+            wrong = _number_problems("sweep", key, values)
+        if not wrong:
+            sweep[START.get(key, key)] = values
+        problems += wrong
+    return sweep, problems
+
+
+def _number_problems(path: str, key: str, value) -> list[str]:
+    try:
+        check_value(key, value)
+    except ParameterError as error:
+        return [problem(f"{path}.{key}", error.value, f"must be {error.allowed}")]
+    return []
+
+
+def _system(form: SceneForm, sweep) -> tuple[System | None, list[str]]:
+    """The base system with the first swept values in it, or None and what is wrong."""
+    first = {key: float(values[0]) for key, values in sweep.items() if key in NAMES}
+    if isinstance(form.system, PhysicalSystemForm):
+        physical = form.system.physical.model_dump()
+        try:
+            system = System.physical(**physical, tau=form.system.tau, stops=form.system.stops)
+            return system.replace(**first), []
+        except ParameterError as error:
+            path = "system.physical" if error.key in physical else "system"
+            return None, [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]
+    swept = form.sweep.model_fields_set.intersection(NAMES) if form.sweep else set()
+    problems, numbers = [], {}
+    for key in NAMES:
+        value = getattr(form.system, key)
+        if value is None:
+            if key not in swept:
+                problems.append(f"system.{key}: missing; it must be given unless it is swept")
+        elif value != "grazing":
+            problems += _number_problems("system", key, value)
+        numbers[key] = value
+    if problems or swept != first.keys():
+        return None, problems
+    try:
+        return System(**(numbers | first), stops=form.system.stops), []
+    except ParameterError as error:
+        return None, [problem(f"system.{error.key}", error.value, f"must be {error.allowed}")]

@@ -1,0 +1,170 @@
+"""What people write in a scene by mistake, and what to write instead."""
+
+import difflib
+import math
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B")
+NONDIMENSIONAL = (
+    "mu_m = M2/M1, mu_k = K2/K1, zeta = C1/(2 sqrt(K1 M1)), f2 = P2/(P1 + P2), omega = Omega sqrt(M1/K1), "
+    "b = B K1/(P1 + P2)"
+)
+
+SYNONYMS = {
+    "start": ("from", "min", "begin", "low", "lo", "initial", "init", "ic", "initial_state", "x0"),
+    "stop": ("to", "max", "end", "high", "hi", "until", "side"),
+    "num": ("n", "count", "number", "points", "steps", "size", "samples", "length"),
+    "step": ("by", "increment", "delta", "dx", "stride"),
+    "values": ("list", "value", "at"),
+    "omega": ("w", "ω", "frequency", "freq", "Omega", "Ω"),
+    "b": ("clearance", "gap", "delta", "B"),
+    "R": ("e", "restitution", "cor", "r"),
+    "zeta": ("ζ", "damping", "xi", "ξ"),
+    "mu_m": ("μ_m", "m", "mass_ratio"),
+    "mu_k": ("μ_k", "k", "stiffness_ratio"),
+    "f2": ("f", "f_2"),
+    "tau": ("phi", "phase", "τ"),
+    "stops": ("sides", "walls"),
+    "x1": ("x", "x_1"),
+    "v1": ("v", "v_1", "xdot1"),
+    "x2": ("y", "x_2"),
+    "v2": ("v_2", "xdot2"),
+    "transient": ("skip", "discard", "warmup", "warm_up"),
+    "record": ("periods", "keep", "total"),
+    "kind": ("type",),
+    "periods": ("length", "time", "duration"),
+    "samples": ("n", "num", "points"),
+    "system": ("parameters", "params", "oscillator"),
+    "sweep": ("scan", "parameter", "vary", "sweeps"),
+    "orbit": ("time", "periods", "duration", "simulation"),
+    "observe": ("output", "outputs", "observables", "compute", "quantities"),
+    "lyapunov": ("exponents", "exponent", "lyap", "le", "lle", "spectrum", "chaos"),
+    "section": ("poincare", "bifurcation", "points", "period", "states", "x1"),
+    "multipliers": ("floquet", "eigenvalues", "stability"),
+    "attractors": ("basins", "basin", "coexistence"),
+    "map": ("mapping", "discontinuity"),
+    "flow": ("oscillator", "ode", "exact"),
+    "both": ("two", "2", "left and right", "right and left", "all"),
+    "up": ("yes", "true", "forward", "increasing"),
+    "down": ("backward", "decreasing"),
+}
+AXIS = "{start: 6.5, stop: 6.9, num: 401}"
+
+
+def meant(word: object, options: Iterable[str]) -> str | None:
+    """Which of the options a word stands for, if any: by spelling, or as a synonym."""
+    text, options = str(word), list(options)
+    by_lower = {option.lower(): option for option in reversed(options)}
+    if text.lower() in by_lower:
+        return by_lower[text.lower()]
+    for option in options:
+        if text in SYNONYMS.get(option, ()) or text.lower() in SYNONYMS.get(option, ()):
+            return option
+    close = difflib.get_close_matches(text.lower(), by_lower, n=1)
+    return by_lower[close[0]] if close else None
+
+
+def key_without_value(key: str) -> str | None:
+    """What is wrong with a key that has no value, in words: YAML has made it of a missing space, or of a comma."""
+    if found := re.fullmatch(r"(\w+)\s*[:=]\s*(.+)", key):
+        return f"write `{found[1]}: {found[2]}`, with a colon and a space after it"
+    if re.fullmatch(r"\d+", key):
+        return f"a comma separates entries; a decimal number has a point: 0.{key}, not 0,{key}"
+    return None
+
+
+def number_in_text(text: str) -> str | None:
+    """What to write in place of a text that means a number, in words."""
+    stripped = text.strip()
+    for pattern, write in (
+        (r"[-+]?\d*,\d+([eE][-+]?\d+)?", lambda: f"a decimal number has a point: {stripped.replace(',', '.')}"),
+        (r"[-+]?[\d.]+%", lambda: f"write {float(stripped[:-1]) / 100:g}"),
+        (r"([-+]?[\d.]+)\s*/\s*([\d.]+)", lambda: f"write {_ratio(stripped)!r}"),
+        (r"\d+(_\d+)+", lambda: f"write {stripped.replace('_', '')}"),
+        (r"[-+\d.*/ ]*pi[-+\d.*/ ]*", lambda: f"write its value; pi is {math.pi!r}"),
+        (r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", lambda: f"write {stripped} without quotes"),
+        (r"[-+]?[\d.]+\s*[A-Za-z].*", lambda: "numbers have no units here"),
+    ):
+        if re.fullmatch(pattern, stripped):
+            try:
+                return write()
+            except (ValueError, ZeroDivisionError):
+                return None
+    return None
+
+
+def _ratio(text: str) -> float:
+    above, below = text.split("/")
+    return float(above) / float(below)
+
+
+def other_form(path: str, given: object, words: Iterable[str] = ()) -> str | None:
+    """What to write in place of a value of another form than its key needs, by the key."""
+    key = path.rpartition(".")[2]
+    if path == "start":
+        return _start(given)
+    if path == "observe":
+        names = [given] if isinstance(given, str) else list(given) if isinstance(given, Mapping) else []
+        known = [name for name in (meant(name, words) for name in names) if name]
+        return f"write observe: [{', '.join(known or ['section', 'lyapunov'])}]"
+    if path == "system.stops" and isinstance(given, (Mapping, list)):
+        sides = [side for side in ("left", "right") if side in list(given)]
+        which = sides[0] if len(sides) == 1 else "both"
+        return f"write stops: {which}; where the stops stand is said by b"
+    if path == "sweep":
+        name = given if isinstance(given, str) else next(iter(given), "b") if isinstance(given, list) else "b"
+        return f"write sweep: {{{name if str(name).isidentifier() else 'b'}: {AXIS}}}"
+    if path.startswith("sweep.") and key == "values":
+        return f"write values: [{given}]" if isinstance(given, (int, float)) else "write values: [6.5, 6.6, 6.7]"
+    if path.startswith("sweep."):
+        return _axis(key, given)
+    if path == "section":
+        return f"write section: {{kind: {given if given in ('phase', 'impact') else 'phase'}}}"
+    if path == "orbit":
+        return "write orbit: {transient: 1000, record: 200}"
+    return "write trajectory: {periods: 4, samples: 400}" if path == "trajectory" else None
+
+
+def _start(given: object) -> str:
+    if isinstance(given, list) and len(given) == 4:
+        state = dict(zip(("x1", "v1", "x2", "v2"), given, strict=True))
+        return f"write start: {{{', '.join(f'{name}: {value}' for name, value in state.items())}}}"
+    if isinstance(given, str) and given.lower() in ("rest", "zero", "origin", "0"):
+        return "write start: {x1: 0, v1: 0, x2: 0, v2: 0}, or leave it out, which is the same"
+    forms = {"random": "{random: 16, seed: 1}", "follow": "{follow: up}"}
+    return (
+        f"write start: {forms.get(str(given), '{x1: 0, v1: 0, x2: 0, v2: 0}, {random: 16, seed: 1} or {follow: up}')}"
+    )
+
+
+def _axis(key: str, given: object) -> str | None:
+    if isinstance(given, list) and given and all(isinstance(value, (int, float)) for value in given):
+        whole = f"{{values: [{', '.join(map(str, given))}]}}" if len(given) < 7 else "{values: [...]}"
+        between = f", or {{start: {given[0]}, stop: {given[1]}, num: 101}}" if len(given) == 2 else ""
+        return f"write {key}: {whole}{between}"
+    if isinstance(given, (int, float)) and not isinstance(given, bool):
+        return f"a number that does not vary stands in system; else write {key}: {AXIS}"
+    return f"write {key}: {AXIS}"
+
+
+def of_physical(key: str, system: object) -> str | None:
+    """Why a physical quantity cannot be swept, and what can in its place; None for another key."""
+    if key not in PHYSICAL:
+        return None
+    numbers = system.get("physical") if isinstance(system, Mapping) else None
+    scale = _scales(numbers).get(key) if isinstance(numbers, Mapping) else None
+    if scale is not None:
+        name, formula, factor = scale
+        return f"nondimensional numbers are swept: write {name} = {formula} = {factor:.10g} {key}, and its values"
+    return f"nondimensional numbers are swept: {NONDIMENSIONAL}"
+
+
+def _scales(numbers: Mapping[str, Any]) -> dict[str, tuple[str, str, float]]:
+    try:
+        frequency = math.sqrt(numbers["M1"] / numbers["K1"])
+        length = numbers["K1"] / (numbers["P1"] + numbers["P2"])
+    except (KeyError, TypeError, ValueError, ArithmeticError):
+        return {}
+    return {"Omega": ("omega", "Omega sqrt(M1/K1)", frequency), "B": ("b", "B K1/(P1 + P2)", length)}

@@ -1,0 +1,135 @@
+"""The part of a run while the run holds it: blocks are appended, nothing else in it is touched.
+
+One program at a time holds a part, by a lock of the operating system. On a file system without locks a second program
+may append to it; the first finds out at its next block, by the length, and stops.
+"""
+
+import contextlib
+import errno
+import os
+import shutil
+import time
+from pathlib import Path
+from typing import BinaryIO
+
+import portalocker
+
+from vibro_sweep.store import parts
+from vibro_sweep.store.parts import Head, PartError
+
+SYNC_SECONDS = 1.0  # a power failure costs about so much, a kill of the program nothing
+
+
+class RemovedError(OSError):
+    """The part, or its folder, is no longer where it was."""
+
+
+class ChangedError(OSError):
+    """Another program has made the part longer or shorter."""
+
+
+class HeldPart:
+    """A part that this program has made or goes on with. Raises OSError where the disk does not take a block."""
+
+    def __init__(self, path: Path, file: BinaryIO):
+        self.path, self.file = path, file
+        self.head: Head | None = None
+        self._synced = -SYNC_SECONDS
+
+    def begin(self, head: Head, skeleton: bytes | memoryview) -> None:
+        """The head and the skeleton, in place of everything."""
+        self.file.truncate(0)
+        self._end = 0
+        self._write([head.packed(), skeleton])
+        os.fsync(self.file.fileno())
+        self.head = head
+
+    def go_on(self, head: Head, end: int) -> None:
+        """Behind the last whole record; what a kill has left of another is cut off."""
+        self.head, self._end = head, end
+        self.file.truncate(end)
+
+    def append(self, text: dict, data: list[memoryview]) -> None:
+        """A record: once this returns, a kill does not lose it."""
+        if not _stands(self.path, self.file):
+            raise RemovedError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(self.path))
+        if parts.size(self.file) != self._end:
+            raise ChangedError(errno.EBUSY, "another program has changed it", os.fspath(self.path))
+        self._write(parts.record(self.head.identity, text, data))
+        if time.monotonic() - self._synced > SYNC_SECONDS:
+            os.fsync(self.file.fileno())
+            self._synced = time.monotonic()
+
+    def _write(self, pieces: list[bytes | memoryview]) -> None:
+        self.file.seek(self._end)
+        try:
+            for piece in pieces:
+                view = memoryview(piece).cast("B")
+                while view:
+                    view = view[self.file.write(view) :]
+        except BaseException:
+            self.file.truncate(self._end)
+            raise
+        self._end += sum(memoryview(piece).nbytes for piece in pieces)
+
+    def put_back(self) -> None:
+        """Write it where it was, with all its blocks. Raises OSError."""
+        if _stands(self.path, self.file):
+            return
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        with open(self.path, "xb") as copy:
+            self.file.seek(0)
+            shutil.copyfileobj(self.file, copy, parts.PIECE)
+            os.fsync(copy.fileno())
+
+    def remove(self) -> None:
+        """What is in it has become a file."""
+        if _stands(self.path, self.file):
+            os.unlink(self.path)
+
+    def close(self) -> None:
+        with contextlib.suppress(OSError):
+            os.fsync(self.file.fileno())
+        self.file.close()
+
+
+def make(path: Path) -> HeldPart:
+    """A new and empty part. Raises FileExistsError, and BlockingIOError where another run was quicker."""
+    return _held(path, os.O_RDWR | os.O_CREAT | os.O_EXCL)
+
+
+def hold(path: Path) -> HeldPart:
+    """The part that is there. Raises FileNotFoundError, PartError for what is no file of its own, BlockingIOError."""
+    return _held(path, os.O_RDWR)
+
+
+def _held(path: Path, flags: int) -> HeldPart:
+    while True:
+        file = parts.open_regular(path, flags | getattr(os, "O_NOFOLLOW", 0))
+        try:
+            if os.fstat(file.fileno()).st_nlink > 1:
+                raise PartError("has a second name, so that another file would be written too; remove one of them")
+            _lock(file)
+            if _stands(path, file):
+                return HeldPart(path, file)
+        except BaseException:
+            file.close()
+            raise
+        file.close()  # its last owner removed it between the two calls
+
+
+def _lock(file: BinaryIO) -> None:
+    try:
+        portalocker.lock(file, portalocker.LockFlags.EXCLUSIVE | portalocker.LockFlags.NON_BLOCKING)
+    except portalocker.AlreadyLocked:
+        raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN)) from None
+    except portalocker.LockException:
+        pass  # a file system without locks
+
+
+def _stands(path: Path, file: BinaryIO) -> bool:
+    """Whether the open file is the one at that name."""
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), os.lstat(path))
+    except (FileNotFoundError, NotADirectoryError):
+        return False

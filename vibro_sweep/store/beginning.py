@@ -1,0 +1,211 @@
+"""Beginning to write a file: anew, where a run was interrupted, or to mend what is damaged; one run at a time."""
+
+import contextlib
+import json
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import h5py
+
+from vibro_sweep.scene import Scene
+from vibro_sweep.store import appending, checks, layout, names, parts
+from vibro_sweep.store.appending import HeldPart
+from vibro_sweep.store.attributes import text
+from vibro_sweep.store.creating import skeleton_of
+from vibro_sweep.store.done import Done, in_order_of_blocks
+from vibro_sweep.store.image import Index, frame_of
+from vibro_sweep.store.names import Stamp
+from vibro_sweep.store.opening import (
+    StoreError,
+    blocks_lost,
+    check_scene,
+    check_version,
+    format_of,
+    opened,
+    quantities_of,
+    skeleton,
+)
+from vibro_sweep.store.parts import FORMAT, Head, PartError
+from vibro_sweep.store.writing import Complete, Writer, said, unfinished
+
+MODES = ("new", "resume", "overwrite")
+
+
+@contextlib.contextmanager
+def writer(scene: Scene, path: Path, mode: str) -> Iterator[Writer | Complete]:
+    """The `Writer` of a scene's file; `mode` is "new", "resume" or "overwrite". Raises StoreError."""
+    part = check_places(path, mode)
+    with contextlib.ExitStack() as stack:
+        try:
+            if mode == "new" and names.stamp(path):
+                result = _finished(scene, path)
+            elif mode == "resume" and names.stamp(path) and not names.stamp(part):
+                result = _of_complete(scene, path, part, stack)
+            else:
+                held = stack.enter_context(contextlib.closing(_held(part)))
+                if mode == "resume" and parts.is_begun(held.file):
+                    result = _continued(scene, held, path)
+                else:
+                    result = _begun(scene, held, path, names.stamp(path) if mode == "overwrite" else None)
+        except BlockingIOError:
+            raise StoreError(f"{part} is being written by another run") from None
+        except FileExistsError:
+            raise StoreError(f"{part} has just been begun by another run") from None
+        except PartError as error:
+            raise StoreError(f"{part} {error}") from None
+        yield result
+
+
+def check_places(path: Path, mode: str) -> Path:
+    """Raise StoreError where a run must not write, before anything is touched. Returns the name of the part."""
+    if mode not in MODES:
+        raise StoreError(f"mode {mode!r}: must be one of {', '.join(map(repr, MODES))}")
+    part = Path(f"{path}.part")
+    for place in (path, part):
+        if why := names.obstacle(place):
+            raise StoreError(f"{place} {why}")
+    if names.stamp(part):
+        try:
+            _check_part(part, path, mode)
+        except PartError as error:
+            raise StoreError(f"{part} {error}") from None
+    if mode == "new" and names.stamp(part):
+        raise StoreError(f"{part} is an interrupted run; `resume` continues it, `overwrite` replaces it")
+    return part
+
+
+def _check_part(part: Path, path: Path, mode: str) -> None:
+    """Raise StoreError for one that cannot be continued, and for what no run has made: nobody asked to replace that."""
+    with parts.open_regular(part) as raw:
+        if parts.is_part(raw) or parts.size(raw) == 0:  # killed before it has written anything
+            if mode == "resume" and names.stamp(path) and not parts.is_begun(raw):
+                raise StoreError(f"{part} holds nothing yet, and {path} exists; `overwrite` replaces both")
+            return
+    try:
+        with opened(part) as (file, _):  # of version 0.1
+            if mode == "resume":
+                check_version(file, part)
+    except StoreError as error:
+        if "was begun by" in str(error):
+            raise
+        raise StoreError(f"{part} is in the way: it is no interrupted run of vibro-sweep; move it away") from None
+
+
+def _finished(scene: Scene, path: Path) -> Complete:
+    """A file that needs no run: whole, and made by the same scene and code. Raises StoreError for any other."""
+    try:
+        with opened(path) as (file, _):
+            check_scene(file, path, scene)
+            check_version(file, path)
+            if found := checks.damaged(file):
+                raise StoreError(f"{path} is damaged: {checks.summary(found)}; `resume` computes that again")
+            result = _complete(file)
+    except StoreError as error:
+        text = f"{path} exists, and is not what this scene makes; `overwrite` replaces it, or name another file"
+        raise StoreError(f"{text}\n{error}") from None
+    if result.missing(()):
+        raise StoreError(f"{path} exists, and some of its points are not computed; `resume` computes them")
+    return result
+
+
+def _complete(file: h5py.File) -> Complete:
+    return Complete(checks.statuses(file), json.loads(text(file, "provenance")).get("wall_time_s", 0.0))
+
+
+def _held(part: Path) -> HeldPart:
+    return appending.hold(part) if names.stamp(part) else appending.make(part)
+
+
+def _of_complete(scene: Scene, path: Path, part: Path, stack: contextlib.ExitStack) -> Writer | Complete:
+    """What is computed and not damaged in a file is kept, the rest is computed; mostly there is nothing to do."""
+    with opened(path) as (file, _):
+        check_scene(file, path, scene)
+        lacking = [name for name in layout.quantities(scene) if name not in quantities_of(file)]
+        if lacking and format_of(file) == FORMAT:
+            raise StoreError(f"{path} is damaged: it has no {', '.join(lacking)}; overwrite it")
+        found = checks.damaged(file)
+        if not all(piece for _, piece in found):
+            raise StoreError(f"{path} is damaged beyond repair: {checks.summary(found)}; overwrite it")
+        result = _complete(file)
+        if not found and not result.missing(()):
+            return result
+        check_version(file, path)
+        held = stack.enter_context(contextlib.closing(appending.make(part)))
+        result = _begun(scene, held, path, names.stamp(path))
+        result.take_over(file, found)
+        return result
+
+
+def _begun(scene: Scene, held: HeldPart, path: Path, replaces: Stamp | None) -> Writer:
+    """With nothing computed yet, in place of what is in the part."""
+    with contextlib.suppress(PartError):  # overwritten
+        unfinished(path, parts.read_head(held.file).identity).unlink(missing_ok=True)
+    try:
+        _check_space(scene, held)
+        identity = parts.new_identity()
+        content = skeleton_of(scene, identity)
+        with said(held):
+            held.begin(parts.new_head(content, replaces, identity), content)
+    except BaseException:
+        if parts.size(held.file) == 0:
+            held.remove()
+        raise
+    return _writer(scene, held, path)[0]
+
+
+def _continued(scene: Scene, held: HeldPart, path: Path) -> Writer | Complete:
+    """With what was computed until a run was interrupted."""
+    head = parts.read_head(held.file)
+    with skeleton(held.file, held.path) as file:
+        check_scene(file, held.path, scene)
+        check_version(file, held.path)
+    if finished := _published(path, held, head):
+        return finished
+    if (found := names.stamp(path)) and found != head.replaces:
+        raise StoreError(
+            f"{path} stands beside the interrupted run {held.path}, which was not told to replace it; move one of them "
+            "away, or `overwrite` both"
+        )
+    result, index = _writer(scene, held, path)
+    held.go_on(head, index.end)
+    if index.damaged:
+        result.remark(f"damage found, to be computed again: {blocks_lost(index.damaged)}")
+    return result
+
+
+def _writer(scene: Scene, held: HeldPart, path: Path) -> tuple[Writer, Index]:
+    head = parts.read_head(held.file)
+    with skeleton(held.file, held.path) as file:
+        frame = frame_of(file, quantities_of(file))
+    index = Index(held.file, head, frame)
+    order = in_order_of_blocks(len(frame.shape), len(scene.sweep), scene.start.kind == "follow")
+    done = Done(frame.shape, order)
+    for box, _ in index:
+        done.add(box)
+    return Writer(held, frame, done, path), index
+
+
+def _published(path: Path, held: HeldPart, head: Head) -> Complete | None:
+    """The file, if it is what was made of this part before its run was killed; the part then goes."""
+    if names.stamp(path) is None:
+        return None
+    with contextlib.suppress(StoreError, KeyError), opened(path) as (file, _):
+        if text(file, "identity") == head.identity.hex():
+            unfinished(path, head.identity).unlink(missing_ok=True)
+            held.remove()
+            return _complete(file)
+    return None
+
+
+def _check_space(scene: Scene, held: HeldPart) -> None:
+    """A run that will not fit is not begun; other programs may still fill the disk later on.
+
+    At its end its part and its file are both there.
+    """
+    folder = held.path.parent
+    need, free = 2 * layout.size(scene), shutil.disk_usage(folder).free + parts.size(held.file)
+    if need > free:
+        unit, name = (1e6, "MB") if need > 1e6 else (1e3, "kB")
+        enough = f"{need / unit:,.0f} {name}, and only {free / unit:,.0f} {name}"
+        raise StoreError(f"{held.path} needs {enough} are free in {folder}")

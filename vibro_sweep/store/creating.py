@@ -1,0 +1,57 @@
+"""The skeleton of a run's file: all of its HDF5, with nothing computed yet."""
+
+import datetime
+import io
+import json
+from collections.abc import Iterator
+
+import h5py
+import numpy as np
+
+from vibro_sweep import __version__
+from vibro_sweep.scene import Scene
+from vibro_sweep.store import heap, layout, numbers, parts
+from vibro_sweep.store.attributes import set_text, set_texts
+from vibro_sweep.store.checks import Piece
+from vibro_sweep.store.image import Frame
+from vibro_sweep.store.opening import made_by
+from vibro_sweep.store.sink import LIBVER
+
+
+def skeleton_of(scene: Scene, identity: bytes) -> memoryview:
+    """The bytes of an HDF5 file."""
+    image = io.BytesIO()
+    with h5py.File(image, "w", libver=LIBVER) as file:
+        file.attrs["format"] = parts.FORMAT
+        set_text(file, "identity", identity.hex())
+        set_text(file, "Conventions", "CF-1.11")
+        set_text(file, "title", f"vibro_sweep: {scene.name}")
+        set_text(file, "history", f"{now()} begun by vibro_sweep {__version__}")
+        set_text(file, "scene", scene.text)
+        set_text(file, "provenance", json.dumps(made_by()))
+        set_texts(file, "sweep_dimensions", list(scene.sweep))
+        set_texts(file, "quantities", [name for name in layout.quantities(scene) if name != "status"])
+        for name, value in numbers.attributes(scene).items():
+            file.attrs[name] = value
+        layout.create(file, scene)
+    found = [(at, *heap.measured(image, at)) for at in heap.collections(image)]
+    with h5py.File(image, "r+", libver=LIBVER) as file:
+        file.attrs["heap"] = np.array(found, np.uint64).reshape(-1)
+    return image.getbuffer()
+
+
+def units(file: h5py.File, frame: Frame) -> Iterator[Piece]:
+    """Boxes of the orbits that together are all of them, each within one chunk of the dataset with the most numbers."""
+    largest = max(frame.datasets, key=lambda name: np.prod(frame.datasets[name][1][len(frame.shape) :]))
+    edges = (file[largest].chunks or ())[: len(frame.shape)]
+    counts = [-(-extent // edge) for extent, edge in zip(frame.shape, edges, strict=True)]
+    for corner in np.ndindex(*counts):
+        yield tuple(
+            slice(at * edge, min(at * edge + edge, extent))
+            for at, edge, extent in zip(corner, edges, frame.shape, strict=True)
+        )
+
+
+def now() -> str:
+    """As the history of a file has it."""
+    return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")

@@ -1,0 +1,62 @@
+"""The numbers of a run as its file holds them, or, of version 0.1, as they follow from the text of its scene."""
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from vibro_sweep.model.parameters import FOLLOWING
+from vibro_sweep.model.status import STANDING, STATUSES
+
+Along = dict[str, tuple[tuple[str, ...], np.ndarray]]  # name -> the keys that a number depends on, its values
+
+
+class Source(Protocol):
+    """A file, or a Dataset in memory: what it says of itself and of its variables."""
+
+    sweep: list[str]
+    scene: str
+    attributes: dict[str, Any]
+
+    def attribute(self, name: str, key: str) -> Any: ...
+    def dimensions(self, name: str) -> tuple[str, ...]: ...
+    def read(self, name: str) -> np.ndarray: ...
+    def __contains__(self, name: str) -> bool: ...
+
+
+class Settings(NamedTuple):
+    """What holds for a run.
+
+    `constant`: numbers and words that are the same at all points. `along`: numbers that follow from swept ones.
+    `significant`: standard errors that tell an exponent from zero; NaN where the file has none. `standing`: codes of
+    points whose numbers stand, as the file itself names them.
+    """
+
+    constant: dict[str, Any]
+    along: Along
+    significant: float
+    standing: list[int]
+
+
+def settings_of(source: Source) -> Settings:
+    """Of a version 0.1 whose scene is illegible there is neither constant nor number along an axis."""
+    constant = source.attributes
+    if "record" not in constant:
+        from vibro_sweep.store import version_0_1  # as slow to import as the parser of scenes
+
+        return Settings(*version_0_1.resolved(source.scene), version_0_1.SIGNIFICANT, _standing(source))
+    along = {
+        name: (source.dimensions(name), source.read(name))
+        for name in FOLLOWING
+        if name in source and name not in source.sweep
+    }
+    significant = source.attribute("lyapunov_error", "significant") if "lyapunov_error" in source else None
+    return Settings(constant, along, np.nan if significant is None else float(significant), _standing(source))
+
+
+def _standing(source: Source) -> list[int]:
+    meanings = source.attribute("status", "flag_meanings")
+    if meanings is None:
+        return [0]
+    named = zip(np.atleast_1d(source.attribute("status", "flag_values")).tolist(), meanings.split(), strict=False)
+    standing = {STATUSES[code].name for code in STANDING}
+    return [code for code, meaning in named if meaning in standing]
