@@ -5,7 +5,9 @@ from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 from reference import naive
+from reference.flights import Oscillator, Rest
 
 import vibro_sweep as vs
 
@@ -32,6 +34,13 @@ OTHERS = [
     ]
 ]  # fmt: skip
 CASES = NEAR + PERIODIC + OTHERS
+# M2 swings some 1e5 rad while M1 rests; its rate lies far beyond what the cells resolve
+LIGHT = [
+    dict(mu_m=1e-6, mu_k=1.0, zeta=0.0, f2=0.0, omega=0.01, R=0.5, b=0.1, tau=0.5),
+    dict(mu_m=1e-6, mu_k=1.0, zeta=0.0, f2=0.4, omega=0.01, R=0.5, b=0.1, tau=0.5),
+    dict(mu_m=1e-5, mu_k=3.0, zeta=1e-7, f2=0.2, omega=0.02, R=0.5, b=0.1, tau=0.5),
+    dict(mu_m=1e-3, mu_k=0.5, zeta=0.8, f2=0.5, omega=0.003, R=0.5, b=0.1, tau=0.5),
+]
 QUICK = [CASES[i] for i in (1, 5, 13, 18)]
 
 
@@ -252,3 +261,16 @@ def test_exponents_of_a_rest_that_outlasts_the_record():
     exponents = vs.lyapunov(system, (0.0, 0.0, 5.0, 0.0), transient=3, periods=3)
     np.testing.assert_allclose(exponents[:2], -0.05 * 1.01 / 1000, rtol=1e-9)
     assert np.isneginf(exponents[2:]).all()
+
+
+@pytest.mark.parametrize("numbers", LIGHT)
+def test_a_light_mass_while_the_other_rests(numbers):
+    """At the release the exact pull on M1 is zero, but for the rounding of the time."""
+    system = vs.System(**numbers)
+    x2 = 0.08
+    rest = vs.simulate(system, (system.b, 0.0, x2, 0.0), periods=1).sticking[0]
+    assert rest["t_on"] == 0.0 and rest["t_off"] > 0.3 * system.period
+    with mp.workdps(40):
+        alone = Rest(Oscillator(numbers), mpf(0), mpf(system.b), mpf(x2), mpf(0))
+        pull, slope = alone.pull.derivatives(mpf(rest["t_off"]), 2)
+    assert abs(pull) <= 2.0**-53 * (1.0 + abs(slope) * rest["t_off"])

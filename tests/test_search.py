@@ -32,9 +32,7 @@ EVENTS = 30
 SAMPLES = 300
 PERIODS = (1, 8, 64)  # simulated one after the other until there are enough events
 CLASSES = ("sticks", "R < 0.1", "stiff", "both stops in a cell")
-# Errors allowed, in units of the effect of rounding (follow.py). A rest of a stiff system goes on in small steps, each
-# of which is rounded: some 10^5 of them in half a period.
-LARGEST = 2e5
+LARGEST = 2000  # error allowed, in units of the effect of rounding (follow.py)
 ROUND = ("narrow", "any", "narrow", "stiff", "narrow", "sticking", "narrow", "little restitution")
 KINDS = (*ROUND, *ROUND, "narrow", "stiff", "any")
 

@@ -37,6 +37,20 @@ class Oscillator:
         roots = (mpc(-eta, root),) if beyond < 0 else (-square / (eta + root), -(eta + root))
         return roots, push / mpc(square - self.omega**2, 2 * eta * self.omega)
 
+    def largest(self, x1, v1, x2, v2):
+        """Bounds on (x1, v1, x2, v2) at any time of a free motion without force that begins with these sizes.
+
+        From xi and xi' a mode moves at most xi + xi'/omega_j at the speed omega_j xi + xi': its energy falls. If it is
+        overdamped, its faster root takes the place of the first omega_j, its slower one that of the second.
+        """
+        bounds = [mpf(0)] * 4
+        for r, norm, roots, _ in self.modes:
+            xi, rate = ((x + self.mu_m * abs(r) * y) / norm for x, y in ((x1, x2), (v1, v2)))
+            moved, speed = xi + rate / abs(roots[-1]), abs(roots[0]) * xi + rate
+            for i, part in enumerate((moved, speed, abs(r) * moved, abs(r) * speed)):
+                bounds[i] += part
+        return bounds
+
     def turn(self, t):
         """e^{i (omega t + tau)}"""
         return mp.expj(self.omega * t + self.tau)

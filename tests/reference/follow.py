@@ -3,10 +3,11 @@
 From the state after each event, doubles taken as exact, the flight is followed to the next one in the working
 precision, so that chaos plays no part. An error is told in units of the effect of rounding: the sum of what one part in
 2^53 of every input of the flight (parameters, force, time, state) does to the result, of the clearance does to x1 on
-the way, and of the size of the orbit's state: the largest displacement, or speed, of either mass at the events. A
-contact that goes less than `NEAR` times the effect of rounding on x1 beyond the stop, or misses it by less, is a graze
-within rounding: both answers are right, and it is counted apart. After a rest the flight begins with the exact state at
-the exact release.
+the way, and what the state does if it is rounded once on the way, at any moment: a displacement by one part in 2^53
+makes a stiff spring swing, and speeds of the result are no better known than that swing allows. For this, the state
+has the largest displacement, and speed, of each mass at the events. A contact that goes less than `NEAR` times the
+effect of rounding on x1 beyond the stop, or misses it by less, is a graze within rounding: both answers are right, and
+it is counted apart. After a rest the flight begins with the exact state at the exact release.
 """
 
 from dataclasses import dataclass, field
@@ -100,8 +101,7 @@ class Follower:
         events = sorted([(hit[0], 0, hit) for hit in impacts] + [(rest[0], 1, rest) for rest in rests])
         t, state, n, order = mpf(t), tuple(mpf(x) for x in state), 0, 1
         v1, x2, v2 = (max(map(abs, column)) for column in zip(state[1:], *(hit[2:] for hit in impacts), strict=True))
-        length, speed = max(self.b, x2), max(v1, v2)
-        self.sizes = (speed, length, speed)  # of the orbit's state, for v1, x2, v2
+        self.sizes = self.o.largest(self.b, v1, x2, v2)[1:]
         while True:
             _, is_rest, event = events.pop(0) if events else (None, False, None)
             side = next((s for s in self.sides if state[0] == s * self.b), 0)

@@ -134,13 +134,13 @@ def cross_cell(f, stops, o, records, t, k, s):
             swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
             sin, cos = sin * turn + cos * swing, cos * turn - sin * swing
         if o.resting != 0.0:
-            d = stay_at_rest(f, o, records, t, k, s, left, sin, cos)
+            d = stay_at_rest(f, o, records, t, k, s, sin, cos)
             if d != d:
                 return status.UNRESOLVED
-            released = d < np.inf
-            if last and not released:
+            if d == np.inf:
                 return status.OK
-            s += min(d, left)
+            s += d
+            released = True
             continue
         side = 1.0 if X[0] >= stops.right else (-1.0 if X[0] <= stops.left else 0.0)
         if side * X[1] > 0.0:

@@ -5,7 +5,8 @@ import numpy as np
 from vibro_sweep.engine.motion.contact import first_contact, set_gap
 from vibro_sweep.engine.motion.orbits import sample
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.tables.flight import ORDER, bounds, evaluate
+from vibro_sweep.engine.tables.flight import ORDER, evaluate
+from vibro_sweep.engine.tables.resting import carry_over_rest, state_after, third_derivative
 from vibro_sweep.engine.variational import tangent
 
 CHATTER = 2.0**-53  # of a period: the error allowed in time when the rest of a chatter sequence is summed up
@@ -31,14 +32,6 @@ def mark_rest(o, records, k, s, side):
 
 
 @jit
-def release(q, t, i, w):
-    """Carry tangent vectors over a rest of the time w within a cell."""
-    xx, vx = evaluate(q.resting2[1], w)
-    xv, vv = evaluate(q.resting2[2], w)
-    tangent.release(t, i, xx, xv, vx, vv)
-
-
-@jit
 def begin_rest(f, o, records, t, k, s, side, w):
     """M1 comes to rest on the stop, after impacts that were summed up over the time w.
 
@@ -52,37 +45,59 @@ def begin_rest(f, o, records, t, k, s, side, w):
         q = f.oscillator[0]
         tangent.fly_to(t, o.lane, q, f.nodes, k, s - w)
         tangent.rest(t, o.lane, q.kappa)
-        release(q, t, o.lane, w)
+        tangent.release(t, o.lane, *carry_over_rest(q, w))
         t.cell[o.lane], t.offset[o.lane] = k, s
 
 
 @jit
-def stay_at_rest(f, o, records, t, k, s, left, sin, cos):
-    """M1 rests from offset s of cell k on, M2 moves. Returns the time to the release, infinite if more than `left`.
-
-    M1 is released where its free acceleration, which points into the stop, changes sign: a root found like a contact.
-    """
-    q, X, c1, c2, side = f.oscillator[0], o.X, o.c1, o.c2, o.resting
-    a, b = q.resting1, q.resting2
+def load_rest(q, o, x2, v2, sin, cos):
+    """Series c1 of the free acceleration of M1, and c2 of x2."""
+    x1, c1, c2, a, b = o.X[0], o.c1, o.c2, q.resting1, q.resting2
     for n in range(ORDER):
-        c1[n] = (a[0, n] * X[0] + a[1, n] * X[2]) + (a[2, n] * X[3] + a[3, n] * sin) + a[4, n] * cos
-        c2[n] = (b[0, n] * X[0] + b[1, n] * X[2]) + (b[2, n] * X[3] + b[3, n] * sin) + b[4, n] * cos
+        c1[n] = (a[0, n] * x1 + a[1, n] * x2) + (a[2, n] * v2 + a[3, n] * sin) + a[4, n] * cos
+        c2[n] = (b[0, n] * x1 + b[1, n] * x2) + (b[2, n] * v2 + b[3, n] * sin) + b[4, n] * cos
+
+
+@jit
+def first_release(o, left):
+    """Time at which the free acceleration, which points into the stop, changes sign: a root found like a contact."""
+    side, c1 = o.resting, o.c1
     gap = max(side * c1[0], 0.0)
     n = 0 if gap > 0.0 else leading(c1, 1)
-    d = 0.0
-    if side * c1[n] > 0.0:
-        set_gap(o.gap, c1, gap, -side, n)
-        d = first_contact(o.gap, bounds(q, o.gap)[1], left)
-    end = min(d, left)
-    sample(o, records, k, s, s + end)
-    X[2], X[3] = evaluate(c2, end)
-    o.rest_time += end
+    if side * c1[n] <= 0.0:
+        return 0.0
+    set_gap(o.gap, c1, gap, -side, n)
+    return first_contact(o.gap, third_derivative(o.gap, left), left)
+
+
+@jit
+def stay_at_rest(f, o, records, t, k, s, sin, cos):
+    """M1 rests from offset s of cell k on, M2 moves. Returns the time to the release, infinite if not in this cell."""
+    q, X = f.oscillator[0], o.X
+    x2, v2, sin_there, cos_there, w = X[2], X[3], sin, cos, 0.0
+    while True:
+        load_rest(q, o, X[2], X[3], sin_there, cos_there)
+        left = q.width - s - w
+        last = left <= 1.001 * q.rest_step
+        left = left if last else q.rest_step
+        d = first_release(o, left)
+        end = min(d, left)
+        sample(o, records, k, s + w, s + w + end)
+        w += end
+        if q.rest_step == q.width:
+            X[2], X[3] = evaluate(o.c2, w)
+        else:
+            X[2], X[3], sin_there, cos_there = state_after(q, X[0], x2, v2, sin, cos, w)
+        if last or not d == np.inf:  # NaN, too, is passed on
+            break
+    o.rest_time += w
     if t.wanted:
-        release(q, t, o.lane, end)
-        t.cell[o.lane], t.offset[o.lane] = k, s + end
+        tangent.release(t, o.lane, *carry_over_rest(q, w))
+        t.cell[o.lane], t.offset[o.lane] = k, s + w
     if d < np.inf:
         o.resting = 0.0
-        mark_rest(o, records, k, s + d, 0.0)
+        mark_rest(o, records, k, s + w, 0.0)
+        return w
     return d
 
 

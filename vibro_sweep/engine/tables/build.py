@@ -9,6 +9,7 @@ from vibro_sweep.engine.tables.flight import ORDER, WIDTH
 from vibro_sweep.engine.tables.forced import fill_motion
 from vibro_sweep.engine.tables.frame import fill_frame
 from vibro_sweep.engine.tables.free import fill_coupling, fill_flight, gap_of
+from vibro_sweep.engine.tables.resting import fill_rest
 from vibro_sweep.engine.tables.series import fill_series
 from vibro_sweep.engine.tables.stiff import rate_of
 
@@ -31,6 +32,7 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
             q.third[n + 3] = (n + 3.0) * (n + 2.0) * (n + 1.0) * power
         power *= q.step
     fill_series(q, scratch[:6], scratch[6], mu_m, mu_k, f2)
+    fill_rest(q, scratch[:6], scratch[6], mu_m, mu_k, f2)
     q.impulse_third = 0.0
     for n in range(ORDER):
         q.impulse_third += q.third[n] * abs(q.series1[1, n])

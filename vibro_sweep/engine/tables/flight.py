@@ -39,6 +39,10 @@ OSCILLATOR = record(
         ("force", float, 6),  # acceleration of M1 as a function of them
         ("resting1", float, (5, ORDER)),  # free acceleration of M1 while it rests, of (x1, x2, v2, sin, cos)
         ("resting2", float, (5, ORDER)),  # x2 meanwhile
+        ("rest_step", float),  # width of these series; of M2 alone (resting.py):
+        ("rest_square", float),  # omega^2
+        ("rest_static", float),  # x2 in equilibrium, for x1 = 1
+        ("rest_response", float, 2),  # steady response of x2 to sin and cos
         ("reach", float, ORDER),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
         ("impulse_third", float),  # bound on |d3 x1/du3| over a cell after a unit impulse on M1
         ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell

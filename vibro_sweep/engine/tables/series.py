@@ -1,4 +1,4 @@
-"""Taylor series of flight and of rest over a cell (eq. 3)."""
+"""Taylor series of flight over a cell (eq. 3)."""
 
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER
@@ -26,10 +26,7 @@ def clear(a):
 
 @jit
 def fill_series(q, A, row, mu_m, mu_k, f2):
-    """Taylor series of x1 and x2 in flight, and of M1's free acceleration and x2 while M1 rests on a stop (eq. 3).
-
-    A (6, 6) and row (6,) are scratch.
-    """
+    """Taylor series of x1 and x2, and the acceleration of M1 (eq. 3). A (6, 6) and row (6,) are scratch."""
     zeta, omega = q.zeta, q.omega
     clear(A)
     # (3) as z' = A z for z = (x1, v1, x2, v2, sin(omega t + tau), cos(omega t + tau))
@@ -45,13 +42,3 @@ def fill_series(q, A, row, mu_m, mu_k, f2):
     derive(A, row, 6, q.series1)
     row[0], row[2] = 0.0, 1.0
     derive(A, row, 6, q.series2)
-    # at rest z = (x1, x2, v2, sin, cos)
-    spring, damper, push = A[3, 2], A[3, 3], A[3, 4]
-    clear(A)
-    A[1, 2] = 1.0
-    A[2, 0], A[2, 1], A[2, 2], A[2, 3] = 1.0 / mu_m, spring, damper, push
-    A[3, 4], A[4, 3] = omega, -omega
-    row[0], row[1], row[2], row[3], row[4] = q.force[0], q.force[2], q.force[3], q.force[4], 0.0
-    derive(A, row, 5, q.resting1)
-    row[0], row[1], row[2], row[3] = 0.0, 1.0, 0.0, 0.0
-    derive(A, row, 5, q.resting2)
