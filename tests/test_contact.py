@@ -208,7 +208,7 @@ def first_impacts(e, stops, states, record, suspects, nothing):
         if o.impacts_logged == 0:
             orbits.place(o, f.nodes, stops, 0, 0.0, x[0], x[1], x[2], x[3])
             o.periods = 1
-            ensemble.carry(e, None, nothing, False, nothing, 0)
+            ensemble.carry(e, None, ensemble.Readings(nothing, False, nothing, 0))
             outcome = o.status
         record[i, 0] = records.impacts[0, 1] if o.impacts_logged else np.inf
         record[i, 1] = records.impacts[0, 2]

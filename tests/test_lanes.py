@@ -11,10 +11,10 @@ from vibro_sweep.engine.simd.lanes import (
     LINE,
     alike,
     bits,
+    count_leading,
     eight,
+    first_number,
     lanes_of,
-    leading,
-    leading_lanes,
     new_lines,
     put,
     put_four,
@@ -48,7 +48,7 @@ def comparisons(a, masks, out):
     x, y = row(a, 0), row(a, 1)
     masks[0], masks[1], masks[2], masks[3] = bits(x < y), bits(x <= y), bits(x > 1.0), bits(0.0 >= y)
     masks[4], masks[5] = bits((x < y) & (x > 1.0)), bits((x < y) | ~(x > 1.0))
-    masks[6] = leading_lanes(lanes_of(0b00010111))
+    masks[6] = count_leading(lanes_of(0b00010111))
     put(out, 0, select(x < y, x, y))
     put(out, 1, select(x < y, 1.0, alike(2.0)))
 
@@ -115,7 +115,7 @@ def test_records_begin_with_a_cache_line():
 def parts(a, out):
     for n in range(len(a)):
         put_four(out, n, row(a, n))
-        out[n, 3] = leading(row(a, n))
+        out[n, 3] = first_number(row(a, n))
 
 
 def test_the_first_of_eight():

@@ -9,6 +9,7 @@ import numpy as np
 from vibro_sweep.analysis import attractors
 from vibro_sweep.driver.blocks import Block, version
 from vibro_sweep.engine import points
+from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
@@ -77,7 +78,8 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     anew = starts.reshape(-1, 4)[: steps.shape[1]]  # also after a point that failed
     first = anew if block.begun is None else block.begun
     workspace = _workspace(block, int(table["cells"].max()), min(steps.shape[1], LANES))
-    points.run_points(steps, np.stack([first, anew]), *arrays.values(), workspace, plan, 1 if plan.order else None)
+    mapping = Mapping(plan.order) if plan.order else None
+    points.run_points(steps, np.stack([first, anew]), *arrays.values(), workspace, plan, mapping)
     last = arrays["results"][-1]
     ends = np.where(status.stands(last["status"])[:, None], last["end"], anew)
     if plan.lyapunov:

@@ -7,11 +7,11 @@ out to be periodic and exponents are wanted, twice one more period.
 import numpy as np
 
 from vibro_sweep.engine.averages import keep_averages
-from vibro_sweep.engine.motion.orbits import start_count
+from vibro_sweep.engine.motion.orbits import reset_counts
 from vibro_sweep.engine.periods import REPEAT, find_period, has_settled
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import LANES, put
-from vibro_sweep.engine.variational.multipliers import begin_period, end_period
+from vibro_sweep.engine.variational.multipliers import begin_period, read_period
 from vibro_sweep.engine.variational.spectrum import (
     begin_warm_up,
     close_spectrum,
@@ -38,7 +38,7 @@ def begin_phase(e, w, plan, phase, results):
         e.strike[0].measured = plan.impacts
         set_out(e, plan.record)
         for i in range(len(results)):
-            start_count(e.orbits[i])
+            reset_counts(e.orbits[i])
             put(e.orbits[i].largest, 0, 0.0)
             e.orbits[i].impacts_logged, e.orbits[i].log_side = 0, plan.section_side
         return plan.parts
@@ -70,7 +70,7 @@ def end_phase(e, w, plan, phase, points, results, sections, phases, running):
             if e.orbits[i].status == status.OK:
                 keep_record(e, w, plan, points[i], results[i], sections[i], phases[i], running[i], e.orbits[i])
     elif phase >= FLOQUET:
-        end_period(e, w, results, phase > FLOQUET)
+        read_period(e, w, results, phase > FLOQUET)
 
 
 @aside
@@ -105,7 +105,7 @@ def close(e, w, plan, points, results):
     for i in range(len(results)):
         o, result = e.orbits[i], results[i]
         if plan.lyapunov and o.status == status.OK:
-            close_spectrum(e, o, w, points[i], result)
+            close_spectrum(e, o, w, plan, points[i], result)
         if o.status != status.NOT_COMPUTED:
             result.status = o.status
         if plan.states and o.status == status.OK:

@@ -91,7 +91,8 @@ class Engine:
         """Carry the orbit over as many periods as `section` (n, 4) has rows. Returns a status."""
         self.orbit["periods"] = len(section)
         self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
-        ensemble.carry(self.ensemble._replace(records=records), None, section[None], True, np.empty((1, 0, 4)), 0)
+        readings = ensemble.Readings(section[None], True, np.empty((1, 0, 4)), 0)
+        ensemble.carry(self.ensemble._replace(records=records), None, readings)
         return int(self.orbit["status"][0])
 
     def carry_eight(self, states: np.ndarray, cell: int, periods: int) -> tuple[np.ndarray, orbits.Records]:
@@ -105,7 +106,7 @@ class Engine:
             eight["periods"] = periods
             records = orbits.new_records(LANES, impacts=room, rests=room)
             nothing = np.empty((1, 0, 4))
-            ensemble.carry(self.ensemble._replace(records=records), None, nothing, False, nothing, 0)
+            ensemble.carry(self.ensemble._replace(records=records), None, ensemble.Readings(nothing, False, nothing, 0))
             here = eight[: len(states)]
             logged = max(here["impacts_logged"].max(), here["rests_logged"].max())
             if logged <= room:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.motion import strike
-from vibro_sweep.engine.motion.ensemble import Ensemble, carry, flight_of, new_ensemble
+from vibro_sweep.engine.motion.ensemble import Ensemble, Readings, carry, flight_of, new_ensemble
 from vibro_sweep.engine.motion.orbits import Stops, new_records, place
 from vibro_sweep.engine.observe import PHASES, RECORD, begin_phase, close, end_phase
 from vibro_sweep.engine.simd.jit import entry, jit
@@ -115,25 +115,24 @@ def prepare(points, i, w, plan):
             point.mu_m, point.mu_k, point.zeta, point.f2, point.omega, point.tau,
         )  # fmt: skip
         w.built[table] = point
-    q.order = plan.order
     for j in range(4):
         q.graze[j] = point.graze[j]
     o.careful = q.stiff or q.largest > LARGE * point.b
     stops = Stops(-point.b if plan.left else -np.inf, point.b if plan.right else np.inf, point.R)
-    strike.deal(e.strike[0], i, q, stops)
+    strike.set_oscillator(e.strike[0], i, q, stops)
     if plan.lyapunov:
-        tangent.deal(e.tangent[0], i, q, point.R)
+        tangent.set_frame(e.tangent[0], i, q, point.R)
     return stops
 
 
 @entry
-def run_points(points, starts, results, sections, phases, running, w, plan, mapped):
+def run_points(points, starts, results, sections, phases, running, w, plan, mapping):
     """Compute a block. n = steps, m = orbits; observations that nobody wants have no samples.
 
     points: (n, m) POINT. starts: (2, m, 4), at the first step, and at a step after one that failed; at the others an
     orbit goes on from where it ended, with the next point's numbers. results: (n, m) RESULT. sections: (n, m, record,
     4). phases: (n, m, record), for an impact section. running: (n, m, parts, 4), the exponents as they converge.
-    mapped: None for the flow, 1 for the discontinuity mapping.
+    mapping: as of `carry`.
     """
     e = w.ensemble
     for first in range(0, points.shape[1], LANES):
@@ -161,7 +160,7 @@ def run_points(points, starts, results, sections, phases, running, w, plan, mapp
             for phase in range(PHASES):
                 parts = begin_phase(e, w, plan, phase, row)
                 if parts >= 0:
-                    carry(e, mapped, w.section, phase == RECORD and plan.states, w.growth, parts)
+                    carry(e, mapping, Readings(w.section, phase == RECORD and plan.states, w.growth, parts))
                     end_phase(
                         e, w, plan, phase, rows, row,
                         sections[n, first:last], phases[n, first:last], running[n, first:last],

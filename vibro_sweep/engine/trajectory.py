@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.motion.ensemble import Ensemble, carry
+from vibro_sweep.engine.motion.ensemble import Ensemble, Readings, carry
 from vibro_sweep.engine.motion.orbits import Records, place
 from vibro_sweep.engine.points import prepare
 from vibro_sweep.engine.simd.jit import entry, jit
@@ -54,7 +54,7 @@ def follow(w, periods, hits, samples, sections, impacts):
             i += 1
         part = Records(hits, records.rests, records.times[first:i], records.samples[first:i])
         part = Ensemble(e.flights, e.orbits, e.strike, e.tangent, part)
-        carry(part, None, w.section, False, w.growth, 0)
+        carry(part, None, Readings(w.section, False, w.growth, 0))
         if o.status != status.OK:
             sections[: n + 1] = np.nan
             return 0

@@ -34,17 +34,17 @@ from vibro_sweep.model import status
 
 
 @jit
-def map_period(f, stops, o, records, t):
-    """One iteration of P; the section is the phase of the right graze. Returns a status."""
+def map_period(f, stops, o, records, t, second):
+    """One iteration of P, of first or second order; the section is the phase of the right graze. Returns a status."""
     q, half = f.oscillator[0], f.oscillator[0].cells // 2
     o.events = 0
     for side in (1.0, -1.0):
         if t.wanted:
             tangent.fly_to(t, o.lane, q, f.nodes, 0 if side > 0.0 else half, 0.0)
         if side > 0.0 and stops.right < np.inf:
-            jump(f, stops.right, stops.R, 1.0, o, records, t)  # (41)
+            jump(f, stops.right, stops.R, 1.0, o, records, t, second)  # (41)
         elif side < 0.0 and stops.left > -np.inf:
-            jump(f, -stops.left, stops.R, -1.0, o, records, t)
+            jump(f, -stops.left, stops.R, -1.0, o, records, t, second)
         fly_half(f.nodes[half].E, q.graze, side, o.X)
     return status.OK if math.isfinite(o.X[0] + o.X[1] + o.X[2] + o.X[3]) else status.NOT_FINITE
 
@@ -58,13 +58,12 @@ def fly_half(E, graze, side, X):
 
 
 @jit
-def jump(f, b, R, side, o, records, t):
+def jump(f, b, R, side, o, records, t, second):
     """C1 (side +1) or C2 (side -1), on the state and the tangent vectors."""
     q, X, graze = f.oscillator[0], o.X, f.oscillator[0].graze
     # seen from the right: the left stop is its mirror image
     d0, v1, d2, d3 = side * X[0] - graze[0], side * X[1], side * X[2] - graze[2], side * X[3] - graze[3]
     psi = d0 + (graze[0] - b)
-    second = q.order == 2
     a = -q.omega * q.omega * graze[0]
     if second:
         a += (q.force[0] * d0 + q.force[1] * v1) + (q.force[2] * d2 + q.force[3] * d3)

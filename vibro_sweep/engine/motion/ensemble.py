@@ -10,11 +10,20 @@ import numpy as np
 
 from vibro_sweep.engine.motion.discontinuity import map_period
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
-from vibro_sweep.engine.motion.orbits import ORBIT, Records, Stops, add_count, keep_start, new_records, sample, take_off
+from vibro_sweep.engine.motion.orbits import (
+    ORBIT,
+    Records,
+    Stops,
+    add_count,
+    keep_start,
+    new_records,
+    take_off,
+    take_samples,
+)
 from vibro_sweep.engine.motion.scan import careful_state, first_suspect, suspect_state
-from vibro_sweep.engine.motion.strike import STRIKE, start_count, strike
+from vibro_sweep.engine.motion.strike import STRIKE, clear_counts, strike
 from vibro_sweep.engine.simd.jit import aside, entry, inline
-from vibro_sweep.engine.simd.lanes import LANES, lanes_of, leading, new_lines, put, put_four, row, select
+from vibro_sweep.engine.simd.lanes import LANES, first_number, lanes_of, new_lines, put, put_four, row, select
 from vibro_sweep.engine.tables.flight import Flight, load, new_flight
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.tangent import TANGENT
@@ -29,6 +38,21 @@ class Ensemble(NamedTuple):
     strike: np.ndarray  # (1,) STRIKE
     tangent: np.ndarray  # (1,) TANGENT
     records: Records  # with a first axis: one for each orbit
+
+
+class Mapping(NamedTuple):
+    """The discontinuity mapping in place of the flow: a type of its own, so that it is compiled only if asked for."""
+
+    order: int  # 1 or 2
+
+
+class Readings(NamedTuple):
+    """What is read of eight orbits at the ends of their periods, and where it is kept."""
+
+    states: np.ndarray  # (LANES, periods, 4): the states there
+    keep: bool  # whether they are kept
+    growth: np.ndarray  # (LANES, parts, 4): logarithms of the growth of the tangent vectors since the first one
+    parts: int  # of the periods, after each of which the growth is read; 0: never
 
 
 def new_ensemble(cells: int, impacts: int = 0, rests: int = 0, samples: int = 0) -> Ensemble:
@@ -65,21 +89,22 @@ def records_of(e, o):
 
 
 @inline
-def end_period(e, o, q, nodes, X, section, keep, growth, parts):
+def end_period(e, o, q, nodes, X, readings):
     """Take the orbit over the section, where its state is X."""
+    parts = readings.parts
     o.cell = o.events = o.samples_taken = 0
     take_off(o, nodes, X)
     o.period += 1
-    if keep:
+    if readings.keep:
         largest = row(o.largest, 0)
-        put_four(section[np.uint64(o.lane)], o.done, X)
+        put_four(readings.states[np.uint64(o.lane)], o.done, X)
         put(o.largest, 0, select(abs(X) > largest, abs(X), largest))
     o.done += 1
     t = e.tangent[0]
     if t.wanted:
         t.cell[o.lane] -= q.cells
         if parts > 0 and o.done * parts >= (o.read + 1) * o.periods:
-            tangent.read_growth(t, o.lane, q, nodes, growth[o.lane, o.read])
+            tangent.read_growth(t, o.lane, q, nodes, readings.growth[o.lane, o.read])
             o.read += 1
 
 
@@ -98,13 +123,13 @@ def hold(o, X):
 
 
 @aside
-def go_long_way(e, o, f, section, keep, growth, parts):
+def go_long_way(e, o, f, readings):
     """Follow the orbit through all that happens, to the end of its cell or of the one in which M1 leaves the stop."""
     q = f.oscillator[0]
     if o.careful and o.offset == 0.0 and o.resting == 0.0:
         put(o.X, 0, careful_state(o, f.nodes, o.cell))
         if o.cell == q.cells:
-            end_period(e, o, q, f.nodes, row(o.X, 0), section, keep, growth, parts)
+            end_period(e, o, q, f.nodes, row(o.X, 0), readings)
             return
     while True:
         events, rested = o.events, o.offset > 0.0 or o.resting != 0.0
@@ -122,7 +147,7 @@ def go_long_way(e, o, f, section, keep, growth, parts):
         if o.resting == 0.0 or o.status != status.OK:
             return
         if o.cell == q.cells:
-            end_period(e, o, q, f.nodes, row(o.X, 0), section, keep, growth, parts)
+            end_period(e, o, q, f.nodes, row(o.X, 0), readings)
             if o.done == o.periods:
                 return
 
@@ -138,12 +163,12 @@ def put_carefully(e, waiting):
 
 
 @inline
-def seek(e, section, keep, growth, parts):
+def seek(e, readings):
     """Carry all orbits on to the next cells in which they may strike. Returns who has one, as bits.
 
     Each step is done for all of them before the next, so that the processor has work while one waits for its numbers.
     """
-    sampled, t = len(e.records.times) > 0, e.strike[0]
+    sampled, strikes = len(e.records.times) > 0, e.strike[0]
     waiting = seeking = 0
     for i in range(LANES):
         if under_way(e.orbits[i]):
@@ -160,18 +185,18 @@ def seek(e, section, keep, growth, parts):
                 q = f.oscillator[0]
                 k, X = suspect_state(o, f.nodes)
                 o.cell = k
-                if k < q.cells and o.stops[0] < leading(X) < o.stops[1] and not q.stiff:
-                    put(t.z, i, X)
+                if k < q.cells and o.stops[0] < first_number(X) < o.stops[1] and not q.stiff:
+                    put(strikes.z, i, X)
                     waiting |= 1 << i
                     seeking ^= 1 << i
                     continue
-                if k == o.section:
-                    end_period(e, o, q, f.nodes, X, section, keep, growth, parts)
+                if k == o.ends:
+                    end_period(e, o, q, f.nodes, X, readings)
                     if o.done < o.periods:
                         continue
                 else:
                     hold(o, X)
-                    go_long_way(e, o, f, section, keep, growth, parts)
+                    go_long_way(e, o, f, readings)
                     if under_way(o):
                         continue
                 seeking ^= 1 << i
@@ -179,83 +204,81 @@ def seek(e, section, keep, growth, parts):
 
 
 @inline
-def settle(e, o, free, struck, section, keep, growth, parts):
+def settle(e, o, free, struck, readings):
     """Go on to the end of the cell in which the orbit may have struck."""
-    f, t, i = flight_of(e, o), e.strike[0], o.lane
+    f, strikes, i = flight_of(e, o), e.strike[0], o.lane
     if not (free or struck):
-        hold(o, row(t.z, i))
-        go_long_way(e, o, f, section, keep, growth, parts)
+        hold(o, row(strikes.z, i))
+        go_long_way(e, o, f, readings)
         return
     q, records = f.oscillator[0], records_of(e, o)
     watched = len(records.times) > 0 or (struck and len(records.impacts) > 0)
     if watched:
-        z = t.z[i]
+        z = strikes.z[i]
         load(q.series1, z[0], z[1], z[2], z[3], z[4], z[5], o.c1)
         load(q.series2, z[0], z[1], z[2], z[3], z[4], z[5], o.c2)
     if free:
         if watched:
-            sample(o, records, o.cell, 0.0, q.width)
+            take_samples(o, records, o.cell, 0.0, q.width)
         o.cell += 1
         return
     if watched:
-        watch_rebound(q, o, records, o.cell, t.offset[i], t.side[i], t.speed[i], t.impulse[i])
+        watch_rebound(q, o, records, o.cell, strikes.offset[i], strikes.side[i], strikes.speed[i], strikes.impulse[i])
     o.cell += 1
-    take_off(o, f.nodes, row(t.X, i))
+    take_off(o, f.nodes, row(strikes.X, i))
 
 
 @entry
-def carry(e, mapped, section, keep, growth, parts):
+def carry(e, mapping, readings):
     """Carry each orbit over its `periods`, of forcing or iterations of the discontinuity mapping; see its `status`.
 
-    mapped: None for the flow, for which the mapping then need not be compiled. section: (LANES, periods, 4) for the
-    states at their ends, if they are to be kept. growth: (LANES, parts, 4) for the logarithms of the growth of the
-    tangent vectors, read after each of so many parts of the periods.
+    mapping: None for the flow, or the `Mapping` that takes its place.
     """
-    t, s = e.tangent[0], e.strike[0]
+    t, strikes = e.tangent[0], e.strike[0]
     careful = 0
     for i in range(LANES):
         o = e.orbits[i]
         o.done = o.read = 0
         if under_way(o):  # of others there may be no tables
-            o.section = -1 if o.careful else flight_of(e, o).oscillator[0].cells
+            o.ends = -1 if o.careful else flight_of(e, o).oscillator[0].cells
             careful |= int(o.careful) << i
-    start_count(s)
-    if mapped is not None:
+    clear_counts(strikes)
+    if mapping is not None:
         for i in range(LANES):
-            iterate(e, e.orbits[i], section, keep, growth, parts)
+            iterate(e, e.orbits[i], mapping, readings)
         return
     for i in range(LANES):
         o = e.orbits[i]
         if under_way(o) and (o.offset > 0.0 or o.resting != 0.0):
-            go_long_way(e, o, flight_of(e, o), section, keep, growth, parts)
+            go_long_way(e, o, flight_of(e, o), readings)
     while True:
-        waiting = seek(e, section, keep, growth, parts)
+        waiting = seek(e, readings)
         if waiting == 0:
             break
         if waiting & careful != 0:
             put_carefully(e, waiting & careful)
-        free, struck = strike(s, lanes_of(waiting))
+        free, struck = strike(strikes, lanes_of(waiting))
         if t.wanted and struck != 0:
             for i in range(LANES):
                 if struck >> i & 1:
                     o = e.orbits[i]
                     f = flight_of(e, o)
-                    tangent.aim(t, i, f.oscillator[0], f.nodes, o.cell, s.offset[i])
+                    tangent.aim(t, i, f.oscillator[0], f.nodes, o.cell, strikes.offset[i])
             tangent.fly(t, lanes_of(struck))
-            tangent.saltate(t, lanes_of(struck), row(s.jump, 0) / row(s.speed, 0))
+            tangent.saltate(t, lanes_of(struck), row(strikes.jump, 0) / row(strikes.speed, 0))
         for i in range(LANES):
             if waiting >> i & 1:
-                settle(e, e.orbits[i], free >> i & 1, struck >> i & 1, section, keep, growth, parts)
+                settle(e, e.orbits[i], free >> i & 1, struck >> i & 1, readings)
     for i in range(LANES):
-        add_count(e.orbits[i], s.hits[0, i], s.hits[1, i], s.slowest[i], s.miss[i])
+        add_count(e.orbits[i], strikes.hits[0, i], strikes.hits[1, i], strikes.slowest[i], strikes.miss[i])
 
 
 @aside
-def iterate(e, o, section, keep, growth, parts):
+def iterate(e, o, mapping, readings):
     """Carry one orbit over its `periods` of the discontinuity mapping."""
     f = flight_of(e, o)
     stops, records = stops_of(o), records_of(e, o)
     while o.done < o.periods and o.status == status.OK:
-        o.status = map_period(f, stops, o, records, e.tangent[0])
+        o.status = map_period(f, stops, o, records, e.tangent[0], mapping.order == 2)
         if o.status == status.OK:
-            end_period(e, o, f.oscillator[0], f.nodes, row(o.X, 0), section, keep, growth, parts)
+            end_period(e, o, f.oscillator[0], f.nodes, row(o.X, 0), readings)

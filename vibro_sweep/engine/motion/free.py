@@ -16,7 +16,7 @@ import numpy as np
 
 from vibro_sweep.engine.motion.contact import ROUNDING, first_contact, set_gap
 from vibro_sweep.engine.motion.orbits import advance, place
-from vibro_sweep.engine.motion.rest import leading
+from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.motion.scan import state_at
 from vibro_sweep.engine.simd.jit import entry, jit
 from vibro_sweep.engine.simd.lanes import put
@@ -111,7 +111,7 @@ def sign_of_gap(o, side, wall):
     gap = side * (wall - o.X[0])
     if gap != 0.0:
         return math.copysign(1.0, gap), 0
-    n = leading(o.c1, 1)
+    n = first_nonzero(o.c1, 1)
     return math.copysign(1.0, -side * o.c1[n]), n
 
 

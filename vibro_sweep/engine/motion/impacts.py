@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import advance, sample
-from vibro_sweep.engine.motion.rest import begin_rest, chatter, leading, stay_at_rest
+from vibro_sweep.engine.motion.orbits import advance, take_samples
+from vibro_sweep.engine.motion.rest import begin_rest, chatter, first_nonzero, stay_at_rest
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import alike
 from vibro_sweep.engine.tables.flight import ORDER, bounds, evaluate, load
@@ -64,10 +64,10 @@ def watch_rebound(q, o, records, k, d, side, v, impulse):
     """Keep an impact at offset d of cell k, and samples in the cell: of the old flight, and what the impulse adds."""
     x2, v2 = evaluate(o.c2, d)
     log_impact(o, records, k, d, side, v, x2, v2)
-    sample(o, records, k, 0.0, d)
+    take_samples(o, records, k, 0.0, d)
     times, samples = records.times, records.samples
     first = o.samples_taken
-    sample(o, records, k, 0.0, q.width)
+    take_samples(o, records, k, 0.0, q.width)
     for i in range(first, o.samples_taken):
         x1, v1 = evaluate(q.series1[1], times[i, 1] - d)
         x2, v2 = evaluate(q.series2[1], times[i, 1] - d)
@@ -150,14 +150,14 @@ def cross_cell(f, stops, o, records, t, k, s):
         reach, third = bounds(q, c1)
         n = 1
         if side != 0.0 and X[1] == 0.0:
-            n = leading(c1, 3 if released else 2)
+            n = first_nonzero(c1, 3 if released else 2)
             if side * c1[n] > 0.0:
                 begin_rest(f, o, records, t, k, s, side, 0.0)
                 continue
         elif side != 0.0:
             w = chatter(q, stops, o, third, side, left)
             if w < np.inf:
-                sample(o, records, k, s, s + w)
+                take_samples(o, records, k, s, s + w)
                 advance(o, w)
                 X[0] = stops.right if side > 0.0 else stops.left
                 s += w
@@ -167,7 +167,7 @@ def cross_cell(f, stops, o, records, t, k, s):
         d, side = next_contact(q, o, stops, side, n, reach, left)
         if d != d:
             return status.UNRESOLVED
-        sample(o, records, k, s, s + min(d, left))
+        take_samples(o, records, k, s, s + min(d, left))
         advance(o, min(d, left))
         if d == np.inf and (last or not math.isfinite(X[1] + X[3])):
             return status.OK if math.isfinite(X[1] + X[3]) else status.NOT_FINITE

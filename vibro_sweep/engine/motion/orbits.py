@@ -18,49 +18,54 @@ class Stops(NamedTuple):
     R: float
 
 
-# One orbit on its way, and what is counted of it.
-ORBIT = record(
-    [
-        ("X", float, LANES),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
-        ("start", float, LANES),  # if `careful`, and `origin` is no longer `base`: X, sin and cos at node `base`
-        ("y", float, LANES),  # X - r at node `origin`, from which the exclusion test looks ahead
-        ("largest", float, LANES),  # sizes of the section states that were kept
-        ("lane", np.int64),  # its place among eight
-        ("table", np.int64),  # place of its oscillator's tables
-        ("status", np.int64),
-        ("periods", np.int64),  # to carry it over
-        ("done", np.int64),  # of these
-        ("read", np.int64),  # readings of the growth of tangent vectors
-        ("cell", np.int64),
-        ("offset", float),
-        ("careful", np.bool_),  # the motion r is much larger than the clearance, or stiff (scan.py)
-        ("section", np.int64),  # the node at which a period ends; -1, which is no node, if `careful`
-        ("base", np.int64),  # the node where free flight began
-        # `base`, or if `careful` a later node: the less is left of a fast mode, the tighter the exclusion test
-        ("origin", np.int64),
-        ("suspect", np.int64),  # the next cell in which contact cannot be excluded, and
-        ("low", float),  # what x1 at its beginning is held against
-        ("high", float),
-        ("stops", float, 3),  # left, right, R
-        ("resting", float),  # side of the stop that M1 rests on, or 0
-        ("c1", float, ORDER),  # Taylor coefficients of x1, or of the free acceleration of M1 at rest
-        ("c2", float, ORDER),  # of x2
-        ("gap", float, ORDER),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
-        ("period", np.int64),
-        ("events", np.int64),  # impacts, grazes, and ends of rests in this period
-        ("impacts_left", np.int64),
-        ("impacts_right", np.int64),
-        ("chatters", np.int64),  # sequences summed up
-        ("slowest", float),  # least |v1| before an impact
-        ("miss", float),  # how far from the stop an impact was found at most
-        ("rest_time", float),
-        ("log_volume", float),  # ln|det| of the jumps of the discontinuity mapping
-        ("log_side", float),  # impacts on this side are logged; 0: on both
-        ("impacts_logged", np.int64),  # or would have been, had there been room
-        ("rests_logged", np.int64),
-        ("samples_taken", np.int64),
-    ]
-)
+# One orbit on its way,
+MOTION = [
+    ("X", float, LANES),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
+    ("start", float, LANES),  # if `careful`, and `origin` is no longer `base`: X, sin and cos at node `base`
+    ("y", float, LANES),  # X - r at node `origin`, from which the exclusion test looks ahead
+    ("largest", float, LANES),  # sizes of the section states that were kept
+    ("lane", np.int64),  # its place among eight
+    ("table", np.int64),  # place of its oscillator's tables
+    ("status", np.int64),
+    ("periods", np.int64),  # to carry it over
+    ("done", np.int64),  # of these
+    ("read", np.int64),  # readings of the growth of tangent vectors
+    ("cell", np.int64),
+    ("offset", float),
+    ("careful", np.bool_),  # the motion r is much larger than the clearance, or stiff (scan.py)
+    ("ends", np.int64),  # the node at which a period ends; -1, which is no node, if `careful`
+    ("base", np.int64),  # the node where free flight began
+    # `base`, or if `careful` a later node: the less is left of a fast mode, the tighter the exclusion test
+    ("origin", np.int64),
+    ("suspect", np.int64),  # the next cell in which contact cannot be excluded, and
+    ("low", float),  # what x1 at its beginning is held against
+    ("high", float),
+    ("stops", float, 3),  # left, right, R
+    ("resting", float),  # side of the stop that M1 rests on, or 0
+    ("c1", float, ORDER),  # Taylor coefficients of x1, or of the free acceleration of M1 at rest
+    ("c2", float, ORDER),  # of x2
+    ("gap", float, ORDER),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
+]
+# what is counted of it
+COUNTS = [
+    ("period", np.int64),
+    ("events", np.int64),  # impacts, grazes, and ends of rests in this period
+    ("impacts_left", np.int64),
+    ("impacts_right", np.int64),
+    ("chatters", np.int64),  # sequences summed up
+    ("slowest", float),  # least |v1| before an impact
+    ("miss", float),  # how far from the stop an impact was found at most
+    ("rest_time", float),
+    ("log_volume", float),  # ln|det| of the jumps of the discontinuity mapping
+]
+# and what it has written into its `Records`.
+LOG = [
+    ("log_side", float),  # impacts on this side are logged; 0: on both
+    ("impacts_logged", np.int64),  # or would have been, had there been room
+    ("rests_logged", np.int64),
+    ("samples_taken", np.int64),
+]
+ORBIT = record([*MOTION, *COUNTS, *LOG])
 
 
 class Records(NamedTuple):
@@ -90,7 +95,7 @@ def place(o, nodes, stops, cell, offset, x1, v1, x2, v2):
     o.status, o.resting, o.cell, o.offset = status.OK, 0.0, cell, offset
     o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
     take_off(o, nodes, row(o.X, 0))
-    start_count(o)
+    reset_counts(o)
 
 
 @inline
@@ -111,7 +116,7 @@ def keep_start(o):
 
 
 @jit
-def start_count(o):
+def reset_counts(o):
     """Count impacts and rest from here on."""
     o.impacts_left = o.impacts_right = o.chatters = 0
     o.slowest, o.miss, o.rest_time, o.log_volume = np.inf, 0.0, 0.0, 0.0
@@ -139,7 +144,7 @@ def advance(o, u):
 
 
 @aside
-def sample(o, records, k, start, stop):
+def take_samples(o, records, k, start, stop):
     """Take the samples that fall in cell k between the offset `start`, where the series begins, and `stop`."""
     times, samples = records.times, records.samples
     i = o.samples_taken

@@ -3,17 +3,17 @@
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import sample
+from vibro_sweep.engine.motion.orbits import take_samples
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, evaluate
-from vibro_sweep.engine.tables.resting import carry_over_rest, state_after, third_derivative
+from vibro_sweep.engine.tables.resting import bound_third_over, carry_over_rest, state_after
 from vibro_sweep.engine.variational import tangent
 
 CHATTER = 2.0**-53  # of a period: the error allowed in time when the rest of a chatter sequence is summed up
 
 
 @jit
-def leading(c, first):
+def first_nonzero(c, first):
     """Index of the first coefficient from `first` on that is not zero; ORDER - 1 if there is none."""
     n = first
     while n < ORDER - 1 and c[n] == 0.0:
@@ -63,11 +63,11 @@ def first_release(o, left):
     """Time at which the free acceleration, which points into the stop, changes sign: a root found like a contact."""
     side, c1 = o.resting, o.c1
     gap = max(side * c1[0], 0.0)
-    n = 0 if gap > 0.0 else leading(c1, 1)
+    n = 0 if gap > 0.0 else first_nonzero(c1, 1)
     if side * c1[n] <= 0.0:
         return 0.0
     set_gap(o.gap, c1, gap, -side, n)
-    return first_contact(o.gap, third_derivative(o.gap, left), left)
+    return first_contact(o.gap, bound_third_over(o.gap, left), left)
 
 
 @jit
@@ -82,7 +82,7 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos):
         left = left if last else q.rest_step
         d = first_release(o, left)
         end = min(d, left)
-        sample(o, records, k, s + w, s + w + end)
+        take_samples(o, records, k, s + w, s + w + end)
         w += end
         if q.rest_step == q.width:
             X[2], X[3] = evaluate(o.c2, w)

@@ -3,19 +3,19 @@
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import inline
-from vibro_sweep.engine.simd.lanes import LANES, bits, eight, lanes_of, leading, leading_lanes, row, select
+from vibro_sweep.engine.simd.lanes import LANES, bits, count_leading, eight, first_number, lanes_of, row, select
 from vibro_sweep.engine.tables.flight import CHUNK
 
 
 @inline
-def control_points(scan, p, q, y0, y1, y2, y3):
-    """Control points p, ..., p + 7 of a flight that starts at (y0, ..., y3); q: as counted from there."""
+def control_points(scan, p, since, y0, y1, y2, y3):
+    """Control points p, ..., p + 7 of a flight that starts at (y0, ..., y3); since: as counted from there."""
     return (
         eight(scan[4], p)
-        + eight(scan[0], q) * y0
-        + eight(scan[1], q) * y1
-        + eight(scan[2], q) * y2
-        + eight(scan[3], q) * y3
+        + eight(scan[0], since) * y0
+        + eight(scan[1], since) * y1
+        + eight(scan[2], since) * y2
+        + eight(scan[3], since) * y3
     )
 
 
@@ -34,13 +34,13 @@ def first_suspect(f, o):
     o.low, o.high = low, high
     k = cells
     for p in range(2 * o.cell, 2 * cells, CHUNK):
-        q = p - 2 * origin
-        a = control_points(scan, p, q, y0, y1, y2, y3)
-        b = control_points(scan, p + LANES, q + LANES, y0, y1, y2, y3)
+        since = p - 2 * origin
+        a = control_points(scan, p, since, y0, y1, y2, y3)
+        b = control_points(scan, p + LANES, since + LANES, y0, y1, y2, y3)
         a_inside, b_inside = (a >= low) & (a <= high), (b >= low) & (b <= high)
         if bits(~(a_inside & b_inside)) != 0:
-            n = leading_lanes(a_inside)
-            k = min((p + n + (leading_lanes(b_inside) if n == LANES else 0)) // 2, cells)
+            n = count_leading(a_inside)
+            k = min((p + n + (count_leading(b_inside) if n == LANES else 0)) // 2, cells)
             break
     return k
 
@@ -60,7 +60,7 @@ def suspect_state(o, nodes):
     """The suspect cell, and X at its beginning; or the cell before, if that end of it lies outside."""
     k = o.suspect
     X = state_at(o, nodes, k)
-    if k > o.cell and not o.low <= leading(X) <= o.high:
+    if k > o.cell and not o.low <= first_number(X) <= o.high:
         k -= 1
         X = state_at(o, nodes, k)
     return k, X

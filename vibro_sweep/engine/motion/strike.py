@@ -43,7 +43,7 @@ STRIKE = record(
         ("speed", float, LANES),  # v1 before it
         ("impulse", float, LANES),  # -(1 + R) v1
         ("jump", float, LANES),  # a+ + R a-, for the saltation matrix
-        ("hits", float, (2, LANES)),  # impacts since `start_count`, on the left and on the right
+        ("hits", float, (2, LANES)),  # impacts since `clear_counts`, on the left and on the right
         ("slowest", float, LANES),  # least |v1| before one
         ("miss", float, LANES),  # how far from the stop one was found at most, where `measured`
         ("measured", np.bool_),
@@ -52,22 +52,22 @@ STRIKE = record(
 
 
 @jit
-def deal(t, i, q, stops):
+def set_oscillator(strikes, i, q, stops):
     """Give lane i its oscillator and its stops."""
     for j in range(6):
-        t.tail[j, i] = 0.0
+        strikes.tail[j, i] = 0.0
         for n in range(ORDER):
-            t.series1[ORDER * j + n, i] = q.series1[j, n]
+            strikes.series1[ORDER * j + n, i] = q.series1[j, n]
             if n >= TAIL:
-                t.tail[j, i] += q.third[n] * abs(q.series1[j, n])
-        t.end[4 * j, i], t.end[4 * j + 1, i] = flight.evaluate(q.series1[j], q.width)
-        t.end[4 * j + 2, i], t.end[4 * j + 3, i] = flight.evaluate(q.series2[j], q.width)
+                strikes.tail[j, i] += q.third[n] * abs(q.series1[j, n])
+        strikes.end[4 * j, i], strikes.end[4 * j + 1, i] = flight.evaluate(q.series1[j], q.width)
+        strikes.end[4 * j + 2, i], strikes.end[4 * j + 3, i] = flight.evaluate(q.series2[j], q.width)
     for n in range(ORDER):
-        t.impulse1[n, i], t.impulse2[n, i] = q.series1[1, n], q.series2[1, n]
+        strikes.impulse1[n, i], strikes.impulse2[n, i] = q.series1[1, n], q.series2[1, n]
     for n in range(TAIL):
-        t.third[n, i] = q.third[n]
-    t.width[i], t.zeta[i], t.impulse_third[i] = q.width, q.zeta, q.impulse_third
-    t.left[i], t.right[i], t.R[i] = stops.left, stops.right, stops.R
+        strikes.third[n, i] = q.third[n]
+    strikes.width[i], strikes.zeta[i], strikes.impulse_third[i] = q.width, q.zeta, q.impulse_third
+    strikes.left[i], strikes.right[i], strikes.R[i] = stops.left, stops.right, stops.R
 
 
 @inline
@@ -81,16 +81,16 @@ def of_z(rows, n, step, z):
 
 
 @inline
-def load(t, z, first, last):
+def load_x1(strikes, z, first, last):
     """Taylor coefficients of x1."""
     for n in range(first, last):
-        put(t.c, n, of_z(t.series1, n, ORDER, z))
+        put(strikes.c, n, of_z(strikes.series1, n, ORDER, z))
 
 
 @inline
-def third_derivative(t, z):
+def bound_third(strikes, z):
     """A bound on the third derivative of x1 over the cell."""
-    c, weight, tail = t.c, t.third, t.tail
+    c, weight, tail = strikes.c, strikes.third, strikes.tail
     even = row(weight, 4) * abs(row(c, 4)) + row(weight, 6) * abs(row(c, 6))
     odd = row(weight, 3) * abs(row(c, 3)) + row(weight, 5) * abs(row(c, 5)) + row(weight, 7) * abs(row(c, 7))
     return even + odd + of_z(tail, 0, 1, (abs(z[0]), abs(z[1]), abs(z[2]), abs(z[3]), abs(z[4]), abs(z[5])))
@@ -122,7 +122,7 @@ def derivatives(c, u, last):
 
 
 @inline
-def parabola_root(gap, rate, curve, width):
+def nearest_root(gap, rate, curve, width):
     """Where gap + rate d + curve d^2/2 = 0, or is least; no further than `width`."""
     square = rate * rate - 2.0 * curve * gap
     u = 2.0 * gap / (math.sqrt(select(square > 0.0, square, 0.0)) - rate)
@@ -166,7 +166,7 @@ def descend(c, u, gap, side, steepest, width, wanted):
 
 
 @inline
-def evaluate(c, u):
+def position_and_speed(c, u):
     """Polynomial at u, and its derivative; even and odd terms go side by side."""
     v = u * u
     slope_odd, slope_even = row(c, ORDER - 1), row(c, ORDER - 2)
@@ -180,62 +180,64 @@ def evaluate(c, u):
 
 
 @jit
-def start_count(t):
+def clear_counts(strikes):
     """Count impacts from here on."""
     for i in range(LANES):
-        t.hits[0, i] = t.hits[1, i] = t.miss[i] = 0.0
-        t.slowest[i] = np.inf
+        strikes.hits[0, i] = strikes.hits[1, i] = strikes.miss[i] = 0.0
+        strikes.slowest[i] = np.inf
 
 
 @inline
-def count(t, struck, side, v):
+def count(strikes, struck, side, v):
     """Count impacts with these speeds."""
-    speed, slowest = abs(v), row(t.slowest, 0)
-    put(t.hits, 0, row(t.hits, 0) + select(struck & (side < 0.0), 1.0, 0.0))
-    put(t.hits, 1, row(t.hits, 1) + select(struck & (side > 0.0), 1.0, 0.0))
-    put(t.slowest, 0, select(struck & (speed < slowest), speed, slowest))
+    speed, slowest = abs(v), row(strikes.slowest, 0)
+    put(strikes.hits, 0, row(strikes.hits, 0) + select(struck & (side < 0.0), 1.0, 0.0))
+    put(strikes.hits, 1, row(strikes.hits, 1) + select(struck & (side > 0.0), 1.0, 0.0))
+    put(strikes.slowest, 0, select(struck & (speed < slowest), speed, slowest))
 
 
 @inline
-def leaves_freely(t, v, after, side, rest, third):
+def leaves_freely(strikes, v, after, side, rest, third):
     """Whether M1 touches neither stop in the time `rest` after an impact with v, that leaves it with this acceleration.
 
     third: bound on the third derivative.
     """
-    rebound, back, bend = row(t.R, 0) * abs(v), side * after, rest * third * SIXTH
+    rebound, back, bend = row(strikes.R, 0) * abs(v), side * after, rest * third * SIXTH
     stays_off = rebound > rest * (0.5 * select(back > 0.0, back, 0.0) + bend)
-    return stays_off & (rest * (rebound + rest * (0.5 * abs(after) + bend)) < row(t.right, 0) - row(t.left, 0))
+    return stays_off & (
+        rest * (rebound + rest * (0.5 * abs(after) + bend)) < row(strikes.right, 0) - row(strikes.left, 0)
+    )
 
 
 @inline
-def land(t, z, impulse, rest):
+def land(strikes, z, impulse, rest):
     """X at the end of the cell: of the motion as if there were no stop, and what the impulse has done by then."""
-    x1, v1 = evaluate(t.impulse1, rest)
-    x2, v2 = evaluate(t.impulse2, rest)
-    x1 = of_z(t.end, 0, 4, z) + impulse * x1
-    v1 = of_z(t.end, 1, 4, z) + impulse * v1
-    x2 = of_z(t.end, 2, 4, z) + impulse * x2
-    v2 = of_z(t.end, 3, 4, z) + impulse * v2
+    x1, v1 = position_and_speed(strikes.impulse1, rest)
+    x2, v2 = position_and_speed(strikes.impulse2, rest)
+    x1 = of_z(strikes.end, 0, 4, z) + impulse * x1
+    v1 = of_z(strikes.end, 1, 4, z) + impulse * v1
+    x2 = of_z(strikes.end, 2, 4, z) + impulse * x2
+    v2 = of_z(strikes.end, 3, 4, z) + impulse * v2
     nothing = alike(0.0)
-    put_transposed(t.X, (x1, v1, x2, v2, nothing, nothing, nothing, nothing))
+    put_transposed(strikes.X, (x1, v1, x2, v2, nothing, nothing, nothing, nothing))
 
 
 @inline
-def strike(t, waiting):
+def strike(strikes, waiting):
     """Cross a cell. Returns masks of the `waiting`: free flight (the orbit is left alone); one impact and none after.
 
     Of the impact are left its `side`, `offset`, `speed`, `impulse` and `jump`, and X at the end of the cell.
     """
-    z = transposed(t.z)
-    c, width, v1 = t.c, row(t.width, 0), z[1]
+    z = transposed(strikes.z)
+    c, width, v1 = strikes.c, row(strikes.width, 0), z[1]
     put(c, 1, v1)
-    load(t, z, 2, 3)
-    right, left = row(t.right, 0) - z[0], z[0] - row(t.left, 0)
+    load_x1(strikes, z, 2, 3)
+    right, left = row(strikes.right, 0) - z[0], z[0] - row(strikes.left, 0)
     side, gap, behind = select(v1 > 0.0, 1.0, -1.0), select(v1 > 0.0, right, left), select(v1 > 0.0, left, right)
     rate, curve = -abs(v1), -2.0 * side * row(c, 2)
-    u = parabola_root(gap, rate, curve, width)
-    load(t, z, 3, ORDER)  # while the processor takes that root
-    third = third_derivative(t, z)
+    u = nearest_root(gap, rate, curve, width)
+    load_x1(strikes, z, 3, ORDER)  # while the processor takes that root
+    third = bound_third(strikes, z)
     bend = 2.0 * third * width * SIXTH
     safe = waiting & stays_clear(behind, -rate, -curve - bend, width)
     clear = stays_clear(gap, rate, curve - bend, width)
@@ -245,18 +247,18 @@ def strike(t, waiting):
     u = approach(c, u, gap, side, width)
     d, v, a, struck = descend(c, u, gap, side, abs(curve) + third * width, width, wanted)
     falls = rate + select(curve > 0.0, curve, 0.0) * d + 0.5 * third * d * d < 0.0  # all the way to the contact
-    impulse, rest = -(1.0 + row(t.R, 0)) * v, width - d
-    after = a - 2.0 * row(t.zeta, 0) * impulse
-    third += abs(impulse) * row(t.impulse_third, 0)
-    struck = struck & falls & (side * v > 0.0) & leaves_freely(t, v, after, side, rest, third)
-    count(t, struck, side, v)
-    if t.measured:
+    impulse, rest = -(1.0 + row(strikes.R, 0)) * v, width - d
+    after = a - 2.0 * row(strikes.zeta, 0) * impulse
+    third += abs(impulse) * row(strikes.impulse_third, 0)
+    struck = struck & falls & (side * v > 0.0) & leaves_freely(strikes, v, after, side, rest, third)
+    count(strikes, struck, side, v)
+    if strikes.measured:
         miss = abs(gap - side * derivatives(c, d, ORDER)[0])
-        put(t.miss, 0, select(struck & (miss > row(t.miss, 0)), miss, row(t.miss, 0)))
-    put(t.side, 0, side)
-    put(t.offset, 0, d)
-    put(t.speed, 0, v)
-    put(t.impulse, 0, impulse)
-    put(t.jump, 0, after + row(t.R, 0) * a)
-    land(t, z, impulse, rest)
+        put(strikes.miss, 0, select(struck & (miss > row(strikes.miss, 0)), miss, row(strikes.miss, 0)))
+    put(strikes.side, 0, side)
+    put(strikes.offset, 0, d)
+    put(strikes.speed, 0, v)
+    put(strikes.impulse, 0, impulse)
+    put(strikes.jump, 0, after + row(strikes.R, 0) * a)
+    land(strikes, z, impulse, rest)
     return bits(free), bits(struck)

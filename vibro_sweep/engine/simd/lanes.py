@@ -163,7 +163,7 @@ def bits(typingctx, condition):
 
 
 @intrinsic
-def leading(typingctx, x):
+def first_number(typingctx, x):
     """The first of eight numbers."""
     if isinstance(x, LanesType):
 
@@ -174,7 +174,7 @@ def leading(typingctx, x):
 
 
 @intrinsic
-def leading_lanes(typingctx, condition):
+def count_leading(typingctx, condition):
     """How many lanes from the first on a mask holds in."""
     if isinstance(condition, MaskType):
 

@@ -31,8 +31,7 @@ OSCILLATOR = record(
         ("omega", float),
         ("zeta", float),
         ("kappa", float),  # 2 zeta/mu_m
-        ("order", np.int64),  # of the discontinuity mapping; 0: the flow itself
-        ("graze", float, 4),  # the point at which it is expanded
+        ("graze", float, 4),  # the point at which the discontinuity mapping is expanded
         ("remainder", float, 5),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
         ("series1", float, (6, ORDER)),  # Taylor coefficients of x1 as a function of (x1, v1, x2, v2, sin, cos)
         ("series2", float, (6, ORDER)),  # of x2

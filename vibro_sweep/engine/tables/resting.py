@@ -65,7 +65,7 @@ def state_after(q, x1, x2, v2, sin, cos, w):
 
 
 @jit
-def third_derivative(c, h):
+def bound_third_over(c, h):
     """A bound on the third derivative of the polynomial c over [0, h]."""
     total = 0.0
     for n in range(ORDER - 1, 2, -1):

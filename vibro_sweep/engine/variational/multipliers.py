@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.motion.orbits import start_count
+from vibro_sweep.engine.motion.orbits import reset_counts
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
@@ -42,12 +42,12 @@ def begin_period(e, w, results):
                 w.axes[i, m] = t.Z[m, i]
             for n in range(6):
                 t.shear[n, i] = 0.0
-            start_count(o)
+            reset_counts(o)
             tangent.start_record(t, i)
 
 
 @aside
-def end_period(e, w, results, again):
+def read_period(e, w, results, again):
     """The multipliers over the period that has just passed; `again`: with what has changed since the one before."""
     t = e.tangent[0]
     t.collected = False
@@ -89,7 +89,7 @@ def find_multipliers(t, i, logs, axes, matrix, graze, result, again):
             matrix[j, k] = entry * math.exp(0.5 * (logs[j] + logs[k]) - logs[0])
     if not (size < np.inf and eigenvalues(matrix, count, re, im)):
         return False
-    sort(re, im, count)
+    sort_moduli(re, im, count)
     for j in range(count):
         before = log[j]
         log[j] = math.log(math.hypot(re[j], im[j])) + logs[0]
@@ -111,7 +111,7 @@ def find_multipliers(t, i, logs, axes, matrix, graze, result, again):
 
 
 @jit
-def sort(re, im, count):
+def sort_moduli(re, im, count):
     """By falling modulus; conjugates stay together."""
     for i in range(1, count):
         x, y, j = re[i], im[i], i

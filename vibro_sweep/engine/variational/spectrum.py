@@ -85,7 +85,7 @@ def period_of(e, o):
 
 
 @jit
-def close_spectrum(e, o, w, point, result):
+def close_spectrum(e, o, w, plan, point, result):
     """Floquet exponents in place of averages; the residual of the sum rule, which is part of the last one's error."""
     q, spectrum, error = e.flights.oscillator[o.table, 0], result.lyapunov, result.lyapunov_error
     periods = result.period if result.period > 0 else w.section.shape[1]
@@ -95,9 +95,9 @@ def close_spectrum(e, o, w, point, result):
             spectrum[j], error[j] = result.log_multiplier[j] / time, result.log_error[j] / time
     exact = -2.0 * point.zeta * (1.0 + (1.0 + point.mu_k) / point.mu_m) + o.log_volume / time
     hits = o.impacts_right + o.impacts_left
-    if hits > 0 and q.order == 0:
+    if hits > 0 and plan.order == 0:
         exact += 2.0 * (hits / time) * np.log(point.R)
-    sort(spectrum, error)
+    sort_exponents(spectrum, error)
     residual = ((spectrum[0] + spectrum[1]) + (spectrum[2] + spectrum[3])) - exact
     for j in range(4 - q.vanishing, 4):
         spectrum[j], error[j], residual = -np.inf, 0.0, -np.inf
@@ -108,7 +108,7 @@ def close_spectrum(e, o, w, point, result):
 
 
 @jit
-def sort(spectrum, error):
+def sort_exponents(spectrum, error):
     """Descending; the vectors find their order only as far as the exponents differ."""
     for i in range(1, 4):
         value, doubt, j = spectrum[i], error[i], i

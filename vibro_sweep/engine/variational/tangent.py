@@ -56,7 +56,7 @@ def only(i):
 
 
 @jit
-def deal(t, i, q, R):
+def set_frame(t, i, q, R):
     """Give orbit i its oscillator."""
     for n in range(ORDER):
         for j in range(4):
