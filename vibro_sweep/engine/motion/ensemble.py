@@ -20,7 +20,7 @@ from vibro_sweep.engine.motion.orbits import (
     take_off,
     take_samples,
 )
-from vibro_sweep.engine.motion.scan import careful_state, first_suspect, suspect_state
+from vibro_sweep.engine.motion.scan import careful_state, first_suspect, open_cell, suspect_state
 from vibro_sweep.engine.motion.strike import STRIKE, clear_counts, strike
 from vibro_sweep.engine.simd.jit import aside, entry, inline
 from vibro_sweep.engine.simd.lanes import LANES, first_number, lanes_of, new_lines, put, put_four, row, select
@@ -127,6 +127,8 @@ def go_long_way(e, o, f, readings):
     """Follow the orbit through all that happens, to the end of its cell or of the one in which M1 leaves the stop."""
     q = f.oscillator[0]
     if o.careful and o.offset == 0.0 and o.resting == 0.0:
+        if q.stiff and o.cell > o.origin:
+            o.cell = open_cell(f, o, o.cell)
         put(o.X, 0, careful_state(o, f.nodes, o.cell))
         if o.cell == q.cells:
             end_period(e, o, q, f.nodes, row(o.X, 0), readings)

@@ -95,6 +95,21 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
 
 
 @jit
+def end_chatter(q, stops, o, records, k, s, side, w):
+    """The impacts of the time w from offset s on are summed up: M1 stays at the stop, and M2 is where they leave it.
+
+    A flight without them goes beyond the stop; through the damper that moves M2 by kappa = 2 zeta/mu_m of the way.
+    """
+    X, wall = o.X, stops.right if side > 0.0 else stops.left
+    o.resting, X[0] = side, wall
+    take_samples(o, records, k, s, s + w)
+    advance(o, w)
+    X[3] -= q.kappa * (X[0] - wall)
+    X[0] = wall
+    o.chatters += 1
+
+
+@jit
 def size_at(c, u):
     """The sum of the sizes of the terms of the polynomial c at u."""
     size = 0.0
@@ -157,11 +172,8 @@ def cross_cell(f, stops, o, records, t, k, s):
         elif side != 0.0:
             w = chatter(q, stops, o, third, side, left)
             if w < np.inf:
-                take_samples(o, records, k, s, s + w)
-                advance(o, w)
-                X[0] = stops.right if side > 0.0 else stops.left
+                end_chatter(q, stops, o, records, k, s, side, w)
                 s += w
-                o.chatters += 1
                 begin_rest(f, o, records, t, k, s, side, w)
                 continue
         d, side = next_contact(q, o, stops, side, n, reach, left)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import inline
+from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.simd.lanes import LANES, bits, count_leading, eight, first_number, lanes_of, row, select
 from vibro_sweep.engine.tables.flight import CHUNK
 
@@ -64,6 +64,25 @@ def suspect_state(o, nodes):
         k -= 1
         X = state_at(o, nodes, k)
     return k, X
+
+
+@jit
+def open_cell(f, o, k):
+    """The first cell up to k in which contact cannot be excluded, where all inner points are inside: of a stiff system.
+
+    The cubic is one of the slow modes, and x1 itself may be inside by the swing of a fast one: so its ends are found
+    from it. It begins at node `origin`; its end in the cell before node k is the mean of the points beside it; the ends
+    of other cells lie between points that are inside.
+    """
+    q, scan, y = f.oscillator[0], f.scan, o.y
+    x = f.nodes[o.origin].z[0] + (q.slow[0] * y[0] + q.slow[1] * y[1]) + (q.slow[2] * y[2] + q.slow[3] * y[3])
+    if not o.low <= x <= o.high:
+        return o.origin
+    x, since = 0.0, 2 * k - 1 - 2 * o.origin
+    for p in range(since, since + 2):
+        x += 0.5 * (scan[4, p + 2 * o.origin] + (scan[0, p] * y[0] + scan[1, p] * y[1]))
+        x += 0.5 * (scan[2, p] * y[2] + scan[3, p] * y[3])
+    return k if o.low <= x <= o.high else k - 1
 
 
 @inline

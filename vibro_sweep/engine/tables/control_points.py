@@ -52,4 +52,6 @@ def fill_scan(q, nodes, scan, psi, omega_squared, mu_m, f2):
         # 1e-15: the rounding of a control point, a few units in the last place of each of its terms
         q.remainder[i] = q.remainder[i] * q.width**4 / 144.0 + 1e-15 * largest
     if q.stiff:
+        for i in range(4):
+            q.slow[i], _ = slow_part(q, psi, omega_squared, mu_m, i, 0.0)
         add_stiff_remainder(q, nodes, psi, omega_squared, mu_m, f2)

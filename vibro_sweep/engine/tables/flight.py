@@ -33,6 +33,7 @@ OSCILLATOR = record(
         ("kappa", float),  # 2 zeta/mu_m
         ("graze", float, 4),  # the point at which the discontinuity mapping is expanded
         ("remainder", float, 5),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
+        ("slow", float, 4),  # part of the slow modes in x1; of a stiff system
         ("series1", float, (6, ORDER)),  # Taylor coefficients of x1 as a function of (x1, v1, x2, v2, sin, cos)
         ("series2", float, (6, ORDER)),  # of x2
         ("force", float, 6),  # acceleration of M1 as a function of them
