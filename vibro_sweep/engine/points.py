@@ -117,7 +117,7 @@ def prepare(points, i, w, plan):
         w.built[table] = point
     for j in range(4):
         q.graze[j] = point.graze[j]
-    o.careful = q.stiff or q.largest > LARGE * point.b
+    o.careful = int(q.stiff or q.largest > LARGE * point.b)
     stops = Stops(-point.b if plan.left else -np.inf, point.b if plan.right else np.inf, point.R)
     strike.set_oscillator(e.strike[0], i, q, stops)
     if plan.lyapunov:

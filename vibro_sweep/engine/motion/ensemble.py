@@ -243,7 +243,7 @@ def carry(e, mapping, readings):
         o.done = o.read = 0
         if under_way(o):  # of others there may be no tables
             o.ends = -1 if o.careful else flight_of(e, o).oscillator[0].cells
-            careful |= int(o.careful) << i
+            careful |= o.careful << i
     clear_counts(strikes)
     if mapping is not None:
         for i in range(LANES):

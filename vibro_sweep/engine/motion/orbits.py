@@ -21,8 +21,8 @@ class Stops(NamedTuple):
 # One orbit on its way,
 MOTION = [
     ("X", float, LANES),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
-    ("start", float, LANES),  # if `careful`, and `origin` is no longer `base`: X, sin and cos at node `base`
     ("y", float, LANES),  # X - r at node `origin`, from which the exclusion test looks ahead
+    ("start", float, LANES),  # if `careful`, and `origin` is no longer `base`: X, sin and cos at node `base`
     ("largest", float, LANES),  # sizes of the section states that were kept
     ("lane", np.int64),  # its place among eight
     ("table", np.int64),  # place of its oscillator's tables
@@ -32,7 +32,7 @@ MOTION = [
     ("read", np.int64),  # readings of the growth of tangent vectors
     ("cell", np.int64),
     ("offset", float),
-    ("careful", np.bool_),  # the motion r is much larger than the clearance, or stiff (scan.py)
+    ("careful", np.int64),  # 1 if the motion r is much larger than the clearance, or the system stiff (scan.py)
     ("ends", np.int64),  # the node at which a period ends; -1, which is no node, if `careful`
     ("base", np.int64),  # the node where free flight began
     # `base`, or if `careful` a later node: the less is left of a fast mode, the tighter the exclusion test

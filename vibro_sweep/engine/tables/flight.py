@@ -62,10 +62,10 @@ OSCILLATOR = record(
 # One node of the grid.
 NODE = record(
     [
-        ("E", float, (6, LANES)),  # flight from node 0: row j is X here of the unit state j there, rows 4 and 5 that of
-        # the force's sin and cos there, from rest; padded
         ("z", float, LANES),  # r, a motion under the force: from rest at node 0; of a fast mode the steady one;
         # then sin and cos of omega t + tau
+        ("E", float, (6, LANES)),  # flight from node 0: row j is X here of the unit state j there, rows 4 and 5 that of
+        # the force's sin and cos there, from rest; padded
         ("forced", float, (2, 2, 2)),  # modal motion from rest at node 0: mode; xi, xi'; to the force's sin, cos there
         ("frame", float, 4),  # c_1, s_1, c_2, s_2 of a flight from node 0
     ]
