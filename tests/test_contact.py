@@ -15,7 +15,7 @@ from reference.certified import NEGATIVE, POSITIVE, REAL
 import vibro_sweep as vs
 from vibro_sweep.engine import one_system
 from vibro_sweep.engine.motion import contact, ensemble, impacts, orbits, scan
-from vibro_sweep.engine.motion.strike import STRIKE, TAIL, strike
+from vibro_sweep.engine.motion.strike import TAIL, strike, strikes_of
 from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.engine.simd.lanes import LANES, lanes_of
 from vibro_sweep.engine.tables.flight import ORDER
@@ -49,7 +49,7 @@ def strikes(t, c, gap, side, third, rest, out):
         for i in range(LANES):
             n, t.tail[5, i] = first + i, 0.0
             for m in range(ORDER):
-                t.series1[5 * ORDER + m, i] = c[n, m]
+                t.series[5 * ORDER + m, i] = c[n, m]
                 weight = m * (m - 1) * (m - 2) * rest[n] ** (m - 3) if m > 2 else 0.0
                 if m < TAIL:
                     t.third[m, i] = weight
@@ -70,7 +70,7 @@ def strikes(t, c, gap, side, third, rest, out):
 def first_contacts_by_eights(c, gap, side, third, rest, out):
     """As an orbit finds them: by the long way what is not clear at once. Returns how many are."""
     first_contacts(c, gap, side, third, rest, out)
-    t = np.zeros(1, STRIKE)
+    t = np.zeros(1, strikes_of(2))
     t["R"] = 1e3  # it leaves fast enough not to come back within the cell: the first contact alone is judged here
     return strikes(t[0], c, gap, side, third, rest, out)
 
@@ -198,15 +198,15 @@ def first_impacts(e, stops, states, record, suspects, nothing):
     f, records = ensemble.flight_of(e, o), ensemble.records_of(e, o)
     for i in range(len(states)):
         x = states[i]
-        orbits.place(o, f.nodes, stops, 0, 0.0, x[0], x[1], x[2], x[3])
+        orbits.place(o, f.nodes, stops, 0, 0.0, x)
         o.suspect = scan.first_suspect(f, o)
         suspects[i] = scan.suspect_state(o, f.nodes)[0]
         # the first cell alone, with one event allowed: R = 1 makes a mass that creeps off the stop knock for ever
-        orbits.place(o, f.nodes, stops, 0, 0.0, x[0], x[1], x[2], x[3])
+        orbits.place(o, f.nodes, stops, 0, 0.0, x)
         o.events = impacts.MOST_EVENTS - 1
         outcome = impacts.cross_cell(f, stops, o, records, t, 0, 0.0)
         if o.impacts_logged == 0:
-            orbits.place(o, f.nodes, stops, 0, 0.0, x[0], x[1], x[2], x[3])
+            orbits.place(o, f.nodes, stops, 0, 0.0, x)
             o.periods = 1
             ensemble.carry(e, None, ensemble.Readings(nothing, False, nothing, 0))
             outcome = o.status

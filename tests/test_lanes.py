@@ -1,4 +1,4 @@
-"""Eight numbers side by side, held against numpy: every operation, on numbers of all sizes, infinities and NaN."""
+"""Numbers side by side, held against numpy: every operation, on numbers of all sizes, infinities and NaN."""
 
 import math
 
@@ -13,16 +13,19 @@ from vibro_sweep.engine.simd.lanes import (
     bits,
     count_leading,
     eight,
-    first_number,
     lanes_of,
     new_lines,
+    number,
     put,
-    put_four,
+    put_state,
     put_transposed,
     record,
     row,
     select,
+    sizes,
+    state_and_rest,
     transposed,
+    weigh,
 )
 
 SPECIAL = np.array([0.0, -0.0, 1.0, np.inf, -np.inf, np.nan, 1e-310, -1e300])
@@ -53,13 +56,31 @@ def comparisons(a, masks, out):
     put(out, 1, select(x < y, 1.0, alike(2.0)))
 
 
+def block(width, like):
+    """Fields as the kernels have them: one row for each orbit, or one column; `like` tells how many rows count."""
+    return record(
+        [
+            ("wide", float, (LANES, width)),
+            ("columns", float, (like, LANES)),
+            ("like", float, (like, LANES)),
+            ("back", float, (LANES, width)),
+            ("sums", float, (2, LANES)),
+            ("state", float, width),
+            ("joined", float, width),
+        ]
+    )
+
+
 @entry
-def moved(a, out, turned, back):
+def moved(r, a, out):
     put(out, 0, eight(a, 3))
-    x = transposed(a)
-    put(turned, 0, x[0])
-    put(turned, 1, x[7])
-    put_transposed(back, (x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]))
+    x = transposed(r.wide, r.like)
+    put(r.columns, 0, x[0])
+    put(r.columns, len(r.like) - 1, x[len(r.like) - 1])
+    put_transposed(r.back, r.like)
+    put(r.sums, 0, weigh(a, 1, 2, (row(a, 0), row(a, 1), row(a, 2), row(a, 3))))
+    put(r.sums, 1, sizes((row(a, 0), row(a, 1)))[1])
+    put(r.joined, 0, state_and_rest(row(r.state, 0), row(r.wide, 1), r.sums))
 
 
 def numbers(shape, seed):
@@ -90,17 +111,20 @@ def test_comparisons(shift):
     np.testing.assert_array_equal(out, [np.where(x < y, x, y), np.where(x < y, 1.0, 2.0)])
 
 
-def test_rows_and_columns():
-    a, out, turned, back = (
-        numbers((LANES, LANES), 1),
-        np.empty((1, LANES)),
-        np.empty((2, LANES)),
-        np.empty((LANES, LANES)),
-    )
-    moved(a, out, turned, back)
+@pytest.mark.parametrize("width, like", [(LANES, 4), (LANES, 6), (2 * LANES, 12)])
+def test_rows_and_columns(width, like):
+    r = new_lines(1, block(width, like))
+    for seed, name in enumerate(r.dtype.names[:-1]):
+        r[name] = numbers(r[name].shape, seed)
+    a, out = np.random.default_rng(9).normal(size=(LANES, LANES)), np.empty((1, LANES))
+    moved(r[0], a, out)
     np.testing.assert_array_equal(out[0], a.ravel()[3:11])
-    np.testing.assert_array_equal(turned, a.T[[0, 7]])
-    np.testing.assert_array_equal(back, a)
+    np.testing.assert_array_equal(r["columns"][0, [0, -1]], r["wide"][0].T[[0, like - 1]])
+    np.testing.assert_array_equal(r["back"][0, :, :like], r["like"][0].T)
+    assert not r["back"][0, :, like:].any()
+    np.testing.assert_allclose(r["sums"][0, 0], (a[1::2] * a[:4]).sum(0), rtol=0, atol=1e-14)
+    np.testing.assert_array_equal(r["sums"][0, 1], abs(a[1]))
+    np.testing.assert_array_equal(r["joined"][0], [*r["state"][0, :4], *r["wide"][0, 1, 4:]])
 
 
 def test_records_begin_with_a_cache_line():
@@ -112,15 +136,15 @@ def test_records_begin_with_a_cache_line():
 
 
 @entry
-def parts(a, out):
+def parts(r, a, out):
     for n in range(len(a)):
-        put_four(out, n, row(a, n))
-        out[n, 3] = first_number(row(a, n))
+        put_state(out, n, row(a, n), r.sums)
+        out[n, 3] = number(row(a, n), 1)
 
 
 def test_the_first_of_eight():
-    """Four of them are stored and nothing behind; one of them is a float."""
+    """Four of them, as many as two masses have states, are stored and nothing behind; one of them is a float."""
     a, out = numbers((5, LANES), 0), np.zeros((6, 4))
-    parts(a, out)
-    np.testing.assert_array_equal(out[:5], a[:, [0, 1, 2, 0]])
+    parts(new_lines(1, block(LANES, 4))[0], a, out)
+    np.testing.assert_array_equal(out[:5], a[:, [0, 1, 2, 1]])
     assert not out[5].any()

@@ -7,7 +7,7 @@ import numpy as np
 from vibro_sweep.engine import points
 from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.engine.tables.flight import CHUNK, NODE
+from vibro_sweep.engine.tables.flight import CHUNK, node_of
 from vibro_sweep.scene import Scene
 from vibro_sweep.scene.scene import grid
 from vibro_sweep.scene.size import COPIES, FIXED, SAMPLE, scratch_numbers, written_numbers
@@ -51,6 +51,6 @@ def _workspace_bytes(scene: Scene, orbits: int) -> int:
     for key, values in scene.sweep.items():
         axes[key] = values[np.unique(np.linspace(0, len(values) - 1, LOOKS).astype(int))]
     cells = int(points_of(grid(scene.system, axes))["cells"].max())
-    tables = LANES * cells * (NODE.itemsize + 2 * 5 * 8) + LANES * CHUNK
+    tables = LANES * cells * (node_of(2).itemsize + 2 * 5 * 8) + LANES * CHUNK
     samples = SAMPLE * scene.trajectory.samples if scene.trajectory else 0
     return tables + 8 * (min(orbits, LANES) * scratch_numbers(scene) + samples)

@@ -23,7 +23,8 @@ def keep_averages(section, T, repeat, o, result):
     right = o.impacts_right if period > 0 else result.impacts_right
     left = o.impacts_left if period > 0 else result.impacts_left
     largest, memory = 0.0, 1.0
-    for i in range(4):
+    states = section.shape[1]
+    for i in range(states):
         mean[i], square = 0.0, 0.0
         for n in range(len(section) - length, len(section)):
             mean[i] += section[n, i] / length
@@ -33,14 +34,15 @@ def keep_averages(section, T, repeat, o, result):
         spread = square - mean[i] ** 2
         if spread > error[i] ** 2:
             memory = max(memory, error[i] ** 2 * length / spread)
-    mean[4], mean[5] = right / length, left / length
-    mean[6], error[6] = result.lyapunov[0], result.lyapunov_error[0]
+    mean[states], mean[states + 1] = right / length, left / length
+    mean[states + 2], error[states + 2] = result.lyapunov[0], result.lyapunov_error[0]
     # as if impacts came in bunches, one in each time in which the orbit forgets itself
-    error[4], error[5] = math.sqrt(max(right, 1) * memory) / length, math.sqrt(max(left, 1) * memory) / length
+    error[states] = math.sqrt(max(right, 1) * memory) / length
+    error[states + 1] = math.sqrt(max(left, 1) * memory) / length
     if period > 0:
-        error[4] = error[5] = o.chatters / length  # rounding may end a listed sequence one impact earlier
-        for i in range(4):  # steps that shrink by the greatest multiplier, summed up
-            error[i] = repeat * largest / max(-math.expm1(mean[6] * period * T), repeat)
+        error[states] = error[states + 1] = o.chatters / length  # rounding may end a listed sequence one impact earlier
+        for i in range(states):  # steps that shrink by the greatest multiplier, summed up
+            error[i] = repeat * largest / max(-math.expm1(mean[states + 2] * period * T), repeat)
 
 
 @jit

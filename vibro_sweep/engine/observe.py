@@ -81,19 +81,20 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
     result.contact_error = o.miss if o.slowest < np.inf else np.nan
     result.sticking_time = o.rest_time
     states, growth, T = w.section[o.lane], w.growth[o.lane], period_of(e, o)
-    for j in range(4):
+    numbers = len(result.end)
+    for j in range(numbers):
         result.end[j] = o.X[j]
     if len(phase) > 0:
         keep_impacts(e, o, point.omega, section, phase)
     else:
         for n in range(len(section)):
-            for j in range(4):
+            for j in range(numbers):
                 section[n, j] = states[n, j]
     result.resting = o.resting
     if plan.states:
         result.period = find_period(states, o.largest, w.axes[o.lane])
     for n in range(len(running)):
-        for j in range(4):
+        for j in range(numbers):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
     if plan.lyapunov:
         time_average(growth, plan.record, T, result.lyapunov, result.lyapunov_error)

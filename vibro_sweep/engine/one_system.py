@@ -85,7 +85,7 @@ class Engine:
     def put(self, state, cell: int = 0, offset: float = 0.0, lane: int = 0) -> None:
         """Start a new orbit from a state that is known to be allowed, at this offset of this cell."""
         nodes = self.ensemble.flights.nodes[0]
-        orbits.place(self.ensemble.orbits[lane], nodes, self.stops, int(cell), float(offset), *map(float, state))
+        orbits.place(self.ensemble.orbits[lane], nodes, self.stops, int(cell), float(offset), np.asarray(state, float))
 
     def carry(self, records: orbits.Records, section: np.ndarray) -> int:
         """Carry the orbit over as many periods as `section` (n, 4) has rows. Returns a status."""

@@ -22,9 +22,9 @@ NOT_CONVERGING = -1
 
 @jit
 def distance(section, size, n, p):
-    """Between point n and the one p before it, relative to `size` (4,)."""
+    """Between point n and the one p before it, relative to `size` (2 N,)."""
     largest = 0.0
-    for i in range(4):
+    for i in range(section.shape[1]):
         largest = max(largest, abs(section[n, i] - section[n - p, i]) / size[i])
     return largest if largest == largest else np.inf
 
@@ -47,13 +47,10 @@ def window_of(p):
 @jit
 def repeats(section, size, p):
     """Whether all points are near to those p before them."""
-    s0, s1, s2, s3 = REPEAT * size[0], REPEAT * size[1], REPEAT * size[2], REPEAT * size[3]
     for n in range(p, len(section)):  # from the beginning: where the orbit has not settled, the first point tells
-        x, y = section[n], section[n - p]
-        if not (
-            abs(x[0] - y[0]) <= s0 and abs(x[1] - y[1]) <= s1 and abs(x[2] - y[2]) <= s2 and abs(x[3] - y[3]) <= s3
-        ):
-            return False
+        for i in range(section.shape[1]):
+            if not abs(section[n, i] - section[n - p, i]) <= REPEAT * size[i]:
+                return False
     return True
 
 
@@ -76,13 +73,15 @@ def fades(section, size, d, p):
 
 @jit
 def find_period(section, sizes, size):
-    """Least period of the points, (n, 4), up to half of them; 0 if there is none.
+    """Least period of the points, (n, 2 N), up to half of them; 0 if there is none.
 
     `NOT_CONVERGING` where points seem to repeat themselves but do not come nearer to doing so. sizes: of the points,
-    (4,) or longer. size: scratch of the same length.
+    (2 N,) or longer. size: scratch of the same length.
     """
-    count, largest = len(section), max(max(sizes[0], sizes[1]), max(sizes[2], sizes[3]))
-    for i in range(4):
+    count, largest = len(section), 0.0
+    for i in range(section.shape[1]):
+        largest = max(largest, sizes[i])
+    for i in range(section.shape[1]):
         size[i] = max(sizes[i], 1e-3 * largest)
     for p in range(1, count // 2 + 1):
         if repeats(section, size, p):

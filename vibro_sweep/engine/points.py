@@ -74,6 +74,7 @@ class Workspace(NamedTuple):
     built: np.ndarray  # (LANES,) POINT: whose tables these are
     section: np.ndarray  # (orbits, record, 4)
     growth: np.ndarray  # (LANES, parts, 4)
+    state: np.ndarray  # (4,)
     axes: np.ndarray  # (LANES, 16)
     matrix: np.ndarray  # (4, 4)
     scratch: np.ndarray  # (7, 6)
@@ -87,6 +88,7 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES) -> 
         np.zeros(LANES, POINT),
         np.empty((orbits, plan.record if plan.states else 0, 4)),
         np.empty((LANES, plan.parts, 4)),
+        np.empty(4),
         np.empty((LANES, 16)),
         np.empty((4, 4)),
         np.empty((7, 6)),
@@ -134,7 +136,7 @@ def run_points(points, starts, results, sections, phases, running, w, plan, mapp
     4). phases: (n, m, record), for an impact section. running: (n, m, parts, 4), the exponents as they converge.
     mapping: as of `carry`.
     """
-    e = w.ensemble
+    e, state = w.ensemble, w.state
     for first in range(0, points.shape[1], LANES):
         last = min(first + LANES, points.shape[1])
         for n in range(len(points)):
@@ -148,14 +150,12 @@ def run_points(points, starts, results, sections, phases, running, w, plan, mapp
                     result.status = status.TOO_STIFF
                     continue
                 stops = prepare(points[n, first:last], i, w, plan)
-                x = starts[min(n, 1), first + i]
-                x1, v1, x2, v2 = x[0], x[1], x[2], x[3]
-                if n > 0 and results[n - 1, first + i].status in status.STANDING:
-                    end = results[n - 1, first + i].end
-                    x1, v1, x2, v2 = end[0], end[1], end[2], end[3]
+                goes_on = n > 0 and results[n - 1, first + i].status in status.STANDING
+                for j in range(len(state)):
+                    state[j] = results[n - 1, first + i].end[j] if goes_on else starts[min(n, 1), first + i, j]
                 if plan.order == 0:  # points of the map may lie beyond the stops
-                    x1 = min(max(x1, stops.left), stops.right)
-                place(o, e.flights.nodes[o.table], stops, 0, 0.0, x1, v1, x2, v2)
+                    state[0] = min(max(state[0], stops.left), stops.right)
+                place(o, e.flights.nodes[o.table], stops, 0, 0.0, state)
             rows, row = points[n, first:last], results[n, first:last]
             for phase in range(PHASES):
                 parts = begin_phase(e, w, plan, phase, row)

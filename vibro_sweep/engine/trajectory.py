@@ -42,7 +42,7 @@ def follow(w, periods, hits, samples, sections, impacts):
     o, records, last = e.orbits[0], e.records, len(samples) - 1
     q = e.flights.oscillator[o.table, 0]
     o.periods, o.log_side = 1, 0.0
-    for j in range(4):
+    for j in range(samples.shape[1]):
         sections[0, j] = o.X[j]
     i = 0
     for n in range(periods):
@@ -58,12 +58,12 @@ def follow(w, periods, hits, samples, sections, impacts):
         if o.status != status.OK:
             sections[: n + 1] = np.nan
             return 0
-        for j in range(4):
+        for j in range(samples.shape[1]):
             sections[n + 1, j] = o.X[j]
     for i in range(last):
-        for j in range(4):
+        for j in range(samples.shape[1]):
             samples[i, j] = records.samples[i, j]
-    for j in range(4):
+    for j in range(samples.shape[1]):
         samples[last, j] = o.X[j]
     keep_fastest(hits[0, : min(o.impacts_logged, hits.shape[1])], impacts, q, o.stops[2])
     return o.impacts_logged
@@ -98,7 +98,8 @@ def keep_fastest(hits, impacts, q, R):
             hit = hits[i]
             impacts[n, 0] = hit[0] + (hit[1] + hit[2] / q.width) / q.cells
             impacts[n, 1], impacts[n, 2], impacts[n, 3] = hit[3], hit[4], -R * hit[4]
-            impacts[n, 4], impacts[n, 5] = hit[5], hit[6]
+            for j in range(5, len(hit)):
+                impacts[n, j - 1] = hit[j]
             n += 1
 
 
@@ -114,8 +115,7 @@ def run_trajectories(points, results, hits, kept, w, plan):
             result, o = results[p, s], e.orbits[0]
             if result.status in status.STANDING:
                 stops = prepare(points[p : p + 1], 0, w, plan)
-                end = result.end
-                place(o, e.flights.nodes[o.table], stops, 0, 0.0, end[0], end[1], end[2], end[3])
+                place(o, e.flights.nodes[o.table], stops, 0, 0.0, result.end)
                 o.resting = result.resting
                 samples, sections, impacts = kept.samples[p, s], kept.sections[p, s], kept.impacts[p, s]
                 count = follow(w, plan.periods, hits, samples, sections, impacts)

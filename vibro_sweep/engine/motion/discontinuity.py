@@ -73,7 +73,7 @@ def jump(f, b, R, side, o, records, t, second):
     # (38), (39): X -> X - (1 + R) w e^{-A late} e_v
     push = -(1.0 + R) * w
     count_impact(o, side, w)
-    log_impact(o, records, 0 if side > 0.0 else q.cells // 2, 0.0, side, side * w, X[2], X[3])
+    log_impact(o, records, 0 if side > 0.0 else q.cells // 2, 0.0, side, side * w, X)
     e0, e1, e2, e3, _, _ = impulse(q, -late)
     X[0] += side * push * e0
     X[1] += side * push * e1

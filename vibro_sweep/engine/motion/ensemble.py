@@ -11,22 +11,22 @@ import numpy as np
 from vibro_sweep.engine.motion.discontinuity import map_period
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
 from vibro_sweep.engine.motion.orbits import (
-    ORBIT,
     Records,
     Stops,
     add_count,
     keep_start,
     new_records,
+    orbit_of,
     take_off,
     take_samples,
 )
 from vibro_sweep.engine.motion.scan import careful_state, first_suspect, open_cell, suspect_state
-from vibro_sweep.engine.motion.strike import STRIKE, clear_counts, strike
+from vibro_sweep.engine.motion.strike import clear_counts, strike, strikes_of
 from vibro_sweep.engine.simd.jit import aside, entry, inline
-from vibro_sweep.engine.simd.lanes import LANES, first_number, lanes_of, new_lines, put, put_four, row, select
+from vibro_sweep.engine.simd.lanes import LANES, lanes_of, new_lines, number, put, put_state, row, select
 from vibro_sweep.engine.tables.flight import Flight, load, new_flight
 from vibro_sweep.engine.variational import tangent
-from vibro_sweep.engine.variational.tangent import TANGENT
+from vibro_sweep.engine.variational.tangent import tangents_of
 from vibro_sweep.model import status
 
 
@@ -34,9 +34,9 @@ class Ensemble(NamedTuple):
     """Eight orbits on their way."""
 
     flights: Flight  # with a first axis: the tables of each oscillator
-    orbits: np.ndarray  # (LANES,) ORBIT
-    strike: np.ndarray  # (1,) STRIKE
-    tangent: np.ndarray  # (1,) TANGENT
+    orbits: np.ndarray  # (LANES,) `orbit_of`
+    strike: np.ndarray  # (1,) `strikes_of`
+    tangent: np.ndarray  # (1,) `tangents_of`
     records: Records  # with a first axis: one for each orbit
 
 
@@ -49,22 +49,22 @@ class Mapping(NamedTuple):
 class Readings(NamedTuple):
     """What is read of eight orbits at the ends of their periods, and where it is kept."""
 
-    states: np.ndarray  # (LANES, periods, 4): the states there
+    states: np.ndarray  # (LANES, periods, 2 N): the states there
     keep: bool  # whether they are kept
-    growth: np.ndarray  # (LANES, parts, 4): logarithms of the growth of the tangent vectors since the first one
+    growth: np.ndarray  # (LANES, parts, 2 N): logarithms of the growth of the tangent vectors since the first one
     parts: int  # of the periods, after each of which the growth is read; 0: never
 
 
-def new_ensemble(cells: int, impacts: int = 0, rests: int = 0, samples: int = 0) -> Ensemble:
+def new_ensemble(cells: int, impacts: int = 0, rests: int = 0, samples: int = 0, masses: int = 2) -> Ensemble:
     """Orbits of oscillators with at most so many cells, and room for what is kept of each."""
-    orbits = new_lines(LANES, ORBIT)
+    orbits = new_lines(LANES, orbit_of(masses))
     orbits["lane"] = np.arange(LANES)
     return Ensemble(
-        new_flight(LANES, cells),
+        new_flight(LANES, cells, masses),
         orbits,
-        new_lines(1, STRIKE),
-        new_lines(1, TANGENT),
-        new_records(LANES, impacts, rests, samples),
+        new_lines(1, strikes_of(masses)),
+        new_lines(1, tangents_of(masses)),
+        new_records(LANES, impacts, rests, samples, masses),
     )
 
 
@@ -97,7 +97,7 @@ def end_period(e, o, q, nodes, X, readings):
     o.period += 1
     if readings.keep:
         largest = row(o.largest, 0)
-        put_four(readings.states[np.uint64(o.lane)], o.done, X)
+        put_state(readings.states[np.uint64(o.lane)], o.done, X, o.c)
         put(o.largest, 0, select(abs(X) > largest, abs(X), largest))
     o.done += 1
     t = e.tangent[0]
@@ -187,7 +187,7 @@ def seek(e, readings):
                 q = f.oscillator[0]
                 k, X = suspect_state(o, f.nodes)
                 o.cell = k
-                if k < q.cells and o.stops[0] < first_number(X) < o.stops[1] and not q.stiff:
+                if k < q.cells and o.stops[0] < number(X, 0) < o.stops[1] and not q.stiff:
                     put(strikes.z, i, X)
                     waiting |= 1 << i
                     seeking ^= 1 << i
@@ -216,9 +216,8 @@ def settle(e, o, free, struck, readings):
     q, records = f.oscillator[0], records_of(e, o)
     watched = len(records.times) > 0 or (struck and len(records.impacts) > 0)
     if watched:
-        z = strikes.z[i]
-        load(q.series1, z[0], z[1], z[2], z[3], z[4], z[5], o.c1)
-        load(q.series2, z[0], z[1], z[2], z[3], z[4], z[5], o.c2)
+        z, states = strikes.z[i], 2 * len(q.series)
+        load(q.series, row(strikes.z, i), z[states], z[states + 1], o.c)
     if free:
         if watched:
             take_samples(o, records, o.cell, 0.0, q.width)

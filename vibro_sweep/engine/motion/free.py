@@ -19,7 +19,7 @@ from vibro_sweep.engine.motion.orbits import advance, place
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.motion.scan import state_at
 from vibro_sweep.engine.simd.jit import entry, jit
-from vibro_sweep.engine.simd.lanes import put
+from vibro_sweep.engine.simd.lanes import put, row
 from vibro_sweep.engine.tables.flight import ORDER, bounds, load
 from vibro_sweep.model import status
 
@@ -30,15 +30,14 @@ CHAIN = 16.0 * 2.0**-52  # rounding of x1 after a period of flight, in sizes of 
 
 @jit
 def load_series(f, o):
-    """Taylor series c1, c2 from where the flight is. Returns how far they reach, and whether that ends the cell."""
+    """Taylor series from where the flight is. Returns how far they reach, and whether that ends the cell."""
     q, X, left = f.oscillator[0], o.X, f.oscillator[0].width - o.offset
     last = left <= 1.001 * q.step
     sin, cos = f.nodes[o.cell].z[4], f.nodes[o.cell].z[5]
     if o.offset > 0.0:
         swing, turn = math.sin(q.omega * o.offset), math.cos(q.omega * o.offset)
         sin, cos = sin * turn + cos * swing, cos * turn - sin * swing
-    load(q.series1, X[0], X[1], X[2], X[3], sin, cos, o.c1)
-    load(q.series2, X[0], X[1], X[2], X[3], sin, cos, o.c2)
+    load(q.series, row(X, 0), sin, cos, o.c)
     return left if last else q.step, last
 
 
@@ -71,12 +70,12 @@ def size_here(f, o, from_node, length):
     """The sum of the sizes of the terms of x1, of the closed form up to here and of the series."""
     series, power = 0.0, 1.0
     for n in range(ORDER):
-        series += abs(o.c1[n]) * power
+        series += abs(o.c[0, n]) * power
         power *= length
     if not from_node:
         return series
     closed, E = abs(f.nodes[o.cell].z[0]), f.nodes[o.cell - o.base].E
-    for j in range(4):
+    for j in range(len(E) - 2):
         closed += abs(E[j, 0] * o.y[j])
     return max(series, closed)
 
@@ -84,7 +83,7 @@ def size_here(f, o, from_node, length):
 @jit
 def start(f, o, stops, k, s, X):
     """Begin a flight at offset s of cell k. Returns whether that is a node."""
-    place(o, f.nodes, stops, k, s, X[0], X[1], X[2], X[3])
+    place(o, f.nodes, stops, k, s, X)
     return s == 0.0
 
 
@@ -101,7 +100,7 @@ def crossing(q, o, stops, side, sign, n, left):
     gap = sign * side * (wall - o.X[0])
     if n == 0 and gap <= 0.0:  # rounding: it was reached at the end of the last series
         return 0.0
-    set_gap(o.gap, o.c1, gap, sign * side, n)
+    set_gap(o.gap, o.c[0], gap, sign * side, n)
     return first_contact(o.gap, bounds(q, o.gap)[1], left)
 
 
@@ -111,8 +110,8 @@ def sign_of_gap(o, side, wall):
     gap = side * (wall - o.X[0])
     if gap != 0.0:
         return math.copysign(1.0, gap), 0
-    n = first_nonzero(o.c1, 1)
-    return math.copysign(1.0, -side * o.c1[n]), n
+    n = first_nonzero(o.c[0], 1)
+    return math.copysign(1.0, -side * o.c[0, n]), n
 
 
 @entry
@@ -235,7 +234,7 @@ def find_extremes(f, o, stops, cells, offsets, states, durations, out):
                 break
             length, last = load_series(f, o)
             size = max(size, size_here(f, o, from_node, length))
-            find_turns(o.c1, min(length, rest), bounds(q, o.c1)[1], flown, rest <= length, row)
+            find_turns(o.c[0], min(length, rest), bounds(q, o.c[0])[1], flown, rest <= length, row)
             from_node = go_on(f, o, length, last, from_node)
         margin = CHAIN * (o.period + 1.0) * size
         row[0], row[1] = row[0] - margin, row[1] + margin

@@ -8,7 +8,7 @@ from vibro_sweep.engine.motion.contact import first_contact, set_gap
 from vibro_sweep.engine.motion.orbits import advance, take_samples
 from vibro_sweep.engine.motion.rest import begin_rest, chatter, first_nonzero, stay_at_rest
 from vibro_sweep.engine.simd.jit import aside, jit
-from vibro_sweep.engine.simd.lanes import alike
+from vibro_sweep.engine.simd.lanes import alike, row
 from vibro_sweep.engine.tables.flight import ORDER, bounds, evaluate, load
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.model import status
@@ -20,10 +20,10 @@ EXPLAINED = 64.0 * 2.0**-52  # of the sizes of the terms of x1: a distance from 
 @jit
 def contact_on(q, o, stops, side, n, reach, left):
     """Offset of the first contact with the stop on `side`, infinite if there is none; n: as in `set_gap`."""
-    gap = stops.right - o.c1[0] if side > 0.0 else o.c1[0] - stops.left
+    gap = stops.right - o.c[0, 0] if side > 0.0 else o.c[0, 0] - stops.left
     if n == 0 and gap > reach:
         return np.inf
-    set_gap(o.gap, o.c1, gap, side, n)
+    set_gap(o.gap, o.c[0], gap, side, n)
     return first_contact(o.gap, bounds(q, o.gap)[1], left)
 
 
@@ -41,11 +41,14 @@ def next_contact(q, o, stops, side, n, reach, left):
 
 
 @jit
-def log_impact(o, records, k, s, side, v1, x2, v2):
+def log_impact(o, records, k, s, side, v1, X):
+    """Log an impact with v1; X: the state, for the other masses."""
     if o.log_side == 0.0 or o.log_side == side:
         if o.impacts_logged < len(records.impacts):
             row = records.impacts[o.impacts_logged]
-            row[0], row[1], row[2], row[3], row[4], row[5], row[6] = o.period, k, s, side, v1, x2, v2
+            row[0], row[1], row[2], row[3], row[4] = o.period, k, s, side, v1
+            for j in range(2, 2 * len(o.c)):
+                row[3 + j] = X[j]
         o.impacts_logged += 1
 
 
@@ -62,19 +65,17 @@ def count_impact(o, side, v):
 @aside
 def watch_rebound(q, o, records, k, d, side, v, impulse):
     """Keep an impact at offset d of cell k, and samples in the cell: of the old flight, and what the impulse adds."""
-    x2, v2 = evaluate(o.c2, d)
-    log_impact(o, records, k, d, side, v, x2, v2)
+    advance(o, d)
+    log_impact(o, records, k, d, side, v, o.X)
     take_samples(o, records, k, 0.0, d)
     times, samples = records.times, records.samples
     first = o.samples_taken
     take_samples(o, records, k, 0.0, q.width)
     for i in range(first, o.samples_taken):
-        x1, v1 = evaluate(q.series1[1], times[i, 1] - d)
-        x2, v2 = evaluate(q.series2[1], times[i, 1] - d)
-        samples[i, 0] += impulse * x1
-        samples[i, 1] += impulse * v1
-        samples[i, 2] += impulse * x2
-        samples[i, 3] += impulse * v2
+        for j in range(len(q.series)):
+            x, v = evaluate(q.series[j, 1], times[i, 1] - d)
+            samples[i, 2 * j] += impulse * x
+            samples[i, 2 * j + 1] += impulse * v
 
 
 @jit
@@ -82,15 +83,18 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
     """v1 -> -R v1, and what is observed of it."""
     q, X, R = f.oscillator[0], o.X, stops.R
     before = X[1]
-    log_impact(o, records, k, s, side, before, X[2], X[3])
+    log_impact(o, records, k, s, side, before, X)
     count_impact(o, side, before)
     X[1] = -R * before
     if t.wanted:
-        a = q.force
-        after = (a[0] * X[0] + a[1] * X[1]) + (a[2] * X[2] + a[3] * X[3]) + (a[4] * sin + a[5] * cos)
+        a, states = q.force, 2 * len(o.c)
+        after = a[0] * X[0] + a[1] * X[1]
+        for j in range(2, states, 2):
+            after += a[j] * X[j] + a[j + 1] * X[j + 1]
+        after += a[states] * sin + a[states + 1] * cos
         tangent.fly_to(t, o.lane, q, f.nodes, k, s)
-        # a1+ + R a1-, since a1+ - a1- = 2 zeta (1 + R) v1-
-        steepness = (1.0 + R) * (after / before - 2.0 * q.zeta * R)
+        # a1+ + R a1-, since a1+ - a1- = 2 zeta (1 + R) v1-, with a[1] = -2 zeta
+        steepness = (1.0 + R) * (after / before + a[1] * R)
         tangent.saltate(t, tangent.only(o.lane), alike(steepness))
 
 
@@ -104,7 +108,8 @@ def end_chatter(q, stops, o, records, k, s, side, w):
     o.resting, X[0] = side, wall
     take_samples(o, records, k, s, s + w)
     advance(o, w)
-    X[3] -= q.kappa * (X[0] - wall)
+    for j in range(1, len(o.c)):
+        X[2 * j + 1] -= q.kappa[j] * (X[0] - wall)
     X[0] = wall
     o.chatters += 1
 
@@ -128,7 +133,7 @@ def is_beyond(stops, o, nodes, k):
     if k > o.base:
         E = nodes[k - o.base].E
         size += 0.0 if o.careful else abs(nodes[k].z[0])
-        for j in range(6):
+        for j in range(len(E)):
             size += abs(E[j, 0] * (o.start[j] if o.careful else o.y[j]))
     return beyond > EXPLAINED * size
 
@@ -136,7 +141,7 @@ def is_beyond(stops, o, nodes, k):
 @aside
 def cross_cell(f, stops, o, records, t, k, s):
     """Follow the orbit from offset s in cell k to the cell's end, through all that happens. Returns a status."""
-    q, node, X, c1 = f.oscillator[0], f.nodes[k], o.X, o.c1
+    q, node, X, c1 = f.oscillator[0], f.nodes[k], o.X, o.c[0]
     released = False
     if s == 0.0 and is_beyond(stops, o, f.nodes, k):
         return status.BEYOND_STOP
@@ -160,8 +165,7 @@ def cross_cell(f, stops, o, records, t, k, s):
         side = 1.0 if X[0] >= stops.right else (-1.0 if X[0] <= stops.left else 0.0)
         if side * X[1] > 0.0:
             impact(f, stops, o, records, t, k, s, side, sin, cos)
-        load(q.series1, X[0], X[1], X[2], X[3], sin, cos, c1)
-        load(q.series2, X[0], X[1], X[2], X[3], sin, cos, o.c2)
+        load(q.series, row(X, 0), sin, cos, o.c)
         reach, third = bounds(q, c1)
         n = 1
         if side != 0.0 and X[1] == 0.0:

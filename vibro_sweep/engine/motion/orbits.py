@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import aside, entry, inline, jit
-from vibro_sweep.engine.simd.lanes import LANES, lanes_of, put, record, row, select
-from vibro_sweep.engine.tables.flight import ORDER, evaluate
+from vibro_sweep.engine.simd.lanes import put, record, row, state_and_rest
+from vibro_sweep.engine.tables.flight import ORDER, evaluate, width_of
 from vibro_sweep.model import status
 
 
@@ -18,79 +18,79 @@ class Stops(NamedTuple):
     R: float
 
 
-# One orbit on its way,
-MOTION = [
-    ("X", float, LANES),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
-    ("y", float, LANES),  # X - r at node `origin`, from which the exclusion test looks ahead
-    ("start", float, LANES),  # if `careful`, and `origin` is no longer `base`: X, sin and cos at node `base`
-    ("largest", float, LANES),  # sizes of the section states that were kept
-    ("lane", np.int64),  # its place among eight
-    ("table", np.int64),  # place of its oscillator's tables
-    ("status", np.int64),
-    ("periods", np.int64),  # to carry it over
-    ("done", np.int64),  # of these
-    ("read", np.int64),  # readings of the growth of tangent vectors
-    ("cell", np.int64),
-    ("offset", float),
-    ("careful", np.int64),  # 1 if the motion r is much larger than the clearance, or the system stiff (scan.py)
-    ("ends", np.int64),  # the node at which a period ends; -1, which is no node, if `careful`
-    ("base", np.int64),  # the node where free flight began
-    # `base`, or if `careful` a later node: the less is left of a fast mode, the tighter the exclusion test
-    ("origin", np.int64),
-    ("suspect", np.int64),  # the next cell in which contact cannot be excluded, and
-    ("low", float),  # what x1 at its beginning is held against
-    ("high", float),
-    ("stops", float, 3),  # left, right, R
-    ("resting", float),  # side of the stop that M1 rests on, or 0
-    ("c1", float, ORDER),  # Taylor coefficients of x1, or of the free acceleration of M1 at rest
-    ("c2", float, ORDER),  # of x2
-    ("gap", float, ORDER),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
-]
-# what is counted of it
-COUNTS = [
-    ("period", np.int64),
-    ("events", np.int64),  # impacts, grazes, and ends of rests in this period
-    ("impacts_left", np.int64),
-    ("impacts_right", np.int64),
-    ("chatters", np.int64),  # sequences summed up
-    ("slowest", float),  # least |v1| before an impact
-    ("miss", float),  # how far from the stop an impact was found at most
-    ("rest_time", float),
-    ("log_volume", float),  # ln|det| of the jumps of the discontinuity mapping
-]
-# and what it has written into its `Records`.
-LOG = [
-    ("log_side", float),  # impacts on this side are logged; 0: on both
-    ("impacts_logged", np.int64),  # or would have been, had there been room
-    ("rests_logged", np.int64),
-    ("samples_taken", np.int64),
-]
-ORBIT = record([*MOTION, *COUNTS, *LOG])
+def orbit_of(masses: int) -> np.dtype:
+    """The record of one orbit on its way, what is counted of it, and what it has written into its `Records`."""
+    width = width_of(masses)
+    motion = [
+        ("X", float, width),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
+        ("y", float, width),  # X - r at node `origin`, from which the exclusion test looks ahead
+        ("start", float, width),  # if `careful`, and `origin` is no longer `base`: X, sin and cos at node `base`
+        ("largest", float, width),  # sizes of the section states that were kept
+        ("lane", np.int64),  # its place among eight
+        ("table", np.int64),  # place of its oscillator's tables
+        ("status", np.int64),
+        ("periods", np.int64),  # to carry it over
+        ("done", np.int64),  # of these
+        ("read", np.int64),  # readings of the growth of tangent vectors
+        ("cell", np.int64),
+        ("offset", float),
+        ("careful", np.int64),  # 1 if the motion r is much larger than the clearance, or the system stiff (scan.py)
+        ("ends", np.int64),  # the node at which a period ends; -1, which is no node, if `careful`
+        ("base", np.int64),  # the node where free flight began
+        # `base`, or if `careful` a later node: the less is left of a fast mode, the tighter the exclusion test
+        ("origin", np.int64),
+        ("suspect", np.int64),  # the next cell in which contact cannot be excluded, and
+        ("low", float),  # what x1 at its beginning is held against
+        ("high", float),
+        ("stops", float, 3),  # left, right, R
+        ("resting", float),  # side of the stop that M1 rests on, or 0
+        ("c", float, (masses, ORDER)),  # Taylor coefficients of x1, x2, ...; of M1 at rest the free acceleration
+        ("gap", float, ORDER),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
+    ]
+    counts = [
+        ("period", np.int64),
+        ("events", np.int64),  # impacts, grazes, and ends of rests in this period
+        ("impacts_left", np.int64),
+        ("impacts_right", np.int64),
+        ("chatters", np.int64),  # sequences summed up
+        ("slowest", float),  # least |v1| before an impact
+        ("miss", float),  # how far from the stop an impact was found at most
+        ("rest_time", float),
+        ("log_volume", float),  # ln|det| of the jumps of the discontinuity mapping
+    ]
+    log = [
+        ("log_side", float),  # impacts on this side are logged; 0: on both
+        ("impacts_logged", np.int64),  # or would have been, had there been room
+        ("rests_logged", np.int64),
+        ("samples_taken", np.int64),
+    ]
+    return record([*motion, *counts, *log])
 
 
 class Records(NamedTuple):
     """What is kept of an orbit on its way; an observation that nobody wants has m = 0."""
 
-    impacts: np.ndarray  # (m, 7): period, cell, offset, side, v1 before, x2, v2
+    impacts: np.ndarray  # (m, 3 + 2 N): period, cell, offset, side, v1 before, x2, v2, ...
     rests: np.ndarray  # (m, 4): period, cell, offset, side at the onset of a rest, 0 at its end
     times: np.ndarray  # (m, 2): cell and offset in this period at which the motion is sampled
-    samples: np.ndarray  # (m, 4)
+    samples: np.ndarray  # (m, 2 N)
 
 
-def new_records(orbits: int, impacts: int = 0, rests: int = 0, samples: int = 0) -> Records:
+def new_records(orbits: int, impacts: int = 0, rests: int = 0, samples: int = 0, masses: int = 2) -> Records:
     """Room for so many entries of each kind, for each of so many orbits; samples for one alone."""
     return Records(
-        np.empty((orbits, impacts, 7)),
+        np.empty((orbits, impacts, 3 + 2 * masses)),
         np.empty((orbits, rests, 4)),
         np.empty((samples, 2)),
-        np.empty((samples, 4)),
+        np.empty((samples, 2 * masses)),
     )
 
 
 @entry
-def place(o, nodes, stops, cell, offset, x1, v1, x2, v2):
-    """Start an orbit at this offset of this cell, with nothing counted yet."""
-    o.X[0], o.X[1], o.X[2], o.X[3] = x1, v1, x2, v2
+def place(o, nodes, stops, cell, offset, state):
+    """Start an orbit from `state` (2 N,) at this offset of this cell, with nothing counted yet."""
+    for j in range(2 * len(o.c)):
+        o.X[j] = state[j]
     o.stops[0], o.stops[1], o.stops[2] = stops.left, stops.right, stops.R
     o.status, o.resting, o.cell, o.offset = status.OK, 0.0, cell, offset
     o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
@@ -102,7 +102,7 @@ def place(o, nodes, stops, cell, offset, x1, v1, x2, v2):
 def take_off(o, nodes, X):
     """Free flight begins with X at the node where the orbit is."""
     z = row(nodes[np.uint64(o.cell)].z, 0)
-    X = select(lanes_of(15), X, z)  # z ends in sin and cos
+    X = state_and_rest(X, z, o.c)  # z ends in sin and cos
     o.base = o.origin = o.cell
     put(o.X, 0, X)
     put(o.y, 0, X - z)
@@ -133,14 +133,13 @@ def add_count(o, left, right, slowest, miss):
 @jit
 def advance(o, u):
     """The state at offset u of the series."""
-    X, c1, c2 = o.X, o.c1, o.c2
-    x1, v1, x2, v2 = c1[ORDER - 1], 0.0, c2[ORDER - 1], 0.0
-    for n in range(ORDER - 2, -1, -1):
-        v1 = v1 * u + x1
-        x1 = x1 * u + c1[n]
-        v2 = v2 * u + x2
-        x2 = x2 * u + c2[n]
-    X[0], X[1], X[2], X[3] = x1, v1, x2, v2
+    X, c = o.X, o.c
+    for i in range(len(c)):
+        x, v = c[i, ORDER - 1], 0.0
+        for n in range(ORDER - 2, -1, -1):
+            v = v * u + x
+            x = x * u + c[i, n]
+        X[2 * i], X[2 * i + 1] = x, v
 
 
 @aside
@@ -150,8 +149,8 @@ def take_samples(o, records, k, start, stop):
     i = o.samples_taken
     while i < len(times) and times[i, 0] == k and times[i, 1] <= stop:
         u = max(times[i, 1] - start, 0.0)
-        samples[i, 0], samples[i, 1] = evaluate(o.c1, u)
-        samples[i, 2], samples[i, 3] = evaluate(o.c2, u)
+        for j in range(len(o.c)):
+            samples[i, 2 * j], samples[i, 2 * j + 1] = evaluate(o.c[j], u)
         if o.resting != 0.0:
             samples[i, 0], samples[i, 1] = o.X[0], 0.0
         i += 1

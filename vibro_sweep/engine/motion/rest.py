@@ -44,7 +44,7 @@ def begin_rest(f, o, records, t, k, s, side, w):
     if t.wanted:
         q = f.oscillator[0]
         tangent.fly_to(t, o.lane, q, f.nodes, k, s - w)
-        tangent.rest(t, o.lane, q.kappa)
+        tangent.rest(t, o.lane, q.kappa[1])
         tangent.release(t, o.lane, *carry_over_rest(q, w))
         t.cell[o.lane], t.offset[o.lane] = k, s
 
@@ -52,7 +52,7 @@ def begin_rest(f, o, records, t, k, s, side, w):
 @jit
 def load_rest(q, o, x2, v2, sin, cos):
     """Series c1 of the free acceleration of M1, and c2 of x2."""
-    x1, c1, c2, a, b = o.X[0], o.c1, o.c2, q.resting1, q.resting2
+    x1, c1, c2, a, b = o.X[0], o.c[0], o.c[1], q.resting1, q.resting2
     for n in range(ORDER):
         c1[n] = (a[0, n] * x1 + a[1, n] * x2) + (a[2, n] * v2 + a[3, n] * sin) + a[4, n] * cos
         c2[n] = (b[0, n] * x1 + b[1, n] * x2) + (b[2, n] * v2 + b[3, n] * sin) + b[4, n] * cos
@@ -61,7 +61,7 @@ def load_rest(q, o, x2, v2, sin, cos):
 @jit
 def first_release(o, left):
     """Time at which the free acceleration, which points into the stop, changes sign: a root found like a contact."""
-    side, c1 = o.resting, o.c1
+    side, c1 = o.resting, o.c[0]
     gap = max(side * c1[0], 0.0)
     n = 0 if gap > 0.0 else first_nonzero(c1, 1)
     if side * c1[n] <= 0.0:
@@ -85,7 +85,7 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos):
         take_samples(o, records, k, s + w, s + w + end)
         w += end
         if q.rest_step == q.width:
-            X[2], X[3] = evaluate(o.c2, w)
+            X[2], X[3] = evaluate(o.c[1], w)
         else:
             X[2], X[3], sin_there, cos_there = state_after(q, X[0], x2, v2, sin, cos, w)
         if last or not d == np.inf:  # NaN, too, is passed on
@@ -109,7 +109,7 @@ def chatter(q, stops, o, third, side, left):
     of a within w makes an error of about w (third w/a). The first flight, v^2/(2 a) high, must not reach the other
     stop.
     """
-    speed, a = -side * o.X[1], 2.0 * side * o.c1[2]
+    speed, a = -side * o.X[1], 2.0 * side * o.c[0, 2]
     if a <= 0.0 or stops.R == 1.0:
         return np.inf
     w = 2.0 * speed / (a * (1.0 - stops.R))

@@ -3,20 +3,17 @@
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.simd.lanes import LANES, bits, count_leading, eight, first_number, lanes_of, row, select
+from vibro_sweep.engine.simd.lanes import LANES, bits, count_leading, eight, number, row, state_and_rest
 from vibro_sweep.engine.tables.flight import CHUNK
 
 
 @inline
-def control_points(scan, p, since, y0, y1, y2, y3):
-    """Control points p, ..., p + 7 of a flight that starts at (y0, ..., y3); since: as counted from there."""
-    return (
-        eight(scan[4], p)
-        + eight(scan[0], since) * y0
-        + eight(scan[1], since) * y1
-        + eight(scan[2], since) * y2
-        + eight(scan[3], since) * y3
-    )
+def control_points(scan, p, since, y, states):
+    """Control points p, ..., p + 7 of a flight that starts at y, `states` numbers; since: as counted from there."""
+    points = eight(scan[states], p)
+    for j in range(states):
+        points = points + eight(scan[j], since) * number(y, j)
+    return points
 
 
 @inline
@@ -28,15 +25,18 @@ def first_suspect(f, o):
     points before it are inside (`suspect_state`).
     """
     scan, cells, bound = f.scan, f.oscillator[0].cells, f.oscillator[0].remainder
-    origin, y0, y1, y2, y3 = o.origin, o.y[0], o.y[1], o.y[2], o.y[3]
-    margin = (bound[0] * abs(y0) + bound[1] * abs(y1)) + (bound[2] * abs(y2) + bound[3] * abs(y3)) + bound[4]
+    origin, y, states = o.origin, row(o.y, 0), len(bound) - 1
+    margin = bound[0] * abs(number(y, 0)) + bound[1] * abs(number(y, 1))
+    for j in range(2, states, 2):
+        margin = margin + (bound[j] * abs(number(y, j)) + bound[j + 1] * abs(number(y, j + 1)))
+    margin = margin + bound[states]
     low, high = o.stops[0] + margin, o.stops[1] - margin
     o.low, o.high = low, high
     k = cells
     for p in range(2 * o.cell, 2 * cells, CHUNK):
         since = p - 2 * origin
-        a = control_points(scan, p, since, y0, y1, y2, y3)
-        b = control_points(scan, p + LANES, since + LANES, y0, y1, y2, y3)
+        a = control_points(scan, p, since, y, states)
+        b = control_points(scan, p + LANES, since + LANES, y, states)
         a_inside, b_inside = (a >= low) & (a <= high), (b >= low) & (b <= high)
         if bits(~(a_inside & b_inside)) != 0:
             n = count_leading(a_inside)
@@ -46,13 +46,21 @@ def first_suspect(f, o):
 
 
 @inline
+def combine(E, y, count):
+    """The sum of the first `count` rows of E times y, by pairs."""
+    moved = row(E, 0) * y[0] + row(E, 1) * y[1]
+    for j in range(2, count, 2):
+        moved = moved + (row(E, j) * y[j] + row(E, j + 1) * y[j + 1])
+    return moved
+
+
+@inline
 def state_at(o, nodes, k):
     """X, sin and cos after the free flight to node k; at node `origin` it is known already, and better."""
     if k == o.origin:
         return row(o.X, 0)
-    E, y = nodes[np.uint64(k - o.origin)].E, o.y
-    moved = (row(E, 0) * y[0] + row(E, 1) * y[1]) + (row(E, 2) * y[2] + row(E, 3) * y[3])
-    return moved + row(nodes[np.uint64(k)].z, 0)
+    E = nodes[np.uint64(k - o.origin)].E
+    return combine(E, o.y, len(E) - 2) + row(nodes[np.uint64(k)].z, 0)
 
 
 @inline
@@ -60,7 +68,7 @@ def suspect_state(o, nodes):
     """The suspect cell, and X at its beginning; or the cell before, if that end of it lies outside."""
     k = o.suspect
     X = state_at(o, nodes, k)
-    if k > o.cell and not o.low <= first_number(X) <= o.high:
+    if k > o.cell and not o.low <= number(X, 0) <= o.high:
         k -= 1
         X = state_at(o, nodes, k)
     return k, X
@@ -75,13 +83,16 @@ def open_cell(f, o, k):
     of other cells lie between points that are inside.
     """
     q, scan, y = f.oscillator[0], f.scan, o.y
-    x = f.nodes[o.origin].z[0] + (q.slow[0] * y[0] + q.slow[1] * y[1]) + (q.slow[2] * y[2] + q.slow[3] * y[3])
+    x, states = f.nodes[o.origin].z[0], len(q.slow)
+    for j in range(states):
+        x += q.slow[j] * y[j]
     if not o.low <= x <= o.high:
         return o.origin
     x, since = 0.0, 2 * k - 1 - 2 * o.origin
     for p in range(since, since + 2):
-        x += 0.5 * (scan[4, p + 2 * o.origin] + (scan[0, p] * y[0] + scan[1, p] * y[1]))
-        x += 0.5 * (scan[2, p] * y[2] + scan[3, p] * y[3])
+        x += 0.5 * scan[states, p + 2 * o.origin]
+        for j in range(states):
+            x += 0.5 * scan[j, p] * y[j]
     return k if o.low <= x <= o.high else k - 1
 
 
@@ -94,7 +105,5 @@ def careful_state(o, nodes, k):
     """
     if k == o.base:
         return row(o.start, 0)
-    E, x = nodes[np.uint64(k - o.base)].E, o.start
-    moved = (row(E, 0) * x[0] + row(E, 1) * x[1]) + (row(E, 2) * x[2] + row(E, 3) * x[3])
-    moved += row(E, 4) * x[4] + row(E, 5) * x[5]
-    return select(lanes_of(15), moved, row(nodes[np.uint64(k)].z, 0))
+    E = nodes[np.uint64(k - o.base)].E
+    return state_and_rest(combine(E, o.start, len(E)), row(nodes[np.uint64(k)].z, 0), o.c)

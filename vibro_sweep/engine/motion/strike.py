@@ -9,35 +9,48 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.simd.lanes import LANES, alike, bits, put, put_transposed, record, row, select, transposed
+from vibro_sweep.engine.simd.lanes import (
+    LANES,
+    bits,
+    put,
+    put_transposed,
+    record,
+    row,
+    select,
+    sizes,
+    transposed,
+    weigh,
+)
 from vibro_sweep.engine.tables import flight
-from vibro_sweep.engine.tables.flight import ORDER
+from vibro_sweep.engine.tables.flight import ORDER, width_of
 
 TAIL = 8  # terms from here on are bounded together
 ROUGH = 10  # terms that bring the search so near to the contact that one look with all of them suffices, as a rule
 SIXTH = 1.0 / 6.0  # for a product: a division takes as long as all else in a bound
 LOOKS = 4  # at the gap, each followed by a step towards the contact
 
-# Eight orbits that may strike; one column each.
-STRIKE = record(
-    [
+
+def strikes_of(masses: int) -> np.dtype:
+    """The record of eight orbits that may strike, one column each."""
+    states, width = 2 * masses, width_of(masses)
+    fields = [
         # of the oscillator
-        ("series1", float, (6 * ORDER, LANES)),
-        ("end", float, (24, LANES)),  # row 4 j + i: X_i at the cell's end, from z_j at its beginning
-        ("impulse1", float, (ORDER, LANES)),  # series of x1, and
-        ("impulse2", float, (ORDER, LANES)),  # of x2, after a unit impulse on M1
+        ("series", float, ((states + 2) * ORDER, LANES)),  # of x1
+        ("end", float, (states * (states + 2), LANES)),  # row 2 N j + i: X_i at the cell's end, of z_j at its beginning
+        ("impulses", float, (masses * ORDER, LANES)),  # series of x1, x2, ... after a unit impulse on M1
         ("third", float, (TAIL, LANES)),  # weights of |c_n| in a bound on the third derivative over the cell
-        ("tail", float, (6, LANES)),  # bound on what the series from TAIL on adds to it, for unit z
+        ("tail", float, (states + 2, LANES)),  # bound on what the series from TAIL on adds to it, for unit z
         ("width", float, LANES),
-        ("zeta", float, LANES),
+        ("drag", float, LANES),  # 2 zeta
         ("impulse_third", float, LANES),
         ("left", float, LANES),
         ("right", float, LANES),
         ("R", float, LANES),
-        ("z", float, (LANES, LANES)),  # one row for each orbit, at the beginning of its cell: x1, v1, x2, v2, sin, cos
+        ("z", float, (LANES, width)),  # one row for each orbit, at the beginning of its cell: x1, v1, ..., sin, cos
         ("c", float, (ORDER, LANES)),  # Taylor coefficients of x1
         # of the impact
-        ("X", float, (LANES, LANES)),  # one row for each orbit: the state at the end of the cell, and four zeros
+        ("landing", float, (states, LANES)),  # the states at the ends of the cells, and
+        ("X", float, (LANES, width)),  # the same, one row for each orbit; padded with zeros
         ("side", float, LANES),
         ("offset", float, LANES),
         ("speed", float, LANES),  # v1 before it
@@ -48,43 +61,36 @@ STRIKE = record(
         ("miss", float, LANES),  # how far from the stop one was found at most, where `measured`
         ("measured", np.bool_),
     ]
-)
+    return record(fields)
 
 
 @jit
 def set_oscillator(strikes, i, q, stops):
-    """Give lane i its oscillator and its stops."""
-    for j in range(6):
+    """Give orbit i its oscillator and its stops."""
+    masses, states = len(q.series), 2 * len(q.series)
+    for j in range(states + 2):
         strikes.tail[j, i] = 0.0
         for n in range(ORDER):
-            strikes.series1[ORDER * j + n, i] = q.series1[j, n]
+            strikes.series[ORDER * j + n, i] = q.series[0, j, n]
             if n >= TAIL:
-                strikes.tail[j, i] += q.third[n] * abs(q.series1[j, n])
-        strikes.end[4 * j, i], strikes.end[4 * j + 1, i] = flight.evaluate(q.series1[j], q.width)
-        strikes.end[4 * j + 2, i], strikes.end[4 * j + 3, i] = flight.evaluate(q.series2[j], q.width)
-    for n in range(ORDER):
-        strikes.impulse1[n, i], strikes.impulse2[n, i] = q.series1[1, n], q.series2[1, n]
+                strikes.tail[j, i] += q.third[n] * abs(q.series[0, j, n])
+        for m in range(masses):
+            x, v = flight.evaluate(q.series[m, j], q.width)
+            strikes.end[states * j + 2 * m, i], strikes.end[states * j + 2 * m + 1, i] = x, v
+    for m in range(masses):
+        for n in range(ORDER):
+            strikes.impulses[ORDER * m + n, i] = q.series[m, 1, n]
     for n in range(TAIL):
         strikes.third[n, i] = q.third[n]
-    strikes.width[i], strikes.zeta[i], strikes.impulse_third[i] = q.width, q.zeta, q.impulse_third
+    strikes.width[i], strikes.drag[i], strikes.impulse_third[i] = q.width, -q.force[1], q.impulse_third
     strikes.left[i], strikes.right[i], strikes.R[i] = stops.left, stops.right, stops.R
-
-
-@inline
-def of_z(rows, n, step, z):
-    """A sum of six products: row n of the first of `rows` with x1, that `step` rows on with v1, ..."""
-    return (
-        (row(rows, n) * z[0] + row(rows, n + step) * z[1])
-        + (row(rows, n + 2 * step) * z[2] + row(rows, n + 3 * step) * z[3])
-        + (row(rows, n + 4 * step) * z[4] + row(rows, n + 5 * step) * z[5])
-    )
 
 
 @inline
 def load_x1(strikes, z, first, last):
     """Taylor coefficients of x1."""
     for n in range(first, last):
-        put(strikes.c, n, of_z(strikes.series1, n, ORDER, z))
+        put(strikes.c, n, weigh(strikes.series, n, ORDER, z))
 
 
 @inline
@@ -93,7 +99,7 @@ def bound_third(strikes, z):
     c, weight, tail = strikes.c, strikes.third, strikes.tail
     even = row(weight, 4) * abs(row(c, 4)) + row(weight, 6) * abs(row(c, 6))
     odd = row(weight, 3) * abs(row(c, 3)) + row(weight, 5) * abs(row(c, 5)) + row(weight, 7) * abs(row(c, 7))
-    return even + odd + of_z(tail, 0, 1, (abs(z[0]), abs(z[1]), abs(z[2]), abs(z[3]), abs(z[4]), abs(z[5])))
+    return even + odd + weigh(tail, 0, 1, sizes(z))
 
 
 @inline
@@ -166,12 +172,15 @@ def descend(c, u, gap, side, steepest, width, wanted):
 
 
 @inline
-def position_and_speed(c, u):
-    """Polynomial at u, and its derivative; even and odd terms go side by side."""
-    v = u * u
-    slope_odd, slope_even = row(c, ORDER - 1), row(c, ORDER - 2)
-    odd, even = slope_odd * v + row(c, ORDER - 3), slope_even * v + row(c, ORDER - 4)
-    for n in range(ORDER - 6, -1, -2):
+def position_and_speed(c, first, u):
+    """Polynomial at u, with the coefficients in `ORDER` rows from `first` on, and its derivative.
+
+    Even and odd terms go side by side.
+    """
+    v, last = u * u, first + ORDER - 1
+    slope_odd, slope_even = row(c, last), row(c, last - 1)
+    odd, even = slope_odd * v + row(c, last - 2), slope_even * v + row(c, last - 3)
+    for n in range(last - 5, first - 1, -2):
         slope_odd = slope_odd * v + odd
         odd = odd * v + row(c, n + 1)
         slope_even = slope_even * v + even
@@ -212,14 +221,12 @@ def leaves_freely(strikes, v, after, side, rest, third):
 @inline
 def land(strikes, z, impulse, rest):
     """X at the end of the cell: of the motion as if there were no stop, and what the impulse has done by then."""
-    x1, v1 = position_and_speed(strikes.impulse1, rest)
-    x2, v2 = position_and_speed(strikes.impulse2, rest)
-    x1 = of_z(strikes.end, 0, 4, z) + impulse * x1
-    v1 = of_z(strikes.end, 1, 4, z) + impulse * v1
-    x2 = of_z(strikes.end, 2, 4, z) + impulse * x2
-    v2 = of_z(strikes.end, 3, 4, z) + impulse * v2
-    nothing = alike(0.0)
-    put_transposed(strikes.X, (x1, v1, x2, v2, nothing, nothing, nothing, nothing))
+    landing, states = strikes.landing, len(strikes.tail) - 2
+    for m in range(states // 2):
+        x, v = position_and_speed(strikes.impulses, m * ORDER, rest)
+        put(landing, 2 * m, weigh(strikes.end, 2 * m, states, z) + impulse * x)
+        put(landing, 2 * m + 1, weigh(strikes.end, 2 * m + 1, states, z) + impulse * v)
+    put_transposed(strikes.X, landing)
 
 
 @inline
@@ -228,7 +235,7 @@ def strike(strikes, waiting):
 
     Of the impact are left its `side`, `offset`, `speed`, `impulse` and `jump`, and X at the end of the cell.
     """
-    z = transposed(strikes.z)
+    z = transposed(strikes.z, strikes.tail)
     c, width, v1 = strikes.c, row(strikes.width, 0), z[1]
     put(c, 1, v1)
     load_x1(strikes, z, 2, 3)
@@ -248,7 +255,7 @@ def strike(strikes, waiting):
     d, v, a, struck = descend(c, u, gap, side, abs(curve) + third * width, width, wanted)
     falls = rate + select(curve > 0.0, curve, 0.0) * d + 0.5 * third * d * d < 0.0  # all the way to the contact
     impulse, rest = -(1.0 + row(strikes.R, 0)) * v, width - d
-    after = a - 2.0 * row(strikes.zeta, 0) * impulse
+    after = a - row(strikes.drag, 0) * impulse
     third += abs(impulse) * row(strikes.impulse_third, 0)
     struck = struck & falls & (side * v > 0.0) & leaves_freely(strikes, v, after, side, rest, third)
     count(strikes, struck, side, v)

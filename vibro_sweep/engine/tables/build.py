@@ -21,7 +21,8 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
     scratch: (7, 6) floats.
     """
     q = f.oscillator[0]
-    q.cells, q.width, q.omega, q.zeta, q.kappa = cells, 2.0 * math.pi / omega / cells, omega, zeta, 2.0 * zeta / mu_m
+    q.cells, q.width, q.omega, q.zeta = cells, 2.0 * math.pi / omega / cells, omega, zeta
+    q.kappa[0], q.kappa[1] = 0.0, 2.0 * zeta / mu_m
     rate = max(omega, max(rate_of(omega_squared[0], zeta), rate_of(omega_squared[1], zeta)))
     q.stiff = rate * q.width > 1.0001 * WIDTH
     q.step = q.width / math.ceil(rate * q.width / WIDTH) if q.stiff else q.width
@@ -35,7 +36,7 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
     fill_rest(q, scratch[:6], scratch[6], mu_m, mu_k, f2)
     q.impulse_third = 0.0
     for n in range(ORDER):
-        q.impulse_third += q.third[n] * abs(q.series1[1, n])
+        q.impulse_third += q.third[n] * abs(q.series[0, 1, n])
     fill_flight(q, f.nodes, psi, omega_squared, mu_m)
     gap = gap_of(mu_m, mu_k)
     if gap < CLOSE * omega_squared[1]:

@@ -8,7 +8,7 @@ from vibro_sweep.engine.tables.stiff import add_stiff_remainder, slow_part
 @jit
 def fourth_derivative_bound(q, x1, v1, x2, v2, sin, cos):
     """Bound on the fourth derivative of x1 over a cell that begins with this state: the sum of its terms' sizes."""
-    s = q.series1
+    s = q.series[0]
     total, power = 0.0, 1.0
     for n in range(4, ORDER):
         c = (s[0, n] * x1 + s[1, n] * v1) + (s[2, n] * x2 + s[3, n] * v2) + (s[4, n] * sin + s[5, n] * cos)

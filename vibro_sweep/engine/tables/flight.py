@@ -15,28 +15,41 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.simd.lanes import LANES, new_lines, record
+from vibro_sweep.engine.simd.lanes import LANES, new_lines, number, record
 
 ORDER = 16  # Taylor coefficients of a cell: with rate * width <= WIDTH the first one left out is below 2^-53 / 1000
 WIDTH = 0.5
 CHUNK = 16  # control points examined together: two to a cell
 
 
-# One oscillator. Structured arrays let the kernels pass it by one pointer, and need no reference counts.
-OSCILLATOR = record(
-    [
+# Kernels take the number of masses from the shapes of the records' fields, which belong to the types that numba sees:
+# each number of masses has kernels of its own, from one source. N masses have 2 N states.
+
+
+def width_of(masses: int) -> int:
+    """Numbers in a row for a state with sin and cos, padded to whole vectors."""
+    return LANES * (-(-(2 * masses + 2) // LANES))
+
+
+def oscillator_of(masses: int) -> np.dtype:
+    """The record of one oscillator. Structured arrays go to kernels by one pointer, and need no reference counts."""
+    states = 2 * masses
+    fields = [
         ("cells", np.int64),
         ("width", float),  # of a cell
         ("step", float),  # width of a series: a cell, or where stiff a part of one
         ("omega", float),
         ("zeta", float),
-        ("kappa", float),  # 2 zeta/mu_m
-        ("graze", float, 4),  # the point at which the discontinuity mapping is expanded
-        ("remainder", float, 5),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
-        ("slow", float, 4),  # part of the slow modes in x1; of a stiff system
-        ("series1", float, (6, ORDER)),  # Taylor coefficients of x1 as a function of (x1, v1, x2, v2, sin, cos)
-        ("series2", float, (6, ORDER)),  # of x2
-        ("force", float, 6),  # acceleration of M1 as a function of them
+        (
+            "kappa",
+            float,
+            masses,
+        ),  # what a step of x1 by 1 at once moves v1 (nothing), v2 (by 2 zeta/mu_m), ... by dampers
+        ("graze", float, states),  # the point at which the discontinuity mapping is expanded
+        ("remainder", float, states + 1),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
+        ("slow", float, states),  # part of the slow modes in x1; of a stiff system
+        ("series", float, (masses, states + 2, ORDER)),  # Taylor coefficients of x1, x2, ... of (x1, v1, ..., sin, cos)
+        ("force", float, states + 2),  # acceleration of M1 as a function of them
         ("resting1", float, (5, ORDER)),  # free acceleration of M1 while it rests, of (x1, x2, v2, sin, cos)
         ("resting2", float, (5, ORDER)),  # x2 meanwhile
         ("rest_step", float),  # width of these series; of M2 alone (resting.py):
@@ -46,47 +59,50 @@ OSCILLATOR = record(
         ("reach", float, ORDER),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
         ("impulse_third", float),  # bound on |d3 x1/du3| over a cell after a unit impulse on M1
         ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell
-        ("frame_series", float, (ORDER, 4)),  # of tangent.py, like all that follow
+        ("frame_series", float, (ORDER, states)),  # of tangent.py, like all that follow
         ("vanishing", np.int64),  # directions that a flight over a cell takes below the rounding of the others
         ("stretch", np.int64),  # cells that may be flown between looks at the tangent vectors, and
         ("leash", np.int64),  # while each lies in the plane of one mode
-        ("frame_scale", float, 2),  # g_j
-        ("frame_square", float, 2),  # omega_dj^2
-        ("to_frame", float, (4, 4)),
-        ("from_frame", float, (4, 4)),
+        ("frame_scale", float, masses),  # g_j
+        ("frame_square", float, masses),  # omega_dj^2
+        ("to_frame", float, (states, states)),
+        ("from_frame", float, (states, states)),
         ("stiff", np.bool_),  # cells do not resolve every rate
         ("largest", float),  # |x1| of the motion r
     ]
-)
+    return record(fields)
 
-# One node of the grid.
-NODE = record(
-    [
-        ("z", float, LANES),  # r, a motion under the force: from rest at node 0; of a fast mode the steady one;
+
+def node_of(masses: int) -> np.dtype:
+    """The record of one node of the grid."""
+    states, width = 2 * masses, width_of(masses)
+    fields = [
+        ("z", float, width),  # r, a motion under the force: from rest at node 0; of a fast mode the steady one;
         # then sin and cos of omega t + tau
-        ("E", float, (6, LANES)),  # flight from node 0: row j is X here of the unit state j there, rows 4 and 5 that of
-        # the force's sin and cos there, from rest; padded
-        ("forced", float, (2, 2, 2)),  # modal motion from rest at node 0: mode; xi, xi'; to the force's sin, cos there
-        ("frame", float, 4),  # c_1, s_1, c_2, s_2 of a flight from node 0
+        # flight from node 0: row j is X here of the unit state j there, the last two that of the force's sin and cos
+        ("E", float, (states + 2, width)),  # there, from rest; padded
+        ("forced", float, (masses, 2, 2)),  # modal motion from rest at node 0: mode; xi, xi'; to sin, cos there
+        ("frame", float, states),  # c_1, s_1, c_2, s_2, ... of a flight from node 0
     ]
-)
+    return record(fields)
 
 
 class Flight(NamedTuple):
     """The tables of one oscillator over one forcing period."""
 
-    oscillator: np.ndarray  # (1,) OSCILLATOR
-    nodes: np.ndarray  # (cells + 1,) NODE
+    oscillator: np.ndarray  # (1,) `oscillator_of`
+    nodes: np.ndarray  # (cells + 1,) `node_of`
     scan: (
         np.ndarray
-    )  # (5, 2 cells + CHUNK): control points, two to a cell, as a function of X - r at node 0; those of r
+    )  # (2 N + 1, 2 cells + CHUNK): control points, two to a cell, as a function of X - r at node 0; those of r
 
 
-def new_flight(count: int, cells: int) -> Flight:
+def new_flight(count: int, cells: int, masses: int) -> Flight:
     """Space for the tables of so many oscillators with at most so many cells."""
-    points = 2 * cells + CHUNK
     return Flight(
-        new_lines((count, 1), OSCILLATOR), new_lines((count, cells + 1), NODE), new_lines((count, 5, points), float)
+        new_lines((count, 1), oscillator_of(masses)),
+        new_lines((count, cells + 1), node_of(masses)),
+        new_lines((count, 2 * masses + 1, 2 * cells + CHUNK), float),
     )
 
 
@@ -113,14 +129,15 @@ def decaying(eta, omega_squared, u):
 
 
 @jit
-def load(series, x1, v1, x2, v2, sin, cos, c):
-    """Taylor coefficients c of the flight from (x1, v1, x2, v2) at the phase (sin, cos)."""
-    for n in range(ORDER):
-        c[n] = (
-            (series[0, n] * x1 + series[1, n] * v1)
-            + (series[2, n] * x2 + series[3, n] * v2)
-            + (series[4, n] * sin + series[5, n] * cos)
-        )
+def load(series, X, sin, cos, c):
+    """Taylor coefficients c (N, ORDER) of the flight of all masses from the state X (lanes) at the phase (sin, cos)."""
+    masses, states = len(c), 2 * len(c)
+    for i in range(masses):
+        for n in range(ORDER):
+            total = series[i, 0, n] * number(X, 0) + series[i, 1, n] * number(X, 1)
+            for j in range(2, states, 2):
+                total += series[i, j, n] * number(X, j) + series[i, j + 1, n] * number(X, j + 1)
+            c[i, n] = total + (series[i, states, n] * sin + series[i, states + 1, n] * cos)
 
 
 @jit

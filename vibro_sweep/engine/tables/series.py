@@ -39,6 +39,6 @@ def fill_series(q, A, row, mu_m, mu_k, f2):
         q.force[i] = A[1, i]
         row[i] = 0.0
     row[0] = 1.0
-    derive(A, row, 6, q.series1)
+    derive(A, row, 6, q.series[0])
     row[0], row[2] = 0.0, 1.0
-    derive(A, row, 6, q.series2)
+    derive(A, row, 6, q.series[1])

@@ -22,7 +22,7 @@ from vibro_sweep.engine.motion.orbits import reset_counts
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
-from vibro_sweep.engine.variational.orthonormal import CONDITION, PLACE
+from vibro_sweep.engine.variational.orthonormal import CONDITION, place_of
 from vibro_sweep.model import status
 
 RANGE = 600.0  # of the logarithms of growths that one matrix of floats can hold
@@ -38,9 +38,9 @@ def begin_period(e, w, results):
         o, result = e.orbits[i], results[i]
         o.periods = result.period if o.status == status.OK and result.period > 0 else 0
         if o.periods > 0:
-            for m in range(16):
+            for m in range(len(t.Z)):
                 w.axes[i, m] = t.Z[m, i]
-            for n in range(6):
+            for n in range(len(t.shear)):
                 t.shear[n, i] = 0.0
             reset_counts(o)
             tangent.start_record(t, i)
@@ -63,11 +63,11 @@ def read_period(e, w, results, again):
 @jit
 def product(t, i, axes, row, column):
     """An entry of U Q_0^T Q_1. axes: columns of Q_0, flat."""
-    total = 0.0
-    for k in range(row, 4):
-        weight = 1.0 if k == row else t.shear[PLACE[row] + k, i]
-        for m in range(4):
-            total += weight * axes[4 * m + k] * t.Z[4 * m + column, i]
+    total, size = 0.0, len(t.growth)
+    for k in range(row, size):
+        weight = 1.0 if k == row else t.shear[place_of(size, row, k), i]
+        for m in range(size):
+            total += weight * axes[size * m + k] * t.Z[size * m + column, i]
     return total
 
 
@@ -94,7 +94,7 @@ def find_multipliers(t, i, logs, axes, matrix, graze, result, again):
         before = log[j]
         log[j] = math.log(math.hypot(re[j], im[j])) + logs[0]
         error[j] = abs(log[j] - before) if again else 0.0
-    for j in range(count, 4):
+    for j in range(count, len(logs)):
         log[j], error[j] = logs[j], 0.0
         re[j], im[j] = 1.0, 0.0
     if again:
@@ -102,7 +102,7 @@ def find_multipliers(t, i, logs, axes, matrix, graze, result, again):
         for j in range(count):
             known = (graze + 2.0**-52 * CONDITION * math.sqrt(size)) * condition(re, im, count, j)
             error[j] = error[j] * max(1.0, r / (1.0 - r)) + min(known, math.sqrt(2.0**-52 * CONDITION))
-    for j in range(4):
+    for j in range(len(logs)):
         scale = math.exp(logs[0] if j < count else logs[j])
         re[j] *= scale
         im[j] *= scale

@@ -10,8 +10,6 @@ import numpy as np
 from vibro_sweep.engine.simd.jit import aside, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES, bits, put, row, select
 
-PLACE = (-1, 1, 2)  # entry (i, j) of a strict upper triangle, row by row, stands at PLACE[i] + j
-
 CONDITION = 1e3  # bound on the condition number of Z past which it is orthonormalised
 
 
@@ -22,10 +20,14 @@ def watch(t, who, determinant):
     lost = row(t.lost, 0)
     put(t.lost, 0, select(who & (determinant <= 0.0) & (lost < 1.0), 1.0, lost))
     size = 0.0 * lost
-    for m in range(16):
+    n = len(t.growth)
+    for m in range(n * n):
         size += row(t.Z, m) * row(t.Z, m)
-    # the condition number is below 2/det (|Z|^2/4)^2
-    close = who & ((row(t.lost, 0) > 0.0) | (size * size > 8.0 * CONDITION * row(t.volume, 0)))
+    # the condition number is below 2/det (|Z|^2/n)^(n/2)
+    power, scale = size, float(n)
+    for _ in range(n // 2 - 1):
+        power, scale = power * size, scale * n
+    close = who & ((row(t.lost, 0) > 0.0) | (power > 0.5 * scale * CONDITION * row(t.volume, 0)))
     if bits(close) != 0:
         orthonormalise(t, close)
 
@@ -36,11 +38,27 @@ def orthonormalise(t, who):
     if t.collected:
         reduce(t, who, True)
         collect(t, bits(who))
-        for i in range(4):
+        for i in range(len(t.growth)):
             grow(t, who, i, row(t.length, i))
     else:
         reduce(t, who, False)
     put(t.volume, 0, select(who, 1.0, row(t.volume, 0)))
+
+
+@inline
+def place_of(size, i, j):
+    """Where entry (i, j) of a strict upper triangle stands, row by row."""
+    return i * (2 * size - i - 1) // 2 + j - i - 1
+
+
+@inline
+def along(Z, size, i, j):
+    """The product of vectors i and j."""
+    total = row(Z, i) * row(Z, j) + row(Z, size + i) * row(Z, size + j)
+    for m in range(2, size, 2):
+        first, second = m * size, (m + 1) * size
+        total = total + (row(Z, first + i) * row(Z, first + j) + row(Z, second + i) * row(Z, second + j))
+    return total
 
 
 @inline
@@ -49,28 +67,24 @@ def reduce(t, who, kept):
 
     The lengths are taken out last: the next vector need not wait for a square root.
     """
-    Z, n = t.Z, 0
-    for i in range(4):
-        z0, z1, z2, z3 = row(Z, i), row(Z, 4 + i), row(Z, 8 + i), row(Z, 12 + i)
-        square = (z0 * z0 + z1 * z1) + (z2 * z2 + z3 * z3)
-        square = select(row(t.lost, 0) >= 4.0 - i, 0.0, square)
+    Z, size, place = t.Z, len(t.growth), 0
+    for i in range(size):
+        square = along(Z, size, i, i)
+        square = select(row(t.lost, 0) >= float(size - i), 0.0, square)
         inverse = select(square > 0.0, 1.0 / square, 0.0)
-        for j in range(i + 1, 4):
-            w0, w1, w2, w3 = row(Z, j), row(Z, 4 + j), row(Z, 8 + j), row(Z, 12 + j)
-            along = inverse * ((z0 * w0 + z1 * w1) + (z2 * w2 + z3 * w3))
+        for j in range(i + 1, size):
+            part = inverse * along(Z, size, i, j)
             if kept:
-                put(t.along, n, along)
-                n += 1
-            put(Z, j, select(who, w0 - along * z0, w0))
-            put(Z, 4 + j, select(who, w1 - along * z1, w1))
-            put(Z, 8 + j, select(who, w2 - along * z2, w2))
-            put(Z, 12 + j, select(who, w3 - along * z3, w3))
+                put(t.along, place, part)
+                place += 1
+            for m in range(size):
+                w = row(Z, m * size + j)
+                put(Z, m * size + j, select(who, w - part * row(Z, m * size + i), w))
         length = math.sqrt(square)
         inverse = select(square > 0.0, 1.0 / length, 0.0)
-        put(Z, i, select(who, inverse * z0, z0))
-        put(Z, 4 + i, select(who, inverse * z1, z1))
-        put(Z, 8 + i, select(who, inverse * z2, z2))
-        put(Z, 12 + i, select(who, inverse * z3, z3))
+        for m in range(size):
+            z = row(Z, m * size + i)
+            put(Z, m * size + i, select(who, inverse * z, z))
         if kept:
             put(t.length, i, length)
         else:
@@ -98,16 +112,17 @@ def collect(t, who):
     for lane in range(LANES):
         if not who >> lane & 1:
             continue
-        n = 0
-        for i in range(3):
-            for j in range(i + 1, 4):
+        n, size = 0, len(t.growth)
+        for i in range(size - 1):
+            for j in range(i + 1, size):
                 # rows k > i have not changed yet
                 total = t.shear[n, lane]
                 for k in range(i + 1, j + 1):
                     d_i, d_k = t.growth[i, lane], t.growth[k, lane]
                     if d_i > 0.0 and t.logs[i, lane] > -np.inf:  # a lost direction has no row
                         ratio = d_k / d_i * math.exp(t.logs[k, lane] - t.logs[i, lane])
-                        total += t.along[PLACE[i] + k, lane] * ratio * (t.shear[PLACE[k] + j, lane] if k < j else 1.0)
+                        later = t.shear[place_of(size, k, j), lane] if k < j else 1.0
+                        total += t.along[place_of(size, i, k), lane] * ratio * later
                 t.shear[n, lane] = total
                 n += 1
 

@@ -44,7 +44,7 @@ def end_warm_up(e, count):
 def keep_at_rest(e, i):
     """Where M1 rests on a stop, two of the four directions are lost already."""
     if e.orbits[i].resting != 0.0:
-        tangent.rest(e.tangent[0], i, e.flights.oscillator[e.orbits[i].table, 0].kappa)
+        tangent.rest(e.tangent[0], i, e.flights.oscillator[e.orbits[i].table, 0].kappa[1])
 
 
 @jit
@@ -57,7 +57,7 @@ def time_average(growth, periods, T, spectrum, error):
     parts = len(growth)
     size = max(1, parts // BATCHES)
     batches = parts // size
-    for i in range(4):
+    for i in range(len(spectrum)):
         spectrum[i] = growth[parts - 1, i] / (periods * T)
         scatter, together, last, before, began = 0.0, 0.0, 0.0, 0.0, 0
         for m in range(size - 1, parts, size):
@@ -91,26 +91,29 @@ def close_spectrum(e, o, w, plan, point, result):
     periods = result.period if result.period > 0 else w.section.shape[1]
     time = periods * period_of(e, o)
     if result.period > 0:
-        for j in range(4):
+        for j in range(len(spectrum)):
             spectrum[j], error[j] = result.log_multiplier[j] / time, result.log_error[j] / time
     exact = -2.0 * point.zeta * (1.0 + (1.0 + point.mu_k) / point.mu_m) + o.log_volume / time
     hits = o.impacts_right + o.impacts_left
     if hits > 0 and plan.order == 0:
         exact += 2.0 * (hits / time) * np.log(point.R)
     sort_exponents(spectrum, error)
-    residual = ((spectrum[0] + spectrum[1]) + (spectrum[2] + spectrum[3])) - exact
-    for j in range(4 - q.vanishing, 4):
+    count, total = len(spectrum), spectrum[0] + spectrum[1]
+    for j in range(2, count, 2):
+        total += spectrum[j] + spectrum[j + 1]
+    residual = total - exact
+    for j in range(count - q.vanishing, count):
         spectrum[j], error[j], residual = -np.inf, 0.0, -np.inf
         result.multiplier_re[j] = result.multiplier_im[j] = result.multiplier_error[j] = 0.0
     result.lyapunov_residual = residual if residual > -np.inf else np.nan
     if residual > -np.inf:
-        error[3] = max(error[3], abs(residual))
+        error[count - 1] = max(error[count - 1], abs(residual))
 
 
 @jit
 def sort_exponents(spectrum, error):
     """Descending; the vectors find their order only as far as the exponents differ."""
-    for i in range(1, 4):
+    for i in range(1, len(spectrum)):
         value, doubt, j = spectrum[i], error[i], i
         while j > 0 and spectrum[j - 1] < value:
             spectrum[j], error[j] = spectrum[j - 1], error[j - 1]

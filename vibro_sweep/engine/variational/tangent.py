@@ -1,12 +1,12 @@
 """Tangent vectors along eight orbits, and from them the Lyapunov spectra.
 
-Four vectors of each orbit are kept as the columns of Z, in the frame z = (g_1 xi_1, xi_1' + eta_1 xi_1, g_2 xi_2, xi_2'
-+ eta_2 xi_2) with g_j = |omega_dj|, in which the flight of mode j is e^{-eta_j u} times a rotation: in this metric the
-exponents of a non-impacting orbit are exact after any time, where those of (x, v) would only converge like 1/t.
-(Overdamped: times a symmetric matrix, and exact as soon as its eigenvectors are found.)
+As many vectors of each orbit as it has states are kept as the columns of Z, in the frame z = (g_1 xi_1, xi_1' + eta_1
+xi_1, g_2 xi_2, xi_2' + eta_2 xi_2, ...) with g_j = |omega_dj|, in which the flight of mode j is e^{-eta_j u} times a
+rotation: in this metric the exponents of a non-impacting orbit are exact after any time, where those of (x, v) would
+only converge like 1/t. (Overdamped: times a symmetric matrix, and exact as soon as its eigenvectors are found.)
 
-Flight is not applied step by step but collected as four numbers (c_1, s_1, c_2, s_2), and applied at the next impact.
-`who` is the mask of the orbits to which something happens; i is one of them.
+Flight is not applied step by step but collected as two numbers of each mode (c_1, s_1, c_2, s_2, ...), and applied at
+the next impact. `who` is the mask of the orbits to which something happens; i is one of them.
 """
 
 import numpy as np
@@ -16,37 +16,40 @@ from vibro_sweep.engine.simd.lanes import LANES, bits, lanes_of, put, record, ro
 from vibro_sweep.engine.tables.flight import ORDER, decaying
 from vibro_sweep.engine.variational.orthonormal import orthonormalise, watch
 
-# Tangent vectors of eight orbits; one column each.
-TANGENT = record(
-    [
+
+def tangents_of(masses: int) -> np.dtype:
+    """The record of the tangent vectors of eight orbits, one column each; n vectors of n numbers, n = 2 N."""
+    n = 2 * masses
+    pairs = n * (n - 1) // 2
+    fields = [
         # of the oscillator
-        ("series", float, (4 * ORDER, LANES)),
-        ("scale", float, (2, LANES)),  # g_j
-        ("square", float, (2, LANES)),  # omega_dj^2
-        ("to_frame", float, (16, LANES)),
-        ("from_frame", float, (16, LANES)),
-        ("kick", float, (4, LANES)),  # to_frame of a step of x1 by 1 and of v2 by kappa = 2 zeta/mu_m
+        ("series", float, (n * ORDER, LANES)),
+        ("scale", float, (masses, LANES)),  # g_j
+        ("square", float, (masses, LANES)),  # omega_dj^2
+        ("to_frame", float, (n * n, LANES)),
+        ("from_frame", float, (n * n, LANES)),
+        ("kick", float, (n, LANES)),  # to_frame of a step of x1 by 1, and of what it does to v2, ... (kappa)
         ("R", float, LANES),
         # of the orbit
         ("lost", float, LANES),  # dimensions: two by sticking, one by an impact without restitution
         ("cell", np.int64, LANES),  # the cell, counted from the section, and
         ("offset", float, LANES),  # the offset in it, up to which `flight` reaches
-        ("leap", float, (4, LANES)),  # c_1, s_1, c_2, s_2 of a flight over whole cells
+        ("leap", float, (n, LANES)),  # c_1, s_1, c_2, s_2, ... of a flight over whole cells
         ("part", float, LANES),  # of a cell, to fly after it
-        ("flight", float, (4, LANES)),  # c_1, s_1, c_2, s_2 of the flight since Z was last touched
+        ("flight", float, (n, LANES)),  # c_1, s_1, c_2, s_2, ... of the flight since Z was last touched
         ("stretch", np.int64, LANES),  # whole cells of that flight
         ("mixed", float, LANES),  # 0: each vector lies in the plane of one mode, where free flight turns it
-        ("Z", float, (16, LANES)),  # columns of Z (4, 4) are vectors
+        ("Z", float, (n * n, LANES)),  # columns of Z (n, n) are vectors
         ("volume", float, LANES),  # |det Z|, from the identity det S = R^2
-        ("growth", float, (4, LANES)),  # products of the diagonals of R in Z = Q R
-        ("logs", float, (4, LANES)),  # their logarithms, taken before they leave the range of the floats
-        ("length", float, (4, LANES)),  # diagonal of R in the last Z = Q R, and
-        ("along", float, (6, LANES)),  # what stands beside it, over it: 01, 02, 03, 12, 13, 23;
-        ("shear", float, (6, LANES)),  # the same of the product of all R, where they are `collected`
+        ("growth", float, (n, LANES)),  # products of the diagonals of R in Z = Q R
+        ("logs", float, (n, LANES)),  # their logarithms, taken before they leave the range of the floats
+        ("length", float, (n, LANES)),  # diagonal of R in the last Z = Q R, and
+        ("along", float, (pairs, LANES)),  # what stands beside it, over it, row by row: 01, 02, 03, 12, 13, 23;
+        ("shear", float, (pairs, LANES)),  # the same of the product of all R, where they are `collected`
         ("wanted", np.bool_),  # else nothing is computed
         ("collected", np.bool_),
     ]
-)
+    return record(fields)
 
 
 @inline
@@ -58,25 +61,29 @@ def only(i):
 @jit
 def set_frame(t, i, q, R):
     """Give orbit i its oscillator."""
+    size = len(t.growth)
     for n in range(ORDER):
-        for j in range(4):
-            t.series[4 * n + j, i] = q.frame_series[n, j]
-    for m in range(4):
-        for j in range(4):
-            t.to_frame[4 * m + j, i], t.from_frame[4 * m + j, i] = q.to_frame[m, j], q.from_frame[m, j]
-    for j in range(2):
+        for j in range(size):
+            t.series[size * n + j, i] = q.frame_series[n, j]
+    for m in range(size):
+        for j in range(size):
+            t.to_frame[size * m + j, i], t.from_frame[size * m + j, i] = q.to_frame[m, j], q.from_frame[m, j]
+    for j in range(len(t.scale)):
         t.scale[j, i], t.square[j, i] = q.frame_scale[j], q.frame_square[j]
-    for m in range(4):
-        t.kick[m, i] = q.to_frame[m, 0] + q.kappa * q.to_frame[m, 3]
+    for m in range(size):
+        t.kick[m, i] = q.to_frame[m, 0]
+        for j in range(1, len(t.scale)):
+            t.kick[m, i] += q.kappa[j] * q.to_frame[m, 2 * j + 1]
     t.R[i] = R
 
 
 @entry
 def begin(t, i):
-    """Four orthonormal vectors at the section."""
-    for m in range(4):
-        for j in range(4):
-            t.Z[4 * m + j, i] = 1.0 if m == j else 0.0
+    """Orthonormal vectors at the section."""
+    size = len(t.growth)
+    for m in range(size):
+        for j in range(size):
+            t.Z[size * m + j, i] = 1.0 if m == j else 0.0
         t.flight[m, i] = 1.0 - m % 2
     t.lost[i], t.volume[i], t.offset[i], t.mixed[i] = 0.0, 1.0, 0.0, 0.0
     t.cell[i] = t.stretch[i] = 0
@@ -86,34 +93,30 @@ def begin(t, i):
 @jit
 def start_record(t, i):
     """Count growth from here on."""
-    for j in range(4):
+    for j in range(len(t.growth)):
         t.growth[j, i], t.logs[j, i] = 1.0, 0.0
 
 
 @inline
-def join(t, who, c1, s1, c2, s2):
-    """Lengthen the collected flight by a flight with these factors."""
-    a, b, flight = row(t.flight, 0), row(t.flight, 1), t.flight
-    put(flight, 0, select(who, a * c1 - row(t.square, 0) * (b * s1), a))
-    put(flight, 1, select(who, a * s1 + b * c1, b))
-    a, b = row(flight, 2), row(flight, 3)
-    put(flight, 2, select(who, a * c2 - row(t.square, 1) * (b * s2), a))
-    put(flight, 3, select(who, a * s2 + b * c2, b))
+def join(t, who, j, c, s):
+    """Lengthen the collected flight by one in which mode j has these factors."""
+    a, b, flight = row(t.flight, 2 * j), row(t.flight, 2 * j + 1), t.flight
+    put(flight, 2 * j, select(who, a * c - row(t.square, j) * (b * s), a))
+    put(flight, 2 * j + 1, select(who, a * s + b * c, b))
 
 
 @jit
 def fly(t, who):
     """Lengthen the collected flight by `leap` and `part`."""
-    leap, series, u = t.leap, t.series, row(t.part, 0)
-    join(t, who, row(leap, 0), row(leap, 1), row(leap, 2), row(leap, 3))
-    last = 4 * (ORDER - 1)
-    c1, s1, c2, s2 = row(series, last), row(series, last + 1), row(series, last + 2), row(series, last + 3)
-    for n in range(last - 4, -1, -4):
-        c1 = c1 * u + row(series, n)
-        s1 = s1 * u + row(series, n + 1)
-        c2 = c2 * u + row(series, n + 2)
-        s2 = s2 * u + row(series, n + 3)
-    join(t, who, c1, s1, c2, s2)
+    leap, series, u, size = t.leap, t.series, row(t.part, 0), len(t.growth)
+    last = size * (ORDER - 1)
+    for j in range(len(t.scale)):
+        join(t, who, j, row(leap, 2 * j), row(leap, 2 * j + 1))
+        c, s = row(series, last + 2 * j), row(series, last + 2 * j + 1)
+        for n in range(last - size, -1, -size):
+            c = c * u + row(series, n + 2 * j)
+            s = s * u + row(series, n + 2 * j + 1)
+        join(t, who, j, c, s)
 
 
 @inline
@@ -122,7 +125,7 @@ def leap_over(t, i, q, nodes, cells):
     t.part[i] = 0.0
     if cells <= q.cells:
         frame = nodes[cells].frame
-        for j in range(4):
+        for j in range(len(frame)):
             t.leap[j, i] = frame[j]
     else:
         decay_over(t, i, q, cells * q.width)
@@ -131,7 +134,7 @@ def leap_over(t, i, q, nodes, cells):
 @jit
 def decay_over(t, i, q, u):
     """The factors of a flight of any length."""
-    for j in range(2):
+    for j in range(len(t.scale)):
         eta = -q.frame_series[1, 2 * j]
         t.leap[2 * j, i], t.leap[2 * j + 1, i], _, _ = decaying(eta, q.frame_square[j] + eta * eta, u)
 
@@ -184,14 +187,15 @@ def fly_to(t, i, q, nodes, k, s):
 @jit
 def apply_flight(t, who):
     """Z after the collected flight."""
-    Z, flight, volume = t.Z, t.flight, row(t.volume, 0)
-    for j in range(2):
+    Z, flight, volume, size = t.Z, t.flight, row(t.volume, 0), len(t.growth)
+    for j in range(len(t.scale)):
         c, s = row(flight, 2 * j), row(flight, 2 * j + 1)
         above, below = row(t.scale, j) * s, -row(t.square, j) / row(t.scale, j) * s
-        for m in range(4):
-            first, second = row(Z, 8 * j + m), row(Z, 8 * j + 4 + m)
-            put(Z, 8 * j + m, select(who, c * first + above * second, first))
-            put(Z, 8 * j + 4 + m, select(who, below * first + c * second, second))
+        for m in range(size):
+            place = 2 * size * j + m
+            first, second = row(Z, place), row(Z, place + size)
+            put(Z, place, select(who, c * first + above * second, first))
+            put(Z, place + size, select(who, below * first + c * second, second))
         volume = volume * (c * c - above * below)
         put(flight, 2 * j, select(who, 1.0, c))
         put(flight, 2 * j + 1, select(who, 0.0, s))
@@ -208,6 +212,20 @@ def catch_up(t, who):
     orthonormalise(t, who)
 
 
+@inline
+def motion_of(t, mass, j):
+    """Displacement and speed of a mass in tangent vector j; each mode moves the mass by its first number alone."""
+    Z, back, size = t.Z, t.from_frame, len(t.growth)
+    x_row, v_row = 2 * mass * size, (2 * mass + 1) * size
+    dx = row(back, x_row) * row(Z, j)
+    dv = row(back, v_row) * row(Z, j) + row(back, v_row + 1) * row(Z, size + j)
+    for m in range(2, size, 2):
+        first, second = row(Z, m * size + j), row(Z, (m + 1) * size + j)
+        dx = dx + row(back, x_row + m) * first
+        dv = dv + (row(back, v_row + m) * first + row(back, v_row + m + 1) * second)
+    return dx, dv
+
+
 @jit
 def saltate(t, who, steepness):
     """Z across an impact, by the saltation matrix S = DG + (F+ - DG F-) n^T/(n . F-).
@@ -216,17 +234,15 @@ def saltate(t, who, steepness):
     dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
     """
     apply_flight(t, who)
-    Z, back, to, R = t.Z, t.from_frame, t.to_frame, row(t.R, 0)
-    for j in range(4):
-        z0, z1, z2, z3 = row(Z, j), row(Z, 4 + j), row(Z, 8 + j), row(Z, 12 + j)
-        dx = row(back, 0) * z0 + row(back, 2) * z2
-        dv = (row(back, 4) * z0 + row(back, 5) * z1) + (row(back, 6) * z2 + row(back, 7) * z3)
+    Z, to, R, size = t.Z, t.to_frame, row(t.R, 0), len(t.growth)
+    for j in range(size):
+        dx, dv = motion_of(t, 0, j)
         to_x1 = -(1.0 + R) * dx
         to_v1 = steepness * dx - (1.0 + R) * dv
-        for m in range(4):
-            z = row(Z, 4 * m + j)
-            after = z + row(t.kick, m) * to_x1 + row(to, 4 * m + 1) * to_v1
-            put(Z, 4 * m + j, select(who, after, z))
+        for m in range(size):
+            z = row(Z, size * m + j)
+            after = z + row(t.kick, m) * to_x1 + row(to, size * m + 1) * to_v1
+            put(Z, size * m + j, select(who, after, z))
     put(t.mixed, 0, select(who, 1.0, row(t.mixed, 0)))
     watch(t, who, R * R)
 
@@ -264,8 +280,8 @@ def release(t, i, xx, xv, vx, vv):
 
 @aside
 def read_growth(t, i, q, nodes, out):
-    """Logarithms of the growth of the four vectors up to this section, -inf for dimensions lost by sticking."""
+    """Logarithms of the growth of the vectors up to this section, -inf for dimensions lost by sticking."""
     fly_to(t, i, q, nodes, 0, 0.0)
     catch_up(t, only(i))
-    for j in range(4):
+    for j in range(len(t.growth)):
         out[j] = t.logs[j, i] + np.log(t.growth[j, i])
