@@ -8,13 +8,9 @@ resolve is not followed there but bounded by its size.
 
 from functools import cached_property
 
+import gmpy2
 import numpy as np
 from mpmath import mp, mpf
-
-try:
-    import gmpy2  # the same, several times faster
-except ImportError:
-    gmpy2 = None
 
 UNIT = float(np.finfo(np.longdouble).eps)
 PARTS = 8  # into which an interval is split
@@ -55,14 +51,6 @@ class Exponentials:
 
     def derivatives(self, u, count):
         """f(u), f'(u), ...: so many."""
-        if gmpy2 is None:
-            values = [mpf(0)] * count
-            for a, rate in zip(self.amplitudes, self.rates, strict=True):
-                term = a * mp.exp(rate * u)
-                for n in range(count):
-                    values[n] += term.real
-                    term *= rate
-            return values
         with gmpy2.context(precision=mp.prec):
             values, u = [gmpy2.mpfr(0)] * count, _to_gmp(mpf(u))
             for a, rate in self._terms:
