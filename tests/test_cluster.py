@@ -126,6 +126,7 @@ def test_dask_processes_and_threads_agree(tmp_path, cluster, scene):
         assert json.loads(file.attrs["provenance"])["executor"] == "ClusterExecutor"
 
 
+@pytest.mark.slow
 def test_two_workers_killed_and_one_added(tmp_path, cluster, scene):
     path, whole = scene
     output = tmp_path / "out.h5"

@@ -32,7 +32,6 @@ observe: [section, lyapunov, impacts]
 # The program, with a line in a log for each block that is begun, here or by a worker of Dask: its first point, its end.
 PROGRAM = """
 import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_IGN)  # until the program itself begins
 from vibro_sweep.__main__ import program
 from vibro_sweep.driver import compute
 from vibro_sweep.driver import pool
@@ -123,7 +122,12 @@ class Cluster:
 
 def start(log, scene, output, workers):
     command = [sys.executable, "-c", PROGRAM, log, scene, "-o", output, *workers.options, "--resume", "--quiet"]
-    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    # Python, while it begins, answers Ctrl-C by a traceback
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=ignore_interrupts)
+
+
+def ignore_interrupts():
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def send(process, workers, how, pause):
@@ -139,8 +143,7 @@ def send(process, workers, how, pause):
 def ended(process, how):
     """Wait for it; no traceback, and the exit status that the signal asks for."""
     told = process.communicate(timeout=LIMIT)[1]
-    early = (-2,) if "INT" in how else ()  # Python itself had not begun
-    if ("Traceback" in told and not early) or process.returncode not in (0, STATUS.get(how, 0), *early):
+    if "Traceback" in told or process.returncode not in (0, STATUS.get(how, 0)):
         raise SystemExit(f"a run with {how} ended with the exit status {process.returncode}:\n{told}")
 
 
