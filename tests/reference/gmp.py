@@ -50,4 +50,4 @@ def expm(A):
             result = [[a + b for a, b in zip(*rows, strict=True)] for rows in zip(result, term, strict=True)]
         for _ in range(n):
             result = product(result, result)
-        return +mp.matrix([[from_gmp(a) for a in row] for row in result])
+        return mp.matrix([[from_gmp(a) for a in row] for row in result])

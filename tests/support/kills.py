@@ -8,7 +8,6 @@ begun, so that points computed again are known: about one block of each worker a
 """
 
 import contextlib
-import json
 import os
 import signal
 import subprocess
@@ -20,6 +19,8 @@ from typing import NamedTuple
 
 import h5py
 import numpy as np
+
+from support.clusters import Cluster
 
 POINTS = 2000
 SCENE = f"""
@@ -78,46 +79,32 @@ class Threads:
         pass
 
 
-class Cluster:
-    """A scheduler of Dask and two workers, on this machine alone."""
+class Dask:
+    """A run by a scheduler and two workers."""
 
     def __enter__(self):
-        self._folder, self._processes = tempfile.TemporaryDirectory(), []
+        self._folder = self._cluster = None
         self.mend()
         return self
 
     def __exit__(self, *_):
-        for process in self._processes:
-            process.kill()
-            process.wait()
-        self._processes.clear()
+        self._cluster.end()
         self._folder.cleanup()
 
     def mend(self):
         """Begin again where somebody was killed."""
-        if self._processes and all(process.poll() is None for process in self._processes):
-            return
-        self.__exit__()
+        if self._cluster:
+            if all(process.poll() is None for process in self._cluster.processes):
+                return
+            self.__exit__()
         self._folder = tempfile.TemporaryDirectory()
-        told = Path(self._folder.name, "scheduler.json")
-        self._start("scheduler", told, "--port", "0")
-        limit = time.monotonic() + LIMIT
-        while not (told.exists() and told.stat().st_size):
-            if time.monotonic() > limit:
-                raise SystemExit("no scheduler of Dask starts here")
-            time.sleep(0.05)
-        self.options = ["--scheduler", json.loads(told.read_text())["address"]]
+        self._cluster = Cluster(Path(self._folder.name))
+        self.options = ["--scheduler", self._cluster.address]
         for _ in range(2):
-            self._start("worker", told, "--nthreads", "1", "--no-nanny", "--local-directory", self._folder.name)
+            self._cluster.worker()
 
     def kill(self, which):
-        self._processes[which].kill()
-
-    def _start(self, what, told, *options):
-        listening = ["--host", "127.0.0.1", "--dashboard-address", "127.0.0.1:0", "--no-dashboard"]
-        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", "--scheduler-file", str(told)]
-        silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": self._folder.name}
-        self._processes.append(subprocess.Popen([*command, *listening, *options], **silent))
+        self._cluster.processes[which].kill()
 
 
 def start(log, scene, output, workers):
@@ -191,7 +178,7 @@ def measure(kills, by, seed):
     rng, found, same = np.random.default_rng(seed), [], True
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        workers = stack.enter_context(Cluster() if by == "Dask" else Threads(by))
+        workers = stack.enter_context(Dask() if by == "Dask" else Threads(by))
         scene, whole = folder / "scene.yaml", folder / "whole.h5"
         scene.write_text(SCENE)
         for _ in range(2):  # the first one compiles
