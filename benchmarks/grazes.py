@@ -9,14 +9,12 @@ method see an impact?) or before it (does it see one that is not there?). Flight
 
 import argparse
 import sys
-from pathlib import Path
 
 import numpy as np
+import shared  # noqa: F401
+from reference import certified
 
 import vibro_sweep as vs
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
-from reference import certified
 
 SYSTEM = vs.System(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63, R=0.8, b=6.6)
 GROUPS = 100  # times of the extremum

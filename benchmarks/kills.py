@@ -1,232 +1,31 @@
-"""Runs killed at random moments, resumed, and compared bit for bit with one that was left alone: a Markdown table.
+"""Runs killed at random moments and resumed (tests/support/kills.py): a Markdown table of what the kills cost.
 
-    python benchmarks/kills.py [--kills 102] [--seed 1] [--by "1 worker" "2 workers" Dask]
-
-Each time the command line runs a scene of some seconds and gets one of `SIGNALS`, in turn, at a moment drawn uniformly
-from the time that the whole run takes; then it is resumed to its end. By Dask there are two workers of one thread, and
-the scheduler, or a worker, is killed as well. No run may print a traceback, none may leave anything but its file, and
-those that can answer must end with the exit status of an interruption. Every block leaves a line in a log when it is
-begun, so that points computed again are known: about one block of each worker at most.
+python benchmarks/kills.py [--kills 102] [--seed 1] [--by "1 worker" "2 workers" Dask]
 """
 
 import argparse
 import collections
-import contextlib
-import json
-import os
 import signal
-import subprocess
-import sys
-import tempfile
-import time
-from pathlib import Path
-from typing import NamedTuple
 
-import h5py
-import numpy as np
+import shared  # noqa: F401
 from book import table
-
-POINTS = 2000
-SCENE = f"""
-system: {{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}}
-sweep: {{b: {{start: 6.5, stop: 6.9, num: {POINTS}}}}}
-orbit: {{transient: 12000, record: 100}}
-observe: [section, lyapunov, impacts]
-"""
-
-# The program, with a line in a log for each block that is begun, here or by a worker of Dask: its first point, its end.
-PROGRAM = """
-import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_IGN)  # until the program itself begins
-from vibro_sweep.__main__ import program
-from vibro_sweep.driver import compute
-from vibro_sweep.driver import pool
-log = sys.argv[1]
-plain = compute.compute
-def logged(block):
-    file = os.open(log, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
-    os.write(file, f"{block.box[0].start} {block.box[0].stop}\\n".encode())
-    os.close(file)
-    return plain(block)
-pool.compute = logged
-sys.argv[:2] = ["vibro-sweep", "run"]
-signal.signal(signal.SIGINT, signal.default_int_handler)
-program()
-"""
-
-SIGNALS = ("KILL", "TERM", "HUP", "INT", "INT twice", "STOP, CONT")
-OF_DASK = ("KILL the scheduler", "KILL a worker")
-STATUS = {"KILL": -9, "TERM": -15, "HUP": -1, "INT": 130, "INT twice": 130, "KILL the scheduler": 2}
-BY = {"1 worker": SIGNALS, "2 workers": SIGNALS, "Dask": SIGNALS + OF_DASK}
-LIMIT = 600  # seconds after which something hangs
-
-
-class Kill(NamedTuple):
-    how: str
-    when: str
-    points: int  # computed again
-    blocks: float  # the same, in the largest of the blocks
-
-
-class Threads:
-    """A run by threads."""
-
-    def __init__(self, by):
-        self.options = ["--workers", by.split()[0]]
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        pass
-
-    def mend(self):
-        pass
-
-
-class Cluster:
-    """A scheduler of Dask and two workers, on this machine alone."""
-
-    def __enter__(self):
-        self._folder, self._processes = tempfile.TemporaryDirectory(), []
-        self.mend()
-        return self
-
-    def __exit__(self, *_):
-        for process in self._processes:
-            process.kill()
-            process.wait()
-        self._processes.clear()
-        self._folder.cleanup()
-
-    def mend(self):
-        """Begin again where somebody was killed."""
-        if self._processes and all(process.poll() is None for process in self._processes):
-            return
-        self.__exit__()
-        self._folder = tempfile.TemporaryDirectory()
-        told = Path(self._folder.name, "scheduler.json")
-        self._start("scheduler", told, "--port", "0")
-        limit = time.monotonic() + LIMIT
-        while not (told.exists() and told.stat().st_size):
-            if time.monotonic() > limit:
-                raise SystemExit("no scheduler of Dask starts here")
-            time.sleep(0.05)
-        self.options = ["--scheduler", json.loads(told.read_text())["address"]]
-        for _ in range(2):
-            self._start("worker", told, "--nthreads", "1", "--no-nanny", "--local-directory", self._folder.name)
-
-    def kill(self, which):
-        self._processes[which].kill()
-
-    def _start(self, what, told, *options):
-        listening = ["--host", "127.0.0.1", "--dashboard-address", "127.0.0.1:0", "--no-dashboard"]
-        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", "--scheduler-file", str(told)]
-        silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": self._folder.name}
-        self._processes.append(subprocess.Popen([*command, *listening, *options], **silent))
-
-
-def start(log, scene, output, workers):
-    command = [sys.executable, "-c", PROGRAM, log, scene, "-o", output, *workers.options, "--resume", "--quiet"]
-    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-
-
-def send(process, workers, how, pause):
-    """The signals of one of SIGNALS, `pause` seconds between two; or the kills of the cluster."""
-    if how in OF_DASK:
-        workers.kill(OF_DASK.index(how))
-        return
-    for name in {"INT twice": ("INT", "INT"), "STOP, CONT": ("STOP", "CONT")}.get(how, (how,)):
-        process.send_signal(getattr(signal, f"SIG{name}"))
-        time.sleep(pause)
-
-
-def ended(process, how):
-    """Wait for it; no traceback, and the exit status that the signal asks for."""
-    told = process.communicate(timeout=LIMIT)[1]
-    early = (-2,) if "INT" in how else ()  # Python itself had not begun
-    if ("Traceback" in told and not early) or process.returncode not in (0, STATUS.get(how, 0), *early):
-        raise SystemExit(f"a run with {how} ended with the exit status {process.returncode}:\n{told}")
-
-
-def killed(scene, place, workers, moment, how, pause):
-    """One run killed after `moment` seconds and resumed: what was lost, and the file."""
-    folder = place / "files"
-    folder.mkdir(parents=True)
-    output, logs = folder / "out.h5", [place / "first", place / "second"]
-    process = start(logs[0], scene, output, workers)
-    try:
-        process.wait(moment)
-        how = "none, it had ended"
-    except subprocess.TimeoutExpired:
-        send(process, workers, how, pause)
-    ended(process, how)
-    part = Path(f"{output}.part")
-    if output.exists():
-        when = "went on" if how in ("STOP, CONT", "KILL a worker") else "after the end"
-    elif not part.exists():
-        when = "before the part existed"
-    else:
-        when = "while the file was made" if any(folder.glob(".*")) else "in mid-run"
-    workers.mend()
-    ended(start(logs[1], scene, output, workers), "resumed")
-    if left := [path.name for path in folder.iterdir() if path != output]:
-        raise SystemExit(f"a run with {how} after {moment} s left {left}")
-    sizes = [size for log in logs for size in blocks(log)]
-    again = sum(sizes) - POINTS
-    return Kill(how, when, again, again / max(sizes)), output
-
-
-def blocks(log):
-    """Points of each block that was begun."""
-    lines = log.read_text().splitlines() if log.exists() else []
-    return [int(end) - int(first) for first, end in map(str.split, lines)]
-
-
-def arrays(path):
-    with h5py.File(path) as file:
-        return {name: dataset[()].tobytes() for name, dataset in file.items()}
-
-
-def measure(kills, by, seed):
-    """What each kill cost; seconds of the whole run; whether all arrays are the same."""
-    rng, found, same = np.random.default_rng(seed), [], True
-    with contextlib.ExitStack() as stack:
-        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        workers = stack.enter_context(Cluster() if by == "Dask" else Threads(by))
-        scene, whole = folder / "scene.yaml", folder / "whole.h5"
-        scene.write_text(SCENE)
-        for _ in range(2):  # the first one compiles
-            whole.unlink(missing_ok=True)
-            began = time.monotonic()
-            ended(start(os.devnull, scene, whole, workers), "whole")
-            seconds = time.monotonic() - began
-        expected = arrays(whole)
-        for k in range(kills):
-            moment, pause = rng.uniform(0, seconds), rng.uniform(0, 0.1)
-            how = BY[by][k % len(BY[by])]
-            kill, output = killed(scene, folder / str(k), workers, moment, how, pause)
-            same &= arrays(output) == expected
-            found.append(kill)
-            told = f"{kill.how}, {kill.when}, {kill.points} points again, {kill.blocks:.2f} blocks, same bits: {same}"
-            print(f"{by} {k + 1} of {kills}: {told}", file=sys.stderr, flush=True)
-    return found, seconds, same
+from support import kills
 
 
 def report(measured) -> str:
-    """Of what `measure` has found for each of the keys of `BY`."""
+    """Of what `measure` has found for each of the keys of `kills.BY`."""
     rows, notes = [], []
     for by, (found, seconds, same) in measured.items():
         groups = collections.defaultdict(list)
         for kill in found:
             groups[kill.how, kill.when].append(kill)
-        for (how, when), kills in sorted(groups.items()):
-            points, most = [kill.points for kill in kills], max(kill.blocks for kill in kills)
-            rows.append((by, how, when, len(kills), sum(points), f"{most:.2f}"))
-        again = sum(kill.points for kill in found)
+        for (how, when), group in sorted(groups.items()):
+            points, most = [kill.points for kill in group], max(kill.blocks for kill in group)
+            rows.append((by, how, when, len(group), sum(points), f"{most:.2f}"))
+        points, again = kills.POINTS * len(found), sum(kill.points for kill in found)
         notes.append(
             f"By {by}: {len(found)} runs of {seconds:.1f} s, each killed once. After they were resumed all arrays are "
-            f"{'' if same else 'NOT '}equal bit for bit to those of an undisturbed run. Of {POINTS * len(found):,} "
+            f"{'' if same else 'NOT '}equal bit for bit to those of an undisturbed run. Of {points:,} "
             f"points {again:,} were computed again."
         )
     header = ("by", "signal", "killed", "runs", "points computed again", "in blocks, most")
@@ -236,14 +35,14 @@ def report(measured) -> str:
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--kills", type=int, default=102, help="of all three kinds together")
-    parser.add_argument("--by", nargs="*", choices=BY, default=list(BY))
+    parser.add_argument("--by", nargs="*", choices=kills.BY, default=list(kills.BY))
     parser.add_argument("--seed", type=int, default=1)
     chosen = parser.parse_args()
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # so is a job in the background born, and its children too
         signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGHUP, signal.SIG_DFL)  # which `nohup` lets nobody hear
     each = -(-chosen.kills // len(chosen.by))
-    print(report({by: measure(each, by, chosen.seed + k) for k, by in enumerate(chosen.by)}))
+    print(report({by: kills.measure(each, by, chosen.seed + k) for k, by in enumerate(chosen.by)}))
 
 
 if __name__ == "__main__":

@@ -8,18 +8,15 @@ rounding at about psi = 1e-9. Prints both tables in Markdown.
 
 import argparse
 import itertools
-import sys
 from pathlib import Path
 
 import matplotlib
 import numpy as np
+import shared  # noqa: F401
 from mpmath import mp, mpf
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-
-import paper
 from reference import naive
 from reference.naive_map import NaiveMap, linear_family, root_family
+from support import paper
 
 import vibro_sweep as vs
 from vibro_sweep.plotting.style import DASHES, EXPONENTS, FAINT, GRAZING, INK, LEFT, RIGHT, STYLE, page

@@ -17,8 +17,6 @@ from typing import NamedTuple
 import numpy as np
 
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parent / "tests"))
-
 REFERENCE = HERE / "data" / "impacts.json"
 CLEARANCES = (6.69, 3.0, 1.0)
 CYCLE = {6.69: 29, 3.0: 1, 1.0: 1}  # forcing periods after which the attractor repeats itself
@@ -97,6 +95,7 @@ def on_attractor(b: float) -> tuple[dict[str, float], np.ndarray]:
 
 
 def write_reference() -> None:
+    import shared  # noqa: F401
     from reference import naive
 
     jobs = [(b, tuple(b * x for x in start), COUNT) for b in CLEARANCES for start in naive.STARTS]

@@ -1,28 +1,14 @@
 """Which orbits end on the same attractor: against whole section clouds compared point by point, and what is known."""
 
-import h5py
 import numpy as np
 import pytest
-from support.attractors import known_orbits, same_partition
+from support.attractors import same_partition
+from support.scenes import OSCILLATOR, run, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.analysis import attractors
 from vibro_sweep.driver import blocks, compute
-from vibro_sweep.scene import SceneError, parse_scene
-
-PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
-
-
-def scene_of(text, system=PAPER):
-    return parse_scene(f"system: {{{system}}}\n{text}")
-
-
-def run(folder, text, system=PAPER):
-    """The scene's file, as arrays."""
-    path = folder / f"{len(list(folder.iterdir()))}.h5"
-    vs.run(scene_of(text, system), path)
-    with h5py.File(path) as file:
-        return {name: dataset[()] for name, dataset in file.items()}
+from vibro_sweep.scene import SceneError
 
 
 def by_hand(system, starts, periods, record=400):
@@ -140,12 +126,12 @@ observe: [attractors, section]"""
 
 @pytest.fixture(scope="module")
 def basins(tmp_path_factory):
-    return run(tmp_path_factory.mktemp("basins"), BASINS, f"{PAPER}, b: 6.734")
+    return run(tmp_path_factory.mktemp("basins"), BASINS, f"{OSCILLATOR}, b: 6.734")
 
 
 def test_basins_against_simulate(basins):
     """Each state of the plane ends where `simulate` from it does."""
-    system = scene_of(BASINS, f"{PAPER}, b: 6.734").system
+    system = scene_of(BASINS, f"{OSCILLATOR}, b: 6.734").system
     assert basins["start_x1"].shape == (8,) and basins["start_v1"].tolist() == [3, 0, -0.3]
     assert basins["x1"].shape == (8, 3, 200) and basins["attractor"].shape == (8, 3)
     states = [(x1, v1, 3.2286, 0.2475) for x1 in basins["start_x1"] for v1 in basins["start_v1"]]
@@ -164,76 +150,18 @@ def test_every_swept_state(tmp_path, key):
     """Alone, and with a number of the system."""
     text = f"sweep: {{{key}: {{values: [-0.4, 0.3]}}, R: {{values: [0.7, 0.8]}}}}\norbit: {{transient: 0, record: 3}}"
     rest = ", ".join(f"{name}: {0.1 * n:.1f}" for n, name in enumerate(("x1", "v1", "x2", "v2"), 1) if name != key)
-    data = run(tmp_path, f"start: {{{rest}}}\n{text}", f"{PAPER}, b: 0.5")
+    data = run(tmp_path, f"start: {{{rest}}}\n{text}", f"{OSCILLATOR}, b: 0.5")
     for i, value in enumerate(data[f"start_{key}"]):
         for j, restitution in enumerate(data["R"]):
             state = dict(x1=0.1, v1=0.2, x2=0.3, v2=0.4) | {key: value}
-            system = scene_of(text, f"{PAPER}, b: 0.5").system.replace(R=restitution)
+            system = scene_of(text, f"{OSCILLATOR}, b: 0.5").system.replace(R=restitution)
             assert np.array_equal(vs.simulate(system, list(state.values()), 3).section[1:, 2], data["x2"][i, j])
-
-
-# The grouping alone
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_groups(seed):
-    truth, period, average, error = known_orbits(300, seed)
-    label = attractors.group(period, average, error)
-    assert same_partition(label, truth)
-    sizes = np.bincount(label)
-    assert sizes[0] == 0 and np.all(np.diff(sizes[1:]) <= 0)
-    order = np.random.default_rng(seed).permutation(300)
-    assert same_partition(attractors.group(period[order], average[order], error[order]), truth[order])
-
-
-def test_points_do_not_matter_to_each_other():
-    some = [known_orbits(40, seed)[1:] for seed in range(12)]
-    together = attractors.group(*(np.stack(arrays) for arrays in zip(*some, strict=True)))
-    for label, one in zip(together, some, strict=True):
-        assert np.array_equal(label, attractors.group(*one))
-
-
-def test_equal_shares_are_numbered_by_the_first_start():
-    _, period, average, error = known_orbits(300, 0)
-    first = [int(np.flatnonzero(period == p)[0]) for p in (1, 5, 10)]
-    for order in ([0, 1, 2], [2, 0, 1], [1, 2, 0]):
-        chosen = np.array(first)[order]
-        assert attractors.group(period[chosen], average[chosen], error[chosen]).tolist() == [1, 2, 3]
-
-
-def test_chaos_that_changes_sides_seldom_is_one():
-    """Each orbit has a mean of its own, between those of the sides; many of them fill the range."""
-    average, error = np.zeros((40, 7)), np.full((40, 7), 0.01)
-    average[:, 1] = np.random.default_rng(0).permutation(np.linspace(-1, 1, 40))
-    average[:, 6], error[:, 6] = 0.01, 0.001
-    period = np.zeros(40, int)
-    assert np.all(attractors.group(period, average, error) == 1)
-    apart = abs(average[:, 1]) > 0.8  # nothing between the sides: two
-    assert attractors.group(period[apart], average[apart], error[apart]).max() == 2
-
-
-def test_an_orbit_on_its_way_is_no_attractor():
-    """It has no period, need not be chaotic, and has the averages of a periodic one; multiples of a period are one."""
-    average, error = np.ones((4, 7)), np.full((4, 7), 1e-6)
-    average[:, 6] = [-1e-4, -1e-4, -1e-4, 0.01]
-    average[2, :6] += 0.01
-    error[2:, :6], error[2:, 6] = 0.01, 1e-3
-    period = np.array([35, 105, 0, 0])
-    for order in ([0, 1, 2, 3], [2, 3, 1, 0], [3, 2, 0, 1]):
-        label = attractors.group(period[order], average[order], error[order])
-        assert label.tolist() == [(1, 1, 0, 2)[i] for i in order]
-
-
-def test_failed_orbits_and_those_that_have_not_settled():
-    label = np.array([[1, 1, 0, -1], [-1, -1, -1, -1]])
-    share = attractors.share(label)
-    assert share[0, :3].tolist() == [2 / 3, 2 / 3, 1 / 3] and np.isnan(share[0, 3]) and np.isnan(share[1]).all()
 
 
 def test_too_short_a_transient_is_said(tmp_path):
     """A weakly damped free motion: its exponents say that it settles, and its section points that it has not yet."""
     text = "start: {random: 4}\norbit: {transient: 10, record: 400}\nobserve: [attractors]"
-    system = PAPER.replace("0.05", "0.005") + ", b: 1.0e+6"
+    system = OSCILLATOR.replace("0.05", "0.005") + ", b: 1.0e+6"
     data = run(tmp_path, text, system)
     assert np.all(data["period"] == 0) and np.all(data["attractor"] == 0) and np.all(data["share"] == 1)
     data = run(tmp_path, text.replace("10,", "2000,"), system)
@@ -246,7 +174,7 @@ def test_an_orbit_that_arrives_within_the_record_has_not_settled(tmp_path):
 start: {random: 32, seed: 1}
 orbit: {transient: 0, record: 40000}
 observe: [attractors, section]"""
-    data = run(tmp_path, text, f"{PAPER}, b: 6.7524")
+    data = run(tmp_path, text, f"{OSCILLATOR}, b: 6.7524")
     free = np.all(abs(np.diff(data["x1"][:, -3000:], axis=1)) < 1e-6, axis=1)
     arrived = free & (data["period"] == 0)
     assert np.any(arrived) and not np.all(free) and np.all(data["attractor"][arrived] == 0)
@@ -254,7 +182,7 @@ observe: [attractors, section]"""
 
 def test_a_point_that_cannot_be_computed_has_no_attractor(tmp_path):
     text = "sweep: {zeta: {values: [1.0e+6, 0.05]}}\nstart: {random: 3}\norbit: {transient: 100, record: 20}"
-    data = run(tmp_path, f"{text}\nobserve: [attractors]", f"{PAPER}, b: 6.8")
+    data = run(tmp_path, f"{text}\nobserve: [attractors]", f"{OSCILLATOR}, b: 6.8")
     assert np.all(data["attractor"][0] == -1) and np.isnan(data["share"][0]).all() and np.all(data["attractor"][1] >= 0)
     assert not {"x1", "lyapunov", "impacts_right"} & data.keys()
 
@@ -294,12 +222,12 @@ def test_a_point_that_cannot_be_computed_has_no_attractor(tmp_path):
 )
 def test_bad_scenes(text, problem):
     with pytest.raises(SceneError) as caught:
-        scene_of(f"orbit: {{transient: 1, record: 1}}\n{text}", f"{PAPER}, b: 6.7")
+        scene_of(f"orbit: {{transient: 1, record: 1}}\n{text}", f"{OSCILLATOR}, b: 6.7")
     [said] = caught.value.problems
     assert said.partition(" (line ")[0] == problem
 
 
 def test_no_stop_no_bound():
     text = "sweep: {x1: {values: [-9, 6.7]}}\norbit: {transient: 1, record: 1}"
-    assert scene_of(text, f"{PAPER}, b: 6.7, stops: right").shape == (2,)
-    assert scene_of(f"model: map\n{text}".replace("6.7", "7"), f"{PAPER}, b: 6.7").shape == (2,)
+    assert scene_of(text, f"{OSCILLATOR}, b: 6.7, stops: right").shape == (2,)
+    assert scene_of(f"model: map\n{text}".replace("6.7", "7"), f"{OSCILLATOR}, b: 6.7").shape == (2,)

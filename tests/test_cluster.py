@@ -7,7 +7,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -16,17 +15,16 @@ from types import SimpleNamespace
 import h5py
 import pytest
 from support import ROOT
+from support.clusters import LIMIT, Cluster
 from support.scenes import ALL, PAPER, arrays_of, assert_same_bits, done
 
 import vibro_sweep as vs
 from vibro_sweep.cli import main
 
-distributed = pytest.importorskip("distributed")
+pytest.importorskip("distributed")
 driver_cluster = pytest.importorskip("vibro_sweep.driver.cluster")
 
 PACKAGE = Path(vs.__file__).parent
-LIMIT = 60  # seconds after which something hangs
-
 BLOCKER = """
 import sys
 
@@ -37,44 +35,6 @@ class Blocker:
 
 sys.meta_path.insert(0, Blocker())
 """
-
-
-class Cluster:
-    """A scheduler and workers, each a process."""
-
-    def __init__(self, folder: Path):
-        self.folder, self.processes = folder, []
-        self.start("scheduler", "--host", "127.0.0.1", "--port", "0", "--dashboard-address", "127.0.0.1:0")
-        told = folder / "scheduler.json"
-        self.wait(lambda: told.exists() and told.stat().st_size)
-        self.address = json.loads(told.read_text())["address"]
-
-    def start(self, what, *options, **environment):
-        files = ["--scheduler-file", str(self.folder / "scheduler.json"), "--no-dashboard"]
-        command = [sys.executable, "-m", "distributed.cli.dask_" + what, *files, *options]
-        with (self.folder / f"{len(self.processes)}.log").open("w") as log:
-            process = subprocess.Popen(command, stdout=log, stderr=log, cwd=self.folder, env=os.environ | environment)
-        self.processes.append(process)
-        return process
-
-    def worker(self, **environment):
-        folder = ["--local-directory", str(self.folder)]
-        return self.start("worker", "--nthreads", "1", "--no-nanny", *folder, **environment)
-
-    def wait(self, condition):
-        limit = time.monotonic() + LIMIT
-        while not condition():
-            assert time.monotonic() < limit and all(process.poll() in (None, -9) for process in self.processes)
-            time.sleep(0.02)
-
-    def wait_for_workers(self, count):
-        with distributed.Client(self.address, set_as_default=False) as client:
-            client.wait_for_workers(count, timeout=LIMIT)
-
-    def end(self):
-        for process in self.processes:
-            process.kill()
-            process.wait()
 
 
 @pytest.fixture
@@ -92,19 +52,26 @@ def unfit(tmp_path_factory):
     lacking, other = tmp_path_factory.mktemp("lacking"), tmp_path_factory.mktemp("other")
     (lacking / "sitecustomize.py").write_text(BLOCKER)
     shutil.copytree(PACKAGE, other / "vibro_sweep", ignore=shutil.ignore_patterns("__pycache__"))
-    with (other / "vibro_sweep" / "engine" / "status.py").open("a") as file:
+    with (other / "vibro_sweep" / "model" / "status.py").open("a") as file:
         file.write("# other\n")
     return {"lacking": str(lacking), "other": str(other)}
 
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
-    """A scene of some seconds in at least sixteen blocks, and its numbers by threads."""
+    """A scene of some seconds in at least sixteen blocks."""
     path = tmp_path_factory.mktemp("scene") / "scene.yaml"
     more = f"start: {{random: 2, seed: 5}}\norbit: {{transient: 10000, record: 40}}\n{ALL}\n"
     path.write_text(f"system: {{{PAPER}}}\nsweep: {{b: {{start: 6.5, stop: 6.8, num: 300}}}}\n{more}")
-    vs.run(vs.load_scene(path), path.with_suffix(".h5"))
-    return path, arrays_of(path.with_suffix(".h5"))
+    return path
+
+
+@pytest.fixture(scope="module")
+def whole(scene):
+    """Its numbers by threads."""
+    path = scene.with_suffix(".h5")
+    vs.run(vs.load_scene(scene), path)
+    return arrays_of(path)
 
 
 def command_of(scene, output, cluster):
@@ -112,26 +79,25 @@ def command_of(scene, output, cluster):
 
 
 @pytest.mark.slow
-def test_dask_processes_and_threads_agree(tmp_path, cluster, scene):
-    path, whole = scene
+def test_dask_processes_and_threads_agree(tmp_path, cluster, scene, whole):
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
-        vs.run(vs.load_scene(path), tmp_path / "processes.h5", executor=pool)
+        vs.run(vs.load_scene(scene), tmp_path / "processes.h5", executor=pool)
     assert_same_bits(arrays_of(tmp_path / "processes.h5"), whole)
     workers = [cluster.worker(), cluster.worker()]
     cluster.wait_for_workers(2)
-    assert main(command_of(path, tmp_path / "dask.h5", cluster)) == 0
+    assert main(command_of(scene, tmp_path / "dask.h5", cluster)) == 0
     assert_same_bits(arrays_of(tmp_path / "dask.h5"), whole)
     assert all(worker.poll() is None for worker in workers)
     with h5py.File(tmp_path / "dask.h5") as file:
         assert json.loads(file.attrs["provenance"])["executor"] == "ClusterExecutor"
 
 
-def test_two_workers_killed_and_one_added(tmp_path, cluster, scene):
-    path, whole = scene
+@pytest.mark.slow
+def test_two_workers_killed_and_one_added(tmp_path, cluster, scene, whole):
     output = tmp_path / "out.h5"
     workers = [cluster.worker(), cluster.worker()]
     cluster.wait_for_workers(2)
-    run = subprocess.Popen([sys.executable, "-m", "vibro_sweep", *command_of(path, output, cluster)])
+    run = subprocess.Popen([sys.executable, "-m", "vibro_sweep", *command_of(scene, output, cluster)])
     cluster.wait(lambda: done(output))
     for worker in workers:
         worker.send_signal(signal.SIGKILL)
@@ -154,34 +120,31 @@ def stopped(cluster, path, output, stop):
 
 
 @pytest.mark.slow
-def test_ctrl_c(tmp_path, cluster, scene):
-    path, whole = scene
+def test_ctrl_c(tmp_path, cluster, scene, whole):
     output = tmp_path / "out.h5"
-    status, error = stopped(cluster, path, output, lambda run: run.send_signal(signal.SIGINT))
+    status, error = stopped(cluster, scene, output, lambda run: run.send_signal(signal.SIGINT))
     assert status == 130
     assert "--resume" in error and f"--scheduler {cluster.address}" in error
-    assert main([*command_of(path, output, cluster), "--resume"]) == 0
+    assert main([*command_of(scene, output, cluster), "--resume"]) == 0
     assert_same_bits(arrays_of(output), whole)
 
 
 @pytest.mark.slow
-def test_the_scheduler_dies(tmp_path, cluster, scene):
-    path, whole = scene
+def test_the_scheduler_dies(tmp_path, cluster, scene, whole):
     output = tmp_path / "out.h5"
-    status, error = stopped(cluster, path, output, lambda _: cluster.processes[0].kill())
+    status, error = stopped(cluster, scene, output, lambda _: cluster.processes[0].kill())
     assert status == 2
     assert "its scheduler has died" in error and "--resume" in error
-    vs.run(vs.load_scene(path), output, mode="resume")
+    vs.run(vs.load_scene(scene), output, mode="resume")
     assert_same_bits(arrays_of(output), whole)
 
 
 @pytest.mark.slow
-def test_a_worker_without_the_package_joins_later(tmp_path, cluster, scene, unfit):
+def test_a_worker_without_the_package_joins_later(tmp_path, cluster, scene, whole, unfit):
     """It ends at its first block, which others compute."""
-    path, whole = scene
     output = tmp_path / "out.h5"
     worker = cluster.worker()
-    run = subprocess.Popen([sys.executable, "-m", "vibro_sweep", *command_of(path, output, cluster)])
+    run = subprocess.Popen([sys.executable, "-m", "vibro_sweep", *command_of(scene, output, cluster)])
     cluster.wait(lambda: done(output))
     worker.send_signal(signal.SIGSTOP)  # so that blocks go to the other
     cluster.worker(PYTHONPATH=unfit["lacking"]).wait(LIMIT)
@@ -195,7 +158,7 @@ def test_a_worker_without_the_package_joins_later(tmp_path, cluster, scene, unfi
 def test_a_worker_with_other_code_joins_later(tmp_path, cluster, scene, unfit):
     output = tmp_path / "out.h5"
     worker = cluster.worker()
-    command = [sys.executable, "-m", "vibro_sweep", *command_of(scene[0], output, cluster)]
+    command = [sys.executable, "-m", "vibro_sweep", *command_of(scene, output, cluster)]
     run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     cluster.wait(lambda: done(output))
     worker.send_signal(signal.SIGSTOP)  # so that blocks go to the other
@@ -210,7 +173,7 @@ def test_unfit_workers_are_named(tmp_path, cluster, scene, capsys, unfit):
     cluster.worker(PYTHONPATH=unfit["lacking"])
     cluster.worker(PYTHONPATH=unfit["other"])
     cluster.wait_for_workers(3)
-    assert main(command_of(scene[0], tmp_path / "out.h5", cluster)) == 2
+    assert main(command_of(scene, tmp_path / "out.h5", cluster)) == 2
     error = capsys.readouterr().err
     assert len(error.splitlines()) == 1 and "No module named 'vibro_sweep'" in error
     assert error.count("worker tcp://127.0.0.1:") == 2 and error.count(", code ") == 2
@@ -221,7 +184,7 @@ def test_unfit_workers_are_named(tmp_path, cluster, scene, capsys, unfit):
 def test_no_scheduler(tmp_path, scene, capsys, monkeypatch, address):
     monkeypatch.setattr("vibro_sweep.driver.cluster.CONNECT_SECONDS", 0.5)
     output = tmp_path / "out.h5"
-    assert main(["run", str(scene[0]), "-o", str(output), "--scheduler", address]) == 2
+    assert main(["run", str(scene), "-o", str(output), "--scheduler", address]) == 2
     error = capsys.readouterr().err
     assert error.startswith(f"vibro-sweep: error: --scheduler {address}: no dask scheduler answers there")
     assert len(error.splitlines()) == 1 and not list(tmp_path.iterdir())
@@ -289,6 +252,6 @@ def test_a_client_whose_scheduler_is_gone_is_no_bug():
 
 @pytest.mark.parametrize("address", ["tls://127.0.0.1:1"])
 def test_tls_without_certificates(tmp_path, scene, capsys, address):
-    assert main(["run", str(scene[0]), "-o", str(tmp_path / "out.h5"), "--scheduler", address]) == 2
+    assert main(["run", str(scene), "-o", str(tmp_path / "out.h5"), "--scheduler", address]) == 2
     error = capsys.readouterr().err
     assert len(error.splitlines()) == 1 and "distributed.comm.tls" in error

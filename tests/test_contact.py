@@ -1,7 +1,7 @@
-"""First contacts held against the certified reference: none beyond the stated rounding is missed, none invented.
+"""First contacts of polynomials, by `contact.first_contact` and by eights, against the certified reference.
 
-Flights are built about an extremum whose distance from the stop is prescribed, 10^-1 .. 10^-15 of the amplitude
-before or behind it. The reference then judges the flight as it is in floats, so that nothing rests on the building.
+The gap is built about an extremum whose distance from the stop is prescribed, 10^-1 .. 10^-15 of the amplitude before
+or behind it. The reference then judges it as it is in floats: none beyond the stated rounding is missed, none invented.
 """
 
 import itertools
@@ -10,23 +10,14 @@ import numpy as np
 import pytest
 from numpy.random import default_rng
 from reference import certified
-from reference.certified import NEGATIVE, POSITIVE, REAL
+from reference.certified import POSITIVE, REAL
+from support.decades import DECADES, EPS, show
 
-import vibro_sweep as vs
-from vibro_sweep.engine import one_system
-from vibro_sweep.engine.motion import contact, ensemble, impacts, orbits, scan
+from vibro_sweep.engine.motion import contact
 from vibro_sweep.engine.motion.strike import TAIL, strike, strikes_of
 from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.engine.simd.lanes import LANES, lanes_of
 from vibro_sweep.engine.tables.flight import ORDER
-from vibro_sweep.model import status
-
-DECADES = np.arange(1, 16)
-EPS = 2.0**-52
-CHAIN = 8 * EPS  # of the largest term of x1 along the flight: rounding allowed from the section to the contact
-
-
-# --- polynomials: contact.first_contact alone -----------------------------------------------------------------------
 
 
 @entry
@@ -167,15 +158,6 @@ def polynomial_table(search, kind, count, rng):
     return rows
 
 
-def show(title, rows):
-    print(
-        f"\n{title}\n 10^-k | flights behind, contacts, missed, invented | flights before, contacts, missed, invented"
-    )
-    for decade, (behind, before) in zip(DECADES, rows, strict=True):
-        cells = [f"{r[0]:8d} {r[3]:8d} {r[1]:4d} {r[2]:4d}" for r in (behind, before)]
-        print(f"   {decade:3d} | " + " | ".join(cells))
-
-
 @pytest.mark.parametrize("search", SEARCHES)
 @pytest.mark.parametrize("kind", KINDS)
 def test_polynomials(kind, search):
@@ -189,139 +171,13 @@ def test_polynomials(kind, search):
     assert rows[..., 4].sum() <= (0.003 * rows[..., 0].sum() if kind == "double" else 0), "unresolved"
 
 
-# --- flights of oscillators: from the section through the scan to the contact ---------------------------------------
-
-
-@entry  # like the kernels, without reference counts: a view of an array passes from one to the other
-def first_impacts(e, stops, states, record, suspects, nothing):
-    o, t = e.orbits[0], e.tangent[0]
-    f, records = ensemble.flight_of(e, o), ensemble.records_of(e, o)
-    for i in range(len(states)):
-        x = states[i]
-        orbits.place(o, f.nodes, stops, 0, 0.0, x)
-        o.suspect = scan.first_suspect(f, o)
-        suspects[i] = scan.suspect_state(o, f.nodes)[0]
-        # the first cell alone, with one event allowed: R = 1 makes a mass that creeps off the stop knock for ever
-        orbits.place(o, f.nodes, stops, 0, 0.0, x)
-        o.events = impacts.MOST_EVENTS - 1
-        outcome = impacts.cross_cell(f, stops, o, records, t, 0, 0.0)
-        if o.impacts_logged == 0:
-            orbits.place(o, f.nodes, stops, 0, 0.0, x)
-            o.periods = 1
-            ensemble.carry(e, None, ensemble.Readings(nothing, False, nothing, 0))
-            outcome = o.status
-        record[i, 0] = records.impacts[0, 1] if o.impacts_logged else np.inf
-        record[i, 1] = records.impacts[0, 2]
-        record[i, 2] = records.impacts[0, 3]
-        record[i, 3] = outcome
-
-
-def random_system(rng):
-    """Moderately damped, so that a flight can be followed backwards over a period."""
-    while True:
-        system = vs.System(
-            mu_m=10 ** rng.uniform(-0.5, 1),
-            mu_k=10 ** rng.uniform(-0.5, 1),
-            zeta=rng.choice([0.0, 10 ** rng.uniform(-4, -1.5)]),
-            f2=rng.choice([0.0, 1.0, rng.random()]),
-            omega=10 ** rng.uniform(-0.3, 0.5),
-            R=1.0,  # no chatter is summed up: every contact counts
-            b=10 ** rng.uniform(-1, 1),
-            tau=rng.uniform(-np.pi, np.pi),
-        )
-        if system.eta.max() * system.period < 5:
-            return system
-
-
-def flights(reference, b, count, rng):
-    """States at the section of flights with an extremum of prescribed distance from a stop, and these distances.
-
-    Returns states (N, 4), decades (N,), whether the extremum lies before the stop (N,).
-    """
-    u = float(reference.period) * rng.uniform(0.02, 0.98)
-    decade = rng.choice(DECADES, count)
-    missing = rng.random(count) < 0.5
-    side = rng.choice([-1, 1], count)
-    z = np.zeros((count, 6), REAL)
-    z[:, 0] = side * b * (1 + np.where(missing, -1, 1) * 10.0**-decade * rng.uniform(0.3, 1, count))
-    z[:, 2] = b * rng.normal(size=count)
-    z[:, 3] = b * rng.normal(size=count)
-    z[:, 4:] = reference.phase(u)
-    force = np.array([certified.longdouble(reference.A[1, j]) for j in range(6)])
-    z[:, 2] = np.where(side * (z @ force) < 0, z[:, 2], -z[:, 2])
-    curved = rng.random(count) < 0.85
-    z[~curved, 2] -= (z @ force / force[2])[~curved]  # an inflection: no acceleration at the stop, or nearly none
-    z[~curved, 1] = (side * b * 10.0 ** -rng.uniform(2, 14, count) * rng.choice([-1, 0, 1], count))[~curved]
-    start = z @ reference.before(u).T
-    free = np.abs(start[:, 0]) <= b
-    return start[free, :4].astype(float), decade[free], missing[free]
-
-
-def judge_flights(count, rng):
-    """Rows (decade, missing, 5) of flights, missed, invented, contacts, wrongly excluded."""
-    system = random_system(rng)
-    reference = certified.Reference(system.parameters())
-    batches = [flights(reference, system.b, count // 8, rng) for _ in range(8)]
-    states, decade, missing = (np.concatenate(parts) for parts in zip(*batches, strict=True))
-    leaving = rng.random(len(states)) < 0.1  # flights that begin on a stop
-    states[leaving, 0] = np.copysign(system.b, states[leaving, 0])
-    states[leaving, 1] = -np.sign(states[leaving, 0]) * 10.0 ** -rng.uniform(0, 15, leaving.sum())
-    engine = one_system.Engine(system)
-    record, suspects = np.empty((len(states), 4)), np.empty(len(states), np.int64)
-    eight = engine.ensemble._replace(records=orbits.new_records(1, impacts=1))
-    first_impacts(eight, engine.stops, states, record, suspects, np.empty((1, 0, 4)))
-    assert np.isin(record[:, 3], [status.OK, status.EVENT_LIMIT]).all()  # none is unresolved
-    z = reference.forced(states)
-    # every term of x1 at any time
-    tolerance = CHAIN * np.abs(reference.shift[:, 0]).max(0) @ np.abs(z.T)
-    hit = np.isfinite(record[:, 0])
-    time = np.where(hit, record[:, 0] * engine.width + record[:, 1], engine.period)
-    verdict = reference.inside(z, system.b, (time * (1 - 2 * EPS)).astype(REAL), tolerance)
-    missed = verdict != POSITIVE
-    x1, error = reference.x1(z, time.astype(REAL))
-    invented = hit & (record[:, 2] * x1 < system.b - tolerance - error)
-    excluded = np.minimum(suspects * engine.width, engine.period)
-    wrong, later = missed & (excluded >= time), excluded > time  # up to `time` it is judged already
-    wrong[later] = reference.inside(z[later], system.b, excluded[later].astype(REAL), tolerance[later]) == NEGATIVE
-    rows = np.zeros((len(DECADES), 2, 5), int)
-    for column, chosen in enumerate((np.ones(len(hit), bool), missed, invented, hit, wrong)):
-        np.add.at(rows[..., column], (decade[chosen] - 1, missing[chosen].astype(int)), 1)
-    return rows
-
-
-def test_the_reference_sees_what_was_built():
-    rng = default_rng(7)
-    free = 0
-    for _ in range(4):
-        system = random_system(rng)
-        reference = certified.Reference(system.parameters())
-        batches = [flights(reference, system.b, 200, rng) for _ in range(4)]
-        states, decade, missing = (np.concatenate(parts) for parts in zip(*batches, strict=True))
-        end, none = np.full(len(states), reference.period, REAL), np.zeros(len(states), REAL)
-        verdict = reference.inside(reference.forced(states), system.b, end, none)
-        assert (verdict[~missing & (decade < 13)] == NEGATIVE).all()
-        free += np.count_nonzero(verdict[missing] == POSITIVE)
-    assert free > 50
-
-
-def test_flights():
-    rng = default_rng(11)
-    rows = sum(judge_flights(2500, rng) for _ in range(2))
-    assert rows[..., 0].sum() > 2000
-    assert rows[..., 3].sum() > 1000
-    for column, what in ((1, "missed"), (2, "invented"), (4, "excluded by the scan, with a contact")):
-        assert rows[..., column].sum() == 0, what
-
-
-@pytest.mark.slow
-def test_a_million_flights(capsys):
+@pytest.mark.parametrize(
+    "count", [pytest.param(1000, marks=pytest.mark.slow), pytest.param(5000, marks=pytest.mark.soak)]
+)
+def test_many_polynomials(count, capsys):
     rng = default_rng(2024)
     with capsys.disabled():
         for kind, search in itertools.product(KINDS, SEARCHES):
-            rows = polynomial_table(search, kind, 5000, rng)
+            rows = polynomial_table(search, kind, count, rng)
             show(f"polynomials: {kind}, {search.__name__}; unresolved: {rows[..., 4].sum()}", rows)
             assert rows[..., 1:3].sum() == 0
-        rows = sum(judge_flights(16000, rng) for _ in range(60))
-        show("flights of oscillators", rows)
-        print(f"excluded by the scan in spite of a contact: {rows[..., 4].sum()} of {rows[..., 0].sum()}")
-    assert rows[..., (1, 2, 4)].sum() == 0

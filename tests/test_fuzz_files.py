@@ -4,7 +4,6 @@ import collections
 import os
 
 import pytest
-from support.files import files  # noqa: F401
 from support.fuzz_files import COMMANDS, OUTCOMES, fuzz
 
 
@@ -17,7 +16,7 @@ from support.fuzz_files import COMMANDS, OUTCOMES, fuzz
         pytest.param(None, id="all", marks=pytest.mark.soak),
     ],
 )
-def test_damaged_files(files, tmp_path, monkeypatch, capsys, name, few):  # noqa: F811
+def test_damaged_files(files, tmp_path, monkeypatch, capsys, name, few):
     monkeypatch.chdir(tmp_path)
     counts, failures = fuzz(files, files / name, few)
     if few is None:

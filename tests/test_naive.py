@@ -2,7 +2,8 @@
 
 import pytest
 from mpmath import mp, mpf
-from reference import naive
+from reference import monodromy, naive
+from reference.gmp import expm
 
 PAPER = {**naive.PAPER, "b": 6.6, "tau": 2.2}
 START = (1.0, 0.5, -0.3, 0.2)
@@ -42,6 +43,15 @@ def solve(rhs, t, y, until):
 
 def distance(a, b):
     return max(abs(x - y) for x, y in zip(a, b, strict=True))
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.05, 40.0])
+@pytest.mark.parametrize("u", [0, 1e-3, 20, 500])
+def test_exponential_of_a_matrix_as_mpmath_has_it(zeta, u):
+    A = monodromy.matrices(PAPER | {"zeta": zeta}) * u
+    with mp.workdps(80):
+        exact = mp.expm(A)
+    assert mp.mnorm(expm(A) - exact) <= mpf("1e-39") * mp.mnorm(exact)
 
 
 def test_grazing_of_the_paper():

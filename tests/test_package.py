@@ -92,6 +92,7 @@ def test_every_public_object_says_what_it_raises_or_returns():
         assert inspect.getdoc(getattr(vs, name)), name
 
 
+@pytest.mark.slow
 def test_mypy_of_a_users_script(tmp_path):
     pytest.importorskip("mypy")
     for name in vs.__all__:

@@ -1,13 +1,7 @@
-"""The paper's scenes, and what the table of benchmarks/paper.py must say."""
-
-import sys
+"""The paper's scenes, and what the table that `python benchmarks/paper.py` prints must say."""
 
 import pytest
-from support import ROOT
-
-sys.path.insert(0, str(ROOT / "benchmarks"))
-
-import paper
+from support import paper
 
 from vibro_sweep import grazing, load_scene
 

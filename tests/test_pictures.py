@@ -27,7 +27,7 @@ def test_a_picture_of_ours_is_drawn_anew_until_somebody_changes_it(folder, suffi
     whole = path.read_bytes()
     rng = np.random.default_rng(1)
     changes = [whole + b"\n", whole[:-1], whole[: len(whole) // 2], b"", whole + whole]
-    for place in rng.integers(0, len(whole), 10).tolist():
+    for place in rng.integers(0, len(whole), 4).tolist():
         changes.append(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
     for changed in changes:
         path.write_bytes(changed)

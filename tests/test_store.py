@@ -1,34 +1,20 @@
-"""The file as others find it: complete, described, and never lost."""
+"""The file as others find it: its datasets, their description, its size; and files that are none of ours."""
 
 import json
-import os
-import pickle
-import subprocess
-import sys
 
 import h5py
 import numpy as np
 import pytest
 import xarray
+from support.stored import ALL, IMPACTS, LYAPUNOV, PLANE, SECTION, SWEEP, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep import store
-from vibro_sweep.driver import blocks, compute
 from vibro_sweep.model.status import STATUSES
-from vibro_sweep.scene import parse_scene
 from vibro_sweep.store import StoreError, describe
 from vibro_sweep.store.attributes import text
 
-SYSTEM = (
-    "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}\norbit: {transient: 3, record: 4}\n"
-)
-SWEEP = "sweep: {b: {values: [6.5, 6.6, 6.7]}}\n"
-PLANE = "sweep: {R: {values: [0.7, 0.8]}, b: {values: [6.5, 6.6, 6.7]}}\n"
-ALL = "observe: [section, lyapunov, impacts]\n"
 TRAJECTORY = "trajectory: {periods: 2, samples: 5}\n"
-SECTION = {"x1", "v1", "x2", "v2", "period"}
-LYAPUNOV = {"lyapunov", "lyapunov_residual", "lyapunov_error"}
-IMPACTS = {"impacts_right", "impacts_left", "min_impact_speed", "contact_error", "sticking_time"}
 MOTION = {f"trajectory_{name}" for name in ("x1", "v1", "x2", "v2")}
 CROSSED = {f"trajectory_section_{name}" for name in ("x1", "v1", "x2", "v2")}
 HITS = {f"trajectory_impact_{name}" for name in ("time", "side", "v1", "v1_after", "x2", "v2")}
@@ -55,15 +41,6 @@ EXTRA = {
     **{name: {"trajectory_impact": 5} for name in HITS},
     **{name: {"exponent": 4} for name in ("lyapunov", "lyapunov_error")},
 }
-
-
-def scene_of(text):
-    return parse_scene(SYSTEM + text, "some/folder/the_scene.yaml")
-
-
-@pytest.fixture
-def path(tmp_path):
-    return tmp_path / "out.h5"
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -131,203 +108,6 @@ def test_size_is_what_the_file_takes(path):
     vs.run(scene, path)
     assert store.size(scene) == pytest.approx(path.stat().st_size, abs=100_000)
     assert store.size(scene) > 3_000_000
-
-
-# While it is written
-
-
-class Interruption(Exception):  # noqa: N818
-    pass
-
-
-def broken_off(scene, path, mode="new"):
-    """The unfinished file of a run that ends after its first block."""
-
-    def progress(done, _):
-        if done:
-            raise Interruption
-
-    with pytest.raises(Interruption):
-        vs.run(scene, path, workers=1, progress=progress, mode=mode)
-    return f"{path}.part"
-
-
-def test_an_unfinished_file_can_be_read(path):
-    part = broken_off(scene_of(SWEEP + ALL), path)
-    assert not path.exists()
-    with vs.open(part) as data:
-        computed = data["status"].values == 0
-        assert 0 < np.count_nonzero(computed) < 3
-        assert np.all(np.isfinite(data["x1"][computed])) and np.all(np.isnan(data["x1"][~computed]))
-        assert np.all(data["status"][~computed] == -1)
-
-
-@pytest.mark.parametrize("part", [False, True])
-def test_what_is_opened_can_be_copied_and_sent(path, part):
-    scene = scene_of(PLANE + ALL)
-    path = broken_off(scene, path) if part else vs.run(scene, path) and path
-    with vs.open(path) as data:
-        sent = pickle.loads(pickle.dumps(data))
-        assert sent.identical(data) and data.copy(deep=True).identical(data)
-        sent.close()
-        assert data["x1"][0, 1:, ::2].shape == (2, 2) and data.isel(b=[2, 0])["b"].values.tolist() == [6.7, 6.5]
-
-
-def test_a_file_that_is_being_written_can_be_read(path):
-    scene = scene_of(SWEEP)
-    with store.writer(scene, path, "new"):
-        part = f"{path}.part"
-        assert "computed     0 of 3" in in_another_process(
-            f"from vibro_sweep.store import describe as d; print(d('{part}'))"
-        )
-        assert "{'b': 3, 'sample': 4}" in in_another_process(
-            f"import vibro_sweep as v; print(dict(v.open('{part}').sizes))"
-        )
-
-
-def in_another_process(code):
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    return done.stdout + done.stderr
-
-
-@pytest.mark.parametrize("mode", ["new", "resume", "overwrite"])
-def test_one_writer(path, mode):
-    """A second one is refused, and does the first no harm."""
-    scene = scene_of(SWEEP)
-    with store.writer(scene, path, "new") as first:
-        code = f"""
-from pathlib import Path
-from vibro_sweep import store
-from vibro_sweep.scene import scene
-with store.writer(scene.parse_scene({scene.text!r}), Path({str(path)!r}), {mode!r}):
-    print("let in")"""
-        answer = in_another_process(code)
-        assert "StoreError" in answer and "let in" not in answer
-        assert ("being written" in answer) == (mode != "new")
-        assert first.missing((slice(None),)) and first.done() == 0
-    assert "0 of 3" in describe(f"{path}.part")
-    vs.run(scene, path, mode="resume")
-    assert "3 of 3" in describe(path)
-
-
-@pytest.mark.parametrize("starts", [1, 2])
-def test_what_is_missing_and_what_is_done(path, starts):
-    scene = scene_of(PLANE + f"start: {{random: {starts}}}\nobserve: [impacts]")
-    (*_, last) = blocks.blocks(scene, points_per_block=2)
-    with store.writer(scene, path, "new") as file:
-        everything = (slice(None), slice(None))
-        assert file.done() == 0 and file.missing(everything)
-        file.write(*compute.compute(last))
-        assert file.done() == starts
-        assert file.missing(everything) and file.missing((slice(1, 2), slice(1, 3)))
-        assert not file.missing((slice(1, 2), slice(2, 3)))
-
-
-def test_describe_says_how_far_it_is(path):
-    scene = scene_of(SWEEP + ALL)
-    part = broken_off(scene, path)
-    assert "computed     1 of 3 orbits (33.33 %)" in describe(part)
-    vs.run(scene, path, mode="resume")
-    text = describe(path)
-    assert "computed     3 of 3 orbits (100 %)" in text and "complete" in text and "|sum of exponents" in text
-    for name in SECTION | LYAPUNOV | IMPACTS | {"b"}:
-        assert name in text
-
-
-# Going on, or starting again
-
-
-def test_new_refuses_what_is_there(path):
-    scene = scene_of(SWEEP)
-    part = broken_off(scene, path)
-    before = open(part, "rb").read()
-    with pytest.raises(StoreError, match="is an interrupted run"):
-        vs.run(scene, path)
-    assert open(part, "rb").read() == before
-    report = vs.run(scene, path, mode="resume")
-    assert 0 < report.computed < report.points
-    path.chmod(0o444)
-    before = path.read_bytes()
-    again = vs.run(scene, path)
-    assert again == report and again.computed == 0 and path.read_bytes() == before
-    with pytest.raises(StoreError, match=r"exists, .*\n.*another scene"):
-        vs.run(scene_of(SWEEP.replace("6.7", "6.71")), path)
-
-
-def test_new_refuses_a_damaged_file(path):
-    scene = scene_of(SWEEP)
-    vs.run(scene, path)
-    with h5py.File(path) as file:
-        offset = file["x1"].id.get_chunk_info(0).byte_offset
-    with open(path, "rb+") as file:
-        file.seek(offset)
-        file.write(b"damage")
-    with pytest.raises(StoreError, match=r"exists, .*\n.*damaged: x1 \(1 chunk\); `resume` computes that again"):
-        vs.run(scene, path)
-    assert vs.run(scene, path, mode="resume").computed > 0
-
-
-def test_resume_refuses_another_scene(path):
-    part = broken_off(scene_of(SWEEP), path)
-    other = scene_of(SWEEP.replace("6.7", "6.71"))
-    with pytest.raises(StoreError, match="another scene"):
-        vs.run(other, path, mode="resume")
-    os.rename(part, path)
-    with pytest.raises(StoreError, match="another scene"):
-        vs.run(other, path, mode="resume")
-
-
-def test_resume_refuses_other_code(path, monkeypatch):
-    broken_off(scene_of(SWEEP), path)
-    monkeypatch.setattr("vibro_sweep.identity.identity", lambda: "0123456789abcdef")
-    with pytest.raises(StoreError, match="other code"):
-        vs.run(scene_of(SWEEP), path, mode="resume")
-
-
-def test_resume_of_nothing_is_a_run(path):
-    vs.run(scene_of(SWEEP), path, mode="resume")
-    assert "3 of 3" in describe(path)
-
-
-def test_resume_of_a_complete_file_changes_nothing(path, monkeypatch):
-    vs.run(scene_of(SWEEP), path)
-    before, written = path.read_bytes(), path.stat().st_mtime_ns
-    monkeypatch.setattr("vibro_sweep.driver.sweep.orbit_seconds", None)  # nothing is computed
-    seen = []
-    report = vs.run(scene_of(SWEEP), path, mode="resume", progress=lambda *progress: seen.append(progress))
-    assert (report.points, report.bad, seen) == (3, 0, [(3, 3)])
-    assert path.read_bytes() == before and path.stat().st_mtime_ns == written
-    assert os.listdir(path.parent) == [path.name]
-
-
-def test_a_part_that_was_given_the_name_of_the_file_is_completed(path):
-    vs.run(scene_of(SWEEP), path)
-    with vs.open(path) as data:
-        whole = data.load()
-    path.unlink()
-    os.rename(broken_off(scene_of(SWEEP), path), path)
-    vs.run(scene_of(SWEEP), path, mode="resume")
-    with vs.open(path) as data:
-        assert data.equals(whole)
-    assert os.listdir(path.parent) == [path.name]
-
-
-def test_overwrite_keeps_the_old_file_until_the_new_one_is_complete(path):
-    old, new = scene_of(SWEEP), scene_of(SWEEP.replace("6.7", "6.71"))
-    vs.run(old, path)
-    before = path.read_bytes()
-    broken_off(new, path, mode="overwrite")
-    assert path.read_bytes() == before
-    vs.run(new, path, mode="resume")  # goes on with the new one
-    with vs.open(path) as data:
-        assert data["b"].values.tolist() == [6.5, 6.6, 6.71]
-    assert os.listdir(path.parent) == [path.name]
-
-
-def test_overwrite_of_a_damaged_file(path):
-    path.write_bytes(b"not HDF5")
-    vs.run(scene_of(SWEEP), path, mode="overwrite")
-    assert "3 of 3" in describe(path)
 
 
 # What is not a file of ours

@@ -11,6 +11,8 @@ import math
 import numpy as np
 from mpmath import mp, mpf
 
+from reference.gmp import expm
+
 REAL = np.longdouble
 UNIT = float(np.finfo(REAL).eps) / 2  # 2^-64 where longdouble is the x87 format
 MOST_HALVINGS = 64
@@ -117,7 +119,7 @@ class Reference:
             for n in range(self.ORDER + 1):
                 rows.append(row)
                 row = row * A / (n + 1)
-            E, step = mp.eye(6), mp.expm(A * self.h)
+            E, step = mp.eye(6), expm(A * self.h)
             self.shift = np.empty((self.cells, self.ORDER + 1, 6), REAL)
             self.norms = np.empty((self.cells, 6))  # |first row left out| at the node, over all of the cell
             # |A^m| h^m/m! for all m > ORDER, with |A| h <= 1/2, is below this times |E z|
@@ -131,13 +133,13 @@ class Reference:
     def before(self, u):
         """Matrix (6, 6) that takes z(u) back to z(0), longdouble."""
         with mp.workdps(self.digits):
-            E = mp.expm(-self.A * mpf(u))
+            E = expm(-self.A * mpf(u))
             return np.array([[longdouble(E[i, j]) for j in range(6)] for i in range(6)])
 
     def phase(self, u):
         """sin and cos of the force at the time u."""
         with mp.workdps(self.digits):
-            E = mp.expm(self.A * mpf(u))
+            E = expm(self.A * mpf(u))
             return tuple(longdouble(sum(E[4 + i, 4 + j] * self.force[j] for j in range(2))) for i in range(2))
 
     def forced(self, states):

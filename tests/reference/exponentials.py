@@ -8,28 +8,15 @@ resolve is not followed there but bounded by its size.
 
 from functools import cached_property
 
+import gmpy2
 import numpy as np
 from mpmath import mp, mpf
 
-try:
-    import gmpy2  # the same, several times faster
-except ImportError:
-    gmpy2 = None
+from reference.gmp import context, from_gmp, to_gmp
 
 UNIT = float(np.finfo(np.longdouble).eps)
 PARTS = 8  # into which an interval is split
 MOST = 400_000  # intervals looked at together
-
-
-def _to_gmp(x):
-    sign, mantissa, exponent, _ = x._mpf_
-    number = gmpy2.mpfr(-mantissa if sign else mantissa)
-    return gmpy2.mul_2exp(number, exponent) if exponent >= 0 else gmpy2.div_2exp(number, -exponent)
-
-
-def _from_gmp(x):
-    mantissa, exponent = x.as_mantissa_exp()
-    return mp.ldexp(mpf(mantissa), int(exponent))
 
 
 class TooManySwingsError(ArithmeticError):
@@ -55,28 +42,20 @@ class Exponentials:
 
     def derivatives(self, u, count):
         """f(u), f'(u), ...: so many."""
-        if gmpy2 is None:
-            values = [mpf(0)] * count
-            for a, rate in zip(self.amplitudes, self.rates, strict=True):
-                term = a * mp.exp(rate * u)
-                for n in range(count):
-                    values[n] += term.real
-                    term *= rate
-            return values
-        with gmpy2.context(precision=mp.prec):
-            values, u = [gmpy2.mpfr(0)] * count, _to_gmp(mpf(u))
+        with context():
+            values, u = [gmpy2.mpfr(0)] * count, to_gmp(mpf(u))
             for a, rate in self._terms:
                 term = a * gmpy2.exp(rate * u)
                 for n in range(count):
                     values[n] += term.real
                     term *= rate
-            return [_from_gmp(value) for value in values]
+            return [from_gmp(value) for value in values]
 
     @cached_property
     def _terms(self):
         """Amplitudes and rates as numbers of gmpy2; they hold to the precision at their first use."""
         numbers = zip(self.amplitudes, self.rates, strict=True)
-        return [tuple(gmpy2.mpc(_to_gmp(x.real), _to_gmp(x.imag)) for x in pair) for pair in numbers]
+        return [tuple(gmpy2.mpc(to_gmp(x.real), to_gmp(x.imag)) for x in pair) for pair in numbers]
 
     @cached_property
     def sizes(self):

@@ -6,6 +6,8 @@ just before and after it, formed from eq. (3) in full.
 
 from mpmath import mp, mpf
 
+from reference.gmp import expm
+
 
 def matrices(params):
     """A of z' = A z for z = (x1, v1, x2, v2, sin, cos), from eq. (3)."""
@@ -38,8 +40,8 @@ def multipliers(params, impacts, periods):
             rest = [mpf(float(hit["x2"])), mpf(float(hit["v2"])), mp.sin(omega * t + tau), mp.cos(omega * t + tau)]
             before = mp.matrix([int(hit["side"]) * b, v1, *rest])
             after = mp.matrix([int(hit["side"]) * b, -R * v1, *rest])
-            total = saltation(A, R, before, after) * mp.expm(A[:4, :4] * (t - now), method="taylor") * total
+            total = saltation(A, R, before, after) * expm(A[:4, :4] * (t - now)) * total
             now = t
-        total = mp.expm(A[:4, :4] * (periods * 2 * mp.pi / omega - now), method="taylor") * total
+        total = expm(A[:4, :4] * (periods * 2 * mp.pi / omega - now)) * total
         values = mp.eig(total, left=False, right=False)
         return [complex(value) for value in sorted(values, key=lambda value: -abs(value))]

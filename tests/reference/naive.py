@@ -3,7 +3,8 @@
 It shares no formula with the package. With y = (x1, v1, x2, v2, sin(omega t + tau), cos(omega t + tau))
 free flight is the autonomous linear system y' = A y, which mpmath carries forward by exp(A h); rest on a stop
 is the same system with the first two rows of A set to zero. A contact is a root of the Taylor polynomial of
-the gap b - side x1, isolated by halving the step until a bound on the polynomial decides.
+the gap b - side x1, isolated by halving the step until a bound on the polynomial decides. Inside, numbers are those of
+gmpy2.
 
 `python tests/reference/naive.py --write` computes the reference sequences in tests/data/impacts.json anew (minutes).
 """
@@ -15,7 +16,11 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
+import gmpy2
 from mpmath import mp, mpf
+
+from reference.gmp import context, dot, expm, from_gmp, to_gmp
+from reference.roots import ZERO, evaluate, falling_root
 
 REFERENCE = Path(__file__).parents[1] / "data" / "impacts.json"
 NAMES = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")
@@ -50,78 +55,23 @@ class LinearFlow:
         self.rows = [[(a, j) for j, a in enumerate(row) if a] for row in A]  # most entries are zero
         norm = max(sum(abs(a) for a in row) for row in A)
         self.h = 1 / (2 * norm)
-        self.growth = mp.exp(norm * self.h)  # |y(u)| <= growth |y(0)| within a step
-        self.E = mp.expm(mp.matrix(A) * self.h).tolist()
+        self.growth = gmpy2.exp(norm * self.h)  # |y(u)| <= growth |y(0)| within a step
+        exact = expm(mp.matrix([[from_gmp(a * self.h) for a in row] for row in A]))
+        self.E = [[to_gmp(a) for a in row] for row in exact.tolist()]
         self.order = 1
         while mp.ldexp(1, -self.order) / mp.factorial(self.order) > mp.eps / 16:
             self.order += 1
 
     def step(self, y):
-        return [mp.fdot(row, y) for row in self.E]
+        return [dot(row, y) for row in self.E]
 
     def taylor(self, y):
         """Coefficients y_n of y(u) = sum of y_n u^n, each a state."""
         terms = [list(y)]
         for n in range(1, self.order + 1):
             last = terms[-1]
-            terms.append([mp.fdot((a, last[j]) for a, j in row) / n for row in self.rows])
+            terms.append([sum((a * last[j] for a, j in row), ZERO) / n for row in self.rows])
         return terms
-
-
-def horner(c, u):
-    value = mpf(0)
-    for a in reversed(c):
-        value = value * u + a
-    return value
-
-
-def evaluate(terms, u):
-    return [horner(column, u) for column in zip(*terms, strict=True)]
-
-
-def recentred(c, centre):
-    """Coefficients of the polynomial c in powers of u - centre."""
-    d = list(c)
-    for i in range(len(d) - 1):
-        for j in range(len(d) - 2, i - 1, -1):
-            d[j] += centre * d[j + 1]
-    return d
-
-
-def falling_root(c, low, high):
-    """Smallest u in [low, high] where the polynomial c, positive until then, falls through zero; else None.
-
-    A touch of zero that the working precision cannot tell from a double root is a graze, and no root.
-    """
-    centre, r = (low + high) / 2, (high - low) / 2
-    d = recentred(c, centre)
-    if abs(d[0]) > sum(abs(a) * r**n for n, a in enumerate(d[1:], 1)):
-        return low if d[0] < 0 else None
-    if abs(d[1]) > sum(n * abs(a) * r ** (n - 1) for n, a in enumerate(d[2:], 2)):
-        return monotone_root(c, low, high) if d[1] < 0 else None
-    if r < mp.sqrt(mp.eps):
-        return None
-    left = falling_root(c, low, centre)
-    return falling_root(c, centre, high) if left is None else left
-
-
-def monotone_root(c, low, high):
-    """The root of a polynomial that falls from low to high; None if it stays positive."""
-    if horner(c, high) > 0:
-        return None
-    if horner(c, low) <= 0:
-        return low
-    slope = [n * a for n, a in enumerate(c[1:], 1)]
-    u = (low + high) / 2
-    for _ in range(2 * mp.prec):
-        value = horner(c, u)
-        low, high = (u, high) if value > 0 else (low, u)
-        newton = u - value / horner(slope, u)
-        following = newton if low < newton < high else (low + high) / 2
-        if abs(following - u) <= 4 * mp.eps * high:
-            return following
-        u = following
-    raise ArithmeticError("no convergence to a contact")
 
 
 class Oscillator:
@@ -129,21 +79,21 @@ class Oscillator:
 
     def __init__(self, params, digits):
         self.mu_m, self.mu_k, self.zeta, self.f2, self.omega, self.R, self.b, self.tau = (
-            mpf(params[name]) for name in NAMES
+            to_gmp(params[name]) for name in NAMES
         )
         self.sides = SIDES[params.get("stops", "both")]
-        self.brief = mpf(10) ** (-digits / mpf(2))
-        drag, above = 2 * self.zeta, 1 + self.mu_k
-        M2_forces = [1, drag, -above, -drag * above, self.f2, 0]
+        self.brief = to_gmp(mpf(10) ** (-digits / mpf(2)))
+        o, one, drag, above = ZERO, ZERO + 1, 2 * self.zeta, 1 + self.mu_k
+        M2_forces = [one, drag, -above, -drag * above, self.f2, o]
         M2_rows = [
-            [0, 0, 0, 1, 0, 0],
+            [o, o, o, one, o, o],
             [force / self.mu_m for force in M2_forces],
-            [0, 0, 0, 0, 0, self.omega],
-            [0, 0, 0, 0, -self.omega, 0],
+            [o, o, o, o, o, self.omega],
+            [o, o, o, o, -self.omega, o],
         ]
-        self.acceleration = [-1, -drag, 1, drag, 1 - self.f2, 0]  # of M1 in free flight
-        self.free = LinearFlow([[0, 1, 0, 0, 0, 0], self.acceleration, *M2_rows])
-        self.stuck = LinearFlow([[0] * 6, [0] * 6, *M2_rows])
+        self.acceleration = [-one, -drag, one, drag, 1 - self.f2, o]  # of M1 in free flight
+        self.free = LinearFlow([[o, one, o, o, o, o], self.acceleration, *M2_rows])
+        self.stuck = LinearFlow([[o] * 6, [o] * 6, *M2_rows])
         # How far x1 can leave its chord within a step, h^2 / 8 max |x1''|, for |y| = 1 at the step's start.
         self.bulge = sum(map(abs, self.acceleration)) * self.free.growth * self.free.h**2 / 8
 
@@ -166,9 +116,9 @@ class Oscillator:
         leading = next(n for n, c in enumerate(gap) if c)
         speed, pull = gap[1], -2 * gap[2]
         if gap[leading] < 0:
-            return y, leading, mpf(0)
+            return y, leading, ZERO
         if pull > 0 and 2 * speed < self.brief * pull * (1 - self.R):
-            y[1] = mpf(0)
+            y[1] = ZERO
             return y, 2, 2 * speed / (pull * (1 - self.R))
         return y, leading, None
 
@@ -184,7 +134,7 @@ class Oscillator:
         contacts = []
         for side in near:
             # The zero at u = 0, from which M1 just left, is divided out: it cannot be found again.
-            root = falling_root(self.gap(terms, side)[leading if side == touching else 0 :], mpf(0), flow.h)
+            root = falling_root(self.gap(terms, side)[leading if side == touching else 0 :], ZERO, flow.h)
             if root is not None:
                 contacts.append((root, side))
         if not contacts:
@@ -197,8 +147,8 @@ class Oscillator:
     def rest(self, y, side, leading):
         """One step at rest, or less up to the release -> (duration, state, released, Taylor terms)."""
         terms = self.stuck.taylor(y)
-        pull = [side * mp.fdot(self.acceleration, term) for term in terms]
-        u = falling_root(pull[leading:], mpf(0), self.stuck.h)
+        pull = [side * dot(self.acceleration, term) for term in terms]
+        u = falling_root(pull[leading:], ZERO, self.stuck.h)
         if u is None:
             return self.stuck.h, self.stuck.step(y), False, terms
         return u, evaluate(terms, u), True, terms
@@ -213,23 +163,23 @@ def simulate(params, state, periods=None, impacts=None, start_time=0, digits=40)
     """
     if periods is None and impacts is None:
         raise ValueError("say when to stop: periods or impacts")
-    with mp.workdps(digits + 10):
+    with mp.workdps(digits + 10), context():
         o = Oscillator(params, digits)
-        t, period = mpf(start_time), 2 * mp.pi / o.omega
-        end = mp.inf if periods is None else t + periods * period
-        wanted = mp.inf if impacts is None else impacts
-        y = [mpf(x) for x in state] + [mp.sin(o.omega * t + o.tau), mp.cos(o.omega * t + o.tau)]
+        t, period = to_gmp(start_time), 2 * gmpy2.const_pi() / o.omega
+        end = gmpy2.inf() if periods is None else t + to_gmp(periods) * period
+        wanted = math.inf if impacts is None else impacts
+        y = [to_gmp(x) for x in state] + [gmpy2.sin(o.omega * t + o.tau), gmpy2.cos(o.omega * t + o.tau)]
         if any(side * y[0] > o.b for side in o.sides):
             raise ValueError("the start lies behind a stop")
         struck = next((side for side in o.sides if y[0] == side * o.b), 0)
 
         hits, section, sticking = [], [], []
-        next_section = int(mp.ceil(t / period))
+        next_section = int(gmpy2.ceil(t / period))
         resting = touching = leading = 0  # the stop M1 rests on, the stop it leaves in this step
         while t <= end:
             if struck:
                 if struck * y[1] > 0:
-                    hits.append(Impact(t, struck, y[1], y[2], y[3]))
+                    hits.append(Impact(from_gmp(t), struck, *map(from_gmp, y[1:4])))
                 if len(hits) == wanted:
                     break
                 y, leading, delay = o.strike(y, struck)
@@ -244,15 +194,15 @@ def simulate(params, state, periods=None, impacts=None, start_time=0, digits=40)
                 released = False
             while next_section * period <= min(t + u, end):
                 terms = terms or o.free.taylor(y)
-                section.append(tuple(evaluate(terms, next_section * period - t)[:4]))
+                section.append(tuple(map(from_gmp, evaluate(terms, next_section * period - t)[:4])))
                 next_section += 1
             t, y, touching, leading = t + u, y_next, 0, 0
             if released:
-                sticking.append(Sticking(t_on, t, resting))
+                sticking.append(Sticking(from_gmp(t_on), from_gmp(t), resting))
                 # Gap, speed and acceleration are zero at the release, whatever the rounding says.
                 resting, touching, leading = 0, resting, 3
         if resting:
-            sticking.append(Sticking(t_on, end, resting))
+            sticking.append(Sticking(from_gmp(t_on), from_gmp(end), resting))
         return NaiveOrbit(hits, section, sticking)
 
 

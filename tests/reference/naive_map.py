@@ -8,6 +8,7 @@ stops; one period of the oscillator as `naive.py` simulates it; a quarter of a p
 from mpmath import mp, mpf
 
 from reference import naive
+from reference.gmp import expm
 
 
 class NaiveMap:
@@ -22,7 +23,7 @@ class NaiveMap:
         self.A = mp.matrix([[0, 1, 0, 0], M1, [0, 0, 0, 1], M2])
         self.order, self.R, self.omega = order, values["R"], omega
         self.T = 2 * mp.pi / omega
-        self.L = mp.expm(self.A * self.T / 2)
+        self.L = expm(self.A * self.T / 2)
         self.response, self.tau = (x1, x2), mp.atan2(x1.real, x1.imag)
         self.graze = self.steady(0)
         self.b = self.graze[0] - shift if shift is not None else values["b"]
@@ -48,7 +49,7 @@ class NaiveMap:
             return X
         w, impulse = mp.sqrt(square), mp.matrix([0, 1, 0, 0])
         if self.order == 2:
-            impulse = mp.expm(-self.A * (w - X[1]) / a) * impulse
+            impulse = expm(-self.A * (w - X[1]) / a) * impulse
         return X - (1 + self.R) * w * impulse
 
     def middle(self, X):
@@ -65,7 +66,7 @@ class NaiveMap:
     def exact(self, X, digits=40):
         """(the next point by the oscillator itself, which stops were hit)."""
         quarter = self.T / 4
-        back, on = mp.expm(-self.A * quarter), mp.expm(self.A * quarter)
+        back, on = expm(-self.A * quarter), expm(self.A * quarter)
         start = self.steady(-quarter) + back * (X - self.graze)
         orbit = naive.simulate({**self.params, "tau": self.tau - mp.pi / 2}, list(start), periods=1, digits=digits)
         end = mp.matrix(orbit.section[-1])

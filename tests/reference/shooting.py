@@ -4,7 +4,9 @@ Unknowns are the state before the first impact and the times of the impacts; fli
 (x1, x2, v1, v2, sin, cos); multipliers come from the monodromy matrix. No Green function, no modes, no impulses.
 """
 
-from mpmath import cos, det, expm, eye, mp, mpf, pi, sin, zeros
+from mpmath import cos, det, eye, mp, mpf, pi, sin, zeros
+
+from reference.gmp import expm
 
 
 class Shooting:

@@ -9,7 +9,8 @@ from vibro_sweep.driver.compute import CHAIN_ENDS, compute
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store import StoreError
 
-PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
+OSCILLATOR = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
+PAPER = f"{OSCILLATOR}, b: 6.6"
 ALL = "observe: [section, lyapunov, impacts]"
 
 # every kind of sweep, of start and of observation among them
@@ -49,6 +50,13 @@ def scene_of(text, system=PAPER):
 def arrays_of(path):
     with h5py.File(path) as file:
         return {name: dataset[()] for name, dataset in file.items()}
+
+
+def run(folder, text, system=PAPER, **options):
+    """The scene's file, as arrays."""
+    path = folder / f"{len(list(folder.iterdir()))}.h5"
+    vs.run(scene_of(text, system), path, **options)
+    return arrays_of(path)
 
 
 def done(output):

@@ -1,0 +1,31 @@
+"""The folder of a run that something goes wrong with, its scene, and what the run should give."""
+
+import pytest
+from support.faults import TEXT
+from support.scenes import arrays_of
+
+import vibro_sweep as vs
+from vibro_sweep.scene import parse_scene
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "folder" / "out.h5"
+
+
+@pytest.fixture(autouse=True)
+def folder(path):
+    path.parent.mkdir()
+
+
+@pytest.fixture
+def scene(monkeypatch):
+    monkeypatch.setattr("vibro_sweep.driver.memory.BLOCK_BYTES", 100_000)  # some ten blocks
+    return parse_scene(TEXT, "the_scene.yaml")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    path = tmp_path_factory.mktemp("whole") / "whole.h5"
+    vs.run(parse_scene(TEXT), path)
+    return arrays_of(path)

@@ -1,0 +1,181 @@
+"""A file or a part that is damaged: this is told, and what is lost is computed again."""
+
+import json
+import os
+
+import h5py
+import numpy as np
+import pytest
+from support.faults import TEXT, counted, failing_run
+from support.scenes import arrays_of, assert_same_bits
+
+import vibro_sweep as vs
+from vibro_sweep import cli
+from vibro_sweep.scene import parse_scene
+from vibro_sweep.store import StoreError, describe
+
+
+def flip(path, name, bit=0, chunk=0):
+    """Turn a bit over in a chunk, behind HDF5's back."""
+    with h5py.File(path) as file:
+        where = file[name].id.get_chunk_info(chunk)
+        place = where.byte_offset + where.size // 2
+        box = tuple(slice(at, at + n) for at, n in zip(where.chunk_offset, file[name].chunks, strict=True))
+    with open(path, "r+b") as file:
+        file.seek(place)
+        byte = file.read(1)[0]
+        file.seek(place)
+        file.write(bytes([byte ^ 1 << bit]))
+    return box
+
+
+@pytest.mark.parametrize("name", ["x1", "lyapunov", "impacts_right", "status", "b"])
+def test_a_flipped_bit(scene, path, whole, name, capsys):
+    vs.run(scene, path)
+    box = flip(path, name)
+    with pytest.raises(OSError, match="read data"), h5py.File(path) as file:
+        file[name][()]
+    with pytest.raises(StoreError, match=rf"damaged: {name} \(1 chunk\); `run --resume`"):
+        vs.open(path)
+    assert f"damaged      {name} (1 chunk)" in describe(path)
+    if name != "lyapunov":  # which the picture of the section does not need
+        assert cli.main(["plot", str(path)]) == 2
+        assert f"`{name}` cannot be read, it is damaged" in capsys.readouterr().err
+    computed = []
+    vs.run(scene, path, mode="resume", progress=lambda done, _: computed.append(done))
+    assert computed[0] == (400 if name == "b" else 400 - len(range(400)[box[0]]))
+    assert_same_bits(arrays_of(path), whole)
+    assert f"damage found, to be computed again: {name} (1 chunk)" in describe(path)
+    assert "checksums    all hold" in describe(path) and os.listdir(path.parent) == [path.name]
+
+
+@pytest.mark.parametrize("name", ["impacts_right", "impacts_left", "status", "period"])
+def test_zeros_that_become_ones(scene, path, whole, name):
+    """Two bytes at a time, as a worn-out disk may give them: Fletcher-32 alone does not see it."""
+    vs.run(scene, path)
+    with h5py.File(path) as file:
+        where = file[name].id.get_chunk_info(0)
+    content = bytearray(path.read_bytes())
+    chunk = slice(where.byte_offset, where.byte_offset + where.size)
+    found = content.index(bytes(4), chunk.start)
+    assert found < chunk.stop
+    content[found : found + 4] = b"\xff" * 4
+    path.write_bytes(content)
+    with pytest.raises(StoreError, match=rf"damaged: {name} \(1 chunk\)"):
+        vs.open(path)
+    vs.run(scene, path, mode="resume")
+    assert_same_bits(arrays_of(path), whole)
+
+
+def test_a_damaged_file_of_other_code_is_left_alone(scene, path, monkeypatch):
+    """Its missing points could not be computed as the others were."""
+    vs.run(scene, path)
+    flip(path, "x1")
+    before = path.read_bytes()
+    monkeypatch.setattr("vibro_sweep.identity.identity", lambda: "0123456789abcdef")
+    with pytest.raises(StoreError, match="other code, 0123456789abcdef, or another numpy or numba; overwrite it"):
+        vs.run(scene, path, mode="resume")
+    assert path.read_bytes() == before and os.listdir(path.parent) == [path.name]
+
+
+def test_several_flipped_bits(scene, path, whole):
+    vs.run(scene, path)
+    for name, chunk in (("x1", 0), ("x1", 1), ("status", 0), ("b", 0)):
+        flip(path, name, bit=3, chunk=chunk)
+    assert "damaged      status (1 chunk), b (1 chunk), x1 (2 chunks)" in describe(path)
+    vs.run(scene, path, mode="resume")
+    assert_same_bits(arrays_of(path), whole)
+
+
+@pytest.mark.parametrize("count", [50, pytest.param(500, marks=pytest.mark.slow)])
+def test_flipped_bits_are_never_silent(scene, path, whole, count):
+    """Anywhere in the file: it is refused, or a dataset is named, or what is read is what was written."""
+    vs.run(scene, path)
+    content, rng, refused = path.read_bytes(), np.random.default_rng(6), 0
+    for place in rng.integers(0, len(content), count).tolist():
+        changed = bytearray(content)
+        changed[place] ^= 1 << int(rng.integers(0, 8))
+        path.write_bytes(changed)
+        try:
+            vs.open(path).close()
+        except StoreError:
+            refused += 1
+        else:
+            assert_same_bits(arrays_of(path), whole)
+    assert refused > 2 * count / 3
+
+
+def test_one_orbit_is_checked_too(path):
+    """A number that is no chunk lies in a header with a checksum."""
+    scene = parse_scene(TEXT.replace("sweep: {b: {start: 6.5, stop: 6.9, num: 400}}", ""))
+    vs.run(scene, path)
+    with h5py.File(path) as file:
+        number = file["min_impact_speed"][()]
+    content = path.read_bytes()
+    assert content.count(number.tobytes()) == 1
+    changed = bytearray(content)
+    changed[content.index(number.tobytes())] ^= 1
+    path.write_bytes(changed)
+    for read in (vs.open, describe):
+        with pytest.raises(StoreError, match="damaged"):
+            read(path)
+
+
+@pytest.mark.parametrize("keep", [0.1, 0.5, 0.99])
+def test_a_file_cut_off(scene, path, keep, capsys):
+    vs.run(scene, path)
+    os.truncate(path, int(keep * path.stat().st_size))
+    for read in (vs.open, describe, lambda path: vs.run(scene, path, mode="resume")):
+        with pytest.raises(StoreError, match="not an HDF5 file, or it is damaged"):
+            read(path)
+    for command in ("info", "plot"):
+        assert cli.main([command, str(path)]) == 2
+        err = capsys.readouterr().err
+        assert str(path) in err and "Traceback" not in err
+    vs.run(scene, path, mode="overwrite")
+    vs.open(path).close()
+
+
+@pytest.mark.parametrize("keep", [0.0, 0.01, 0.5, 0.999])
+def test_a_part_cut_off_in_mid_run(scene, path, whole, keep):
+    """The run stops, and goes on from the blocks that are left; no hole is taken for numbers."""
+
+    def cut():
+        os.truncate(f"{path}.part", int(keep * os.path.getsize(f"{path}.part")))
+
+    failing_run(scene, path, "was changed by another program", fault=cut)
+    if keep == 0.5:
+        with vs.open(f"{path}.part") as data:
+            assert np.all(np.isfinite(data["x1"][data["status"] == 0]))
+    vs.run(scene, path, mode="resume")
+    assert_same_bits(arrays_of(path), whole)
+
+
+@pytest.mark.parametrize("where", [0.3, 0.6])
+def test_a_flipped_bit_in_a_part(scene, path, whole, where):
+    """It costs the block that it is in, and is told; the blocks behind it stay."""
+    with pytest.raises(ZeroDivisionError):
+        vs.run(scene, path, workers=1, progress=lambda done, _: 1 / (done < 300))
+    part = path.with_name(path.name + ".part")
+    before = counted(describe(part))[0]
+    content = bytearray(part.read_bytes())
+    content[int(where * len(content))] ^= 4
+    part.write_bytes(content)
+    assert "damaged      1 block of the run" in describe(part) and 0 < counted(describe(part))[0] < before
+    with pytest.raises(StoreError, match="is damaged: 1 block of the run"):
+        vs.open(part)
+    with pytest.raises(ZeroDivisionError):
+        vs.run(scene, path, workers=1, progress=lambda done, _: 1 / (done < before), mode="resume")
+    vs.open(part).close()  # what was lost is there again
+    vs.run(scene, path, mode="resume")
+    assert_same_bits(arrays_of(path), whole)
+    assert "damage found, to be computed again: 1 block of the run" in describe(path)
+
+
+def test_provenance_that_is_illegible(scene, path):
+    vs.run(scene, path)
+    with h5py.File(path, "r+") as file:
+        assert json.loads(file.attrs["provenance"])
+        file.attrs["provenance"] = "{"
+    with pytest.raises(StoreError, match="damaged"):
+        describe(path)

@@ -1,0 +1,99 @@
+"""The same numbers, bit for bit, by any workers, blocks and executors, and after an interruption."""
+
+import math
+import multiprocessing
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from support.scenes import ALL, PAPER, SCENES, arrays_of, assert_same_bits, done, run, scene_of
+
+import vibro_sweep as vs
+from vibro_sweep.driver import blocks, compute
+from vibro_sweep.driver.attractor_ids import number_attractors
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_workers_do_not_matter(tmp_path, name):
+    one = run(tmp_path, SCENES[name], workers=1)
+    assert np.all(one["status"] == 0)
+    for workers in (2, 3):
+        assert_same_bits(run(tmp_path, SCENES[name], workers=workers), one)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_block_size_does_not_matter(tmp_path, name):
+    scene, whole = scene_of(SCENES[name]), run(tmp_path, SCENES[name])
+    numbers = []
+    for size in (1, 4, 1000):
+        pieces = list(blocks.blocks(scene, points_per_block=size))
+        numbers.append(len(pieces))
+        parts = {key: np.empty_like(values) for key, values in whole.items()}
+        for box, arrays in map(compute.compute, pieces):
+            for key in parts:
+                parts[key][box if key in arrays else ...] = arrays.get(key, whole[key])
+        if "attractors" in scene.observe:
+            number_attractors(scene, parts)
+        assert_same_bits(parts, whole)
+    # of a `follow`, the axis that it follows is never cut, and each direction is a block of its own
+    assert (numbers[0], numbers[-1]) == ((2, 2) if name == "follow" else (math.prod(scene.sweep_shape), 1))
+
+
+def test_executors_do_not_matter(tmp_path):
+    own = run(tmp_path, SCENES["random"])
+    with ThreadPoolExecutor(2) as pool:
+        assert_same_bits(run(tmp_path, SCENES["random"], executor=pool), own)
+    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
+        assert_same_bits(run(tmp_path, SCENES["random"], executor=pool), own)
+
+
+def test_random_starts(tmp_path):
+    """They depend on the seed and on the place in the sweep, and are spread over |x_i| < b, |v_i| < omega b."""
+    text = "sweep: {b: {values: [1, 2]}}\nstart: {random: 500, seed: SEED}\norbit: {transient: 0, record: 1}"
+    (block,) = blocks.blocks(scene_of(text.replace("SEED", "1")), points_per_block=2)
+    starts = compute._starts(block, compute.points_of(block.parameters)) / np.array([1, 0.63, 1, 0.63])
+    assert starts.shape == (2, 500, 4) and len(np.unique(starts)) == starts.size
+    for b, drawn in zip((1, 2), starts / np.array([[[1]], [[2]]]), strict=True):
+        assert np.all(abs(drawn) < 1), b
+        np.testing.assert_allclose(drawn.mean(axis=0), 0, atol=0.1)
+        np.testing.assert_allclose((drawn**2).mean(axis=0), 1 / 3, atol=0.05)
+    one, same, other = (run(tmp_path, text.replace("SEED", seed))["x1"] for seed in "112")
+    assert np.array_equal(one, same) and not np.any(one == other)
+
+
+@pytest.fixture(scope="module")
+def long_scene(tmp_path_factory):
+    """A scene of a second or two, in several blocks, and its numbers."""
+    folder = tmp_path_factory.mktemp("long")
+    path = folder / "long.yaml"
+    text = f"sweep: {{b: {{start: 6.5, stop: 6.8, num: 300}}}}\norbit: {{transient: 60000, record: 200}}\n{ALL}\n"
+    path.write_text(f"system: {{{PAPER}}}\n{text}")
+    return path, run(folder, text)
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+def test_interrupted_and_resumed(tmp_path, long_scene, how):
+    scene, whole = long_scene
+    output, part = tmp_path / "out.h5", tmp_path / "out.h5.part"
+    command = [sys.executable, "-m", "vibro_sweep", "run", scene, "-o", output, "--workers", "1", "--quiet"]
+
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    limit = time.monotonic() + 60
+    while not done(output):
+        assert process.poll() is None and time.monotonic() < limit
+        time.sleep(0.02)
+    process.send_signal(how)
+    error = process.communicate()[1]
+    assert process.returncode == (130 if how == signal.SIGINT else -signal.SIGKILL)
+    assert ("--resume" in error) == (how == signal.SIGINT)
+    assert 0 < done(output) < 300 and not output.exists()
+
+    seen = []
+    vs.run(vs.load_scene(scene), output, progress=lambda *progress: seen.append(progress), mode="resume")
+    assert seen[0][0] > 0 and seen[-1] == (300, 300)
+    assert not part.exists()
+    assert_same_bits(arrays_of(output), whole)
