@@ -10,7 +10,6 @@ import h5py
 import matplotlib.pyplot
 import numpy as np
 import pytest
-from matplotlib.collections import PatchCollection
 from matplotlib.colors import LogNorm
 from support.old_files import OLD
 
@@ -245,7 +244,10 @@ def test_bifurcation_shows_every_point_over_the_spectrum(sweep):
     assert section.lines[0].get_rasterized()
     assert section.get_shared_x_axes().joined(section, spectrum)
     assert section.get_shared_x_axes().joined(section, impacts)
-    assert (section.get_ylabel(), spectrum.get_ylabel()) == (r"$x_1$ at $t = 0$ mod $T$", r"$\lambda_i$")
+    assert (section.get_ylabel(), spectrum.get_ylabel()) == (
+        r"$x_1$ at $t = 0$ mod $T$",
+        r"$\lambda_i$ per unit of $t$",
+    )
     assert impacts.get_xlabel() == "clearance $b$"
     assert r"\mu_m = 10" in section.figure.get_suptitle()
     assert "b =" not in section.figure.get_suptitle()  # it is swept
@@ -258,10 +260,10 @@ def test_spectrum_has_a_zero_line_names_and_a_tint_where_chaotic(sweep):
     np.testing.assert_array_equal(curves[r"$\lambda_4$"], exponents(40)[:, 3])
     assert any(np.all(np.asarray(line.get_ydata()) == 0) for line in ax.lines)
     assert [text.get_text() for text in ax.texts] == [rf"$\lambda_{i}$" for i in (1, 2, 3, 4)]
-    (tint,) = (artist for artist in ax.collections if isinstance(artist, PatchCollection))
-    left = min(path.vertices[:, 0].min() for path in tint.get_paths())
-    assert len(tint.get_paths()) == 10
-    assert left == pytest.approx(edges(np.linspace(6.5, 6.9, 40))[30])
+    (tint,) = (artist for artist in ax.collections if artist.get_gid() == "chaos")
+    (path,) = tint.get_paths()  # ten neighbours
+    borders = edges(np.linspace(6.5, 6.9, 40))
+    assert (path.vertices[:, 0].min(), path.vertices[:, 0].max()) == pytest.approx((borders[30], borders[40]))
 
 
 def test_lost_directions_leave_a_gap_and_do_not_stretch_the_axis(tmp_path):
@@ -337,7 +339,7 @@ def test_branches_are_told_apart(branches):
     assert up.get_color() != down.get_color()
     curves = [line for line in spectrum.lines if line.get_gid() != "grazing"]
     assert [line.get_color() for line in curves[-2:]] == [up.get_color(), down.get_color()]
-    assert spectrum.get_ylabel() == r"$\lambda_1$"
+    assert spectrum.get_ylabel() == r"$\lambda_1$ per unit of $t$"
 
 
 def test_dense_branches_are_dark_only_where_both_are(tmp_path, monkeypatch):
@@ -458,7 +460,7 @@ def test_a_history_reaches_the_stops_and_counts_forcing_periods(trajectory):
     assert lines["$x_1$"].get_xdata()[-1] == pytest.approx(2)
     assert np.nanmax(np.abs(lines["$x_1$"].get_ydata())) == 2
     assert len(lines["$x_2$"].get_xdata()) == 41 + 2 * 4
-    assert sorted(line.get_ydata()[0] for line in ax.lines if line.get_label() == "stops") == [-2, 2]
+    assert lines["right stop, $b$"].get_ydata()[0] == 2 and lines["left stop, $-b$"].get_ydata()[0] == -2
     assert "forcing periods" in ax.get_xlabel()
 
 
@@ -467,7 +469,7 @@ def test_an_illegible_scene_of_version_0_1_costs_only_its_numbers(tmp_path, scen
     path = shutil.copy(OLD / "orbit.h5", tmp_path)
     with h5py.File(path, "a") as file:
         file.attrs["scene"] = scene
-    assert len(plotting.plot(path, tmp_path / "old.png", kind="all")) == 4
+    assert len(plotting.plot(path, tmp_path / "old.png", kind="all")) == 5
 
 
 def test_a_sweep_shows_four_orbits_and_both_branches_side_by_side(tmp_path, sweep, branches):
@@ -500,7 +502,7 @@ def test_convergence_ends_at_the_exponents(tmp_path):
     ax, spectrum = plotting.figure(write(tmp_path / "c.h5", {}, quantities)).axes
     np.testing.assert_array_equal(ax.lines[0].get_ydata(), running[:, 0])
     assert ax.lines[1].get_ydata()[0] == running[-1, 0]
-    assert r"\pm 2 \times 10^{-3}" in ax.get_title()
+    assert r"\pm 4 \times 10^{-3}$ (± 2 standard errors)" in ax.get_title()
     assert len(spectrum.lines) == 8
 
 
@@ -523,10 +525,10 @@ def test_the_grazing_curve_on_a_plane(tmp_path, keys):
     shape = tuple(len(values) for values in coordinates.values())
     along = {"b_star": ("omega", np.array([9.0, 6.7, 5.0]))}
     ax = plotting.figure(write(tmp_path / "p.h5", coordinates, {"period": np.ones(shape, int)}, along=along)).axes[0]
-    (curve,) = (line for line in ax.lines if line.get_label() == "grazing, $b^*$")
+    (curve,) = (line for line in ax.lines if line.get_gid() == "grazing")
     omega, b = curve.get_data()[:: 1 if keys[1] == "b" else -1]
     assert omega.tolist() == [0.6, 0.63, 0.66] and b.tolist() == [5.0, 6.7, 9.0]
-    assert ax.get_legend() is not None
+    assert "$b^*$" in ax.figure.legends[0].get_texts()[0].get_text()
 
 
 def test_no_numbers_no_grazing_curve(tmp_path):
@@ -542,9 +544,11 @@ def test_chaos_is_claimed_beyond_two_standard_errors(sweep):
         for i, name in enumerate(("b", "exponent")):
             error.dims[i].attach_scale(file[name])
     ax = plotting.figure(sweep, "lyapunov").axes[0]
-    (tint,) = (artist for artist in ax.collections if isinstance(artist, PatchCollection))
-    assert not tint.get_paths()
-    assert len(ax.collections) == 5  # a band of error for each exponent
+    assert [artist.get_gid() for artist in ax.collections] == ["error"] * 4  # no tint; a band for each exponent
+    band = ax.collections[-1].get_paths()[0].vertices[:, 1]  # of lambda_1, which is drawn last
+    assert band.max() == pytest.approx(0.004 + 2 * 0.003) and band.min() == pytest.approx(-0.01 - 2 * 0.003)
+    named = [text.get_text() for text in ax.figure.legends[0].get_texts()]
+    assert named == ["exponent ± 2 standard errors"]
 
 
 # --- small tools

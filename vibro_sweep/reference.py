@@ -137,7 +137,7 @@ def _statuses() -> Iterator[str]:
 def _pictures() -> Iterator[str]:
     yield "## Kinds of pictures\n"
     yield "`vibro-sweep plot FILE.h5 --kind KIND`; the first that a file can show is its default.\n"
-    rows = ((f"`{kind}`", _summary(shows), _summary(draw)) for kind, (shows, draw) in KINDS.items())
+    rows = ((f"`{kind}`", _summary(one.shows), _summary(one.draw)) for kind, one in KINDS.items())
     yield from _table(("kind", "needs", "what it shows"), rows)
 
 
