@@ -154,23 +154,28 @@ def plot_command(
         typer.Option(metavar="NAME", help="What to draw, such as v1, or period on a plane; a wrong one lists them."),
     ] = None,
     xlim: Annotated[
-        tuple[float, float] | None, typer.Option(metavar="LOW HIGH", help="Range of the horizontal axis.")
+        tuple[str, str] | None, typer.Option(metavar="LOW HIGH", help="Range of the horizontal axis.")
     ] = None,
     ylim: Annotated[
-        tuple[float, float] | None,
+        tuple[str, str] | None,
         typer.Option(metavar="LOW HIGH", help="Range of the vertical axis, of several panels of the first."),
     ] = None,
     size: Annotated[
-        tuple[float, float] | None,
+        tuple[str, str] | None,
         typer.Option(metavar="WIDTH HEIGHT", help="In inches; by default 7 wide."),
     ] = None,
-    dpi: Annotated[int | None, typer.Option(metavar="N", help="Pixels an inch; by default 200.")] = None,
+    dpi: Annotated[str | None, typer.Option(metavar="N", help="Pixels an inch; by default 200.")] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an existing file, also one that is no picture of this program.")
     ] = False,
 ):
     """Draw what a file holds."""
-    _draw(file, output, kind, overwrite, False, _values(at or []), variable, xlim, ylim, size, dpi)
+    values = dict(_value(one) for one in at or ())
+    pairs = [
+        pair and tuple(_number(f"--{name}", text) for text in pair)
+        for name, pair in (("xlim", xlim), ("ylim", ylim), ("size", size))
+    ]
+    _draw(file, output, kind, overwrite, False, values, variable, *pairs, dpi and _number("--dpi", dpi))
 
 
 @app.command()
@@ -281,16 +286,19 @@ def _executor(scheduler: str | None) -> contextlib.AbstractContextManager:
     return connected()
 
 
-def _values(given: list[str]) -> dict[str, float]:
-    """KEY=VALUE, as --at has them."""
-    values = {}
-    for one in given:
-        key, _, value = one.partition("=")
-        try:
-            values[key.strip()] = float(value)
-        except ValueError:
-            raise InputError(f"--at {one}: write KEY=VALUE, for example b=6.6") from None
-    return values
+def _value(text: str) -> tuple[str, float]:
+    """KEY=VALUE, as --at has it."""
+    key, equals, value = text.partition("=")
+    if not equals:
+        raise InputError(f"--at {text}: write KEY=VALUE, for example b=6.6")
+    return key.strip(), _number(f"--at {key}", value)
+
+
+def _number(option: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"{option}: {text!r} is no number") from None
 
 
 def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, *look):

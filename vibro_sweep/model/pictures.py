@@ -10,7 +10,7 @@ PICTURES = (
     "phase-portrait",
     "configuration",
     "history",
-    "poincare",
     "iteration",
+    "poincare",
     "convergence",
 )

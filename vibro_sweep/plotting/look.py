@@ -26,7 +26,7 @@ class Look:
     xlim: tuple[float, float] | None = None
     ylim: tuple[float, float] | None = None
     size: tuple[float, float] | None = None
-    dpi: int | None = None
+    dpi: float | None = None
 
     def __post_init__(self):
         for name, limits in (("xlim", self.xlim), ("ylim", self.ylim)):
@@ -37,7 +37,7 @@ class Look:
                 f"size: {_told(self.size)} is not allowed; width and height must be {SIZES[0]:g} to {SIZES[1]:g} inches"
             )
         if self.dpi is not None and not RESOLUTIONS[0] <= self.dpi <= RESOLUTIONS[1]:
-            raise PlotError(f"dpi: {self.dpi} is not allowed; it must be {RESOLUTIONS[0]} to {RESOLUTIONS[1]}")
+            raise PlotError(f"dpi: {self.dpi:g} is not allowed; it must be {RESOLUTIONS[0]} to {RESOLUTIONS[1]}")
 
     def applied(self, fig) -> None:
         """Give a figure that is drawn its limits, size and resolution."""

@@ -101,7 +101,7 @@ def shows_poincare(result: Result) -> bool:
 def abscissae(result: Result) -> tuple[str, ...]:
     """What stands along the axis of a Poincare plot, the default first; its velocity stands upwards."""
     if "phase" in result:
-        return ("phase",) if "v1" in result else ()
+        return ("phase",) if "v1" in result and not result.model() else ()  # the map has one phase
     return tuple(f"x{n}" for n in (1, 2) if f"x{n}" in result and f"v{n}" in result)
 
 

@@ -171,7 +171,7 @@ def _section(ax, result, values, order):
     else:
         _dots(ax, values, points, count, color=INK)
     if name == "x1" and not at_impact:
-        _stop_lines(ax, result, values, order)
+        _stop_lines(ax, result, values)
 
 
 def _dots(ax, values, points, count, scale=1.0, **style):
@@ -181,12 +181,11 @@ def _dots(ax, values, points, count, scale=1.0, **style):
     ax.plot(x[there], points[there], ".", markersize=size, markeredgewidth=0, rasterized=True, **style)
 
 
-def _stop_lines(ax, result, values, order):
+def _stop_lines(ax, result, values):
     """The stops, where they pass through the picture: a section point on this line is about to touch."""
     low, high = ax.get_ylim()
-    stops = [result.stops((place,)) for place in order]
-    for side in stops[0]:
-        x1 = np.array([there[side] for there in stops])
+    for side, stop in result.stops((0,)).items():
+        x1 = side * values if "b" in result.sweep else np.full(len(values), stop)
         if ((low < x1) & (x1 < high)).any():
             label = f"{'right' if side > 0 else 'left'} stop, $x_1 = {'-' * (side < 0)}b$"
             style = DASHES if side > 0 else ":"
