@@ -174,7 +174,7 @@ def history(result: Result):
             ax.plot(shown.t, getattr(shown, name), label=symbol(name), **styles[name[1]])
         for side, stop in stops.items() if "x1" in names else ():
             label, style = ("right stop, $b$", DASHES) if side > 0 else ("left stop, $-b$", ":")
-            ax.axhline(stop, color=FAINT, lw=0.7, ls=style, label=label)
+            ax.axhline(stop, color=FAINT, lw=0.9, ls=style, label=label)
         ax.margins(x=0)
         ax.set(title=point.label, ylabel=symbol(chosen) if chosen else "displacement")
     grid[-1].set_xlabel("$t / T$ (forcing periods)")
@@ -195,7 +195,7 @@ def iteration(result: Result):
         ax.plot(values, "-", color=FAINT, lw=0.3)
         ax.plot(values, ".", color=INK, markersize=np.clip(60 / np.sqrt(len(values)), 3, 8), markeredgewidth=0)
         ax.set(title=point.label, ylabel=before_impact(name) if at_impact else symbol(name))
-        ax.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
+        ax.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1, steps=[1, 2, 2.5, 5, 10]))
         if np.isfinite(values).any():
             ax.set_ylim(limits(values))
             most = max(most, np.flatnonzero(np.isfinite(values))[-1] + 1)

@@ -88,7 +88,7 @@ def marked(colour, marker):
     """What a legend shows of a colour and a marker together."""
     style = {"ls": "none", "markersize": 5, "markeredgewidth": 0.6}
     dot = Line2D([], [], color=INK, marker=marker, markerfacecolor="white", **style)
-    return Patch(color=colour), dot
+    return Patch(facecolor=colour, edgecolor=FAINT, linewidth=0.4), dot
 
 
 def page(height, title) -> Figure:

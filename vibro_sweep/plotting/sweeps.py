@@ -107,7 +107,7 @@ def _stack(result, panels, what):
 
 def mark_grazing(axes, result):
     """In each panel over b: b* of Theorem 1, and where else the map was expanded."""
-    marks = [("b_star", "grazing, $b^*$", (0, (4, 2))), ("expand_at", "expanded at", ":")]
+    marks = [("b_star", "grazing, $b^*$", (0, (4, 2))), ("expand_at", "expansion of the mapping", ":")]
     low, high = sorted((min(result.sweep["b"]), max(result.sweep["b"])))
     for name, label, style in marks:
         b = result.number(name)
@@ -189,7 +189,7 @@ def _stop_lines(ax, result, values):
         if ((low < x1) & (x1 < high)).any():
             label = f"{'right' if side > 0 else 'left'} stop, $x_1 = {'-' * (side < 0)}b$"
             style = DASHES if side > 0 else ":"
-            ax.plot(values, x1, color=FAINT, lw=0.7, ls=style, zorder=1, gid="stop", label=label)
+            ax.plot(values, x1, color=FAINT, lw=0.9, ls=style, zorder=1, gid="stop", label=label)
 
 
 def _spectrum(ax, result, values, order):
