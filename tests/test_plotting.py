@@ -262,6 +262,7 @@ def test_spectrum_has_a_zero_line_names_and_a_tint_where_chaotic(sweep):
     assert [text.get_text() for text in ax.texts] == [rf"$\lambda_{i}$" for i in (1, 2, 3, 4)]
     (tint,) = (artist for artist in ax.collections if artist.get_gid() == "chaos")
     (path,) = tint.get_paths()  # ten neighbours
+    assert [text.get_text() for text in ax.figure.legends[0].get_texts()] == [r"$\lambda_1$ > 0: chaos"]
     borders = edges(np.linspace(6.5, 6.9, 40))
     assert (path.vertices[:, 0].min(), path.vertices[:, 0].max()) == pytest.approx((borders[30], borders[40]))
 
@@ -360,6 +361,13 @@ def test_periodic_orbits_are_lines_in_a_density(window):
     assert colours == [colour(norm(12)), colour(norm(4))]  # by the points at each place
     named = [text.get_text() for text in ax.figure.legends[0].get_texts()]
     assert named == ["line: periodic orbit"]
+
+
+def test_lines_do_not_break_in_a_part_of_the_picture(window):
+    """Branches that move far across a narrow range of the axis are branches still."""
+    ax = plotting.figure(window, look=plotting.Look(ylim=(0.2, 0.25))).axes[0]
+    three = [line.get_xydata() for line in ax.lines if line.get_gid() == "periodic"][1]
+    assert np.isnan(three[:, 0]).sum() == 3
 
 
 def test_values_that_share_a_column_are_a_line_only_where_all_repeat(window, monkeypatch):
