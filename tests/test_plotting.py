@@ -528,16 +528,18 @@ def test_ticks_are_round_numbers(tmp_path):
     assert told == ["-0.03", "-0.02", "-0.01", "0", "0.005", "0.01", "0.015"]
 
 
-def test_periods_are_written_where_there_is_room(tmp_path):
-    period = np.ones((40, 40), int)
-    period[:15, :15] = 25  # beyond the colours
-    period[30, 30] = 7  # one cell
-    coordinates = {"b": np.arange(40.0), "R": np.linspace(0, 1, 40)}
+@pytest.mark.parametrize("size", [40, 1300])
+def test_periods_are_written_where_there_is_room(tmp_path, size):
+    period = np.ones((size, size), np.int8)
+    side = 3 * size // 8
+    period[:side, :side] = 25  # beyond the colours
+    period[3 * size // 4, 3 * size // 4] = 7  # one cell
+    coordinates = {"b": np.arange(float(size)), "R": np.linspace(0, 1, size)}
     ax = plotting.figure(write(tmp_path / "p.h5", coordinates, {"period": period})).axes[0]
     found = {text.get_text(): text.get_position() for text in ax.texts}
     assert found.keys() == {"1", "25"}
     (b, R), (far, _) = found["25"], found["1"]
-    assert 2 < b < 12 and 0.05 < R < 0.3 and far > 15
+    assert 0.1 < b / side < 0.9 and 0.05 < R < 0.3 and far > side
 
 
 def test_what_has_no_number_is_hatched_and_named(plane):
