@@ -1,6 +1,7 @@
 """Pictures: what a file can show, and that the figure holds the file's numbers."""
 
 import ast
+import itertools
 import shutil
 import subprocess
 import sys
@@ -580,11 +581,11 @@ def test_a_portrait_says_which_way_time_goes(trajectory):
     for kind in ("phase-portrait", "configuration"):
         fig = plotting.figure(trajectory, kind)
         (ax,) = fig.axes
-        x, y = (values.tolist() for values in ax.lines[0].get_data())
+        steps = [list(pair) for pair in itertools.pairwise(ax.lines[0].get_xydata().tolist())]
         arrows = [text for text in ax.texts if text.get_gid() == "time"]
         assert len(arrows) == 4
         for arrow in arrows:
-            assert y[x.index(arrow.xyann[0]) : x.index(arrow.xyann[0]) + 2] == [arrow.xyann[1], arrow.xy[1]]
+            assert [list(arrow.xyann), list(arrow.xy)] in steps
         named = [text.get_text() for text in fig.legends[0].get_texts()]
         assert {"direction of time", "right stop, $x_1 = b$", "left stop, $x_1 = -b$"} <= set(named)
 
