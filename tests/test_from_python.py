@@ -212,7 +212,7 @@ def test_picture_of_a_part_of_a_dataset():
     orders = dict(trajectory={"periods": 2, "samples": 50}, observe=["section", "lyapunov"])
     data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7]}, **orders, **SHORT)
     one = data.sel(b=6.6)
-    assert plotting.kinds(one) == ["phase-portrait", "configuration", "history", "iteration"]
+    assert plotting.kinds(one) == ["phase-portrait", "configuration", "history", "iteration", "poincare"]
     assert "b = 6.6" in vs.plot(one, "history").get_suptitle()
     assert len(vs.plot(data.isel(b=slice(1, 3)), "history").axes) == 2
     (ax,) = vs.plot(data, "history", at={"b": 6.61}).axes
@@ -222,7 +222,7 @@ def test_picture_of_a_part_of_a_dataset():
 @pytest.mark.parametrize(
     "call, message",
     [
-        (lambda data: vs.plot(data, "plane"), "this dataset can show bifurcation, lyapunov, iteration"),
+        (lambda data: vs.plot(data, "plane"), "this dataset can show bifurcation, lyapunov, iteration, poincare"),
         (lambda data: vs.plot(data, "iteration", at={"omega": 3}), "at: 'omega' is not swept; allowed: b"),
         (lambda data: vs.plot(data, "iteration", at={"b": "here"}), "at: b = 'here' is not allowed"),
         (lambda data: vs.plot(xarray.Dataset()), "it has no status"),
@@ -256,6 +256,10 @@ def test_picture_of_an_orbit():
     assert len(inside) > 1 and np.array_equal(np.sort(marks), inside["t"])
     jumps = [line for line in portrait.lines if list(line.get_xdata()) in ([6.6, 6.6], [-6.6, -6.6])]
     assert [tuple(line.get_ydata()) for line in jumps][: len(inside)] == [(v, -0.8 * v) for v in inside["v1"]]
+    arrows = [text for text in portrait.texts if text.get_gid() == "time"]
+    assert len(arrows) == 4 and all((one.xy[0] - one.xyann[0]) * one.xy[1] > 0 for one in arrows)  # right where v1 > 0
+    named = {text.get_text() for text in portrait.figure.legends[0].get_texts()}
+    assert {"impact", "stop", "direction of time"} < named
     with pytest.raises(ValueError, match="no motion to draw"):
         vs.simulate(SYSTEM, (0, 0, 0, 0), 0).plot()
 

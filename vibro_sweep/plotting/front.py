@@ -5,18 +5,24 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from vibro_sweep.plotting import figure
+from vibro_sweep.plotting import Look, figure
 
 if TYPE_CHECKING:
     import xarray
 
 
-def plot(data: "str | Path | xarray.Dataset", kind: str | None = None, at: dict[str, float] | None = None) -> Figure:
+def plot(
+    data: "str | Path | xarray.Dataset",
+    kind: str | None = None,
+    at: dict[str, float] | None = None,
+    variable: str | None = None,
+) -> Figure:
     """A picture of a file, or of a Dataset of `vibro_sweep.open` or `vibro_sweep.sweep`; a matplotlib Figure.
 
     kind : what the command line calls --kind, by default the first that the data can show
     at : where single orbits are drawn, as {"b": 6.6}: the nearest point; by default some, evenly spread
+    variable : what is drawn, of what that kind can show, as "v1"
 
     Raises `PlotError` where the data cannot be read or cannot show that kind; it says which can be shown.
     """
-    return figure(data, kind, at)
+    return figure(data, kind, Look(at or {}, variable))
