@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import matplotlib
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibro_sweep.plotting import basins, coexistence, orbits, planes, sweeps
+from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.pictures import check_output, save
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import STYLE
@@ -47,15 +49,24 @@ def kinds(data: "str | Path | xarray.Dataset") -> list[str]:
         return _kinds(result)
 
 
-def figure(data: "str | Path | xarray.Dataset", kind: str | None = None, at: dict[str, float] | None = None) -> Figure:
+def figure(
+    data: "str | Path | xarray.Dataset",
+    kind: str | None = None,
+    ax: Axes | None = None,
+    at: dict[str, float] | None = None,
+) -> Figure:
     """One picture of a file or a Dataset (default: the first of `kinds`), about 7 inches wide.
 
+    ax : where its first or only panel is drawn, by default a new Figure
     at : where single orbits are drawn, key -> value of the sweep; by default some, evenly spread
 
     Raises `PlotError` where the data cannot be read or cannot show that kind.
     """
-    with Result(data, at) as result:
-        return _draw(result, _chosen(result, kind)[0])
+    if ax is not None and not isinstance(ax, Axes):
+        raise TypeError(f"ax: {ax!r} is not allowed; it must be matplotlib axes")
+    with Result(data, at, ax) as result:
+        drawn = _draw(result, _chosen(result, kind)[0])
+    return drawn.ax.figure if isinstance(drawn, Panel) else drawn
 
 
 def plot(path, output=None, kind: str | None = None, overwrite: bool = False) -> list[Path]:
@@ -100,7 +111,7 @@ def _chosen(result: Result, kind: str | None) -> list[str]:
     return [kind]
 
 
-def _draw(result: Result, kind: str) -> Figure:
+def _draw(result: Result, kind: str) -> Figure | Panel:
     with matplotlib.rc_context(STYLE):
         fig = KINDS[kind][1](result)
         if result.failed:

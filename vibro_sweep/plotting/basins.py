@@ -7,7 +7,7 @@ from matplotlib.patches import Patch
 from vibro_sweep.model.state import START
 from vibro_sweep.plotting.families import KINDS, describe, kind
 from vibro_sweep.plotting.result import Result
-from vibro_sweep.plotting.style import NOT_COMPUTED, axis_name, edges, equation, page
+from vibro_sweep.plotting.style import NOT_COMPUTED, axis_name, edges, equation
 
 NAMED = 11  # attractors that the legend has room for
 OTHERS = np.inf  # number of all beyond these
@@ -29,7 +29,7 @@ def basins(result: Result):
     numbered = "attractor_id" in result and result.done.all()
     label, named = (_attractors if numbered else _kinds)(result)
     note = "" if numbered else "\nkinds of motion; this file does not number its attractors"
-    fig = page(5.6, result.title("Basins of attraction" + _rest(result) + note))
+    fig = result.page(5.6, result.title("Basins of attraction" + _rest(result) + note))
     ax = fig.subplots()
     picture = np.full((*label.shape, 3), to_rgb(NOT_COMPUTED))
     for number, (colour, _) in named.items():

@@ -5,7 +5,7 @@ from matplotlib import colormaps
 from matplotlib.colors import BoundaryNorm, ListedColormap, TwoSlopeNorm
 
 from vibro_sweep.plotting.result import Result
-from vibro_sweep.plotting.style import DASHES, INK, NOT_COMPUTED, axis_name, edges, exponent, page
+from vibro_sweep.plotting.style import DASHES, INK, NOT_COMPUTED, axis_name, edges, exponent
 
 LONGEST = 12  # periods with a colour of their own
 # Paired light and dark, so that a period and its double, 1 and 2 or 3 and 6, are told apart at a glance.
@@ -28,7 +28,8 @@ def plane(result: Result):
     reach, where that is stored.
     """
     maps, note = _maps(result)
-    fig = page(4.2 if len(maps) > 1 else 5.2, result.title("Parameter plane" + note))
+    maps = maps if result.ax is None else maps[:1]
+    fig = result.page(4.2 if len(maps) > 1 else 5.2, result.title("Parameter plane" + note))
     grid = fig.subplots(1, len(maps), sharex=True, sharey=True, squeeze=False)[0]
     (x_key, x), (y_key, y) = result.sweep.items()
     columns, rows = np.argsort(x), np.argsort(y)  # a sweep may run downwards; an axis does not
