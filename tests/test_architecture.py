@@ -16,7 +16,7 @@ ALLOWED = {
     "plotting": {"store", "model"},
 }
 EVERYWHERE = {"identity", "__version__"}  # what numbers depend on, and the version
-TABLES = {"catalogue", "observables", "parameters", "state", "status"}  # of model/: names and labels
+TABLES = {"catalogue", "observables", "parameters", "pictures", "state", "status"}  # of model/: names and labels
 
 
 def imported(path):

@@ -304,12 +304,6 @@ def test_check(folder, capsys):
     assert [path.name for path in folder.iterdir()] == ["good.yaml"]
 
 
-def test_kinds_of_pictures_in_the_help():
-    from vibro_sweep import cli, plotting
-
-    assert list(cli.KINDS) == list(plotting.KINDS)
-
-
 @pytest.mark.parametrize(
     "stops, where, sign", [("right", "(right stop, t = 0)", 1), ("left", "(left stop, t = T/2)", -1)]
 )

@@ -213,7 +213,7 @@ def test_picture_of_a_part_of_a_dataset():
     orders = dict(trajectory={"periods": 2, "samples": 50}, observe=["section", "lyapunov"])
     data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7]}, **orders, **SHORT)
     one = data.sel(b=6.6)
-    assert plotting.kinds(one) == ["phase-portrait", "configuration", "history", "iteration"]
+    assert plotting.kinds(one) == ["phase-portrait", "configuration", "history", "iteration", "poincare"]
     assert "b = 6.6" in vs.plot(one, "history").get_suptitle()
     assert len(vs.plot(data.isel(b=slice(1, 3)), "history").axes) == 2
     (ax,) = vs.plot(data, "history", at={"b": 6.61}).axes
@@ -257,7 +257,7 @@ def test_a_plane_in_the_axes_of_the_caller(variables):
     "call, message",
     [
         (lambda data: vs.plot(data, "iteration", ax=Figure().subplots()), "ax: the picture has 2 panels"),
-        (lambda data: vs.plot(data, "plane"), "this dataset can show bifurcation, lyapunov, iteration"),
+        (lambda data: vs.plot(data, "plane"), "this dataset can show bifurcation, lyapunov, iteration, poincare"),
         (lambda data: vs.plot(data, "iteration", at={"omega": 3}), "at: 'omega' is not swept; allowed: b"),
         (lambda data: vs.plot(data, "iteration", at={"b": "here"}), "at: b = 'here' is not allowed"),
         (lambda data: vs.plot(xarray.Dataset()), "it has no status"),

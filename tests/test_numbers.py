@@ -139,7 +139,7 @@ def test_an_old_file_is_read_as_the_run_read_it():
 def test_old_files_show_what_they_showed(tmp_path):
     assert plotting.kinds(OLD / "sweep.h5") == ["lyapunov", "impacts"]
     assert plotting.kinds(OLD / "basins.h5") == ["basins", "plane"]
-    assert plotting.kinds(OLD / "orbit.h5") == ["phase-portrait", "configuration", "history", "iteration"]
+    assert plotting.kinds(OLD / "orbit.h5") == ["phase-portrait", "configuration", "history", "iteration", "poincare"]
     for name in ("sweep", "basins", "orbit"):
         path = shutil.copy(OLD / f"{name}.h5", tmp_path)
         assert all(picture.stat().st_size > 1000 for picture in plotting.plot(path, kind="all"))

@@ -10,13 +10,12 @@ import h5py
 import matplotlib.pyplot
 import numpy as np
 import pytest
-from matplotlib.collections import PatchCollection
 from matplotlib.colors import LogNorm
 from support.old_files import OLD
 
 from vibro_sweep import plotting
 from vibro_sweep.plotting import PlotError, density, sweeps
-from vibro_sweep.plotting.style import edges, limits
+from vibro_sweep.plotting.style import BRANCHES, INK, edges, limits
 
 SETTINGS = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63, R=0.8, b=6.6, tau=2.2293, stops="both")
 SETTINGS |= dict(b_star=6.70571674097302, model="flow", section="phase", transient=300, record=20)
@@ -245,7 +244,10 @@ def test_bifurcation_shows_every_point_over_the_spectrum(sweep):
     assert section.lines[0].get_rasterized()
     assert section.get_shared_x_axes().joined(section, spectrum)
     assert section.get_shared_x_axes().joined(section, impacts)
-    assert (section.get_ylabel(), spectrum.get_ylabel()) == (r"$x_1$ at $t = 0$ mod $T$", r"$\lambda_i$")
+    assert (section.get_ylabel(), spectrum.get_ylabel()) == (
+        r"$x_1$ at $t = 0$ mod $T$",
+        r"$\lambda_i$ per unit of $t$",
+    )
     assert impacts.get_xlabel() == "clearance $b$"
     assert r"\mu_m = 10" in section.figure.get_suptitle()
     assert "b =" not in section.figure.get_suptitle()  # it is swept
@@ -258,10 +260,10 @@ def test_spectrum_has_a_zero_line_names_and_a_tint_where_chaotic(sweep):
     np.testing.assert_array_equal(curves[r"$\lambda_4$"], exponents(40)[:, 3])
     assert any(np.all(np.asarray(line.get_ydata()) == 0) for line in ax.lines)
     assert [text.get_text() for text in ax.texts] == [rf"$\lambda_{i}$" for i in (1, 2, 3, 4)]
-    (tint,) = (artist for artist in ax.collections if isinstance(artist, PatchCollection))
-    left = min(path.vertices[:, 0].min() for path in tint.get_paths())
-    assert len(tint.get_paths()) == 10
-    assert left == pytest.approx(edges(np.linspace(6.5, 6.9, 40))[30])
+    (tint,) = (artist for artist in ax.collections if artist.get_gid() == "chaos")
+    (path,) = tint.get_paths()  # ten neighbours
+    borders = edges(np.linspace(6.5, 6.9, 40))
+    assert (path.vertices[:, 0].min(), path.vertices[:, 0].max()) == pytest.approx((borders[30], borders[40]))
 
 
 def test_lost_directions_leave_a_gap_and_do_not_stretch_the_axis(tmp_path):
@@ -326,6 +328,87 @@ def test_density_puts_points_where_they_are():
     assert (cells[0, 0], cells[-1, 1], cells[-1, 2], cells[density.ROWS // 2, 2]) == (2, 1, 1, 1)
 
 
+@pytest.fixture
+def window(tmp_path, monkeypatch):
+    """30 values: chaos, then an orbit of period 3 whose branches cross, then one of period 1 far away; and a jump."""
+    monkeypatch.setattr(sweeps, "MANY", 100)
+    b = np.linspace(1, 4, 30)
+    x1 = np.random.default_rng(0).uniform(0, 1, (30, 12))
+    period = np.zeros(30, int)
+    period[10:20], period[20:] = 3, 1
+    t = np.linspace(0, 0.1, 10)
+    x1[10:20] = np.tile(np.stack([t + 0.2, 0.3 - t, 0.5 + t], axis=1), 4)
+    x1[20:25], x1[25:] = 0.9, 0.1
+    return write(tmp_path / "window.h5", {"b": b}, {"x1": x1, "period": period})
+
+
+def test_periodic_orbits_are_lines_in_a_density(window):
+    ax = plotting.figure(window).axes[0]
+    borders = edges(np.linspace(1, 4, 30))
+    assert image(ax).get_array().sum() == 10 * 12  # the cells have chaos alone
+    one, three = (line.get_xydata() for line in ax.lines if line.get_gid() == "periodic")
+    gaps = np.isnan(one[:, 0])
+    assert gaps.sum() == 2 and one[0].tolist() == [borders[20], 0.9]  # the jump is none of a branch
+    (first,) = np.flatnonzero(gaps[:-1])
+    assert one[first - 1].tolist() == [borders[25], 0.9] and one[first + 1].tolist() == [borders[25], 0.1]
+    branches = np.split(three, np.flatnonzero(np.isnan(three[:, 0])) + 1)[:3]
+    for branch in branches:
+        assert (branch[0, 0], branch[-2, 0]) == (borders[10], borders[20])
+        assert np.abs(np.diff(branch[:-1, 1])).max() < 0.02  # from point to point, never to another branch
+    colours = [line.get_color() for line in ax.lines if line.get_gid() == "periodic"]
+    norm, colour = image(ax).norm, image(ax).cmap
+    assert colours == [colour(norm(12)), colour(norm(4))]  # by the points at each place
+    named = [text.get_text() for text in ax.figure.legends[0].get_texts()]
+    assert named == ["line: periodic orbit"]
+
+
+def test_values_that_share_a_column_are_a_line_only_where_all_repeat(window, monkeypatch):
+    monkeypatch.setattr(density, "COLUMNS", 10)  # of three values each
+    monkeypatch.setattr(density, "REACH", 0.1)
+    ax = plotting.figure(window).axes[0]
+    assert image(ax).get_array().sum() == 12 * (9 + 3 + 3)  # chaos; the columns of both ends of period 3
+    _, three = (line.get_xydata() for line in ax.lines if line.get_gid() == "periodic")
+    borders = edges(np.linspace(1, 4, 30))
+    assert len(three[np.isnan(three[:, 0])]) == 3  # one line a branch
+    assert (np.nanmin(three[:, 0]), np.nanmax(three[:, 0])) == (borders[12], borders[18])
+
+
+def test_branches_that_agree_are_one_line(tmp_path, monkeypatch):
+    monkeypatch.setattr(sweeps, "MANY", 100)
+    x1 = np.zeros((40, 2, 10))
+    x1[:20, 0] = 1  # up: 1, then 0; down: 0 throughout
+    coordinates = {"b": np.linspace(1, 2, 40), "start": np.array([b"up", b"down"], dtype=object)}
+    quantities = {"x1": x1, "period": np.ones((40, 2), int)}
+    ax = plotting.figure(write(tmp_path / "dense.h5", coordinates, quantities)).axes[0]
+    up, down, both = (line for line in ax.lines if line.get_gid() == "periodic")
+    assert np.nanmin(up.get_ydata()) == 1 and np.nanmax(down.get_ydata()) == np.nanmax(both.get_ydata()) == 0
+    assert np.nanmax(up.get_xdata()) == np.nanmax(down.get_xdata()) == np.nanmin(both.get_xdata())
+    assert [line.get_color() for line in (up, down, both)] == [*BRANCHES.values(), INK]
+
+
+def test_periods_of_impacts_are_counted_in_impacts(tmp_path, monkeypatch):
+    """Two impacts in five forcing periods, of which 20 are recorded; above, more than there is room for."""
+    monkeypatch.setattr(sweeps, "MANY", 10)
+    v1 = np.full((6, 20), np.nan)
+    v1[:3, :8] = np.tile([1.0, 2.0], 4)
+    v1[3:] = np.tile([1.0, 2.0], 10)
+    quantities = {"v1": v1, "phase": v1 * 0, "period": np.full(6, 5)}
+    settings = SETTINGS | dict(section="impact", section_stop="right")
+    ax = plotting.figure(write(tmp_path / "i.h5", {"b": np.arange(6.0)}, quantities, settings=settings)).axes[0]
+    (line,) = (line for line in ax.lines if line.get_gid() == "periodic")
+    assert set(line.get_ydata()[np.isfinite(line.get_ydata())]) == {1.0, 2.0}
+    assert np.nanmax(line.get_xdata()) == 2.5 and image(ax).get_array().sum() == 60
+
+
+def test_both_stops_are_named(tmp_path):
+    b = np.linspace(1, 2, 5)
+    ax = plotting.figure(write(tmp_path / "s.h5", {"b": b}, {"x1": np.stack([-1.5 * b, 1.5 * b], axis=1)})).axes[0]
+    named = {text.get_text() for text in ax.get_legend().get_texts()}
+    assert {"right stop, $x_1 = b$", "left stop, $x_1 = -b$"} == named
+    right, left = (line for line in ax.lines if line.get_gid() == "stop")
+    assert right.get_linestyle() != left.get_linestyle() and np.array_equal(left.get_ydata(), -b)
+
+
 def test_branches_are_told_apart(branches):
     section, spectrum = plotting.figure(branches).axes
     labels = [text.get_text() for text in section.get_legend().get_texts()]
@@ -337,7 +420,7 @@ def test_branches_are_told_apart(branches):
     assert up.get_color() != down.get_color()
     curves = [line for line in spectrum.lines if line.get_gid() != "grazing"]
     assert [line.get_color() for line in curves[-2:]] == [up.get_color(), down.get_color()]
-    assert spectrum.get_ylabel() == r"$\lambda_1$"
+    assert spectrum.get_ylabel() == r"$\lambda_1$ per unit of $t$"
 
 
 def test_dense_branches_are_dark_only_where_both_are(tmp_path, monkeypatch):
@@ -424,6 +507,37 @@ def test_plane_colours_change_sign_at_zero_and_count_periods(plane):
     assert picture.get_array()[0, 3] == 13  # 40, beyond the colours
 
 
+def test_ticks_are_round_numbers(tmp_path):
+    rng = np.random.default_rng(0)
+    largest = np.concatenate([-0.0372 * rng.uniform(0, 1, 300), 0.0191 * rng.uniform(0, 1, 100)])
+    spectrum = np.full((20, 20, 4), -0.1)
+    spectrum[..., 0] = largest.reshape(20, 20)
+    coordinates = {"b": np.arange(20.0), "R": np.linspace(0, 1, 20)}
+    fig = plotting.figure(write(tmp_path / "p.h5", coordinates, {"lyapunov": spectrum}))
+    (bar,) = (ax for ax in fig.axes if ax.get_label() == "<colorbar>")
+    assert np.round(bar.get_xticks(), 6).tolist() == [-0.03, -0.02, -0.01, 0, 0.005, 0.01, 0.015]
+    told = [label.get_text().replace("\N{MINUS SIGN}", "-") for label in bar.get_xticklabels()]
+    assert told == ["-0.03", "-0.02", "-0.01", "0", "0.005", "0.01", "0.015"]
+
+
+def test_periods_are_written_where_there_is_room(tmp_path):
+    period = np.ones((40, 40), int)
+    period[:15, :15] = 25  # beyond the colours
+    period[30, 30] = 7  # one cell
+    coordinates = {"b": np.arange(40.0), "R": np.linspace(0, 1, 40)}
+    ax = plotting.figure(write(tmp_path / "p.h5", coordinates, {"period": period})).axes[0]
+    found = {text.get_text(): text.get_position() for text in ax.texts}
+    assert found.keys() == {"1", "25"}
+    (b, R), (far, _) = found["25"], found["1"]
+    assert 2 < b < 12 and 0.05 < R < 0.3 and far > 15
+
+
+def test_what_has_no_number_is_hatched_and_named(plane):
+    fig = plotting.figure(plane)
+    assert fig.axes[0].patch.get_hatch()
+    assert [text.get_text() for text in fig.legends[0].get_texts()][1:] == ["no number"]
+
+
 @pytest.mark.parametrize("value", [-0.02, 0.03, 0.0])
 def test_plane_of_one_sign(tmp_path, value):
     coordinates = {"b": [1.0, 2.0], "R": [0.1, 0.2]}
@@ -452,13 +566,26 @@ def test_a_portrait_has_the_impacts_and_section_points_of_the_file(trajectory):
     assert section.get_xdata().tolist() == [0, 0, 0] and section.get_ydata().tolist() == [1, 1, 1]
 
 
+def test_a_portrait_says_which_way_time_goes(trajectory):
+    for kind in ("phase-portrait", "configuration"):
+        fig = plotting.figure(trajectory, kind)
+        (ax,) = fig.axes
+        x, y = (values.tolist() for values in ax.lines[0].get_data())
+        arrows = [text for text in ax.texts if text.get_gid() == "time"]
+        assert len(arrows) == 4
+        for arrow in arrows:
+            assert y[x.index(arrow.xyann[0]) : x.index(arrow.xyann[0]) + 2] == [arrow.xyann[1], arrow.xy[1]]
+        named = [text.get_text() for text in fig.legends[0].get_texts()]
+        assert {"direction of time", "right stop, $x_1 = b$", "left stop, $x_1 = -b$"} <= set(named)
+
+
 def test_a_history_reaches_the_stops_and_counts_forcing_periods(trajectory):
     ax = plotting.figure(trajectory, "history").axes[0]
     lines = {line.get_label(): line for line in ax.lines}
     assert lines["$x_1$"].get_xdata()[-1] == pytest.approx(2)
     assert np.nanmax(np.abs(lines["$x_1$"].get_ydata())) == 2
     assert len(lines["$x_2$"].get_xdata()) == 41 + 2 * 4
-    assert sorted(line.get_ydata()[0] for line in ax.lines if line.get_label() == "stops") == [-2, 2]
+    assert lines["right stop, $b$"].get_ydata()[0] == 2 and lines["left stop, $-b$"].get_ydata()[0] == -2
     assert "forcing periods" in ax.get_xlabel()
 
 
@@ -467,7 +594,7 @@ def test_an_illegible_scene_of_version_0_1_costs_only_its_numbers(tmp_path, scen
     path = shutil.copy(OLD / "orbit.h5", tmp_path)
     with h5py.File(path, "a") as file:
         file.attrs["scene"] = scene
-    assert len(plotting.plot(path, tmp_path / "old.png", kind="all")) == 4
+    assert len(plotting.plot(path, tmp_path / "old.png", kind="all")) == 5
 
 
 def test_a_sweep_shows_four_orbits_and_both_branches_side_by_side(tmp_path, sweep, branches):
@@ -500,7 +627,7 @@ def test_convergence_ends_at_the_exponents(tmp_path):
     ax, spectrum = plotting.figure(write(tmp_path / "c.h5", {}, quantities)).axes
     np.testing.assert_array_equal(ax.lines[0].get_ydata(), running[:, 0])
     assert ax.lines[1].get_ydata()[0] == running[-1, 0]
-    assert r"\pm 2 \times 10^{-3}" in ax.get_title()
+    assert r"\pm 4 \times 10^{-3}$ (± 2 standard errors)" in ax.get_title()
     assert len(spectrum.lines) == 8
 
 
@@ -523,10 +650,10 @@ def test_the_grazing_curve_on_a_plane(tmp_path, keys):
     shape = tuple(len(values) for values in coordinates.values())
     along = {"b_star": ("omega", np.array([9.0, 6.7, 5.0]))}
     ax = plotting.figure(write(tmp_path / "p.h5", coordinates, {"period": np.ones(shape, int)}, along=along)).axes[0]
-    (curve,) = (line for line in ax.lines if line.get_label() == "grazing, $b^*$")
+    (curve,) = (line for line in ax.lines if line.get_gid() == "grazing")
     omega, b = curve.get_data()[:: 1 if keys[1] == "b" else -1]
     assert omega.tolist() == [0.6, 0.63, 0.66] and b.tolist() == [5.0, 6.7, 9.0]
-    assert ax.get_legend() is not None
+    assert "$b^*$" in ax.figure.legends[0].get_texts()[0].get_text()
 
 
 def test_no_numbers_no_grazing_curve(tmp_path):
@@ -542,9 +669,11 @@ def test_chaos_is_claimed_beyond_two_standard_errors(sweep):
         for i, name in enumerate(("b", "exponent")):
             error.dims[i].attach_scale(file[name])
     ax = plotting.figure(sweep, "lyapunov").axes[0]
-    (tint,) = (artist for artist in ax.collections if isinstance(artist, PatchCollection))
-    assert not tint.get_paths()
-    assert len(ax.collections) == 5  # a band of error for each exponent
+    assert [artist.get_gid() for artist in ax.collections] == ["error"] * 4  # no tint; a band for each exponent
+    band = ax.collections[-1].get_paths()[0].vertices[:, 1]  # of lambda_1, which is drawn last
+    assert band.max() == pytest.approx(0.004 + 2 * 0.003) and band.min() == pytest.approx(-0.01 - 2 * 0.003)
+    named = [text.get_text() for text in ax.figure.legends[0].get_texts()]
+    assert named == ["exponent ± 2 standard errors"]
 
 
 # --- small tools

@@ -99,6 +99,22 @@ def test_basins_have_the_colours_of_their_attractors(basins):
     }
 
 
+def test_basins_have_a_mark_at_each_attractor(basins):
+    """The mean of its section points, which the file holds; the shape is in the legend."""
+    data, fig = vs.open(basins), plotting.figure(basins)
+    (ax,) = fig.axes
+    marks = [line for line in ax.lines if line.get_gid() == "attractor"]
+    number = data.attractor_id.values
+    found = {line.get_marker(): line.get_xydata()[0].tolist() for line in marks}
+    expected = {}
+    for one in np.unique(number):
+        v1, x1 = np.argwhere(number == one)[0]
+        expected[(number == one).sum()] = [data.average.sel(averaged=name).values[v1, x1] for name in ("v1", "x1")]
+    largest_first = [expected[count] for count in sorted(expected, reverse=True)]
+    assert [found[marker] for marker in ("o", "s", "^")] == largest_first
+    assert "mean of the section points" in fig.get_suptitle()
+
+
 def test_basins_are_those_that_the_file_numbers(basins, tmp_path):
     """Whatever the averages are: the picture groups nothing itself."""
     path = shutil.copy(basins, tmp_path)

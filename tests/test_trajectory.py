@@ -151,6 +151,6 @@ def test_old_files_show_no_guessed_impacts():
     from support.old_files import OLD
 
     ax = plotting.figure(OLD / "orbit.h5", "phase-portrait").axes[0]
-    labels = [line.get_label() for line in ax.lines if not line.get_label().startswith("_")]
+    labels = [line.get_label() for line in ax.lines if "stop" not in line.get_label()]
     assert labels == ["samples; this file does not hold the impacts between them"]
     assert ax.lines[0].get_linestyle() == "None" and len(ax.lines[0].get_xdata()) == 200

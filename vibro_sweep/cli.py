@@ -10,6 +10,8 @@ from typing import Annotated
 
 import typer
 
+from vibro_sweep.model.pictures import PICTURES
+
 from . import interrupt
 from .console import BAD_INPUT, BAD_POINTS, InputError, ended, input_errors, messages, say
 from .usage import called
@@ -25,20 +27,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-KINDS = (
-    "basins",
-    "coexistence",
-    "plane",
-    "bifurcation",
-    "lyapunov",
-    "impacts",
-    "phase-portrait",
-    "configuration",
-    "history",
-    "iteration",
-    "convergence",
-)  # of pictures, in order of preference; plotting is slow to import
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE.yaml", exists=True, dir_okay=False)]
 DataFile = Annotated[Path, typer.Argument(metavar="FILE.h5", exists=True, dir_okay=False)]
@@ -155,14 +143,39 @@ def plot_command(
     ] = None,
     kind: Annotated[
         str | None,
-        typer.Option(help=f"One of {', '.join(KINDS)} or all; by default the first that the file has data for."),
+        typer.Option(help=f"One of {', '.join(PICTURES)} or all; by default the first that the file has data for."),
     ] = None,
+    at: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=VALUE", help="Draw single orbits at this value of the sweep; may be repeated."),
+    ] = None,
+    variable: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="What to draw, such as v1, or period on a plane; a wrong one lists them."),
+    ] = None,
+    xlim: Annotated[
+        tuple[str, str] | None, typer.Option(metavar="LOW HIGH", help="Range of the horizontal axis.")
+    ] = None,
+    ylim: Annotated[
+        tuple[str, str] | None,
+        typer.Option(metavar="LOW HIGH", help="Range of the vertical axis, of several panels of the first."),
+    ] = None,
+    size: Annotated[
+        tuple[str, str] | None,
+        typer.Option(metavar="WIDTH HEIGHT", help="In inches; by default 7 wide."),
+    ] = None,
+    dpi: Annotated[str | None, typer.Option(metavar="N", help="Pixels an inch; by default 200.")] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an existing file, also one that is no picture of this program.")
     ] = False,
 ):
     """Draw what a file holds."""
-    _draw(file, output, kind, overwrite, quiet=False)
+    values = dict(_value(one) for one in at or ())
+    pairs = [
+        pair and tuple(_number(f"--{name}", text) for text in pair)
+        for name, pair in (("xlim", xlim), ("ylim", ylim), ("size", size))
+    ]
+    _draw(file, output, kind, overwrite, False, values, variable, *pairs, dpi and _number("--dpi", dpi))
 
 
 @app.command()
@@ -273,11 +286,26 @@ def _executor(scheduler: str | None) -> contextlib.AbstractContextManager:
     return connected()
 
 
-def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool):
-    from .plotting import PlotError, plot
+def _value(text: str) -> tuple[str, float]:
+    """KEY=VALUE, as --at has it."""
+    key, equals, value = text.partition("=")
+    if not equals:
+        raise InputError(f"--at {text}: write KEY=VALUE, for example b=6.6")
+    return key.strip(), _number(f"--at {key}", value)
+
+
+def _number(option: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"{option}: {text!r} is no number") from None
+
+
+def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, *look):
+    from .plotting import Look, PlotError, plot
     from .store import StoreError
 
     with input_errors(PlotError, StoreError), interrupt.tidied_up():
-        pictures = plot(file, output, kind, overwrite)
+        pictures = plot(file, output, kind, overwrite, Look(*look))
     if not quiet:
         say("\n".join(str(picture) for picture in pictures))

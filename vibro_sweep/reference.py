@@ -136,8 +136,13 @@ def _statuses() -> Iterator[str]:
 
 def _pictures() -> Iterator[str]:
     yield "## Kinds of pictures\n"
-    yield "`vibro-sweep plot FILE.h5 --kind KIND`; the first that a file can show is its default.\n"
-    rows = ((f"`{kind}`", _summary(shows), _summary(draw)) for kind, (shows, draw) in KINDS.items())
+    yield (
+        "`vibro-sweep plot FILE.h5 --kind KIND`; the default is the scene's `picture`, else the first that a file can "
+        "show. `--at KEY=VALUE` draws single orbits at that value of the sweep, `--variable NAME` another variable (a "
+        "wrong name lists those of the file), `--xlim LOW HIGH` and `--ylim LOW HIGH` a part, `--size WIDTH HEIGHT` "
+        "(inches) and `--dpi N` set how large it is.\n"
+    )
+    rows = ((f"`{kind}`", _summary(one.shows), _summary(one.draw)) for kind, one in KINDS.items())
     yield from _table(("kind", "needs", "what it shows"), rows)
 
 

@@ -4,14 +4,17 @@
 here computes an orbit: what is not in the file is not in the picture. No display is needed or touched.
 """
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from vibro_sweep.model.pictures import PICTURES
 from vibro_sweep.plotting import basins, coexistence, orbits, planes, sweeps
+from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.pictures import check_output, save
 from vibro_sweep.plotting.result import PlotError, Result
@@ -20,24 +23,35 @@ from vibro_sweep.plotting.style import STYLE
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["SUFFIXES", "PlotError", "check_output", "default_name", "figure", "kinds", "plot"]
+__all__ = ["SUFFIXES", "Look", "PlotError", "check_output", "default_name", "figure", "kinds", "plot"]
 
 SUFFIXES = (".png", ".svg", ".pdf")
 
-# In order of preference: the first that a file can show is its default. What each needs, and how it is drawn.
-KINDS = {
-    "basins": (basins.shows, basins.basins),
-    "coexistence": (coexistence.shows, coexistence.coexistence),
-    "plane": (planes.shows, planes.plane),
-    "bifurcation": (sweeps.shows_bifurcation, sweeps.bifurcation),
-    "lyapunov": (sweeps.shows_lyapunov, sweeps.lyapunov),
-    "impacts": (sweeps.shows_impacts, sweeps.impacts),
-    "phase-portrait": (orbits.shows_trajectory, orbits.phase_portrait),
-    "configuration": (orbits.shows_both_masses, orbits.configuration),
-    "history": (orbits.shows_trajectory, orbits.history),
-    "iteration": (orbits.shows_section, orbits.iteration),
-    "convergence": (orbits.shows_convergence, orbits.convergence),
+
+class Kind(NamedTuple):
+    """A kind of picture: what it needs, how it is drawn, variables to choose among, whether it shows single orbits."""
+
+    shows: Callable[[Result], bool]
+    draw: Callable[[Result], Figure]
+    variables: Callable[[Result], tuple[str, ...]] = lambda result: ()
+    of_orbits: bool = False
+
+
+_DRAWN = {
+    "basins": Kind(basins.shows, basins.basins),
+    "coexistence": Kind(coexistence.shows, coexistence.coexistence),
+    "plane": Kind(planes.shows, planes.plane, planes.variables),
+    "bifurcation": Kind(sweeps.shows_bifurcation, sweeps.bifurcation, sweeps.section_variables),
+    "lyapunov": Kind(sweeps.shows_lyapunov, sweeps.lyapunov),
+    "impacts": Kind(sweeps.shows_impacts, sweeps.impacts),
+    "phase-portrait": Kind(orbits.shows_trajectory, orbits.phase_portrait, orbits.masses, True),
+    "configuration": Kind(orbits.shows_both_masses, orbits.configuration, of_orbits=True),
+    "history": Kind(orbits.shows_trajectory, orbits.history, orbits.coordinates, True),
+    "poincare": Kind(orbits.shows_poincare, orbits.poincare, orbits.abscissae, True),
+    "iteration": Kind(orbits.shows_section, orbits.iteration, sweeps.section_variables, True),
+    "convergence": Kind(orbits.shows_convergence, orbits.convergence, of_orbits=True),
 }
+KINDS = {name: _DRAWN[name] for name in PICTURES}
 
 
 def kinds(data: "str | Path | xarray.Dataset") -> list[str]:
@@ -50,26 +64,21 @@ def kinds(data: "str | Path | xarray.Dataset") -> list[str]:
 
 
 def figure(
-    data: "str | Path | xarray.Dataset",
-    kind: str | None = None,
-    ax: Axes | None = None,
-    at: dict[str, float] | None = None,
+    data: "str | Path | xarray.Dataset", kind: str | None = None, look: Look | None = None, ax: Axes | None = None
 ) -> Figure:
-    """One picture of a file or a Dataset (default: the first of `kinds`), about 7 inches wide.
+    """One picture of a file or a Dataset (default: the first of `kinds`), 7 inches wide unless `look` says otherwise.
 
-    ax : where its first or only panel is drawn, by default a new Figure
-    at : where single orbits are drawn, key -> value of the sweep; by default some, evenly spread
-
+    ax : where its first or only panel is drawn, by default a new Figure; `look` has no size or resolution then
     Raises `PlotError` where the data cannot be read or cannot show that kind.
     """
     if ax is not None and not isinstance(ax, Axes):
         raise TypeError(f"ax: {ax!r} is not allowed; it must be matplotlib axes")
-    with Result(data, at, ax) as result:
+    with Result(data, look, ax) as result:
         drawn = _draw(result, _chosen(result, kind)[0])
     return drawn.ax.figure if isinstance(drawn, Panel) else drawn
 
 
-def plot(path, output=None, kind: str | None = None, overwrite: bool = False) -> list[Path]:
+def plot(path, output=None, kind: str | None = None, overwrite: bool = False, look: Look | None = None) -> list[Path]:
     """Write pictures of the file; the paths written.
 
     `output` is FILE.png in the current folder unless given; its suffix (one of `SUFFIXES`) is the format. `kind` is
@@ -83,7 +92,7 @@ def plot(path, output=None, kind: str | None = None, overwrite: bool = False) ->
         raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
     if output.resolve() == path.resolve():
         raise PlotError(f"output {output}: that is the result file itself")
-    with Result(path) as result:
+    with Result(path, look) as result:
         chosen = _chosen(result, kind)
         many = kind == "all"
         places = [output.with_stem(f"{output.stem}-{one}") if many else output for one in chosen]
@@ -93,27 +102,47 @@ def plot(path, output=None, kind: str | None = None, overwrite: bool = False) ->
 
 
 def _kinds(result: Result) -> list[str]:
-    return [kind for kind, (shows, _) in KINDS.items() if shows(result)] if result.done.any() else []
+    """What the data can show, the picture that the scene names first."""
+    if not result.done.any():
+        return []
+    able = [name for name, kind in KINDS.items() if kind.shows(result)]
+    return sorted(able, key=lambda name: name != result.settings.get("picture"))
 
 
 def _chosen(result: Result, kind: str | None) -> list[str]:
+    """The kinds to draw. Without a word for one: the first that can show what the look asks for."""
     available = _kinds(result)
     if not result.done.any():
         raise PlotError(f"{result.path}: nothing to show yet, no point is computed")
     if not available:
         raise PlotError(f"{result.path}: nothing to show, there is no picture of {result.contents()} alone")
-    if kind is None:
-        return available[:1]
-    if kind == "all":
-        return available
-    if kind not in available:
+    if kind not in (None, "all", *available):
         raise PlotError(f"kind {kind!r}: {result.path} can show {', '.join(available)} (or all)")
-    return [kind]
+    candidates = available if kind in (None, "all") else [kind]
+    at, variable = result.look.at, result.look.variable
+    fitting = [name for name in candidates if not at or KINDS[name].of_orbits]
+    if not fitting:
+        which = f"kind {kind} shows the whole sweep" if kind else f"{result.path} has no single orbits to show"
+        raise PlotError(f"at: {which}; {_those(available, lambda name: KINDS[name].of_orbits)}")
+    if variable:
+        choices = {name: KINDS[name].variables(result) for name in fitting}
+        fitting = [name for name in fitting if variable in choices[name]]
+        if not fitting:
+            told = "; ".join(f"{name}: {', '.join(names)}" for name, names in choices.items() if names)
+            raise PlotError(f"variable {variable!r} is not allowed; there are {told or 'none to choose among'}")
+    return fitting if kind == "all" else fitting[:1]
+
+
+def _those(available: list[str], fits: Callable[[str], bool]) -> str:
+    names = [name for name in available if fits(name)]
+    return f"those of single points are {', '.join(names)}" if names else "there is none of single points"
 
 
 def _draw(result: Result, kind: str) -> Figure | Panel:
     with matplotlib.rc_context(STYLE):
-        fig = KINDS[kind][1](result)
+        fig = KINDS[kind].draw(result)
+        if isinstance(fig, Figure):
+            result.look.applied(fig)
         if result.failed:
             for ax in fig.axes:
                 if ax.get_label() != "<colorbar>":

@@ -4,13 +4,16 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch
 
+from vibro_sweep.model.observables import AVERAGED
 from vibro_sweep.model.state import START
 from vibro_sweep.plotting.families import KINDS, describe, kind
-from vibro_sweep.plotting.result import Result
-from vibro_sweep.plotting.style import NOT_COMPUTED, axis_name, edges, equation
+from vibro_sweep.plotting.result import Point, Result
+from vibro_sweep.plotting.style import INK, NOT_COMPUTED, axis_name, edges, equation, marked
 
 NAMED = 11  # attractors that the legend has room for
+NEAR = 0.52  # of the plane's width or height, from its middle
 OTHERS = np.inf  # number of all beyond these
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h")  # of the attractors, the largest basin first
 _SHADES = (0.0, 0.45, -0.35, 0.7)  # of attractors of one kind, towards white or black
 
 
@@ -29,7 +32,10 @@ def basins(result: Result):
     numbered = "attractor_id" in result and result.done.all()
     label, named = (_attractors if numbered else _kinds)(result)
     note = "" if numbered else "\nkinds of motion; this file does not number its attractors"
-    fig = result.page(5.6, result.title("Basins of attraction" + _rest(result) + note))
+    stored = "x1" in result and "phase" not in result
+    marks = "section points" if stored else "mean of the section points"
+    note += f"\nmarks: {marks} of each attractor, projected onto this plane" if numbered else ""
+    fig = result.page(5.8, result.title("Basins of attraction" + _rest(result)) + note)
     ax = fig.subplots()
     picture = np.full((*label.shape, 3), to_rgb(NOT_COMPUTED))
     for number, (colour, _) in named.items():
@@ -37,9 +43,32 @@ def basins(result: Result):
     image = picture[np.ix_(columns, rows)].transpose(1, 0, 2)
     ax.pcolorfast(edges(x[columns]), edges(y[rows]), image)
     ax.set(xlabel=axis_name(x_key), ylabel=axis_name(y_key))
-    handles = [Patch(color=colour, label=text) for colour, text in named.values()]
-    fig.legend(handles=handles, loc="outside lower center", ncols=2)
+    handles = [Patch(color=colour) for colour, _ in named.values()]
+    if numbered:
+        frame = ax.get_xlim(), ax.get_ylim()
+        for i, (number, (colour, _)) in enumerate(named.items()):
+            if number not in (0, OTHERS):
+                _mark(ax, result, label == number, MARKERS[i], stored)
+                handles[i] = marked(colour, MARKERS[i])
+        ax.set(xlim=frame[0], ylim=frame[1])
+    fig.legend(handles, [text for _, text in named.values()], loc="outside lower center", ncols=2)
     return fig
+
+
+def _mark(ax, result, members, marker, stored):
+    """Where an attractor lies in the plane: section points of one orbit on it, or their mean."""
+    place = tuple(map(int, np.argwhere(members)[0]))
+    names = [key.removeprefix("start_") for key in result.sweep]
+    if stored:
+        x, y = (result.one(name, Point((*place, 0), place, "")) for name in names)
+    else:
+        average = result.one("average", Point((*place, 0), place, ""))
+        x, y = ([average[AVERAGED.index(name)]] for name in names)
+    # an attractor at the frame is marked as a whole
+    frame = zip((x, y), (ax.get_xlim(), ax.get_ylim()), strict=True)
+    near = all(abs(one - (low + high) / 2) < NEAR * (high - low) for values, (low, high) in frame for one in values)
+    style = {"color": "white", "markeredgecolor": INK, "markeredgewidth": 0.8, "markersize": 4 if stored else 7}
+    ax.plot(x, y, marker, **style, ls="none", clip_on=not near, gid="attractor")
 
 
 def _attractors(result):

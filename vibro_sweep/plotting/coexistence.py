@@ -5,12 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.patches import Patch
 
 from vibro_sweep.model.catalogue import BY_NAME
-from vibro_sweep.plotting.families import KINDS, kind
+from vibro_sweep.plotting.families import KINDS, MARKERS, kind
 from vibro_sweep.plotting.result import Point, Result
-from vibro_sweep.plotting.style import at_section, axis_name, edges
+from vibro_sweep.plotting.style import at_section, axis_name, edges, marked
 from vibro_sweep.plotting.sweeps import mark_grazing
 
 NARROW = 0.012  # of the axis; the period of a window is written over it where it is wider
@@ -46,9 +45,9 @@ def coexistence(result: Result):
         mark_grazing(axes, result)
     below.set(xlim=edges(values)[[0, -1]], ylim=(0, 1), xlabel=axis_name(key), ylabel=BY_NAME["share"].label)
     there = {one.kind for one in found}
-    handles = [Patch(color=colour, label=name) for which, (name, colour) in KINDS.items() if which in there]
-    handles += [line for line in above.lines if line.get_gid() == "grazing"]
-    fig.legend(handles=handles, loc="outside lower center", ncols=3)
+    named = {name: marked(colour, MARKERS.get(which, "")) for which, (name, colour) in KINDS.items() if which in there}
+    named |= {line.get_label(): line for line in above.lines if line.get_gid() == "grazing"}
+    fig.legend(named.values(), named.keys(), loc="outside lower center", ncols=3)
     fig.align_ylabels(axes)
     return fig
 
@@ -78,14 +77,15 @@ def _points(ax, result, values, found):
     """x1 at the section, of one orbit on each attractor; its mean where the points are not stored."""
     stored = "x1" in result and "phase" not in result
     ax.set_ylabel(at_section("x1") if stored else f"mean of {at_section('x1')}")
-    size = np.clip(60 / np.sqrt(len(values)), 1.2, 6) * (0.5 if stored else 1)
+    size = np.clip(60 / np.sqrt(len(values)), 1.5, 6) * (0.5 if stored else 1)
     for which, (_, colour) in KINDS.items():
         chosen = [one for one in found if one.kind == which and which != "unsettled"]
         y = [result.one("x1", Point(one.point, one.point[:1], "")) if stored else [one.mean] for one in chosen]
         x = [np.full(len(points), values[one.place]) for one, points in zip(chosen, y, strict=True)]
         if chosen:
-            dots = {"markersize": size, "markeredgewidth": 0, "rasterized": True}
-            ax.plot(np.concatenate(x), np.concatenate(y), ".", color=colour, **dots)
+            scale = 1.0 if MARKERS[which] == "." else 0.7  # that one is drawn at half its size
+            dots = {"markersize": scale * size, "markeredgewidth": 0, "rasterized": True}
+            ax.plot(np.concatenate(x), np.concatenate(y), MARKERS[which], color=colour, **dots)
 
 
 def _stacks(ax, values, found):

@@ -9,13 +9,14 @@ RATES = [AVERAGED.index(name) for name in ("impacts_right", "impacts_left")]  # 
 
 # In the order in which they are stacked: kind -> its name in a legend, its colour.
 KINDS = {
-    "free": ("non-impacting", "#8cc0a4"),
+    "free": ("non-impacting", "#77bbff"),
     "right": ("periodic, more impacts on the right", RIGHT),
     "left": ("periodic, more impacts on the left", LEFT),
-    "even": ("periodic, as many on both sides", "#b9a0cf"),
+    "even": ("periodic, as many on both sides", "#887766"),
     "aperiodic": ("chaotic or quasi-periodic", INK),
     "unsettled": ("not settled", NOT_COMPUTED),
 }
+MARKERS = {"free": "o", "right": ">", "left": "<", "even": "D", "aperiodic": "."}
 
 
 def kind(period, average) -> np.ndarray:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibro_sweep.plotting import figure
+from vibro_sweep.plotting import Look, figure
 
 if TYPE_CHECKING:
     import xarray
@@ -17,6 +17,7 @@ def plot(
     kind: str | None = None,
     ax: Axes | None = None,
     at: dict[str, float] | None = None,
+    variable: str | None = None,
 ) -> Figure:
     """A picture of a file, or of a Dataset of `vibro_sweep.open` or `vibro_sweep.sweep`; a matplotlib Figure.
 
@@ -24,7 +25,8 @@ def plot(
     ax : axes to draw into, by default those of a new Figure. Of a bifurcation diagram or a plane they show the first
         panel; other kinds must have one, which `at` chooses where each orbit has its own
     at : where single orbits are drawn, as {"b": 6.6}: the nearest point; by default some, evenly spread
+    variable : what is drawn, of what that kind can show, as "v1"
 
     Raises `PlotError` where the data cannot be read or cannot show that kind; it says which can be shown.
     """
-    return figure(data, kind, ax, at)
+    return figure(data, kind, Look(at or {}, variable), ax)

@@ -3,7 +3,7 @@
 import matplotlib as mpl
 import numpy as np
 
-from vibro_sweep.plotting.style import DASHES, EXPONENTS, FAINT, INK, LEFT, RIGHT, STYLE, page
+from vibro_sweep.plotting.style import DASHES, FAINT, IMPACT, INK, LEFT, RIGHT, STYLE, page
 
 
 def plot_periodic(times, gap, rate, impact_t, side, v_in, v_out, stops, title: str, names=("gap", "gap velocity")):
@@ -18,7 +18,7 @@ def plot_periodic(times, gap, rate, impact_t, side, v_in, v_out, stops, title: s
         x, v = np.insert(x, breaks, np.nan), np.insert(v, breaks, np.nan)
         portrait.plot(x, v, color=INK, lw=0.7)
         for before, after, where in zip(v_in, v_out, gap[at], strict=True):
-            portrait.plot([where, where], [before, after], color=EXPONENTS[1], lw=1.2, ls=(0, (1, 1)))
+            portrait.plot([where, where], [before, after], color=IMPACT, lw=1.2, ls=(0, (1, 1)))
         portrait.set(xlabel=names[0], ylabel=names[1])
         history.plot(times, gap, color=INK, lw=0.7)
         for one, colour in ((1, RIGHT), (-1, LEFT)):

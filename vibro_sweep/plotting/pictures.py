@@ -30,7 +30,7 @@ def save(fig: Figure, output: Path, overwrite: bool) -> Path:
     suffix = output.suffix.lower()
     picture = io.BytesIO()
     with matplotlib.rc_context(STYLE):  # some settings are looked up only when the picture is written
-        fig.savefig(picture, format=suffix[1:])
+        fig.savefig(picture, format=suffix[1:], dpi=fig.dpi)
     new = output.with_name(f".vibro_sweep-{secrets.token_hex(16)}{suffix}")
     try:
         with open(new, "xb") as file:

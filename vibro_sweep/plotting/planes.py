@@ -1,19 +1,32 @@
 """Pictures over two swept parameters: where the motion is periodic, with which period, and where chaotic."""
 
 import numpy as np
-from matplotlib import colormaps
+from matplotlib import colormaps, patheffects
 from matplotlib.colors import BoundaryNorm, ListedColormap, TwoSlopeNorm
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
+from vibro_sweep.model.observables import VARIABLES
 from vibro_sweep.plotting.result import Result
-from vibro_sweep.plotting.style import DASHES, INK, NOT_COMPUTED, axis_name, edges, exponent
-
-LONGEST = 12  # periods with a colour of their own
-# Paired light and dark, so that a period and its double, 1 and 2 or 3 and 6, are told apart at a glance.
-_PERIODS = (
-    *("#a6cee3", "#1f78b4", "#b2df8a", "#33a02c", "#fb9a99", "#e31a1c"),
-    *("#fdbf6f", "#ff7f00", "#cab2d6", "#6a3d9a", "#ffff99", "#b15928"),
+from vibro_sweep.plotting.style import (
+    DASHES,
+    FAINT,
+    INK,
+    LONGER,
+    LONGEST,
+    NO_PERIOD,
+    NOT_COMPUTED,
+    PER_TIME,
+    PERIODS,
+    axis_name,
+    edges,
+    exponent,
 )
-_NONE, _LONGER = "#26262e", "#8c8c94"
+
+_OF_A_POINT = {one.name: one.label for one in VARIABLES if not one.dimensions}
+
+ROOM = 4.5  # points (1/72 inch) around a period that is written into the plane
 
 
 def shows(result: Result) -> bool:
@@ -21,24 +34,32 @@ def shows(result: Result) -> bool:
     return len(result.sweep) == 2 and any(name in result for name in ("lyapunov", "period", "impacts_right"))
 
 
+def variables(result: Result) -> tuple[str, ...]:
+    """Variables of the file that are one number a point."""
+    return tuple(name for name in ("lyapunov", *_OF_A_POINT) if name in result)
+
+
 def plane(result: Result):
     """lambda_1 and the period over the two parameters, side by side; the impacts where neither is stored.
 
     Of several starts the one with the largest lambda_1 is shown, point by point; beside it how many attractors they
-    reach, where that is stored.
+    reach, where that is stored. A variable that is chosen is shown alone.
     """
     maps, note = _maps(result)
     maps = maps if result.ax is None else maps[:1]
-    fig = result.page(4.2 if len(maps) > 1 else 5.2, result.title("Parameter plane" + note))
+    of_states = all(key.startswith("start_") for key in result.sweep)
+    what = "Plane of initial states" if of_states else "Parameter plane"
+    fig = result.page(4.4 if len(maps) > 1 else 5.4, result.title(what + note))
     grid = fig.subplots(1, len(maps), sharex=True, sharey=True, squeeze=False)[0]
     (x_key, x), (y_key, y) = result.sweep.items()
     columns, rows = np.argsort(x), np.argsort(y)  # a sweep may run downwards; an axis does not
     for ax, (draw, values) in zip(grid, maps, strict=True):
         draw(ax, edges(x[columns]), edges(y[rows]), np.ma.masked_invalid(values[np.ix_(columns, rows)].T))
         ax.set_xlabel(axis_name(x_key))
-        ax.set_facecolor(NOT_COMPUTED)
+        ax.patch.set(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="///")
         _grazing_curve(ax, result)
     grid[0].set_ylabel(axis_name(y_key))
+    _legend(fig, grid, any(np.isnan(values).any() for _, values in maps))
     return fig
 
 
@@ -54,10 +75,19 @@ def _grazing_curve(ax, result):
     order = np.argsort(result.sweep[other])
     line = result.sweep[other][order], curve[order]
     frame = ax.get_xlim(), ax.get_ylim()
-    for style in ({"color": "white", "lw": 2.2}, {"color": INK, "lw": 1.0, "ls": DASHES, "label": "grazing, $b^*$"}):
+    for style in ({"color": "white", "lw": 2.2}, {"color": INK, "lw": 1.0, "ls": DASHES, "gid": "grazing"}):
         ax.plot(*(line if keys[1] == "b" else line[::-1]), **style)
     ax.set(xlim=frame[0], ylim=frame[1])
-    ax.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1, borderpad=0.1)
+
+
+def _legend(fig, grid, gaps):
+    handles = []
+    if any(line.get_gid() == "grazing" for ax in grid for line in ax.lines):
+        handles.append(Line2D([], [], color=INK, lw=1.0, ls=DASHES, label="grazing of the free motion, $b^*$"))
+    if gaps:
+        handles.append(Patch(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="////", label="no number"))
+    if handles:
+        fig.legend(handles=handles, loc="outside lower center", ncols=2)
 
 
 def _maps(result):
@@ -65,20 +95,27 @@ def _maps(result):
     starts = len(result.starts)
     chosen = np.zeros((*result.done.shape[:-1], 1), int)
     note = f"; first of {starts} starts" if starts > 1 else ""
-    maps = []
-    if "lyapunov" in result:
-        largest = result.array("lyapunov")[..., 0]
-        if starts > 1:
-            chosen = np.argmax(np.where(np.isnan(largest), -np.inf, largest), axis=-1)[..., None]
-            note = f"; of {starts} starts the one with the largest {exponent(1)}"
-        maps.append((_exponent, np.take_along_axis(largest, chosen, -1)[..., 0]))
-    if "period" in result:
-        maps.append((_period, np.take_along_axis(result.array("period"), chosen, -1)[..., 0]))
+    largest = result.array("lyapunov")[..., 0] if "lyapunov" in result else None
+    if largest is not None and starts > 1:
+        chosen = np.argmax(np.where(np.isnan(largest), -np.inf, largest), axis=-1)[..., None]
+        note = f"; of {starts} starts the one with the largest {exponent(1)}"
+
+    def shown(values):
+        return np.take_along_axis(values, chosen, -1)[..., 0] if starts > 1 else values[..., 0]
+
+    if variable := result.look.variable:
+        if variable == "lyapunov":
+            return [(_exponent, shown(largest))], note
+        draw = {"period": _period, "attractor": _number}.get(variable, _amount(_OF_A_POINT[variable]))
+        return [(draw, shown(result.array(variable)))], note
+    maps = [] if largest is None else [(_exponent, shown(largest))]
     if "attractor" in result and starts > 1:
-        maps[1:] = [(_number, np.fmax.reduce(result.array("attractor"), axis=-1))]
+        maps.append((_number, np.fmax.reduce(result.array("attractor"), axis=-1)))
+    elif "period" in result:
+        maps.append((_period, shown(result.array("period"))))
     if not maps:
         impacts = result.array("impacts_right") + result.array("impacts_left")
-        maps.append((_impacts, impacts[..., 0]))
+        maps.append((_amount("impacts in the recorded periods"), impacts[..., 0]))
     return maps, note
 
 
@@ -89,30 +126,63 @@ def _exponent(ax, x, y, values):
     tiny = 1e-6 * max(abs(low), abs(high), 1e-300)
     norm = TwoSlopeNorm(0, min(low, -tiny), max(high, tiny))
     image = ax.pcolorfast(x, y, values, cmap="RdBu_r", norm=norm)
-    bar = _bar(ax, image, exponent(1), extend="both")
+    bar = _bar(ax, image, f"{exponent(1)} {PER_TIME}; > 0: chaos", extend="both")
     if -low > 1e-3 * high and high > -1e-3 * low:
-        bar.set_ticks([*np.linspace(norm.vmin, 0, 3)[:-1], 0, *np.linspace(0, norm.vmax, 3)[1:]])
-        bar.ax.xaxis.set_major_formatter(lambda value, _: f"${value:.2g}$")
+        bar.set_ticks([*_round(norm.vmin), 0, *_round(norm.vmax)])
+        bar.ax.xaxis.set_major_formatter("{x:.4g}")
+        bar.minorticks_off()
+
+
+def _round(end) -> list[float]:
+    """Some round numbers between zero and the end of a colour bar."""
+    ticks = MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(*sorted((0.0, end)))
+    return [tick for tick in ticks.tolist() if 0.2 <= tick / end <= 1]
 
 
 def _period(ax, x, y, values):
-    colours = ListedColormap([_NONE, *_PERIODS, _LONGER])
+    colours = ListedColormap([NO_PERIOD, *PERIODS, LONGER])
     norm = BoundaryNorm(np.arange(-0.5, LONGEST + 2), colours.N)
     image = ax.pcolorfast(x, y, np.ma.minimum(values, LONGEST + 1), cmap=colours, norm=norm)
-    bar = _bar(ax, image, r"period$\,/\,T$ (0: none found)", ticks=range(LONGEST + 2))
+    bar = _bar(ax, image, "period in $T$; 0: none found", ticks=range(LONGEST + 2))
     bar.ax.set_xticklabels([*range(LONGEST + 1), f">{LONGEST}"])
     bar.ax.tick_params(length=0)
+    _name_regions(ax, x, y, values)
+
+
+def _name_regions(ax, x, y, values):
+    """The period, written where there is room for it: into the widest place of its regions."""
+    from scipy import ndimage  # slow to import
+
+    filled = values.filled(-1)
+    width, height = 72 * ax.get_window_extent().size / ax.figure.dpi  # in points, before the layout
+    pixel = width / filled.shape[1], height / filled.shape[0]
+    for period in np.unique(filled[filled > 0]).tolist():
+        inside = np.pad(filled == period, 1)
+        if inside.sum() * pixel[0] * pixel[1] < 4 * ROOM**2:
+            continue
+        distance = ndimage.distance_transform_edt(inside, sampling=pixel[::-1])[1:-1, 1:-1]
+        row, column = np.unravel_index(np.argmax(distance), distance.shape)
+        if distance[row, column] > ROOM:
+            at = (x[column] + x[column + 1]) / 2, (y[row] + y[row + 1]) / 2
+            halo = [patheffects.withStroke(linewidth=2, foreground="white")]
+            style = {"fontsize": 7, "ha": "center", "va": "center", "path_effects": halo, "color": INK}
+            ax.text(*at, f"{period:.0f}", **style, clip_on=True, gid="period")
 
 
 def _number(ax, x, y, values):
     most = int(values.max()) if values.count() else 1
     colours = ListedColormap(colormaps["viridis"](np.linspace(0, 1, most + 1)))
     image = ax.pcolorfast(x, y, values, cmap=colours, norm=BoundaryNorm(np.arange(-0.5, most + 1), most + 1))
-    _bar(ax, image, "attractors", ticks=range(most + 1))
+    _bar(ax, image, "attractors", ticks=MaxNLocator(12, integer=True))
 
 
-def _impacts(ax, x, y, values):
-    _bar(ax, ax.pcolorfast(x, y, values, cmap="viridis"), "impacts in the recorded periods")
+def _amount(label):
+    """Draws values on an even scale."""
+
+    def draw(ax, x, y, values):
+        _bar(ax, ax.pcolorfast(x, y, values, cmap="viridis"), label)
+
+    return draw
 
 
 def _bar(ax, image, label, **options):

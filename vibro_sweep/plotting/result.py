@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from vibro_sweep.model.parameters import NAMES
 from vibro_sweep.model.status import NOT_COMPUTED
+from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.source import PlotError, source_of
 from vibro_sweep.plotting.style import equation, page
@@ -27,18 +28,18 @@ class Result:
 
     `sweep`: key -> its values, in order; `starts`: names of the starts (one empty name if there is only one);
     `follow`: they are an upward and a downward branch; `done`: bool, shape (*sweep, starts), which points are
-    computed; `failed`: none of them well; `settings`: numbers and words that hold for all points;
-    `ax`: the caller's axes, if the picture goes there.
+    computed; `failed`: none of them well; `settings`: numbers and words that hold for all points; `significant`: how
+    many standard errors tell an exponent from zero, and are drawn; `ax`: the caller's axes, if the picture goes there.
     Raises `PlotError` where the file is missing or not a result.
     """
 
-    def __init__(self, given, at=None, ax: Axes | None = None):
-        self.ax = ax
+    def __init__(self, given, look: Look | None = None, ax: Axes | None = None):
+        self.look, self.ax = look or Look(), ax
         self._source = source_of(given)
         self.path = self._source.name
         try:
             self._read_frame()
-            self._chosen = self._nearest(at or {})
+            self._chosen = self._nearest(self.look.at)
         except BaseException as error:
             self._source.close()
             if isinstance(error, (KeyError, TypeError, ValueError)) and not isinstance(error, PlotError):
@@ -58,7 +59,7 @@ class Result:
         codes = self._with_start(self._source.read("status"))
         self.done = codes != NOT_COMPUTED
         try:
-            self.settings, self._along, self._significant, standing = settings_of(self._source)
+            self.settings, self._along, self.significant, standing = settings_of(self._source)
         except OSError as error:
             raise PlotError(f"{self.path}: its numbers cannot be read, it is damaged or being written") from error
         self.failed = self.done.any() and not np.isin(codes, standing).any()
@@ -94,7 +95,8 @@ class Result:
         """A quantity as floats, shape (*sweep, starts, its own dimensions); NaN where not computed or failed."""
         stored = self._with_start(self._source.read(name))
         values = stored.astype(float)
-        values[~self.done] = np.nan
+        if not self.done.all():
+            values[~self.done] = np.nan
         if stored.dtype.kind == "i":
             values[stored == -1] = np.nan
         return values
@@ -105,6 +107,19 @@ class Result:
 
     def _with_start(self, values) -> np.ndarray:
         return np.expand_dims(values, len(self.sweep)) if self._one_start else values
+
+    def repeats(self, points, order) -> np.ndarray:
+        """After how many points those of a periodic orbit repeat, (values, starts); 0 where they do not.
+
+        points : of the section, (values, starts, samples); order : the places of the values in the sweep
+        """
+        if "period" not in self:
+            return np.zeros(points.shape[:2], int)
+        period = np.nan_to_num(self.array("period")[order])
+        known = np.isfinite(points).sum(axis=-1)
+        if "phase" in self:  # points are impacts; of more than there is room for the file has the first ones
+            period = np.where(known < points.shape[-1], np.rint(known * period / (self.number("record") or np.inf)), 0)
+        return np.where(known >= period, period, 0).astype(int)
 
     def number(self, name, place=()) -> float | None:
         """A number of the system, or b*, at a place in the sweep; None where the file does not tell."""
@@ -132,7 +147,7 @@ class Result:
 
     def interval(self, error) -> np.ndarray:
         """How far an exponent with this standard error must be from zero to differ from it."""
-        return self._significant * np.asarray(error)
+        return self.significant * np.asarray(error)
 
     def is_chaotic(self) -> np.ndarray:
         """Where lambda_1 > 0 beyond its errors, if they are stored; bool, shape (*sweep, starts)."""

@@ -4,6 +4,8 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from vibro_sweep.model.catalogue import BY_NAME, NUMBERS
 
@@ -32,14 +34,24 @@ STYLE = {
 
 INK = "#1a1a2e"
 FAINT = "#8a8a96"
-EXPONENTS = ("#b2182b", "#2166ac", "#4d9221", "#6e6e78")  # lambda_1 .. lambda_4
+# Colours that stand side by side in a legend are told apart by readers with any colour vision (tests/test_colours.py).
+EXPONENTS = ("#b2182b", "#2f8fd8", "#1a1a5e", "#e0a030")  # lambda_1 .. lambda_4
 CHAOS = "#fbe3dc"  # the tint where lambda_1 > 0
+SECTION = "#b2182b"  # states at t = 0 mod T
+IMPACT = "#2f8fd8"
 GRAZING = "#7b3294"
 BRANCHES = {"up": "#1f6fb4", "down": "#e1570f"}
 ARROWS = {"up": "up \N{RIGHTWARDS ARROW}", "down": "\N{LEFTWARDS ARROW} down"}
 DASHES = (0, (5, 3))
+PER_TIME = "per unit of $t$"
 RIGHT, LEFT = "#c26a00", "#2b5c8a"
-NOT_COMPUTED = "#dcdce0"
+NOT_COMPUTED = "#f2f2f5"
+LONGEST = 12  # periods with a colour of their own
+NO_PERIOD, LONGER = "#1c1c26", "#8c8c94"
+PERIODS = (
+    *("#9fd0ea", "#0077ee", "#554400", "#00bb77", "#990066", "#66ffaa"),
+    *("#771188", "#446644", "#eeaa44", "#9966aa", "#aa6611", "#dd99ff"),
+)
 
 
 def symbol(name) -> str:
@@ -72,6 +84,13 @@ def equation(key, value) -> str:
     return f"${NUMBERS[key].symbol if key in NUMBERS else key} = {value:.6g}$"
 
 
+def marked(colour, marker):
+    """What a legend shows of a colour and a marker together."""
+    style = {"ls": "none", "markersize": 5, "markeredgewidth": 0.6}
+    dot = Line2D([], [], color=INK, marker=marker, markerfacecolor="white", **style)
+    return Patch(facecolor=colour, edgecolor=FAINT, linewidth=0.4), dot
+
+
 def page(height, title) -> Figure:
     """An empty figure of the page's width; needs no display and is known to no pyplot."""
     fig = Figure(figsize=(WIDTH, height), layout="constrained")
@@ -94,9 +113,12 @@ def edges(values) -> np.ndarray:
     return np.concatenate([[2 * values[0] - inner[0]], inner, [2 * values[-1] - inner[-1]]])
 
 
-def limits(values) -> tuple[float, float]:
-    """An axis's range for values of any shape, NaN among them; the rounding of a constant is not blown up."""
+def limits(values, least=1e-9) -> tuple[float, float]:
+    """An axis's range for values of any shape, NaN among them; the rounding of a constant is not blown up.
+
+    least : the axis reaches as far to both sides of its middle
+    """
     low, high = np.nanmin(values), np.nanmax(values)
     middle = (low + high) / 2
-    half = max(0.53 * (high - low), 1e-3 * abs(middle), 1e-9)
+    half = max(0.53 * (high - low), 1e-3 * abs(middle), least)
     return middle - half, middle + half

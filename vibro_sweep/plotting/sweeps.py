@@ -1,12 +1,13 @@
 """Pictures over one swept parameter: bifurcation diagram, Lyapunov spectrum, impacts."""
 
 import numpy as np
-from matplotlib.collections import PatchCollection
+from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Patch
 
+from vibro_sweep.model.state import STATE
 from vibro_sweep.plotting import density
-from vibro_sweep.plotting.result import Result
+from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import (
     ARROWS,
     BRANCHES,
@@ -17,6 +18,7 @@ from vibro_sweep.plotting.style import (
     GRAZING,
     INK,
     LEFT,
+    PER_TIME,
     RIGHT,
     at_section,
     axis_name,
@@ -68,14 +70,25 @@ def impacts(result: Result):
     return _stack(result, [(2.8, _impact_counts)], "Impacts")
 
 
+def section_variables(result: Result) -> tuple[str, ...]:
+    """Coordinates of the section points in the file, the one that is drawn by default first."""
+    names = ("v1", "x1", "phase", "x2", "v2") if "phase" in result else STATE
+    return tuple(name for name in names if name in result)
+
+
 def _stack(result, panels, what):
     heights = [height for height, _ in panels]
     starts = len(result.starts)
     note = f"; {starts} starts at each value" if starts > 1 and not result.follow else ""
-    fig = result.page(sum(heights) + 1.0, result.title(what + note))
+    fig = result.page(sum(heights) + 1.2, result.title(what + note))
     axes = fig.subplots(len(panels), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     ((key, values),) = result.sweep.items()
     order = np.argsort(values)  # a sweep may run downwards; an axis does not
+    if result.look.xlim:
+        low, high = result.look.xlim
+        order = order[(low <= values[order]) & (values[order] <= high)]
+        if not len(order):
+            raise PlotError(f"xlim: the file has no {key} from {low:g} to {high:g}")
     values = values[order]
     for ax, (_, draw) in zip(axes, panels, strict=True):
         draw(ax, result, values, order)
@@ -86,13 +99,14 @@ def _stack(result, panels, what):
     axes[-1].set_xlim(max(borders[0], values[0] - most), min(borders[-1], values[-1] + most))
     axes[-1].set_xlabel(axis_name(key))
     _key(axes[0], result)
+    _explanations(fig, axes, result)
     fig.align_ylabels(axes)
     return fig
 
 
 def mark_grazing(axes, result):
     """In each panel over b: b* of Theorem 1, and where else the map was expanded."""
-    marks = [("b_star", "grazing, $b^*$", (0, (4, 2))), ("expand_at", "expanded at", ":")]
+    marks = [("b_star", "grazing, $b^*$", (0, (4, 2))), ("expand_at", "expansion of the mapping", ":")]
     low, high = sorted((min(result.sweep["b"]), max(result.sweep["b"])))
     for name, label, style in marks:
         b = result.number(name)
@@ -103,7 +117,7 @@ def mark_grazing(axes, result):
 
 def _key(ax, result):
     """What the colours mean, above the panel, where it hides no point."""
-    handles = [line for line in ax.lines if line.get_gid() == "stop"][:1]
+    handles = [line for line in ax.lines if line.get_gid() == "stop"]
     handles += [line for line in ax.lines if line.get_gid() == "grazing"]
     if result.follow:
         dots = {"ls": "none", "marker": "o", "markersize": 4}
@@ -114,33 +128,49 @@ def _key(ax, result):
         ax.legend(handles=handles, ncols=len(handles), handletextpad=0.3, columnspacing=1.2, **place)
 
 
+def _explanations(fig, axes, result):
+    """What tints, bands and lines mean, below the panels."""
+    found = {artist.get_gid() for ax in axes for artist in (*ax.collections, *ax.lines)}
+    errors = f"{result.significant:.2g} standard errors"
+    handles = {
+        "chaos": Patch(color=CHAOS, label=f"{exponent(1)} > 0 by more than {errors}: chaos"),
+        "error": Patch(color=FAINT, alpha=0.4, label=f"exponent ± {errors}"),
+        "periodic": Line2D([], [], color=INK, lw=0.8, label="line: periodic orbit"),
+    }
+    shown = [handle for name, handle in handles.items() if name in found]
+    if shown:
+        fig.legend(handles=shown, loc="outside lower center", ncols=len(shown))
+
+
 def _section(ax, result, values, order):
+    name = result.look.variable or section_variables(result)[0]
     at_impact = "phase" in result
-    points = result.array("v1" if at_impact else "x1")[order]  # (values, starts, samples)
+    points = result.array(name)[order]  # (values, starts, samples)
     count = np.isfinite(points).sum()
     if at_impact:
-        ax.set_ylabel(f"{before_impact('v1')}, {result.settings.get('section_stop', 'right')} stop")
+        ax.set_ylabel(f"{before_impact(name)}, {result.settings.get('section_stop', 'right')} stop")
     else:
-        ax.set_ylabel(at_section("x1"))
+        ax.set_ylabel(at_section(name))
     if result.failed:
         return
     if not count:
         ax.text(0.5, 0.5, "no section points", transform=ax.transAxes, ha="center", color=FAINT)
         return
-    ax.set_ylim(limits(points))
+    ax.set_ylim(result.look.ylim or limits(points))
     if count >= MANY:
+        cloud = density.Cloud(values, points, result.repeats(points, order))
         if result.follow:
-            density.two(ax, values, points, list(BRANCHES.values()))
+            density.two(ax, cloud, list(BRANCHES.values()))
         else:
-            density.one(ax, values, points)
+            density.one(ax, cloud)
     elif result.follow:
         # Where the branches agree the wide dot shows as a rim around the narrow one.
-        for i, (name, scale) in enumerate({"up": 2.4, "down": 1.1}.items()):
-            _dots(ax, values, points[:, i], count, scale, color=BRANCHES[name])
+        for i, (start, scale) in enumerate({"up": 2.4, "down": 1.1}.items()):
+            _dots(ax, values, points[:, i], count, scale, color=BRANCHES[start])
     else:
         _dots(ax, values, points, count, color=INK)
-    if not at_impact:
-        _stop_lines(ax, result, values, order)
+    if name == "x1" and not at_impact:
+        _stop_lines(ax, result, values)
 
 
 def _dots(ax, values, points, count, scale=1.0, **style):
@@ -150,15 +180,15 @@ def _dots(ax, values, points, count, scale=1.0, **style):
     ax.plot(x[there], points[there], ".", markersize=size, markeredgewidth=0, rasterized=True, **style)
 
 
-def _stop_lines(ax, result, values, order):
+def _stop_lines(ax, result, values):
     """The stops, where they pass through the picture: a section point on this line is about to touch."""
     low, high = ax.get_ylim()
-    stops = [result.stops((place,)) for place in order]
-    for side in stops[0]:
-        x1 = np.array([there[side] for there in stops])
+    for side, stop in result.stops((0,)).items():
+        x1 = side * values if "b" in result.sweep else np.full(len(values), stop)
         if ((low < x1) & (x1 < high)).any():
-            label = f"stop, $x_1 = {'-' * (side < 0)}b$"
-            ax.plot(values, x1, color=FAINT, lw=0.7, ls=DASHES, zorder=1, gid="stop", label=label)
+            label = f"{'right' if side > 0 else 'left'} stop, $x_1 = {'-' * (side < 0)}b$"
+            style = DASHES if side > 0 else ":"
+            ax.plot(values, x1, color=FAINT, lw=0.9, ls=style, zorder=1, gid="stop", label=label)
 
 
 def _spectrum(ax, result, values, order):
@@ -167,16 +197,16 @@ def _spectrum(ax, result, values, order):
     error = result.array("lyapunov_error")[order] if "lyapunov_error" in result else np.zeros(exponents.shape)
     _tint(ax, values, result.is_chaotic()[order].any(axis=1))
     ax.axhline(0, color=INK, lw=0.6, zorder=1)
-    ax.set_ylabel(exponent(1 if result.follow else "i"))
+    ax.set_ylabel(f"{exponent(1 if result.follow else 'i')} {PER_TIME}")
     if result.follow:
         _branches(ax, values, exponents[:, :, 0])
         for i, name in enumerate(BRANCHES):
-            _error_band(ax, values, exponents[:, i, 0], error[:, i, 0], BRANCHES[name])
+            _error_band(ax, values, exponents[:, i, 0], result.interval(error[:, i, 0]), BRANCHES[name])
         return
     for i in reversed(range(4)):  # lambda_1 on top
         _curve(ax, values, exponents[:, :, i], color=EXPONENTS[i], label=exponent(i + 1))
         if len(result.starts) == 1:
-            _error_band(ax, values, exponents[:, 0, i], error[:, 0, i], EXPONENTS[i])
+            _error_band(ax, values, exponents[:, 0, i], result.interval(error[:, 0, i]), EXPONENTS[i])
     _keep_the_leading_ones_legible(ax, exponents)
     if not result.failed:
         _name_curves(ax, exponents)
@@ -191,13 +221,12 @@ def _keep_the_leading_ones_legible(ax, exponents):
         ax.set_ylim(bottom=max(low, known.min() - 1.5 * span) if span > 0 else low, top=high)
 
 
-def _error_band(ax, values, ordinates, error, colour):
-    """One standard error to each side, where it is wider than the line."""
+def _error_band(ax, values, ordinates, reach, colour):
+    """How far the errors reach to each side, where that is wider than the line."""
     low, high = ax.get_ylim()
-    if np.nanmax(error, initial=0) > 2e-3 * (high - low):
-        ax.fill_between(
-            values, ordinates - error, ordinates + error, color=colour, alpha=0.3, lw=0, zorder=1.5, rasterized=True
-        )
+    if np.nanmax(reach, initial=0) > 2e-3 * (high - low):
+        style = {"color": colour, "alpha": 0.3, "lw": 0, "zorder": 1.5, "rasterized": True, "gid": "error"}
+        ax.fill_between(values, ordinates - reach, ordinates + reach, **style)
 
 
 def _branches(ax, values, ordinates):
@@ -206,12 +235,17 @@ def _branches(ax, values, ordinates):
 
 
 def _tint(ax, values, chosen):
-    """The cells of the chosen values, from bottom to top."""
+    """The cells of the chosen values, from bottom to top; neighbours are one rectangle."""
     borders = edges(values)
-    sides = zip(borders[:-1][chosen], borders[1:][chosen], strict=True)
-    cells = [Rectangle((left, 0), right - left, 1) for left, right in sides]
-    tint = PatchCollection(cells, color=CHAOS, linewidth=0, transform=ax.get_xaxis_transform(), zorder=0)
-    ax.add_collection(tint, autolim=False)
+    first, last = np.diff(np.concatenate([[False], chosen, [False]]).astype(int)).nonzero()[0].reshape(-1, 2).T
+    if len(first):
+        cells = [
+            [(left, 0), (right, 0), (right, 1), (left, 1)]
+            for left, right in zip(borders[first], borders[last], strict=True)
+        ]
+        transform = ax.get_xaxis_transform()
+        tint = PolyCollection(cells, color=CHAOS, linewidth=0, transform=transform, zorder=0, gid="chaos")
+        ax.add_collection(tint, autolim=False)
 
 
 def _curve(ax, values, ordinates, **style):
@@ -248,7 +282,8 @@ def _impact_counts(ax, result, values, order):
     per = result.number("record") or 1
     # (values, starts)
     right, left = (result.array(f"impacts_{side}")[order] / per for side in ("right", "left"))
-    ax.set_ylabel("impacts" if per == 1 else "impacts / $T$")
+    of_both = "\nboth stops" if len(result.starts) > 1 else ""
+    ax.set_ylabel(("impacts" if per == 1 else "impacts / $T$") + of_both)
     if result.follow:
         _branches(ax, values, right + left)
     elif len(result.starts) > 1:  # mirror images exchange right and left: only the sum is worth comparing

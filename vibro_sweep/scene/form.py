@@ -20,6 +20,7 @@ from pydantic import (
 from vibro_sweep.model.arguments import MAX_COUNT
 from vibro_sweep.model.observables import WORDS
 from vibro_sweep.model.parameters import BY_NAME, PARAMETERS, PHYSICAL, STOPS, Parameter
+from vibro_sweep.model.pictures import PICTURES
 from vibro_sweep.model.state import COORDINATES
 
 from .slips import SYNONYMS
@@ -219,6 +220,9 @@ class SceneForm(Form):
         default=frozenset({"section"}), description="what is computed and stored; nothing else is"
     )
     trajectory: TrajectoryForm = Field(default=None, description="store the continuous orbit as well")
+    picture: Literal[PICTURES] = Field(
+        default=None, description="kind of picture that is drawn by default, if the file has what it needs"
+    )
 
 
 def json_schema() -> dict:

@@ -61,6 +61,7 @@ class Scene:
     section: Section
     observe: frozenset[str]
     trajectory: Trajectory | None
+    picture: str | None = None  # kind that is drawn by default
 
     @cached_property
     def text(self) -> str:
@@ -228,6 +229,7 @@ def scene_of(data: object, name: str, given: str | None = None) -> Scene:
         section=Section(form.section.kind, form.section.stop),
         observe=form.observe,
         trajectory=trajectory,
+        picture=form.picture,
     )
     problems = size_problems(scene) or phase_problems(scene)
     if problems:

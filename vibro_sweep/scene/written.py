@@ -38,6 +38,8 @@ def data_of(scene: "Scene") -> dict[str, Any]:
         data["section"]["stop"] = scene.section.stop
     if scene.trajectory:
         data["trajectory"] = {"periods": scene.trajectory.periods, "samples": scene.trajectory.samples}
+    if scene.picture:
+        data["picture"] = scene.picture
     return {key: value for key, value in data.items() if value or key == "observe"}
 
 

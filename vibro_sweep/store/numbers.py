@@ -24,7 +24,7 @@ def attributes(scene: Scene) -> dict[str, Any]:
 
     The system's numbers, `tau` in radians, `b_star`, `stops`, `model` with its `order` and `expand_at`, the initial
     state (`start_x1`, ...; of a `follow` that of its first point) unless it is random, `transient` and `record` in
-    forcing periods, and `section`: `phase`, or `impact` with `section_stop`.
+    forcing periods, `section`: `phase`, or `impact` with `section_stop`; and `picture` where the scene has it.
     """
     result: dict[str, Any] = scene.system.parameters()
     if not depends_on(scene):
@@ -37,7 +37,8 @@ def attributes(scene: Scene) -> dict[str, Any]:
         state = dict(zip(START.values(), scene.start.state, strict=True))
         result |= {name: value for name, value in state.items() if name not in scene.sweep}
     result |= {"transient": scene.transient, "record": scene.record, "section": scene.section.kind}
-    return result | ({"section_stop": scene.section.stop} if scene.section.kind == "impact" else {})
+    result |= {"section_stop": scene.section.stop} if scene.section.kind == "impact" else {}
+    return result | ({"picture": scene.picture} if scene.picture else {})
 
 
 def depends_on(scene: Scene) -> tuple[str, ...]:

@@ -1,0 +1,16 @@
+"""The kinds of pictures by name, in order of preference, for scenes and the command line; plotting/ draws them."""
+
+PICTURES = (
+    "basins",
+    "coexistence",
+    "plane",
+    "bifurcation",
+    "lyapunov",
+    "impacts",
+    "phase-portrait",
+    "configuration",
+    "history",
+    "iteration",
+    "poincare",
+    "convergence",
+)

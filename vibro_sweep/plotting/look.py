@@ -1,0 +1,61 @@
+"""What a user may choose of a picture besides its kind."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from vibro_sweep.plotting.source import PlotError
+
+SIZES = (2.0, 100.0)  # inches
+RESOLUTIONS = (10, 2400)  # pixels an inch
+MOST_PIXELS = 10**8  # of a whole picture: 400 MB while it is drawn
+
+
+@dataclass(frozen=True)
+class Look:
+    """What is None is left to the kind of picture.
+
+    at: swept key -> value, where single orbits are drawn; variable: what is drawn; xlim, ylim: ranges of the axes, of
+    several panels those of the first and of all that show the same; size: inches; dpi: pixels an inch.
+    Raises `PlotError` for values that none of the kinds can use.
+    """
+
+    at: Mapping[str, float] = field(default_factory=dict)
+    variable: str | None = None
+    xlim: tuple[float, float] | None = None
+    ylim: tuple[float, float] | None = None
+    size: tuple[float, float] | None = None
+    dpi: float | None = None
+
+    def __post_init__(self):
+        for name, limits in (("xlim", self.xlim), ("ylim", self.ylim)):
+            if limits and not (np.isfinite(limits).all() and limits[0] < limits[1]):
+                raise PlotError(f"{name}: {_told(limits)} is not allowed; it must be two numbers, the lower one first")
+        if self.size and not all(SIZES[0] <= length <= SIZES[1] for length in self.size):
+            raise PlotError(
+                f"size: {_told(self.size)} is not allowed; width and height must be {SIZES[0]:g} to {SIZES[1]:g} inches"
+            )
+        if self.dpi is not None and not RESOLUTIONS[0] <= self.dpi <= RESOLUTIONS[1]:
+            raise PlotError(f"dpi: {self.dpi:g} is not allowed; it must be {RESOLUTIONS[0]} to {RESOLUTIONS[1]}")
+
+    def applied(self, fig) -> None:
+        """Give a figure that is drawn its limits, size and resolution."""
+        panels = [ax for ax in fig.axes if ax.get_label() != "<colorbar>"]
+        for ax in panels:
+            if self.xlim:
+                ax.set_xlim(self.xlim)
+            if self.ylim and ax.get_ylabel() == panels[0].get_ylabel():
+                ax.set_ylim(self.ylim)
+        if self.size:
+            fig.set_size_inches(self.size)
+        if self.dpi:
+            fig.set_dpi(self.dpi)
+        width, height = fig.get_size_inches() * fig.dpi
+        if width * height > MOST_PIXELS:
+            pixels = f"{width:.0f} x {height:.0f} pixels"
+            raise PlotError(f"size and dpi: {pixels} are not allowed; there may be {MOST_PIXELS:.0e} in all")
+
+
+def _told(numbers) -> str:
+    return " ".join(f"{number:g}" for number in numbers)
