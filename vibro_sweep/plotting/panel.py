@@ -22,8 +22,10 @@ class Panel:
         return self.ax if squeeze else np.array([[self.ax]])
 
     def legend(self, *handles, **options) -> None:
-        """Inside the axes: the figure around them is not ours."""
-        self.ax.legend(*handles, **options | {"loc": "best", "ncols": 1})
+        """In a box inside the axes: the figure around them is not ours. One that the axes have stays."""
+        if old := self.ax.get_legend():
+            self.ax.add_artist(old)
+        self.ax.legend(*handles, **options | {"loc": "best", "ncols": 1, "frameon": True})
 
     def align_ylabels(self, _) -> None:
         """There is one."""
