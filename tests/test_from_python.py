@@ -291,6 +291,10 @@ def test_picture_of_an_orbit():
     assert len(inside) > 1 and np.array_equal(np.sort(marks), inside["t"])
     jumps = [line for line in portrait.lines if list(line.get_xdata()) in ([6.6, 6.6], [-6.6, -6.6])]
     assert [tuple(line.get_ydata()) for line in jumps][: len(inside)] == [(v, -0.8 * v) for v in inside["v1"]]
+    arrows = [text for text in portrait.texts if text.get_gid() == "time"]
+    assert len(arrows) == 4 and all((one.xy[0] - one.xyann[0]) * one.xy[1] > 0 for one in arrows)  # right where v1 > 0
+    named = {text.get_text() for text in portrait.figure.legends[0].get_texts()}
+    assert {"impact", "stop", "direction of time"} < named
     with pytest.raises(ValueError, match="no motion to draw"):
         vs.simulate(SYSTEM, (0, 0, 0, 0), 0).plot()
 

@@ -262,6 +262,7 @@ def test_spectrum_has_a_zero_line_names_and_a_tint_where_chaotic(sweep):
     assert [text.get_text() for text in ax.texts] == [rf"$\lambda_{i}$" for i in (1, 2, 3, 4)]
     (tint,) = (artist for artist in ax.collections if artist.get_gid() == "chaos")
     (path,) = tint.get_paths()  # ten neighbours
+    assert [text.get_text() for text in ax.figure.legends[0].get_texts()] == [r"$\lambda_1$ > 0: chaos"]
     borders = edges(np.linspace(6.5, 6.9, 40))
     assert (path.vertices[:, 0].min(), path.vertices[:, 0].max()) == pytest.approx((borders[30], borders[40]))
 
@@ -360,6 +361,13 @@ def test_periodic_orbits_are_lines_in_a_density(window):
     assert colours == [colour(norm(12)), colour(norm(4))]  # by the points at each place
     named = [text.get_text() for text in ax.figure.legends[0].get_texts()]
     assert named == ["line: periodic orbit"]
+
+
+def test_lines_do_not_break_in_a_part_of_the_picture(window):
+    """Branches that move far across a narrow range of the axis are branches still."""
+    ax = plotting.figure(window, look=plotting.Look(ylim=(0.2, 0.25))).axes[0]
+    three = [line.get_xydata() for line in ax.lines if line.get_gid() == "periodic"][1]
+    assert np.isnan(three[:, 0]).sum() == 3
 
 
 def test_values_that_share_a_column_are_a_line_only_where_all_repeat(window, monkeypatch):
@@ -520,16 +528,18 @@ def test_ticks_are_round_numbers(tmp_path):
     assert told == ["-0.03", "-0.02", "-0.01", "0", "0.005", "0.01", "0.015"]
 
 
-def test_periods_are_written_where_there_is_room(tmp_path):
-    period = np.ones((40, 40), int)
-    period[:15, :15] = 25  # beyond the colours
-    period[30, 30] = 7  # one cell
-    coordinates = {"b": np.arange(40.0), "R": np.linspace(0, 1, 40)}
+@pytest.mark.parametrize("size", [40, 1300])
+def test_periods_are_written_where_there_is_room(tmp_path, size):
+    period = np.ones((size, size), np.int8)
+    side = 3 * size // 8
+    period[:side, :side] = 25  # beyond the colours
+    period[3 * size // 4, 3 * size // 4] = 7  # one cell
+    coordinates = {"b": np.arange(float(size)), "R": np.linspace(0, 1, size)}
     ax = plotting.figure(write(tmp_path / "p.h5", coordinates, {"period": period})).axes[0]
     found = {text.get_text(): text.get_position() for text in ax.texts}
     assert found.keys() == {"1", "25"}
     (b, R), (far, _) = found["25"], found["1"]
-    assert 2 < b < 12 and 0.05 < R < 0.3 and far > 15
+    assert 0.1 < b / side < 0.9 and 0.05 < R < 0.3 and far > side
 
 
 def test_what_has_no_number_is_hatched_and_named(plane):

@@ -115,6 +115,21 @@ def test_basins_have_a_mark_at_each_attractor(basins):
     assert "mean of the section points" in fig.get_suptitle()
 
 
+def test_section_points_mark_the_attractors_where_they_are_stored(tmp_path):
+    text = """
+sweep: {v1: {values: [1, 0, -0.3]}, x1: {start: -6.7, stop: 6.7, num: 8}}
+start: {x2: 3.2286, v2: 0.2475}
+orbit: {transient: 3000, record: 40}
+observe: [attractors, section]"""
+    path = run(tmp_path / "basins.h5", text)
+    data, fig = vs.open(path), plotting.figure(path, "basins")
+    place = np.argwhere(data.attractor_id.values == 1)[0]
+    stored = {tuple(point) for point in np.stack([data.v1.values[*place], data.x1.values[*place]], axis=1).tolist()}
+    shown = [{tuple(point) for point in line.get_xydata().tolist()} for line in fig.axes[0].lines]
+    assert stored in shown and len(shown) == data.attractor_id.max()
+    assert "marks: section points" in fig.get_suptitle()
+
+
 def test_basins_are_those_that_the_file_numbers(basins, tmp_path):
     """Whatever the averages are: the picture groups nothing itself."""
     path = shutil.copy(basins, tmp_path)

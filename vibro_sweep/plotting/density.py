@@ -15,7 +15,7 @@ from vibro_sweep.plotting.style import INK, density_colours, edges
 
 COLUMNS, ROWS = 1200, 450  # a cell is about a pixel wide and a hair line high
 BLOCK = 2**20  # points counted at a time, which stay in the cache
-REACH = 0.03  # of the axis: a branch that moves further from one column to the next ends, and another begins
+REACH = 0.03  # of the extent: a branch that moves further from one column to the next ends, and another begins
 _LINE = {"lw": 0.8, "rasterized": True, "zorder": 0.6, "gid": "periodic"}
 
 
@@ -23,11 +23,13 @@ class Cloud(NamedTuple):
     """Section points (values, starts, samples) over rising values (n,), NaN where there are none.
 
     repeats : (values, starts), the points after which those of a periodic orbit repeat; 0 where they do not
+    extent : of all points, also beyond the limits of the picture
     """
 
     values: np.ndarray
     points: np.ndarray
     repeats: np.ndarray
+    extent: float
 
 
 def counts(points, low, high, group, counted=None) -> np.ndarray:
@@ -59,11 +61,7 @@ def one(ax, cloud: Cloud):
     x, y, group = _grid(ax, cloud.values)
     lines = _repeated(cloud.repeats, group)
     cells = counts(cloud.points, y[0], y[-1], group, ~_spread(lines > 0, group, len(cloud.values)))
-    drawn = [
-        curve
-        for start in range(lines.shape[1])
-        for curve in _curves(cloud, start, lines[:, start], x, group, y[-1] - y[0])
-    ]
+    drawn = [curve for start in range(lines.shape[1]) for curve in _curves(cloud, start, lines[:, start], x, group)]
     filled = np.ma.masked_equal(cells, 0)
     most = max([filled.max() if filled.count() else 2, 2, *(group * curve.visits for curve in drawn)])
     norm, colours = LogNorm(1, most), density_colours()
@@ -88,7 +86,7 @@ def two(ax, cloud: Cloud, colours):
     ax.pcolorfast(x, y, paper, zorder=0.5)
     same = _same_orbit(cloud, lines, group, (y[-1] - y[0]) / ROWS)
     for start, where, colour in ((0, ~same, colours[0]), (1, ~same, colours[1]), (0, same, INK)):
-        for curve in _curves(cloud, start, np.where(where, lines[:, start], 0), x, group, y[-1] - y[0]):
+        for curve in _curves(cloud, start, np.where(where, lines[:, start], 0), x, group):
             ax.plot(curve.x, curve.y, color=colour, **_LINE)
 
 
@@ -120,7 +118,7 @@ def _spread(columns, group, n) -> np.ndarray:
     return np.repeat(columns, group, axis=0)[:n]
 
 
-def _curves(cloud: Cloud, start: int, repeats, borders, group, height) -> Iterator[_Curve]:
+def _curves(cloud: Cloud, start: int, repeats, borders, group) -> Iterator[_Curve]:
     """The periodic orbits of a start. repeats : (columns,), 0 where no line is to be drawn.
 
     From column to column points are joined in their order, which is the least displacement in all.
@@ -129,7 +127,7 @@ def _curves(cloud: Cloud, start: int, repeats, borders, group, height) -> Iterat
     for n in np.unique(repeats[repeats > 0]):
         columns = np.flatnonzero(repeats == n)
         points, known = _orbit(cloud, middle[columns], start, n)
-        joined = (np.diff(columns) == 1) & (np.abs(np.diff(points, axis=0)).max(axis=1) <= REACH * height)
+        joined = (np.diff(columns) == 1) & (np.abs(np.diff(points, axis=0)).max(axis=1) <= REACH * cloud.extent)
         before, after = np.append(False, joined), np.append(joined, False)
         left, right = borders[columns], borders[columns + 1]
         # a window's first and last orbit reach to the borders of their columns

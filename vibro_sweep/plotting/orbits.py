@@ -24,7 +24,7 @@ from vibro_sweep.plotting.style import (
 )
 from vibro_sweep.plotting.sweeps import section_variables
 
-ARROWS_AT = (0.1, 0.35, 0.6, 0.85)  # forcing periods after the beginning of a trajectory
+ARROWS_AT = (0.06, 0.36, 0.66, 0.91)  # of the first forcing period, or of the whole way
 
 
 def shows_trajectory(result: Result) -> bool:
@@ -75,7 +75,7 @@ def phase_portrait(result: Result):
             _walls(ax, result.stops(point.place))
         _mark_sections(ax, result, point, x_name, v_name)
         ax.set(title=point.label, xlabel=symbol(x_name), ylabel=symbol(v_name))
-    _legend(fig)
+    legend(fig)
     return fig
 
 
@@ -88,7 +88,7 @@ def configuration(result: Result):
         _walls(ax, result.stops(point.place))
         _mark_sections(ax, result, point, "x1", "x2")
         ax.set(title=point.label, xlabel=symbol("x1"), ylabel=symbol("x2"))
-    _legend(fig)
+    legend(fig)
     return fig
 
 
@@ -121,7 +121,7 @@ def poincare(result: Result):
         name = before_impact if "phase" in result else at_section
         ax.set(title=point.label, xlabel=r"$\omega t$ mod $2\pi$" if x_name == "phase" else name(x_name))
         ax.set_ylabel(name(v_name))
-    _legend(fig)
+    legend(fig)
     return fig
 
 
@@ -138,13 +138,18 @@ def _line(ax, x, y, way):
         ax.plot(x, y, ".", color=INK, markersize=2, markeredgewidth=0, label=label)
         return
     ax.plot(x, y, color=INK, lw=0.7)
+    arrows(ax, way.t, x, y, ARROWS_AT)
+
+
+def arrows(ax, t, x, y, times):
+    """Arrows of time on the way (x, y) with NaN in its gaps, at these times or the nearest that do."""
     known = np.flatnonzero(np.isfinite(x[:-1]) & np.isfinite(x[1:]) & (np.hypot(np.diff(x), np.diff(y)) > 0))
-    for part in ARROWS_AT:  # of the first forcing period
-        at = known[np.searchsorted(way.t[known], part).clip(max=len(known) - 1)] if len(known) else None
-        if at is not None:
-            ends = {"xy": (x[at + 1], y[at + 1]), "xytext": (x[at], y[at])}
-            arrow = {"arrowstyle": "-|>", "color": INK, "lw": 0.7, "mutation_scale": 11, "shrinkA": 0, "shrinkB": 0}
-            ax.annotate("", **ends, arrowprops=arrow, zorder=2.5, gid="time")
+    if not len(known):
+        return
+    for at in known[np.searchsorted(t[known], times).clip(max=len(known) - 1)]:
+        ends = {"xy": (x[at + 1], y[at + 1]), "xytext": (x[at], y[at])}
+        arrow = {"arrowstyle": "-|>", "color": INK, "lw": 0.7, "mutation_scale": 11, "shrinkA": 0, "shrinkB": 0}
+        ax.annotate("", **ends, arrowprops=arrow, zorder=2.5, gid="time")
 
 
 def _mark_sections(ax, result, point, x_name, y_name):
@@ -177,7 +182,7 @@ def history(result: Result):
         ax.margins(x=0)
         ax.set(title=point.label, ylabel=symbol(chosen) if chosen else "displacement")
     grid[-1].set_xlabel("$t / T$ (forcing periods)")
-    _legend(fig)
+    legend(fig)
     return fig
 
 
@@ -242,7 +247,7 @@ def convergence(result: Result):
         row[0].set_ylim(limits(finite))
     grid[0, 0].set_ylabel(f"{exponent(1)} {PER_TIME}")
     grid[1, 0].set_ylabel(f"{exponent('i')} {PER_TIME}")
-    _legend(fig)
+    legend(fig)
     fig.align_ylabels(grid[:, 0])
     return fig
 
@@ -285,7 +290,8 @@ def _walls(ax, stops):
             ax.set_xlim(**{"right" if side > 0 else "left": end})
 
 
-def _legend(fig):
+def legend(fig):
+    """All that is labelled in its panels, each once, and what the arrows mean."""
     named = {}
     for ax in fig.axes:
         handles, labels = ax.get_legend_handles_labels()

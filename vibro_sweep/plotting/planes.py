@@ -27,6 +27,7 @@ from vibro_sweep.plotting.style import (
 _OF_A_POINT = {one.name: one.label for one in VARIABLES if not one.dimensions}
 
 ROOM = 4.5  # points (1/72 inch) around a period that is written into the plane
+COARSE = 400  # cells a side among which places for the periods are sought
 
 
 def shows(result: Result) -> bool:
@@ -153,20 +154,24 @@ def _name_regions(ax, x, y, values):
     """The period, written where there is room for it: into the widest place of its regions."""
     from scipy import ndimage  # slow to import
 
-    filled = values.filled(-1)
+    steps = [max(1, length // COARSE) for length in values.shape]
+    part = values.filled(-1)[:: steps[0], :: steps[1]].astype(int)
     width, height = 72 * ax.get_window_extent().size / ax.figure.dpi  # in points, before the layout
-    pixel = width / filled.shape[1], height / filled.shape[0]
-    for period in np.unique(filled[filled > 0]).tolist():
-        inside = np.pad(filled == period, 1)
-        if inside.sum() * pixel[0] * pixel[1] < 4 * ROOM**2:
-            continue
-        distance = ndimage.distance_transform_edt(inside, sampling=pixel[::-1])[1:-1, 1:-1]
-        row, column = np.unravel_index(np.argmax(distance), distance.shape)
-        if distance[row, column] > ROOM:
+    inside = np.zeros(part.shape, bool)  # not beside another period, nor at the frame
+    inner = part[1:-1, 1:-1]
+    inside[1:-1, 1:-1] = np.logical_and.reduce(
+        [inner == side for side in (part[2:, 1:-1], part[:-2, 1:-1], part[1:-1, 2:], part[1:-1, :-2])]
+    )
+    sampling = height / part.shape[0], width / part.shape[1]
+    room = ndimage.distance_transform_edt(inside, sampling=sampling)
+    periods = np.unique(part[part > 0])
+    for period, (row, column) in zip(periods, ndimage.maximum_position(room, part, periods), strict=True):
+        if room[row, column] > ROOM:
+            row, column = row * steps[0], column * steps[1]
             at = (x[column] + x[column + 1]) / 2, (y[row] + y[row + 1]) / 2
             halo = [patheffects.withStroke(linewidth=2, foreground="white")]
             style = {"fontsize": 7, "ha": "center", "va": "center", "path_effects": halo, "color": INK}
-            ax.text(*at, f"{period:.0f}", **style, clip_on=True, gid="period")
+            ax.text(*at, f"{period}", **style, clip_on=True, gid="period")
 
 
 def _number(ax, x, y, values):

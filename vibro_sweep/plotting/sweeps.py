@@ -132,8 +132,9 @@ def _explanations(fig, axes, result):
     """What tints, bands and lines mean, below the panels."""
     found = {artist.get_gid() for ax in axes for artist in (*ax.collections, *ax.lines)}
     errors = f"{result.significant:.2g} standard errors"
+    certain = f" by more than {errors}" if "lyapunov_error" in result else ""
     handles = {
-        "chaos": Patch(color=CHAOS, label=f"{exponent(1)} > 0 by more than {errors}: chaos"),
+        "chaos": Patch(color=CHAOS, label=f"{exponent(1)} > 0{certain}: chaos"),
         "error": Patch(color=FAINT, alpha=0.4, label=f"exponent ± {errors}"),
         "periodic": Line2D([], [], color=INK, lw=0.8, label="line: periodic orbit"),
     }
@@ -156,9 +157,10 @@ def _section(ax, result, values, order):
     if not count:
         ax.text(0.5, 0.5, "no section points", transform=ax.transAxes, ha="center", color=FAINT)
         return
-    ax.set_ylim(result.look.ylim or limits(points))
+    low, high = limits(points)
+    ax.set_ylim(result.look.ylim or (low, high))
     if count >= MANY:
-        cloud = density.Cloud(values, points, result.repeats(points, order))
+        cloud = density.Cloud(values, points, result.repeats(points, order), high - low)
         if result.follow:
             density.two(ax, cloud, list(BRANCHES.values()))
         else:
