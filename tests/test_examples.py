@@ -34,6 +34,14 @@ def test_every_example_is_a_scene_that_finds_its_schema(folder, name):
     assert vs.load_scene(f"{name}.yaml").n_points > 0
 
 
+def test_an_unchanged_copy_is_no_obstacle(folder, capsys):
+    assert main(["new", "basins"]) == main(["new", "basins"]) == 0
+    with Path("basins.yaml").open("a") as file:
+        file.write("# mine\n")
+    assert main(["new", "basins"]) == 2 and Path("basins.yaml").read_text().endswith("# mine\n")
+    assert "basins.yaml exists" in capsys.readouterr().err
+
+
 def test_what_exists_is_kept(folder, capsys):
     Path("quickstart.yaml").write_text("mine")
     Path("scene.schema.json").write_text("mine too")

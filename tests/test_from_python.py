@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from support import ROOT
 
 import vibro_sweep as vs
@@ -219,9 +220,43 @@ def test_picture_of_a_part_of_a_dataset():
     assert "6.6" in ax.get_title()
 
 
+@pytest.fixture(scope="module")
+def line():
+    """A sweep with everything that a picture of one key can show."""
+    orders = dict(trajectory={"periods": 2, "samples": 50}, observe=["section", "lyapunov", "impacts"])
+    return vs.sweep(SYSTEM, {"b": [6.5, 6.55, 6.6]}, **orders, **SHORT)
+
+
+def lines_of(ax):
+    """Their points, also those that are NaN, byte for byte."""
+    return [drawn.get_xydata().tobytes() for drawn in ax.lines]
+
+
+@pytest.mark.parametrize("kind", ["bifurcation", "lyapunov", "impacts", "phase-portrait", "configuration", "history"])
+def test_a_picture_in_the_axes_of_the_caller(line, kind):
+    fig = Figure()
+    other, ax = fig.subplots(1, 2)
+    at = None if kind in ("bifurcation", "lyapunov", "impacts") else {"b": 6.55}
+    assert vs.plot(line, kind, ax=ax, at=at) is fig
+    assert fig.axes == [other, ax] and not other.lines
+    alone = vs.plot(line, kind, at=at).axes
+    assert lines_of(ax) == lines_of(alone[0]) != []
+    assert ax.get_title() and (ax.get_xlabel(), ax.get_ylabel()) == (alone[-1].get_xlabel(), alone[0].get_ylabel())
+    assert len(drawn(fig))
+
+
+@pytest.mark.parametrize("variables", [["lyapunov", "section"], ["section"], ["impacts"]])
+def test_a_plane_in_the_axes_of_the_caller(variables):
+    data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7], "R": [0.7, 0.8]}, observe=variables, **SHORT)
+    ax = Figure().subplots()
+    assert vs.plot(data, ax=ax) is ax.figure
+    assert np.array_equal(ax.images[0].get_array(), vs.plot(data).axes[0].images[0].get_array())
+
+
 @pytest.mark.parametrize(
     "call, message",
     [
+        (lambda data: vs.plot(data, "iteration", ax=Figure().subplots()), "ax: the picture has 2 panels"),
         (lambda data: vs.plot(data, "plane"), "this dataset can show bifurcation, lyapunov, iteration, poincare"),
         (lambda data: vs.plot(data, "iteration", at={"omega": 3}), "at: 'omega' is not swept; allowed: b"),
         (lambda data: vs.plot(data, "iteration", at={"b": "here"}), "at: b = 'here' is not allowed"),

@@ -69,6 +69,11 @@ SCENES = {
         f"system: {{{PHYSICAL}}}\n{ORBIT}",
         ["M1, M2, K1, K2, C1, C2, P1, P2, Omega, B are physical quantities; write system: {physical:", "(line 1)"],
     ),
+    "frequency in Hz": (
+        physical(numbers=PHYSICAL.replace("Omega: 0.63", "f: 4.5")),
+        ["physical.f = 4.5", "if it is in Hz write Omega: 28.27433388"],
+    ),
+    "gap among physical numbers": (physical(numbers=PHYSICAL.replace("B:", "gap:")), ["did you mean `B`?"]),
     "omega among physical numbers": (physical(numbers=PHYSICAL.replace("Omega", "omega")), ["did you mean `Omega`?"]),
     "Omega swept": (
         physical("sweep: {Omega: {values: [0.6, 0.7]}}"),

@@ -9,7 +9,7 @@ HOME = Path(__file__).parent
 
 
 class ExampleError(ValueError):
-    """An example that there is not, or whose copy would replace a file."""
+    """An example that there is not, or whose copy would replace a file with another content."""
 
 
 def examples() -> dict[str, Path]:
@@ -20,7 +20,7 @@ def examples() -> dict[str, Path]:
 
 
 def write_example(name: str) -> list[Path]:
-    """Copy a scene into the current folder, and the schema beside it; the files that are new. Raises ExampleError."""
+    """Copy a scene into the current folder, and the schema if there is none; the paths. Raises ExampleError."""
     known = examples()
     name = name.removesuffix(".yaml")
     if name not in known:
@@ -34,6 +34,8 @@ def write_example(name: str) -> list[Path]:
         with open(scene, "x", encoding="utf-8") as file:
             file.write(text)
     except FileExistsError:
+        if scene.is_file() and scene.read_text(encoding="utf-8", errors="replace") == text:
+            return [scene]  # it is that copy
         raise ExampleError(f"{scene} exists; move it away, or work in another folder") from None
     schema = Path(SCHEMA)
     if schema.exists():

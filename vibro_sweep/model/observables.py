@@ -107,7 +107,7 @@ VARIABLES = (
     _section("phase", "forcing phase", "forcing phase omega t mod 2 pi at the impact", units="rad", at_impacts=True),
     Variable(
         "period", ("section", "multipliers", "attractors"), "period in T",
-        "period of the orbit in forcing periods, 0: none up to half of `record`", dtype="i8",
+        "period of the orbit in forcing periods; 0 if none up to half of `record` is found", dtype="i8",
     ),
     Variable(
         "lyapunov", _EXPONENTS, "Lyapunov exponent", "Lyapunov exponents per unit time, natural logarithm",
@@ -115,7 +115,7 @@ VARIABLES = (
     ),
     Variable(
         "lyapunov_error", _EXPONENTS, "error of the exponent",
-        "standard error of the exponents; of a periodic orbit: what one more period changes", ("exponent",),
+        "standard error of the exponents; for a periodic orbit the change over one more period", ("exponent",),
         attributes={"significant": CERTAIN},  # so many of these errors tell an exponent from zero
     ),
     Variable(
@@ -123,20 +123,20 @@ VARIABLES = (
     ),
     Variable(
         "multiplier_re", _MULTIPLIERS, "multiplier, real part",
-        "Floquet multipliers of the periodic orbit by falling modulus, real part", ("multiplier",),
+        "real part of the Floquet multipliers of the periodic orbit, in the order of falling modulus", ("multiplier",),
     ),
     Variable(
         "multiplier_im", _MULTIPLIERS, "multiplier, imaginary part",
-        "their imaginary part; of a pair the positive one first", ("multiplier",),
+        "imaginary part of the Floquet multipliers; of a complex pair the positive one comes first", ("multiplier",),
     ),
     Variable("multiplier_error", _MULTIPLIERS, "error of the multiplier", "error of the multipliers", ("multiplier",)),
     _attractor(
         "attractor", "attractor",
-        "attractor of the orbit, from 1, the one that most starts reach; 0: not settled", "i8",
+        "rank of the attractor at this point; 1 = most starts reach it, 0 = not settled", "i8",
     ),
     _attractor(
         "attractor_id", "number of the attractor",
-        "number of the attractor in all of the file, in the order of the sweep; 0: not settled", "i4",
+        "number of the attractor in the whole file, in the order of the sweep; 0 = not settled", "i4",
     ),
     _attractor("share", "share of starts", "share of the starts that reach the attractor of this one"),
     Variable(
@@ -175,7 +175,9 @@ VARIABLES = (
             ),
         )
     ),
-    _trajectory("impacts", "impacts", "impacts along the orbit; of too many the fastest are stored", None, "i8"),
+    _trajectory(
+        "impacts", "impacts", "number of impacts along the orbit; of too many the fastest are stored", None, "i8",
+    ),
     _trajectory(
         "impact_time", "time of impact, t/T", "forcing periods from the last section point to an impact",
         "trajectory_impact",

@@ -91,9 +91,11 @@ PHYSICAL = (
     Parameter("C2", "C_2", "", NOT_NEGATIVE, "damping 2", "damping between the second mass and the ground"),
     Parameter("P1", "P_1", "", NOT_NEGATIVE, "force 1", "amplitude of the force on the first mass"),
     Parameter("P2", "P_2", "", NOT_NEGATIVE, "force 2", "amplitude of the force on the second mass"),
-    Parameter("Omega", r"\Omega", "", POSITIVE, "forcing frequency", "angular frequency of the force"),
+    Parameter(
+        "Omega", r"\Omega", "", POSITIVE, "forcing frequency", "angular frequency of the force, 2 pi times that in Hz"
+    ),
     Parameter("R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution"),
-    Parameter("B", "B", "", POSITIVE, "clearance", "clearance on each side"),
+    Parameter("B", "B", "", POSITIVE, "clearance", "clearance on each side, from the middle to a stop"),
 )
 
 B_STAR = Parameter(

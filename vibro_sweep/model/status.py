@@ -23,11 +23,13 @@ STATUSES = {
     NOT_COMPUTED: Status("not_computed", "not computed yet"),
     OK: Status("ok", "computed"),
     EVENT_LIMIT: Status("too_many_impacts_in_a_period", "more impacts in a forcing period than are computed"),
-    NOT_FINITE: Status("not_finite", "the state left the range of the floats"),
-    TOO_STIFF: Status("rates_too_far_apart", "the fastest time constant is too short beside the forcing period"),
-    UNRESOLVED: Status("contact_unresolved", "two grazes all but merge"),
+    NOT_FINITE: Status("not_finite", "the state left the range of floating-point numbers"),
+    TOO_STIFF: Status("rates_too_far_apart", "the fastest time constant is too short compared with the forcing period"),
+    UNRESOLVED: Status("contact_unresolved", "two grazes are too close together to be separated"),
     BEYOND_STOP: Status("beyond_a_stop", "mass 1 was found behind a stop by more than rounding explains"),
-    NOT_SETTLED: Status("not_settled", "a remark, the numbers stand: the record is neither periodic nor stationary"),
+    NOT_SETTLED: Status(
+        "not_settled", "a remark, the numbers are valid: the record is neither periodic nor stationary"
+    ),
 }
 
 STANDING = (OK, NOT_SETTLED)  # of points whose numbers stand

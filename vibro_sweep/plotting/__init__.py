@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import matplotlib
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibro_sweep.model.pictures import PICTURES
 from vibro_sweep.plotting import basins, coexistence, orbits, planes, sweeps
 from vibro_sweep.plotting.look import Look
+from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.pictures import check_output, save
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import STYLE
@@ -61,13 +63,19 @@ def kinds(data: "str | Path | xarray.Dataset") -> list[str]:
         return _kinds(result)
 
 
-def figure(data: "str | Path | xarray.Dataset", kind: str | None = None, look: Look | None = None) -> Figure:
+def figure(
+    data: "str | Path | xarray.Dataset", kind: str | None = None, look: Look | None = None, ax: Axes | None = None
+) -> Figure:
     """One picture of a file or a Dataset (default: the first of `kinds`), 7 inches wide unless `look` says otherwise.
 
+    ax : where its first or only panel is drawn, by default a new Figure; `look` has no size or resolution then
     Raises `PlotError` where the data cannot be read or cannot show that kind.
     """
-    with Result(data, look) as result:
-        return _draw(result, _chosen(result, kind)[0])
+    if ax is not None and not isinstance(ax, Axes):
+        raise TypeError(f"ax: {ax!r} is not allowed; it must be matplotlib axes")
+    with Result(data, look, ax) as result:
+        drawn = _draw(result, _chosen(result, kind)[0])
+    return drawn.ax.figure if isinstance(drawn, Panel) else drawn
 
 
 def plot(path, output=None, kind: str | None = None, overwrite: bool = False, look: Look | None = None) -> list[Path]:
@@ -130,10 +138,11 @@ def _those(available: list[str], fits: Callable[[str], bool]) -> str:
     return f"those of single points are {', '.join(names)}" if names else "there is none of single points"
 
 
-def _draw(result: Result, kind: str) -> Figure:
+def _draw(result: Result, kind: str) -> Figure | Panel:
     with matplotlib.rc_context(STYLE):
         fig = KINDS[kind].draw(result)
-        result.look.applied(fig)
+        if isinstance(fig, Figure):
+            result.look.applied(fig)
         if result.failed:
             for ax in fig.axes:
                 if ax.get_label() != "<colorbar>":

@@ -8,7 +8,7 @@ from vibro_sweep.model.observables import AVERAGED
 from vibro_sweep.model.state import START
 from vibro_sweep.plotting.families import KINDS, describe, kind
 from vibro_sweep.plotting.result import Point, Result
-from vibro_sweep.plotting.style import INK, NOT_COMPUTED, axis_name, edges, equation, marked, page
+from vibro_sweep.plotting.style import INK, NOT_COMPUTED, axis_name, edges, equation, marked
 
 NAMED = 11  # attractors that the legend has room for
 NEAR = 0.52  # of the plane's width or height, from its middle
@@ -35,7 +35,7 @@ def basins(result: Result):
     stored = "x1" in result and "phase" not in result
     marks = "section points" if stored else "mean of the section points"
     note += f"\nmarks: {marks} of each attractor, projected onto this plane" if numbered else ""
-    fig = page(5.8, result.title("Basins of attraction" + _rest(result)) + note)
+    fig = result.page(5.8, result.title("Basins of attraction" + _rest(result)) + note)
     ax = fig.subplots()
     picture = np.full((*label.shape, 3), to_rgb(NOT_COMPUTED))
     for number, (colour, _) in named.items():

@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from vibro_sweep.model.catalogue import BY_NAME
 from vibro_sweep.plotting.families import KINDS, MARKERS, kind
 from vibro_sweep.plotting.result import Point, Result
-from vibro_sweep.plotting.style import at_section, axis_name, edges, marked, page
+from vibro_sweep.plotting.style import at_section, axis_name, edges, marked
 from vibro_sweep.plotting.sweeps import mark_grazing
 
 NARROW = 0.012  # of the axis; the period of a window is written over it where it is wider
@@ -36,7 +36,7 @@ def coexistence(result: Result):
     ((key, values),) = result.sweep.items()
     order = np.argsort(values)  # a sweep may run downwards; an axis does not
     values, found = values[order], _shares(result, order)
-    fig = page(5.8, result.title(f"Coexisting attractors; {len(result.starts)} starts at each value"))
+    fig = result.page(5.8, result.title(f"Coexisting attractors; {len(result.starts)} starts at each value"))
     above, below = axes = fig.subplots(2, sharex=True, height_ratios=(1.6, 1))
     _points(above, result, values, found)
     _stacks(below, values, found)

@@ -20,7 +20,6 @@ from vibro_sweep.plotting.style import (
     before_impact,
     exponent,
     limits,
-    page,
     symbol,
 )
 from vibro_sweep.plotting.sweeps import section_variables
@@ -48,7 +47,7 @@ def _portraits(result, what):
     points = result.points()
     columns = min(len(points), 2)
     rows = -(-len(points) // columns)
-    fig = page(3.0 * rows + 0.7 if columns > 1 else 5.0, result.title(what))
+    fig = result.page(3.0 * rows + 0.7 if columns > 1 else 5.0, result.title(what))
     grid = fig.subplots(rows, columns, squeeze=False)
     for ax in grid.flat[len(points) :]:
         ax.set_axis_off()
@@ -167,7 +166,7 @@ def coordinates(result: Result) -> tuple[str, ...]:
 def history(result: Result):
     """x1 and x2 over time, or one coordinate, one panel an orbit, the stops as lines."""
     points = result.points()
-    fig = page(1.5 * len(points) + 0.9 if len(points) > 1 else 3.2, result.title("Time history"))
+    fig = result.page(1.5 * len(points) + 0.9 if len(points) > 1 else 3.2, result.title("Time history"))
     grid = fig.subplots(len(points), squeeze=False, sharex=True)[:, 0]
     chosen = result.look.variable
     names = [chosen] if chosen else [name for name in ("x1", "x2") if name in coordinates(result)]
@@ -192,7 +191,7 @@ def iteration(result: Result):
     at_impact = "phase" in result
     name = result.look.variable or section_variables(result)[0]
     points = result.points()
-    fig = page(1.5 * len(points) + 0.9 if len(points) > 1 else 3.2, result.title("Iteration of the section"))
+    fig = result.page(1.5 * len(points) + 0.9 if len(points) > 1 else 3.2, result.title("Iteration of the section"))
     grid = fig.subplots(len(points), squeeze=False, sharex=True)[:, 0]
     most = 1
     for ax, point in zip(grid, points, strict=True):
@@ -223,7 +222,7 @@ def convergence(result: Result):
     Where the file has them: a dashed line at each final value, around it a band in which zero would not differ from it.
     """
     points = result.points(2)
-    fig = page(5.2, result.title("Convergence of the Lyapunov exponents"))
+    fig = result.page(5.2, result.title("Convergence of the Lyapunov exponents"))
     grid = fig.subplots(2, len(points), sharex=True, sharey="row", squeeze=False, height_ratios=(1.2, 1))
     periods = result.coordinate("elapsed")
     settled = slice(len(periods) // 10, None)

@@ -22,7 +22,6 @@ from vibro_sweep.plotting.style import (
     axis_name,
     edges,
     exponent,
-    page,
 )
 
 _OF_A_POINT = {one.name: one.label for one in VARIABLES if not one.dimensions}
@@ -48,9 +47,10 @@ def plane(result: Result):
     reach, where that is stored. A variable that is chosen is shown alone.
     """
     maps, note = _maps(result)
+    maps = maps if result.ax is None else maps[:1]
     of_states = all(key.startswith("start_") for key in result.sweep)
     what = "Plane of initial states" if of_states else "Parameter plane"
-    fig = page(4.4 if len(maps) > 1 else 5.4, result.title(what + note))
+    fig = result.page(4.4 if len(maps) > 1 else 5.4, result.title(what + note))
     grid = fig.subplots(1, len(maps), sharex=True, sharey=True, squeeze=False)[0]
     (x_key, x), (y_key, y) = result.sweep.items()
     columns, rows = np.argsort(x), np.argsort(y)  # a sweep may run downwards; an axis does not

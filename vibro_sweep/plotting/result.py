@@ -3,12 +3,15 @@
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from vibro_sweep.model.parameters import NAMES
 from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.plotting.look import Look
+from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.source import PlotError, source_of
-from vibro_sweep.plotting.style import equation
+from vibro_sweep.plotting.style import equation, page
 from vibro_sweep.store.settings import settings_of
 
 
@@ -26,12 +29,12 @@ class Result:
     `sweep`: key -> its values, in order; `starts`: names of the starts (one empty name if there is only one);
     `follow`: they are an upward and a downward branch; `done`: bool, shape (*sweep, starts), which points are
     computed; `failed`: none of them well; `settings`: numbers and words that hold for all points; `significant`: how
-    many standard errors tell an exponent from zero, and are drawn.
+    many standard errors tell an exponent from zero, and are drawn; `ax`: the caller's axes, if the picture goes there.
     Raises `PlotError` where the file is missing or not a result.
     """
 
-    def __init__(self, given, look: Look | None = None):
-        self.look = look or Look()
+    def __init__(self, given, look: Look | None = None, ax: Axes | None = None):
+        self.look, self.ax = look or Look(), ax
         self._source = source_of(given)
         self.path = self._source.name
         try:
@@ -176,6 +179,10 @@ class Result:
         values = [equation(key, self.number(key, place)) for key in self.sweep]
         name = self.starts[start]
         return ", ".join([*values, *([name if self.follow else f"start {name}"] if name else [])])
+
+    def page(self, height: float, title: str) -> Figure | Panel:
+        """Where a picture is drawn."""
+        return page(height, title) if self.ax is None else Panel(self.ax, title)
 
     def title(self, what="") -> str:
         """What is shown, the numbers that are the same at every point, and how much is there if not all."""

@@ -26,7 +26,6 @@ from vibro_sweep.plotting.style import (
     edges,
     exponent,
     limits,
-    page,
 )
 
 MANY = 100_000  # from here on single points make a blot, and are counted instead
@@ -58,7 +57,7 @@ def bifurcation(result: Result):
         panels.append((1.7, _spectrum))
     if shows_impacts(result):
         panels.append((0.9, _impact_counts))
-    return _stack(result, panels, "Bifurcation diagram")
+    return _stack(result, panels if result.ax is None else panels[:1], "Bifurcation diagram")
 
 
 def lyapunov(result: Result):
@@ -81,7 +80,7 @@ def _stack(result, panels, what):
     heights = [height for height, _ in panels]
     starts = len(result.starts)
     note = f"; {starts} starts at each value" if starts > 1 and not result.follow else ""
-    fig = page(sum(heights) + 1.2, result.title(what + note))
+    fig = result.page(sum(heights) + 1.2, result.title(what + note))
     axes = fig.subplots(len(panels), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     ((key, values),) = result.sweep.items()
     order = np.argsort(values)  # a sweep may run downwards; an axis does not
@@ -265,8 +264,8 @@ def _name_curves(ax, exponents):
     low, high = ax.get_ylim()
     known = [curve[np.isfinite(curve)] for curve in np.moveaxis(exponents, -1, 0)]
     ends = [(curve[-1] - low) / (high - low) if curve.size else 0.0 for curve in known]
-    panel = ax.get_gridspec().get_height_ratios()[ax.get_subplotspec().rowspan.start]
-    apart = 0.16 / panel  # inches a line of text needs
+    inches = ax.get_position().height * ax.figure.get_figheight()
+    apart = 0.16 / inches  # of which a line of text needs so many
     for _ in range(50):
         for i in range(3):
             push = max(0.0, apart - (ends[i] - ends[i + 1])) / 2

@@ -69,7 +69,8 @@ SystemForm = create_model(
 PhysicalNumbers = create_model(
     "PhysicalNumbers",
     __base__=Form,
-    __doc__="Physical quantities in any consistent units; C1/K1 = C2/K2 (proportional damping).",
+    __doc__="Physical quantities in any consistent units, as kg, m, s and N; C1/K1 = C2/K2 (proportional damping). "
+    "All must be given; a sweep over `omega`, `b` or `R` replaces the value that follows from `Omega`, `B` or `R`.",
     **{one.name: (float, _given(one.text, **one.range.bounds)) for one in PHYSICAL},
 )
 

@@ -132,6 +132,8 @@ def _unknown(loc, keys: list[str], given, data) -> str:
         return f"step and num exclude each other; write {_AXIS_FORMS}"
     if place == "sweep" and len(loc) == 2 and (hint := slips.of_physical(key, data.get("system"))):
         return f"unknown key; {hint}"
+    if "Omega" in keys and (hint := slips.of_frequency(key, given)):
+        return f"unknown key; {hint}"
     return f"unknown key; {_suggest(key, keys)}allowed here: {', '.join(keys)}"
 
 

@@ -20,6 +20,8 @@ SYNONYMS = {
     "values": ("list", "value", "at"),
     "omega": ("w", "ω", "frequency", "freq", "Omega", "Ω"),
     "b": ("clearance", "gap", "delta", "B"),
+    "Omega": ("f", "frequency", "freq", "hz", "w"),
+    "B": ("clearance", "gap", "delta"),
     "R": ("e", "restitution", "cor", "r"),
     "zeta": ("ζ", "damping", "xi", "ξ"),
     "mu_m": ("μ_m", "m", "mass_ratio"),
@@ -159,6 +161,13 @@ def of_physical(key: str, system: object) -> str | None:
         name, formula, factor = scale
         return f"nondimensional numbers are swept: write {name} = {formula} = {factor:.10g} {key}, and its values"
     return f"nondimensional numbers are swept: {NONDIMENSIONAL}"
+
+
+def of_frequency(key: str, given: object) -> str | None:
+    """What to write for a frequency among physical quantities; None for another key."""
+    if key.lower() not in ("f", "freq", "frequency", "hz") or not isinstance(given, (int, float)):
+        return None
+    return f"if it is in Hz write Omega: {2 * math.pi * given:.10g}, which is 2 pi times as much"
 
 
 def _scales(numbers: Mapping[str, Any]) -> dict[str, tuple[str, str, float]]:
