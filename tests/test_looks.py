@@ -65,7 +65,7 @@ def test_variable_of_section_points(files, name):
     assert np.array_equal(points[points[:, 0] == 6.6, 1], data[name].sel(b=6.6))
     assert ax.get_ylabel() == f"${name[0]}_{name[1]}$ at $t = 0$ mod $T$"
     assert any(line.get_gid() == "stop" for line in ax.lines) == (name == "x1")
-    ax = vs.plot(files / "sweep.h5", "iteration", {"b": 6.6}, name).axes[0]
+    ax = vs.plot(files / "sweep.h5", "iteration", at={"b": 6.6}, variable=name).axes[0]
     assert np.array_equal(dots(ax)[:, 1], data[name].sel(b=6.6)) and ax.get_ylabel() == f"${name[0]}_{name[1]}$"
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from reference.chains import Chain
+from support.chain_tables import tables
 
 from vibro_sweep.engine.motion import ensemble, orbits, strike
 from vibro_sweep.engine.simd.jit import entry
@@ -33,7 +34,7 @@ def start(e, stops, states, exponents):
 
 def carried(chain, states, exponents):
     """Eight orbits over `PERIODS`: the ensemble, and the logarithms of the growth of tangent vectors."""
-    n, flights = chain.count, chain.tables()
+    n, flights = chain.count, tables(chain)
     cells = int(flights.oscillator["cells"][0, 0])
     e = ensemble.new_ensemble(cells, impacts=200, masses=n)
     for own, one in zip(e.flights, flights, strict=True):
