@@ -32,7 +32,9 @@ EVENTS = 30
 SAMPLES = 300
 PERIODS = (1, 8, 64)  # simulated one after the other until there are enough events
 CLASSES = ("sticks", "R < 0.1", "stiff", "both stops in a cell")
-LARGEST = 2000  # error allowed, in units of the effect of rounding (follow.py)
+# Error allowed, in units of the effect of rounding (follow.py). Within a cell a stiff flight takes up to 10^4 small
+# steps, each of which is rounded: the largest that was found is 2700.
+LARGEST = 5000
 ROUND = ("narrow", "any", "narrow", "stiff", "narrow", "sticking", "narrow", "little restitution")
 KINDS = (*ROUND, *ROUND, "narrow", "stiff", "any")
 
@@ -244,7 +246,7 @@ def test_a_few_orbits():
 
 @pytest.mark.slow
 def test_two_hundred_orbits(capsys):
-    reports = search(range(200))
+    reports = search([*range(200), 2101])  # and one of which a contact was once missed
     with capsys.disabled():
         print("\n" + table(reports))
     hold(reports)
@@ -253,7 +255,7 @@ def test_two_hundred_orbits(capsys):
 
 @pytest.mark.soak
 def test_five_thousand_orbits(capsys):
-    reports = search(range(5400))
+    reports = search(range(5700))
     with capsys.disabled():
         print("\n" + table(reports))
     accepted = [r for r in reports if r["accepted"]]

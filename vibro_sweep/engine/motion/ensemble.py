@@ -20,7 +20,7 @@ from vibro_sweep.engine.motion.orbits import (
     take_off,
     take_samples,
 )
-from vibro_sweep.engine.motion.scan import careful_state, first_suspect, open_cell, suspect_state
+from vibro_sweep.engine.motion.scan import careful_state, first_suspect, open_cell, state_at, suspect_state
 from vibro_sweep.engine.motion.strike import clear_counts, strike, strikes_of
 from vibro_sweep.engine.simd.jit import aside, entry, inline
 from vibro_sweep.engine.simd.lanes import LANES, lanes_of, new_lines, number, put, put_state, row, select
@@ -165,6 +165,17 @@ def put_carefully(e, waiting):
 
 
 @inline
+def glide(e, o, f, readings):
+    """Find the next suspect cell, over a section if none is before it; the last section is left to `seek`."""
+    o.suspect = first_suspect(f, o)
+    if o.suspect == o.ends and o.done + 1 < o.periods:
+        X = state_at(o, f.nodes, o.ends)
+        if o.low <= number(X, 0) <= o.high:  # else the last cell is suspect
+            end_period(e, o, f.oscillator[0], f.nodes, X, readings)
+            o.suspect = first_suspect(f, o)
+
+
+@inline
 def seek(e, readings):
     """Carry all orbits on to the next cells in which they may strike. Returns who has one, as bits.
 
@@ -179,7 +190,10 @@ def seek(e, readings):
         for i in range(LANES):
             if seeking >> i & 1:
                 o = e.orbits[i]
-                o.suspect = o.cell if sampled else first_suspect(flight_of(e, o), o)
+                if sampled:
+                    o.suspect = o.cell
+                else:
+                    glide(e, o, flight_of(e, o), readings)
         for i in range(LANES):
             if seeking >> i & 1:
                 o = e.orbits[i]
