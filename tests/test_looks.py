@@ -176,9 +176,9 @@ def test_commands(here, file, arguments, kind, look):
         (["--size", "90", "90", "--dpi", "2000"], ["180000 x 180000 pixels", "1e+08"]),
     ],
 )
-def test_bad_values(here, capsys, arguments, words):
+def test_bad_values(here, tmp_path, capsys, arguments, words):
     refused(capsys, ["plot", here / "sweep.h5", *arguments], *words)
-    assert not list(here.parent.glob("*.png"))
+    assert not list(here.glob("*.png")) and not list(tmp_path.iterdir())
 
 
 def test_a_single_point_has_no_sweep_to_choose_from(files):
