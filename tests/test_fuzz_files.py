@@ -11,7 +11,7 @@ from support.fuzz_files import COMMANDS, OUTCOMES, fuzz
 @pytest.mark.parametrize(
     "few",
     [
-        pytest.param(2, id="few"),
+        pytest.param(1, id="few"),
         pytest.param(20, id="sample", marks=pytest.mark.slow),
         pytest.param(None, id="all", marks=pytest.mark.soak),
     ],

@@ -1,6 +1,7 @@
 """Equal identities give equal numbers: each module that numbers depend on changes it, and nothing else does."""
 
 import ast
+import os
 import shutil
 import subprocess
 import sys
@@ -111,7 +112,9 @@ def test_the_compiled_kernels_are_those_of_the_engine_alone(tmp_path):
     def folder():
         code = "from vibro_sweep.engine.simd import jit; print(jit.source_hash())"
         command = [sys.executable, "-c", code]
-        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout.strip()
+        environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+        return done.stdout.strip()
 
     assert folder() == jit.source_hash()
     with (home / "scene" / "problems.py").open("a") as file:

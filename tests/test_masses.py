@@ -46,7 +46,8 @@ def carried(chain, states, exponents):
     return e, growth
 
 
-@pytest.mark.parametrize("masses", [3, *(pytest.param(n, marks=pytest.mark.slow) for n in (1, 5))])
+@pytest.mark.slow  # each number of masses compiles its own kernels
+@pytest.mark.parametrize("masses", CHAINS)
 def test_orbits_and_tangent_vectors(masses):
     chain = CHAINS[masses]
     states = np.random.default_rng(masses).uniform(-1, 1, (8, 2 * masses)) * B * 0.9

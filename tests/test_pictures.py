@@ -18,7 +18,7 @@ from vibro_sweep.plotting import PlotError
 SUFFIXES = (".png", ".svg", ".pdf")
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", [SUFFIXES[0], *(pytest.param(s, marks=pytest.mark.slow) for s in SUFFIXES[1:])])
 def test_a_picture_of_ours_is_drawn_anew_until_somebody_changes_it(folder, suffix):
     (path,) = plotting.plot("x.h5", f"a{suffix}")
     first = path.stat().st_ino
