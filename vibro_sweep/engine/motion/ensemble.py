@@ -219,6 +219,18 @@ def seek(e, readings):
     return waiting
 
 
+@aside
+def watch_cell(e, o, f, free):
+    """Keep an impact in the cell, and samples: of free flight, or before and after the impact."""
+    q, strikes, records, i = f.oscillator[0], e.strike[0], records_of(e, o), o.lane
+    z, states = strikes.z[i], 2 * len(q.series)
+    load(q.series, row(strikes.z, i), z[states], z[states + 1], o.c)
+    if free:
+        take_samples(o, records, o.cell, 0.0, q.width)
+    else:
+        watch_rebound(q, o, records, o.cell, strikes.offset[i], strikes.side[i], strikes.speed[i], strikes.impulse[i])
+
+
 @inline
 def settle(e, o, free, struck, readings):
     """Go on to the end of the cell in which the orbit may have struck."""
@@ -227,20 +239,11 @@ def settle(e, o, free, struck, readings):
         hold(o, row(strikes.z, i))
         go_long_way(e, o, f, readings)
         return
-    q, records = f.oscillator[0], records_of(e, o)
-    watched = len(records.times) > 0 or (struck and len(records.impacts) > 0)
-    if watched:
-        z, states = strikes.z[i], 2 * len(q.series)
-        load(q.series, row(strikes.z, i), z[states], z[states + 1], o.c)
-    if free:
-        if watched:
-            take_samples(o, records, o.cell, 0.0, q.width)
-        o.cell += 1
-        return
-    if watched:
-        watch_rebound(q, o, records, o.cell, strikes.offset[i], strikes.side[i], strikes.speed[i], strikes.impulse[i])
+    if len(e.records.times) > 0 or (struck and e.records.impacts.shape[1] > 0):
+        watch_cell(e, o, f, free)
     o.cell += 1
-    take_off(o, f.nodes, row(strikes.X, i))
+    if struck:
+        take_off(o, f.nodes, row(strikes.X, i))
 
 
 @entry

@@ -62,7 +62,7 @@ def count_impact(o, side, v):
     o.slowest = min(o.slowest, abs(v))
 
 
-@aside
+@jit
 def watch_rebound(q, o, records, k, d, side, v, impulse):
     """Keep an impact at offset d of cell k, and samples in the cell: of the old flight, and what the impulse adds."""
     advance(o, d)
