@@ -51,7 +51,8 @@ program()
 
 SIGNALS = ("KILL", "TERM", "HUP", "INT", "INT twice", "STOP, CONT")
 OF_DASK = ("KILL the scheduler", "KILL a worker")
-STATUS = {"KILL": -9, "TERM": -15, "HUP": -1, "INT": 130, "INT twice": 130, "KILL the scheduler": 2}
+INTERRUPTED = 130
+STATUS = {"KILL": -9, "TERM": -15, "HUP": -1, "INT": INTERRUPTED, "INT twice": INTERRUPTED, "KILL the scheduler": 2}
 BY = {"1 worker": SIGNALS, "2 workers": SIGNALS, "Dask": SIGNALS + OF_DASK}
 LIMIT = 600  # seconds after which something hangs
 
@@ -127,10 +128,16 @@ def send(process, workers, how, pause):
         time.sleep(pause)
 
 
-def ended(process, how):
-    """Wait for it; no traceback, and the exit status that the signal asks for."""
+def ended(process, how, output):
+    """Wait for it; no traceback, and the exit status that the signal asks for.
+
+    Ctrl-C in Python's own shutdown, when the file is complete, ends the process by the signal: 130 to a shell, too.
+    """
     told = process.communicate(timeout=LIMIT)[1]
-    if "Traceback" in told or process.returncode not in (0, STATUS.get(how, 0)):
+    allowed = {0, STATUS.get(how, 0)}
+    if STATUS.get(how) == INTERRUPTED and output.exists():
+        allowed.add(-signal.SIGINT)
+    if "Traceback" in told or process.returncode not in allowed:
         raise SystemExit(f"a run with {how} ended with the exit status {process.returncode}:\n{told}")
 
 
@@ -145,7 +152,7 @@ def killed(scene, place, workers, moment, how, pause):
         how = "none, it had ended"
     except subprocess.TimeoutExpired:
         send(process, workers, how, pause)
-    ended(process, how)
+    ended(process, how, output)
     part = Path(f"{output}.part")
     if output.exists():
         when = "went on" if how in ("STOP, CONT", "KILL a worker") else "after the end"
@@ -154,7 +161,7 @@ def killed(scene, place, workers, moment, how, pause):
     else:
         when = "while the file was made" if any(folder.glob(".*")) else "in mid-run"
     workers.mend()
-    ended(start(logs[1], scene, output, workers), "resumed")
+    ended(start(logs[1], scene, output, workers), "resumed", output)
     if left := [path.name for path in folder.iterdir() if path != output]:
         raise SystemExit(f"a run with {how} after {moment} s left {left}")
     sizes = [size for log in logs for size in blocks(log)]
