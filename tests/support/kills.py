@@ -191,7 +191,7 @@ def measure(kills, by, seed):
         for _ in range(2):  # the first one compiles
             whole.unlink(missing_ok=True)
             began = time.monotonic()
-            ended(start(os.devnull, scene, whole, workers), "whole")
+            ended(start(os.devnull, scene, whole, workers), "whole", whole)
             seconds = time.monotonic() - began
         expected = arrays(whole)
         for k in range(kills):
