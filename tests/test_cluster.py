@@ -1,13 +1,14 @@
 """Dask with processes of its own, started by command: the same arrays, whoever dies; and what the user is told."""
 
 import json
+import logging
 import os
 import re
 import shutil
 import signal
 import subprocess
 import sys
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 from types import SimpleNamespace
@@ -20,6 +21,7 @@ from support.scenes import ALL, PAPER, arrays_of, assert_same_bits, done
 
 import vibro_sweep as vs
 from vibro_sweep.cli import main
+from vibro_sweep.driver.compute import RunError
 
 pytest.importorskip("distributed")
 driver_cluster = pytest.importorskip("vibro_sweep.driver.cluster")
@@ -248,6 +250,31 @@ def test_a_client_whose_scheduler_is_gone_is_no_bug():
     executor = driver_cluster.ClusterExecutor.__new__(driver_cluster.ClusterExecutor)
     executor._threads, executor._last = gone, 3
     assert executor.num_workers == 3
+
+
+def test_a_closed_client_is_a_scheduler_that_has_died(monkeypatch):
+    """Of a scheduler killed while a block is sent; found by kills at random moments."""
+
+    def closed(*_, **__):
+        raise driver_cluster.GONE[-1]("Client is closed. Can't send update-graph message.")
+
+    monkeypatch.setattr(driver_cluster.ClientExecutor, "submit", closed)
+    executor = driver_cluster.ClusterExecutor.__new__(driver_cluster.ClusterExecutor)
+    with pytest.raises(RunError, match="the scheduler has died"):
+        executor.submit(print)
+
+
+@pytest.mark.parametrize("error, told", [(driver_cluster.GONE[-1]("closed"), False), (ValueError("a bug"), True)])
+def test_blocks_that_a_dead_scheduler_had_cannot_be_cancelled(caplog, error, told):
+    def cannot_cancel(_):
+        raise error
+
+    with driver_cluster._callbacks_filtered():
+        future = Future()
+        future.add_done_callback(cannot_cancel)
+        future.cancel()
+    assert ("exception calling callback" in caplog.text) == told
+    assert driver_cluster._is_news not in logging.getLogger("concurrent.futures").filters
 
 
 @pytest.mark.parametrize("address", ["tls://127.0.0.1:1"])

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor
 
 from distributed import Client
+from distributed import client as client_module
 from distributed.cfexecutor import ClientExecutor
 from distributed.comm import get_address_host_port
 
@@ -19,7 +20,8 @@ _log = logging.getLogger("vibro_sweep")
 CONNECT_SECONDS, JOIN_SECONDS = 5, 60
 
 
-GONE = (OSError, RuntimeError)  # what a client raises whose scheduler is away, or has died
+# What a client raises whose scheduler is away, or has died; the last of these in newer versions only.
+GONE = (OSError, RuntimeError, getattr(client_module, "ClosedClientError", RuntimeError))
 
 
 class ClusterError(RuntimeError):
@@ -45,6 +47,22 @@ class ClusterExecutor(ClientExecutor):
             return super().submit(function, *arguments, **named)
         except GONE as error:
             raise RunError(f"the scheduler has died ({error})") from error
+
+
+def _is_news(record: logging.LogRecord) -> bool:
+    """Not that blocks cannot be cancelled, since the scheduler that had them has died: the run says so in one line."""
+    return not (record.exc_info and isinstance(record.exc_info[1], GONE))
+
+
+@contextlib.contextmanager
+def _callbacks_filtered() -> Iterator[None]:
+    """`concurrent.futures` logs what callbacks raise, with a traceback; here without what is no news."""
+    logger = logging.getLogger("concurrent.futures")
+    logger.addFilter(_is_news)
+    try:
+        yield
+    finally:
+        logger.removeFilter(_is_news)
 
 
 @contextlib.contextmanager
@@ -78,7 +96,8 @@ def cluster(address: str) -> Iterator[Executor]:
         except GONE as error:
             raise ClusterError(f"the scheduler has died ({error})") from None
         _check(client)
-        yield ClusterExecutor(client)
+        with _callbacks_filtered():
+            yield ClusterExecutor(client)
     finally:
         with contextlib.suppress(*GONE):
             client.close()
