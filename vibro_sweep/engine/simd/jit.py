@@ -17,6 +17,7 @@ import numba
 from numba.core import config
 from numba.core.caching import FunctionCache
 from numba.core.cpu import CPUTargetOptions
+from numba.core.types import unliteral
 
 try:
     from vibro_sweep.engine.simd.compiler import AsideCompiler, PartCompiler, WholeCompiler
@@ -129,7 +130,11 @@ def _compiled(function, compiler, forceinline=False, **options):
     if compiler:
         options["pipeline_class"] = compiler
     options |= {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy", "no_cfunc_wrapper": True}
-    return numba.njit(forceinline=forceinline, **options)(function)  # said, or a kernel would have it from its caller
+    kernel = numba.njit(forceinline=forceinline, **options)(function)  # said, or a kernel would have it from its caller
+    template = kernel.get_call_template
+    # one kernel for all numbers that stand in calls of it, where numba compiles one for each
+    kernel.get_call_template = lambda args, kws: template(tuple(map(unliteral, args)), kws)
+    return kernel
 
 
 def _works() -> bool:

@@ -220,10 +220,10 @@ def _width(array):
 
 def _address(context, builder, kinds, args, scale, count):
     """Of `count` numbers, from number `scale` args[1] of the array args[0] on."""
-    array = context.make_array(kinds[0])(context, builder, args[0])
+    data = context.data_model_manager[kinds[0]].get(builder, args[0], "data")
     place = context.cast(builder, args[1], kinds[1], types.intp)
     place = builder.mul(place, ir.Constant(place.type, scale)) if scale > 1 else place
-    first = builder.gep(builder.bitcast(array.data, _DOUBLE.as_pointer()), [place])
+    first = builder.gep(builder.bitcast(data, _DOUBLE.as_pointer()), [place])
     return builder.bitcast(first, ir.VectorType(_DOUBLE, count).as_pointer())
 
 
