@@ -17,6 +17,7 @@ from vibro_sweep.engine.motion import contact
 from vibro_sweep.engine.motion.strike import TAIL, strike, strikes_of
 from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.engine.simd.lanes import LANES, lanes_of
+from vibro_sweep.engine.tables.economy import TERMS
 from vibro_sweep.engine.tables.flight import ORDER
 
 
@@ -39,8 +40,8 @@ def strikes(t, c, gap, side, third, rest, out):
     for first in range(0, len(gap) - LANES + 1, LANES):
         for i in range(LANES):
             n, t.tail[5, i] = first + i, 0.0
-            for m in range(ORDER):
-                t.series[5 * ORDER + m, i] = c[n, m]
+            for m in range(TERMS):  # the polynomials have no more
+                t.series[5 * TERMS + m, i] = c[n, m]
                 weight = m * (m - 1) * (m - 2) * rest[n] ** (m - 3) if m > 2 else 0.0
                 if m < TAIL:
                     t.third[m, i] = weight

@@ -22,7 +22,8 @@ from vibro_sweep.engine.simd.lanes import (
     weigh,
 )
 from vibro_sweep.engine.tables import flight
-from vibro_sweep.engine.tables.flight import ORDER, width_of
+from vibro_sweep.engine.tables.economy import FEWER_TERMS, TERMS, TO_FEWER_TERMS, TO_TERMS, economise
+from vibro_sweep.engine.tables.flight import width_of
 
 TAIL = 8  # terms from here on are bounded together
 ROUGH = 10  # terms that bring the search so near to the contact that one look with all of them suffices, as a rule
@@ -35,9 +36,9 @@ def strikes_of(masses: int) -> np.dtype:
     states, width = 2 * masses, width_of(masses)
     fields = [
         # of the oscillator
-        ("series", float, ((states + 2) * ORDER, LANES)),  # of x1
+        ("series", float, ((states + 2) * TERMS, LANES)),  # of x1
         ("end", float, (states * (states + 2), LANES)),  # row 2 N j + i: X_i at the cell's end, of z_j at its beginning
-        ("impulses", float, (masses * ORDER, LANES)),  # series of x1, x2, ... after a unit impulse on M1
+        ("impulses", float, (masses * FEWER_TERMS, LANES)),  # series of x1, x2, ... after a unit impulse on M1
         ("third", float, (TAIL, LANES)),  # weights of |c_n| in a bound on the third derivative over the cell
         ("tail", float, (states + 2, LANES)),  # bound on what the series from TAIL on adds to it, for unit z
         ("width", float, LANES),
@@ -47,7 +48,7 @@ def strikes_of(masses: int) -> np.dtype:
         ("right", float, LANES),
         ("R", float, LANES),
         ("z", float, (LANES, width)),  # one row for each orbit, at the beginning of its cell: x1, v1, ..., sin, cos
-        ("c", float, (ORDER, LANES)),  # Taylor coefficients of x1
+        ("c", float, (TERMS, LANES)),  # Taylor coefficients of x1, economised
         # of the impact
         ("landing", float, (states, LANES)),  # the states at the ends of the cells, and
         ("X", float, (LANES, width)),  # the same, one row for each orbit; padded with zeros
@@ -69,17 +70,15 @@ def set_oscillator(strikes, i, q, stops):
     """Give orbit i its oscillator and its stops."""
     masses, states = len(q.series), 2 * len(q.series)
     for j in range(states + 2):
+        economise(TO_TERMS, q, q.series[0, j], strikes.series, TERMS * j, i)
         strikes.tail[j, i] = 0.0
-        for n in range(ORDER):
-            strikes.series[ORDER * j + n, i] = q.series[0, j, n]
-            if n >= TAIL:
-                strikes.tail[j, i] += q.third[n] * abs(q.series[0, j, n])
+        for n in range(TAIL, TERMS):
+            strikes.tail[j, i] += q.third[n] * abs(strikes.series[TERMS * j + n, i])
         for m in range(masses):
             x, v = flight.evaluate(q.series[m, j], q.width)
             strikes.end[states * j + 2 * m, i], strikes.end[states * j + 2 * m + 1, i] = x, v
     for m in range(masses):
-        for n in range(ORDER):
-            strikes.impulses[ORDER * m + n, i] = q.series[m, 1, n]
+        economise(TO_FEWER_TERMS, q, q.series[m, 1], strikes.impulses, FEWER_TERMS * m, i)
     for n in range(TAIL):
         strikes.third[n, i] = q.third[n]
     strikes.width[i], strikes.drag[i], strikes.impulse_third[i] = q.width, -q.force[1], q.impulse_third
@@ -90,7 +89,7 @@ def set_oscillator(strikes, i, q, stops):
 def load_x1(strikes, z, first, last):
     """Taylor coefficients of x1."""
     for n in range(first, last):
-        put(strikes.c, n, weigh(strikes.series, n, ORDER, z))
+        put(strikes.c, n, weigh(strikes.series, n, TERMS, z))
 
 
 @inline
@@ -154,7 +153,7 @@ def descend(c, u, gap, side, steepest, width, wanted):
     d, speed, acceleration = u, u, u
     found = wanted & ~wanted
     for _ in range(LOOKS):
-        x, v, a, jerk = derivatives(c, u, ORDER)
+        x, v, a, jerk = derivatives(c, u, TERMS)
         inverse = 1.0 / v
         newton = (side * gap - x) * inverse
         step = newton - a * inverse * newton * newton
@@ -173,11 +172,11 @@ def descend(c, u, gap, side, steepest, width, wanted):
 
 @inline
 def position_and_speed(c, first, u):
-    """Polynomial at u, with the coefficients in `ORDER` rows from `first` on, and its derivative.
+    """Polynomial at u, with the coefficients in `FEWER_TERMS` rows from `first` on, and its derivative.
 
     Even and odd terms go side by side.
     """
-    v, last = u * u, first + ORDER - 1
+    v, last = u * u, first + FEWER_TERMS - 1
     slope_odd, slope_even = row(c, last), row(c, last - 1)
     odd, even = slope_odd * v + row(c, last - 2), slope_even * v + row(c, last - 3)
     for n in range(last - 5, first - 1, -2):
@@ -223,7 +222,7 @@ def land(strikes, z, impulse, rest):
     """X at the end of the cell: of the motion as if there were no stop, and what the impulse has done by then."""
     landing, states = strikes.landing, len(strikes.tail) - 2
     for m in range(states // 2):
-        x, v = position_and_speed(strikes.impulses, m * ORDER, rest)
+        x, v = position_and_speed(strikes.impulses, m * FEWER_TERMS, rest)
         put(landing, 2 * m, weigh(strikes.end, 2 * m, states, z) + impulse * x)
         put(landing, 2 * m + 1, weigh(strikes.end, 2 * m + 1, states, z) + impulse * v)
     put_transposed(strikes.X, landing)
@@ -243,7 +242,7 @@ def strike(strikes, waiting):
     side, gap, behind = select(v1 > 0.0, 1.0, -1.0), select(v1 > 0.0, right, left), select(v1 > 0.0, left, right)
     rate, curve = -abs(v1), -2.0 * side * row(c, 2)
     u = nearest_root(gap, rate, curve, width)
-    load_x1(strikes, z, 3, ORDER)  # while the processor takes that root
+    load_x1(strikes, z, 3, TERMS)  # while the processor takes that root
     third = bound_third(strikes, z)
     bend = 2.0 * third * width * SIXTH
     safe = waiting & stays_clear(behind, -rate, -curve - bend, width)
@@ -260,7 +259,7 @@ def strike(strikes, waiting):
     struck = struck & falls & (side * v > 0.0) & leaves_freely(strikes, v, after, side, rest, third)
     count(strikes, struck, side, v)
     if strikes.measured:
-        miss = abs(gap - side * derivatives(c, d, ORDER)[0])
+        miss = abs(gap - side * derivatives(c, d, TERMS)[0])
         put(strikes.miss, 0, select(struck & (miss > row(strikes.miss, 0)), miss, row(strikes.miss, 0)))
     put(strikes.side, 0, side)
     put(strikes.offset, 0, d)
