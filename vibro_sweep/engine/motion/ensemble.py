@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
 from vibro_sweep.engine.motion.orbits import (
@@ -108,6 +109,12 @@ def end_period(e, o, q, nodes, X, readings):
             o.read += 1
 
 
+@aside
+def end_period_here(e, o, f, readings):
+    """`end_period` of an orbit that has its state there, for those that came a rare way."""
+    end_period(e, o, f.oscillator[0], f.nodes, row(o.X, 0), readings)
+
+
 @inline
 def under_way(o):
     """Whether an orbit has periods to go."""
@@ -131,7 +138,7 @@ def go_long_way(e, o, f, readings):
             o.cell = open_cell(f, o, o.cell)
         put(o.X, 0, careful_state(o, f.nodes, o.cell))
         if o.cell == q.cells:
-            end_period(e, o, q, f.nodes, row(o.X, 0), readings)
+            end_period_here(e, o, f, readings)
             return
     while True:
         events, rested = o.events, o.offset > 0.0 or o.resting != 0.0
@@ -149,7 +156,7 @@ def go_long_way(e, o, f, readings):
         if o.resting == 0.0 or o.status != status.OK:
             return
         if o.cell == q.cells:
-            end_period(e, o, q, f.nodes, row(o.X, 0), readings)
+            end_period_here(e, o, f, readings)
             if o.done == o.periods:
                 return
 
@@ -162,6 +169,25 @@ def put_carefully(e, waiting):
             o = e.orbits[i]
             keep_start(o)
             put(e.strike[0].z, i, careful_state(o, flight_of(e, o).nodes, o.cell))
+
+
+@aside
+def coast(e, o, f, readings):
+    """Go on to the last section before the end, if the orbit can strike no more; at once if nobody looks on the way."""
+    q, t = f.oscillator[0], e.tangent[0]
+    periods = o.periods - o.done - 1
+    if periods == 0 or not is_clear(q, o):
+        return
+    if readings.keep or readings.parts > 0:
+        while o.done + 1 < o.periods:
+            end_period(e, o, q, f.nodes, state_at(o, f.nodes, o.ends), readings)
+        return
+    fly_periods(q, f.nodes[q.cells].E, o, periods)
+    take_off(o, f.nodes, row(o.X, 0))
+    o.period += periods
+    o.done += periods
+    if t.wanted:
+        t.cell[o.lane] -= periods * q.cells
 
 
 @inline
@@ -209,6 +235,8 @@ def seek(e, readings):
                 if k == o.ends:
                     end_period(e, o, q, f.nodes, X, readings)
                     if o.done < o.periods:
+                        if q.swing < o.stops[1]:
+                            coast(e, o, f, readings)
                         continue
                 else:
                     hold(o, X)
@@ -299,4 +327,4 @@ def iterate(e, o, mapping, readings):
     while o.done < o.periods and o.status == status.OK:
         o.status = map_period(f, stops, o, records, e.tangent[0], mapping.order == 2)
         if o.status == status.OK:
-            end_period(e, o, f.oscillator[0], f.nodes, row(o.X, 0), readings)
+            end_period_here(e, o, f, readings)

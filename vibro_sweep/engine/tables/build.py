@@ -2,6 +2,7 @@
 
 import math
 
+from vibro_sweep.engine.motion.coast import fill_coasting
 from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.engine.tables.close_modes import CLOSE
 from vibro_sweep.engine.tables.control_points import fill_scan
@@ -47,3 +48,4 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
         q.largest = max(q.largest, abs(f.nodes[k].z[0]))
     fill_scan(q, f.nodes, f.scan, psi, omega_squared, mu_m, f2)
     fill_frame(q, psi, omega_squared, mu_m)
+    fill_coasting(q, psi, omega_squared, mu_m, mu_k, f2, tau)

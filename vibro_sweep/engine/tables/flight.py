@@ -69,6 +69,15 @@ def oscillator_of(masses: int) -> np.dtype:
         ("from_frame", float, (states, states)),
         ("stiff", np.bool_),  # cells do not resolve every rate
         ("largest", float),  # |x1| of the motion r
+        ("steady", float, states),  # of coast.py, like all that follow: the steady motion at node 0
+        ("swing", float),  # largest |gap| of the steady motion
+        (
+            "confining",
+            float,
+            (states, states),
+        ),  # quadratic form of X - steady: bound on the square of what it moves the gap
+        ("power", float, (2, states, states)),  # scratch, and
+        ("apart", float, (2, states)),  # scratch
     ]
     return record(fields)
 
