@@ -187,7 +187,7 @@ def lyapunov(system: System, state: ArrayLike, transient: int = 1000, periods: i
     transient, periods = checked_count("transient", transient, 0), checked_count("periods", periods, 1, MAX_RECORD)
     engine = Engine(system)
     engine.place(state)
-    plan = plan_of(system, transient, periods, lyapunov=True)
+    plan = plan_of(transient, periods, lyapunov=True)
     results, nothing = points.new_results((1, 1)), np.empty((1, 1, 0))
     starts = np.tile(np.asarray(state, float), (2, 1, 1))
     workspace = points.new_workspace(plan, engine.cells, 0, orbits=1)

@@ -88,8 +88,6 @@ def plan_of(scene: Scene) -> points.Plan:
         impacts="impacts" in scene.observe,
         attractors="attractors" in scene.observe,
         section_side=side if scene.section.kind == "impact" and "section" in scene.observe else 0.0,
-        right=scene.system.stops != "left",
-        left=scene.system.stops != "right",
         periods=scene.trajectory.periods if scene.trajectory else 0,
         parts=min(scene.record, RUNNING if "convergence" in scene.observe else BATCHES) if lyapunov else 0,
         order=scene.order if scene.model == "map" else 0,

@@ -59,7 +59,7 @@ def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
 
 def _compute(block: Block) -> dict[str, np.ndarray]:
     plan, parameters = block.plan, block.parameters
-    table = points_of(parameters)
+    table = points_of(parameters, block.system.stops)
     if plan.order:
         table["graze"] = expansion_point(parameters, block.expand_at)
     starts = _starts(block, table)

@@ -20,17 +20,24 @@ STICKING = np.dtype([("t_on", float), ("t_off", float), ("side", np.int8)])
 ROOM = 256  # impacts and rests of each of eight orbits there is room for at first
 
 
-def points_of(parameters: dict[str, np.ndarray]) -> np.ndarray:
-    """Systems with these numbers (arrays of one shape, tau resolved) as POINTs of the kernels, of that shape."""
+def points_of(parameters: dict[str, np.ndarray], stops: str = "both") -> np.ndarray:
+    """Systems with these numbers (arrays of one shape, tau resolved) as POINTs of the kernels, of that shape.
+
+    stops: both, right or left.
+    """
     result = np.zeros(np.shape(parameters["b"]), points.POINT)
     for name in NAMES:
         result[name] = parameters[name]
     result["psi"], result["omega_squared"] = modes(result["mu_m"], result["mu_k"])
     result["cells"] = cells.cells_needed(result["omega_squared"], result["zeta"], result["omega"])
+    offset, R = parameters.get("offset", 0.0), parameters["R"]
+    result["stops"][..., 0] = offset - parameters["b"] if stops != "right" else -np.inf
+    result["stops"][..., 1] = offset + parameters["b"] if stops != "left" else np.inf
+    result["stops"][..., 2], result["stops"][..., 3] = parameters.get("R_left", R), R
     return result
 
 
-def plan_of(system: System, transient: int = 0, record: int = 0, lyapunov: bool = False) -> points.Plan:
+def plan_of(transient: int = 0, record: int = 0, lyapunov: bool = False) -> points.Plan:
     """What the kernels are asked for."""
     return points.Plan(
         transient=transient,
@@ -40,8 +47,6 @@ def plan_of(system: System, transient: int = 0, record: int = 0, lyapunov: bool 
         lyapunov=lyapunov,
         impacts=False,
         attractors=False,
-        right=system.stops != "left",
-        left=system.stops != "right",
         section_side=0.0,
         periods=0,
         parts=min(record, BATCHES) if lyapunov else 0,
@@ -59,14 +64,14 @@ class Engine:
 
     def __init__(self, system: System, later: float = 0.0):
         parameters = system.parameters()
-        self.point = points_of(parameters | {"tau": parameters["tau"] + later}).reshape(1)
+        self.point = points_of(parameters | {"tau": parameters["tau"] + later}, system.stops).reshape(1)
         self.cells = int(self.point["cells"][0])
         if self.cells == 0:
             allowed = f"such that the fastest rate times the period is at most {cells.LONGEST:g}"
             raise ParameterError("omega", system.omega, allowed)
         self.period = system.period
         self.width = self.period / self.cells
-        plan = plan_of(system)
+        plan = plan_of()
         workspace = points.new_workspace(plan, self.cells, 0)
         for lane in range(LANES):
             self.stops = points.prepare(self.point.repeat(LANES), lane, workspace, plan)

@@ -19,6 +19,7 @@ from vibro_sweep.model.parameters import NAMES
 POINT = np.dtype(
     [(name, float) for name in NAMES]
     + [("psi", float, (2, 2)), ("omega_squared", float, 2), ("cells", np.int64)]
+    + [("stops", float, 4)]  # left, right, and the restitution of each
     + [("graze", float, 4)]  # the point at which the discontinuity mapping is expanded
 )
 
@@ -59,8 +60,6 @@ class Plan(NamedTuple):
     lyapunov: bool  # with `states`
     impacts: bool
     attractors: bool  # with `lyapunov`
-    right: bool
-    left: bool
     section_side: float  # 0: the section is t = 0 mod T; else the stop of an impact section
     periods: int  # of the trajectory
     parts: int  # of the record, at which the growth of tangent vectors is read
@@ -102,6 +101,14 @@ def same_oscillator(a, b):
     return same and a.f2 == b.f2 and a.omega == b.omega and a.tau == b.tau
 
 
+@jit
+def clearance(stops):
+    """Half the way between the stops; of one stop how far it is from 0."""
+    if stops.left > -np.inf and stops.right < np.inf:
+        return 0.5 * (stops.right - stops.left)
+    return abs(stops.right if stops.right < np.inf else stops.left)
+
+
 @entry
 def prepare(points, i, w, plan):
     """Orbit i gets the tables of its point, those of the orbit before it if they are the same; and its stops."""
@@ -119,11 +126,11 @@ def prepare(points, i, w, plan):
         w.built[table] = point
     for j in range(4):
         q.graze[j] = point.graze[j]
-    o.careful = int(q.stiff or q.largest > LARGE * point.b)
-    stops = Stops(-point.b if plan.left else -np.inf, point.b if plan.right else np.inf, point.R)
+    stops = Stops(point.stops[0], point.stops[1], point.stops[2], point.stops[3])
+    o.careful = int(q.stiff or q.largest > LARGE * clearance(stops))
     strike.set_oscillator(e.strike[0], i, q, stops)
     if plan.lyapunov:
-        tangent.set_frame(e.tangent[0], i, q, point.R)
+        tangent.set_frame(e.tangent[0], i, q)
     return stops
 
 

@@ -65,7 +65,7 @@ def follow(w, periods, hits, samples, sections, impacts):
             samples[i, j] = records.samples[i, j]
     for j in range(samples.shape[1]):
         samples[last, j] = o.X[j]
-    keep_fastest(hits[0, : min(o.impacts_logged, hits.shape[1])], impacts, q, o.stops[2])
+    keep_fastest(hits[0, : min(o.impacts_logged, hits.shape[1])], impacts, q, o.stops)
     return o.impacts_logged
 
 
@@ -79,7 +79,7 @@ def count_faster(hits, speed):
 
 
 @jit
-def keep_fastest(hits, impacts, q, R):
+def keep_fastest(hits, impacts, q, stops):
     """Of the logged impacts, (n, 7), as many as there is room for: those that are left out end chatter sequences."""
     slow = -1.0
     if len(hits) > len(impacts):
@@ -97,7 +97,8 @@ def keep_fastest(hits, impacts, q, R):
         if abs(hits[i, 4]) > slow:
             hit = hits[i]
             impacts[n, 0] = hit[0] + (hit[1] + hit[2] / q.width) / q.cells
-            impacts[n, 1], impacts[n, 2], impacts[n, 3] = hit[3], hit[4], -R * hit[4]
+            impacts[n, 1], impacts[n, 2] = hit[3], hit[4]
+            impacts[n, 3] = -(stops[3] if hit[3] > 0.0 else stops[2]) * hit[4]
             for j in range(5, len(hit)):
                 impacts[n, j - 1] = hit[j]
             n += 1

@@ -78,7 +78,7 @@ def flight_of(e, o):
 @inline
 def stops_of(o):
     """The stops of an orbit."""
-    return Stops(o.stops[0], o.stops[1], o.stops[2])
+    return Stops(o.stops[0], o.stops[1], o.stops[2], o.stops[3])
 
 
 @inline
@@ -283,7 +283,7 @@ def carry(e, mapping, readings):
                     f = flight_of(e, o)
                     tangent.aim(t, i, f.oscillator[0], f.nodes, o.cell, strikes.offset[i])
             tangent.fly(t, lanes_of(struck))
-            tangent.saltate(t, lanes_of(struck), row(strikes.jump, 0) / row(strikes.speed, 0))
+            tangent.saltate(t, lanes_of(struck), row(strikes.jump, 0) / row(strikes.speed, 0), row(strikes.R, 0))
         for i in range(LANES):
             if waiting >> i & 1:
                 settle(e, e.orbits[i], free >> i & 1, struck >> i & 1, readings)

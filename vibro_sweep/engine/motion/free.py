@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import ROUNDING, first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import advance, place
+from vibro_sweep.engine.motion.orbits import advance, place, wall_of
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.motion.scan import state_at
 from vibro_sweep.engine.simd.jit import entry, jit
@@ -96,8 +96,7 @@ def crossing(q, o, stops, side, sign, n, left):
 
     sign: 1 where M1 is inside of it, -1 beyond. n: order of the zero of the gap at the beginning, if it begins there.
     """
-    wall = stops.right if side > 0.0 else stops.left
-    gap = sign * side * (wall - o.X[0])
+    gap = sign * side * (wall_of(stops, side) - o.X[0])
     if n == 0 and gap <= 0.0:  # rounding: it was reached at the end of the last series
         return 0.0
     set_gap(o.gap, o.c[0], gap, sign * side, n)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import advance, take_samples
+from vibro_sweep.engine.motion.orbits import advance, restitution_of, take_samples, wall_of
 from vibro_sweep.engine.motion.rest import begin_rest, chatter, first_nonzero, stay_at_rest
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import alike, row
@@ -81,7 +81,7 @@ def watch_rebound(q, o, records, k, d, side, v, impulse):
 @jit
 def impact(f, stops, o, records, t, k, s, side, sin, cos):
     """v1 -> -R v1, and what is observed of it."""
-    q, X, R = f.oscillator[0], o.X, stops.R
+    q, X, R = f.oscillator[0], o.X, restitution_of(stops, side)
     before = X[1]
     log_impact(o, records, k, s, side, before, X)
     count_impact(o, side, before)
@@ -95,7 +95,7 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
         tangent.fly_to(t, o.lane, q, f.nodes, k, s)
         # a1+ + R a1-, since a1+ - a1- = 2 zeta (1 + R) v1-, with a[1] = -2 zeta
         steepness = (1.0 + R) * (after / before + a[1] * R)
-        tangent.saltate(t, tangent.only(o.lane), alike(steepness))
+        tangent.saltate(t, tangent.only(o.lane), alike(steepness), alike(R))
 
 
 @jit
@@ -104,7 +104,7 @@ def end_chatter(q, stops, o, records, k, s, side, w):
 
     A flight without them goes beyond the stop; through the damper that moves M2 by kappa = 2 zeta/mu_m of the way.
     """
-    X, wall = o.X, stops.right if side > 0.0 else stops.left
+    X, wall = o.X, wall_of(stops, side)
     o.resting, X[0] = side, wall
     take_samples(o, records, k, s, s + w)
     advance(o, w)
@@ -191,7 +191,7 @@ def cross_cell(f, stops, o, records, t, k, s):
         released = False
         if d == np.inf:
             continue
-        wall = stops.right if side > 0.0 else stops.left
+        wall = wall_of(stops, side)
         miss = abs(X[0] - wall)
         if miss > EXPLAINED * size_at(c1, d):
             return status.BEYOND_STOP

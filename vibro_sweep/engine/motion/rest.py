@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import take_samples
+from vibro_sweep.engine.motion.orbits import restitution_of, take_samples
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, evaluate
 from vibro_sweep.engine.tables.resting import bound_third_over, carry_over_rest, state_after
@@ -110,9 +110,10 @@ def chatter(q, stops, o, third, side, left):
     stop.
     """
     speed, a = -side * o.X[1], 2.0 * side * o.c[0, 2]
-    if a <= 0.0 or stops.R == 1.0:
+    R = restitution_of(stops, side)
+    if a <= 0.0 or R == 1.0:
         return np.inf
-    w = 2.0 * speed / (a * (1.0 - stops.R))
+    w = 2.0 * speed / (a * (1.0 - R))
     change = third * w / a
     stays_near = speed * speed < a * (stops.right - stops.left)
     if stays_near and w < left and change < 1e-3 and w * change <= CHATTER * q.width * q.cells:

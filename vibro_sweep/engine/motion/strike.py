@@ -45,13 +45,14 @@ def strikes_of(masses: int) -> np.dtype:
         ("impulse_third", float, LANES),
         ("left", float, LANES),
         ("right", float, LANES),
-        ("R", float, LANES),
+        ("restitution", float, (2, LANES)),  # of the left stop and of the right one
         ("z", float, (LANES, width)),  # one row for each orbit, at the beginning of its cell: x1, v1, ..., sin, cos
         ("c", float, (ORDER, LANES)),  # Taylor coefficients of x1
         # of the impact
         ("landing", float, (states, LANES)),  # the states at the ends of the cells, and
         ("X", float, (LANES, width)),  # the same, one row for each orbit; padded with zeros
         ("side", float, LANES),
+        ("R", float, LANES),  # of the stop that was hit
         ("offset", float, LANES),
         ("speed", float, LANES),  # v1 before it
         ("impulse", float, LANES),  # -(1 + R) v1
@@ -83,7 +84,8 @@ def set_oscillator(strikes, i, q, stops):
     for n in range(TAIL):
         strikes.third[n, i] = q.third[n]
     strikes.width[i], strikes.drag[i], strikes.impulse_third[i] = q.width, -q.force[1], q.impulse_third
-    strikes.left[i], strikes.right[i], strikes.R[i] = stops.left, stops.right, stops.R
+    strikes.left[i], strikes.right[i] = stops.left, stops.right
+    strikes.restitution[0, i], strikes.restitution[1, i] = stops.R_left, stops.R_right
 
 
 @inline
@@ -206,12 +208,13 @@ def count(strikes, struck, side, v):
 
 
 @inline
-def leaves_freely(strikes, v, after, side, rest, third):
-    """Whether M1 touches neither stop in the time `rest` after an impact with v, that leaves it with this acceleration.
+def leaves_freely(strikes, rebound, after, side, rest, third):
+    """Whether M1 touches neither stop in the time `rest` after an impact that leaves it with this speed `rebound` and
+    this acceleration.
 
     third: bound on the third derivative.
     """
-    rebound, back, bend = row(strikes.R, 0) * abs(v), side * after, rest * third * SIXTH
+    back, bend = side * after, rest * third * SIXTH
     stays_off = rebound > rest * (0.5 * select(back > 0.0, back, 0.0) + bend)
     return stays_off & (
         rest * (rebound + rest * (0.5 * abs(after) + bend)) < row(strikes.right, 0) - row(strikes.left, 0)
@@ -254,18 +257,20 @@ def strike(strikes, waiting):
     u = approach(c, u, gap, side, width)
     d, v, a, struck = descend(c, u, gap, side, abs(curve) + third * width, width, wanted)
     falls = rate + select(curve > 0.0, curve, 0.0) * d + 0.5 * third * d * d < 0.0  # all the way to the contact
-    impulse, rest = -(1.0 + row(strikes.R, 0)) * v, width - d
+    R = select(side > 0.0, row(strikes.restitution, 1), row(strikes.restitution, 0))
+    impulse, rest = -(1.0 + R) * v, width - d
     after = a - row(strikes.drag, 0) * impulse
     third += abs(impulse) * row(strikes.impulse_third, 0)
-    struck = struck & falls & (side * v > 0.0) & leaves_freely(strikes, v, after, side, rest, third)
+    struck = struck & falls & (side * v > 0.0) & leaves_freely(strikes, R * abs(v), after, side, rest, third)
     count(strikes, struck, side, v)
     if strikes.measured:
         miss = abs(gap - side * derivatives(c, d, ORDER)[0])
         put(strikes.miss, 0, select(struck & (miss > row(strikes.miss, 0)), miss, row(strikes.miss, 0)))
     put(strikes.side, 0, side)
+    put(strikes.R, 0, R)
     put(strikes.offset, 0, d)
     put(strikes.speed, 0, v)
     put(strikes.impulse, 0, impulse)
-    put(strikes.jump, 0, after + row(strikes.R, 0) * a)
+    put(strikes.jump, 0, after + R * a)
     land(strikes, z, impulse, rest)
     return bits(free), bits(struck)

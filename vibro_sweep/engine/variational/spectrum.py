@@ -94,9 +94,14 @@ def close_spectrum(e, o, w, plan, point, result):
         for j in range(len(spectrum)):
             spectrum[j], error[j] = result.log_multiplier[j] / time, result.log_error[j] / time
     exact = -2.0 * point.zeta * (1.0 + (1.0 + point.mu_k) / point.mu_m) + o.log_volume / time
-    hits = o.impacts_right + o.impacts_left
-    if hits > 0 and plan.order == 0:
-        exact += 2.0 * (hits / time) * np.log(point.R)
+    if plan.order == 0:
+        left, right = o.impacts_left, o.impacts_right
+        if o.stops[2] == o.stops[3]:
+            left, right = 0, left + right
+        if left > 0:
+            exact += 2.0 * (left / time) * np.log(o.stops[2])
+        if right > 0:
+            exact += 2.0 * (right / time) * np.log(o.stops[3])
     sort_exponents(spectrum, error)
     count, total = len(spectrum), spectrum[0] + spectrum[1]
     for j in range(2, count, 2):

@@ -29,7 +29,6 @@ def tangents_of(masses: int) -> np.dtype:
         ("to_frame", float, (n * n, LANES)),
         ("from_frame", float, (n * n, LANES)),
         ("kick", float, (n, LANES)),  # to_frame of a step of x1 by 1, and of what it does to v2, ... (kappa)
-        ("R", float, LANES),
         # of the orbit
         ("lost", float, LANES),  # dimensions: two by sticking, one by an impact without restitution
         ("cell", np.int64, LANES),  # the cell, counted from the section, and
@@ -59,7 +58,7 @@ def only(i):
 
 
 @jit
-def set_frame(t, i, q, R):
+def set_frame(t, i, q):
     """Give orbit i its oscillator."""
     size = len(t.growth)
     for n in range(ORDER):
@@ -74,7 +73,6 @@ def set_frame(t, i, q, R):
         t.kick[m, i] = q.to_frame[m, 0]
         for j in range(1, len(t.scale)):
             t.kick[m, i] += q.kappa[j] * q.to_frame[m, 2 * j + 1]
-    t.R[i] = R
 
 
 @entry
@@ -227,14 +225,14 @@ def motion_of(t, mass, j):
 
 
 @jit
-def saltate(t, who, steepness):
+def saltate(t, who, steepness, R):
     """Z across an impact, by the saltation matrix S = DG + (F+ - DG F-) n^T/(n . F-).
 
-    In (x1, v1, x2, v2), with steepness = (a1+ + R a1-)/v1- and kappa = 2 zeta/mu_m: dx1 -> -R dx1, dv1 -> steepness
-    dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
+    In (x1, v1, x2, v2), with steepness = (a1+ + R a1-)/v1-, R of the stop that is hit, and kappa = 2 zeta/mu_m: dx1 ->
+    -R dx1, dv1 -> steepness dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
     """
     apply_flight(t, who)
-    Z, to, R, size = t.Z, t.to_frame, row(t.R, 0), len(t.growth)
+    Z, to, size = t.Z, t.to_frame, len(t.growth)
     for j in range(size):
         dx, dv = motion_of(t, 0, j)
         to_x1 = -(1.0 + R) * dx
