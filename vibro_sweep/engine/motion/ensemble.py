@@ -55,14 +55,16 @@ class Readings(NamedTuple):
     parts: int  # of the periods, after each of which the growth is read; 0: never
 
 
-def new_ensemble(cells: int, impacts: int = 0, rests: int = 0, samples: int = 0, masses: int = 2) -> Ensemble:
+def new_ensemble(
+    cells: int, impacts: int = 0, rests: int = 0, samples: int = 0, masses: int = 2, constant: bool = False
+) -> Ensemble:
     """Orbits of oscillators with at most so many cells, and room for what is kept of each."""
-    orbits = new_lines(LANES, orbit_of(masses))
+    orbits = new_lines(LANES, orbit_of(masses, constant))
     orbits["lane"] = np.arange(LANES)
     return Ensemble(
-        new_flight(LANES, cells, masses),
+        new_flight(LANES, cells, masses, constant),
         orbits,
-        new_lines(1, strikes_of(masses)),
+        new_lines(1, strikes_of(masses, constant)),
         new_lines(1, tangents_of(masses)),
         new_records(LANES, impacts, rests, samples, masses),
     )

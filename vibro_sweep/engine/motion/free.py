@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import ROUNDING, first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import advance, place, wall_of
+from vibro_sweep.engine.motion.orbits import advance, is_finite, place, take_off, wall_of
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.motion.scan import state_at
 from vibro_sweep.engine.simd.jit import entry, jit
@@ -58,10 +58,7 @@ def go_on(f, o, length, last, from_node):
         o.period += 1
         from_node = False
     if not from_node:
-        X0, X1, X2, X3 = o.X[0], o.X[1], o.X[2], o.X[3]
-        z = f.nodes[o.cell].z
-        o.base = o.origin = o.cell
-        o.y[0], o.y[1], o.y[2], o.y[3] = X0 - z[0], X1 - z[1], X2 - z[2], X3 - z[3]
+        take_off(o, f.nodes, row(o.X, 0))
     return True
 
 
@@ -75,7 +72,7 @@ def size_here(f, o, from_node, length):
     if not from_node:
         return series
     closed, E = abs(f.nodes[o.cell].z[0]), f.nodes[o.cell - o.base].E
-    for j in range(len(E) - 2):
+    for j in range(2 * len(o.c)):
         closed += abs(E[j, 0] * o.y[j])
     return max(series, closed)
 
@@ -141,7 +138,7 @@ def find_contacts(f, o, stops, cells, offsets, states, durations, found, sides, 
                 found[i], statuses[i] = np.nan, status.UNRESOLVED
             elif min(d, e) < np.inf:
                 found[i], sides[i] = flown + min(d, e), 1 if d <= e else -1
-            elif not math.isfinite(o.X[1] + o.X[3]):
+            elif not is_finite(o):
                 found[i], statuses[i] = np.nan, status.NOT_FINITE
             else:
                 from_node = go_on(f, o, length, last, from_node)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import advance, restitution_of, take_samples, wall_of
+from vibro_sweep.engine.motion.orbits import advance, is_finite, restitution_of, take_samples, wall_of
 from vibro_sweep.engine.motion.rest import begin_rest, chatter, first_nonzero, stay_at_rest
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import alike, row
@@ -92,6 +92,8 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
         for j in range(2, states, 2):
             after += a[j] * X[j] + a[j + 1] * X[j + 1]
         after += a[states] * sin + a[states + 1] * cos
+        if len(a) > states + 2:
+            after += a[states + 2]
         tangent.fly_to(t, o.lane, q, f.nodes, k, s)
         # a1+ + R a1-, since a1+ - a1- = 2 zeta (1 + R) v1-, with a[1] = -2 zeta
         steepness = (1.0 + R) * (after / before + a[1] * R)
@@ -185,8 +187,8 @@ def cross_cell(f, stops, o, records, t, k, s):
             return status.UNRESOLVED
         take_samples(o, records, k, s, s + min(d, left))
         advance(o, min(d, left))
-        if d == np.inf and (last or not math.isfinite(X[1] + X[3])):
-            return status.OK if math.isfinite(X[1] + X[3]) else status.NOT_FINITE
+        if d == np.inf and (last or not is_finite(o)):
+            return status.OK if is_finite(o) else status.NOT_FINITE
         s += min(d, left)
         released = False
         if d == np.inf:

@@ -1,5 +1,6 @@
 """The moving state of an orbit, what is counted of it, and what is kept of its way."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -30,9 +31,9 @@ def restitution_of(stops, side):
     return stops.R_right if side > 0.0 else stops.R_left
 
 
-def orbit_of(masses: int) -> np.dtype:
+def orbit_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one orbit on its way, what is counted of it, and what it has written into its `Records`."""
-    width = width_of(masses)
+    width = width_of(masses, constant)
     motion = [
         ("X", float, width),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
         ("y", float, width),  # X - r at node `origin`, from which the exclusion test looks ahead
@@ -57,6 +58,7 @@ def orbit_of(masses: int) -> np.dtype:
         ("stops", float, 4),  # left, right, and the restitution of each
         ("resting", float),  # side of the stop that M1 rests on, or 0
         ("c", float, (masses, ORDER)),  # Taylor coefficients of x1, x2, ...; of M1 at rest the free acceleration
+        ("held", float, width),  # what series begin with while M1 rests: x1, x2, v2, x3, ..., sin, cos
         ("gap", float, ORDER),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
     ]
     counts = [
@@ -125,6 +127,15 @@ def keep_start(o):
     """X where free flight began, before another takes its place."""
     if o.base == o.origin:
         put(o.start, 0, row(o.X, 0))
+
+
+@jit
+def is_finite(o):
+    """Whether the velocities are numbers."""
+    total = o.X[1]
+    for j in range(3, 2 * len(o.c), 2):
+        total += o.X[j]
+    return math.isfinite(total)
 
 
 @jit

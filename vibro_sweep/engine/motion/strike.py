@@ -22,7 +22,7 @@ from vibro_sweep.engine.simd.lanes import (
     weigh,
 )
 from vibro_sweep.engine.tables import flight
-from vibro_sweep.engine.tables.flight import ORDER, width_of
+from vibro_sweep.engine.tables.flight import ORDER, inputs_of, width_of
 
 TAIL = 8  # terms from here on are bounded together
 ROUGH = 10  # terms that bring the search so near to the contact that one look with all of them suffices, as a rule
@@ -30,16 +30,16 @@ SIXTH = 1.0 / 6.0  # for a product: a division takes as long as all else in a bo
 LOOKS = 4  # at the gap, each followed by a step towards the contact
 
 
-def strikes_of(masses: int) -> np.dtype:
+def strikes_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of eight orbits that may strike, one column each."""
-    states, width = 2 * masses, width_of(masses)
+    states, inputs, width = 2 * masses, inputs_of(masses, constant), width_of(masses, constant)
     fields = [
         # of the oscillator
-        ("series", float, ((states + 2) * ORDER, LANES)),  # of x1
-        ("end", float, (states * (states + 2), LANES)),  # row 2 N j + i: X_i at the cell's end, of z_j at its beginning
+        ("series", float, (inputs * ORDER, LANES)),  # of x1
+        ("end", float, (states * inputs, LANES)),  # row 2 N j + i: X_i at the cell's end, of z_j at its beginning
         ("impulses", float, (masses * ORDER, LANES)),  # series of x1, x2, ... after a unit impulse on M1
         ("third", float, (TAIL, LANES)),  # weights of |c_n| in a bound on the third derivative over the cell
-        ("tail", float, (states + 2, LANES)),  # bound on what the series from TAIL on adds to it, for unit z
+        ("tail", float, (inputs, LANES)),  # bound on what the series from TAIL on adds to it, for unit z
         ("width", float, LANES),
         ("drag", float, LANES),  # 2 zeta
         ("impulse_third", float, LANES),
@@ -69,7 +69,7 @@ def strikes_of(masses: int) -> np.dtype:
 def set_oscillator(strikes, i, q, stops):
     """Give orbit i its oscillator and its stops."""
     masses, states = len(q.series), 2 * len(q.series)
-    for j in range(states + 2):
+    for j in range(len(q.force)):
         strikes.tail[j, i] = 0.0
         for n in range(ORDER):
             strikes.series[ORDER * j + n, i] = q.series[0, j, n]
@@ -224,7 +224,7 @@ def leaves_freely(strikes, rebound, after, side, rest, third):
 @inline
 def land(strikes, z, impulse, rest):
     """X at the end of the cell: of the motion as if there were no stop, and what the impulse has done by then."""
-    landing, states = strikes.landing, len(strikes.tail) - 2
+    landing, states = strikes.landing, len(strikes.landing)
     for m in range(states // 2):
         x, v = position_and_speed(strikes.impulses, m * ORDER, rest)
         put(landing, 2 * m, weigh(strikes.end, 2 * m, states, z) + impulse * x)
