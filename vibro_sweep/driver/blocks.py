@@ -11,11 +11,11 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.spectrum import BATCHES
 from vibro_sweep.identity import identity
+from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.exponents import RUNNING
+from vibro_sweep.model.grid import grid
 from vibro_sweep.model.observables import WORDS
-from vibro_sweep.model.oscillator import System
 from vibro_sweep.scene import Scene
-from vibro_sweep.scene.scene import grid
 from vibro_sweep.store import quantities
 
 
@@ -29,7 +29,7 @@ class Block(NamedTuple):
     box: tuple[slice, ...]  # over the sweep's dimensions; of some of the starts, or of two directions, over `start` too
     shape: tuple[int, ...]  # of the whole sweep
     plan: points.Plan
-    system: System
+    system: AnyOscillator
     axes: dict[str, np.ndarray]  # values of the swept numbers in the box, those of the start among them
     starts: np.ndarray | tuple[int, int]  # (s, 4) for all points; or (count, seed), drawn at each
     part: slice  # of the starts

@@ -14,8 +14,8 @@ from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 from vibro_sweep.model.grazing import expansion_point
-from vibro_sweep.model.observables import OF_AN_IMPACT
-from vibro_sweep.model.state import START, STATE
+from vibro_sweep.model.observables import of_an_impact
+from vibro_sweep.model.state import start, state
 
 ROOM = 4096  # impacts of a trajectory there is room for at first
 
@@ -140,10 +140,10 @@ def _trajectories(
         room = most
         run_trajectories(table.reshape(-1), results, np.empty((1, room, 7)), kept, workspace, block.plan)
         most = kept.counts.max()
-    named = dict(zip(OF_AN_IMPACT, np.moveaxis(kept.impacts, -1, 0), strict=True))
+    named = dict(zip(of_an_impact(block.system.masses), np.moveaxis(kept.impacts, -1, 0), strict=True))
     named["trajectory_impact_side"] = np.nan_to_num(named["trajectory_impact_side"]).astype(np.int8)
-    named |= {f"trajectory_{name}": kept.samples[..., i] for i, name in enumerate(STATE)}
-    named |= {f"trajectory_section_{name}": kept.sections[..., i] for i, name in enumerate(STATE)}
+    named |= {f"trajectory_{name}": kept.samples[..., i] for i, name in enumerate(state(block.system.masses))}
+    named |= {f"trajectory_section_{name}": kept.sections[..., i] for i, name in enumerate(state(block.system.masses))}
     named["trajectory_impacts"] = kept.counts
     return {name: values.reshape(lead + values.shape[2:]) for name, values in named.items()}
 
@@ -152,7 +152,7 @@ def _starts(block: Block, table: np.ndarray) -> np.ndarray:
     """(points, starts, 4): given; or random, uniform in |x_i| < b, |v_i| < omega b, by the point's place alone."""
     if not isinstance(block.starts, tuple):
         result = np.broadcast_to(block.starts, (table.size, *block.starts.shape)).copy()
-        for i, name in enumerate(START.values()):
+        for i, name in enumerate(start(block.system.masses)):
             if name in block.axes:
                 result[..., i] = block.parameters[name].reshape(-1, 1)
         return result
@@ -171,7 +171,10 @@ def _by_name(block: Block, arrays: dict[str, np.ndarray], lead: tuple[int, ...])
     results, sections, phases, running = arrays.values()
     named = {name: results[name].reshape(lead + results[name].shape[2:]) for name in results.dtype.names}
     if "x1" in block.wanted:
-        named |= {name: sections[..., i].reshape(lead + sections.shape[2:3]) for i, name in enumerate(STATE)}
+        named |= {
+            name: sections[..., i].reshape(lead + sections.shape[2:3])
+            for i, name in enumerate(state(block.system.masses))
+        }
     if block.plan.section_side:
         named["phase"] = phases.reshape(lead + phases.shape[2:])
     named["lyapunov_running"] = running.reshape(lead + running.shape[2:])

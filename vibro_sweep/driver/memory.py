@@ -8,9 +8,9 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.flight import CHUNK, node_of
+from vibro_sweep.model.grid import grid
 from vibro_sweep.scene import Scene
-from vibro_sweep.scene.scene import grid
-from vibro_sweep.scene.size import COPIES, FIXED, SAMPLE, scratch_numbers, written_numbers
+from vibro_sweep.scene.size import COPIES, fixed_numbers, sample_numbers, scratch_numbers, written_numbers
 from vibro_sweep.store import size
 
 BLOCK_BYTES = 12e6  # of results; larger blocks leave the processor's cache and are not faster
@@ -30,7 +30,7 @@ def blocks_under_way(scene: Scene, most_orbits: int, here: bool) -> int:
     orbits = min(most_orbits, scene.n_points)
     if "attractors" in scene.observe:
         orbits = max(orbits, scene.n_starts)
-    results = 8 * orbits * (FIXED + written_numbers(scene))
+    results = 8 * orbits * (fixed_numbers(scene.system.masses) + written_numbers(scene))
     each = results + (_workspace_bytes(scene, orbits) if here else 0)
     written = (COPIES - 1) * results  # copies, of one block at a time
     return max(1, int((_allowed() - written) / each))
@@ -52,5 +52,5 @@ def _workspace_bytes(scene: Scene, orbits: int) -> int:
         axes[key] = values[np.unique(np.linspace(0, len(values) - 1, LOOKS).astype(int))]
     cells = int(points_of(grid(scene.system, axes))["cells"].max())
     tables = LANES * cells * (node_of(2).itemsize + 2 * 5 * 8) + LANES * CHUNK
-    samples = SAMPLE * scene.trajectory.samples if scene.trajectory else 0
+    samples = sample_numbers(scene.system.masses) * scene.trajectory.samples if scene.trajectory else 0
     return tables + 8 * (min(orbits, LANES) * scratch_numbers(scene) + samples)

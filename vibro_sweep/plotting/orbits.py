@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from vibro_sweep.model.state import STATE
+from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting.paths import path
 from vibro_sweep.plotting.result import Result
 from vibro_sweep.plotting.style import (
@@ -160,7 +160,7 @@ def _mark_sections(ax, result, point, x_name, y_name):
 
 def coordinates(result: Result) -> tuple[str, ...]:
     """What a trajectory of the file has."""
-    return tuple(name for name in STATE if f"trajectory_{name}" in result)
+    return tuple(name for name in state(MOST_MASSES) if f"trajectory_{name}" in result)
 
 
 def history(result: Result):

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.state import STATE
+from vibro_sweep.model.state import state
 from vibro_sweep.plotting.result import Point, Result
 
 
@@ -32,7 +32,7 @@ class Path(NamedTuple):
 def path(result: Result, point: Point) -> Path:
     """The trajectory of an orbit, as the file holds it."""
     t = result.coordinate("time")
-    stored = [f"trajectory_{name}" for name in STATE]
+    stored = [f"trajectory_{name}" for name in state(2)]
     states = [result.one(name, point) if name in result else np.full(len(t), np.nan) for name in stored]
     if "trajectory_impacts" not in result:  # of version 0.1
         return Path(t, *states, np.empty((0, 3)), False)

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibro_sweep.model.parameters import NAMES
+from vibro_sweep.model.catalogue import OF_A_SYSTEM
 from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
@@ -186,7 +186,7 @@ class Result:
 
     def title(self, what="") -> str:
         """What is shown, the numbers that are the same at every point, and how much is there if not all."""
-        numbers = ", ".join(equation(key, self.settings[key]) for key in NAMES if key in self.settings)
+        numbers = ", ".join(equation(key, self.settings[key]) for key in OF_A_SYSTEM if key in self.settings)
         stops = self.settings.get("stops")
         if stops in ("right", "left"):
             numbers += f", {stops} stop only"

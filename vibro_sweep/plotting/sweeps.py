@@ -5,7 +5,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from vibro_sweep.model.state import STATE
+from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import density
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import (
@@ -72,7 +72,11 @@ def impacts(result: Result):
 
 def section_variables(result: Result) -> tuple[str, ...]:
     """Coordinates of the section points in the file, the one that is drawn by default first."""
-    names = ("v1", "x1", "phase", "x2", "v2") if "phase" in result else STATE
+    names = state(MOST_MASSES)
+    if "phase" in result:
+        names = ("v1", "x1", "phase", *names[2:])
+    elif "gap" in result:
+        names = ("gap", *names)
     return tuple(name for name in names if name in result)
 
 
