@@ -12,7 +12,7 @@ from support import ROOT
 import vibro_sweep as vs
 from vibro_sweep import reference
 from vibro_sweep.driver.blocks import plan_of
-from vibro_sweep.engine.points import POINT, RESULT, new_results
+from vibro_sweep.engine.records import POINT, new_results, result_of
 from vibro_sweep.engine.simd.jit import ENGINE, SHARED
 from vibro_sweep.model.catalogue import AXES
 from vibro_sweep.model.exponents import CERTAIN
@@ -80,7 +80,7 @@ class TestWhatFollows:
         for one in VARIABLES:
             if one.in_kernel:
                 own = tuple(DIMENSIONS[name].extent for name in one.dimensions)
-                assert (RESULT[one.name].base, RESULT[one.name].shape) == (np.dtype(one.dtype), own)
+                assert (result_of(2)[one.name].base, result_of(2)[one.name].shape) == (np.dtype(one.dtype), own)
                 np.testing.assert_array_equal(empty[one.name], np.full(own, one.fill))
 
     def test_the_reference_page_is_up_to_date(self):

@@ -11,6 +11,7 @@ from vibro_sweep.driver.blocks import Block, version
 from vibro_sweep.engine import points
 from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.one_system import points_of
+from vibro_sweep.engine.records import new_results
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 from vibro_sweep.model.grazing import expansion_point
@@ -70,7 +71,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
         steps = np.repeat(table.reshape(1, -1), n_starts, axis=1)
     record = plan.record if "x1" in block.wanted else 0
     arrays = {
-        "results": points.new_results(steps.shape),
+        "results": new_results(steps.shape),
         "sections": np.full((*steps.shape, record, 4), np.nan),
         "phases": np.full((*steps.shape, record if plan.section_side else 0), np.nan),
         "running": np.full((*steps.shape, plan.parts if "lyapunov_running" in block.wanted else 0, 4), np.nan),
@@ -103,7 +104,7 @@ def _drop_without_exponents(arrays: dict[str, np.ndarray]) -> None:
     results = arrays["results"]
     lost = status.stands(results["status"]) & np.isnan(results["lyapunov"]).any(-1)
     if lost.any():
-        results[lost] = points.new_results(())
+        results[lost] = new_results(())
         results["status"][lost] = status.NOT_FINITE
         for name in ("sections", "phases", "running"):
             arrays[name][lost] = np.nan

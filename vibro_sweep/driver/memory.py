@@ -4,8 +4,8 @@ import os
 
 import numpy as np
 
-from vibro_sweep.engine import points
 from vibro_sweep.engine.one_system import points_of
+from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.flight import CHUNK, node_of
 from vibro_sweep.model.grid import grid
@@ -21,7 +21,7 @@ LOOKS = 9  # values of each axis at which the size of the tables is looked at
 
 def orbits_per_block(scene: Scene, workers: int) -> int:
     """Orbits whose results fit into a block, and into the share of one of so many workers."""
-    each = size(scene) / scene.n_points + points.RESULT.itemsize
+    each = size(scene) / scene.n_points + result_of(scene.system.masses).itemsize
     return max(1, int(min(BLOCK_BYTES, _allowed() / workers) / each))
 
 

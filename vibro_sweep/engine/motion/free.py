@@ -33,7 +33,8 @@ def load_series(f, o):
     """Taylor series from where the flight is. Returns how far they reach, and whether that ends the cell."""
     q, X, left = f.oscillator[0], o.X, f.oscillator[0].width - o.offset
     last = left <= 1.001 * q.step
-    sin, cos = f.nodes[o.cell].z[4], f.nodes[o.cell].z[5]
+    z, states = f.nodes[o.cell].z, 2 * len(o.c)
+    sin, cos = z[states], z[states + 1]
     if o.offset > 0.0:
         swing, turn = math.sin(q.omega * o.offset), math.cos(q.omega * o.offset)
         sin, cos = sin * turn + cos * swing, cos * turn - sin * swing

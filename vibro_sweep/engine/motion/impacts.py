@@ -151,7 +151,7 @@ def cross_cell(f, stops, o, records, t, k, s):
         left = q.width - s
         last = left <= 1.001 * q.step
         left = left if last else q.step
-        sin, cos = node.z[4], node.z[5]
+        sin, cos = node.z[2 * len(o.c)], node.z[2 * len(o.c) + 1]
         if s > 0.0:
             swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
             sin, cos = sin * turn + cos * swing, cos * turn - sin * swing

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.point_tables import divergence_of
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.orthonormal import CONDITION
@@ -93,7 +94,7 @@ def close_spectrum(e, o, w, plan, point, result):
     if result.period > 0:
         for j in range(len(spectrum)):
             spectrum[j], error[j] = result.log_multiplier[j] / time, result.log_error[j] / time
-    exact = -2.0 * point.zeta * (1.0 + (1.0 + point.mu_k) / point.mu_m) + o.log_volume / time
+    exact = divergence_of(point, w.paper, w.other) + o.log_volume / time
     if plan.order == 0:
         left, right = o.impacts_left, o.impacts_right
         if o.stops[2] == o.stops[3]:
