@@ -8,6 +8,7 @@ import numpy as np
 
 from vibro_sweep.analysis import attractors
 from vibro_sweep.driver.blocks import Block, version
+from vibro_sweep.driver.starts import starts_of
 from vibro_sweep.engine import points
 from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.one_system import points_of
@@ -16,7 +17,7 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 from vibro_sweep.model.grazing import expansion_point
 from vibro_sweep.model.observables import of_an_impact
-from vibro_sweep.model.state import start, state
+from vibro_sweep.model.state import state
 
 ROOM = 4096  # impacts of a trajectory there is room for at first
 
@@ -63,7 +64,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     table = points_of(parameters, block.system.stops)
     if plan.order:
         table["graze"] = expansion_point(parameters, block.expand_at)
-    starts = _starts(block, table)
+    starts = starts_of(block)
     n_starts = starts.shape[1]
     if block.follow:  # chains along the first axis, one for each point of the others
         steps = np.ascontiguousarray(table.reshape(len(table), -1)[:: -1 if block.reverse else 1])
@@ -147,24 +148,6 @@ def _trajectories(
     named |= {f"trajectory_section_{name}": kept.sections[..., i] for i, name in enumerate(state(block.system.masses))}
     named["trajectory_impacts"] = kept.counts
     return {name: values.reshape(lead + values.shape[2:]) for name, values in named.items()}
-
-
-def _starts(block: Block, table: np.ndarray) -> np.ndarray:
-    """(points, starts, 4): given; or random, uniform in |x_i| < b, |v_i| < omega b, by the point's place alone."""
-    if not isinstance(block.starts, tuple):
-        result = np.broadcast_to(block.starts, (table.size, *block.starts.shape)).copy()
-        for i, name in enumerate(start(block.system.masses)):
-            if name in block.axes:
-                result[..., i] = block.parameters[name].reshape(-1, 1)
-        return result
-    count, seed = block.starts
-    part = block.part
-    result = np.empty((table.size, part.stop - part.start, 4))
-    for n, (index, point) in enumerate(zip(block.indices.flat, table.flat, strict=True)):
-        draw = np.random.Generator(np.random.Philox(key=seed, counter=[0, 0, 0, int(index)]))
-        result[n] = draw.uniform(-1.0, 1.0, (count, 4))[part] * point["b"]
-        result[n, :, 1::2] *= point["omega"]
-    return result
 
 
 def _by_name(block: Block, arrays: dict[str, np.ndarray], lead: tuple[int, ...]) -> dict[str, np.ndarray]:

@@ -147,7 +147,7 @@ B_STAR = Parameter(
 
 B_RIGHT, B_LEFT = (
     Parameter(
-        f"b_{side}", f"b_{{\\mathrm{{{side}}}}}", "1", NUMBER, f"grazing clearance, {side}",
+        f"b_{side}", f"b_{{\\mathrm{{{side}}}}}", "1", NUMBER, f"grazing, {side} stop",
         f"clearance at which the free motion touches the {side} stop", "(16)",
     )
     for side in ("right", "left")

@@ -13,13 +13,13 @@ from pydantic import ValidationError
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.grid import grid
 from vibro_sweep.model.models import DEFAULT
-from vibro_sweep.model.state import start
+from vibro_sweep.model.state import START, start
 
 from .combinations import combination_problems
 from .form import scene_form
 from .problems import SceneError, form_problems, located
 from .size import size_problems
-from .starts import Start, start_of, start_problems
+from .starts import Start, start_of, start_problems, stops_of
 from .system import kind_of, sweep_of, system_of
 from .written import changed, data_of, yaml_of
 from .yaml_text import MAX_BYTES, YAMLTextError, lines_of, read_yaml
@@ -102,6 +102,14 @@ class Scene:
     def shape(self) -> tuple[int, ...]:
         """The sweep's dimensions, then the starts if there are several."""
         return self.sweep_shape + ((self.n_starts,) if self.n_starts > 1 else ())
+
+    @property
+    def held(self) -> bool:
+        """Whether orbits start at rest and zero is behind a stop somewhere: it holds them there."""
+        if not self.start.rest or any(key in START.values() for key in self.sweep):
+            return False
+        low, high = stops_of(self.system, self.sweep)
+        return not low <= 0 <= high
 
     @property
     def n_points(self) -> int:

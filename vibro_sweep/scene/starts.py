@@ -1,6 +1,6 @@
 """Where the orbits of a scene begin."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -21,7 +21,9 @@ class Start:
     count: int = 1  # random starts at each point
     seed: int = 0
     direction: str | None = None  # of a `follow`: "up" | "down" | "both"
-    rest: bool = False  # nothing is said of the state: at rest, where zero is behind a stop held by that
+    # Nothing is said of the state: at rest, and where zero is behind a stop held by that. A state of zeros that is said
+    # is never behind one.
+    rest: bool = field(default=False, compare=False)
 
 
 def start_of(form: Form, masses: int) -> Start:
@@ -68,9 +70,7 @@ def _behind(form: Form, sweep, system: AnyOscillator, names, swept) -> list[str]
     for i, name in enumerate(names[::2]):
         values = sweep.get(START[name], [getattr(form.start, name)])
         gaps = np.add.outer(gaps, along[i] * np.array([min(values), max(values)])).ravel()
-    b, offset = (sweep.get(name, [getattr(system, name, 0.0)]) for name in ("b", "offset"))
-    high = float(min(offset) + min(b)) if system.options.get("stops", "both") != "left" else np.inf
-    low = float(max(offset) - min(b)) if system.options.get("stops", "both") != "right" else -np.inf
+    low, high = stops_of(system, sweep)
     if low <= gaps.min() and gaps.max() <= high:
         return []
     worst = float(gaps.max() if gaps.max() > high else gaps.min())
@@ -81,3 +81,12 @@ def _behind(form: Form, sweep, system: AnyOscillator, names, swept) -> list[str]
     )
     origin = ", the smallest b of the sweep" if "b" in sweep else ""
     return [problem(path, worst, f"is behind a stop; {what}{origin}")]
+
+
+def stops_of(system: AnyOscillator, sweep) -> tuple[float, float]:
+    """The narrowest positions of the stops in a sweep, infinite where there is none."""
+    b, offset = (sweep.get(name, [system.numbers.get(name, 0.0)]) for name in ("b", "offset"))
+    stops = system.options.get("stops", "both")
+    low = float(max(offset) - min(b)) if stops != "right" else -np.inf
+    high = float(min(offset) + min(b)) if stops != "left" else np.inf
+    return low, high

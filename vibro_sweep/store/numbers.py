@@ -27,8 +27,8 @@ def attributes(scene: Scene) -> dict[str, Any]:
 
     The system's numbers, `tau` in radians, `b_star` (`b_right` and `b_left` where these may differ), its options, the
     `type` of a model and `along` where they are not the paper's; `model` with its `order` and `expand_at`, the initial
-    state (`start_x1`, ...; of a `follow` that of its first point) unless it is random, `transient` and `record` in
-    forcing periods, `section`: `phase`, or `impact` with `section_stop`; and `picture` where the scene has it.
+    state (`start_x1`, ...; of a `follow` that of its first point) unless it is random or held by a stop, `transient`
+    and `record` in forcing periods, `section`: `phase`, or `impact` with `section_stop`; `picture` where there is one.
     """
     system = scene.system
     result: dict[str, Any] = {name: value for name, value in system.numbers.items() if value not in (None, "grazing")}
@@ -43,7 +43,7 @@ def attributes(scene: Scene) -> dict[str, Any]:
     result |= {"model": scene.model}
     if scene.model == "map":
         result |= {"order": scene.order} | ({} if scene.expand_at is None else {"expand_at": scene.expand_at})
-    if scene.start.kind != "random":
+    if scene.start.kind != "random" and not scene.held:
         state = dict(zip(start(system.masses), scene.start.state, strict=True))
         result |= {name: value for name, value in state.items() if name not in scene.sweep}
     result |= {"transient": scene.transient, "record": scene.record, "section": scene.section.kind}
