@@ -17,7 +17,7 @@ from .console import BAD_INPUT, BAD_POINTS, InputError, ended, input_errors, mes
 from .usage import called
 
 app = typer.Typer(
-    help="Parameter sweeps of the two-degree-of-freedom impact oscillator, with Lyapunov exponents.",
+    help="Parameter sweeps of linear oscillators with impacts, with Lyapunov exponents.",
     epilog=(
         "Exit status: 0 done; 1 done, but some points have a bad status; 2 the input is wrong; "
         "70 an internal error, which is a bug; 130 interrupted."
@@ -239,6 +239,18 @@ def grazing(scene_file: SceneFile):
         first = ", ".join(f"{key} = {getattr(scene.system, key)!r}" for key in along)
         say(f"at the first point of the sweep: {first}")
     say(grazing_text(touch, scene.system.stops))
+
+
+@app.command()
+def models(name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Of a model.")] = None):
+    """What oscillators there are; of one the equations, a sketch, its numbers."""
+    from vibro_sweep.model.models import model_named
+    from vibro_sweep.model.parameters import ParameterError
+
+    from .summaries import model_list, model_text
+
+    with input_errors(ParameterError):
+        say(model_list() if name is None else model_text(model_named(name)))
 
 
 @app.command()

@@ -21,6 +21,7 @@ SOURCES = (
     "scene",
     "driver/blocks.py",
     "driver/compute.py",
+    "driver/starts.py",
     "driver/attractor_ids.py",
     "store/numbers.py",
 )

@@ -4,6 +4,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vibro_sweep.model.grazing import Grazing
+from vibro_sweep.model.models import MODELS
+from vibro_sweep.model.models.declaration import Model, Option
+from vibro_sweep.model.parameters import Parameter
 
 if TYPE_CHECKING:
     from .driver.sweep import RunReport
@@ -21,6 +24,42 @@ def grazing_text(touch: Grazing, stops: str) -> str:
         f"state = x1: {side * b!r}, v1: 0, x2: {side * x2!r}, v2: {side * v2!r}{where}\n"
         f"the existence condition (19) {holds}; determinant (15): {touch.determinant:.6g}"
     )
+
+
+def model_list() -> str:
+    """What `models` prints: a line each."""
+    return "\n".join(f"{name:<16} {one.title}" for name, one in MODELS.items())
+
+
+def model_text(model: Model) -> str:
+    """What `models NAME` prints: equations, sketch, numbers with their ranges, options, source."""
+    numbers = [(one.name, one.range.text, one) for one in model.numbers]
+    options = [(one.name, _allowed(one), one) for one in model.options]
+    wide = [max(len(row[column]) for row in numbers + options) for column in (0, 1)]
+    rows = [
+        f"  {name:<{wide[0]}}  {allowed:<{wide[1]}}  {one.text}{_each(one)}{_default(one)}"
+        for name, allowed, one in numbers + options
+    ]
+    sketch, equations = model.sketch.strip("\n"), model.equations.strip("\n")
+    return "\n".join(
+        [f"{model.name}: {model.title}", "", sketch, "", equations, "", *rows, "", f"source: {model.source}"]
+    )
+
+
+def _allowed(one: Option) -> str:
+    kinds = {"flag": "true or false", "whole": "a whole number", "matrix": "a matrix", "vector": "a list of numbers"}
+    return kinds.get(one.kind) or " or ".join(one.words)
+
+
+def _each(one: Parameter | Option) -> str:
+    each = getattr(one, "each", "")
+    return f"; a list, one for each {each}" if each else ""
+
+
+def _default(one: Parameter | Option) -> str:
+    if one.default is None:
+        return ""
+    return f" [{str(one.default).lower() if isinstance(one.default, bool) else one.default}]"
 
 
 def summary(output: Path, report: "RunReport") -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.linear import Family, Linear
-from vibro_sweep.model.models import MODELS
+from vibro_sweep.model.models import MODELS, model_named
 from vibro_sweep.model.models.declaration import Model, Option, linear_of
 from vibro_sweep.model.parameters import LENGTHS, Parameter, ParameterError, checked_number
 from vibro_sweep.model.state import MOST_MASSES
@@ -44,13 +44,8 @@ class Oscillator(AnyOscillator):
         """A model by its name, as it is in a scene; of `two_mass` a System."""
         from vibro_sweep.model.oscillator import System
 
-        if name not in MODELS:
-            raise ParameterError("type", name, f"one of {', '.join(MODELS)}")
-        if name == System.model.name:
-            return System(**given)
-        made = cls.__new__(cls)
-        made._set(MODELS[name], given)
-        return made
+        model = model_named(name)
+        return System(**given) if model.name == System.model.name else _again(name, given)
 
     def _set(self, model: Model, given: Mapping[str, Any]) -> None:
         object.__setattr__(self, "model", model)

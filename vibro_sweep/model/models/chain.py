@@ -50,8 +50,8 @@ MODEL = Model(
                x1            x2                  xn
 """,
     equations="""
-    m_i x_i'' + c_i (x_i' - x_(i-1)') + c_(i+1) (x_i' - x_(i+1)') + k_i (x_i - x_(i-1)) + k_(i+1) (x_i - x_(i+1))
-        = constant_i + force_i sin(omega t + tau)
+    m_i x_i'' + c_i (x_i' - x_(i-1)') + c_(i+1) (x_i' - x_(i+1)')
+              + k_i (x_i - x_(i-1)) + k_(i+1) (x_i - x_(i+1)) = constant_i + force_i sin(omega t + tau)
     x_0 = x_(n+1) = 0, the walls; offset - b <= x_s <= offset + b for the mass s = stop_at
 """,
     source="S. Natsiavas, J. Sound Vib. 165 (1993) 439",
@@ -60,7 +60,7 @@ MODEL = Model(
         _list("k", "k", NOT_NEGATIVE, "spring", "stiffness", "stiffness, from the left wall on; 0: no spring"),
         _list("c", "c", NOT_NEGATIVE, "spring", "damper", "damping, from the left wall on", 0.0),
         _list("force", "f", NUMBER, "mass", "force", "amplitude of the force"),
-        _list("constant", "f_0", NUMBER, "mass", "constant force", "constant force", 0.0),
+        _list("constant", r"\bar f", NUMBER, "mass", "constant force", "constant force", 0.0),
         *CONTACT,
     ),
     options=(Option("stop_at", "whole", "the mass that hits the stops, counted from 1", 1), WHICH_STOPS),

@@ -93,15 +93,16 @@ MODEL = Model(
         g = along . x    along = (1, 0, ..):  mass 1 and a wall;   (-1, 1, 0, ..): masses 1 and 2
 """,
     equations="""
-    M x'' + C x' + K x = constant + omega^force_power (force sin(omega t + tau) + force_cos cos(omega t + tau))
+    M x'' + C x' + K x
+        = constant + omega^force_power (force sin(omega t + tau) + force_cos cos(omega t + tau))
     offset - b <= along . x <= offset + b
     force_power: 2   unbalance, or a shaken base
 """,
     source="docs/model.md",
     numbers=(
-        _list("force", "f_s", "force", "amplitude of the force with sin(omega t + tau)"),
-        _list("force_cos", "f_c", "force (cos)", "amplitude of the force with cos(omega t + tau)"),
-        _list("constant", "f_0", "constant force", "constant force"),
+        _list("force", "f", "force", "amplitude of the force with sin(omega t + tau)"),
+        _list("force_cos", r"\tilde f", "force (cos)", "amplitude of the force with cos(omega t + tau)"),
+        _list("constant", r"\bar f", "constant force", "constant force"),
         Parameter(
             "force_power",
             "p",

@@ -27,10 +27,10 @@ MODEL = Model(
     name="one_mass",
     title="one mass, one stop or two; k = 0: bouncing ball, rattling gears",
     sketch=r"""
-      |     .-----.     |         |
-    L |<----|  1  |---->| R       |    stops at offset - b and offset + b
-      |     '-----'--/\/\--[--]---|    spring k, damper 2 zeta
-               x1       k  2 zeta
+           L |<-- b -->.-----.<-- b -->| R      stops at offset - b and offset + b
+                       |  1  |
+    ||---/\/\--[--]----'-----'                  spring k and damper 2 zeta
+                         x1
 """,
     equations="""
     x1'' + 2 zeta x1' + k x1 = constant + F sin(omega t + tau)
@@ -54,7 +54,9 @@ MODEL = Model(
             "amplitude of the force, or of the wall's motion",
             free_motion=True,
         ),
-        Parameter("constant", "f_0", "1", NUMBER, "constant force", "constant force", default=0.0, free_motion=True),
+        Parameter(
+            "constant", r"\bar f", "1", NUMBER, "constant force", "constant force", default=0.0, free_motion=True
+        ),
         *CONTACT,
     ),
     options=(

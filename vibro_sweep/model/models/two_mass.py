@@ -27,10 +27,11 @@ MODEL = Model(
     name="two_mass",
     title="two masses in a chain, the first between two stops",
     sketch=r"""
-      |     .-----.      spring 1, c  .----------.   spring mu_k   |
-    C |<-b->|  1  |<-b->| A --/\/\----|   mu_m   |------/\/\-------|
-      |     '-----'      damper       '----------'   damper        |
-             x1, (1 - f2) sin          x2, f2 sin
+    C |<-- b -->.-----.<-- b -->| A            stops at offset - b and offset + b
+                |  1  |                .------.
+                |     |---/\/\--[--]---| mu_m |---/\/\--[--]---||
+                '-----'    1, 2 zeta   '------'   mu_k, 2 zeta mu_c
+                  x1                      x2
 """,
     equations="""
     x1'' + 2 zeta (x1' - x2') + x1 - x2 = (1 - f2) sin(omega t + tau)
