@@ -9,6 +9,7 @@ from vibro_sweep import plotting
 from vibro_sweep.driver import blocks
 from vibro_sweep.engine import points
 from vibro_sweep.engine.one_system import points_of
+from vibro_sweep.engine.records import new_results
 from vibro_sweep.engine.trajectory import new_trajectories, run_trajectories
 from vibro_sweep.scene import parse_scene
 
