@@ -150,7 +150,7 @@ def test_what_ends_a_run_loses_nothing(tmp_path, whole, error, attempts, words):
 
 def test_an_error_in_a_block_says_where(monkeypatch):
     block = next(blocks.blocks(scene_of(SCENES["plane"]), points_per_block=3))
-    monkeypatch.setattr("vibro_sweep.driver.compute.points_of", lambda _: 1 / 0)
+    monkeypatch.setattr("vibro_sweep.driver.compute.table_of", lambda *_, **__: 1 / 0)
     with pytest.raises(BlockError, match=r"process \d+, failed at omega = 0.5, b = 0.3 .. 2.4\d*: ZeroDivisionError"):
         compute(block)
 

@@ -22,6 +22,8 @@ SOURCES = (
     "driver/blocks.py",
     "driver/compute.py",
     "driver/starts.py",
+    "driver/tables.py",
+    "driver/trajectories.py",
     "driver/attractor_ids.py",
     "store/numbers.py",
 )

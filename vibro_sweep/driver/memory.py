@@ -4,11 +4,10 @@ import os
 
 import numpy as np
 
-from vibro_sweep.engine.one_system import points_of
+from vibro_sweep.driver.tables import table_of
 from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.flight import CHUNK, node_of
-from vibro_sweep.model.grid import grid
 from vibro_sweep.scene import Scene
 from vibro_sweep.scene.size import COPIES, fixed_numbers, sample_numbers, scratch_numbers, written_numbers
 from vibro_sweep.store import size
@@ -50,7 +49,8 @@ def _workspace_bytes(scene: Scene, orbits: int) -> int:
     axes = {}
     for key, values in scene.sweep.items():
         axes[key] = values[np.unique(np.linspace(0, len(values) - 1, LOOKS).astype(int))]
-    cells = int(points_of(grid(scene.system, axes))["cells"].max())
-    tables = LANES * cells * (node_of(2).itemsize + 2 * 5 * 8) + LANES * CHUNK
+    table, kind = table_of(scene.system, axes, frames=False)
+    cells = int(table["cells"].max())
+    tables = LANES * cells * (node_of(kind.masses).itemsize + 2 * (2 * kind.masses + 1) * 8) + LANES * CHUNK
     samples = sample_numbers(scene.system.masses) * scene.trajectory.samples if scene.trajectory else 0
     return tables + 8 * (min(orbits, LANES) * scratch_numbers(scene) + samples)

@@ -19,25 +19,25 @@ from vibro_sweep.model import status
 class Trajectories(NamedTuple):
     """What is kept of p points with s starts each. Times are in forcing periods since the last recorded section."""
 
-    samples: np.ndarray  # (p, s, samples, 4)
-    sections: np.ndarray  # (p, s, periods + 1, 4), the last recorded section first
-    impacts: np.ndarray  # (p, s, m, 6): time, side, v1 before, v1 after, x2, v2; in order, the m fastest of them
+    samples: np.ndarray  # (p, s, samples, 2 N)
+    sections: np.ndarray  # (p, s, periods + 1, 2 N), the last recorded section first
+    impacts: np.ndarray  # (p, s, m, 2 + 2 N): time, side, v1 before, v1 after, x2, ..; in order, the m fastest of them
     counts: np.ndarray  # (p, s): impacts, also where there are more than m; -1: not computed
 
 
-def new_trajectories(shape: tuple[int, int], samples: int, periods: int, impacts: int) -> Trajectories:
+def new_trajectories(shape: tuple[int, int], samples: int, periods: int, impacts: int, masses: int = 2) -> Trajectories:
     """Room for so much, with nothing computed yet."""
     return Trajectories(
-        np.full((*shape, samples, 4), np.nan),
-        np.full((*shape, periods + 1, 4), np.nan),
-        np.full((*shape, impacts, 6), np.nan),
+        np.full((*shape, samples, 2 * masses), np.nan),
+        np.full((*shape, periods + 1, 2 * masses), np.nan),
+        np.full((*shape, impacts, 2 + 2 * masses), np.nan),
         np.full(shape, -1, np.int64),
     )
 
 
 @jit
 def follow(w, periods, hits, samples, sections, impacts):
-    """The motion of the first orbit over the next `periods`. hits: scratch, (1, m, 7). Returns how many impacts."""
+    """The motion of the first orbit over the next `periods`; how many impacts. hits: scratch, (1, m, 3 + 2 N)."""
     e = w.ensemble
     o, records, last = e.orbits[0], e.records, len(samples) - 1
     q = e.flights.oscillator[o.table, 0]
@@ -106,7 +106,7 @@ def keep_fastest(hits, impacts, q, stops):
 
 @entry
 def run_trajectories(points, results, hits, kept, w, plan):
-    """Go on from where `run_points` left the orbits of a block. hits: scratch, (1, m, 7)."""
+    """Go on from where `run_points` left the orbits of a block. hits: scratch, (1, m, 3 + 2 N)."""
     e = w.ensemble
     e.tangent[0].wanted = e.strike[0].measured = False
     for i in range(1, LANES):
