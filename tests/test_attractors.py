@@ -7,7 +7,8 @@ from support.scenes import OSCILLATOR, run, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.analysis import attractors
-from vibro_sweep.driver import blocks, compute
+from vibro_sweep.driver import blocks
+from vibro_sweep.driver.starts import starts_of
 from vibro_sweep.scene import SceneError
 
 
@@ -45,7 +46,7 @@ def test_each_attractor_of_the_brute_force(coexistence):
     """Section points of `simulate` from the same random starts, compared in pairs."""
     scene, data = coexistence
     (block,) = blocks.blocks(scene, points_per_block=100)
-    starts = compute._starts(block, compute.points_of(block.parameters))
+    starts = starts_of(block)
     for i, b in enumerate(data["b"]):
         if b == 6.68:  # chaos: its points never meet
             continue
@@ -75,7 +76,7 @@ def test_mirror_images_are_two(coexistence):
     assert one[6] == pytest.approx(other[6], rel=1e-6) and not np.allclose(one[:4], other[:4], rtol=0.01)
     system = scene.system.replace(b=6.6)
     (block,) = blocks.blocks(scene, points_per_block=100)
-    starts = compute._starts(block, compute.points_of(block.parameters))[0]
+    starts = starts_of(block)[0]
     orbits = [vs.simulate(system, starts[label == number][0], 4013) for number in (1, 2)]
     times = (4000 + np.arange(13)) * system.period
     mirrored = -orbits[0].sample(times - system.period / 2)
@@ -211,12 +212,12 @@ def test_a_point_that_cannot_be_computed_has_no_attractor(tmp_path):
         (
             "observe: [attractor]",
             'observe[0] = "attractor": did you mean `attractors`? '
-            "allowed: section, lyapunov, multipliers, impacts, attractors, convergence",
+            "allowed: section, lyapunov, multipliers, impacts, attractors, energy, convergence",
         ),
         (
             "sweep: {start_x1: {values: [0]}}",
             'sweep.start_x1 = {"values": [0]}: unknown key; allowed here: '
-            "mu_m, mu_k, zeta, f2, omega, R, b, tau, x1, v1, x2, v2",
+            "mu_m, mu_k, zeta, f2, omega, R, b, tau, offset, R_left, mu_c, x1, v1, x2, v2",
         ),
     ],
 )

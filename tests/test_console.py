@@ -180,17 +180,17 @@ def test_a_bug_is_called_a_bug(folder, capsys, monkeypatch):
 
 
 def test_a_bug_in_a_block_does_not_advise_to_resume(folder, capsys, monkeypatch):
-    monkeypatch.setattr("vibro_sweep.driver.compute.points_of", lambda _: 1 / 0)
+    monkeypatch.setattr("vibro_sweep.driver.compute.table_of", lambda *_, **__: 1 / 0)
     assert main(["run", "good.yaml"]) == 70
     error = capsys.readouterr().err
     assert "ZeroDivisionError" in error and "--resume" not in error
 
 
 def test_memory_that_is_not_there_is_no_bug(folder, capsys, monkeypatch):
-    def too_little(_):
+    def too_little(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr("vibro_sweep.driver.compute.points_of", too_little)
+    monkeypatch.setattr("vibro_sweep.driver.compute.table_of", too_little)
     assert main(["run", "good.yaml"]) == 2
     assert "MemoryError" in capsys.readouterr().err
 

@@ -28,7 +28,7 @@ def start(e, stops, states, exponents):
         strike.set_oscillator(e.strike[0], i, f.oscillator[0], stops)
         orbits.place(o, f.nodes, stops, 0, 0.0, states[i])
         if exponents:
-            tangent.set_frame(e.tangent[0], i, f.oscillator[0], stops.R)
+            tangent.set_frame(e.tangent[0], i, f.oscillator[0])
             tangent.begin(e.tangent[0], i)
 
 
@@ -41,7 +41,7 @@ def carried(chain, states, exponents):
         own[:] = one[0]
     e.orbits["periods"] = PERIODS
     growth = np.zeros((8, 1, 2 * n))
-    start(e, orbits.Stops(-B, B, R), states, exponents)
+    start(e, orbits.Stops(-B, B, R, R), states, exponents)
     ensemble.carry(e, None, ensemble.Readings(np.zeros((8, PERIODS, 2 * n)), True, growth, int(exponents)))
     return e, growth
 

@@ -596,7 +596,7 @@ def test_a_history_reaches_the_stops_and_counts_forcing_periods(trajectory):
     assert lines["$x_1$"].get_xdata()[-1] == pytest.approx(2)
     assert np.nanmax(np.abs(lines["$x_1$"].get_ydata())) == 2
     assert len(lines["$x_2$"].get_xdata()) == 41 + 2 * 4
-    assert lines["right stop, $b$"].get_ydata()[0] == 2 and lines["left stop, $-b$"].get_ydata()[0] == -2
+    assert lines["right stop, $x_1 = b$"].get_ydata()[0] == 2 and lines["left stop, $x_1 = -b$"].get_ydata()[0] == -2
     assert "forcing periods" in ax.get_xlabel()
 
 

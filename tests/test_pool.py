@@ -19,7 +19,7 @@ from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, scene_of
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks, cost, memory, sweep
 from vibro_sweep.driver.compute import BlockError, RunError, compute
-from vibro_sweep.engine.points import RESULT
+from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
 
 LIMIT = 60  # seconds after which something hangs
@@ -150,7 +150,7 @@ def test_what_ends_a_run_loses_nothing(tmp_path, whole, error, attempts, words):
 
 def test_an_error_in_a_block_says_where(monkeypatch):
     block = next(blocks.blocks(scene_of(SCENES["plane"]), points_per_block=3))
-    monkeypatch.setattr("vibro_sweep.driver.compute.points_of", lambda _: 1 / 0)
+    monkeypatch.setattr("vibro_sweep.driver.compute.table_of", lambda *_, **__: 1 / 0)
     with pytest.raises(BlockError, match=r"process \d+, failed at omega = 0.5, b = 0.3 .. 2.4\d*: ZeroDivisionError"):
         compute(block)
 
@@ -211,7 +211,7 @@ def test_size_of_a_block(monkeypatch):
     scene = scene_of(SCENES["plane"].replace("num: 5", "num: 5000").replace("num: 7", "num: 7000"))
     assert cost.points_per_block(scene, 1e-3, 2, 4.0) == 4000
     assert cost.points_per_block(scene, 10.0, 2, 4.0) == 1
-    each = 32 * scene.record + RESULT.itemsize
+    each = 32 * scene.record + result_of(2).itemsize
     assert 0.7 < cost.points_per_block(scene, 1e-9, 2, 4.0) * each / memory.BLOCK_BYTES < 1
     monkeypatch.setattr(memory, "available_cores", lambda: 2)
     assert 0.7 < cost.points_per_block(scene, 1e-9, 1000, 4.0) * each / (memory.BYTES_UNDER_WAY / 1000) < 1

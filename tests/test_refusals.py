@@ -47,7 +47,7 @@ BAD_SCENES = {
     "negative clearance": (scene(b="-6.6"), ["system.b", "-6.6", "> 0"]),
     "phase": (scene(tau="grasing"), ["system.tau", "grasing", "did you mean `grazing`"]),
     "stops": (scene(stops="none"), ["system.stops", "none", "both, right, left"]),
-    "physical damping": (physical(C2="0.6"), ["system.physical.C2", "0.6", "C1/K1", "proportional"]),
+    "physical damping": (physical(C1="0", C2="0.6"), ["system.physical.C1", "0", "C2/C1"]),
     "physical and not": (physical("b: 3"), ["system.b", "3", "unknown key"]),
     "start behind a stop": (scene("start: {x1: 7}"), ["start.x1", "7", "6.6"]),
     "start behind a swept stop": (

@@ -15,6 +15,7 @@ from support.scenes import ALL, PAPER, SCENES, arrays_of, assert_same_bits, done
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks, compute
 from vibro_sweep.driver.attractor_ids import number_attractors
+from vibro_sweep.driver.starts import starts_of
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -55,7 +56,7 @@ def test_random_starts(tmp_path):
     """They depend on the seed and on the place in the sweep, and are spread over |x_i| < b, |v_i| < omega b."""
     text = "sweep: {b: {values: [1, 2]}}\nstart: {random: 500, seed: SEED}\norbit: {transient: 0, record: 1}"
     (block,) = blocks.blocks(scene_of(text.replace("SEED", "1")), points_per_block=2)
-    starts = compute._starts(block, compute.points_of(block.parameters)) / np.array([1, 0.63, 1, 0.63])
+    starts = starts_of(block) / np.array([1, 0.63, 1, 0.63])
     assert starts.shape == (2, 500, 4) and len(np.unique(starts)) == starts.size
     for b, drawn in zip((1, 2), starts / np.array([[[1]], [[2]]]), strict=True):
         assert np.all(abs(drawn) < 1), b

@@ -12,13 +12,13 @@ from support import ROOT
 import vibro_sweep as vs
 from vibro_sweep import reference
 from vibro_sweep.driver.blocks import plan_of
-from vibro_sweep.engine.points import POINT, RESULT, new_results
+from vibro_sweep.engine.records import POINT, new_results, result_of
 from vibro_sweep.engine.simd.jit import ENGINE, SHARED
 from vibro_sweep.model.catalogue import AXES
 from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.observables import DIMENSIONS, TRAJECTORY, VARIABLES, WORDS, asked_for
-from vibro_sweep.model.parameters import BY_NAME, FREE_MOTION, NAMES
-from vibro_sweep.model.state import STATE
+from vibro_sweep.model.parameters import BY_NAME, NAMES
+from vibro_sweep.model.state import state
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.creating import skeleton_of
 
@@ -51,26 +51,28 @@ class TestTheTablesThemselves:
             assert 0 < len(one.long_name) <= LONGEST_LABEL and one.text and "\n" not in one.text, one
 
     def test_the_state_is_interleaved(self):
-        assert STATE == ("x1", "v1", "x2", "v2")
+        assert state(2) == ("x1", "v1", "x2", "v2")
 
 
 class TestWhatFollows:
     def test_the_system_has_each_parameter_with_its_default(self):
         fields = {one.name: one.default for one in dataclasses.fields(vs.System) if one.name != "stops"}
         given = {name: one.default for name, one in BY_NAME.items()}
-        assert tuple(fields) == NAMES
+        assert tuple(fields) == tuple(BY_NAME)
         assert {name: None if value is dataclasses.MISSING else value for name, value in fields.items()} == given
 
     def test_help_names_each_parameter_with_its_range(self):
         for one in BY_NAME.values():
             assert f"{one.name} : {one.text}" in vs.System.__doc__ and one.range.text in vs.System.__doc__
 
-    def test_the_free_motion_depends_on_its_five_numbers_alone(self):
+    def test_the_free_motion_depends_on_its_own_numbers_alone(self):
         system = vs.System(**SYSTEM)
         before = vs.grazing(system)
-        for name in NAMES:
-            other = vs.grazing(system.replace(**{name: 0.5 if name == "tau" else 1.1 * getattr(system, name)}))
-            assert ((other.b, other.tau) != (before.b, before.tau)) == (name in FREE_MOTION), name
+        for name, one in BY_NAME.items():
+            value = getattr(system, name) or system.parameters()[name]
+            other = vs.grazing(system.replace(**{name: 0.5 if name == "tau" else 1.1 * value}))
+            changed = (other.b_right + other.b_left, other.tau) != (before.b_right + before.b_left, before.tau)
+            assert changed == one.free_motion, name
 
     def test_records_of_the_kernels_have_the_files_types(self):
         assert POINT.names[: len(NAMES)] == NAMES
@@ -78,7 +80,7 @@ class TestWhatFollows:
         for one in VARIABLES:
             if one.in_kernel:
                 own = tuple(DIMENSIONS[name].extent for name in one.dimensions)
-                assert (RESULT[one.name].base, RESULT[one.name].shape) == (np.dtype(one.dtype), own)
+                assert (result_of(2)[one.name].base, result_of(2)[one.name].shape) == (np.dtype(one.dtype), own)
                 np.testing.assert_array_equal(empty[one.name], np.full(own, one.fill))
 
     def test_the_reference_page_is_up_to_date(self):

@@ -9,6 +9,7 @@ from vibro_sweep import plotting
 from vibro_sweep.driver import blocks
 from vibro_sweep.engine import points
 from vibro_sweep.engine.one_system import points_of
+from vibro_sweep.engine.records import new_results
 from vibro_sweep.engine.trajectory import new_trajectories, run_trajectories
 from vibro_sweep.scene import parse_scene
 
@@ -117,7 +118,7 @@ def test_a_trajectory_that_fails_says_nothing():
     text = f"system: {{{PAPER}, b: 6.6}}\norbit: {{transient: 0, record: 1}}\ntrajectory: {{periods: 2, samples: 5}}"
     (block,) = blocks.blocks(parse_scene(text), 1)
     table = points_of(block.parameters)
-    results, kept = points.new_results((1, 1)), new_trajectories((1, 1), 5, 2, 5)
+    results, kept = new_results((1, 1)), new_trajectories((1, 1), 5, 2, 5)
     results["status"], results["end"], results["resting"] = 0, (0.0, np.inf, 0.0, 0.0), 0.0
     workspace = points.new_workspace(block.plan, int(table["cells"]), 5)
     run_trajectories(table.reshape(1), results, np.empty((1, 5, 7)), kept, workspace, block.plan)

@@ -1,7 +1,7 @@
 """Bifurcation sweeps of impact oscillators, with certified impacts and Lyapunov exponents.
 
 At a prompt
-    System, grazing, simulate, lyapunov, discontinuity_map
+    System, Oscillator, grazing, simulate, lyapunov, discontinuity_map
 Sweeps
     sweep (from Python), load_scene and run (from YAML to an HDF5 file), open (that file as an xarray.Dataset), plot
 Periodic orbits
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 __all__ = [
+    "Oscillator",
     "ParameterError",
     "PlotError",
     "RunError",
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from vibro_sweep.driver.compute import RunError
     from vibro_sweep.driver.from_python import sweep
     from vibro_sweep.driver.sweep import run
+    from vibro_sweep.model.general import Oscillator
     from vibro_sweep.model.grazing import grazing
     from vibro_sweep.model.oscillator import System
     from vibro_sweep.model.parameters import ParameterError
@@ -61,6 +63,7 @@ if TYPE_CHECKING:
     from vibro_sweep.store.reading import open
 else:
     _HOME = {
+        "Oscillator": "model.general",
         "ParameterError": "model.parameters",
         "PlotError": "plotting",
         "RunError": "driver.compute",

@@ -17,7 +17,7 @@ from .console import BAD_INPUT, BAD_POINTS, InputError, ended, input_errors, mes
 from .usage import called
 
 app = typer.Typer(
-    help="Parameter sweeps of the two-degree-of-freedom impact oscillator, with Lyapunov exponents.",
+    help="Parameter sweeps of linear oscillators with impacts, with Lyapunov exponents.",
     epilog=(
         "Exit status: 0 done; 1 done, but some points have a bad status; 2 the input is wrong; "
         "70 an internal error, which is a bug; 130 interrupted."
@@ -220,25 +220,38 @@ def grazing(scene_file: SceneFile):
     There the non-impacting steady motion just touches its stops. If the scene sweeps what they depend on: the curve.
     """
     from vibro_sweep.model.grazing import grazing
-    from vibro_sweep.model.parameters import FREE_MOTION
 
     from .scene import SceneError, load_scene
+    from .store.numbers import depends_on
     from .summaries import grazing_text
 
     with input_errors(SceneError):
         scene = load_scene(scene_file)
-    along = [key for key in scene.sweep if key in FREE_MOTION]
+    along = depends_on(scene)
     if len(along) == 1:
-        say(f"# {along[0]} b* tau*")
-        for value in scene.sweep[along[0]].tolist():
-            touch = grazing(scene.system.replace(**{along[0]: value}))
-            say(f"{value!r} {touch.b!r} {touch.tau!r}")
+        touches = [grazing(scene.system.replace(**{along[0]: one})) for one in scene.sweep[along[0]].tolist()]
+        alike = all(touch.b_right == touch.b_left for touch in touches)
+        say(f"# {along[0]} {'b*' if alike else 'b_right b_left'} tau*")
+        for value, touch in zip(scene.sweep[along[0]].tolist(), touches, strict=True):
+            sizes = [touch.b] if alike else [touch.b_right, touch.b_left]
+            say(" ".join(map(repr, [value, *sizes, touch.tau])))
         return
-    touch = grazing(scene.system)
     if along:
         first = ", ".join(f"{key} = {getattr(scene.system, key)!r}" for key in along)
         say(f"at the first point of the sweep: {first}")
-    say(grazing_text(touch, scene.system.stops))
+    say(grazing_text(grazing(scene.system), scene.system))
+
+
+@app.command()
+def models(name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Of a model.")] = None):
+    """What oscillators there are; of one the equations, a sketch, its numbers."""
+    from vibro_sweep.model.models import model_named
+    from vibro_sweep.model.parameters import ParameterError
+
+    from .summaries import model_list, model_text
+
+    with input_errors(ParameterError):
+        say(model_list() if name is None else model_text(model_named(name)))
 
 
 @app.command()

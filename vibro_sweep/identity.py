@@ -21,6 +21,9 @@ SOURCES = (
     "scene",
     "driver/blocks.py",
     "driver/compute.py",
+    "driver/starts.py",
+    "driver/tables.py",
+    "driver/trajectories.py",
     "driver/attractor_ids.py",
     "store/numbers.py",
 )

@@ -4,7 +4,10 @@ import inspect
 from collections.abc import Iterable, Iterator
 
 from vibro_sweep.model.catalogue import NUMBERS
+from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.observables import DIMENSIONS, TRAJECTORY, VARIABLES, WORDS
+from vibro_sweep.model.parameters import FOLLOWING, PARAMETERS
+from vibro_sweep.model.state import INITIAL
 from vibro_sweep.model.status import STATUSES
 from vibro_sweep.plotting import KINDS
 from vibro_sweep.scene import json_schema
@@ -33,13 +36,21 @@ def _table(head: tuple[str, ...], rows: Iterable[tuple]) -> Iterator[str]:
 
 def _scene() -> Iterator[str]:
     """Each form of the scene as a table of its keys."""
-    schema = json_schema()
+    schema = json_schema((DEFAULT,))
     yield "## Keys of a scene\n"
     yield from _keys(schema)
     for name, path in _paths(schema, schema["definitions"]).items():
         form = schema["definitions"][name]
         yield f"### `{path}`\n\n{form['description']}\n"
         yield from _keys(form)
+    yield "## Other models\n\n`system: {type: NAME, ...}`; [models.md](models.md) shows what they are. Their numbers"
+    yield "are keys of `sweep`; those of a list count from 1: `m1` is the first of `m`. States have x1 .. vN.\n"
+    forms = json_schema(tuple(MODELS))["definitions"]
+    for name in MODELS:
+        if name != DEFAULT:
+            form = next(one for one in forms.values() if one.get("properties", {}).get("type", {}).get("const") == name)
+            yield f"### `{name}`\n\n{form['description']}\n"
+            yield from _keys(form)
 
 
 def _paths(form: dict, definitions: dict, path: str = "") -> dict[str, str]:
@@ -123,7 +134,7 @@ def _numbers() -> Iterator[str]:
     yield "In a file: an attribute where it is the same at all points, else a coordinate.\n"
     rows = (
         (f"`{one.name}`", f"${one.symbol}$", one.units, one.range.text, one.equation, one.described)
-        for one in NUMBERS.values()
+        for one in (*PARAMETERS, *(NUMBERS[name] for name in FOLLOWING if name != "tau"), *INITIAL[:4])
     )
     yield from _table(("name", "symbol", "units", "range", "equation", "meaning"), rows)
 

@@ -3,24 +3,76 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.grazing import Grazing
+from vibro_sweep.model.linear import static_state
+from vibro_sweep.model.models import MODELS
+from vibro_sweep.model.models.declaration import Model, Option
+from vibro_sweep.model.parameters import Parameter
+from vibro_sweep.model.state import state as names
 
 if TYPE_CHECKING:
     from .driver.sweep import RunReport
 
 
-def grazing_text(touch: Grazing, stops: str) -> str:
+def grazing_text(touch: Grazing, system: AnyOscillator) -> str:
     """What `grazing` prints of Theorem 1, with the stops that there are."""
-    b, _, x2, v2 = touch.state
-    side = -1 if stops == "left" else 1
-    both = "   (right stop; left stop: its negative)"
-    where = {"both": both, "right": "   (right stop, t = 0)", "left": "   (left stop, t = T/2)"}[stops]
-    holds = "holds" if touch.satisfied else "does not hold"
-    return (
-        f"b*    = {b!r}\ntau*  = {touch.tau!r}\n"
-        f"state = x1: {side * b!r}, v1: 0, x2: {side * x2!r}, v2: {side * v2!r}{where}\n"
-        f"the existence condition (19) {holds}; determinant (15): {touch.determinant:.6g}"
+    stops = system.options.get("stops", "both")
+    alike = touch.b_right == touch.b_left
+    if alike:
+        lines = [f"b*    = {touch.b!r}"]
+    else:
+        both = {"right": ("right",), "left": ("left",)}.get(stops, ("right", "left"))
+        lines = [f"b at the {side} stop = {getattr(touch, f'b_{side}')!r}" for side in both]
+    state = np.array(touch.state)
+    if stops == "left":  # half a period later, the motion is mirrored about its middle
+        rest = static_state(system.linear)
+        state = -state if rest is None or not rest.any() else 2 * np.stack([rest, 0 * rest], -1).ravel() - state
+    where = {"right": "   (right stop, t = 0)", "left": "   (left stop, t = T/2)"}.get(stops, "   (right stop, t = 0)")
+    where = "   (right stop; left stop: its negative)" if stops == "both" and alike else where
+    values = zip(names(system.masses), state.tolist(), strict=True)
+    told = ", ".join(f"{name}: {0 if value == 0 else value!r}" for name, value in values)
+    holds = "holds" if touch.satisfied or (not alike and touch.determinant) else "does not hold"
+    lines += [f"tau*  = {touch.tau!r}", f"state = {told}{where}"]
+    return "\n".join([*lines, f"the existence condition (19) {holds}; determinant (15): {touch.determinant:.6g}"])
+
+
+def model_list() -> str:
+    """What `models` prints: a line each."""
+    return "\n".join(f"{name:<16} {one.title}" for name, one in MODELS.items())
+
+
+def model_text(model: Model) -> str:
+    """What `models NAME` prints: equations, sketch, numbers with their ranges, options, source."""
+    numbers = [(one.name, one.range.text, one) for one in model.numbers]
+    options = [(one.name, _allowed(one), one) for one in model.options]
+    wide = [max(len(row[column]) for row in numbers + options) for column in (0, 1)]
+    rows = [
+        f"  {name:<{wide[0]}}  {allowed:<{wide[1]}}  {one.text}{_each(one)}{_default(one)}"
+        for name, allowed, one in numbers + options
+    ]
+    sketch, equations = model.sketch.strip("\n"), model.equations.strip("\n")
+    return "\n".join(
+        [f"{model.name}: {model.title}", "", sketch, "", equations, "", *rows, "", f"source: {model.source}"]
     )
+
+
+def _allowed(one: Option) -> str:
+    kinds = {"flag": "true or false", "whole": "a whole number", "matrix": "a matrix", "vector": "a list of numbers"}
+    return kinds.get(one.kind) or " or ".join(one.words)
+
+
+def _each(one: Parameter | Option) -> str:
+    each = getattr(one, "each", "")
+    return f"; a list, one for each {each}" if each else ""
+
+
+def _default(one: Parameter | Option) -> str:
+    if one.default is None:
+        return ""
+    return f" [{str(one.default).lower() if isinstance(one.default, bool) else one.default}]"
 
 
 def summary(output: Path, report: "RunReport") -> str:

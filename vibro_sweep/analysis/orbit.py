@@ -11,8 +11,9 @@ from vibro_sweep.analysis.exponents import Exponents
 from vibro_sweep.engine import points
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.one_system import Engine, plan_of
+from vibro_sweep.engine.records import new_results
 from vibro_sweep.model import status
-from vibro_sweep.model.arguments import checked_count, checked_state, is_number
+from vibro_sweep.model.arguments import checked_count, is_number
 from vibro_sweep.model.oscillator import System, checked_system
 
 if TYPE_CHECKING:
@@ -56,7 +57,8 @@ class Orbit:
     sticking: np.ndarray
     section: np.ndarray
     status: "Status"
-    _start: np.ndarray
+    _start: np.ndarray  # in contact coordinates, as
+    _states: np.ndarray  # `section`
     _engine: Engine
 
     def __repr__(self) -> str:
@@ -99,23 +101,23 @@ class Orbit:
         engine = self._engine
         period, cell, offset = engine.locate(times)
         order = np.lexsort((offset, cell, period))
-        result = np.empty((len(times), 4))
+        result = np.empty((len(times), engine.states))
         first = math.ceil(self.start_time / engine.period)
         _, start_cell, start_offset = (value[()] for value in engine.locate(self.start_time))
         for n in np.unique(period):
             chosen = order[period[order] == n]
             if n - first == len(self.section) - 1:  # the very end
-                result[chosen] = self.section[-1]
+                result[chosen] = self._states[-1]
                 continue
-            records = orbits.new_records(1, samples=len(chosen))
+            records = orbits.new_records(1, samples=len(chosen), masses=engine.kind.masses)
             records.times[:, 0], records.times[:, 1] = cell[chosen], offset[chosen]
             if n < first:
                 engine.put(self._start, start_cell, start_offset)
             else:
-                engine.put(self.section[n - first])
-            engine.carry(records, np.empty((1, 4)))
+                engine.put(self._states[n - first])
+            engine.carry(records, np.empty((1, engine.states)))
             result[chosen] = records.samples
-        return result
+        return engine.to_masses(result)
 
 
 def simulate(system: System, state: ArrayLike, periods: int, start_time: float = 0.0) -> Orbit:
@@ -135,19 +137,19 @@ def simulate(system: System, state: ArrayLike, periods: int, start_time: float =
         allowed = f"a number of at most {LATEST} forcing periods: beyond, times resolve no motion"
         raise ValueError(f"start_time: {start_time!r} is not allowed; it must be {allowed}")
     engine = Engine(system)
-    engine.place(state)
+    begin = engine.checked(state)
     first, cell, offset = (value[()] for value in engine.locate(start_time))
-    engine.put(checked_state(state), cell, offset)
+    engine.put(begin, cell, offset)
     engine.orbit["period"] = first
-    section = np.full((periods + 1, 4), np.nan)
+    section = np.full((periods + 1, engine.states), np.nan)  # in contact coordinates
     inside = cell > 0 or offset > 0  # the period in which the orbit starts is not recorded, but its impacts are
     if not inside:
-        section[0] = state
+        section[0] = begin
     hits, rests, chatters, room, outcome = [], [], 0, ROOM, status.OK
     done = 0 if inside else 1
     while done <= periods and outcome == status.OK:
         before = engine.orbit.copy()
-        records = orbits.new_records(1, impacts=room, rests=room)
+        records = orbits.new_records(1, impacts=room, rests=room, masses=engine.kind.masses)
         count = min(CHUNK, len(section) - done)
         outcome = engine.carry(records, section[done : done + count])
         logged = max(engine.orbit["impacts_logged"][0], engine.orbit["rests_logged"][0])
@@ -167,11 +169,12 @@ def simulate(system: System, state: ArrayLike, periods: int, start_time: float =
     return Orbit(
         system,
         float(start_time),
-        engine.impacts(np.concatenate(hits) if hits else np.empty((0, 7)), float(start_time)),
+        engine.impacts(np.concatenate(hits) if hits else np.empty((0, 3 + engine.states)), float(start_time)),
         engine.sticking(np.concatenate(rests) if rests else np.empty((0, 4)), end),
-        section,
+        engine.to_masses(section),
         Status(outcome, chatters),
-        np.asarray(state, float),
+        begin,
+        section,
         engine,
     )
 
@@ -186,11 +189,11 @@ def lyapunov(system: System, state: ArrayLike, transient: int = 1000, periods: i
     checked_system(system)
     transient, periods = checked_count("transient", transient, 0), checked_count("periods", periods, 1, MAX_RECORD)
     engine = Engine(system)
-    engine.place(state)
-    plan = plan_of(system, transient, periods, lyapunov=True)
-    results, nothing = points.new_results((1, 1)), np.empty((1, 1, 0))
+    engine.checked(state)
+    plan = plan_of(transient, periods, lyapunov=True)
+    results, nothing = new_results((1, 1), engine.kind.masses), np.empty((1, 1, 0))
     starts = np.tile(np.asarray(state, float), (2, 1, 1))
-    workspace = points.new_workspace(plan, engine.cells, 0, orbits=1)
+    workspace = points.new_workspace(plan, engine.cells, 0, orbits=1, kind=engine.kind)
     steps = engine.point.reshape(1, 1)
     points.run_points(steps, starts, results, nothing[..., None], nothing, nothing[..., None], workspace, plan, None)
     point = results[0, 0]

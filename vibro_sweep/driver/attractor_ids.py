@@ -15,8 +15,8 @@ from vibro_sweep.analysis.attractors import BAD, NOT_SETTLED, group, share
 from vibro_sweep.analysis.following import Follower, known
 from vibro_sweep.analysis.many import ROOM, Orbits, group_pieces
 from vibro_sweep.driver.blocks import boxes
+from vibro_sweep.model.grid import grid
 from vibro_sweep.scene import Scene
-from vibro_sweep.scene.scene import grid
 
 Box = tuple[slice, ...]
 Arrays = Mapping[str, Any]

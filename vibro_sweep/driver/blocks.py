@@ -11,11 +11,11 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.spectrum import BATCHES
 from vibro_sweep.identity import identity
+from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.exponents import RUNNING
+from vibro_sweep.model.grid import grid
 from vibro_sweep.model.observables import WORDS
-from vibro_sweep.model.oscillator import System
 from vibro_sweep.scene import Scene
-from vibro_sweep.scene.scene import grid
 from vibro_sweep.store import quantities
 
 
@@ -29,9 +29,10 @@ class Block(NamedTuple):
     box: tuple[slice, ...]  # over the sweep's dimensions; of some of the starts, or of two directions, over `start` too
     shape: tuple[int, ...]  # of the whole sweep
     plan: points.Plan
-    system: System
+    system: AnyOscillator
     axes: dict[str, np.ndarray]  # values of the swept numbers in the box, those of the start among them
     starts: np.ndarray | tuple[int, int]  # (s, 4) for all points; or (count, seed), drawn at each
+    held: bool  # at rest, and where zero is behind a stop, held by that
     part: slice  # of the starts
     begun: np.ndarray | None  # (chains, 4): where chains go on that another block has begun
     follow: bool
@@ -88,8 +89,6 @@ def plan_of(scene: Scene) -> points.Plan:
         impacts="impacts" in scene.observe,
         attractors="attractors" in scene.observe,
         section_side=side if scene.section.kind == "impact" and "section" in scene.observe else 0.0,
-        right=scene.system.stops != "left",
-        left=scene.system.stops != "right",
         periods=scene.trajectory.periods if scene.trajectory else 0,
         parts=min(scene.record, RUNNING if "convergence" in scene.observe else BATCHES) if lyapunov else 0,
         order=scene.order if scene.model == "map" else 0,
@@ -114,6 +113,7 @@ def blocks(scene: Scene, points_per_block: int, most_orbits: int | None = None) 
         "plan": plan_of(scene),
         "system": scene.system,
         "starts": starts,
+        "held": scene.held,
         "begun": None,
         "follow": follow,
         "wanted": frozenset(quantities(scene)),

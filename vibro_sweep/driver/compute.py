@@ -8,16 +8,17 @@ import numpy as np
 
 from vibro_sweep.analysis import attractors
 from vibro_sweep.driver.blocks import Block, version
+from vibro_sweep.driver.starts import starts_of
+from vibro_sweep.driver.tables import table_of
+from vibro_sweep.driver.trajectories import trajectories_of
 from vibro_sweep.engine import points
 from vibro_sweep.engine.motion.ensemble import Mapping
-from vibro_sweep.engine.one_system import points_of
+from vibro_sweep.engine.records import Kind, new_results
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 from vibro_sweep.model.grazing import expansion_point
-from vibro_sweep.model.observables import OF_AN_IMPACT
-from vibro_sweep.model.state import START, STATE
-
-ROOM = 4096  # impacts of a trajectory there is room for at first
+from vibro_sweep.model.observables import GAP
+from vibro_sweep.model.state import state
 
 
 class RunError(RuntimeError):
@@ -58,11 +59,11 @@ def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
 
 
 def _compute(block: Block) -> dict[str, np.ndarray]:
-    plan, parameters = block.plan, block.parameters
-    table = points_of(parameters)
+    plan, states = block.plan, 2 * block.system.masses
+    table, kind = table_of(block.system, block.axes, frames=plan.lyapunov)
     if plan.order:
-        table["graze"] = expansion_point(parameters, block.expand_at)
-    starts = _starts(block, table)
+        table["graze"] = expansion_point(block.parameters, block.expand_at)
+    starts = starts_of(block)
     n_starts = starts.shape[1]
     if block.follow:  # chains along the first axis, one for each point of the others
         steps = np.ascontiguousarray(table.reshape(len(table), -1)[:: -1 if block.reverse else 1])
@@ -70,14 +71,14 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
         steps = np.repeat(table.reshape(1, -1), n_starts, axis=1)
     record = plan.record if "x1" in block.wanted else 0
     arrays = {
-        "results": points.new_results(steps.shape),
-        "sections": np.full((*steps.shape, record, 4), np.nan),
+        "results": new_results(steps.shape, kind.masses),
+        "sections": np.full((*steps.shape, record, states), np.nan),
         "phases": np.full((*steps.shape, record if plan.section_side else 0), np.nan),
-        "running": np.full((*steps.shape, plan.parts if "lyapunov_running" in block.wanted else 0, 4), np.nan),
+        "running": np.full((*steps.shape, plan.parts if "lyapunov_running" in block.wanted else 0, states), np.nan),
     }
-    anew = starts.reshape(-1, 4)[: steps.shape[1]]  # also after a point that failed
+    anew = starts.reshape(-1, states)[: steps.shape[1]]  # also after a point that failed
     first = anew if block.begun is None else block.begun
-    workspace = _workspace(block, int(table["cells"].max()), min(steps.shape[1], LANES))
+    workspace = _workspace(block, kind, int(table["cells"].max()), min(steps.shape[1], LANES))
     mapping = Mapping(plan.order) if plan.order else None
     points.run_points(steps, np.stack([first, anew]), *arrays.values(), workspace, plan, mapping)
     last = arrays["results"][-1]
@@ -92,7 +93,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     if plan.attractors:
         named |= _attractors(arrays["results"], lead)
     if block.samples:
-        named |= _trajectories(block, table, arrays["results"], workspace, lead)
+        named |= trajectories_of(block, table, arrays["results"], workspace, lead)
         named["status"] = arrays["results"]["status"].reshape(lead)
     wanted = {name: values for name, values in named.items() if name in block.wanted}
     return wanted if block.last else wanted | {CHAIN_ENDS: ends}
@@ -103,18 +104,18 @@ def _drop_without_exponents(arrays: dict[str, np.ndarray]) -> None:
     results = arrays["results"]
     lost = status.stands(results["status"]) & np.isnan(results["lyapunov"]).any(-1)
     if lost.any():
-        results[lost] = points.new_results(())
+        results[lost] = new_results((), results["end"].shape[-1] // 2)
         results["status"][lost] = status.NOT_FINITE
         for name in ("sections", "phases", "running"):
             arrays[name][lost] = np.nan
 
 
-def _workspace(block: Block, cells: int, orbits: int) -> points.Workspace:
+def _workspace(block: Block, kind: Kind, cells: int, orbits: int) -> points.Workspace:
     """That of the block before, if it serves."""
-    key = (block.plan, block.samples)
+    key = (block.plan, block.samples, kind)
     if getattr(_local, "key", None) != key or _local.cells < cells or _local.orbits < orbits:
         _local.key = _local.workspace = None  # so that there are never two
-        _local.workspace = points.new_workspace(block.plan, cells, block.samples, orbits)
+        _local.workspace = points.new_workspace(block.plan, cells, block.samples, orbits, kind)
         _local.key, _local.cells, _local.orbits = key, cells, orbits
     return _local.workspace
 
@@ -128,50 +129,18 @@ def _attractors(results: np.ndarray, lead: tuple[int, ...]) -> dict[str, np.ndar
     return {"attractor": label.reshape(lead), "share": share.reshape(lead), "attractor_id": unknown}
 
 
-def _trajectories(
-    block: Block, table: np.ndarray, results: np.ndarray, workspace: points.Workspace, lead: tuple[int, ...]
-) -> dict[str, np.ndarray]:
-    """The motion after the last section point, by dataset name; compiled only for scenes that ask for it."""
-    from vibro_sweep.engine.trajectory import new_trajectories, run_trajectories
-
-    kept = new_trajectories(results.shape, block.samples, block.plan.periods, block.samples)
-    room, most = 0, ROOM
-    while most > room:
-        room = most
-        run_trajectories(table.reshape(-1), results, np.empty((1, room, 7)), kept, workspace, block.plan)
-        most = kept.counts.max()
-    named = dict(zip(OF_AN_IMPACT, np.moveaxis(kept.impacts, -1, 0), strict=True))
-    named["trajectory_impact_side"] = np.nan_to_num(named["trajectory_impact_side"]).astype(np.int8)
-    named |= {f"trajectory_{name}": kept.samples[..., i] for i, name in enumerate(STATE)}
-    named |= {f"trajectory_section_{name}": kept.sections[..., i] for i, name in enumerate(STATE)}
-    named["trajectory_impacts"] = kept.counts
-    return {name: values.reshape(lead + values.shape[2:]) for name, values in named.items()}
-
-
-def _starts(block: Block, table: np.ndarray) -> np.ndarray:
-    """(points, starts, 4): given; or random, uniform in |x_i| < b, |v_i| < omega b, by the point's place alone."""
-    if not isinstance(block.starts, tuple):
-        result = np.broadcast_to(block.starts, (table.size, *block.starts.shape)).copy()
-        for i, name in enumerate(START.values()):
-            if name in block.axes:
-                result[..., i] = block.parameters[name].reshape(-1, 1)
-        return result
-    count, seed = block.starts
-    part = block.part
-    result = np.empty((table.size, part.stop - part.start, 4))
-    for n, (index, point) in enumerate(zip(block.indices.flat, table.flat, strict=True)):
-        draw = np.random.Generator(np.random.Philox(key=seed, counter=[0, 0, 0, int(index)]))
-        result[n] = draw.uniform(-1.0, 1.0, (count, 4))[part] * point["b"]
-        result[n, :, 1::2] *= point["omega"]
-    return result
-
-
 def _by_name(block: Block, arrays: dict[str, np.ndarray], lead: tuple[int, ...]) -> dict[str, np.ndarray]:
     """The kernels' arrays as the file's datasets; lead: shape of the box, and of its starts if there are several."""
     results, sections, phases, running = arrays.values()
     named = {name: results[name].reshape(lead + results[name].shape[2:]) for name in results.dtype.names}
     if "x1" in block.wanted:
-        named |= {name: sections[..., i].reshape(lead + sections.shape[2:3]) for i, name in enumerate(STATE)}
+        named |= {
+            name: sections[..., i].reshape(lead + sections.shape[2:3])
+            for i, name in enumerate(state(block.system.masses))
+        }
+    if GAP in block.wanted:
+        gap = sections[..., 0::2] @ block.system.linear.along
+        named[GAP] = gap.reshape(lead + gap.shape[2:])
     if block.plan.section_side:
         named["phase"] = phases.reshape(lead + phases.shape[2:])
     named["lyapunov_running"] = running.reshape(lead + running.shape[2:])

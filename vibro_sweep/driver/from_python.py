@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from vibro_sweep import store
 from vibro_sweep.driver.sweep import run
-from vibro_sweep.model.oscillator import System, checked_system
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.oscillator import checked_system
 from vibro_sweep.scene import Section, Start, Trajectory, scene_of
 from vibro_sweep.scene.written import changed
 
@@ -19,7 +20,7 @@ MOST = 10**9  # bytes of results without a file of the caller's
 
 
 def sweep(
-    system: System,
+    system: AnyOscillator,
     axes: "Mapping[str, np.ndarray | Sequence[float] | Mapping[str, Any]]",
     *,
     observe: Iterable[str] = ("section", "lyapunov"),

@@ -4,13 +4,12 @@ import os
 
 import numpy as np
 
-from vibro_sweep.engine import points
-from vibro_sweep.engine.one_system import points_of
+from vibro_sweep.driver.tables import table_of
+from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.flight import CHUNK, node_of
 from vibro_sweep.scene import Scene
-from vibro_sweep.scene.scene import grid
-from vibro_sweep.scene.size import COPIES, FIXED, SAMPLE, scratch_numbers, written_numbers
+from vibro_sweep.scene.size import COPIES, fixed_numbers, sample_numbers, scratch_numbers, written_numbers
 from vibro_sweep.store import size
 
 BLOCK_BYTES = 12e6  # of results; larger blocks leave the processor's cache and are not faster
@@ -21,7 +20,7 @@ LOOKS = 9  # values of each axis at which the size of the tables is looked at
 
 def orbits_per_block(scene: Scene, workers: int) -> int:
     """Orbits whose results fit into a block, and into the share of one of so many workers."""
-    each = size(scene) / scene.n_points + points.RESULT.itemsize
+    each = size(scene) / scene.n_points + result_of(scene.system.masses).itemsize
     return max(1, int(min(BLOCK_BYTES, _allowed() / workers) / each))
 
 
@@ -30,7 +29,7 @@ def blocks_under_way(scene: Scene, most_orbits: int, here: bool) -> int:
     orbits = min(most_orbits, scene.n_points)
     if "attractors" in scene.observe:
         orbits = max(orbits, scene.n_starts)
-    results = 8 * orbits * (FIXED + written_numbers(scene))
+    results = 8 * orbits * (fixed_numbers(scene.system.masses) + written_numbers(scene))
     each = results + (_workspace_bytes(scene, orbits) if here else 0)
     written = (COPIES - 1) * results  # copies, of one block at a time
     return max(1, int((_allowed() - written) / each))
@@ -50,7 +49,8 @@ def _workspace_bytes(scene: Scene, orbits: int) -> int:
     axes = {}
     for key, values in scene.sweep.items():
         axes[key] = values[np.unique(np.linspace(0, len(values) - 1, LOOKS).astype(int))]
-    cells = int(points_of(grid(scene.system, axes))["cells"].max())
-    tables = LANES * cells * (node_of(2).itemsize + 2 * 5 * 8) + LANES * CHUNK
-    samples = SAMPLE * scene.trajectory.samples if scene.trajectory else 0
+    table, kind = table_of(scene.system, axes, frames=False)
+    cells = int(table["cells"].max())
+    tables = LANES * cells * (node_of(kind.masses).itemsize + 2 * (2 * kind.masses + 1) * 8) + LANES * CHUNK
+    samples = sample_numbers(scene.system.masses) * scene.trajectory.samples if scene.trajectory else 0
     return tables + 8 * (min(orbits, LANES) * scratch_numbers(scene) + samples)

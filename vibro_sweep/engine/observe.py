@@ -9,6 +9,7 @@ import numpy as np
 from vibro_sweep.engine.averages import keep_averages
 from vibro_sweep.engine.motion.orbits import reset_counts
 from vibro_sweep.engine.periods import REPEAT, find_period, has_settled
+from vibro_sweep.engine.point_tables import to_masses
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import LANES, put
 from vibro_sweep.engine.variational.multipliers import begin_period, read_period
@@ -84,8 +85,11 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
     numbers = len(result.end)
     for j in range(numbers):
         result.end[j] = o.X[j]
+    to_masses(point, result.end, w.other)
+    if plan.states:
+        turn_states(point, states, o, w.other)
     if len(phase) > 0:
-        keep_impacts(e, o, point.omega, section, phase)
+        keep_impacts(e, o, point, section, phase, w.other)
     else:
         for n in range(len(section)):
             for j in range(numbers):
@@ -98,6 +102,20 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
     if plan.lyapunov:
         time_average(growth, plan.record, T, result.lyapunov, result.lyapunov_error)
+
+
+@jit
+def turn_states(point, states, o, other):
+    """The section states, and their sizes, of the masses themselves."""
+    if other is not None:
+        if not point.turned:
+            return
+        for j in range(states.shape[1]):
+            o.largest[j] = 0.0
+        for n in range(len(states)):
+            to_masses(point, states[n], other)
+            for j in range(states.shape[1]):
+                o.largest[j] = max(o.largest[j], abs(states[n, j]))
 
 
 @aside
@@ -120,11 +138,13 @@ def close(e, w, plan, points, results):
 
 
 @jit
-def keep_impacts(e, o, omega, section, phase):
+def keep_impacts(e, o, point, section, phase, other):
     """The logged impacts as points of an impact section; phase: omega t mod 2 pi."""
     width = e.flights.oscillator[o.table, 0].width
     for n in range(min(o.impacts_logged, len(phase))):
         row = e.records.impacts[o.lane, n]
         section[n, 0], section[n, 1] = o.stops[1] if row[3] > 0.0 else o.stops[0], row[4]
-        section[n, 2], section[n, 3] = row[5], row[6]
-        phase[n] = omega * (row[1] * width + row[2])
+        for j in range(2, section.shape[1]):
+            section[n, j] = row[3 + j]
+        to_masses(point, section[n], other)
+        phase[n] = point.omega * (row[1] * width + row[2])

@@ -3,7 +3,10 @@
 import numpy as np
 
 from vibro_sweep.engine import points
+from vibro_sweep.engine.any_points import any_points, kind_of
 from vibro_sweep.engine.motion import ensemble, orbits
+from vibro_sweep.engine.point_tables import ON_STOP
+from vibro_sweep.engine.records import PAPER, POINT, Kind
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import Flight
@@ -15,22 +18,36 @@ from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.parameters import NAMES, ParameterError
 
 IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float), ("v2", float)])
+
+
+def impact_of(masses: int) -> np.dtype:
+    """Of oscillators that are no System."""
+    return np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x", float, masses), ("xdot", float, masses)])
+
+
 STICKING = np.dtype([("t_on", float), ("t_off", float), ("side", np.int8)])
 
 ROOM = 256  # impacts and rests of each of eight orbits there is room for at first
 
 
-def points_of(parameters: dict[str, np.ndarray]) -> np.ndarray:
-    """Systems with these numbers (arrays of one shape, tau resolved) as POINTs of the kernels, of that shape."""
-    result = np.zeros(np.shape(parameters["b"]), points.POINT)
+def points_of(parameters: dict[str, np.ndarray], stops: str = "both") -> np.ndarray:
+    """Systems with these numbers (arrays of one shape, tau resolved) as POINTs of the kernels, of that shape.
+
+    stops: both, right or left.
+    """
+    result = np.zeros(np.shape(parameters["b"]), POINT)
     for name in NAMES:
         result[name] = parameters[name]
     result["psi"], result["omega_squared"] = modes(result["mu_m"], result["mu_k"])
     result["cells"] = cells.cells_needed(result["omega_squared"], result["zeta"], result["omega"])
+    offset, R = parameters.get("offset", 0.0), parameters["R"]
+    result["stops"][..., 0] = offset - parameters["b"] if stops != "right" else -np.inf
+    result["stops"][..., 1] = offset + parameters["b"] if stops != "left" else np.inf
+    result["stops"][..., 2], result["stops"][..., 3] = parameters.get("R_left", R), R
     return result
 
 
-def plan_of(system: System, transient: int = 0, record: int = 0, lyapunov: bool = False) -> points.Plan:
+def plan_of(transient: int = 0, record: int = 0, lyapunov: bool = False) -> points.Plan:
     """What the kernels are asked for."""
     return points.Plan(
         transient=transient,
@@ -40,8 +57,6 @@ def plan_of(system: System, transient: int = 0, record: int = 0, lyapunov: bool 
         lyapunov=lyapunov,
         impacts=False,
         attractors=False,
-        right=system.stops != "left",
-        left=system.stops != "right",
         section_side=0.0,
         periods=0,
         parts=min(record, BATCHES) if lyapunov else 0,
@@ -49,25 +64,45 @@ def plan_of(system: System, transient: int = 0, record: int = 0, lyapunov: bool 
     )
 
 
+def is_paper(system) -> bool:
+    """Whether it is the paper's oscillator, with proportional damping."""
+    return isinstance(system, System) and (system.mu_c is None or system.mu_c == system.mu_k)
+
+
+def point_of_one(system, later: float) -> tuple[np.ndarray, Kind]:
+    """The POINT (1,) of a system whose phase is moved on by `later`, and its kind."""
+    if is_paper(system):
+        parameters = system.parameters()
+        return points_of(parameters | {"tau": parameters["tau"] + later}, system.stops).reshape(1), PAPER
+    q = system.linear
+    one = np.empty(1, object)
+    one[0] = q._replace(tau=q.tau + later)
+    kind = kind_of([q])
+    return any_points(one, kind), kind
+
+
 class Engine:
     """The tables of one system, and eight orbits on their way, of which `orbit` is the first.
 
+    system : a System, or an oscillator with `linear`, `omega` and `period`. States are those of the masses; the orbits
+        themselves move in contact coordinates (`to_contact`, `to_masses`).
     later : radians by which the phase of the force at t = 0 is moved on
 
     Raises `ParameterError` where the rates of the system lie too far apart.
     """
 
-    def __init__(self, system: System, later: float = 0.0):
-        parameters = system.parameters()
-        self.point = points_of(parameters | {"tau": parameters["tau"] + later}).reshape(1)
+    def __init__(self, system, later: float = 0.0):
+        self.point, self.kind = point_of_one(system, later)
+        self.states = 2 * self.kind.masses
+        self.is_system = isinstance(system, System)
         self.cells = int(self.point["cells"][0])
         if self.cells == 0:
             allowed = f"such that the fastest rate times the period is at most {cells.LONGEST:g}"
             raise ParameterError("omega", system.omega, allowed)
         self.period = system.period
         self.width = self.period / self.cells
-        plan = plan_of(system)
-        workspace = points.new_workspace(plan, self.cells, 0)
+        plan = plan_of()
+        workspace = points.new_workspace(plan, self.cells, 0, kind=self.kind)
         for lane in range(LANES):
             self.stops = points.prepare(self.point.repeat(LANES), lane, workspace, plan)
         self.ensemble = workspace.ensemble
@@ -75,37 +110,64 @@ class Engine:
         self.orbit = self.ensemble.orbits[:1]
         self.flight = Flight(*(table[0] for table in self.ensemble.flights))
 
-    def place(self, state) -> None:
-        values = checked_state(state)
+    def checked(self, state) -> np.ndarray:
+        """The state in contact coordinates. ValueError where it is none, or behind a stop."""
+        values = self.to_contact(checked_state(state, self.kind.masses))
         if not self.stops.left <= values[0] <= self.stops.right:
-            allowed = f"{self.stops.left!r} .. {self.stops.right!r}"
-            raise ValueError(f"state: x1 = {float(values[0])!r} is behind a stop; allowed: {allowed}")
-        self.put(values)
+            allowed, name = f"{self.stops.left!r} .. {self.stops.right!r}", "the gap" if self.turned else "x1"
+            raise ValueError(f"state: {name} = {float(values[0])!r} is behind a stop; allowed: {allowed}")
+        return values
+
+    @property
+    def turned(self) -> bool:
+        """Whether contact coordinates are others than those of the masses."""
+        return not self.kind.paper and bool(self.point["turned"][0])
+
+    def to_contact(self, states) -> np.ndarray:
+        """States (..., 2 N) of the masses in contact coordinates; on a stop, and at rest there, but for rounding."""
+        states = np.array(states, float)
+        if self.turned:
+            T = self.point["T"][0]
+            sizes = np.abs(states[..., 0::2]) @ np.abs(T[0]), np.abs(states[..., 1::2]) @ np.abs(T[0])
+            states = self._turn(states, T)
+            states[..., 1][np.abs(states[..., 1]) <= ON_STOP * sizes[1]] = 0.0
+            for wall in (self.stops.left, self.stops.right):
+                states[..., 0][np.abs(states[..., 0] - wall) <= ON_STOP * sizes[0]] = wall
+        return states
+
+    def to_masses(self, states: np.ndarray) -> np.ndarray:
+        """States (..., 2 N) in contact coordinates as those of the masses."""
+        return self._turn(states, self.point["back"][0]) if self.turned else states
+
+    @staticmethod
+    def _turn(states: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+        pairs = states.reshape(*states.shape[:-1], states.shape[-1] // 2, 2)
+        return np.einsum("ij,...jk->...ik", matrix, pairs).reshape(states.shape)
 
     def put(self, state, cell: int = 0, offset: float = 0.0, lane: int = 0) -> None:
-        """Start a new orbit from a state that is known to be allowed, at this offset of this cell."""
+        """Start a new orbit from an allowed state in contact coordinates, at this offset of this cell."""
         nodes = self.ensemble.flights.nodes[0]
         orbits.place(self.ensemble.orbits[lane], nodes, self.stops, int(cell), float(offset), np.asarray(state, float))
 
     def carry(self, records: orbits.Records, section: np.ndarray) -> int:
-        """Carry the orbit over as many periods as `section` (n, 4) has rows. Returns a status."""
+        """Carry the orbit over as many periods as `section` (n, 2 N) has rows. Returns a status."""
         self.orbit["periods"] = len(section)
         self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
-        readings = ensemble.Readings(section[None], True, np.empty((1, 0, 4)), 0)
+        readings = ensemble.Readings(section[None], True, np.empty((1, 0, self.states)), 0)
         ensemble.carry(self.ensemble._replace(records=records), None, readings)
         return int(self.orbit["status"][0])
 
     def carry_eight(self, states: np.ndarray, cell: int, periods: int) -> tuple[np.ndarray, orbits.Records]:
-        """Carry orbits from up to eight states (n, 4), none behind a stop, at this cell over the ends of so many
-        periods. Returns their records (ORBIT), and all impacts and rests of each."""
+        """Carry orbits from up to eight states (n, 2 N) in contact coordinates, none behind a stop, at this cell over
+        the ends of so many periods. Returns their records (`orbit_of`), and all impacts and rests of each."""
         eight, room = self.ensemble.orbits, ROOM
         while True:
             eight["status"] = status.NOT_COMPUTED
             for lane, state in enumerate(states):
                 self.put(state, cell, lane=lane)
             eight["periods"] = periods
-            records = orbits.new_records(LANES, impacts=room, rests=room)
-            nothing = np.empty((1, 0, 4))
+            records = orbits.new_records(LANES, impacts=room, rests=room, masses=self.kind.masses)
+            nothing = np.empty((1, 0, self.states))
             ensemble.carry(self.ensemble._replace(records=records), None, ensemble.Readings(nothing, False, nothing, 0))
             here = eight[: len(states)]
             logged = max(here["impacts_logged"].max(), here["rests_logged"].max())
@@ -125,11 +187,19 @@ class Engine:
         return period * self.period + (cell * self.width + offset)
 
     def impacts(self, rows: np.ndarray, start: float = -np.inf) -> np.ndarray:
-        """Recorded impacts (m, 7) as a structured array `IMPACT` with absolute times, none before `start`."""
-        result = np.empty(len(rows), IMPACT)
+        """Recorded impacts (m, 3 + 2 N) as a structured array with absolute times, none before `start`.
+
+        Of the paper's oscillator `IMPACT`; of others with x and xdot (N,) of all masses before the impact.
+        """
+        result = np.empty(len(rows), IMPACT if self.is_system else impact_of(self.kind.masses))
         result["t"] = np.maximum(self.time(rows[:, 0], rows[:, 1], rows[:, 2]), start)  # cell and offset round it
-        for column, name in enumerate(("side", "v1", "x2", "v2"), start=3):
-            result[name] = rows[:, column]
+        result["side"], result["v1"] = rows[:, 3], rows[:, 4]
+        if self.is_system:
+            result["x2"], result["v2"] = rows[:, 5], rows[:, 6]
+            return result
+        wall = np.where(rows[:, 3] > 0, self.stops.right, self.stops.left)
+        states = self.to_masses(np.column_stack([wall, rows[:, 4:]]))
+        result["x"], result["xdot"] = states[:, 0::2], states[:, 1::2]
         return result
 
     def sticking(self, rows: np.ndarray, end: float) -> np.ndarray:

@@ -8,45 +8,16 @@ from vibro_sweep.engine.motion import strike
 from vibro_sweep.engine.motion.ensemble import Ensemble, Readings, carry, flight_of, new_ensemble
 from vibro_sweep.engine.motion.orbits import Stops, new_records, place
 from vibro_sweep.engine.observe import PHASES, RECORD, begin_phase, close, end_phase
+from vibro_sweep.engine.point_tables import fill_tables, same_tables, set_graze, to_contact
+from vibro_sweep.engine.records import PAPER, Kind, point_of
 from vibro_sweep.engine.simd.jit import entry, jit
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.engine.tables.build import build
+from vibro_sweep.engine.tables import general
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.model import status
-from vibro_sweep.model.observables import DIMENSIONS, OF_AN_ORBIT
-from vibro_sweep.model.parameters import NAMES
-
-POINT = np.dtype(
-    [(name, float) for name in NAMES]
-    + [("psi", float, (2, 2)), ("omega_squared", float, 2), ("cells", np.int64)]
-    + [("graze", float, 4)]  # the point at which the discontinuity mapping is expanded
-)
-
-RESULT = np.dtype(
-    [
-        (one.name, one.dtype, tuple(DIMENSIONS[name].extent for name in one.dimensions))
-        for one in OF_AN_ORBIT  # what files can hold, and what is needed beside it:
-    ]
-    + [
-        ("log_multiplier", float, 4),  # logarithm of the modulus: of multipliers that floats cannot hold, too; and
-        ("log_error", float, 4),  # its error
-        ("end", float, 4),  # the state at the last section, and
-        ("resting", float),  # the side of the stop that M1 rests on there, or 0
-    ]
-)
 
 LARGE = 8.0  # clearances that the motion r may measure before flights from a later node are formed without it
 WARM_UP = 200  # periods for the tangent vectors to find their directions
-
-
-def new_results(shape: tuple[int, ...]) -> np.ndarray:
-    """Results of points that are not computed yet."""
-    results = np.zeros(shape, RESULT)
-    for one in OF_AN_ORBIT:
-        results[one.name] = one.fill
-    for name in ("log_multiplier", "log_error", "end"):
-        results[name] = np.nan
-    return results
 
 
 class Plan(NamedTuple):
@@ -59,8 +30,6 @@ class Plan(NamedTuple):
     lyapunov: bool  # with `states`
     impacts: bool
     attractors: bool  # with `lyapunov`
-    right: bool
-    left: bool
     section_side: float  # 0: the section is t = 0 mod T; else the stop of an impact section
     periods: int  # of the trajectory
     parts: int  # of the record, at which the growth of tangent vectors is read
@@ -72,58 +41,58 @@ class Workspace(NamedTuple):
 
     ensemble: Ensemble
     built: np.ndarray  # (LANES,) POINT: whose tables these are
-    section: np.ndarray  # (orbits, record, 4)
-    growth: np.ndarray  # (LANES, parts, 4)
-    state: np.ndarray  # (4,)
-    axes: np.ndarray  # (LANES, 16)
-    matrix: np.ndarray  # (4, 4)
-    scratch: np.ndarray  # (7, 6)
+    section: np.ndarray  # (orbits, record, 2 N)
+    growth: np.ndarray  # (LANES, parts, 2 N)
+    state: np.ndarray  # (2 N,)
+    axes: np.ndarray  # (LANES, 4 N^2)
+    matrix: np.ndarray  # (2 N, 2 N)
+    paper: np.ndarray | None  # (7, 6), or
+    other: general.Scratch | None  # as in point_tables.py
 
 
-def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES) -> Workspace:
+def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kind: Kind = PAPER) -> Workspace:
     """Room for points with at most so many cells, and for the records of so many orbits side by side."""
-    impacts = plan.record if plan.section_side else 0
+    impacts, states = plan.record if plan.section_side else 0, 2 * kind.masses
+    ensemble = new_ensemble(cells, masses=kind.masses, constant=kind.constant)
     return Workspace(
-        new_ensemble(cells)._replace(records=new_records(orbits, impacts=impacts, samples=samples)),
-        np.zeros(LANES, POINT),
-        np.empty((orbits, plan.record if plan.states else 0, 4)),
-        np.empty((LANES, plan.parts, 4)),
-        np.empty(4),
-        np.empty((LANES, 16)),
-        np.empty((4, 4)),
-        np.empty((7, 6)),
+        ensemble._replace(records=new_records(orbits, impacts=impacts, samples=samples, masses=kind.masses)),
+        np.zeros(LANES, point_of(kind)),
+        np.empty((orbits, plan.record if plan.states else 0, states)),
+        np.empty((LANES, plan.parts, states)),
+        np.empty(states),
+        np.empty((LANES, states**2)),
+        np.empty((states, states)),
+        np.empty((7, 6)) if kind.paper else None,
+        None if kind.paper else general.new_scratch(kind.masses, kind.constant),
     )
 
 
 @jit
-def same_oscillator(a, b):
-    """Whether two points share their tables: they may differ in b and R."""
-    same = a.mu_m == b.mu_m and a.mu_k == b.mu_k and a.zeta == b.zeta and a.cells == b.cells
-    return same and a.f2 == b.f2 and a.omega == b.omega and a.tau == b.tau
+def clearance(stops):
+    """Half the way between the stops; of one stop how far it is from 0."""
+    if stops.left > -np.inf and stops.right < np.inf:
+        return 0.5 * (stops.right - stops.left)
+    return abs(stops.right if stops.right < np.inf else stops.left)
 
 
 @entry
 def prepare(points, i, w, plan):
     """Orbit i gets the tables of its point, those of the orbit before it if they are the same; and its stops."""
     e, point, o, table = w.ensemble, points[i], w.ensemble.orbits[i], i
-    if i > 0 and same_oscillator(point, w.built[e.orbits[i - 1].table]):
+    if i > 0 and same_tables(point, w.built[e.orbits[i - 1].table], w.paper, w.other):
         table = e.orbits[i - 1].table
     o.table = table
     f = flight_of(e, o)
     q = f.oscillator[0]
-    if not same_oscillator(point, w.built[table]):
-        build(
-            f, w.scratch, point.cells, point.psi, point.omega_squared,
-            point.mu_m, point.mu_k, point.zeta, point.f2, point.omega, point.tau,
-        )  # fmt: skip
+    if not same_tables(point, w.built[table], w.paper, w.other):
+        fill_tables(f, point, w.paper, w.other)
         w.built[table] = point
-    for j in range(4):
-        q.graze[j] = point.graze[j]
-    o.careful = int(q.stiff or q.largest > LARGE * point.b)
-    stops = Stops(-point.b if plan.left else -np.inf, point.b if plan.right else np.inf, point.R)
+    set_graze(q, point, w.paper)
+    stops = Stops(point.stops[0], point.stops[1], point.stops[2], point.stops[3])
+    o.careful = int(q.stiff or q.largest > LARGE * clearance(stops))
     strike.set_oscillator(e.strike[0], i, q, stops)
     if plan.lyapunov:
-        tangent.set_frame(e.tangent[0], i, q, point.R)
+        tangent.set_frame(e.tangent[0], i, q)
     return stops
 
 
@@ -131,10 +100,10 @@ def prepare(points, i, w, plan):
 def run_points(points, starts, results, sections, phases, running, w, plan, mapping):
     """Compute a block. n = steps, m = orbits; observations that nobody wants have no samples.
 
-    points: (n, m) POINT. starts: (2, m, 4), at the first step, and at a step after one that failed; at the others an
-    orbit goes on from where it ended, with the next point's numbers. results: (n, m) RESULT. sections: (n, m, record,
-    4). phases: (n, m, record), for an impact section. running: (n, m, parts, 4), the exponents as they converge.
-    mapping: as of `carry`.
+    points: (n, m) of `point_of`. starts: (2, m, 2 N), at the first step, and at a step after one that failed; at the
+    others an orbit goes on from where it ended, with the next point's numbers. results: (n, m) of `result_of`.
+    sections: (n, m, record, 2 N). phases: (n, m, record), for an impact section. running: (n, m, parts, 2 N), the
+    exponents as they converge. mapping: as of `carry`.
     """
     e, state = w.ensemble, w.state
     for first in range(0, points.shape[1], LANES):
@@ -153,6 +122,7 @@ def run_points(points, starts, results, sections, phases, running, w, plan, mapp
                 goes_on = n > 0 and results[n - 1, first + i].status in status.STANDING
                 for j in range(len(state)):
                     state[j] = results[n - 1, first + i].end[j] if goes_on else starts[min(n, 1), first + i, j]
+                to_contact(point, state, stops, w.other)
                 if plan.order == 0:  # points of the map may lie beyond the stops
                     state[0] = min(max(state[0], stops.left), stops.right)
                 place(o, e.flights.nodes[o.table], stops, 0, 0.0, state)

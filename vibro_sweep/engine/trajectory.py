@@ -19,25 +19,25 @@ from vibro_sweep.model import status
 class Trajectories(NamedTuple):
     """What is kept of p points with s starts each. Times are in forcing periods since the last recorded section."""
 
-    samples: np.ndarray  # (p, s, samples, 4)
-    sections: np.ndarray  # (p, s, periods + 1, 4), the last recorded section first
-    impacts: np.ndarray  # (p, s, m, 6): time, side, v1 before, v1 after, x2, v2; in order, the m fastest of them
+    samples: np.ndarray  # (p, s, samples, 2 N)
+    sections: np.ndarray  # (p, s, periods + 1, 2 N), the last recorded section first
+    impacts: np.ndarray  # (p, s, m, 2 + 2 N): time, side, v1 before, v1 after, x2, ..; in order, the m fastest of them
     counts: np.ndarray  # (p, s): impacts, also where there are more than m; -1: not computed
 
 
-def new_trajectories(shape: tuple[int, int], samples: int, periods: int, impacts: int) -> Trajectories:
+def new_trajectories(shape: tuple[int, int], samples: int, periods: int, impacts: int, masses: int = 2) -> Trajectories:
     """Room for so much, with nothing computed yet."""
     return Trajectories(
-        np.full((*shape, samples, 4), np.nan),
-        np.full((*shape, periods + 1, 4), np.nan),
-        np.full((*shape, impacts, 6), np.nan),
+        np.full((*shape, samples, 2 * masses), np.nan),
+        np.full((*shape, periods + 1, 2 * masses), np.nan),
+        np.full((*shape, impacts, 2 + 2 * masses), np.nan),
         np.full(shape, -1, np.int64),
     )
 
 
 @jit
 def follow(w, periods, hits, samples, sections, impacts):
-    """The motion of the first orbit over the next `periods`. hits: scratch, (1, m, 7). Returns how many impacts."""
+    """The motion of the first orbit over the next `periods`; how many impacts. hits: scratch, (1, m, 3 + 2 N)."""
     e = w.ensemble
     o, records, last = e.orbits[0], e.records, len(samples) - 1
     q = e.flights.oscillator[o.table, 0]
@@ -65,7 +65,7 @@ def follow(w, periods, hits, samples, sections, impacts):
             samples[i, j] = records.samples[i, j]
     for j in range(samples.shape[1]):
         samples[last, j] = o.X[j]
-    keep_fastest(hits[0, : min(o.impacts_logged, hits.shape[1])], impacts, q, o.stops[2])
+    keep_fastest(hits[0, : min(o.impacts_logged, hits.shape[1])], impacts, q, o.stops)
     return o.impacts_logged
 
 
@@ -79,7 +79,7 @@ def count_faster(hits, speed):
 
 
 @jit
-def keep_fastest(hits, impacts, q, R):
+def keep_fastest(hits, impacts, q, stops):
     """Of the logged impacts, (n, 7), as many as there is room for: those that are left out end chatter sequences."""
     slow = -1.0
     if len(hits) > len(impacts):
@@ -97,7 +97,8 @@ def keep_fastest(hits, impacts, q, R):
         if abs(hits[i, 4]) > slow:
             hit = hits[i]
             impacts[n, 0] = hit[0] + (hit[1] + hit[2] / q.width) / q.cells
-            impacts[n, 1], impacts[n, 2], impacts[n, 3] = hit[3], hit[4], -R * hit[4]
+            impacts[n, 1], impacts[n, 2] = hit[3], hit[4]
+            impacts[n, 3] = -(stops[3] if hit[3] > 0.0 else stops[2]) * hit[4]
             for j in range(5, len(hit)):
                 impacts[n, j - 1] = hit[j]
             n += 1
@@ -105,7 +106,7 @@ def keep_fastest(hits, impacts, q, R):
 
 @entry
 def run_trajectories(points, results, hits, kept, w, plan):
-    """Go on from where `run_points` left the orbits of a block. hits: scratch, (1, m, 7)."""
+    """Go on from where `run_points` left the orbits of a block. hits: scratch, (1, m, 3 + 2 N)."""
     e = w.ensemble
     e.tangent[0].wanted = e.strike[0].measured = False
     for i in range(1, LANES):

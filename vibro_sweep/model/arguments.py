@@ -2,17 +2,24 @@
 
 import numpy as np
 
+from vibro_sweep.model.state import state as names
+
+_COUNTS = {2: "two", 4: "four", 6: "six"}
 MAX_COUNT = 10**12  # periods
 
 
-def checked_state(state) -> np.ndarray:
-    """A state (x1, v1, x2, v2) as an array (4,). Raises ValueError unless it is four finite numbers."""
+def checked_state(state, masses: int = 2) -> np.ndarray:
+    """A state (x1, v1, x2, v2, ...) as an array (2 N,). Raises ValueError unless it is so many finite numbers."""
     try:
         values = np.asarray(state)
     except ValueError:  # rows of different lengths
         values = np.asarray(None)
-    if values.shape != (4,) or values.dtype.kind not in "fiu" or not np.isfinite(values.astype(float)).all():
-        raise ValueError(f"state: {state!r} is not allowed; it must be four finite numbers (x1, v1, x2, v2)")
+    good = values.shape == (2 * masses,) and values.dtype.kind in "fiu"
+    if not (good and np.isfinite(values.astype(float)).all()):
+        count = _COUNTS.get(2 * masses, str(2 * masses))
+        raise ValueError(
+            f"state: {state!r} is not allowed; it must be {count} finite numbers ({', '.join(names(masses))})"
+        )
     return values.astype(float)
 
 

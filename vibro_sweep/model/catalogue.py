@@ -1,9 +1,19 @@
-"""Any variable or number of a file by its name: coordinates of files and axes of pictures are described by it."""
+"""Any variable or number of a file by its name: coordinates of files and axes of pictures are described by it.
 
-from vibro_sweep.model.observables import DIMENSIONS, VARIABLES, Dimension, Variable
-from vibro_sweep.model.parameters import B_STAR, PARAMETERS, Parameter
-from vibro_sweep.model.state import INITIAL
+A name means the same in all models, and has one symbol and one label.
+"""
 
-NUMBERS: dict[str, Parameter] = {one.name: one for one in (*PARAMETERS, B_STAR, *INITIAL)}
+from vibro_sweep.model.models import MODELS
+from vibro_sweep.model.observables import DIMENSIONS, Dimension, Variable, variables
+from vibro_sweep.model.parameters import B_LEFT, B_RIGHT, B_STAR, PAPER, Parameter
+from vibro_sweep.model.state import INITIAL, MOST_MASSES
+
+# Of all oscillators; the paper's say what a name means.
+OF_A_SYSTEM: dict[str, Parameter] = {one.name: one for one in PAPER}
+OF_A_SYSTEM |= {name: one for model in MODELS.values() for name, one in model.flat(MOST_MASSES).items()} | OF_A_SYSTEM
+
+NUMBERS: dict[str, Parameter] = OF_A_SYSTEM | {one.name: one for one in (B_STAR, B_RIGHT, B_LEFT, *INITIAL)}
 AXES: dict[str, Parameter | Dimension] = NUMBERS | DIMENSIONS
-BY_NAME: dict[str, Parameter | Dimension | Variable] = AXES | {one.name: one for one in VARIABLES}
+BY_NAME: dict[str, Parameter | Dimension | Variable] = AXES | {
+    one.name: one for gap in (True, False) for one in variables(MOST_MASSES, gap)
+}

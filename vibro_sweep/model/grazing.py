@@ -1,38 +1,57 @@
-"""The steady response (eq. 7) and Theorem 1: where it touches the stops (eqs. 15-19)."""
+"""The steady response (eq. 7) and where it touches the stops: Theorem 1 (eqs. 15-19), and any number of masses.
+
+The functions of `numbers`, those of the paper's oscillator by name, take arrays too.
+"""
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.linear import Linear, amplitudes, grazing_phase, static_state, steady_gain
 from vibro_sweep.model.modes import modes
-from vibro_sweep.model.parameters import FREE_MOTION
-
-if TYPE_CHECKING:
-    from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.parameters import FREE_MOTION, PARAMETERS
 
 
 @np.errstate(all="ignore")
-def steady_response(mu_m, mu_k, zeta, f2, omega) -> tuple[np.ndarray, np.ndarray]:
+def steady_response(mu_m, mu_k, zeta, f2, omega, mu_c=None) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients (d, e) of the steady motion x_i = d_i sin(omega t + tau) + e_i cos(omega t + tau); each (..., 2).
 
     Eq. (7) with B_j = -2 eta_j omega f_j / D: the paper prints the opposite sign, which does not solve (5). Infinite
-    where an undamped mode is in resonance; NaN where numbers leave the range of the floats.
+    where an undamped mode is in resonance; NaN where numbers leave the range of the floats. mu_c: None is mu_k.
     """
     psi, omega_squared = modes(mu_m, mu_k)
+    given = mu_m, mu_k, zeta, f2, omega, mu_c
     zeta, f2, omega = (np.asarray(value, float)[..., None] for value in (zeta, f2, omega))
     force = psi[..., 0, :] * (1 - f2) + psi[..., 1, :] * f2
     detuning = (np.sqrt(omega_squared) - omega) * (np.sqrt(omega_squared) + omega)
     damping = 2 * zeta * omega_squared * omega
     size = force / (detuning**2 + damping**2)
     a, b = size * detuning, -size * damping  # (7): A_j and B_j
-    return np.einsum("...ij,...j->...i", psi, a), np.einsum("...ij,...j->...i", psi, b)
+    d, e = np.einsum("...ij,...j->...i", psi, a), np.einsum("...ij,...j->...i", psi, b)
+    if mu_c is None:
+        return d, e
+    proportional = (np.asarray(mu_c) == np.asarray(mu_k))[..., None]
+    other_d, other_e = _without_modes(*given)
+    return np.where(proportional, d, other_d), np.where(proportional, e, other_e)
 
 
-def grazing_phase(mu_m, mu_k, zeta, f2, omega) -> np.ndarray:
-    """tau in radians for which the steady motion is at its right extreme at t = 0: eq. (18), as atan2(d1, d2)."""
-    d, e = steady_response(mu_m, mu_k, zeta, f2, omega)
-    return np.arctan2(d[..., 0], e[..., 0])  # (18)
+def _without_modes(mu_m, mu_k, zeta, f2, omega, mu_c) -> tuple[np.ndarray, np.ndarray]:
+    """As `steady_response`, by Cramer's rule: x = Im(X e^{i(omega t + tau)}), (K - omega^2 M + i omega C) X = P."""
+    mu_m, mu_k, zeta, f2, omega, mu_c = (np.asarray(value, float) for value in (mu_m, mu_k, zeta, f2, omega, mu_c))
+    between = 1 + 2j * zeta * omega
+    upper, lower = between - omega**2, between + mu_k + 2j * zeta * mu_c * omega - omega**2 * mu_m
+    determinant = upper * lower - between**2
+    x1, x2 = (lower * (1 - f2) + between * f2) / determinant, (upper * f2 + between * (1 - f2)) / determinant
+    response = np.stack(np.broadcast_arrays(x1, x2), -1)
+    return response.real, response.imag
+
+
+def steady_gap(numbers: dict) -> tuple[np.ndarray, np.ndarray]:
+    """d_1 and e_1 of eqs. (16), (17) for a system's numbers by name."""
+    d, e = steady_response(*free_motion(numbers), numbers.get("mu_c"))
+    return d[..., 0], e[..., 0]
 
 
 def free_motion(numbers: dict) -> list:
@@ -41,15 +60,28 @@ def free_motion(numbers: dict) -> list:
 
 
 def with_phase(numbers: dict) -> dict:
-    """A system's numbers by name (arrays, too), with tau in radians where it is "grazing"."""
-    grazes = isinstance(numbers["tau"], str)
-    return numbers | {"tau": grazing_phase(*free_motion(numbers))} if grazes else numbers
+    """A system's numbers by name (arrays, too), with tau in radians where it is "grazing".
+
+    The phase for which the steady motion is at its right extreme at t = 0: eq. (18), as atan2(d1, d2); 0 where no
+    steady motion exists, since an undamped mode is in resonance.
+    """
+    if not isinstance(numbers["tau"], str):
+        return numbers
+    d, e = steady_gap(numbers)
+    return numbers | {"tau": np.where(np.isfinite(d) & np.isfinite(e), np.arctan2(d, e), 0.0)}  # (18)
+
+
+def resolved(numbers: dict) -> dict:
+    """A system's numbers by name, with tau in radians, and those that follow others in numbers."""
+    numbers = with_phase(numbers)
+    follow = {one.name: numbers[one.follows] for one in PARAMETERS if one.follows and numbers[one.name] is None}
+    tau = numbers["tau"]
+    return numbers | follow | {"tau": float(tau) if np.ndim(tau) == 0 else tau}
 
 
 def grazing_clearance(numbers: dict) -> np.ndarray:
     """b* of Theorem 1 for a system's numbers by name: the amplitude of x1 in the steady motion, eq. (16)."""
-    d, e = steady_response(*free_motion(numbers))
-    return np.hypot(d[..., 0], e[..., 0])
+    return np.hypot(*steady_gap(numbers))
 
 
 def expansion_point(parameters: dict[str, np.ndarray], expand_at: float | None = None) -> np.ndarray:
@@ -67,25 +99,44 @@ def expansion_point(parameters: dict[str, np.ndarray], expand_at: float | None =
 
 
 class Grazing(NamedTuple):
-    """Theorem 1. `satisfied`: a double grazing orbit exists at clearance `b` and phase `tau` (condition 19)."""
+    """Where the free motion of period T touches the stops.
 
-    b: float
+    `satisfied`: it exists and is the only one, so that at clearance `b` and phase `tau` there is a double grazing orbit
+    (condition 19). `b_right`, `b_left`: clearances at which it touches that stop; NaN where there is no such motion.
+    """
+
+    b: float  # where both are equal, else NaN
     tau: float
-    state: tuple[float, float, float, float]  # (x1, v1, x2, v2) at the right stop; at the left stop it is its negative
+    state: tuple[float, ...]  # (x1, v1, ..., xN, vN) at the right stop, at t = 0
     determinant: float
     satisfied: bool
+    b_right: float
+    b_left: float
 
 
-def grazing(system: "System") -> Grazing:
-    """Clearance b* and phase tau* at which the steady motion of period T touches both stops: eqs. (16)-(19).
+def grazing(system: AnyOscillator) -> Grazing:
+    """Clearance and phase at which the steady motion of period T touches the stops: eqs. (16)-(19).
 
-    The clearance and phase of `system` itself play no part. `determinant` is (15) without its factor omega_d1
-    omega_d2, which also vanishes at critical damping, where the orbit is as unique as elsewhere. With the erratum of
-    (7) the paper's parameters give b* = 6.70571674097302; the paper prints 6.7107356.
+    The clearance and phase of `system` itself play no part. For the paper's oscillator `determinant` is (15) without
+    its factor omega_d1 omega_d2, which also vanishes at critical damping, where the orbit is as unique as elsewhere;
+    for others, det(1 - Phi_T). With the erratum of (7) the paper's parameters give b* = 6.70571674097302; the paper
+    prints 6.7107356.
     """
-    from vibro_sweep.model.oscillator import checked_system
+    from vibro_sweep.model.oscillator import System, checked_system
 
     checked_system(system)
+    paper = isinstance(system, System) and system.mu_c in (None, system.mu_k)
+    touch = _of_the_paper(system) if paper else _of_any(system)
+    q = system.linear
+    offset = getattr(system, "offset", 0.0)
+    middle = float(q.along @ rest) if (rest := static_state(q)) is not None else math.nan
+    right, left = touch.b + middle - offset, touch.b - middle + offset
+    b = touch.b if right == left else math.nan
+    return touch._replace(b=b, b_right=right, b_left=left, satisfied=touch.satisfied and bool(b > 0))
+
+
+def _of_the_paper(system) -> Grazing:
+    """For stops on both sides at the same distance."""
     (d1, d2), (e1, e2) = steady_response(*free_motion(vars(system)))
     # (18), (19)
     b = float(grazing_clearance(vars(system)))
@@ -100,5 +151,25 @@ def grazing(system: "System") -> Grazing:
         # 1 - multiplier over T, for both multipliers of the mode; the paper's 1 - e_j c_j is their mean
         left_over = -np.expm1(np.array([-eta + root, -eta - root]) * system.period)
         determinant *= (left_over.prod() / left_over.mean()).real
-    exists = bool(np.isfinite(b) and b > 0 and determinant != 0)
-    return Grazing(b, tau, state, float(determinant), exists)
+    return Grazing(b, tau, state, float(determinant), bool(np.isfinite(b) and determinant != 0), b, b)
+
+
+def _of_any(system: AnyOscillator) -> Grazing:
+    """As `_of_the_paper`, from the complex response: g = g_s + Re(G e^{i(omega t + tau)})."""
+    q = system.linear
+    determinant = float((-np.expm1(rates(q) * system.period)).prod().real)
+    gain = steady_gain(q)
+    if gain is None:
+        nowhere = (math.nan,) * 2 * len(q.along)
+        return Grazing(math.nan, 0.0, nowhere, determinant, False, math.nan, math.nan)
+    tau = grazing_phase(q)
+    turned = amplitudes(q) * np.exp(1j * tau)
+    state = np.stack([static_state(q) + turned.real, -q.omega * turned.imag], -1).reshape(-1)
+    return Grazing(abs(gain), tau, tuple(state.tolist()), determinant, determinant != 0, abs(gain), abs(gain))
+
+
+def rates(q: Linear) -> np.ndarray:
+    """The 2N roots lambda of det(lambda^2 M + lambda C + K) = 0."""
+    n = len(q.along)
+    inverse = np.linalg.inv(q.M)
+    return np.linalg.eigvals(np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ q.K, -inverse @ q.C]]))

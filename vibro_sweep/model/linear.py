@@ -1,4 +1,4 @@
-"""A linear oscillator with one contact, as the equations of periodic orbits need it: any number of masses N.
+"""A linear oscillator with one contact, as the engine sees all of them: any number of masses N.
 
     M x'' + C x' + K x = constant + sine sin(omega t + tau) + cosine cos(omega t + tau),   low <= n.x <= high
 
@@ -7,12 +7,10 @@ An impulse acts along M^-1 n: it changes the velocity of the gap g = n.x, with t
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-
-from vibro_sweep.model.oscillator import System
 
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 
@@ -28,7 +26,7 @@ class Linear(NamedTuple):
     sine: np.ndarray  # (N,)
     cosine: np.ndarray  # (N,)
     omega: float
-    tau: float | None  # None: the phase at which the steady gap is largest at t = 0
+    tau: float | None  # None: the phase at which the steady gap is largest at t = 0; 0 without a steady motion
     low: float
     high: float
     R_low: float
@@ -105,45 +103,66 @@ def amplitude_slopes(q: Linear, slope: Linear) -> np.ndarray:
 
 def grazing_phase(q: Linear) -> float:
     """tau for which the steady gap is largest at t = 0; 0 where there is no steady motion (eq. 18 for any n)."""
+    gain = steady_gain(q)
+    return 0.0 if gain is None else 0.0 - float(np.angle(gain))
+
+
+def steady_gain(q: Linear) -> complex | None:
+    """G of the steady gap g_s + Re(G e^{i(omega t + tau)}); None where there is no steady motion."""
     try:
-        gain = q.along @ amplitudes(q)
+        gain = complex(q.along @ amplitudes(q))
     except np.linalg.LinAlgError:
-        return 0.0
-    return -float(np.angle(gain)) if np.isfinite(gain) else 0.0
+        return None
+    return gain if np.isfinite(gain) and static_state(q) is not None else None
 
 
 def grazing_phase_slope(q: Linear, slope: Linear) -> float:
-    gain = q.along @ amplitudes(q)
+    gain = steady_gain(q)
+    if gain is None:
+        return 0.0
     return -float(np.imag((slope.along @ amplitudes(q) + q.along @ amplitude_slopes(q, slope)) / gain))
 
 
-def two_mass(*, mu_m, mu_k, zeta, f2, omega, R, b, tau, stops) -> Linear:
-    """The paper's oscillator (eqs. 3, 4); also for complex numbers."""
-    K = np.array([[1, -1], [-1, 1 + mu_k]])
-    return Linear(
-        M=np.array([[1, 0], [0, mu_m]]),
-        K=K,
-        C=2 * zeta * K,
-        along=np.array([1.0, 0.0]),
-        constant=np.zeros(2),
-        sine=np.array([1 - f2, f2]),
-        cosine=np.zeros(2),
-        omega=omega,
-        tau=None if tau == "grazing" else tau,
-        low=-b if stops != "right" else -np.inf,
-        high=b if stops != "left" else np.inf,
-        R_low=R,
-        R_high=R,
-    )
+def static_state(q: Linear) -> np.ndarray | None:
+    """Positions (N,) at which all masses rest without the harmonic force and the stops; None where there are none.
+
+    Of several, where there are free modes, the nearest to zero.
+    """
+    found = np.linalg.lstsq(q.K, q.constant, rcond=None)[0]
+    left_over = np.abs(q.K @ found - q.constant).max()
+    return found if left_over <= 1e-9 * np.abs(q.constant).max() else None
+
+
+def held_state(q: Linear) -> np.ndarray:
+    """Positions (N,) from which to start at rest: zero, or the static equilibrium held on the nearer stop.
+
+    Held: the gap is zero's where that is between the stops; else that of the stop, and no other force acts along n.
+    """
+    gap = min(max(0.0, q.low), q.high)
+    n = len(q.along)
+    if gap == 0.0:
+        return np.zeros(n)
+    bordered = np.block([[q.K, q.along[:, None]], [q.along[None], np.zeros((1, 1))]])
+    return np.linalg.lstsq(bordered, np.append(q.constant, gap), rcond=None)[0][:n]
+
+
+def contact(b, offset, R, R_left, stops) -> dict:
+    """The fields of `Linear` that say where the stops are; also for complex numbers. R_left: None follows R."""
+    return {
+        "low": offset - b if stops != "right" else -np.inf,
+        "high": offset + b if stops != "left" else np.inf,
+        "R_low": R if R_left is None else R_left,
+        "R_high": R,
+    }
 
 
 def family_of(system) -> Family:
     """The oscillators that `system` is one of, by the names of its numbers. TypeError for anything else."""
     if isinstance(system, Family):
         return system
-    if isinstance(system, System):
-        return Family(two_mass, {field.name: getattr(system, field.name) for field in fields(system)})
-    raise TypeError(f"system: {system!r} is not allowed; it must be a System")
+    if not isinstance(getattr(system, "family", None), Family):
+        raise TypeError(f"system: {system!r} is not allowed; it must be a System or an Oscillator")
+    return system.family
 
 
 def forcing_period(q: Linear) -> float:

@@ -1,18 +1,19 @@
 """What can be observed of orbits, declared once: the kernels' records, files, scene words and the reference follow.
 
-A variable of a file has the dimensions of the sweep, `start` if there are several, and then its own.
+A variable of a file has the dimensions of the sweep, `start` if there are several, and then its own. Which variables
+there are, and how long their dimensions are, follows from the number of masses.
 """
 
+import functools
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from vibro_sweep.model.exponents import CERTAIN
-from vibro_sweep.model.state import COORDINATES, STATE
+from vibro_sweep.model.state import coordinates, state
 from vibro_sweep.model.status import NOT_COMPUTED, STATUSES
 
 TRAJECTORY = "trajectory"  # the scene's key that asks for some variables; all other keys below are words of `observe`
-AVERAGED = (*STATE, "impacts_right", "impacts_left", "lyapunov")  # what all orbits of an attractor have in common
 
 
 class Word(NamedTuple):
@@ -29,8 +30,11 @@ WORDS = {
     "multipliers": Word("Floquet multipliers of periodic orbits", tangents=True),
     "impacts": Word("counts and speeds of impacts, time at rest on a stop", states=False),
     "attractors": Word("which starts end on the same attractor", tangents=True),
+    "energy": Word(
+        "power lost in impacts, root mean square and largest size of every coordinate", states=False,
+    ),
     "convergence": Word("Lyapunov exponents as they converge along the record", tangents=True),
-}
+}  # fmt: skip
 
 
 class Dimension(NamedTuple):
@@ -46,17 +50,30 @@ class Dimension(NamedTuple):
         return self.label
 
 
-DIMENSIONS = {
-    "start": Dimension("start", "start of the orbit"),
-    "sample": Dimension("section point", "section point, counted from the end of the transient"),
-    "exponent": Dimension("exponent", "Lyapunov exponent, counted from the largest", len(STATE)),
-    "multiplier": Dimension("multiplier", "Floquet multiplier, counted from that of largest modulus", len(STATE)),
-    "averaged": Dimension("average of", "section points, impacts in a forcing period, lambda_1", len(AVERAGED)),
-    "elapsed": Dimension("forcing periods recorded", "forcing periods since the end of the transient"),
-    "time": Dimension("time t/T", "forcing periods since the last section point"),
-    "trajectory_section": Dimension("time t/T", "forcing periods since the last section point"),
-    "trajectory_impact": Dimension("impact", "impact along the orbit, counted from the last section point"),
-}
+def averaged(masses: int) -> tuple[str, ...]:
+    """What all orbits of an attractor have in common."""
+    return (*state(masses), "impacts_right", "impacts_left", "lyapunov")
+
+
+@functools.cache
+def dimensions(masses: int) -> dict[str, Dimension]:
+    """The dimensions that variables may have, for so many masses."""
+    return {
+        "start": Dimension("start", "start of the orbit"),
+        "sample": Dimension("section point", "section point, counted from the end of the transient"),
+        "exponent": Dimension("exponent", "Lyapunov exponent, counted from the largest", 2 * masses),
+        "multiplier": Dimension("multiplier", "Floquet multiplier, counted from that of largest modulus", 2 * masses),
+        "averaged": Dimension(
+            "average of", "section points, impacts in a forcing period, lambda_1", len(averaged(masses))
+        ),
+        "elapsed": Dimension("forcing periods recorded", "forcing periods since the end of the transient"),
+        "time": Dimension("time t/T", "forcing periods since the last section point"),
+        "trajectory_section": Dimension("time t/T", "forcing periods since the last section point"),
+        "trajectory_impact": Dimension("impact", "impact along the orbit, counted from the last section point"),
+    }
+
+
+DIMENSIONS = dimensions(2)  # of the paper's oscillator
 
 
 class Variable(NamedTuple):
@@ -100,10 +117,28 @@ def _trajectory(name: str, label: str, text: str, dimension: str | None, *more: 
     return Variable(f"trajectory_{name}", (TRAJECTORY,), label, text, dimensions, *more, in_kernel=False)
 
 
-_EXPONENTS, _MULTIPLIERS, _IMPACTS = ("lyapunov",), ("multipliers",), ("impacts",)
+_EXPONENTS, _MULTIPLIERS, _IMPACTS, _ENERGY = ("lyapunov",), ("multipliers",), ("impacts",), ("energy",)
+GAP = "gap"
 
-VARIABLES = (
-    *(_section(name, label, f"{text} at the section", symbol=symbol) for name, symbol, label, text in COORDINATES),
+
+@functools.cache
+def variables(masses: int, gap: bool = False) -> tuple[Variable, ...]:
+    """All variables of files of oscillators with so many masses, in order.
+
+    gap : whether the gap is something else than x1
+    """
+    named = coordinates(masses)
+    return (
+        *(_section(name, label, f"{text} at the section", symbol=symbol) for name, symbol, label, text in named),
+        *([_section(GAP, "gap g", "gap at the section", symbol="g")] if gap else []),
+        *_OF_ANY,
+        *_energies(masses),
+        *_of_a_trajectory(masses, gap),
+        _STATUS,
+    )
+
+
+_OF_ANY = (
     _section("phase", "forcing phase", "forcing phase omega t mod 2 pi at the impact", units="rad", at_impacts=True),
     Variable(
         "period", ("section", "multipliers", "attractors"), "period in T",
@@ -165,51 +200,89 @@ VARIABLES = (
         "contact_error", _IMPACTS, "contact error", "largest distance from the stop at which an impact was computed",
     ),
     Variable("sticking_time", _IMPACTS, "sticking time", "time at rest on a stop in the recorded periods"),
-    *(
-        variable
-        for name, _, label, text in COORDINATES
-        for variable in (
-            _trajectory(name, label, f"{text} along the orbit", "time"),
-            _trajectory(
-                f"section_{name}", label, f"{text} at the section t = 0 mod T along the orbit", "trajectory_section",
-            ),
-        )
-    ),
-    _trajectory(
-        "impacts", "impacts", "number of impacts along the orbit; of too many the fastest are stored", None, "i8",
-    ),
-    _trajectory(
-        "impact_time", "time of impact, t/T", "forcing periods from the last section point to an impact",
-        "trajectory_impact",
-    ),
-    _trajectory(
-        "impact_side", "stop of impact", "stop of an impact: 1 right, -1 left; 0: none", "trajectory_impact",
-        "i1", "1", 0,
-    ),
-    _trajectory("impact_v1", "velocity v1 before impact", "velocity of mass 1 before an impact", "trajectory_impact"),
-    _trajectory(
-        "impact_v1_after", "velocity v1 after impact", "velocity of mass 1 after an impact", "trajectory_impact",
-    ),
-    *(
-        _trajectory(f"impact_{name}", f"{label} at impact", f"{text} at an impact", "trajectory_impact")
-        for name, _, label, text in COORDINATES[2:]
-    ),
-    Variable(
-        "status", (), "status", "outcome of the computation", dtype="i1", missing=NOT_COMPUTED,
-        attributes={
-            "flag_values": np.array(list(STATUSES), np.int8),  # as CF has them
-            "flag_meanings": " ".join(status.name for status in STATUSES.values()),
-        },
-    ),
 )  # fmt: skip
 
-OF_AN_ORBIT = tuple(variable for variable in VARIABLES if variable.in_kernel)
-OF_AN_IMPACT = tuple(  # along a trajectory, in the order in which kernels keep them
-    variable.name for variable in VARIABLES if variable.dimensions == ("trajectory_impact",)
-)
+_STATUS = Variable(
+    "status", (), "status", "outcome of the computation", dtype="i1", missing=NOT_COMPUTED,
+    attributes={
+        "flag_values": np.array(list(STATUSES), np.int8),  # as CF has them
+        "flag_meanings": " ".join(status.name for status in STATUSES.values()),
+    },
+)  # fmt: skip
 
 
-def asked_for(keys: frozenset[str], at_impacts: bool) -> dict[str, Variable]:
+def _energies(masses: int) -> tuple[Variable, ...]:
+    """What the designer of a damper looks at."""
+    sizes = (("rms", "rms of", "root mean square of the {}"), ("peak", "peak of", "largest size of the {}"))
+    return (
+        Variable(
+            "impact_power", _ENERGY, "power lost in impacts",
+            "energy lost in impacts in the recorded periods, per unit time", in_kernel=False,
+        ),
+        *(
+            Variable(
+                f"{name}_{of}", _ENERGY, f"{label} {of}", f"{text.format(what)} in the recorded periods",
+                in_kernel=False,
+            )
+            for name, label, text in sizes
+            for of, _, _, what in coordinates(masses)
+        ),
+    )  # fmt: skip
+
+
+def _of_a_trajectory(masses: int, gap: bool) -> tuple[Variable, ...]:
+    """The continuous motion, its sections and its impacts."""
+    along, at_impacts = "time", "trajectory_impact"
+    other = coordinates(masses) if gap else coordinates(masses)[2:]  # at an impact x1 is at the stop, v1 jumps
+    speed, mass = ("gap velocity", "of the gap") if gap else ("velocity v1", "of mass 1")
+    return (
+        *(
+            variable
+            for name, _, label, text in coordinates(masses)
+            for variable in (
+                _trajectory(name, label, f"{text} along the orbit", along),
+                _trajectory(
+                    f"section_{name}", label, f"{text} at the section t = 0 mod T along the orbit",
+                    "trajectory_section",
+                ),
+            )
+        ),
+        _trajectory(
+            "impacts", "impacts", "number of impacts along the orbit; of too many the fastest are stored", None, "i8",
+        ),
+        _trajectory(
+            "impact_time", "time of impact, t/T", "forcing periods from the last section point to an impact",
+            at_impacts,
+        ),
+        _trajectory(
+            "impact_side", "stop of impact", "stop of an impact: 1 right, -1 left; 0: none", at_impacts, "i1", "1", 0,
+        ),
+        _trajectory(f"impact_{before(gap)}", f"{speed} before impact", f"velocity {mass} before an impact", at_impacts),
+        _trajectory(
+            f"impact_{before(gap)}_after", f"{speed} after impact", f"velocity {mass} after an impact", at_impacts,
+        ),
+        *(
+            _trajectory(f"impact_{name}", f"{label} at impact", f"{text} at an impact", at_impacts)
+            for name, _, label, text in other
+        ),
+    )  # fmt: skip
+
+
+def before(gap: bool) -> str:
+    """The coordinate that an impact reverses."""
+    return "gap_velocity" if gap else "v1"
+
+
+VARIABLES = variables(2)  # of the paper's oscillator
+OF_AN_ORBIT = tuple(variable for variable in VARIABLES if variable.in_kernel)  # whatever the number of masses
+
+
+def of_an_impact(masses: int, gap: bool = False) -> tuple[str, ...]:
+    """What is stored of an impact along a trajectory, in the order in which kernels keep it."""
+    return tuple(one.name for one in variables(masses, gap) if one.dimensions == ("trajectory_impact",))
+
+
+def asked_for(keys: frozenset[str], at_impacts: bool, masses: int = 2, gap: bool = False) -> dict[str, Variable]:
     """The variables of a file, by name, in order.
 
     keys : words of `observe`, and TRAJECTORY where the scene asks for one
@@ -217,6 +290,6 @@ def asked_for(keys: frozenset[str], at_impacts: bool) -> dict[str, Variable]:
     """
     return {
         variable.name: variable
-        for variable in VARIABLES
+        for variable in variables(masses, gap)
         if (not variable.asked_by or keys.intersection(variable.asked_by)) and (at_impacts or not variable.at_impacts)
     }

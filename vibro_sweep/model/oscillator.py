@@ -1,23 +1,35 @@
 """The impact oscillator (eqs. 3, 4) with its parameters, and from physical quantities."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from dataclasses import replace as dataclass_replace
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.grazing import with_phase
+from vibro_sweep.model.grazing import resolved, with_phase
+from vibro_sweep.model.linear import Family
+from vibro_sweep.model.models.declaration import Model
+from vibro_sweep.model.models.two_mass import MODEL
 from vibro_sweep.model.modes import Modes, modes
-from vibro_sweep.model.parameters import BY_NAME, NAMES, PARAMETERS, STOPS, ParameterError, check_value, physical_range
+from vibro_sweep.model.parameters import (
+    PARAMETERS,
+    STOPS,
+    Parameter,
+    ParameterError,
+    checked_number,
+    number_of,
+    physical_range,
+)
 
 Stops = Literal["both", "right", "left"]
 
 
 @dataclass(frozen=True)
-class System:
+class System(AnyOscillator):
     """The impact oscillator (3), (4). Raises ParameterError for a parameter outside its range."""
 
     mu_m: float
@@ -29,28 +41,39 @@ class System:
     b: float
     tau: float | Literal["grazing"] = "grazing"
     stops: Stops = "both"
+    offset: float = 0.0
+    R_left: float | None = None
+    mu_c: float | None = None
+    model: ClassVar[Model] = MODEL
 
     def __post_init__(self):
-        for name in NAMES:
-            value = getattr(self, name)
-            if name == "tau" and value == "grazing":
-                if not math.isfinite(self.phase):
-                    raise ParameterError(
-                        "tau",
-                        value,
-                        "a number: no finite steady motion exists, an undamped mode is in resonance or nearly",
-                    )
-                continue
-            number = _number(value)
-            if number is None:
-                raise ParameterError(name, value, BY_NAME[name].range.text)
-            try:
-                check_value(name, number)
-            except ParameterError as error:
-                raise ParameterError(name, value, error.allowed) from None
-            object.__setattr__(self, name, number)
         if self.stops not in STOPS:
             raise ParameterError("stops", self.stops, "both, right or left")
+        for one in PARAMETERS:
+            value = getattr(self, one.name)
+            if not (isinstance(value, str) and value in one.words) and not (value is None and one.follows):
+                object.__setattr__(self, one.name, checked_number(one, value, self.stops))
+
+    @property
+    def family(self) -> Family:
+        return Family(MODEL.build, {one.name: getattr(self, one.name) for one in fields(self)})
+
+    @property
+    def described(self) -> dict[str, Parameter]:
+        """Its numbers."""
+        return {one.name: one for one in PARAMETERS}
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """Their values; `tau` may be a word, R_left and mu_c None."""
+        return {one.name: getattr(self, one.name) for one in PARAMETERS}
+
+    @property
+    def options(self) -> dict[str, Any]:
+        return {"stops": self.stops}
+
+    masses = 2
+    gap_is_x1 = True
 
     @classmethod
     def physical(
@@ -70,26 +93,16 @@ class System:
         tau: float | Literal["grazing"] = "grazing",
         stops: Stops = "both",
     ) -> "System":
-        """From physical quantities in any consistent units (section 2 of the paper; mu_c = C2/C1 there).
-
-        Raises `ParameterError` also where C1/K1 differs from C2/K2: the damping must be proportional.
-        """
+        """From physical quantities in any consistent units (section 2 of the paper). Raises `ParameterError`."""
         given = {"M1": M1, "M2": M2, "K1": K1, "K2": K2, "C1": C1, "C2": C2, "P1": P1, "P2": P2, "Omega": Omega, "B": B}
         for name, value in given.items():
-            allowed, number = physical_range(name), _number(value)
+            allowed, number = physical_range(name), number_of(value)
             if number is None or not (math.isfinite(number) and allowed.holds(number)):
                 raise ParameterError(name, value, allowed.text)
             given[name] = number
         M1, M2, K1, K2, C1, C2, P1, P2, Omega, B = given.values()
         if P1 + P2 == 0:
             raise ParameterError("P1", P1, "such that P1 + P2 > 0: lengths are measured in (P1 + P2)/K1")
-        one, other = Fraction(C1) * Fraction(K2), Fraction(C2) * Fraction(K1)
-        if abs(one - other) > max(one, other) / 10**9:
-            raise ParameterError(
-                "C2",
-                C2,
-                f"{C1 * (K2 / K1)!r}: C1/K1 = {C1 / K1!r} and C2/K2 = {C2 / K2!r} differ, damping must be proportional",
-            )
         frequency = math.sqrt(K1) / math.sqrt(M1)  # no product of two given numbers: it could leave the range
         numbers = {
             "mu_m": ("M2", M2 / M1),
@@ -102,13 +115,19 @@ class System:
         for name, (key, value) in numbers.items():
             if not math.isfinite(value) or (value == 0) != (given[key] == 0):
                 raise ParameterError(key, given[key], f"such that {name} = {value!r} is in the range of the floats")
-        return cls(**{name: value for name, (_, value) in numbers.items()}, R=R, tau=tau, stops=stops)
+        system = cls(**{name: value for name, (_, value) in numbers.items()}, R=R, tau=tau, stops=stops)
+        one, other = Fraction(C1) * Fraction(K2), Fraction(C2) * Fraction(K1)
+        if abs(one - other) <= max(one, other) / 10**9:  # proportional, but for the rounding of the input
+            return system
+        if C1 == 0:
+            raise ParameterError("C1", C1, "> 0 where C2 > 0: the damping ratio of the second damper is C2/C1")
+        return system.replace(mu_c=C2 / C1)
 
     def replace(self, **changes: Any) -> "System":
         """A copy with other parameters. Raises ParameterError, also for a name that is none of them."""
         for name in changes:
-            if name not in (*NAMES, "stops"):
-                raise ParameterError(name, changes[name], f"one of {', '.join(NAMES)}, stops")
+            if name not in (known := [one.name for one in fields(self)]):
+                raise ParameterError(name, changes[name], f"one of {', '.join(known)}")
         return dataclass_replace(self, **changes)
 
     @property
@@ -117,42 +136,30 @@ class System:
         return float(with_phase(vars(self))["tau"])
 
     @property
-    def period(self) -> float:
-        """The forcing period T = 2 pi/omega."""
-        return 2 * math.pi / self.omega
-
-    @property
     def modes(self) -> Modes:
         return modes(self.mu_m, self.mu_k)
 
     @property
     def eta(self) -> np.ndarray:
-        """Modal damping eta_j = zeta omega_j^2, (2,). Non-impacting exponents: -eta_1, -eta_1, -eta_2, -eta_2."""
+        """Modal damping eta_j = zeta omega_j^2, (2,), if mu_c = mu_k.
+
+        Non-impacting exponents: -eta_1, -eta_1, -eta_2, -eta_2.
+        """
         return self.zeta * self.modes.omega_squared
 
     @property
     def divergence(self) -> float:
         """-tr(M^-1 C): the sum of the Lyapunov exponents of a non-impacting orbit."""
-        return -2 * self.zeta * (1 + (1 + self.mu_k) / self.mu_m)
+        return -2 * self.zeta * (1 + (1 + (self.mu_k if self.mu_c is None else self.mu_c)) / self.mu_m)
 
     def parameters(self) -> dict[str, float]:
-        """The numbers by name, `tau` resolved."""
-        return {name: getattr(self, name) for name in NAMES} | {"tau": self.phase}
-
-
-def _number(value: object) -> float | None:
-    """A real number of Python's or NumPy's as a float, infinite beyond the range of the floats; None for no number."""
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
-        return None
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf
+        """The numbers by name, `tau` resolved, and R_left and mu_c where they follow."""
+        return resolved(self.numbers)
 
 
 def checked_system(system: object) -> None:
-    """Raise TypeError unless it is a System."""
-    check_type("system", system, System, "a System")
+    """Raise TypeError unless it is a System or an Oscillator."""
+    check_type("system", system, AnyOscillator, "a System or an Oscillator")
 
 
 # what `help` shows of the parameters; absent where docstrings are (python -OO)

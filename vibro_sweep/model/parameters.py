@@ -1,5 +1,6 @@
 """The numbers of the oscillator, declared once: records, scene keys, JSON Schema, files and plot labels follow."""
 
+import math
 import operator
 from typing import Any, NamedTuple
 
@@ -34,6 +35,14 @@ FRACTION = Range("a number from 0 to 1", {"minimum": 0, "maximum": 1})
 NUMBER = Range("a number", {})
 
 
+LENGTHS = {  # of lists, for N masses
+    "mass": lambda masses: masses,
+    "mode": lambda masses: masses,
+    "spring": lambda masses: masses + 1,  # those to both walls too
+    "coefficient": lambda masses: 2,
+}
+
+
 class Parameter(NamedTuple):
     name: str  # of the Python argument, the scene key and the variable of the file
     symbol: str  # TeX, as in the paper
@@ -45,6 +54,9 @@ class Parameter(NamedTuple):
     default: Any = None  # None: it must be given
     words: dict[str, str] = {}  # noqa: RUF012  # what may stand in place of a number, and what it means; read only
     free_motion: bool = False  # whether the non-impacting motion depends on it (tau only shifts that in time)
+    follows: str = ""  # the number whose value it has where it is left out
+    each: str = ""  # of a list: what it has one number for, a key of `LENGTHS`
+    optional: bool = False  # whether it may be left out although nothing is known of it then
 
     @property
     def described(self) -> str:
@@ -57,12 +69,36 @@ class Parameter(NamedTuple):
         return f"{self.label} {self.name.removeprefix('start_')}"
 
 
-PARAMETERS = (
+# What all oscillators have.
+FREQUENCY = Parameter(
+    "omega", r"\omega", "1", POSITIVE, "forcing frequency", "angular frequency of the force", free_motion=True
+)
+RESTITUTION = Parameter("R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution", "(4)")
+CLEARANCE = Parameter(
+    "b", "b", "1", Range("a number > 0; any number where there is one stop alone", {}), "clearance",
+    "clearance on each side of the middle", "(4)",
+)  # fmt: skip
+PHASE = Parameter(
+    "tau", r"\tau", "rad", Range("a number (radians) or 'grazing'", {}), "forcing phase",
+    "phase of the force at t = 0 in radians", "(3)", "grazing",
+    {"grazing": "the phase at which the gap of the free motion is largest at t = 0, eq. (18); 0 where there is none"},
+)  # fmt: skip
+OFFSET = Parameter(
+    "offset", "b_0", "1", NUMBER, "offset of the stops",
+    "middle of the stops: they stand at offset - b and offset + b", default=0.0,
+)  # fmt: skip
+RESTITUTION_LEFT = Parameter(
+    "R_left", r"R_{\mathrm{left}}", "1", FRACTION, "restitution on the left",
+    "coefficient of restitution of the left stop; left out: R", follows="R",
+)  # fmt: skip
+
+# Of the paper's oscillator, in the order of the kernels' records and derivatives.
+PAPER = (
     Parameter("mu_m", r"\mu_m", "1", POSITIVE, "mass ratio", "mass ratio M2/M1", "(3)", free_motion=True),
-    Parameter("mu_k", r"\mu_k", "1", POSITIVE, "stiffness ratio", "stiffness ratio K2/K1", "(3)", free_motion=True),
+    Parameter("mu_k", r"\mu_k", "1", NOT_NEGATIVE, "stiffness ratio", "stiffness ratio K2/K1", "(3)", free_motion=True),
     Parameter(
         "zeta", r"\zeta", "1", NOT_NEGATIVE, "damping ratio",
-        "damping ratio C1/(2 sqrt(K1 M1)); damping is proportional, so C2/C1 = mu_k", "(3)", free_motion=True,
+        "damping ratio C1/(2 sqrt(K1 M1))", "(3)", free_motion=True,
     ),
     Parameter(
         "f2", "f_2", "1", FRACTION, "share of force on mass 2",
@@ -72,12 +108,18 @@ PARAMETERS = (
         "omega", r"\omega", "1", POSITIVE, "forcing frequency", "forcing frequency Omega sqrt(M1/K1)", "(3)",
         free_motion=True,
     ),
-    Parameter("R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution", "(4)"),
-    Parameter("b", "b", "1", POSITIVE, "clearance", "clearance on each side, B K1/(P1 + P2)", "(4)"),
+    RESTITUTION,
+    CLEARANCE._replace(text="clearance on each side, B K1/(P1 + P2)"),
+    PHASE,
+)  # fmt: skip
+
+PARAMETERS = (
+    *PAPER,
+    OFFSET,
+    RESTITUTION_LEFT,
     Parameter(
-        "tau", r"\tau", "rad", Range("a number (radians) or 'grazing'", {}), "forcing phase",
-        "phase of the force at t = 0 in radians", "(3)", "grazing",
-        {"grazing": "the phase at which the non-impacting steady motion is at its right extreme, eq. (18)"},
+        "mu_c", r"\mu_c", "1", NOT_NEGATIVE, "ratio of dampers", "ratio of the dampers C2/C1; left out: mu_k",
+        free_motion=True, follows="mu_k",
     ),
 )  # fmt: skip
 
@@ -86,7 +128,7 @@ PHYSICAL = (
     Parameter("M1", "M_1", "", POSITIVE, "mass 1", "mass between the stops"),
     Parameter("M2", "M_2", "", POSITIVE, "mass 2", "second mass"),
     Parameter("K1", "K_1", "", POSITIVE, "stiffness 1", "stiffness between the masses"),
-    Parameter("K2", "K_2", "", POSITIVE, "stiffness 2", "stiffness between the second mass and the ground"),
+    Parameter("K2", "K_2", "", NOT_NEGATIVE, "stiffness 2", "stiffness between the second mass and the ground"),
     Parameter("C1", "C_1", "", NOT_NEGATIVE, "damping 1", "damping between the masses"),
     Parameter("C2", "C_2", "", NOT_NEGATIVE, "damping 2", "damping between the second mass and the ground"),
     Parameter("P1", "P_1", "", NOT_NEGATIVE, "force 1", "amplitude of the force on the first mass"),
@@ -103,9 +145,17 @@ B_STAR = Parameter(
     "clearance b* at which the non-impacting motion touches the stops (Theorem 1)", "(16)",
 )  # fmt: skip
 
-NAMES = tuple(parameter.name for parameter in PARAMETERS)
-FREE_MOTION = tuple(parameter.name for parameter in PARAMETERS if parameter.free_motion)
-FOLLOWING = ("tau", B_STAR.name)  # of a system whose other numbers are swept, these may follow from them
+B_RIGHT, B_LEFT = (
+    Parameter(
+        f"b_{side}", f"b_{{\\mathrm{{{side}}}}}", "1", NUMBER, f"grazing, {side} stop",
+        f"clearance at which the free motion touches the {side} stop", "(16)",
+    )
+    for side in ("right", "left")
+)  # fmt: skip
+
+NAMES = tuple(parameter.name for parameter in PAPER)
+FREE_MOTION = tuple(parameter.name for parameter in PAPER if parameter.free_motion)
+FOLLOWING = ("tau", B_STAR.name, B_RIGHT.name, B_LEFT.name)  # where others are swept, these may follow from them
 BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
 
 
@@ -117,9 +167,19 @@ class ParameterError(ValueError):
         self.key, self.value, self.allowed = key, value, allowed
 
 
-def check_value(key: str, value: object) -> None:
-    """Raise `ParameterError` unless `value` (a number or an array of numbers) is allowed for the parameter `key`."""
-    allowed = BY_NAME[key].range
+def range_of(parameter: Parameter, stops: str) -> Range:
+    """What a number may be where there are these stops: one alone may stand anywhere."""
+    if parameter.name != CLEARANCE.name:
+        return parameter.range
+    return POSITIVE if stops == "both" else NUMBER
+
+
+def check_value(parameter: Parameter, value: object, stops: str = "both", key: str | None = None) -> None:
+    """Raise `ParameterError` unless `value` (a number or an array of numbers) is allowed for the parameter.
+
+    key : what the error names, by default the parameter
+    """
+    allowed, key = range_of(parameter, stops), key or parameter.name
     numbers = np.asarray(value)
     if numbers.dtype.kind not in "fiu":
         raise ParameterError(key, value, allowed.text)
@@ -127,6 +187,28 @@ def check_value(key: str, value: object) -> None:
     if not np.all(good):
         wanted = allowed.text.replace("a number", "a finite number", 1)
         raise ParameterError(key, numbers[~good].flat[0].item(), wanted)
+
+
+def number_of(value: object) -> float | None:
+    """A real number of Python's or NumPy's as a float, infinite beyond the range of the floats; None for no number."""
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+
+
+def checked_number(parameter: Parameter, value: object, stops: str = "both", key: str | None = None) -> float:
+    """A number as a float. Raises `ParameterError`, with the value as it was given, unless it is allowed."""
+    number, key = number_of(value), key or parameter.name
+    if number is None:
+        raise ParameterError(key, value, range_of(parameter, stops).text)
+    try:
+        check_value(parameter, number, stops, key)
+    except ParameterError as error:
+        raise ParameterError(key, value, error.allowed) from None
+    return number
 
 
 def physical_range(name: str) -> Range:

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibro_sweep.model.pictures import PICTURES
-from vibro_sweep.plotting import basins, coexistence, orbits, planes, sweeps
+from vibro_sweep.plotting import basins, coexistence, convergence, orbits, planes, sweeps
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.pictures import check_output, save
@@ -44,12 +44,12 @@ _DRAWN = {
     "bifurcation": Kind(sweeps.shows_bifurcation, sweeps.bifurcation, sweeps.section_variables),
     "lyapunov": Kind(sweeps.shows_lyapunov, sweeps.lyapunov),
     "impacts": Kind(sweeps.shows_impacts, sweeps.impacts),
-    "phase-portrait": Kind(orbits.shows_trajectory, orbits.phase_portrait, orbits.masses, True),
+    "phase-portrait": Kind(orbits.shows_trajectory, orbits.phase_portrait, orbits.displacements, True),
     "configuration": Kind(orbits.shows_both_masses, orbits.configuration, of_orbits=True),
     "history": Kind(orbits.shows_trajectory, orbits.history, orbits.coordinates, True),
     "poincare": Kind(orbits.shows_poincare, orbits.poincare, orbits.abscissae, True),
     "iteration": Kind(orbits.shows_section, orbits.iteration, sweeps.section_variables, True),
-    "convergence": Kind(orbits.shows_convergence, orbits.convergence, of_orbits=True),
+    "convergence": Kind(convergence.shows_convergence, convergence.convergence, of_orbits=True),
 }
 KINDS = {name: _DRAWN[name] for name in PICTURES}
 

@@ -4,8 +4,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch
 
-from vibro_sweep.model.observables import AVERAGED
-from vibro_sweep.model.state import START
+from vibro_sweep.model.state import MOST_MASSES, START, state
 from vibro_sweep.plotting.families import KINDS, describe, kind
 from vibro_sweep.plotting.result import Point, Result
 from vibro_sweep.plotting.style import INK, NOT_COMPUTED, axis_name, edges, equation, marked
@@ -63,7 +62,7 @@ def _mark(ax, result, members, marker, stored):
         x, y = (result.one(name, Point((*place, 0), place, "")) for name in names)
     else:
         average = result.one("average", Point((*place, 0), place, ""))
-        x, y = ([average[AVERAGED.index(name)]] for name in names)
+        x, y = ([average[state(MOST_MASSES).index(name)]] for name in names)
     # an attractor at the frame is marked as a whole
     frame = zip((x, y), (ax.get_xlim(), ax.get_ylim()), strict=True)
     near = all(abs(one - (low + high) / 2) < NEAR * (high - low) for values, (low, high) in frame for one in values)

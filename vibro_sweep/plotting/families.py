@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from vibro_sweep.model.observables import AVERAGED
+from vibro_sweep.model.observables import averaged
 from vibro_sweep.plotting.style import INK, LEFT, NOT_COMPUTED, RIGHT
 
-RATES = [AVERAGED.index(name) for name in ("impacts_right", "impacts_left")]  # places among the averages
+_LAST = averaged(0)  # they stand after the coordinates
+RATES = [_LAST.index(name) - len(_LAST) for name in ("impacts_right", "impacts_left")]  # places among the averages
 
 # In the order in which they are stacked: kind -> its name in a legend, its colour.
 KINDS = {

@@ -4,22 +4,21 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from vibro_sweep.model.state import STATE
-from vibro_sweep.plotting.paths import path
+from vibro_sweep.model.state import MOST_MASSES, state
+from vibro_sweep.plotting.paths import GAP, gap_of, path
 from vibro_sweep.plotting.result import Result
 from vibro_sweep.plotting.style import (
     DASHES,
-    EXPONENTS,
     FAINT,
     IMPACT,
     INK,
-    PER_TIME,
+    LEFT,
     RIGHT,
     SECTION,
     at_section,
     before_impact,
-    exponent,
     limits,
+    stop_name,
     symbol,
 )
 from vibro_sweep.plotting.sweeps import section_variables
@@ -54,42 +53,70 @@ def _portraits(result, what):
     return fig, list(zip(grid.flat, points, strict=False))
 
 
-def masses(result: Result) -> tuple[str, ...]:
-    """The displacements that a trajectory of the file has."""
-    return ("x1", "x2") if "trajectory_x2" in result and "trajectory_v2" in result else ("x1",)
+def displacements(result: Result) -> tuple[str, ...]:
+    """The displacements that a trajectory of the file has; first the gap where that is not x1."""
+    gap = ("gap",) if result.along is not None else ()
+    names = (f"x{n}" for n in range(1, MOST_MASSES + 1))
+    return (*gap, *(name for name in names if f"trajectory_{name}" in result and f"trajectory_v{name[1:]}" in result))
+
+
+def _velocity(name: str) -> str:
+    """The name of the velocity of a displacement."""
+    return "gap_velocity" if name == "gap" else f"v{name[1:]}"
+
+
+def _symbol(name: str) -> str:
+    return r"$\dot g$" if name == "gap_velocity" else symbol(name)
 
 
 def phase_portrait(result: Result):
-    """x1 and v1 between the stops, or x2 and v2, one panel an orbit; impacts, and the state at each forcing period."""
+    """x1 and v1 between the stops, or another displacement and its velocity, one panel an orbit; impacts, and the state
+    at each forcing period. Where the gap is not x1, that and its velocity."""
     fig, panels = _portraits(result, "Phase portrait")
-    x_name = result.look.variable or "x1"
-    v_name = f"v{x_name[1]}"
+    x_name = result.look.variable or displacements(result)[0]
+    v_name = _velocity(x_name)
     for ax, point in panels:
         way = path(result, point)
-        first = x_name == "x1"
-        way = way if first else way.joined()
-        _line(ax, getattr(way, x_name), getattr(way, v_name), way)
+        first = x_name == displacements(result)[0]
+        way = way if first or result.along is not None else way.joined()
+        _line(ax, way[x_name], way[v_name], way)
         if first:
             for stop, before, after in way.jumps:
                 ax.plot([stop, stop], [before, after], color=IMPACT, lw=1.2, ls=(0, (1, 1)), label="impact")
-            _walls(ax, result.stops(point.place))
+            _walls(ax, result, point)
         _mark_sections(ax, result, point, x_name, v_name)
-        ax.set(title=point.label, xlabel=symbol(x_name), ylabel=symbol(v_name))
+        ax.set(title=point.label, xlabel=_symbol(x_name), ylabel=_symbol(v_name))
     legend(fig)
     return fig
 
 
 def configuration(result: Result):
-    """Both masses' displacements against each other (the paper's figure 4), one panel an orbit."""
+    """The first two masses' displacements against each other (the paper's figure 4), one panel an orbit."""
     fig, panels = _portraits(result, "Configuration plane")
     for ax, point in panels:
         way = path(result, point).joined()
-        _line(ax, way.x1, way.x2, way)
-        _walls(ax, result.stops(point.place))
+        _line(ax, way["x1"], way["x2"], way)
+        if result.along is None:
+            _walls(ax, result, point)
+        elif not result.along[2:].any():
+            _slanted_walls(ax, result, point)
         _mark_sections(ax, result, point, "x1", "x2")
         ax.set(title=point.label, xlabel=symbol("x1"), ylabel=symbol("x2"))
     legend(fig)
     return fig
+
+
+def _slanted_walls(ax, result, point):
+    """The stops of a contact between masses 1 and 2: n1 x1 + n2 x2 = gap."""
+    frame = ax.get_xlim(), ax.get_ylim()
+    n1, n2 = result.along[:2]
+    for side, stop in result.stops(point.place).items():
+        style = {"color": FAINT, "lw": 0.8, "ls": "-" if side > 0 else DASHES, "zorder": 1}
+        if n2:
+            ax.plot(frame[0], (stop - n1 * np.array(frame[0])) / n2, label=stop_name(result, side), **style)
+        else:
+            ax.axvline(stop / n1, label=stop_name(result, side), **style)
+    ax.set(xlim=frame[0], ylim=frame[1])
 
 
 def shows_poincare(result: Result) -> bool:
@@ -101,14 +128,14 @@ def abscissae(result: Result) -> tuple[str, ...]:
     """What stands along the axis of a Poincare plot, the default first; its velocity stands upwards."""
     if "phase" in result:
         return ("phase",) if "v1" in result and not result.model() else ()  # the map has one phase
-    return tuple(f"x{n}" for n in (1, 2) if f"x{n}" in result and f"v{n}" in result)
+    return tuple(f"x{n}" for n in range(1, MOST_MASSES + 1) if f"x{n}" in result and f"v{n}" in result)
 
 
 def poincare(result: Result):
     """Section points in the plane of x1 and v1, or of x2 and v2; of impacts of phase and v1. One panel an orbit."""
     fig, panels = _portraits(result, "Poincaré section")
     x_name = result.look.variable or abscissae(result)[0]
-    v_name = "v1" if x_name == "phase" else f"v{x_name[1]}"
+    v_name = "v1" if x_name == "phase" else _velocity(x_name)
     for ax, point in panels:
         x, v = (result.one(name, point) for name in (x_name, v_name))
         size = np.clip(60 / np.sqrt(_different(x)), 2, 8)
@@ -116,8 +143,8 @@ def poincare(result: Result):
         if np.isfinite(x).any():
             least = 0.01 * (result.number("b", point.place) or 0.0)
             ax.set(xlim=limits(x, least), ylim=limits(v, least))
-        if x_name == "x1":
-            _walls(ax, result.stops(point.place))
+        if x_name == "x1" and result.along is None:
+            _walls(ax, result, point)
         name = before_impact if "phase" in result else at_section
         ax.set(title=point.label, xlabel=r"$\omega t$ mod $2\pi$" if x_name == "phase" else name(x_name))
         ax.set_ylabel(name(v_name))
@@ -154,31 +181,40 @@ def arrows(ax, t, x, y, times):
 
 def _mark_sections(ax, result, point, x_name, y_name):
     if "trajectory_section_x1" in result:
-        x, y = (result.one(f"trajectory_section_{one}", point) for one in (x_name, y_name))
+        names = state(result.masses)
+        here = {name: result.one(f"trajectory_section_{name}", point) for name in names if _at_section(name) in result}
+        if result.along is not None:
+            here |= {name: gap_of(here, result.along, letter) for name, letter in GAP.items()}
+        x, y = here[x_name], here[y_name]
         ax.plot(x, y, "o", color=SECTION, markersize=3.5, label=r"$t = 0$ mod $T$", zorder=3)
+
+
+def _at_section(name: str) -> str:
+    return f"trajectory_section_{name}"
 
 
 def coordinates(result: Result) -> tuple[str, ...]:
     """What a trajectory of the file has."""
-    return tuple(name for name in STATE if f"trajectory_{name}" in result)
+    return tuple(name for name in state(MOST_MASSES) if f"trajectory_{name}" in result)
 
 
 def history(result: Result):
-    """x1 and x2 over time, or one coordinate, one panel an orbit, the stops as lines."""
+    """All displacements over time, or one coordinate, one panel an orbit, the stops as lines."""
     points = result.points()
     fig = result.page(1.5 * len(points) + 0.9 if len(points) > 1 else 3.2, result.title("Time history"))
     grid = fig.subplots(len(points), squeeze=False, sharex=True)[:, 0]
     chosen = result.look.variable
-    names = [chosen] if chosen else [name for name in ("x1", "x2") if name in coordinates(result)]
-    styles = {"1": {"color": INK}, "2": {"color": RIGHT, "ls": (0, (4, 1))}}
+    gap = [] if result.along is None else ["gap"]
+    names = [chosen] if chosen else [*gap, *(name for name in coordinates(result) if name.startswith("x"))]
+    styles = [{"color": INK}, {"color": RIGHT, "ls": (0, (4, 1))}, {"color": LEFT, "ls": (0, (1, 1))}, {"color": FAINT}]
     for ax, point in zip(grid, points, strict=True):
         way, stops = path(result, point), result.stops(point.place)
-        for name in names:
-            shown = way if name == "v1" else way.joined()
-            ax.plot(shown.t, getattr(shown, name), label=symbol(name), **styles[name[1]])
-        for side, stop in stops.items() if "x1" in names else ():
-            label, style = ("right stop, $b$", DASHES) if side > 0 else ("left stop, $-b$", ":")
-            ax.axhline(stop, color=FAINT, lw=0.9, ls=style, label=label)
+        for i, name in enumerate(names):
+            jumps = name.startswith("v") and (name == "v1" or result.along is not None)
+            shown = way if jumps else way.joined()
+            ax.plot(shown.t, shown[name], label=_symbol(name), **styles[min(i, len(styles) - 1)])
+        for side, stop in stops.items() if displacements(result)[0] in names else ():
+            ax.axhline(stop, color=FAINT, lw=0.9, ls=DASHES if side > 0 else ":", label=stop_name(result, side))
         ax.margins(x=0)
         ax.set(title=point.label, ylabel=symbol(chosen) if chosen else "displacement")
     grid[-1].set_xlabel("$t / T$ (forcing periods)")
@@ -211,80 +247,14 @@ def iteration(result: Result):
     return fig
 
 
-def shows_convergence(result: Result) -> bool:
-    """Exponents as they converge."""
-    return "lyapunov_running" in result
-
-
-def convergence(result: Result):
-    """The spectrum as it was computed, period by period: lambda_1 beside zero, and below all four. Up to two orbits.
-
-    Where the file has them: a dashed line at each final value, around it a band in which zero would not differ from it.
-    """
-    points = result.points(2)
-    fig = result.page(5.2, result.title("Convergence of the Lyapunov exponents"))
-    grid = fig.subplots(2, len(points), sharex=True, sharey="row", squeeze=False, height_ratios=(1.2, 1))
-    periods = result.coordinate("elapsed")
-    settled = slice(len(periods) // 10, None)
-    for (largest, spectrum), point in zip(grid.T, points, strict=True):
-        running = np.where(np.isfinite(values := result.one("lyapunov_running", point)), values, np.nan)
-        for i in range(4):
-            spectrum.plot(periods, running[:, i], color=EXPONENTS[i], label=exponent(i + 1), zorder=3 - i / 9)
-        order = np.argsort(-np.nan_to_num(running[-1], nan=-np.inf))
-        largest.plot(periods, running[:, order[0]], color=EXPONENTS[order[0]])
-        text = point.label
-        if "lyapunov" in result:
-            text = ", ".join(filter(None, [text, _final_values((largest, spectrum), result, point)]))
-        largest.axhline(0, color=INK, lw=0.6)
-        largest.set_title(text)
-        spectrum.set_xlabel("forcing periods recorded")
-        spectrum.set_xlim(0, periods[-1])
-    for row, shown in zip(grid, (slice(0, 1), slice(None)), strict=True):
-        values = [
-            np.sort(result.one("lyapunov_running", point)[settled], axis=1)[:, ::-1][:, shown] for point in points
-        ]
-        finite = np.concatenate([v[np.isfinite(v)] for v in values] + [[0.0]])
-        row[0].set_ylim(limits(finite))
-    grid[0, 0].set_ylabel(f"{exponent(1)} {PER_TIME}")
-    grid[1, 0].set_ylabel(f"{exponent('i')} {PER_TIME}")
-    legend(fig)
-    fig.align_ylabels(grid[:, 0])
-    return fig
-
-
-def _final_values(panels, result, point) -> str:
-    """Draw the exponents of the file, and how far their errors reach; the first of them as text."""
-    final = result.one("lyapunov", point)
-    known = "lyapunov_error" in result
-    reach = result.interval(result.one("lyapunov_error", point)) if known else np.full(4, np.nan)
-    errors = f"± {result.significant:.2g} standard errors"
-    for ax, count in zip(panels, (1, 4), strict=True):
-        for i, (value, spread, colour) in enumerate(list(zip(final, reach, EXPONENTS, strict=True))[:count]):
-            if np.isfinite(value):
-                ax.axhline(value, color=colour, lw=0.7, ls=DASHES, label="_" if i else "final value")
-            if np.isfinite(value) and np.isfinite(spread):
-                label = "_" if i else errors
-                ax.axhspan(value - spread, value + spread, color=colour, alpha=0.15, lw=0, label=label)
-    value = rf"{_scientific(final[0], 2)} \pm {_scientific(reach[0], 0)}" if known else _scientific(final[0], 2)
-    return exponent(1, f" = {value}") + (f" ({errors})" if known else "")
-
-
-def _scientific(value, digits) -> str:
-    """A number for mathtext."""
-    if not np.isfinite(value) or value == 0:
-        return f"{value:.{digits}f}".replace("inf", r"\infty").replace("nan", "?")
-    mantissa, exponent = f"{value:.{digits}e}".split("e")
-    return rf"{mantissa} \times 10^{{{int(exponent)}}}"
-
-
-def _walls(ax, stops):
+def _walls(ax, result, point):
     """The stops as walls: a line, and hatching where the mass cannot be."""
     low, high = ax.get_xlim()
     depth = 0.04 * (high - low)
-    for side, stop in stops.items():
+    for side, stop in result.stops(point.place).items():
         if low < stop < high:  # an orbit that stays far away is not squeezed to show them
-            label = "right stop, $x_1 = b$" if side > 0 else "left stop, $x_1 = -b$"
-            ax.axvline(stop, color=FAINT, lw=0.8, ls="-" if side > 0 else DASHES, zorder=1, label=label)
+            style = "-" if side > 0 else DASHES
+            ax.axvline(stop, color=FAINT, lw=0.8, ls=style, zorder=1, label=stop_name(result, side))
             end = stop + side * depth
             ax.axvspan(stop, end, facecolor="none", edgecolor=FAINT, hatch="//////", linewidth=0)
             ax.set_xlim(**{"right" if side > 0 else "left": end})

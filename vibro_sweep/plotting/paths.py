@@ -4,51 +4,71 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.state import STATE
+from vibro_sweep.model.observables import before
+from vibro_sweep.model.state import state
 from vibro_sweep.plotting.result import Point, Result
+
+GAP = {"gap": "x", "gap_velocity": "v"}  # what is formed of the positions, and of the velocities
 
 
 class Path(NamedTuple):
-    """A sampled motion, (n,) each: t in forcing periods, x1, v1, x2, v2 (NaN where not stored), with NaN in each jump.
+    """A sampled motion: t in forcing periods (n,), with NaN in each jump.
 
-    `jumps`: rows (x1, v1 before, v1 after), one an impact. `complete`: they are in the file.
+    `states`: name -> (n,), NaN where not stored; `gap` and `gap_velocity` beside them where the gap is not x1. `jumps`:
+    rows (gap, gap velocity before, after), one an impact. `complete`: they are in the file.
     """
 
     t: np.ndarray
-    x1: np.ndarray
-    v1: np.ndarray
-    x2: np.ndarray
-    v2: np.ndarray
+    states: dict[str, np.ndarray]
     jumps: np.ndarray
     complete: bool
 
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.t if name == "t" else self.states[name]
+
     def joined(self) -> "Path":
-        """Without the gaps in the jumps: all but v1 go on through an impact."""
-        there = np.isfinite(self.x1)
-        states = (values[there] for values in (self.t, self.x1, self.v1, self.x2, self.v2))
-        return Path(*states, self.jumps, self.complete)
+        """Without the gaps in the jumps: positions go on through an impact, and velocities that it does not change."""
+        there = np.isfinite(self["x1"])
+        return self._replace(t=self.t[there], states={name: values[there] for name, values in self.states.items()})
 
 
 def path(result: Result, point: Point) -> Path:
     """The trajectory of an orbit, as the file holds it."""
-    t = result.coordinate("time")
-    stored = [f"trajectory_{name}" for name in STATE]
-    states = [result.one(name, point) if name in result else np.full(len(t), np.nan) for name in stored]
+    t, along = result.coordinate("time"), result.along
+    names = state(result.masses)
+    motion = {name: _stored(result, f"trajectory_{name}", point, len(t)) for name in names}
     if "trajectory_impacts" not in result:  # of version 0.1
-        return Path(t, *states, np.empty((0, 3)), False)
-    when, side, before, after = (
-        result.one(f"trajectory_impact_{name}", point) for name in ("time", "side", "v1", "v1_after")
+        return Path(t, motion, np.empty((0, 3)), False)
+    jumping = before(along is not None)
+    when, side, speed, after = (
+        result.one(f"trajectory_impact_{name}", point) for name in ("time", "side", jumping, f"{jumping}_after")
     )
-    stored = [f"trajectory_impact_{name}" for name in ("x2", "v2")]
-    x2, v2 = (result.one(name, point) if name in result else np.full(len(when), np.nan) for name in stored)
     hits = np.isfinite(when)
-    when, side, before, after, x2, v2 = (values[hits] for values in (when, side, before, after, x2, v2))
+    at_impact = {name: _stored(result, f"trajectory_impact_{name}", point, len(when))[hits] for name in names}
+    when, side, speed, after = (values[hits] for values in (when, side, speed, after))
     stops = result.stops(point.place)
     stop = np.array([stops.get(one, np.nan) for one in side.tolist()])
-    at = np.repeat(np.searchsorted(t, when), 3)
     gap = np.full(len(when), np.nan)
-    rows = [(when, when, when), (stop, gap, stop), (before, gap, after), (x2, gap, x2), (v2, gap, v2)]
-    values = [
-        np.insert(values, at, np.stack(new, axis=1).ravel()) for values, new in zip((t, *states), rows, strict=True)
-    ]
-    return Path(*values, np.stack([stop, before, after], axis=1), True)
+    rows = {name: (values, gap, values) for name, values in at_impact.items()}
+    if along is None:
+        rows |= {"x1": (stop, gap, stop), "v1": (speed, gap, after)}
+    else:
+        motion |= {name: gap_of(motion, along, letter) for name, letter in GAP.items()}
+        rows |= {name: (at_impact[name], gap, gap) for name in names[1::2]}  # after it: from the next sample on
+        rows |= {"gap": (stop, gap, stop), "gap_velocity": (speed, gap, after)}
+    at = np.repeat(np.searchsorted(t, when), 3)
+    rows["t"] = (when, when, when)
+    put = {
+        name: np.insert(values, at, np.stack(rows[name], axis=1).ravel())
+        for name, values in (motion | {"t": t}).items()
+    }
+    return Path(put.pop("t"), put, np.stack([stop, speed, after], axis=1), True)
+
+
+def gap_of(motion: dict[str, np.ndarray], along: np.ndarray, letter: str) -> np.ndarray:
+    """n.x, or of velocities n.v."""
+    return sum(n * motion[f"{letter}{i}"] for i, n in enumerate(along, 1))
+
+
+def _stored(result: Result, name: str, point: Point, count: int) -> np.ndarray:
+    return result.one(name, point) if name in result else np.full(count, np.nan)

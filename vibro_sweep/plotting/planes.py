@@ -22,10 +22,12 @@ from vibro_sweep.plotting.style import (
     axis_name,
     edges,
     exponent,
+    grazing_of,
 )
 
 _OF_A_POINT = {one.name: one.label for one in VARIABLES if not one.dimensions}
 
+CURVES = {"b_star": DASHES, "b_right": DASHES, "b_left": ":"}
 ROOM = 4.5  # points (1/72 inch) around a period that is written into the plane
 COARSE = 400  # cells a side among which places for the periods are sought
 
@@ -65,30 +67,28 @@ def plane(result: Result):
 
 
 def _grazing_curve(ax, result):
-    """b* of Theorem 1 where b is one of the axes: above it the mass can swing freely."""
+    """b* of Theorem 1 where b is one of the axes, or that of each stop: above it the mass can swing freely."""
     keys = list(result.sweep)
     if "b" not in keys:
         return
     other = keys[1 - keys.index("b")]
-    curve = result.grazing(other)
-    if curve is None:
-        return
     order = np.argsort(result.sweep[other])
-    line = result.sweep[other][order], curve[order]
     frame = ax.get_xlim(), ax.get_ylim()
-    for style in ({"color": "white", "lw": 2.2}, {"color": INK, "lw": 1.0, "ls": DASHES, "gid": "grazing"}):
-        ax.plot(*(line if keys[1] == "b" else line[::-1]), **style)
+    for name, curve in result.grazing(other).items():
+        line = result.sweep[other][order], curve[order]
+        for style in ({"color": "white", "lw": 2.2}, {"color": INK, "lw": 1.0, "ls": CURVES[name], "gid": "grazing"}):
+            ax.plot(*(line if keys[1] == "b" else line[::-1]), label=grazing_of(name), **style)
     ax.set(xlim=frame[0], ylim=frame[1])
 
 
 def _legend(fig, grid, gaps):
     handles = []
-    if any(line.get_gid() == "grazing" for ax in grid for line in ax.lines):
-        handles.append(Line2D([], [], color=INK, lw=1.0, ls=DASHES, label="grazing of the free motion, $b^*$"))
+    curves = {line.get_label(): line.get_linestyle() for line in grid[0].lines if line.get_gid() == "grazing"}
+    handles += [Line2D([], [], color=INK, lw=1.0, ls=style, label=label) for label, style in curves.items()]
     if gaps:
         handles.append(Patch(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="////", label="no number"))
     if handles:
-        fig.legend(handles=handles, loc="outside lower center", ncols=2)
+        fig.legend(handles=handles, loc="outside lower center", ncols=min(3, len(handles)))
 
 
 def _maps(result):

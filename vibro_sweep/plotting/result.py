@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibro_sweep.model.parameters import NAMES
+from vibro_sweep.model.catalogue import OF_A_SYSTEM
+from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
@@ -132,18 +133,38 @@ class Result:
         return None if value is None else float(value)
 
     def stops(self, place) -> dict[int, float]:
-        """Where the stops are: side (+1 right, -1 left) -> x1."""
-        b = self.number("b", place)
-        sides = {"right": (1,), "left": (-1,)}.get(self.settings.get("stops"), (1, -1))
-        return {} if b is None else {side: side * b for side in sides}
+        """Where the stops are at a place in the sweep: side (+1 right, -1 left) -> the gap there."""
+        b, offset = self.number("b", place), self.number("offset", place) or 0.0
+        return {} if b is None else {side: offset + side * b for side in self.sides}
 
-    def grazing(self, key) -> np.ndarray | None:
-        """b* of Theorem 1 at each value of a swept key (n,), if it depends on no other; None where nobody tells."""
-        if "b_star" in self._along:
-            keys, values = self._along["b_star"]
-            return values if keys == (key,) else None
-        value = self.number("b_star")
-        return None if value is None else np.full(len(self.sweep[key]), value)
+    @property
+    def sides(self) -> tuple[int, ...]:
+        """The stops that there are."""
+        return {"right": (1,), "left": (-1,)}.get(self.settings.get("stops"), (1, -1))
+
+    @property
+    def masses(self) -> int:
+        """As many as have a displacement in the file; two where it has none."""
+        names = (f"{of}x{n}" for n in range(1, MOST_MASSES + 1) for of in ("", "trajectory_"))
+        return max((int(name.partition("x")[2]) for name in names if name in self), default=2)
+
+    @property
+    def along(self) -> np.ndarray | None:
+        """n of the gap n.x, (N,); None where that is x1."""
+        found = self.settings.get("along")
+        return None if found is None else np.asarray(found, float)
+
+    def grazing(self, key) -> dict[str, np.ndarray]:
+        """Clearances at which the free motion touches the stops, at each value of a swept key, if they depend on no
+        other: name -> (n,). b* where it is that of both."""
+        found = {}
+        for name in ("b_star", *(f"b_{'right' if side > 0 else 'left'}" for side in self.sides)):
+            if name in self._along:
+                keys, values = self._along[name]
+                found |= {name: values} if keys == (key,) else {}
+            elif (value := self.number(name)) is not None:
+                found[name] = np.full(len(self.sweep[key]), value)
+        return found
 
     def interval(self, error) -> np.ndarray:
         """How far an exponent with this standard error must be from zero to differ from it."""
@@ -186,7 +207,7 @@ class Result:
 
     def title(self, what="") -> str:
         """What is shown, the numbers that are the same at every point, and how much is there if not all."""
-        numbers = ", ".join(equation(key, self.settings[key]) for key in NAMES if key in self.settings)
+        numbers = ", ".join(equation(key, self.settings[key]) for key in OF_A_SYSTEM if key in self.settings)
         stops = self.settings.get("stops")
         if stops in ("right", "left"):
             numbers += f", {stops} stop only"

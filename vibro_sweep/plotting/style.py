@@ -69,6 +69,25 @@ def axis_name(key) -> str:
     return f"{NUMBERS[key].label} {symbol(key)}" if key in NUMBERS else key
 
 
+def grazing_of(name) -> str:
+    """What a grazing clearance is, for a legend."""
+    of = {"b_right": " at the right stop", "b_left": " at the left stop"}.get(name, "")
+    return f"grazing of the free motion{of}, {symbol(name)}"
+
+
+def stop_name(result, side) -> str:
+    """A stop as a line in a picture, with where it stands."""
+    shifted = "offset" in result.sweep or result.settings.get("offset")
+    coordinate = symbol("x1") if result.along is None else symbol("gap")
+    where = f"{symbol('offset')[1:-1] if shifted else ''}{('+' if shifted else '') if side > 0 else '-'}b"
+    return f"{'right' if side > 0 else 'left'} stop, ${coordinate[1:-1]} = {where}$"
+
+
+def exponent_colour(i) -> str:
+    """Of the i-th exponent, from 0; the fifth and all below have one."""
+    return EXPONENTS[i] if i < len(EXPONENTS) else FAINT
+
+
 def at_section(name) -> str:
     """A coordinate of section points, as an axis label."""
     return f"{symbol(name)} at $t = 0$ mod $T$"

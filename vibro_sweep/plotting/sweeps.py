@@ -1,24 +1,22 @@
 """Pictures over one swept parameter: bifurcation diagram, Lyapunov spectrum, impacts."""
 
 import numpy as np
-from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from vibro_sweep.model.state import STATE
+from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import density
 from vibro_sweep.plotting.result import PlotError, Result
+from vibro_sweep.plotting.spectrum import branches, curve, margin_note, spectrum
 from vibro_sweep.plotting.style import (
     ARROWS,
     BRANCHES,
     CHAOS,
     DASHES,
-    EXPONENTS,
     FAINT,
     GRAZING,
     INK,
     LEFT,
-    PER_TIME,
     RIGHT,
     at_section,
     axis_name,
@@ -26,13 +24,15 @@ from vibro_sweep.plotting.style import (
     edges,
     exponent,
     limits,
+    stop_name,
+    symbol,
 )
 
 MANY = 100_000  # from here on single points make a blot, and are counted instead
-_BRANCH_LINES = {
-    "up": {"lw": 1.6, "alpha": 0.5},
-    "down": {"lw": 0.8},
-}  # the wide one shows beside the narrow one
+GRAZES = {  # the stop, and how it is drawn
+    "b_right": (1, (0, (4, 2))),
+    "b_left": (-1, (0, (1, 1))),
+}
 
 
 def shows_bifurcation(result: Result) -> bool:
@@ -54,7 +54,7 @@ def bifurcation(result: Result):
     """Section points over the parameter; below, on the same axis, spectrum and impacts where stored."""
     panels = [(3.6, _section)]
     if shows_lyapunov(result):
-        panels.append((1.7, _spectrum))
+        panels.append((1.7, spectrum))
     if shows_impacts(result):
         panels.append((0.9, _impact_counts))
     return _stack(result, panels if result.ax is None else panels[:1], "Bifurcation diagram")
@@ -62,7 +62,7 @@ def bifurcation(result: Result):
 
 def lyapunov(result: Result):
     """The Lyapunov spectrum over the parameter."""
-    return _stack(result, [(3.6, _spectrum)], "Lyapunov exponents")
+    return _stack(result, [(3.6, spectrum)], "Lyapunov exponents")
 
 
 def impacts(result: Result):
@@ -72,7 +72,11 @@ def impacts(result: Result):
 
 def section_variables(result: Result) -> tuple[str, ...]:
     """Coordinates of the section points in the file, the one that is drawn by default first."""
-    names = ("v1", "x1", "phase", "x2", "v2") if "phase" in result else STATE
+    names = state(MOST_MASSES)
+    if "phase" in result:
+        names = ("v1", "x1", "phase", *names[2:])
+    elif "gap" in result:
+        names = ("gap", *names)
     return tuple(name for name in names if name in result)
 
 
@@ -105,8 +109,12 @@ def _stack(result, panels, what):
 
 
 def mark_grazing(axes, result):
-    """In each panel over b: b* of Theorem 1, and where else the map was expanded."""
-    marks = [("b_star", "grazing, $b^*$", (0, (4, 2))), ("expand_at", "expansion of the mapping", ":")]
+    """In each panel over b: where the free motion touches the stops, and where else the map was expanded."""
+    marks = [("b_star", f"grazing, {symbol('b_star')}", (0, (4, 2)))]
+    marks += [
+        (name, f"grazing, {symbol(name)}", style) for name, (side, style) in GRAZES.items() if side in result.sides
+    ]
+    marks.append(("expand_at", "expansion of the mapping", ":"))
     low, high = sorted((min(result.sweep["b"]), max(result.sweep["b"])))
     for name, label, style in marks:
         b = result.number(name)
@@ -171,8 +179,8 @@ def _section(ax, result, values, order):
             _dots(ax, values, points[:, i], count, scale, color=BRANCHES[start])
     else:
         _dots(ax, values, points, count, color=INK)
-    if name == "x1" and not at_impact:
-        _stop_lines(ax, result, values)
+    if name == ("x1" if result.along is None else "gap") and not at_impact:
+        _stop_lines(ax, result, values, order)
 
 
 def _dots(ax, values, points, count, scale=1.0, **style):
@@ -182,102 +190,16 @@ def _dots(ax, values, points, count, scale=1.0, **style):
     ax.plot(x[there], points[there], ".", markersize=size, markeredgewidth=0, rasterized=True, **style)
 
 
-def _stop_lines(ax, result, values):
+def _stop_lines(ax, result, values, order):
     """The stops, where they pass through the picture: a section point on this line is about to touch."""
     low, high = ax.get_ylim()
-    for side, stop in result.stops((0,)).items():
-        x1 = side * values if "b" in result.sweep else np.full(len(values), stop)
-        if ((low < x1) & (x1 < high)).any():
-            label = f"{'right' if side > 0 else 'left'} stop, $x_1 = {'-' * (side < 0)}b$"
+    places = [result.stops((place,)) for place in order]
+    for side in result.sides if places[0] else ():
+        gap = np.array([stops[side] for stops in places])
+        if ((low < gap) & (gap < high)).any():
             style = DASHES if side > 0 else ":"
-            ax.plot(values, x1, color=FAINT, lw=0.9, ls=style, zorder=1, gid="stop", label=label)
-
-
-def _spectrum(ax, result, values, order):
-    exponents = result.array("lyapunov")[order]  # (values, starts, 4)
-    exponents[~np.isfinite(exponents)] = np.nan  # directions lost by sticking leave a gap
-    error = result.array("lyapunov_error")[order] if "lyapunov_error" in result else np.zeros(exponents.shape)
-    _tint(ax, values, result.is_chaotic()[order].any(axis=1))
-    ax.axhline(0, color=INK, lw=0.6, zorder=1)
-    ax.set_ylabel(f"{exponent(1 if result.follow else 'i')} {PER_TIME}")
-    if result.follow:
-        _branches(ax, values, exponents[:, :, 0])
-        for i, name in enumerate(BRANCHES):
-            _error_band(ax, values, exponents[:, i, 0], result.interval(error[:, i, 0]), BRANCHES[name])
-        return
-    for i in reversed(range(4)):  # lambda_1 on top
-        _curve(ax, values, exponents[:, :, i], color=EXPONENTS[i], label=exponent(i + 1))
-        if len(result.starts) == 1:
-            _error_band(ax, values, exponents[:, 0, i], result.interval(error[:, 0, i]), EXPONENTS[i])
-    _keep_the_leading_ones_legible(ax, exponents)
-    if not result.failed:
-        _name_curves(ax, exponents)
-
-
-def _keep_the_leading_ones_legible(ax, exponents):
-    """An exponent many times further down than the first three (strong damping, little restitution) is cut off."""
-    known = exponents[..., :3][np.isfinite(exponents[..., :3])]
-    if known.size:
-        span = max(known.max(), 0.0) - known.min()
-        low, high = ax.get_ylim()
-        ax.set_ylim(bottom=max(low, known.min() - 1.5 * span) if span > 0 else low, top=high)
-
-
-def _error_band(ax, values, ordinates, reach, colour):
-    """How far the errors reach to each side, where that is wider than the line."""
-    low, high = ax.get_ylim()
-    if np.nanmax(reach, initial=0) > 2e-3 * (high - low):
-        style = {"color": colour, "alpha": 0.3, "lw": 0, "zorder": 1.5, "rasterized": True, "gid": "error"}
-        ax.fill_between(values, ordinates - reach, ordinates + reach, **style)
-
-
-def _branches(ax, values, ordinates):
-    for i, name in enumerate(BRANCHES):
-        _curve(ax, values, ordinates[:, i], color=BRANCHES[name], label=ARROWS[name], **_BRANCH_LINES[name])
-
-
-def _tint(ax, values, chosen):
-    """The cells of the chosen values, from bottom to top; neighbours are one rectangle."""
-    borders = edges(values)
-    first, last = np.diff(np.concatenate([[False], chosen, [False]]).astype(int)).nonzero()[0].reshape(-1, 2).T
-    if len(first):
-        cells = [
-            [(left, 0), (right, 0), (right, 1), (left, 1)]
-            for left, right in zip(borders[first], borders[last], strict=True)
-        ]
-        transform = ax.get_xaxis_transform()
-        tint = PolyCollection(cells, color=CHAOS, linewidth=0, transform=transform, zorder=0, gid="chaos")
-        ax.add_collection(tint, autolim=False)
-
-
-def _curve(ax, values, ordinates, **style):
-    """A line; dots where several attractors would make it jump to and fro, or where it has few points."""
-    if ordinates.ndim == 2 and ordinates.shape[1] > 1:
-        style |= {"ls": "none", "marker": ".", "markersize": 2.2, "markeredgewidth": 0, "rasterized": True}
-    elif len(values) < 60:
-        style |= {"marker": ".", "markersize": 4}
-    ax.plot(values, ordinates, **style)
-
-
-def _name_curves(ax, exponents):
-    """Each exponent's symbol at its right end, pushed apart where they are the same."""
-    low, high = ax.get_ylim()
-    known = [curve[np.isfinite(curve)] for curve in np.moveaxis(exponents, -1, 0)]
-    ends = [(curve[-1] - low) / (high - low) if curve.size else 0.0 for curve in known]
-    inches = ax.get_position().height * ax.figure.get_figheight()
-    apart = 0.16 / inches  # of which a line of text needs so many
-    for _ in range(50):
-        for i in range(3):
-            push = max(0.0, apart - (ends[i] - ends[i + 1])) / 2
-            ends[i] += push
-            ends[i + 1] -= push
-    for i, end in enumerate(ends):
-        beyond = "" if known[i].size and known[i][-1] >= low else r"\,\downarrow" if known[i].size else r" = -\infty"
-        _margin_note(ax, max(end, 0.03), exponent(i + 1, beyond), EXPONENTS[i])
-
-
-def _margin_note(ax, height, text, colour, **style):
-    ax.annotate(text, (1.012, height), xycoords="axes fraction", va="center", color=colour, **style)
+            label = stop_name(result, side)
+            ax.plot(values, gap, color=FAINT, lw=0.9, ls=style, zorder=1, gid="stop", label=label)
 
 
 def _impact_counts(ax, result, values, order):
@@ -287,15 +209,15 @@ def _impact_counts(ax, result, values, order):
     of_both = "\nboth stops" if len(result.starts) > 1 else ""
     ax.set_ylabel(("impacts" if per == 1 else "impacts / $T$") + of_both)
     if result.follow:
-        _branches(ax, values, right + left)
+        branches(ax, values, right + left)
     elif len(result.starts) > 1:  # mirror images exchange right and left: only the sum is worth comparing
-        _curve(ax, values, right + left, color=INK)
+        curve(ax, values, right + left, color=INK)
     else:
-        _curve(ax, values, right, color=RIGHT, label="right", lw=1.6, alpha=0.6)
-        _curve(ax, values, left, color=LEFT, label="left", lw=0.8)
+        curve(ax, values, right, color=RIGHT, label="right", lw=1.6, alpha=0.6)
+        curve(ax, values, left, color=LEFT, label="left", lw=0.8)
         stops = result.settings.get("stops")
         if stops != "left":
-            _margin_note(ax, 0.75, "right", RIGHT, fontsize=8)
+            margin_note(ax, 0.75, "right", RIGHT, fontsize=8)
         if stops != "right":
-            _margin_note(ax, 0.25, "left", LEFT, fontsize=8)
+            margin_note(ax, 0.25, "left", LEFT, fontsize=8)
     ax.set_ylim(bottom=0)

@@ -2,13 +2,13 @@
 
 from vibro_sweep.model.observables import WORDS
 
-from .form import SceneForm
+from .fields import Form
 from .problems import problem
 
 
-def combination_problems(form: SceneForm, data: dict) -> list[str]:
+def combination_problems(form: Form, data: dict) -> list[str]:
     """What is wrong with a scene of the right form; data: as it was read."""
-    section, stops = form.section, form.system.stops
+    section, stops = form.section, getattr(form.system, "stops", "both")
     problems = _map_problems(form)
     for name in sorted(form.observe):
         if data.get("observe", []).count(name) > 1:
@@ -26,7 +26,7 @@ def combination_problems(form: SceneForm, data: dict) -> list[str]:
     return problems
 
 
-def _map_problems(form: SceneForm) -> list[str]:
+def _map_problems(form: Form) -> list[str]:
     if form.model == "flow":
         text = "belongs to `model: map`; leave it out"
         return [
@@ -38,6 +38,12 @@ def _map_problems(form: SceneForm) -> list[str]:
     if form.system.tau != "grazing" or (form.sweep and "tau" in form.sweep.model_fields_set):
         text = "the map's section is the phase of the graze; leave tau out, or say grazing"
         problems.append(problem("system.tau", form.system.tau, text))
+    for key in ("type", "offset", "R_left", "mu_c"):
+        value, default = getattr(form.system, key, None), type(form.system).model_fields.get(key)
+        swept = form.sweep is not None and key in form.sweep.model_fields_set
+        if default is not None and (value != default.default or swept):
+            text = "the map is that of the paper's oscillator with equal stops and proportional damping; leave it out"
+            problems.append(problem(f"sweep.{key}" if swept else f"system.{key}", None if swept else value, text))
     if form.trajectory:
         text = "the map has no motion between its points; leave it out"
         problems.append(problem("trajectory", form.trajectory.model_dump(), text))

@@ -9,34 +9,14 @@ from pydantic import ValidationError
 from vibro_sweep.model.observables import WORDS
 
 from . import slips
-from .form import (
-    CountAxis,
-    FollowStart,
-    Form,
-    ListAxis,
-    PhysicalSystemForm,
-    RandomStart,
-    SceneForm,
-    StateStart,
-    StepAxis,
-    SystemForm,
-)
+from .fields import Form
+from .form import StepAxis, tagged
 from .slips import meant
 
 MAX_LINES = 20
 OBSERVATIONS = tuple(WORDS)
 
-_TAGGED = {
-    "numbers": SystemForm,
-    "physical units": PhysicalSystemForm,
-    "axis by step": StepAxis,
-    "axis by number": CountAxis,
-    "axis of values": ListAxis,
-    "one start": StateStart,
-    "random start": RandomStart,
-    "followed start": FollowStart,
-}
-_TAGS = {*_TAGGED, "tau as a number", "tau as a word"}
+_TAGS = {"tau as a number", "tau as a word"}
 _AXIS_FORMS = "{start, stop, step}, {start, stop, num} or {values}"
 _YAML_WORDS = {"NaN": ".nan", "Infinity": ".inf", "-Infinity": "-.inf"}
 
@@ -70,12 +50,12 @@ def _whole(value):
     return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < 1e16 else value
 
 
-def form_problems(error: ValidationError, data: object = None) -> list[str]:
-    """One line per problem that pydantic found in the data of a scene."""
+def form_problems(error: ValidationError, form: type[Form], data: object = None) -> list[str]:
+    """One line per problem that pydantic found in the data of a scene of this form."""
     items = error.errors()
     unknown = {item["loc"]: item for item in items if item["type"] == "extra_forbidden"}
-    instead = {(*loc[:-1], meant(loc[-1], _place(loc)[0].model_fields)) for loc in unknown}
-    physical = [loc for loc in unknown if loc[:-1] == ("system", "numbers") and loc[-1] in slips.PHYSICAL]
+    instead = {(*loc[:-1], meant(loc[-1], _place(loc, form)[0].model_fields)) for loc in unknown}
+    physical = [loc for loc in unknown if loc[0] == "system" and loc[-1] in slips.PHYSICAL]
     lines = []
     for item in items:
         if item["type"] == "missing" and item["loc"] in instead:
@@ -86,13 +66,13 @@ def form_problems(error: ValidationError, data: object = None) -> list[str]:
                 f"system: {names} are physical quantities; write system: {{physical: {{M1: ..., M2: ..., ...}}}}"
             )
         else:
-            lines.append(_line(item, data))
+            lines.append(_line(item, form, data))
     return list(dict.fromkeys(lines))
 
 
-def _line(item, data) -> str:
+def _line(item, form, data) -> str:
     kind, given, ctx = item["type"], item["input"], item.get("ctx", {})
-    model, path = _place(item["loc"])
+    model, path = _place(item["loc"], form)
     keys = list(model.model_fields)
     if kind == "missing":
         both = path.startswith("sweep.") and path.endswith(".step")
@@ -152,12 +132,12 @@ def _line_of(text: str, lines: Mapping[str, int]) -> int | None:
     return lines.get(found[-1] if found else re.split(r" =|: ", text)[0].rpartition(".")[0])
 
 
-def _place(loc) -> tuple[type[Form], str]:
+def _place(loc, form: type[Form]) -> tuple[type[Form], str]:
     """The form in which the last key of `loc` stands (or which it is), and the key path without tags."""
-    model, path = SceneForm, ""
+    model, path, forms = form, "", tagged(form)
     for part in loc:
-        if part in _TAGGED:
-            model = _TAGGED[part]
+        if part in forms:
+            model = forms[part]
         elif isinstance(part, int):
             path += f"[{part}]"
         elif part not in _TAGS:

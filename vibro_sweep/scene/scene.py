@@ -10,18 +10,17 @@ from pathlib import Path
 import numpy as np
 from pydantic import ValidationError
 
-from vibro_sweep.model.grazing import with_phase
-from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.parameters import NAMES, ParameterError, check_value
-from vibro_sweep.model.state import START
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.grid import grid
+from vibro_sweep.model.models import DEFAULT
+from vibro_sweep.model.state import START, start
 
-from .axes import axis_values
 from .combinations import combination_problems
-from .form import PhysicalSystemForm, SceneForm
-from .problems import SceneError, form_problems, located, problem
-from .resonance import phase_problems
+from .form import scene_form
+from .problems import SceneError, form_problems, located
 from .size import size_problems
-from .starts import Start, start_of, start_problems
+from .starts import Start, start_of, start_problems, stops_of
+from .system import kind_of, sweep_of, system_of
 from .written import changed, data_of, yaml_of
 from .yaml_text import MAX_BYTES, YAMLTextError, lines_of, read_yaml
 
@@ -50,7 +49,7 @@ class Scene:
 
     name: str
     given: str | None  # the YAML text that it was read from
-    system: System
+    system: AnyOscillator
     model: str
     order: int  # of the map
     expand_at: float | None  # clearance at which the map is expanded; None: b*
@@ -105,6 +104,14 @@ class Scene:
         return self.sweep_shape + ((self.n_starts,) if self.n_starts > 1 else ())
 
     @property
+    def held(self) -> bool:
+        """Whether orbits start at rest and zero is behind a stop somewhere: it holds them there."""
+        if not self.start.rest or any(key in START.values() for key in self.sweep):
+            return False
+        low, high = stops_of(self.system, self.sweep)
+        return not low <= 0 <= high
+
+    @property
     def n_points(self) -> int:
         """Orbits in all."""
         return math.prod(self.shape)
@@ -117,20 +124,26 @@ class Scene:
 
     def __str__(self) -> str:
         """What is computed, in a few lines."""
-        system = ", ".join(f"{name} = {getattr(self.system, name)}" for name in NAMES if name not in self.sweep)
+        known = {
+            name: value for name, value in self.system.numbers.items() if value not in (None, _default(self, name))
+        }
+        system = ", ".join(f"{name} = {value}" for name, value in known.items() if name not in self.sweep)
+        options = ", ".join(f"{name} = {value}" for name, value in self.system.options.items() if value is not None)
+        kind = "" if self.system.model.name == DEFAULT else f"{self.system.model.name}: "
         axes = [f"{key} = {v[0]:g} .. {v[-1]:g} ({len(v):,} values)" for key, v in self.sweep.items()]
-        state = dict(zip(START.values(), self.start.state, strict=True))
+        state = dict(zip(start(self.system.masses), self.start.state, strict=self.start.kind != "random"))
+        names = ", ".join(name.removeprefix("start_") for name in state)
         starts = {
-            "state": "from x1, v1, x2, v2 = "
+            "state": f"from {names} = "
             + ", ".join("swept" if name in self.sweep else f"{value:g}" for name, value in state.items()),
             "random": f"from {self.start.count:,} random states, seed {self.start.seed}",
-            "follow": f"following the sweep ({self.start.direction}), the first from x1, v1, x2, v2 = "
+            "follow": f"following the sweep ({self.start.direction}), the first from {names} = "
             + ", ".join(f"{value:g}" for value in state.values()),
         }
         section = "t = 0 mod T" if self.section.kind == "phase" else f"impacts on the {self.section.stop} stop"
         lines = [
             " x ".join(axes) or "one point",
-            f"  system    {system}, stops = {self.system.stops}",
+            f"  system    {kind}{', '.join(filter(None, [system, options]))}",
             f"  orbits    {starts[self.start.kind]}; {self.transient:,} + {self.record:,} forcing periods",
             f"  section   {section}",
             f"  observe   {', '.join(sorted(self.observe)) or 'nothing'}",
@@ -148,16 +161,9 @@ class Scene:
         return grid(self.system, self.sweep)
 
 
-def grid(system: System, axes: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Every number of the system by name, `tau` resolved, and the axes, at each point of a grid of values for some.
-
-    Read-only arrays with one dimension for each of `axes`, in their order.
-    """
-    numbers = {name: getattr(system, name) for name in NAMES}
-    numbers.update(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
-    numbers = with_phase(numbers)
-    shape = tuple(len(values) for values in axes.values())
-    return {name: np.broadcast_to(value, shape) for name, value in numbers.items()}
+def _default(scene: Scene, name: str):
+    """The value of a number that need not be told: that of an offset, which most have not."""
+    return 0.0 if name == "offset" else None
 
 
 def load_scene(path: str | Path) -> Scene:
@@ -204,14 +210,16 @@ def parse_scene(text: str, name: str = "scene") -> Scene:
 
 def scene_of(data: object, name: str, given: str | None = None) -> Scene:
     """A Scene from the data that its YAML text, if there is one, holds. Raises SceneError."""
+    kind, masses = kind_of(data, name)
+    scheme = scene_form(kind, masses)
     try:
-        form = SceneForm.model_validate(data)
+        form = scheme.model_validate(data)
     except ValidationError as error:
-        raise SceneError(name, form_problems(error, data)) from None
+        raise SceneError(name, form_problems(error, scheme, data)) from None
 
-    sweep, problems = _sweep(form, data.get("sweep"))
-    system, more = _system(form, sweep)
-    problems += more + start_problems(form, sweep, system) + combination_problems(form, data)
+    sweep, problems = sweep_of(form, data.get("sweep"), kind, masses)
+    system, more = system_of(form, sweep, kind, masses)
+    problems += more + start_problems(form, sweep, system, masses) + combination_problems(form, data)
     if problems:
         raise SceneError(name, problems)
     trajectory = form.trajectory and Trajectory(form.trajectory.periods, form.trajectory.samples)
@@ -223,7 +231,7 @@ def scene_of(data: object, name: str, given: str | None = None) -> Scene:
         order=form.order,
         expand_at=form.expand_at,
         sweep=sweep,
-        start=start_of(form.start),
+        start=start_of(form.start, masses),
         transient=form.orbit.transient,
         record=form.orbit.record,
         section=Section(form.section.kind, form.section.stop),
@@ -231,61 +239,6 @@ def scene_of(data: object, name: str, given: str | None = None) -> Scene:
         trajectory=trajectory,
         picture=form.picture,
     )
-    problems = size_problems(scene) or phase_problems(scene)
-    if problems:
+    if problems := size_problems(scene):
         raise SceneError(name, problems)
     return scene
-
-
-def _sweep(form: SceneForm, keys) -> tuple[dict[str, np.ndarray], list[str]]:
-    """The axes in the order of the text, and what is wrong with them; an axis with a problem is left out."""
-    if form.sweep is None:
-        return {}, []
-    if not 1 <= len(keys) <= 2:
-        return {}, [problem("sweep", list(keys), "must have one key or two, or be left out")]
-    sweep, problems = {}, []
-    for key in keys:
-        values, wrong = axis_values(f"sweep.{key}", getattr(form.sweep, key))
-        if values is not None and key in NAMES:
-            wrong = _number_problems("sweep", key, values)
-        if not wrong:
-            sweep[START.get(key, key)] = values
-        problems += wrong
-    return sweep, problems
-
-
-def _number_problems(path: str, key: str, value) -> list[str]:
-    try:
-        check_value(key, value)
-    except ParameterError as error:
-        return [problem(f"{path}.{key}", error.value, f"must be {error.allowed}")]
-    return []
-
-
-def _system(form: SceneForm, sweep) -> tuple[System | None, list[str]]:
-    """The base system with the first swept values in it, or None and what is wrong."""
-    first = {key: float(values[0]) for key, values in sweep.items() if key in NAMES}
-    if isinstance(form.system, PhysicalSystemForm):
-        physical = form.system.physical.model_dump()
-        try:
-            system = System.physical(**physical, tau=form.system.tau, stops=form.system.stops)
-            return system.replace(**first), []
-        except ParameterError as error:
-            path = "system.physical" if error.key in physical else "system"
-            return None, [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]
-    swept = form.sweep.model_fields_set.intersection(NAMES) if form.sweep else set()
-    problems, numbers = [], {}
-    for key in NAMES:
-        value = getattr(form.system, key)
-        if value is None:
-            if key not in swept:
-                problems.append(f"system.{key}: missing; it must be given unless it is swept")
-        elif value != "grazing":
-            problems += _number_problems("system", key, value)
-        numbers[key] = value
-    if problems or swept != first.keys():
-        return None, problems
-    try:
-        return System(**(numbers | first), stops=form.system.stops), []
-    except ParameterError as error:
-        return None, [problem(f"system.{error.key}", error.value, f"must be {error.allowed}")]

@@ -2,8 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from vibro_sweep.model.observables import OF_AN_IMPACT, WORDS
-from vibro_sweep.model.state import STATE
+from vibro_sweep.model.observables import WORDS, of_an_impact
 
 from .problems import problem
 
@@ -14,23 +13,42 @@ MAX_POINTS = 10**9
 MAX_NUMBERS = 10**11  # doubles in the file, about a terabyte
 MAX_AT_ONCE = 5 * 10**7  # doubles in memory that cannot be split: 400 MB
 
-POINT = len(STATE)  # doubles of a section point,
-IMPACT, SAMPLE = POINT + 3, POINT + 2  # a logged impact, a sample's time and state,
-TRAJECTORY = POINT + len(OF_AN_IMPACT)  # a stored sample, and an impact beside it
-FIXED = 300  # of an orbit, whatever is observed
+FIXED = 300  # of an orbit of two masses, whatever is observed
 COPIES = 4  # of what goes into the file: by dataset and as it is written
+
+
+def fixed_numbers(masses: int) -> int:
+    """Doubles of an orbit that it takes in any case."""
+    return FIXED * max(2, masses) ** 2 // 4
+
+
+def point_numbers(masses: int) -> int:
+    """Doubles of a section point."""
+    return 2 * masses
+
+
+def impact_numbers(masses: int) -> int:
+    """Doubles of an impact that is logged."""
+    return 2 * masses + 3
+
+
+def sample_numbers(masses: int) -> int:
+    """Doubles of a sample: its time and its state."""
+    return 2 * masses + 2
 
 
 def scratch_numbers(scene: "Scene") -> int:
     """Doubles that an orbit needs while it is computed, and that the next one uses again."""
     sought = any(WORDS[word].states for word in scene.observe)
     logged = "section" in scene.observe and scene.section.kind == "impact"
-    return scene.record * (POINT * sought + IMPACT * logged)
+    masses = scene.system.masses
+    return scene.record * (point_numbers(masses) * sought + impact_numbers(masses) * logged)
 
 
 def written_numbers(scene: "Scene") -> int:
-    """Doubles that an orbit leaves for the file, but for those of `FIXED`."""
-    recorded = POINT + (scene.section.kind == "impact") if "section" in scene.observe else 0
+    """Doubles that an orbit leaves for the file, but for those of `fixed_numbers`."""
+    each = point_numbers(scene.system.masses) + (not scene.system.gap_is_x1) + (scene.section.kind == "impact")
+    recorded = each if "section" in scene.observe else 0
     return recorded * scene.record + sum(_trajectory_numbers(scene).values())
 
 
@@ -38,17 +56,20 @@ def _trajectory_numbers(scene: "Scene") -> dict[str, int]:
     """Doubles of a trajectory by the key that they are due to: states and at most as many impacts; section points."""
     if not scene.trajectory:
         return {"trajectory.samples": 0, "trajectory.periods": 0}
+    point = point_numbers(scene.system.masses)
+    impact = len(of_an_impact(scene.system.masses, not scene.system.gap_is_x1))
     return {
-        "trajectory.samples": TRAJECTORY * scene.trajectory.samples,
-        "trajectory.periods": POINT * scene.trajectory.periods,
+        "trajectory.samples": (point + impact) * scene.trajectory.samples,
+        "trajectory.periods": point * scene.trajectory.periods,
     }
 
 
 def numbers_at_once(scene: "Scene") -> int:
     """Doubles in memory for the least part of a scene: an orbit, or all that start at a point to find attractors."""
     together = scene.n_starts if "attractors" in scene.observe else 1
-    samples = SAMPLE * scene.trajectory.samples if scene.trajectory else 0
-    return scratch_numbers(scene) + samples + together * (FIXED + COPIES * written_numbers(scene))
+    masses = scene.system.masses
+    samples = sample_numbers(masses) * scene.trajectory.samples if scene.trajectory else 0
+    return scratch_numbers(scene) + samples + together * (fixed_numbers(masses) + COPIES * written_numbers(scene))
 
 
 def size_problems(scene: "Scene") -> list[str]:

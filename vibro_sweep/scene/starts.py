@@ -1,11 +1,14 @@
 """Where the orbits of a scene begin."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.state import START, STATE
+import numpy as np
 
-from .form import FollowStart, RandomStart, SceneForm
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.state import START, state
+
+from .fields import Form
+from .form import FollowStart, RandomStart
 from .problems import problem
 
 
@@ -14,30 +17,32 @@ class Start:
     """Where orbits begin at t = 0. `kind`: "state" | "random" | "follow"."""
 
     kind: str = "state"
-    state: tuple[float, ...] = (0.0,) * len(STATE)  # (x1, v1, x2, v2); of a `follow`: of its first point
+    state: tuple[float, ...] = ()  # (x1, v1, ..., xN, vN); of a `follow`: of its first point
     count: int = 1  # random starts at each point
     seed: int = 0
     direction: str | None = None  # of a `follow`: "up" | "down" | "both"
+    # Nothing is said of the state: at rest, and where zero is behind a stop held by that. A state of zeros that is said
+    # is never behind one.
+    rest: bool = field(default=False, compare=False)
 
 
-def start_of(form) -> Start:
+def start_of(form: Form, masses: int) -> Start:
     """The Start that a form describes."""
     if isinstance(form, RandomStart):
         return Start("random", count=form.random, seed=form.seed)
+    values, names = tuple(getattr(form, name) for name in state(masses)), state(masses)
+    rest = not form.model_fields_set.intersection(names)
     if isinstance(form, FollowStart):
-        return Start("follow", state=_state(form), direction=form.follow)
-    return Start("state", state=_state(form))
+        return Start("follow", state=values, direction=form.follow, rest=rest)
+    return Start("state", state=values, rest=rest)
 
 
-def _state(form) -> tuple[float, ...]:
-    return tuple(getattr(form, name) for name in STATE)
-
-
-def start_problems(form: SceneForm, sweep, system: System | None) -> list[str]:
+def start_problems(form: Form, sweep, system: AnyOscillator | None, masses: int) -> list[str]:
     """What is wrong with the start, given or swept, in this system (None: it is wrong itself)."""
     if isinstance(form.start, FollowStart) and form.sweep is None:
         return [problem("start.follow", form.start.follow, "there is no sweep to follow")]
-    swept = [name for name in STATE if form.sweep and name in form.sweep.model_fields_set]
+    names = state(masses)
+    swept = [name for name in names if form.sweep and name in form.sweep.model_fields_set]
     for word in ("random", "follow"):
         if swept and hasattr(form.start, word):
             text = f"the sweep over {', '.join(swept)} says where orbits start; give one state or leave it out"
@@ -48,14 +53,40 @@ def start_problems(form: SceneForm, sweep, system: System | None) -> list[str]:
             return [problem(f"start.{name}", getattr(form.start, name), text)]
     if system is None or form.model == "map":  # points of the map may lie beyond the stops
         return []
-    path, values = "start.x1", [getattr(form.start, "x1", 0.0)]
-    if "x1" in swept:
-        path, values = "sweep.x1", sweep.get(START["x1"], [0.0])
-    b, origin = system.b, ""
-    if "b" in sweep:
-        b, origin = float(sweep["b"].min()), ", the smallest b of the sweep"
-    left, right = form.system.stops != "right", form.system.stops != "left"
-    for x1 in (float(max(values)), float(min(values))):
-        if (right and x1 > b) or (left and x1 < -b):
-            return [problem(path, x1, f"is behind a stop; |x1| must be <= {b!r}{origin}")]
-    return []
+    if isinstance(form.start, RandomStart):
+        nowhere = float(system.b) == 0 or 0 in sweep.get("b", [])
+        text = "random states lie within the clearance b, which is 0 here; give a state"
+        return [problem("start.random", form.start.random, text)] if nowhere else []
+    given = [name for name in names if name in swept or name in form.start.model_fields_set]
+    return _behind(form, sweep, system, names, swept) if given else []
+
+
+def _behind(form: Form, sweep, system: AnyOscillator, names, swept) -> list[str]:
+    """States with the gap behind a stop, at the corners of the sweep: both are linear in what is swept."""
+    along = system.linear.along
+    used = [name for i, name in enumerate(names[::2]) if along[i]]
+    path = next((f"sweep.{name}" for name in used if name in swept), f"start.{used[0]}")
+    gaps = np.zeros(1)
+    for i, name in enumerate(names[::2]):
+        values = sweep.get(START[name], [getattr(form.start, name)])
+        gaps = np.add.outer(gaps, along[i] * np.array([min(values), max(values)])).ravel()
+    low, high = stops_of(system, sweep)
+    if low <= gaps.min() and gaps.max() <= high:
+        return []
+    worst = float(gaps.max() if gaps.max() > high else gaps.min())
+    what = (
+        f"|x1| must be <= {high!r}"
+        if low == -high and system.gap_is_x1
+        else f"the gap must be from {low!r} to {high!r}"
+    )
+    origin = ", the smallest b of the sweep" if "b" in sweep else ""
+    return [problem(path, worst, f"is behind a stop; {what}{origin}")]
+
+
+def stops_of(system: AnyOscillator, sweep) -> tuple[float, float]:
+    """The narrowest positions of the stops in a sweep, infinite where there is none."""
+    b, offset = (sweep.get(name, [system.numbers.get(name, 0.0)]) for name in ("b", "offset"))
+    stops = system.options.get("stops", "both")
+    low = float(max(offset) - min(b)) if stops != "right" else -np.inf
+    high = float(min(offset) + min(b)) if stops != "left" else np.inf
+    return low, high

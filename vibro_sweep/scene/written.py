@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.parameters import NAMES
-from vibro_sweep.model.state import START, STATE
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.models import DEFAULT
+from vibro_sweep.model.state import START, start, state
 
 from .axes import axis_values
 from .form import CountAxis
@@ -26,7 +26,7 @@ def data_of(scene: "Scene") -> dict[str, Any]:
     data = {
         "system": _system(scene.system, scene.sweep),
         "sweep": {_KEYS.get(key, key): _axis(values) for key, values in scene.sweep.items()},
-        "start": _start(scene.start, scene.sweep),
+        "start": _start(scene.start, scene.sweep, scene.system.masses),
         "orbit": {"transient": scene.transient, "record": scene.record},
         "section": {"kind": scene.section.kind},
         "observe": sorted(scene.observe),
@@ -62,15 +62,17 @@ def yaml_of(data: Mapping[str, Any]) -> str:
 
 
 def _as_data(key: str, value):
-    if isinstance(value, System):
+    if isinstance(value, AnyOscillator):
         return _system(value, ())
     if isinstance(value, Start):
-        return _start(value, ())
+        return _start(value, (), len(value.state) // 2)
     if key == "sweep" and isinstance(value, Mapping):
         return {_KEYS.get(name, name): _axis_data(axis) for name, axis in value.items()}
     if key == "start" and not isinstance(value, (str, Mapping)):
-        state = _plain(value)
-        return dict(zip(STATE, state, strict=True)) if isinstance(state, list) and len(state) == len(STATE) else state
+        values = _plain(value)
+        if not isinstance(values, list) or len(values) % 2 or len(values) > len(START):
+            return values
+        return dict(zip(state(len(values) // 2), values, strict=True))
     if key in ("section", "trajectory") and not isinstance(value, (str, Mapping)):
         value = {name: getattr(value, name) for name in getattr(value, "__dataclass_fields__", {})} or value
     return _plain(value)
@@ -94,9 +96,18 @@ def _plain(value):
     return value
 
 
-def _system(system: System, swept) -> dict[str, Any]:
-    numbers = {name: getattr(system, name) for name in NAMES if name not in swept}
-    return numbers | {"stops": system.stops}
+def _system(system: AnyOscillator, swept) -> dict[str, Any]:
+    """Numbers and options that are not what they are if they are left out; those of lists that are swept stay."""
+    kind = {} if system.model.name == DEFAULT else {"type": system.model.name}
+    given = {one.name: getattr(system, one.name) for one in system.model.numbers if one.name not in swept}
+    left_out = {one.name: one.default for one in system.model.numbers if one.default is not None}
+    left_out["tau"] = None  # always told
+    numbers = {
+        name: _plain(value)
+        for name, value in given.items()
+        if value is not None and not np.array_equal(value, left_out.get(name)) and np.any(value != left_out.get(name))
+    }
+    return kind | numbers | {name: _plain(value) for name, value in system.options.items() if value is not None}
 
 
 def _axis(values: np.ndarray) -> dict[str, Any]:
@@ -109,11 +120,12 @@ def _axis(values: np.ndarray) -> dict[str, Any]:
     return {"values": values.tolist()}
 
 
-def _start(start: Start, swept) -> dict[str, Any]:
-    if start.kind == "random":
-        return {"random": start.count, "seed": start.seed}
-    given = {name: value for name, value in zip(STATE, start.state, strict=True) if value and START[name] not in swept}
-    return ({"follow": start.direction} if start.kind == "follow" else {}) | given
+def _start(given: Start, swept, masses: int) -> dict[str, Any]:
+    if given.kind == "random":
+        return {"random": given.count, "seed": given.seed}
+    named = zip(state(masses), start(masses), given.state, strict=True)
+    values = {name: value for name, dimension, value in named if value and dimension not in swept}
+    return ({"follow": given.direction} if given.kind == "follow" else {}) | values
 
 
 def _flow(value) -> str:

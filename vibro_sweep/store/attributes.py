@@ -4,12 +4,11 @@ lie in its heap, which has none."""
 import h5py
 import numpy as np
 
+from vibro_sweep.model import catalogue
+
 # the attributes of a file that hold a number, or a word, for all points (`numbers.attributes`)
-NUMBERS = (
-    *("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau", "b_star", "order", "expand_at", "transient", "record"),
-    *("start_x1", "start_v1", "start_x2", "start_v2"),
-)
-WORDS = ("stops", "model", "section", "section_stop")
+NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "record")
+WORDS = ("stops", "model", "type", "section", "section_stop")
 
 
 def set_text(of: h5py.File | h5py.Dataset, name: str, value: str) -> None:

@@ -12,7 +12,17 @@ import numpy as np
 
 from vibro_sweep.model.catalogue import AXES
 from vibro_sweep.model.exponents import RUNNING, periods_read
-from vibro_sweep.model.observables import AVERAGED, DIMENSIONS, TRAJECTORY, Dimension, Variable, asked_for
+from vibro_sweep.model.observables import (
+    DIMENSIONS,
+    TRAJECTORY,
+    Dimension,
+    Variable,
+    asked_for,
+    averaged,
+)
+from vibro_sweep.model.observables import (
+    dimensions as dimensions_of,
+)
 from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import numbers
@@ -28,7 +38,8 @@ CHECKSUMS = {"fletcher32": True, "compression": "gzip", "compression_opts": 0}
 def quantities(scene: Scene) -> dict[str, Variable]:
     """The datasets that a scene asks for; what it does not observe is not there."""
     asked = scene.observe | {TRAJECTORY} if scene.trajectory else scene.observe
-    return asked_for(asked, at_impacts=scene.section.kind == "impact")
+    system = scene.system
+    return asked_for(asked, scene.section.kind == "impact", system.masses, not system.gap_is_x1)
 
 
 def coordinates(scene: Scene) -> dict[str, np.ndarray]:
@@ -43,11 +54,11 @@ def coordinates(scene: Scene) -> dict[str, np.ndarray]:
 
 def _own_axis(scene: Scene, name: str) -> np.ndarray:
     """The coordinate of a dimension that is no key of the sweep."""
-    trajectory, extent = scene.trajectory, DIMENSIONS[name].extent
+    trajectory, extent = scene.trajectory, dimensions_of(scene.system.masses)[name].extent
     if name == "sample":
         return np.arange(scene.record)
     if name == "averaged":
-        return np.array(AVERAGED)
+        return np.array(averaged(scene.system.masses))
     if name == "elapsed":
         parts = min(RUNNING, scene.record)
         return np.array([periods_read(m, parts, scene.record) for m in range(parts)])
@@ -107,7 +118,7 @@ def create(file: h5py.File, scene: Scene) -> None:
         else:
             file.create_dataset(name, data=values, chunks=chunk_shape(scene, values.shape, 8), **CHECKSUMS)
         file[name].make_scale(name)
-        _describe(file[name], AXES[name])
+        _describe(file[name], scene.system.described.get(name, AXES.get(name)))
     following = _create_following(file, scene)
     if following:
         set_text(file, "coordinates", " ".join(following))

@@ -1,7 +1,8 @@
 """The resolved numbers of a scene, as its file holds them: every reader has them without the scene's text.
 
 A number that is the same at all points is an attribute of the file; one that is swept is a coordinate; and one that
-follows from swept ones (b*, and tau where it is `grazing`) is a dataset over the keys that it depends on.
+follows from swept ones (b*, and tau where it is `grazing`) is a dataset over the keys that it depends on. What has its
+default (no offset, R_left as R, mu_c as mu_k) is not told.
 """
 
 import math
@@ -11,10 +12,12 @@ from typing import Any
 import numpy as np
 
 from vibro_sweep.model.grazing import grazing_clearance
-from vibro_sweep.model.parameters import FOLLOWING, FREE_MOTION
-from vibro_sweep.model.state import START
+from vibro_sweep.model.grid import grid, linears
+from vibro_sweep.model.linear import static_state, steady_gain
+from vibro_sweep.model.models import DEFAULT
+from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.state import start
 from vibro_sweep.scene import Scene
-from vibro_sweep.scene.scene import grid
 
 SLAB = 100_000  # points whose numbers are computed at once
 
@@ -22,42 +25,82 @@ SLAB = 100_000  # points whose numbers are computed at once
 def attributes(scene: Scene) -> dict[str, Any]:
     """Numbers and words that hold for all points: name -> value.
 
-    The system's numbers, `tau` in radians, `b_star`, `stops`, `model` with its `order` and `expand_at`, the initial
-    state (`start_x1`, ...; of a `follow` that of its first point) unless it is random, `transient` and `record` in
-    forcing periods, `section`: `phase`, or `impact` with `section_stop`; and `picture` where the scene has it.
+    The system's numbers, `tau` in radians, `b_star` (`b_right` and `b_left` where these may differ), its options, the
+    `type` of a model and `along` where they are not the paper's; `model` with its `order` and `expand_at`, the initial
+    state (`start_x1`, ...; of a `follow` that of its first point) unless it is random or held by a stop, `transient`
+    and `record` in forcing periods, `section`: `phase`, or `impact` with `section_stop`; `picture` where there is one.
     """
-    result: dict[str, Any] = scene.system.parameters()
+    system = scene.system
+    result: dict[str, Any] = {name: value for name, value in system.numbers.items() if value not in (None, "grazing")}
+    result = {name: value for name, value in result.items() if (name, value) != ("offset", 0.0)}
+    result |= {"tau": system.phase}
     if not depends_on(scene):
-        result["b_star"] = float(grazing_clearance(result))
+        result |= {name: float(value) for name, value in following(scene, ()).items() if name != "tau"}
     result = {name: value for name, value in result.items() if name not in (*scene.sweep, *dimensions(scene))}
-    result |= {"stops": scene.system.stops, "model": scene.model}
+    result |= {name: _plain(value) for name, value in system.options.items() if value is not None}
+    result |= {} if system.model.name == DEFAULT else {"type": system.model.name}
+    result |= {} if system.gap_is_x1 else {"along": system.linear.along}
+    result |= {"model": scene.model}
     if scene.model == "map":
         result |= {"order": scene.order} | ({} if scene.expand_at is None else {"expand_at": scene.expand_at})
-    if scene.start.kind != "random":
-        state = dict(zip(START.values(), scene.start.state, strict=True))
+    if scene.start.kind != "random" and not scene.held:
+        state = dict(zip(start(system.masses), scene.start.state, strict=True))
         result |= {name: value for name, value in state.items() if name not in scene.sweep}
     result |= {"transient": scene.transient, "record": scene.record, "section": scene.section.kind}
     result |= {"section_stop": scene.section.stop} if scene.section.kind == "impact" else {}
     return result | ({"picture": scene.picture} if scene.picture else {})
 
 
+def _plain(value):
+    """A flag as a number, a matrix as an array."""
+    return int(value) if isinstance(value, bool) else np.array(value) if isinstance(value, tuple) else value
+
+
 def depends_on(scene: Scene) -> tuple[str, ...]:
-    """The swept keys on which the free motion depends, in order."""
-    return tuple(key for key in scene.sweep if key in FREE_MOTION)
+    """The swept keys on which the free motion, or where it touches the stops, depends; in order."""
+    described = scene.system.described
+    return tuple(key for key in scene.sweep if key == "offset" or (key in described and described[key].free_motion))
+
+
+def _graze(scene: Scene) -> tuple[str, ...]:
+    """b*, or the clearances of the two stops where these may differ."""
+    numbers = scene.system.numbers
+    shifted = numbers.get("offset") or "offset" in scene.sweep
+    pushed = any(value for name, value in numbers.items() if name.startswith("constant"))
+    pushed = pushed or any(key.startswith("constant") for key in scene.sweep)
+    return ("b_right", "b_left") if shifted or pushed else ("b_star",)
 
 
 def dimensions(scene: Scene) -> dict[str, tuple[str, ...]]:
     """The numbers that follow from swept ones, and the keys over which they are stored."""
     keys = depends_on(scene)
-    fixed = "tau" in scene.sweep or scene.system.tau != "grazing"
-    return {name: keys for name in FOLLOWING if not (name == "tau" and fixed)} if keys else {}
+    fixed = "tau" in scene.sweep or scene.system.tau != "grazing" or keys == ("offset",)
+    names = (*(() if fixed else ("tau",)), *_graze(scene))
+    return dict.fromkeys(names, keys) if keys else {}
 
 
 def following(scene: Scene, box: tuple[slice, ...]) -> dict[str, np.ndarray]:
-    """b* and tau over a box of the keys of `depends_on`, each of the box's shape."""
+    """What follows over a box of the keys of `depends_on`, each of the box's shape: tau, and where both stops graze."""
     axes = {key: scene.sweep[key][part] for key, part in zip(depends_on(scene), box, strict=True)}
     numbers = grid(scene.system, axes)
-    return {"tau": numbers["tau"], "b_star": grazing_clearance(numbers)}
+    offset = numbers.get("offset", 0.0)
+    if isinstance(scene.system, System):
+        size, middle = grazing_clearance(numbers), 0.0
+    else:
+        each = linears(scene.system, axes)
+        size, middle = (np.array([one(q) for q in each.flat]).reshape(each.shape) for one in (_size, _middle))
+    found = {"tau": numbers["tau"], "b_star": size, "b_right": size + middle - offset, "b_left": size - middle + offset}
+    return {name: found[name] for name in ("tau", *_graze(scene))}
+
+
+def _size(q) -> float:
+    gain = steady_gain(q)
+    return math.nan if gain is None else abs(gain)
+
+
+def _middle(q) -> float:
+    rest = static_state(q)
+    return math.nan if rest is None else float(q.along @ rest)
 
 
 def slabs(scene: Scene) -> Iterator[tuple[slice, ...]]:

@@ -32,7 +32,7 @@ def fill_coasting(q, psi, omega_squared, mu_m, mu_k, f2, tau):
         for i in range(2):
             q.steady[2 * i] += psi[i, j] * (A * math.sin(tau) + B * math.cos(tau))
             q.steady[2 * i + 1] += psi[i, j] * q.omega * (A * math.cos(tau) - B * math.sin(tau))
-    q.swing = math.hypot(a, b)  # (17)
+    q.middle, q.swing = 0.0, math.hypot(a, b)  # (17)
     compliance = (1.0 + mu_k) / mu_k  # e1^T K^-1 e1
     q.confining[0, 0], q.confining[1, 1] = compliance, compliance
     q.confining[0, 2] = q.confining[2, 0] = -compliance
@@ -47,7 +47,7 @@ def is_clear(q, o):
         for j in range(states):
             square += q.confining[i, j] * (o.X[i] - q.steady[i]) * (o.X[j] - q.steady[j])
     reach = (q.swing + math.sqrt(abs(square))) * SAFETY
-    return o.stops[0] < -reach and reach < o.stops[1]
+    return o.stops[0] < q.middle - reach and q.middle + reach < o.stops[1]
 
 
 @jit

@@ -42,9 +42,9 @@ def map_period(f, stops, o, records, t, second):
         if t.wanted:
             tangent.fly_to(t, o.lane, q, f.nodes, 0 if side > 0.0 else half, 0.0)
         if side > 0.0 and stops.right < np.inf:
-            jump(f, stops.right, stops.R, 1.0, o, records, t, second)  # (41)
+            jump(f, stops.right, stops.R_right, 1.0, o, records, t, second)  # (41)
         elif side < 0.0 and stops.left > -np.inf:
-            jump(f, -stops.left, stops.R, -1.0, o, records, t, second)
+            jump(f, -stops.left, stops.R_left, -1.0, o, records, t, second)
         fly_half(f.nodes[half].E, q.graze, side, o.X)
     return status.OK if math.isfinite(o.X[0] + o.X[1] + o.X[2] + o.X[3]) else status.NOT_FINITE
 

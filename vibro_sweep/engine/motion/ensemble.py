@@ -56,14 +56,16 @@ class Readings(NamedTuple):
     parts: int  # of the periods, after each of which the growth is read; 0: never
 
 
-def new_ensemble(cells: int, impacts: int = 0, rests: int = 0, samples: int = 0, masses: int = 2) -> Ensemble:
+def new_ensemble(
+    cells: int, impacts: int = 0, rests: int = 0, samples: int = 0, masses: int = 2, constant: bool = False
+) -> Ensemble:
     """Orbits of oscillators with at most so many cells, and room for what is kept of each."""
-    orbits = new_lines(LANES, orbit_of(masses))
+    orbits = new_lines(LANES, orbit_of(masses, constant))
     orbits["lane"] = np.arange(LANES)
     return Ensemble(
-        new_flight(LANES, cells, masses),
+        new_flight(LANES, cells, masses, constant),
         orbits,
-        new_lines(1, strikes_of(masses)),
+        new_lines(1, strikes_of(masses, constant)),
         new_lines(1, tangents_of(masses)),
         new_records(LANES, impacts, rests, samples, masses),
     )
@@ -79,7 +81,7 @@ def flight_of(e, o):
 @inline
 def stops_of(o):
     """The stops of an orbit."""
-    return Stops(o.stops[0], o.stops[1], o.stops[2])
+    return Stops(o.stops[0], o.stops[1], o.stops[2], o.stops[3])
 
 
 @inline
@@ -235,7 +237,7 @@ def seek(e, readings):
                 if k == o.ends:
                     end_period(e, o, q, f.nodes, X, readings)
                     if o.done < o.periods:
-                        if q.swing < o.stops[1]:
+                        if q.middle + q.swing < o.stops[1]:
                             coast(e, o, f, readings)
                         continue
                 else:
@@ -311,7 +313,7 @@ def carry(e, mapping, readings):
                     f = flight_of(e, o)
                     tangent.aim(t, i, f.oscillator[0], f.nodes, o.cell, strikes.offset[i])
             tangent.fly(t, lanes_of(struck))
-            tangent.saltate(t, lanes_of(struck), row(strikes.jump, 0) / row(strikes.speed, 0))
+            tangent.saltate(t, lanes_of(struck), row(strikes.jump, 0) / row(strikes.speed, 0), row(strikes.R, 0))
         for i in range(LANES):
             if waiting >> i & 1:
                 settle(e, e.orbits[i], free >> i & 1, struck >> i & 1, readings)

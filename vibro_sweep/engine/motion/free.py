@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import ROUNDING, first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import advance, place
+from vibro_sweep.engine.motion.orbits import advance, is_finite, place, take_off, wall_of
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.motion.scan import state_at
 from vibro_sweep.engine.simd.jit import entry, jit
@@ -33,7 +33,8 @@ def load_series(f, o):
     """Taylor series from where the flight is. Returns how far they reach, and whether that ends the cell."""
     q, X, left = f.oscillator[0], o.X, f.oscillator[0].width - o.offset
     last = left <= 1.001 * q.step
-    sin, cos = f.nodes[o.cell].z[4], f.nodes[o.cell].z[5]
+    z, states = f.nodes[o.cell].z, 2 * len(o.c)
+    sin, cos = z[states], z[states + 1]
     if o.offset > 0.0:
         swing, turn = math.sin(q.omega * o.offset), math.cos(q.omega * o.offset)
         sin, cos = sin * turn + cos * swing, cos * turn - sin * swing
@@ -58,10 +59,7 @@ def go_on(f, o, length, last, from_node):
         o.period += 1
         from_node = False
     if not from_node:
-        X0, X1, X2, X3 = o.X[0], o.X[1], o.X[2], o.X[3]
-        z = f.nodes[o.cell].z
-        o.base = o.origin = o.cell
-        o.y[0], o.y[1], o.y[2], o.y[3] = X0 - z[0], X1 - z[1], X2 - z[2], X3 - z[3]
+        take_off(o, f.nodes, row(o.X, 0))
     return True
 
 
@@ -75,7 +73,7 @@ def size_here(f, o, from_node, length):
     if not from_node:
         return series
     closed, E = abs(f.nodes[o.cell].z[0]), f.nodes[o.cell - o.base].E
-    for j in range(len(E) - 2):
+    for j in range(2 * len(o.c)):
         closed += abs(E[j, 0] * o.y[j])
     return max(series, closed)
 
@@ -96,8 +94,7 @@ def crossing(q, o, stops, side, sign, n, left):
 
     sign: 1 where M1 is inside of it, -1 beyond. n: order of the zero of the gap at the beginning, if it begins there.
     """
-    wall = stops.right if side > 0.0 else stops.left
-    gap = sign * side * (wall - o.X[0])
+    gap = sign * side * (wall_of(stops, side) - o.X[0])
     if n == 0 and gap <= 0.0:  # rounding: it was reached at the end of the last series
         return 0.0
     set_gap(o.gap, o.c[0], gap, sign * side, n)
@@ -142,7 +139,7 @@ def find_contacts(f, o, stops, cells, offsets, states, durations, found, sides, 
                 found[i], statuses[i] = np.nan, status.UNRESOLVED
             elif min(d, e) < np.inf:
                 found[i], sides[i] = flown + min(d, e), 1 if d <= e else -1
-            elif not math.isfinite(o.X[1] + o.X[3]):
+            elif not is_finite(o):
                 found[i], statuses[i] = np.nan, status.NOT_FINITE
             else:
                 from_node = go_on(f, o, length, last, from_node)

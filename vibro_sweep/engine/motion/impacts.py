@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import advance, take_samples
+from vibro_sweep.engine.motion.orbits import advance, is_finite, restitution_of, take_samples, wall_of
 from vibro_sweep.engine.motion.rest import begin_rest, chatter, first_nonzero, stay_at_rest
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import alike, row
@@ -81,7 +81,7 @@ def watch_rebound(q, o, records, k, d, side, v, impulse):
 @jit
 def impact(f, stops, o, records, t, k, s, side, sin, cos):
     """v1 -> -R v1, and what is observed of it."""
-    q, X, R = f.oscillator[0], o.X, stops.R
+    q, X, R = f.oscillator[0], o.X, restitution_of(stops, side)
     before = X[1]
     log_impact(o, records, k, s, side, before, X)
     count_impact(o, side, before)
@@ -92,10 +92,12 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
         for j in range(2, states, 2):
             after += a[j] * X[j] + a[j + 1] * X[j + 1]
         after += a[states] * sin + a[states + 1] * cos
+        if len(a) > states + 2:
+            after += a[states + 2]
         tangent.fly_to(t, o.lane, q, f.nodes, k, s)
         # a1+ + R a1-, since a1+ - a1- = 2 zeta (1 + R) v1-, with a[1] = -2 zeta
         steepness = (1.0 + R) * (after / before + a[1] * R)
-        tangent.saltate(t, tangent.only(o.lane), alike(steepness))
+        tangent.saltate(t, tangent.only(o.lane), alike(steepness), alike(R))
 
 
 @jit
@@ -104,7 +106,7 @@ def end_chatter(q, stops, o, records, k, s, side, w):
 
     A flight without them goes beyond the stop; through the damper that moves M2 by kappa = 2 zeta/mu_m of the way.
     """
-    X, wall = o.X, stops.right if side > 0.0 else stops.left
+    X, wall = o.X, wall_of(stops, side)
     o.resting, X[0] = side, wall
     take_samples(o, records, k, s, s + w)
     advance(o, w)
@@ -149,7 +151,7 @@ def cross_cell(f, stops, o, records, t, k, s):
         left = q.width - s
         last = left <= 1.001 * q.step
         left = left if last else q.step
-        sin, cos = node.z[4], node.z[5]
+        sin, cos = node.z[2 * len(o.c)], node.z[2 * len(o.c) + 1]
         if s > 0.0:
             swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
             sin, cos = sin * turn + cos * swing, cos * turn - sin * swing
@@ -185,13 +187,13 @@ def cross_cell(f, stops, o, records, t, k, s):
             return status.UNRESOLVED
         take_samples(o, records, k, s, s + min(d, left))
         advance(o, min(d, left))
-        if d == np.inf and (last or not math.isfinite(X[1] + X[3])):
-            return status.OK if math.isfinite(X[1] + X[3]) else status.NOT_FINITE
+        if d == np.inf and (last or not is_finite(o)):
+            return status.OK if is_finite(o) else status.NOT_FINITE
         s += min(d, left)
         released = False
         if d == np.inf:
             continue
-        wall = stops.right if side > 0.0 else stops.left
+        wall = wall_of(stops, side)
         miss = abs(X[0] - wall)
         if miss > EXPLAINED * size_at(c1, d):
             return status.BEYOND_STOP

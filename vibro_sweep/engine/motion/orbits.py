@@ -1,5 +1,6 @@
 """The moving state of an orbit, what is counted of it, and what is kept of its way."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,16 +12,28 @@ from vibro_sweep.model import status
 
 
 class Stops(NamedTuple):
-    """The walls, infinite where there is none, and the coefficient of restitution."""
+    """The walls, infinite where there is none, and the coefficient of restitution of each."""
 
     left: float
     right: float
-    R: float
+    R_left: float
+    R_right: float
 
 
-def orbit_of(masses: int) -> np.dtype:
+@inline
+def wall_of(stops, side):
+    """Position of the stop on this side."""
+    return stops.right if side > 0.0 else stops.left
+
+
+@inline
+def restitution_of(stops, side):
+    return stops.R_right if side > 0.0 else stops.R_left
+
+
+def orbit_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one orbit on its way, what is counted of it, and what it has written into its `Records`."""
-    width = width_of(masses)
+    width = width_of(masses, constant)
     motion = [
         ("X", float, width),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
         ("y", float, width),  # X - r at node `origin`, from which the exclusion test looks ahead
@@ -42,9 +55,10 @@ def orbit_of(masses: int) -> np.dtype:
         ("suspect", np.int64),  # the next cell in which contact cannot be excluded, and
         ("low", float),  # what x1 at its beginning is held against
         ("high", float),
-        ("stops", float, 3),  # left, right, R
+        ("stops", float, 4),  # left, right, and the restitution of each
         ("resting", float),  # side of the stop that M1 rests on, or 0
         ("c", float, (masses, ORDER)),  # Taylor coefficients of x1, x2, ...; of M1 at rest the free acceleration
+        ("held", float, width),  # what series begin with while M1 rests: x1, x2, v2, x3, ..., sin, cos
         ("gap", float, ORDER),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
     ]
     counts = [
@@ -91,7 +105,7 @@ def place(o, nodes, stops, cell, offset, state):
     """Start an orbit from `state` (2 N,) at this offset of this cell, with nothing counted yet."""
     for j in range(2 * len(o.c)):
         o.X[j] = state[j]
-    o.stops[0], o.stops[1], o.stops[2] = stops.left, stops.right, stops.R
+    o.stops[0], o.stops[1], o.stops[2], o.stops[3] = stops.left, stops.right, stops.R_left, stops.R_right
     o.status, o.resting, o.cell, o.offset = status.OK, 0.0, cell, offset
     o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
     take_off(o, nodes, row(o.X, 0))
@@ -113,6 +127,15 @@ def keep_start(o):
     """X where free flight began, before another takes its place."""
     if o.base == o.origin:
         put(o.start, 0, row(o.X, 0))
+
+
+@jit
+def is_finite(o):
+    """Whether the velocities are numbers."""
+    total = o.X[1]
+    for j in range(3, 2 * len(o.c), 2):
+        total += o.X[j]
+    return math.isfinite(total)
 
 
 @jit

@@ -1,9 +1,11 @@
-"""M1 on a stop: the chatter that brings it to rest, the rest, and the release."""
+"""M1 on a stop: the chatter that brings it to rest, the rest, in which the other masses move, and the release."""
+
+import math
 
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import take_samples
+from vibro_sweep.engine.motion.orbits import restitution_of, take_samples
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, evaluate
 from vibro_sweep.engine.tables.resting import bound_third_over, carry_over_rest, state_after
@@ -35,8 +37,8 @@ def mark_rest(o, records, k, s, side):
 def begin_rest(f, o, records, t, k, s, side, w):
     """M1 comes to rest on the stop, after impacts that were summed up over the time w.
 
-    To tangent vectors the rest begins with the first of these: the sum of all that they do to dv2 is what the whole of
-    dx1 does.
+    To tangent vectors the rest begins with the first of these: the sum of all that they do to dv2, ... is what the
+    whole of dx1 does.
     """
     o.X[1] = 0.0
     o.resting = side
@@ -44,18 +46,41 @@ def begin_rest(f, o, records, t, k, s, side, w):
     if t.wanted:
         q = f.oscillator[0]
         tangent.fly_to(t, o.lane, q, f.nodes, k, s - w)
-        tangent.rest(t, o.lane, q.kappa[1])
-        tangent.release(t, o.lane, *carry_over_rest(q, w))
+        tangent.rest(t, o.lane, q.kappa)
+        carry_tangent(t, o.lane, q, w)
         t.cell[o.lane], t.offset[o.lane] = k, s
 
 
 @jit
-def load_rest(q, o, x2, v2, sin, cos):
-    """Series c1 of the free acceleration of M1, and c2 of x2."""
-    x1, c1, c2, a, b = o.X[0], o.c[0], o.c[1], q.resting1, q.resting2
-    for n in range(ORDER):
-        c1[n] = (a[0, n] * x1 + a[1, n] * x2) + (a[2, n] * v2 + a[3, n] * sin) + a[4, n] * cos
-        c2[n] = (b[0, n] * x1 + b[1, n] * x2) + (b[2, n] * v2 + b[3, n] * sin) + b[4, n] * cos
+def load_rest(q, o, sin, cos):
+    """Series of the free acceleration of M1 in c[0], and of x2, ... in the other rows."""
+    states, count, held, w = 2 * len(o.c), len(q.force) - 1, o.held, q.resting
+    held[0] = o.X[0]
+    for j in range(2, states):
+        held[j - 1] = o.X[j]
+    held[states - 1], held[states], held[states + 1] = sin, cos, 1.0
+    for i in range(len(o.c)):
+        for n in range(ORDER):
+            total = w[i, 0, n] * held[0] + w[i, 1, n] * held[1]
+            for j in range(2, count - 1, 2):
+                total += w[i, j, n] * held[j] + w[i, j + 1, n] * held[j + 1]
+            o.c[i, n] = total + w[i, count - 1, n] * held[count - 1] if count % 2 == 1 else total
+
+
+@jit
+def carry_tangent(t, i, q, w):
+    """Tangent vectors over a rest of the time w within a cell."""
+    if q.rest_square > 0.0:
+        t.held[2, 2], t.held[2, 3], t.held[3, 2], t.held[3, 3] = carry_over_rest(q, w)
+        tangent.release(t, i)
+        return
+    while w > 0.0:
+        step = min(w, q.rest_step)
+        w -= step
+        for m in range(1, len(q.series)):
+            for j in range(2, len(t.growth)):
+                t.held[2 * m, j], t.held[2 * m + 1, j] = evaluate(q.resting[m, j - 1], step)
+        tangent.release(t, i)
 
 
 @jit
@@ -72,11 +97,12 @@ def first_release(o, left):
 
 @jit
 def stay_at_rest(f, o, records, t, k, s, sin, cos):
-    """M1 rests from offset s of cell k on, M2 moves. Returns the time to the release, infinite if not in this cell."""
+    """M1 rests from offset s of cell k on. Returns the time to the release, infinite if not in this cell."""
     q, X = f.oscillator[0], o.X
     x2, v2, sin_there, cos_there, w = X[2], X[3], sin, cos, 0.0
+    one_series = q.rest_step == q.width
     while True:
-        load_rest(q, o, X[2], X[3], sin_there, cos_there)
+        load_rest(q, o, sin_there, cos_there)
         left = q.width - s - w
         last = left <= 1.001 * q.rest_step
         left = left if last else q.rest_step
@@ -84,15 +110,18 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos):
         end = min(d, left)
         take_samples(o, records, k, s + w, s + w + end)
         w += end
-        if q.rest_step == q.width:
-            X[2], X[3] = evaluate(o.c[1], w)
+        if one_series or q.rest_square == 0.0:
+            for m in range(1, len(o.c)):
+                X[2 * m], X[2 * m + 1] = evaluate(o.c[m], end)
+            swing, turn = math.sin(q.omega * w), math.cos(q.omega * w)
+            sin_there, cos_there = sin * turn + cos * swing, cos * turn - sin * swing
         else:
             X[2], X[3], sin_there, cos_there = state_after(q, X[0], x2, v2, sin, cos, w)
         if last or not d == np.inf:  # NaN, too, is passed on
             break
     o.rest_time += w
     if t.wanted:
-        tangent.release(t, o.lane, *carry_over_rest(q, w))
+        carry_tangent(t, o.lane, q, w)
         t.cell[o.lane], t.offset[o.lane] = k, s + w
     if d < np.inf:
         o.resting = 0.0
@@ -110,9 +139,10 @@ def chatter(q, stops, o, third, side, left):
     stop.
     """
     speed, a = -side * o.X[1], 2.0 * side * o.c[0, 2]
-    if a <= 0.0 or stops.R == 1.0:
+    R = restitution_of(stops, side)
+    if a <= 0.0 or R == 1.0:
         return np.inf
-    w = 2.0 * speed / (a * (1.0 - stops.R))
+    w = 2.0 * speed / (a * (1.0 - R))
     change = third * w / a
     stays_near = speed * speed < a * (stops.right - stops.left)
     if stays_near and w < left and change < 1e-3 and w * change <= CHATTER * q.width * q.cells:

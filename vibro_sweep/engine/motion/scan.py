@@ -60,7 +60,7 @@ def state_at(o, nodes, k):
     if k == o.origin:
         return row(o.X, 0)
     E = nodes[np.uint64(k - o.origin)].E
-    return combine(E, o.y, len(E) - 2) + row(nodes[np.uint64(k)].z, 0)
+    return combine(E, o.y, 2 * len(o.c)) + row(nodes[np.uint64(k)].z, 0)
 
 
 @inline

@@ -23,7 +23,7 @@ from vibro_sweep.engine.simd.lanes import (
 )
 from vibro_sweep.engine.tables import flight
 from vibro_sweep.engine.tables.economy import FEWER_TERMS, TERMS, TO_FEWER_TERMS, TO_TERMS, economise
-from vibro_sweep.engine.tables.flight import width_of
+from vibro_sweep.engine.tables.flight import inputs_of, width_of
 
 TAIL = 8  # terms from here on are bounded together
 ROUGH = 10  # terms that bring the search so near to the contact that one look with all of them suffices, as a rule
@@ -31,28 +31,29 @@ SIXTH = 1.0 / 6.0  # for a product: a division takes as long as all else in a bo
 LOOKS = 4  # at the gap, each followed by a step towards the contact
 
 
-def strikes_of(masses: int) -> np.dtype:
+def strikes_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of eight orbits that may strike, one column each."""
-    states, width = 2 * masses, width_of(masses)
+    states, inputs, width = 2 * masses, inputs_of(masses, constant), width_of(masses, constant)
     fields = [
         # of the oscillator
-        ("series", float, ((states + 2) * TERMS, LANES)),  # of x1
-        ("end", float, (states * (states + 2), LANES)),  # row 2 N j + i: X_i at the cell's end, of z_j at its beginning
+        ("series", float, (inputs * TERMS, LANES)),  # of x1
+        ("end", float, (states * inputs, LANES)),  # row 2 N j + i: X_i at the cell's end, of z_j at its beginning
         ("impulses", float, (masses * FEWER_TERMS, LANES)),  # series of x1, x2, ... after a unit impulse on M1
         ("third", float, (TAIL, LANES)),  # weights of |c_n| in a bound on the third derivative over the cell
-        ("tail", float, (states + 2, LANES)),  # bound on what the series from TAIL on adds to it, for unit z
+        ("tail", float, (inputs, LANES)),  # bound on what the series from TAIL on adds to it, for unit z
         ("width", float, LANES),
         ("drag", float, LANES),  # 2 zeta
         ("impulse_third", float, LANES),
         ("left", float, LANES),
         ("right", float, LANES),
-        ("R", float, LANES),
+        ("restitution", float, (2, LANES)),  # of the left stop and of the right one
         ("z", float, (LANES, width)),  # one row for each orbit, at the beginning of its cell: x1, v1, ..., sin, cos
         ("c", float, (TERMS, LANES)),  # Taylor coefficients of x1, economised
         # of the impact
         ("landing", float, (states, LANES)),  # the states at the ends of the cells, and
         ("X", float, (LANES, width)),  # the same, one row for each orbit; padded with zeros
         ("side", float, LANES),
+        ("R", float, LANES),  # of the stop that was hit
         ("offset", float, LANES),
         ("speed", float, LANES),  # v1 before it
         ("impulse", float, LANES),  # -(1 + R) v1
@@ -69,7 +70,7 @@ def strikes_of(masses: int) -> np.dtype:
 def set_oscillator(strikes, i, q, stops):
     """Give orbit i its oscillator and its stops."""
     masses, states = len(q.series), 2 * len(q.series)
-    for j in range(states + 2):
+    for j in range(len(q.force)):
         economise(TO_TERMS, q, q.series[0, j], strikes.series, TERMS * j, i)
         strikes.tail[j, i] = 0.0
         for n in range(TAIL, TERMS):
@@ -82,7 +83,8 @@ def set_oscillator(strikes, i, q, stops):
     for n in range(TAIL):
         strikes.third[n, i] = q.third[n]
     strikes.width[i], strikes.drag[i], strikes.impulse_third[i] = q.width, -q.force[1], q.impulse_third
-    strikes.left[i], strikes.right[i], strikes.R[i] = stops.left, stops.right, stops.R
+    strikes.left[i], strikes.right[i] = stops.left, stops.right
+    strikes.restitution[0, i], strikes.restitution[1, i] = stops.R_left, stops.R_right
 
 
 @inline
@@ -205,12 +207,13 @@ def count(strikes, struck, side, v):
 
 
 @inline
-def leaves_freely(strikes, v, after, side, rest, third):
-    """Whether M1 touches neither stop in the time `rest` after an impact with v, that leaves it with this acceleration.
+def leaves_freely(strikes, rebound, after, side, rest, third):
+    """Whether M1 touches neither stop in the time `rest` after an impact that leaves it with this speed `rebound` and
+    this acceleration.
 
     third: bound on the third derivative.
     """
-    rebound, back, bend = row(strikes.R, 0) * abs(v), side * after, rest * third * SIXTH
+    back, bend = side * after, rest * third * SIXTH
     stays_off = rebound > rest * (0.5 * select(back > 0.0, back, 0.0) + bend)
     return stays_off & (
         rest * (rebound + rest * (0.5 * abs(after) + bend)) < row(strikes.right, 0) - row(strikes.left, 0)
@@ -220,7 +223,7 @@ def leaves_freely(strikes, v, after, side, rest, third):
 @inline
 def land(strikes, z, impulse, rest):
     """X at the end of the cell: of the motion as if there were no stop, and what the impulse has done by then."""
-    landing, states = strikes.landing, len(strikes.tail) - 2
+    landing, states = strikes.landing, len(strikes.landing)
     for m in range(states // 2):
         x, v = position_and_speed(strikes.impulses, m * FEWER_TERMS, rest)
         put(landing, 2 * m, weigh(strikes.end, 2 * m, states, z) + impulse * x)
@@ -253,18 +256,20 @@ def strike(strikes, waiting):
     u = approach(c, u, gap, side, width)
     d, v, a, struck = descend(c, u, gap, side, abs(curve) + third * width, width, wanted)
     falls = rate + select(curve > 0.0, curve, 0.0) * d + 0.5 * third * d * d < 0.0  # all the way to the contact
-    impulse, rest = -(1.0 + row(strikes.R, 0)) * v, width - d
+    R = select(side > 0.0, row(strikes.restitution, 1), row(strikes.restitution, 0))
+    impulse, rest = -(1.0 + R) * v, width - d
     after = a - row(strikes.drag, 0) * impulse
     third += abs(impulse) * row(strikes.impulse_third, 0)
-    struck = struck & falls & (side * v > 0.0) & leaves_freely(strikes, v, after, side, rest, third)
+    struck = struck & falls & (side * v > 0.0) & leaves_freely(strikes, R * abs(v), after, side, rest, third)
     count(strikes, struck, side, v)
     if strikes.measured:
         miss = abs(gap - side * derivatives(c, d, TERMS)[0])
         put(strikes.miss, 0, select(struck & (miss > row(strikes.miss, 0)), miss, row(strikes.miss, 0)))
     put(strikes.side, 0, side)
+    put(strikes.R, 0, R)
     put(strikes.offset, 0, d)
     put(strikes.speed, 0, v)
     put(strikes.impulse, 0, impulse)
-    put(strikes.jump, 0, after + row(strikes.R, 0) * a)
+    put(strikes.jump, 0, after + R * a)
     land(strikes, z, impulse, rest)
     return bits(free), bits(struck)

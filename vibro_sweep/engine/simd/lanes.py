@@ -375,16 +375,15 @@ def weigh(typingctx, rows, n, step, vectors):
         def codegen(context, builder, sig, args):
             place = context.cast(builder, args[1], sig.args[1], types.intp)
             step = context.cast(builder, args[2], sig.args[2], types.intp)
-            total, pair = None, None
+            total, pair, count = None, None, len(vectors)
             for i in range(len(vectors)):
                 kinds = (sig.args[0], types.intp)
                 weight = builder.load(_address(context, builder, kinds, (args[0], place), LANES, LANES), align=8)
                 term = builder.fmul(weight, builder.extract_value(args[3], i), flags=_CONTRACT)
                 place = builder.add(place, step)
-                if i % 2 == 0:
-                    pair = term
+                pair = term if i % 2 == 0 else builder.fadd(pair, term, flags=_CONTRACT)
+                if i % 2 == 0 and i + 1 < count:
                     continue
-                pair = builder.fadd(pair, term, flags=_CONTRACT)
                 total = pair if total is None else builder.fadd(total, pair, flags=_CONTRACT)
             return total
 

@@ -1,17 +1,15 @@
 """The tables of one oscillator (`Flight`), from its modes."""
 
-import math
-
 from vibro_sweep.engine.motion.coast import fill_coasting
 from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.engine.tables.close_modes import CLOSE
 from vibro_sweep.engine.tables.control_points import fill_scan
-from vibro_sweep.engine.tables.flight import ORDER, WIDTH
+from vibro_sweep.engine.tables.flight import ORDER
 from vibro_sweep.engine.tables.forced import fill_motion
 from vibro_sweep.engine.tables.frame import fill_frame
 from vibro_sweep.engine.tables.free import fill_coupling, fill_flight, gap_of
 from vibro_sweep.engine.tables.resting import fill_rest
-from vibro_sweep.engine.tables.series import fill_series
+from vibro_sweep.engine.tables.series import fill_series, set_grid
 from vibro_sweep.engine.tables.stiff import rate_of
 
 
@@ -22,17 +20,9 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
     scratch: (7, 6) floats.
     """
     q = f.oscillator[0]
-    q.cells, q.width, q.omega, q.zeta = cells, 2.0 * math.pi / omega / cells, omega, zeta
-    q.kappa[0], q.kappa[1] = 0.0, 2.0 * zeta / mu_m
+    q.zeta, q.kappa[0], q.kappa[1] = zeta, 0.0, 2.0 * zeta / mu_m
     rate = max(omega, max(rate_of(omega_squared[0], zeta), rate_of(omega_squared[1], zeta)))
-    q.stiff = rate * q.width > 1.0001 * WIDTH
-    q.step = q.width / math.ceil(rate * q.width / WIDTH) if q.stiff else q.width
-    power = 1.0
-    for n in range(ORDER):
-        q.reach[n] = power if n > 0 else 0.0
-        if n < ORDER - 3:
-            q.third[n + 3] = (n + 3.0) * (n + 2.0) * (n + 1.0) * power
-        power *= q.step
+    set_grid(q, cells, omega, rate)
     fill_series(q, scratch[:6], scratch[6], mu_m, mu_k, f2)
     fill_rest(q, scratch[:6], scratch[6], mu_m, mu_k, f2)
     q.impulse_third = 0.0

@@ -21,6 +21,12 @@ def cells_needed(omega_squared: np.ndarray, zeta: np.ndarray, omega: np.ndarray)
     eta = np.asarray(zeta)[..., None] * omega_squared
     overdamped = np.sqrt(np.maximum(eta**2 - omega_squared, 0.0))
     rate = np.where(eta**2 <= omega_squared, np.sqrt(omega_squared), eta + overdamped).max(-1)
+    return cells_for(rate, omega)
+
+
+@np.errstate(all="ignore")
+def cells_for(rate: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """The same for systems with these fastest rates."""
     turns = 2 * math.pi * np.maximum(rate / omega, 1.0)
     turns = np.where(turns <= LONGEST, turns, np.inf)  # also where they are no number
     cells = np.maximum(LEAST_CELLS, 8 * np.ceil(np.minimum(turns, LONGEST) / WIDTH / 8)).astype(np.int64)

@@ -23,17 +23,22 @@ CHUNK = 16  # control points examined together: two to a cell
 
 
 # Kernels take the number of masses from the shapes of the records' fields, which belong to the types that numba sees:
-# each number of masses has kernels of its own, from one source. N masses have 2 N states.
+# each number of masses has kernels of its own, from one source. N masses have 2 N states. What a flight follows from
+# are its inputs: the states, sin and cos of the force, and, where there is a constant force, the number 1.
 
 
-def width_of(masses: int) -> int:
-    """Numbers in a row for a state with sin and cos, padded to whole vectors."""
-    return LANES * (-(-(2 * masses + 2) // LANES))
+def inputs_of(masses: int, constant: bool) -> int:
+    return 2 * masses + 2 + constant
 
 
-def oscillator_of(masses: int) -> np.dtype:
+def width_of(masses: int, constant: bool = False) -> int:
+    """Numbers in a row for a state with the other inputs, padded to whole vectors."""
+    return LANES * (-(-inputs_of(masses, constant) // LANES))
+
+
+def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one oscillator. Structured arrays go to kernels by one pointer, and need no reference counts."""
-    states = 2 * masses
+    states, inputs = 2 * masses, inputs_of(masses, constant)
     fields = [
         ("cells", np.int64),
         ("width", float),  # of a cell
@@ -48,12 +53,12 @@ def oscillator_of(masses: int) -> np.dtype:
         ("graze", float, states),  # the point at which the discontinuity mapping is expanded
         ("remainder", float, states + 1),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
         ("slow", float, states),  # part of the slow modes in x1; of a stiff system
-        ("series", float, (masses, states + 2, ORDER)),  # Taylor coefficients of x1, x2, ... of (x1, v1, ..., sin, cos)
-        ("force", float, states + 2),  # acceleration of M1 as a function of them
-        ("resting1", float, (5, ORDER)),  # free acceleration of M1 while it rests, of (x1, x2, v2, sin, cos)
-        ("resting2", float, (5, ORDER)),  # x2 meanwhile
-        ("rest_step", float),  # width of these series; of M2 alone (resting.py):
-        ("rest_square", float),  # omega^2
+        ("series", float, (masses, inputs, ORDER)),  # Taylor coefficients of x1, x2, ... of the inputs
+        ("force", float, inputs),  # acceleration of M1 as a function of them
+        # while M1 rests, of (x1, x2, v2, x3, ..., sin, cos): its free acceleration, and x2, ...
+        ("resting", float, (masses, inputs - 1, ORDER)),
+        ("rest_step", float),  # width of these series; of M2 alone, where there is a closed form (resting.py):
+        ("rest_square", float),  # omega^2; 0: there is none
         ("rest_static", float),  # x2 in equilibrium, for x1 = 1
         ("rest_response", float, 2),  # steady response of x2 to sin and cos
         ("reach", float, ORDER),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
@@ -70,7 +75,8 @@ def oscillator_of(masses: int) -> np.dtype:
         ("stiff", np.bool_),  # cells do not resolve every rate
         ("largest", float),  # |x1| of the motion r
         ("steady", float, states),  # of coast.py, like all that follow: the steady motion at node 0
-        ("swing", float),  # largest |gap| of the steady motion
+        ("middle", float),  # of the gap of the steady motion, and
+        ("swing", float),  # by how much it swings about that
         (
             "confining",
             float,
@@ -82,14 +88,14 @@ def oscillator_of(masses: int) -> np.dtype:
     return record(fields)
 
 
-def node_of(masses: int) -> np.dtype:
+def node_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one node of the grid."""
-    states, width = 2 * masses, width_of(masses)
+    states, width, inputs = 2 * masses, width_of(masses, constant), inputs_of(masses, constant)
     fields = [
         ("z", float, width),  # r, a motion under the force: from rest at node 0; of a fast mode the steady one;
-        # then sin and cos of omega t + tau
-        # flight from node 0: row j is X here of the unit state j there, the last two that of the force's sin and cos
-        ("E", float, (states + 2, width)),  # there, from rest; padded
+        # then sin and cos of omega t + tau, and perhaps 1
+        # flight from node 0: row j is X here of the unit state j there, the others that of the force's sin and cos
+        ("E", float, (inputs + inputs % 2, width)),  # there, and of the constant force, from rest; padded
         ("forced", float, (masses, 2, 2)),  # modal motion from rest at node 0: mode; xi, xi'; to sin, cos there
         ("frame", float, states),  # c_1, s_1, c_2, s_2, ... of a flight from node 0
     ]
@@ -106,11 +112,11 @@ class Flight(NamedTuple):
     )  # (2 N + 1, 2 cells + CHUNK): control points, two to a cell, as a function of X - r at node 0; those of r
 
 
-def new_flight(count: int, cells: int, masses: int) -> Flight:
+def new_flight(count: int, cells: int, masses: int, constant: bool = False) -> Flight:
     """Space for the tables of so many oscillators with at most so many cells."""
     return Flight(
-        new_lines((count, 1), oscillator_of(masses)),
-        new_lines((count, cells + 1), node_of(masses)),
+        new_lines((count, 1), oscillator_of(masses, constant)),
+        new_lines((count, cells + 1), node_of(masses, constant)),
         new_lines((count, 2 * masses + 1, 2 * cells + CHUNK), float),
     )
 
@@ -140,13 +146,14 @@ def decaying(eta, omega_squared, u):
 @jit
 def load(series, X, sin, cos, c):
     """Taylor coefficients c (N, ORDER) of the flight of all masses from the state X (lanes) at the phase (sin, cos)."""
-    masses, states = len(c), 2 * len(c)
+    masses, states, inputs = len(c), 2 * len(c), series.shape[1]
     for i in range(masses):
         for n in range(ORDER):
             total = series[i, 0, n] * number(X, 0) + series[i, 1, n] * number(X, 1)
             for j in range(2, states, 2):
                 total += series[i, j, n] * number(X, j) + series[i, j + 1, n] * number(X, j + 1)
-            c[i, n] = total + (series[i, states, n] * sin + series[i, states + 1, n] * cos)
+            total += series[i, states, n] * sin + series[i, states + 1, n] * cos
+            c[i, n] = total + series[i, states + 2, n] if inputs > states + 2 else total
 
 
 @jit

@@ -27,9 +27,9 @@ def fill_rest(q, A, row, mu_m, mu_k, f2):
     A[2, 0], A[2, 1], A[2, 2], A[2, 3] = 1.0 / mu_m, -square, -2.0 * zeta * (1.0 + mu_k) / mu_m, f2 / mu_m
     A[3, 4], A[4, 3] = omega, -omega
     row[0], row[1], row[2], row[3], row[4] = q.force[0], q.force[2], q.force[3], q.force[4], 0.0
-    derive(A, row, 5, q.resting1)
+    derive(A, row, 5, q.resting[0])
     row[0], row[1], row[2], row[3] = 0.0, 1.0, 0.0, 0.0
-    derive(A, row, 5, q.resting2)
+    derive(A, row, 5, q.resting[1])
     rate = max(omega, rate_of(square, zeta))
     q.rest_step = q.width if rate * q.width <= 1.0001 * WIDTH else q.width / math.ceil(rate * q.width / WIDTH)
     # x2 = static x1 + A sin + B cos, the steady response (7) of this oscillator
@@ -43,8 +43,8 @@ def fill_rest(q, A, row, mu_m, mu_k, f2):
 def carry_over_rest(q, w):
     """The matrix by which a rest of the time w within a cell multiplies (dx2, dv2), by rows."""
     if w <= q.rest_step:
-        xx, vx = evaluate(q.resting2[1], w)
-        xv, vv = evaluate(q.resting2[2], w)
+        xx, vx = evaluate(q.resting[1, 1], w)
+        xv, vv = evaluate(q.resting[1, 2], w)
         return xx, xv, vx, vv
     _, s, xi, rate = decaying(q.zeta * q.rest_square, q.rest_square, w)
     return xi, s, -q.rest_square * s, rate

@@ -1,7 +1,9 @@
 """Taylor series of flight over a cell (eq. 3)."""
 
+import math
+
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.tables.flight import ORDER
+from vibro_sweep.engine.tables.flight import ORDER, WIDTH
 
 
 @jit
@@ -22,6 +24,20 @@ def clear(a):
     for i in range(a.shape[0]):
         for j in range(a.shape[1]):
             a[i, j] = 0.0
+
+
+@jit
+def set_grid(q, cells, omega, rate):
+    """The cells of the forcing period, and how far a series reaches in them. rate: the fastest."""
+    q.cells, q.width, q.omega = cells, 2.0 * math.pi / omega / cells, omega
+    q.stiff = rate * q.width > 1.0001 * WIDTH
+    q.step = q.width / math.ceil(rate * q.width / WIDTH) if q.stiff else q.width
+    power = 1.0
+    for n in range(ORDER):
+        q.reach[n] = power if n > 0 else 0.0
+        if n < ORDER - 3:
+            q.third[n + 3] = (n + 3.0) * (n + 2.0) * (n + 1.0) * power
+        power *= q.step
 
 
 @jit

@@ -54,7 +54,9 @@ def read_period(e, w, results, again):
     for i in range(len(results)):
         o, result = e.orbits[i], results[i]
         if o.periods > 0 and o.status == status.OK:
-            omega, largest = e.flights.oscillator[o.table, 0].omega, max(o.largest[0], o.largest[2])
+            omega, largest = e.flights.oscillator[o.table, 0].omega, o.largest[0]
+            for j in range(2, len(t.growth), 2):
+                largest = max(largest, o.largest[j])
             graze = 2.0**-52 * (omega * largest / o.slowest) ** 2
             if not find_multipliers(t, i, w.growth[i, 0], w.axes[i], w.matrix, graze, result, again):
                 o.status = status.NOT_FINITE
@@ -79,7 +81,7 @@ def find_multipliers(t, i, logs, axes, matrix, graze, result, again):
     """
     re, im, log, error = result.multiplier_re, result.multiplier_im, result.log_multiplier, result.log_error
     count = 0  # of directions that are neither lost nor out of range
-    while count < 4 and logs[count] > logs[0] - RANGE and logs[count] > -np.inf:
+    while count < len(logs) and logs[count] > logs[0] - RANGE and logs[count] > -np.inf:
         count += 1
     size = 0.0
     for j in range(count):

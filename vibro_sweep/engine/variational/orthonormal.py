@@ -11,6 +11,7 @@ from vibro_sweep.engine.simd.jit import aside, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES, bits, put, row, select
 
 CONDITION = 1e3  # bound on the condition number of Z past which it is orthonormalised
+SMALLEST = 1e-30  # of the squares of all vectors together: where all decay alike, none lies too close to another
 
 
 @jit
@@ -27,7 +28,8 @@ def watch(t, who, determinant):
     power, scale = size, float(n)
     for _ in range(n // 2 - 1):
         power, scale = power * size, scale * n
-    close = who & ((row(t.lost, 0) > 0.0) | (power > 0.5 * scale * CONDITION * row(t.volume, 0)))
+    skewed = (power > 0.5 * scale * CONDITION * row(t.volume, 0)) | (size < SMALLEST)
+    close = who & ((row(t.lost, 0) > 0.0) | skewed)
     if bits(close) != 0:
         orthonormalise(t, close)
 

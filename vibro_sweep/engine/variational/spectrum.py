@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.point_tables import divergence_of
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.orthonormal import CONDITION
@@ -44,7 +45,7 @@ def end_warm_up(e, count):
 def keep_at_rest(e, i):
     """Where M1 rests on a stop, two of the four directions are lost already."""
     if e.orbits[i].resting != 0.0:
-        tangent.rest(e.tangent[0], i, e.flights.oscillator[e.orbits[i].table, 0].kappa[1])
+        tangent.rest(e.tangent[0], i, e.flights.oscillator[e.orbits[i].table, 0].kappa)
 
 
 @jit
@@ -93,10 +94,15 @@ def close_spectrum(e, o, w, plan, point, result):
     if result.period > 0:
         for j in range(len(spectrum)):
             spectrum[j], error[j] = result.log_multiplier[j] / time, result.log_error[j] / time
-    exact = -2.0 * point.zeta * (1.0 + (1.0 + point.mu_k) / point.mu_m) + o.log_volume / time
-    hits = o.impacts_right + o.impacts_left
-    if hits > 0 and plan.order == 0:
-        exact += 2.0 * (hits / time) * np.log(point.R)
+    exact = divergence_of(point, w.paper, w.other) + o.log_volume / time
+    if plan.order == 0:
+        left, right = o.impacts_left, o.impacts_right
+        if o.stops[2] == o.stops[3]:
+            left, right = 0, left + right
+        if left > 0:
+            exact += 2.0 * (left / time) * np.log(o.stops[2])
+        if right > 0:
+            exact += 2.0 * (right / time) * np.log(o.stops[3])
     sort_exponents(spectrum, error)
     count, total = len(spectrum), spectrum[0] + spectrum[1]
     for j in range(2, count, 2):

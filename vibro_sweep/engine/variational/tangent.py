@@ -29,7 +29,6 @@ def tangents_of(masses: int) -> np.dtype:
         ("to_frame", float, (n * n, LANES)),
         ("from_frame", float, (n * n, LANES)),
         ("kick", float, (n, LANES)),  # to_frame of a step of x1 by 1, and of what it does to v2, ... (kappa)
-        ("R", float, LANES),
         # of the orbit
         ("lost", float, LANES),  # dimensions: two by sticking, one by an impact without restitution
         ("cell", np.int64, LANES),  # the cell, counted from the section, and
@@ -40,6 +39,10 @@ def tangents_of(masses: int) -> np.dtype:
         ("stretch", np.int64, LANES),  # whole cells of that flight
         ("mixed", float, LANES),  # 0: each vector lies in the plane of one mode, where free flight turns it
         ("Z", float, (n * n, LANES)),  # columns of Z (n, n) are vectors
+        # what a rest multiplies (dx2, dv2, dx3, ...) by, from row and column 2 on; and one of them before it and after
+        ("held", float, (n, n)),
+        ("before", float, n),
+        ("after", float, n),
         ("volume", float, LANES),  # |det Z|, from the identity det S = R^2
         ("growth", float, (n, LANES)),  # products of the diagonals of R in Z = Q R
         ("logs", float, (n, LANES)),  # their logarithms, taken before they leave the range of the floats
@@ -59,7 +62,7 @@ def only(i):
 
 
 @jit
-def set_frame(t, i, q, R):
+def set_frame(t, i, q):
     """Give orbit i its oscillator."""
     size = len(t.growth)
     for n in range(ORDER):
@@ -74,7 +77,6 @@ def set_frame(t, i, q, R):
         t.kick[m, i] = q.to_frame[m, 0]
         for j in range(1, len(t.scale)):
             t.kick[m, i] += q.kappa[j] * q.to_frame[m, 2 * j + 1]
-    t.R[i] = R
 
 
 @entry
@@ -227,14 +229,14 @@ def motion_of(t, mass, j):
 
 
 @jit
-def saltate(t, who, steepness):
+def saltate(t, who, steepness, R):
     """Z across an impact, by the saltation matrix S = DG + (F+ - DG F-) n^T/(n . F-).
 
-    In (x1, v1, x2, v2), with steepness = (a1+ + R a1-)/v1- and kappa = 2 zeta/mu_m: dx1 -> -R dx1, dv1 -> steepness
-    dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
+    In (x1, v1, x2, v2), with steepness = (a1+ + R a1-)/v1-, R of the stop that is hit, and kappa = 2 zeta/mu_m: dx1 ->
+    -R dx1, dv1 -> steepness dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
     """
     apply_flight(t, who)
-    Z, to, R, size = t.Z, t.to_frame, row(t.R, 0), len(t.growth)
+    Z, to, size = t.Z, t.to_frame, len(t.growth)
     for j in range(size):
         dx, dv = motion_of(t, 0, j)
         to_x1 = -(1.0 + R) * dx
@@ -249,32 +251,61 @@ def saltate(t, who, steepness):
 
 @jit
 def rest(t, i, kappa):
-    """Z when M1 comes to rest on a stop: dx1 = dv1 = 0, and two of the four dimensions are lost for good.
+    """Z when M1 comes to rest on a stop: dx1 = dv1 = 0, and two dimensions are lost for good.
 
-    M2 receives through the damper what moves M1 to the stop at once: dv2 -> dv2 - kappa dx1, with kappa = 2 zeta/mu_m.
+    The others receive through dampers what moves M1 to the stop at once: dv2 -> dv2 - kappa dx1, with kappa = 2
+    zeta/mu_m.
     """
     apply_flight(t, only(i))
     t.lost[i] = 2.0
-    Z, back, to = t.Z, t.from_frame, t.to_frame
-    for j in range(4):
-        push = kappa * (back[0, i] * Z[j, i] + back[2, i] * Z[8 + j, i])
-        for m in range(4):
-            Z[4 * m + j, i] -= to[4 * m + 3, i] * push
-    release(t, i, 1.0, 0.0, 0.0, 1.0)
+    Z, to, size = t.Z, t.to_frame, len(t.growth)
+    for j in range(size):
+        dx, _ = motion_in(t, i, 0, j)
+        for k in range(1, len(t.scale)):
+            push = kappa[k] * dx
+            for m in range(size):
+                Z[size * m + j, i] -= to[size * m + 2 * k + 1, i] * push
+    for m in range(size):
+        for j in range(size):
+            t.held[m, j] = 1.0 if m == j else 0.0
+    release(t, i)
 
 
 @jit
-def release(t, i, xx, xv, vx, vv):
-    """Z after a rest on the stop during which (dx2, dv2) is multiplied by ((xx, xv), (vx, vv))."""
-    Z, back, to = t.Z, t.from_frame, t.to_frame
+def motion_in(t, i, mass, j):
+    """Displacement and speed of a mass in tangent vector j of orbit i."""
+    Z, back, size = t.Z, t.from_frame, len(t.growth)
+    x, v = 2 * mass * size, (2 * mass + 1) * size
+    first, second = Z[j, i], Z[size + j, i]
+    dx, across = back[x, i] * first, back[x + 1, i] * second
+    dv = back[v, i] * first + back[v + 1, i] * second
+    for m in range(2, size, 2):
+        first, second = Z[size * m + j, i], Z[size * (m + 1) + j, i]
+        dx += back[x + m, i] * first
+        across += back[x + m + 1, i] * second
+        dv += back[v + m, i] * first + back[v + m + 1, i] * second
+    return dx + across, dv
+
+
+@jit
+def release(t, i):
+    """Z after a rest on the stop during which (dx2, dv2, dx3, ...) is multiplied by `held`."""
+    Z, to, held, size, before, after = t.Z, t.to_frame, t.held, len(t.growth), t.before, t.after
     t.mixed[i] = 1.0
-    for j in range(4):
-        z0, z1, z2, z3 = Z[j, i], Z[4 + j, i], Z[8 + j, i], Z[12 + j, i]
-        dx = back[8, i] * z0 + back[10, i] * z2
-        dv = (back[12, i] * z0 + back[13, i] * z1) + (back[14, i] * z2 + back[15, i] * z3)
-        dx, dv = xx * dx + xv * dv, vx * dx + vv * dv
-        for m in range(4):
-            Z[4 * m + j, i] = to[4 * m + 2, i] * dx + to[4 * m + 3, i] * dv
+    for j in range(size):
+        for mass in range(1, len(t.scale)):
+            before[2 * mass], before[2 * mass + 1] = motion_in(t, i, mass, j)
+        for a in range(2, size):
+            after[a] = held[a, 2] * before[2] + held[a, 3] * before[3]
+            for b in range(4, size, 2):
+                after[a] += held[a, b] * before[b] + held[a, b + 1] * before[b + 1]
+        for m in range(size):
+            z = 0.0
+            if size > 2:
+                z = to[size * m + 2, i] * after[2] + to[size * m + 3, i] * after[3]
+            for a in range(4, size, 2):
+                z += to[size * m + a, i] * after[a] + to[size * m + a + 1, i] * after[a + 1]
+            Z[size * m + j, i] = z
     orthonormalise(t, only(i))
 
 

@@ -1,0 +1,229 @@
+"""Oscillators with names and any linear one: their matrices, their free motion, where it grazes, how they start."""
+
+import inspect
+import math
+import pickle
+import re
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from support import ROOT
+
+import vibro_sweep as vs
+from vibro_sweep.cli import main
+from vibro_sweep.model.catalogue import OF_A_SYSTEM
+from vibro_sweep.model.linear import held_state
+from vibro_sweep.model.models import DEFAULT, MODELS
+from vibro_sweep.model.state import MOST_MASSES
+from vibro_sweep.scene import parse_scene
+from vibro_sweep.summaries import model_text
+
+PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0.25, omega=0.63, R=0.8, b=6.6)
+GIVEN = {
+    "two_mass": PAPER,
+    "one_mass": dict(zeta=0.02, F=0.35, omega=0.8, R=0.9, b=1, stops="right"),
+    "ball_in_cavity": dict(mass_ratio=0.05, zeta=0.01, F=0.1, omega=1.0, R=0.7, b=1.0),
+    "chain": dict(
+        m=[1, 2, 3], k=[1, 2, 0.5, 0], c=[0.1, 0.2, 0, 0.3], force=[0, 1, 0.5], stop_at=2, omega=0.9, R=0.6, b=2,
+    ),
+    "linear": dict(
+        M=[[2, 0.3], [0.3, 1]], K=[[3, -1], [-1, 2]], rayleigh=[0.02, 0.03], force=[1, 0.5], force_cos=[0, 0.2],
+        constant=[0.3, 0], force_power=2, along=[1, -1], omega=0.9, b=1, offset=0.2, R=0.8,
+    ),
+}  # fmt: skip
+
+
+def oscillator(name, **changes):
+    return vs.Oscillator.named(name, **(GIVEN[name] | changes))
+
+
+def response(q):
+    """Complex amplitudes of the steady motion, in 40 digits."""
+    with mp.workdps(40):
+        w = mpf(q.omega)
+        Z = mp.matrix(q.K) - w**2 * mp.matrix(q.M) + 1j * w * mp.matrix(q.C)
+        return mp.lu_solve(Z, mp.matrix(q.cosine) - 1j * mp.matrix(q.sine))
+
+
+@pytest.mark.parametrize("name", MODELS)
+class TestEveryModel:
+    def test_it_says_what_it_is(self, name):
+        model = MODELS[name]
+        assert model.name == name and model.title and model.source and "\n" not in model.title
+        assert model.sketch.strip("\n") and model.equations.strip("\n")
+        assert all(len(line) <= 110 for text in (model.sketch, model.equations) for line in text.splitlines())
+        parameters = inspect.signature(model.build).parameters
+        declared = {one.name for one in (*model.numbers, *model.options)}
+        assert set(parameters) == declared
+        for one in (*model.numbers, *model.options):
+            assert one.text and (not hasattr(one, "label") or one.label)
+
+    def test_a_name_means_the_same_in_all_models(self, name):
+        for key, one in MODELS[name].flat(MOST_MASSES).items():
+            assert (one.symbol, one.label) == (OF_A_SYSTEM[key].symbol, OF_A_SYSTEM[key].label), key
+
+    def test_grazing_touches_in_forty_digits(self, name):
+        """|n . X| from the middle of the steady gap, whatever the number of masses."""
+        one = oscillator(name)
+        q, touch = one.linear, vs.grazing(one)
+        with mp.workdps(40):
+            X = response(q)
+            gain = sum(mpf(n) * x for n, x in zip(q.along, X, strict=True))
+            middle = mpf(0)
+            if np.any(q.constant):
+                rest = mp.lu_solve(mp.matrix(q.K), mp.matrix(q.constant))
+                middle = sum(mpf(n) * x for n, x in zip(q.along, rest, strict=True))
+            offset = mpf(getattr(one, "offset", 0.0))
+            expected = abs(gain) + middle - offset, abs(gain) - middle + offset
+        assert touch.b_right == pytest.approx(float(expected[0]), rel=1e-13)
+        assert touch.b_left == pytest.approx(float(expected[1]), rel=1e-13)
+        assert (touch.b == touch.b_right) if expected[0] == expected[1] else math.isnan(touch.b)
+        assert abs(math.remainder(touch.tau + float(mp.arg(gain)), 2 * math.pi)) < 1e-13
+        state = np.array(touch.state)
+        assert q.along @ state[0::2] == pytest.approx(float(abs(gain) + middle), rel=1e-13)
+        assert abs(q.along @ state[1::2]) < 1e-13 * np.abs(state).max()
+        assert one.phase == pytest.approx(touch.tau, abs=1e-14)
+
+    def test_copies_are_equal(self, name):
+        one = oscillator(name)
+        assert pickle.loads(pickle.dumps(one)) == one == oscillator(name)
+        assert hash(one) == hash(oscillator(name)) and one != one.replace(omega=1.1) and repr(one)
+        for key, value in one.numbers.items():
+            if isinstance(value, float):
+                changed = one.replace(**{key: 0.5 * value + 0.125})
+                assert changed.numbers[key] == 0.5 * value + 0.125 and one.numbers[key] == value
+
+    def test_derivatives_by_every_number(self, name):
+        """The complex step against differences of the matrices."""
+        one = oscillator(name, tau=0.3)
+        family = one.family
+        for key, value in one.numbers.items():
+            if not isinstance(value, float):
+                continue
+            step = 1e-6 * max(1.0, abs(value))
+            high, low = (family.replace(**{key: value + sign * step}).linear for sign in (1, -1))
+            slope = family.derivative(key)
+            for field in slope._fields:
+                up, down, found = (np.asarray(getattr(each, field), float) for each in (high, low, slope))
+                finite = np.isfinite(up)
+                difference = (up[finite] - down[finite]) / (2 * step)
+                np.testing.assert_allclose(found[finite], difference, atol=2e-9, rtol=1e-8)
+
+    def test_a_scene_of_it_and_back(self, name):
+        one = oscillator(name)
+        first = next(key for key, value in one.numbers.items() if isinstance(value, float) and value > 0)
+        value = one.numbers[first]
+        scene = parse_scene(
+            f"system: {_yaml(one)}\nsweep: {{{first}: {{values: [{value}, {2 * value}]}}}}\n"
+            "orbit: {transient: 1, record: 2}\n"
+        )
+        assert scene.system == one
+        again = parse_scene(scene.to_yaml())
+        assert again.system == one and list(again.sweep) == [first]
+        assert scene.parameters()[first].tolist() == [value, 2 * value]
+
+
+def _yaml(one):
+    kind = {} if one.model.name == DEFAULT else {"type": one.model.name}
+    given = {} if one.model.name == DEFAULT else {k: v for k, v in one.given.items() if v is not None}
+    given = given or {name: value for name, value in PAPER.items()}
+    text = ", ".join(
+        f"{key}: {str(value).lower() if isinstance(value, bool) else value}" for key, value in (kind | given).items()
+    )
+    return "{" + text.replace("(", "[").replace(",)", "]").replace(")", "]") + "}"
+
+
+def test_the_paper_as_a_chain_and_by_its_matrices():
+    """Three ways to the same matrices."""
+    paper = vs.System(**PAPER).linear
+    chain = vs.Oscillator.named(
+        "chain", m=[1, 10], k=[0, 1, 5], c=[0, 0.1, 0.5], force=[0.75, 0.25], omega=0.63, R=0.8, b=6.6
+    ).linear
+    plain = vs.Oscillator(
+        paper.M, paper.K, rayleigh=[0, 0.1], force=[0.75, 0.25], along=[1, 0], omega=0.63, R=0.8, b=6.6
+    ).linear
+    for field in paper._fields:
+        for other in (chain, plain):
+            np.testing.assert_allclose(getattr(other, field), getattr(paper, field), rtol=1e-14, atol=1e-15)
+
+
+def test_damping_that_is_not_proportional():
+    system = vs.System(**PAPER, mu_c=2.0)
+    np.testing.assert_array_equal(system.linear.C, 0.1 * np.array([[1, -1], [-1, 3]]))
+    assert vs.System(**PAPER, mu_c=5.0).linear.C.tolist() == vs.System(**PAPER).linear.C.tolist()
+    assert system.divergence == pytest.approx(-np.trace(np.linalg.solve(system.linear.M, system.linear.C)), rel=1e-15)
+    assert vs.grazing(system).b == pytest.approx(float(abs(response(system.linear)[0])), rel=1e-14)
+    physical = dict(M1=2, M2=6, K1=8, K2=12, C1=0.4, C2=1.0, P1=3, P2=1, Omega=1.5, R=0.7, B=2)
+    assert vs.System.physical(**physical).mu_c == pytest.approx(2.5)
+
+
+def test_ratios_of_the_modes():
+    """Each mode decays with its own: x = psi_j e^(lambda t), lambda^2 + 2 zeta_j omega_j lambda + omega_j^2 = 0."""
+    M, K = np.array([[2, 0.3], [0.3, 1]]), np.array([[3, -1], [-1, 2.0]])
+    q = vs.Oscillator(M, K, modal_damping=[0.1, 0.3], along=[1, 0], omega=1, R=1, b=1).linear
+    squares, psi = np.linalg.eig(np.linalg.solve(M, K))
+    for j, ratio in zip(np.argsort(squares), (0.1, 0.3), strict=True):
+        root = np.sqrt(squares[j])
+        rate = root * (-ratio + 1j * math.sqrt(1 - ratio**2))
+        assert np.abs((rate**2 * M + rate * q.C + K) @ psi[:, j]).max() < 1e-14
+
+
+def test_unequal_stops():
+    system = vs.System(**PAPER, offset=0.5, R_left=0.6)
+    q = system.linear
+    assert (q.low, q.high, q.R_low, q.R_high) == (0.5 - 6.6, 0.5 + 6.6, 0.6, 0.8)
+    alone = vs.System(**(PAPER | dict(b=-1.5)), stops="right").linear
+    assert (alone.low, alone.high) == (-math.inf, -1.5)
+    assert vs.System(**PAPER, stops="left", R_left=0.3).linear.R_low == 0.3
+    touch = vs.grazing(system)
+    middle = vs.grazing(vs.System(**PAPER)).b
+    assert (touch.b_right, touch.b_left) == (middle - 0.5, middle + 0.5) and math.isnan(touch.b)
+
+
+def test_no_steady_motion():
+    """A ball that falls on a table has none; neither has an undamped mode in resonance."""
+    ball = vs.Oscillator.named(
+        "one_mass", k=0, zeta=0, constant=-1, base=True, F=0.2, omega=1, R=0.8, b=0, stops="left"
+    )
+    assert ball.phase == 0 and math.isnan(vs.grazing(ball).b_left) and not vs.grazing(ball).satisfied
+    assert ball.linear.sine.tolist() == [0.2]
+    resonant = oscillator("one_mass", zeta=0, omega=1.0)
+    assert resonant.phase == 0 and not vs.grazing(resonant).satisfied
+
+
+def test_rest_held_by_a_stop():
+    """Zero between the stops; else the gap at the nearer stop, and no force but that of the stop."""
+    assert held_state(oscillator("chain").linear).tolist() == [0, 0, 0]
+    preloaded = oscillator("chain", offset=5.0, constant=[0.3, 0, -0.2])
+    q = preloaded.linear
+    x = held_state(q)
+    assert q.along @ x == pytest.approx(q.low, rel=1e-14)
+    left_over = q.K @ x - q.constant
+    assert np.abs(left_over - q.along * (left_over @ q.along)).max() < 1e-13
+    assert left_over @ q.along > 0  # the left stop pushes to the right
+    ball = oscillator("one_mass", k=0.0, offset=2.0, stops="left", b=-1)
+    assert held_state(ball.linear).tolist() == [3.0]
+
+
+def test_docs_show_every_model():
+    page = (ROOT / "docs" / "models.md").read_text()
+    for name, model in MODELS.items():
+        assert f"## `{name}`" in page and model_text(model) in page
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_command_shows_a_model(name, capsys):
+    assert main(["models", name]) == 0
+    out = capsys.readouterr().out
+    assert out.rstrip("\n") == model_text(MODELS[name])
+    for one in (*MODELS[name].numbers, *MODELS[name].options):
+        assert re.search(rf"^  {one.name}  .*{re.escape(one.text)}", out, re.MULTILINE)
+
+
+def test_the_command_lists_them(capsys):
+    assert main(["models"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(MODELS)
+    assert main(["models", "chains"]) == 2
+    assert "did you mean chain?" in capsys.readouterr().err

@@ -1,0 +1,50 @@
+"""Any linear oscillators as points of the kernels, in contact coordinates; each different one is worked out once."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from vibro_sweep.engine.records import Kind, point_of
+from vibro_sweep.engine.tables import cells
+from vibro_sweep.model.confinement import confinement_of
+from vibro_sweep.model.contact import contact_coordinates, fastest_rate
+from vibro_sweep.model.frame import frame_of
+from vibro_sweep.model.linear import Linear
+
+
+def kind_of(linears: Iterable[Linear]) -> Kind:
+    """What kernels must be compiled for: oscillators with the same number of masses."""
+    linears = list(linears)
+    return Kind(len(linears[0].along), any(np.any(q.constant) for q in linears), False)
+
+
+def any_points(linears: np.ndarray, kind: Kind, frames: bool = True) -> np.ndarray:
+    """Points of an array of oscillators (`Linear`, tau resolved). frames: whether tangent vectors are wanted."""
+    known, result = {}, np.zeros(linears.shape, point_of(kind))
+    for place in np.ndindex(linears.shape):
+        q = linears[place]
+        motion = (q.M, q.K, q.C, q.along, q.sine, q.cosine, q.constant, q.omega, q.tau)
+        key = b"".join(np.asarray(value, float).tobytes() for value in motion)
+        if key not in known:
+            known[key] = _point(q, kind, frames)
+        result[place] = known[key]
+        result[place]["stops"] = q.low, q.high, q.R_low, q.R_high
+    return result
+
+
+def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
+    point = np.zeros((), point_of(kind))
+    contact = contact_coordinates(q)
+    point["omega"], point["tau"] = q.omega, q.tau
+    point["T"], point["back"], point["turned"] = contact.T, contact.back, not np.array_equal(contact.T, contact.back)
+    point["stiffness"], point["damping"], point["force"] = contact.stiffness, contact.damping, contact.force
+    point["divergence"] = -np.trace(contact.damping)
+    point["rate"] = fastest_rate(contact.stiffness, contact.damping)
+    point["held_rate"] = fastest_rate(contact.stiffness[1:, 1:], contact.damping[1:, 1:])
+    point["cells"] = cells.cells_for(np.maximum(point["rate"], q.omega), q.omega)
+    point["steady"], point["middle"], point["swing"], point["confining"] = confinement_of(q, contact)
+    if frames and point["cells"] > 0:
+        frame = frame_of(contact, q.omega)
+        point["frame_eta"], point["frame_square"], point["frame_scale"] = frame.eta, frame.square, frame.scale
+        point["to_frame"], point["from_frame"] = frame.to, frame.back
+    return point[()]

@@ -1,0 +1,86 @@
+"""What kernels are given of each point of a sweep, and what they give back of each orbit."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.model.observables import OF_AN_ORBIT, dimensions
+from vibro_sweep.model.parameters import NAMES
+
+
+class Kind(NamedTuple):
+    """What kernels are compiled for."""
+
+    masses: int
+    constant: bool  # whether a constant force acts
+    paper: bool  # the paper's oscillator, with tables from its modes
+
+
+PAPER = Kind(2, False, True)
+
+POINT = np.dtype(
+    [(name, float) for name in NAMES]
+    + [("psi", float, (2, 2)), ("omega_squared", float, 2), ("cells", np.int64)]
+    + [("stops", float, 4)]  # left, right, and the restitution of each
+    + [("graze", float, 4)]  # the point at which the discontinuity mapping is expanded
+)
+
+
+def point_of(kind: Kind) -> np.dtype:
+    """A point of any oscillator in contact coordinates y = T x; POINT of the paper's."""
+    if kind.paper:
+        return POINT
+    n = kind.masses
+    return np.dtype(
+        [
+            ("stops", float, 4),
+            ("omega", float),
+            ("tau", float),
+            ("cells", np.int64),  # 0: its rates are too far apart
+            ("rate", float),  # the fastest of free flight, and
+            ("held_rate", float),  # while a stop holds the gap
+            ("divergence", float),  # trace of -damping
+            ("stiffness", float, (n, n)),  # y'' + damping y' + stiffness y = force (sin, cos, 1)
+            ("damping", float, (n, n)),
+            ("force", float, (n, 3)),
+            ("turned", np.bool_),  # T is not the identity
+            ("T", float, (n, n)),
+            ("back", float, (n, n)),
+            ("steady", float, 2 * n),  # of model/confinement.py, as far as
+            ("middle", float),
+            ("swing", float),
+            ("confining", float, (2 * n, 2 * n)),  # here
+            ("frame_eta", float, n),  # of tangent vectors (model/frame.py)
+            ("frame_square", float, n),
+            ("frame_scale", float, n),
+            ("to_frame", float, (2 * n, 2 * n)),
+            ("from_frame", float, (2 * n, 2 * n)),
+        ]
+    )
+
+
+def result_of(masses: int) -> np.dtype:
+    """Results of an orbit."""
+    extents = dimensions(masses)
+    fields = [  # what files can hold, and what is needed beside it:
+        (one.name, one.dtype, tuple(extents[name].extent for name in one.dimensions)) for one in OF_AN_ORBIT
+    ]
+    return np.dtype(
+        [
+            *fields,
+            ("log_multiplier", float, 2 * masses),  # logarithm of the modulus: of multipliers that floats cannot hold
+            ("log_error", float, 2 * masses),  # too; and its error
+            ("end", float, 2 * masses),  # the state at the last section, and
+            ("resting", float),  # the side of the stop that M1 rests on there, or 0
+        ]
+    )
+
+
+def new_results(shape: tuple[int, ...], masses: int = 2) -> np.ndarray:
+    """Results of points that are not computed yet."""
+    results = np.zeros(shape, result_of(masses))
+    for one in OF_AN_ORBIT:
+        results[one.name] = one.fill
+    for name in ("log_multiplier", "log_error", "end"):
+        results[name] = np.nan
+    return results

@@ -1,0 +1,59 @@
+"""What all oscillators have in common: it follows from their `Linear`."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from vibro_sweep.model.linear import Family, Linear
+from vibro_sweep.model.models.declaration import Model
+from vibro_sweep.model.parameters import Parameter
+
+
+class AnyOscillator:
+    """A System or an Oscillator; a subclass says what its numbers and options are, by the model that it is of."""
+
+    model: Model
+    family: Family
+    described: dict[str, Parameter]  # its numbers, those of lists one by one
+    numbers: dict[str, Any]  # their values, as given
+    options: dict[str, Any]
+    omega: float
+
+    @property
+    def linear(self) -> Linear:
+        """Its matrices, forces and stops, the phase resolved."""
+        return self.family.linear
+
+    @property
+    def masses(self) -> int:
+        """N."""
+        return len(self.linear.along)
+
+    @property
+    def gap_is_x1(self) -> bool:
+        """Whether the contact is that of mass 1 with a wall."""
+        along = self.linear.along
+        return bool(along[0] == 1 and not along[1:].any())
+
+    @property
+    def phase(self) -> float:
+        """tau in radians, `grazing` resolved."""
+        return float(self.linear.tau)
+
+    @property
+    def period(self) -> float:
+        """The forcing period T = 2 pi/omega."""
+        return 2 * math.pi / self.omega
+
+    @property
+    def divergence(self) -> float:
+        """-tr(M^-1 C): the sum of the Lyapunov exponents of a non-impacting orbit."""
+        q = self.linear
+        return -float(np.trace(np.linalg.solve(q.M, q.C)))
+
+    def parameters(self) -> dict[str, float]:
+        """The numbers by name, `tau` resolved, and those that follow others."""
+        known = {name: value for name, value in self.numbers.items() if value is not None}
+        follow = {one.name: known[one.follows] for one in self.described.values() if one.follows}
+        return follow | known | {"tau": self.phase}

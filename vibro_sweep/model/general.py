@@ -1,0 +1,237 @@
+"""Any linear oscillator with one contact: `Oscillator`, by its matrices or as a model with a name."""
+
+from collections.abc import Callable, Mapping
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.linear import Family, Linear
+from vibro_sweep.model.models import MODELS, model_named
+from vibro_sweep.model.models.declaration import Model, Option, linear_of
+from vibro_sweep.model.parameters import LENGTHS, Parameter, ParameterError, checked_number
+from vibro_sweep.model.state import MOST_MASSES
+
+
+class Oscillator(AnyOscillator):
+    """M x'' + C x' + K x = constant + omega^force_power (force sin(omega t + tau) + force_cos cos(omega t + tau)).
+
+    The stops keep the gap g = along . x from offset - b to offset + b; an impact there takes g' to -R g'.
+
+    Parameters
+    ----------
+    M, K : (N, N), symmetric; M positive definite, K positive semidefinite
+    C, modal_damping, rayleigh : at most one; a matrix as K, a ratio for each mode, alpha and beta of alpha M + beta K
+    force, force_cos, constant, along : (N,); a force of 0 acts on no mass
+    R_left : of the left stop; left out: R
+    tau : phase in radians, or "grazing": where the gap of the free motion is largest at t = 0
+    stops : both, right, left; b may be <= 0 where there is one
+
+    Numbers are attributes: `force`, and `force1`, `force2`, ... too. Raises ParameterError for what cannot be.
+    `Oscillator.named("chain", m=..., ...)` makes the other models (`vibro-sweep models`).
+    """
+
+    def __init__(
+        self, M, K, C=None, *, modal_damping=None, rayleigh=None, force=0, force_cos=0, constant=0, force_power=0,
+        along, omega, b, offset=0.0, R, R_left=None, tau="grazing", stops="both",
+    ):  # fmt: skip
+        given = {name: value for name, value in locals().items() if name != "self"}
+        self._set(MODELS["linear"], given)
+
+    @classmethod
+    def named(cls, name: str, **given: Any) -> AnyOscillator:
+        """A model by its name, as it is in a scene; of `two_mass` a System."""
+        from vibro_sweep.model.oscillator import System
+
+        model = model_named(name)
+        return System(**given) if model.name == System.model.name else _again(name, given)
+
+    def _set(self, model: Model, given: Mapping[str, Any]) -> None:
+        object.__setattr__(self, "model", model)
+        object.__setattr__(self, "given", checked(model, given))
+
+    def __setattr__(self, name, value):
+        raise AttributeError(f"{name}: an Oscillator is not changed; `replace` makes another one")
+
+    def __getattr__(self, name: str):
+        if name.startswith("_") or name in ("model", "given"):  # while it is unpickled there is nothing yet
+            raise AttributeError(name)
+        if name in self.given:
+            return self.given[name]
+        if name in self.described:
+            return self.numbers[name]
+        raise AttributeError(f"{name!r} is no number of the model {self.model.name}")
+
+    def __reduce__(self):
+        return _again, (self.model.name, self.given)
+
+    def __eq__(self, other):
+        return isinstance(other, Oscillator) and (self.model.name, self.given) == (other.model.name, other.given)
+
+    def __hash__(self):
+        return hash((self.model.name, tuple(self.given.values())))
+
+    def __repr__(self) -> str:
+        numbers = ", ".join(f"{name}={_plain(value)!r}" for name, value in self.given.items() if value is not None)
+        return f"Oscillator({numbers})" if self.model.name == "linear" else f"<{self.model.name}: {numbers}>"
+
+    @cached_property
+    def described(self) -> dict[str, Parameter]:
+        """Its numbers, those of lists one by one: m1, m2, ..."""
+        return self.model.flat(self.masses)
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """Their values; `tau` may be a word, R_left None."""
+        result = {}
+        for one in self.model.numbers:
+            value = self.given[one.name]
+            if one.each:
+                result |= {f"{one.name}{i}": entry for i, entry in enumerate(value or (), 1)}
+            else:
+                result[one.name] = value
+        return result
+
+    @property
+    def options(self) -> dict[str, Any]:
+        return {one.name: self.given[one.name] for one in self.model.options}
+
+    @property
+    def masses(self) -> int:
+        return self.model.masses(self.given)
+
+    @property
+    def family(self) -> Family:
+        return Family(_builder(self.model.name, tuple(self.given.items())), self.numbers)
+
+    @cached_property
+    def linear(self) -> Linear:
+        return self.family.linear
+
+    def replace(self, **changes: Any) -> "Oscillator":
+        """A copy with other numbers. Raises ParameterError, also for a name that is none of them."""
+        given = dict(self.given)
+        for name, value in changes.items():
+            if name in given:
+                given[name] = value
+            elif name in self.numbers:
+                lists = next(
+                    one.name
+                    for one in self.model.numbers
+                    if one.each and name[len(one.name) :].isdecimal() and name.startswith(one.name)
+                )
+                entries = list(given[lists])
+                entries[int(name[len(lists) :]) - 1] = value
+                given[lists] = entries
+            else:
+                raise ParameterError(name, value, f"one of {', '.join(given)}")
+        return _again(self.model.name, given)
+
+
+def _again(name: str, given: Mapping[str, Any]) -> Oscillator:
+    made = Oscillator.__new__(Oscillator)
+    made._set(MODELS[name], given)
+    return made
+
+
+def _builder(name: str, given: tuple[tuple[str, Any], ...]) -> Callable[..., Linear]:
+    return partial(_build, name, given)
+
+
+def _build(name: str, given: tuple[tuple[str, Any], ...], /, **numbers) -> Linear:
+    return linear_of(MODELS[name], dict(given) | numbers)
+
+
+def checked(model: Model, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Everything the model needs, in its order: floats, tuples of floats, words. Raises ParameterError."""
+    known = {one.name: one for one in (*model.options, *model.numbers)}
+    for name, value in given.items():
+        if name not in known:
+            raise ParameterError(name, value, f"left out; {model.name} has {', '.join(known)}")
+    result = {}
+    for one in model.options:
+        result[one.name] = _option(one, given.get(one.name, one.default))
+    stops = result.get("stops", "both")
+    lists = [one for one in model.numbers if one.each]
+    for one in sorted(lists, key=lambda one: one.default is not None or one.optional):  # those that must be given first
+        value = given.get(one.name, one.default)
+        if value is None and one.optional:
+            result[one.name] = None
+            continue
+        if value is None:
+            raise ParameterError(one.name, None, f"given: a list of numbers, one for each {one.each}")
+        first = one.name not in result and not result.get("M") and one is lists[0]
+        length = len(_entries(one, value)) if first else LENGTHS[one.each](model.masses(result))
+        result[one.name] = _checked_list(one, value, length)
+    masses = model.masses(result)
+    if not 1 <= masses <= MOST_MASSES:
+        raise ParameterError(next(iter(known)), _plain(next(iter(result.values()))), f"of 1 to {MOST_MASSES} masses")
+    model.check(result)
+    for one in model.numbers:
+        if not one.each:
+            value = given.get(one.name, one.default)
+            words = isinstance(value, str) and value in one.words
+            left_out = value is None and (one.follows or one.optional)
+            result[one.name] = value if words or left_out else checked_number(one, value, stops)
+    return {name: result[name] for name in known}
+
+
+def _checked_list(one: Parameter, value: Any, length: int) -> tuple[float, ...]:
+    if np.ndim(value) == 0 and value == one.default:
+        value = [value] * length  # nothing anywhere
+    values = _entries(one, value)
+    if len(values) != length:
+        raise ParameterError(one.name, _plain(value), f"a list of {length} numbers, one for each {one.each}")
+    return tuple(checked_number(one, entry, key=f"{one.name}[{i}]") for i, entry in enumerate(values))
+
+
+def _entries(one: Parameter, value: Any) -> list:
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        value = [value]  # of one mass
+    if not isinstance(value, (list, tuple)):
+        raise ParameterError(one.name, value, f"a list of numbers, one for each {one.each}")
+    return list(value)
+
+
+def _option(one: Option, value: Any) -> Any:
+    if value is None and one.optional:
+        return None
+    if one.kind == "word":
+        if not (isinstance(value, str) and value in one.words):
+            raise ParameterError(one.name, value, f"{', '.join(one.words[:-1])} or {one.words[-1]}")
+    elif one.kind == "flag":
+        if not isinstance(value, (bool, np.bool_)):
+            raise ParameterError(one.name, value, "true or false")
+        return bool(value)
+    elif one.kind == "whole":
+        if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
+            raise ParameterError(one.name, value, "a whole number")
+        return int(value)
+    else:
+        return _array(one, value)
+    return value
+
+
+def _array(one: Option, value: Any) -> tuple:
+    """A matrix or a vector as nested tuples of floats."""
+    allowed = "a square matrix of finite numbers" if one.kind == "matrix" else "a list of finite numbers"
+    try:
+        array = np.asarray(value, dtype=None if value is not None else object)
+    except ValueError:  # rows of different lengths
+        raise ParameterError(one.name, value, allowed) from None
+    if array.ndim == 0 and array.dtype.kind in "fiu":
+        array = array.reshape((1, 1) if one.kind == "matrix" else 1)  # of one mass
+    good = array.dtype.kind in "fiu" and array.ndim == (2 if one.kind == "matrix" else 1)
+    if good and one.kind == "matrix":
+        good = array.shape[0] == array.shape[1]
+    if not good or array.size == 0 or not np.isfinite(array.astype(float)).all():
+        raise ParameterError(one.name, value.tolist() if isinstance(value, np.ndarray) else value, allowed)
+    numbers = array.astype(float).tolist()
+    return tuple(tuple(row) for row in numbers) if one.kind == "matrix" else tuple(numbers)
+
+
+def _plain(value):
+    return [_plain(one) for one in value] if isinstance(value, (tuple, list)) else value

@@ -1,0 +1,48 @@
+"""The numbers of an oscillator over a grid of values for some of them: what a sweep computes, point by point."""
+
+import itertools
+
+import numpy as np
+
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.grazing import resolved
+from vibro_sweep.model.linear import Linear
+from vibro_sweep.model.oscillator import System
+
+
+def grid(system: AnyOscillator, axes: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Every number by name, `tau` resolved, and the axes, at each point of a grid of values for some.
+
+    Read-only arrays with one dimension for each of `axes`, in their order.
+    """
+    numbers = system.numbers
+    numbers.update(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
+    shape = tuple(len(values) for values in axes.values())
+    if isinstance(system, System):
+        numbers = resolved(numbers)
+    else:
+        numbers |= {one.name: numbers[one.follows] for one in system.described.values() if _follows(one, numbers)}
+        numbers = {name: value for name, value in numbers.items() if value is not None}
+        if isinstance(numbers["tau"], str):
+            numbers["tau"] = np.array([q.tau for q in linears(system, axes).flat]).reshape(shape)
+    return {name: np.broadcast_to(value, shape) for name, value in numbers.items()}
+
+
+def linears(system: AnyOscillator, axes: dict[str, np.ndarray]) -> np.ndarray:
+    """The oscillators at the points of such a grid, phases resolved: an array of `Linear` with its shape."""
+    keys = [key for key in axes if key in system.described]
+    family = system.family
+    result = np.empty(tuple(len(values) for values in axes.values()), object)
+    flat = (values.tolist() if key in keys else [None] * len(values) for key, values in axes.items())
+    for place, values in zip(np.ndindex(result.shape), itertools.product(*flat), strict=True):
+        changes = {key: value for key, value in zip(axes, values, strict=True) if key in keys}
+        result[place] = _one(family, changes)
+    return result
+
+
+def _one(family, changes) -> Linear:
+    return family.replace(**changes).linear
+
+
+def _follows(one, numbers) -> bool:
+    return bool(one.follows) and numbers.get(one.name) is None

@@ -1,0 +1,73 @@
+"""A free ball in the cavity of a sprung host: the impact damper, or vibro-impact nonlinear energy sink."""
+
+import numpy as np
+
+from vibro_sweep.model.linear import Linear, contact
+from vibro_sweep.model.models.declaration import Model
+from vibro_sweep.model.parameters import (
+    CLEARANCE,
+    FREQUENCY,
+    NOT_NEGATIVE,
+    NUMBER,
+    PHASE,
+    POSITIVE,
+    RESTITUTION,
+    Parameter,
+)
+
+
+def ball_in_cavity(*, mass_ratio, zeta, F, omega, R, b, tau) -> Linear:
+    """Also for complex numbers."""
+    return Linear(
+        M=np.array([[1, 0], [0, mass_ratio]]),
+        K=np.diag([1.0, 0.0]),
+        C=2 * zeta * np.diag([1.0, 0.0]),
+        along=np.array([-1.0, 1.0]),
+        constant=np.zeros(2),
+        sine=np.array([F, 0]),
+        cosine=np.zeros(2),
+        omega=omega,
+        tau=None if isinstance(tau, str) else tau,
+        **contact(b, 0.0, R, None, "both"),
+    )
+
+
+MODEL = Model(
+    name="ball_in_cavity",
+    title="a free ball in the cavity of a sprung mass: impact damper, vibro-impact energy sink",
+    sketch=r"""
+    |            .------------------.
+    |            |  <-b-> o <-b->   |
+    |---/\/\-----|       x2         |
+    |---[--]-----|  1               |
+    |            '------------------'
+                   x1, F sin(omega t + tau)
+""",
+    equations="""
+    x1'' + 2 zeta x1' + x1 = F sin(omega t + tau)
+    mass_ratio x2'' = 0
+    |x2 - x1| <= b;   the gap is g = x2 - x1
+""",
+    source="S. F. Masri and T. K. Caughey, J. Appl. Mech. 33 (1966) 586; O. V. Gendelman, J. Sound Vib. 331 (2012) "
+    "4599",
+    numbers=(
+        Parameter(
+            "mass_ratio",
+            r"\epsilon",
+            "1",
+            POSITIVE,
+            "mass ratio",
+            "mass of the ball over that of the host",
+            free_motion=True,
+        ),
+        Parameter("zeta", r"\zeta", "1", NOT_NEGATIVE, "damping ratio", "damping ratio of the host", free_motion=True),
+        Parameter("F", "F", "1", NUMBER, "forcing amplitude", "amplitude of the force on the host", free_motion=True),
+        FREQUENCY,
+        RESTITUTION,
+        CLEARANCE._replace(text="half of the ball's play", range=POSITIVE),
+        PHASE,
+    ),
+    options=(),
+    masses=lambda given: 2,
+    build=ball_in_cavity,
+)

@@ -1,0 +1,78 @@
+"""What a model declares of itself: numbers, options, and how its matrices follow from them."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from vibro_sweep.model.linear import Linear
+from vibro_sweep.model.parameters import (
+    CLEARANCE,
+    FREQUENCY,
+    LENGTHS,
+    OFFSET,
+    PHASE,
+    RESTITUTION,
+    RESTITUTION_LEFT,
+    STOPS,
+    Parameter,
+)
+
+
+class Option(NamedTuple):
+    """What is no number that could be swept. `kind`: "word" | "flag" | "whole" | "matrix" | "vector"."""
+
+    name: str
+    kind: str
+    text: str
+    default: Any = None
+    words: tuple[str, ...] = ()  # of a word
+    optional: bool = False
+
+
+class Model(NamedTuple):
+    """An oscillator with a name. Files, scenes, sweeps, messages, pictures and `vibro-sweep models` follow from it."""
+
+    name: str
+    title: str  # one line
+    sketch: str  # in text
+    equations: str
+    source: str
+    numbers: tuple[Parameter, ...]
+    options: tuple[Option, ...]
+    masses: Callable[[Mapping[str, Any]], int]  # N, from what is given
+    build: Callable[..., Linear]  # from all numbers and options by name; analytic in the numbers, also complex ones
+    check: Callable[[Mapping[str, Any]], None] = lambda given: None  # raises ParameterError: how they must fit
+
+    def flat(self, masses: int) -> dict[str, Parameter]:
+        """The numbers that can be swept; of a list m these are m1, m2, ..."""
+        result = {}
+        for one in self.numbers:
+            result |= {each.name: each for each in entries(one, masses)} if one.each else {one.name: one}
+        return result
+
+
+def entries(one: Parameter, masses: int) -> list[Parameter]:
+    """The numbers of a list, counted from 1."""
+    return [
+        one._replace(
+            name=f"{one.name}{i}",
+            symbol=f"{one.symbol}_{{{i}}}" if "_" not in one.symbol else f"{one.symbol}{{}}_{{{i}}}",
+            text=f"{one.text}, {one.each} {i}",
+        )
+        for i in range(1, LENGTHS[one.each](masses) + 1)
+    ]
+
+
+def linear_of(model: Model, given: Mapping[str, Any]) -> Linear:
+    """The oscillator with these numbers and options; those of lists may be given one by one, as m1, m2, ..."""
+    masses, whole = model.masses(given), dict(given)
+    for one in model.numbers:
+        if one.each and whole.get(one.name) is not None:
+            values = [
+                whole.pop(each.name, value) for each, value in zip(entries(one, masses), whole[one.name], strict=True)
+            ]
+            whole[one.name] = values
+    return model.build(**whole)
+
+
+WHICH_STOPS = Option("stops", "word", "which stops there are", "both", STOPS)
+CONTACT = (FREQUENCY, RESTITUTION, RESTITUTION_LEFT, CLEARANCE, OFFSET, PHASE)  # numbers that every model has

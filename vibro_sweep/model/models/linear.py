@@ -1,0 +1,148 @@
+"""Any linear oscillator with one contact, by its matrices."""
+
+import numpy as np
+from scipy.linalg import eigh
+
+from vibro_sweep.model.linear import Linear, contact
+from vibro_sweep.model.models.declaration import CONTACT, WHICH_STOPS, Model, Option
+from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter, ParameterError
+
+ROUNDING = 1e-12  # of a matrix, relative to its largest entry or eigenvalue
+DAMPING = ("C", "modal_damping", "rayleigh")  # ways to give it
+
+
+def linear(
+    *, M, K, C, modal_damping, rayleigh, force, force_cos, constant, force_power, along, omega, R, R_left, b, offset,
+    tau, stops,
+) -> Linear:  # fmt: skip
+    """Also for complex numbers, but in the matrices."""
+    M, K = np.array(M, float), np.array(K, float)
+    power = omega**force_power if force_power else 1.0
+    return Linear(
+        M=M,
+        K=K,
+        C=damping(M, K, C, modal_damping, rayleigh),
+        along=np.array(along, float),
+        constant=np.array(constant),
+        sine=power * np.array(force),
+        cosine=power * np.array(force_cos),
+        omega=omega,
+        tau=None if isinstance(tau, str) else tau,
+        **contact(b, offset, R, R_left, stops),
+    )
+
+
+def damping(M, K, C, modal_damping, rayleigh) -> np.ndarray:
+    """The damping matrix: as given, from a ratio for each mode, or alpha M + beta K; else none."""
+    if rayleigh is not None:
+        return rayleigh[0] * M + rayleigh[1] * K
+    if modal_damping is not None:
+        squares, psi = eigh(K, M)  # psi^T M psi = 1
+        carried = M @ psi
+        return (carried * (2 * np.array(modal_damping) * np.sqrt(np.maximum(squares, 0)))) @ carried.T
+    return np.zeros_like(M) if C is None else np.array(C, float)
+
+
+def _check(given) -> None:
+    sizes = {name: len(given[name]) for name in ("M", "K", "C", "along") if given[name] is not None}
+    masses = sizes["M"]
+    for name, size in sizes.items():
+        if size != masses:
+            what = f"a matrix of {masses} x {masses} numbers" if name != "along" else f"a list of {masses} numbers"
+            raise ParameterError(name, _plain(given[name]), f"{what}, as there are {masses} masses in M")
+        if name != "along":
+            _check_symmetric(name, np.array(given[name]))
+    if np.linalg.eigvalsh(given["M"]).min() <= 0:
+        raise ParameterError("M", _plain(given["M"]), "positive definite: every motion must have kinetic energy")
+    for name in ("K", "C"):
+        if given[name] is not None:
+            values = np.linalg.eigvalsh(given[name])
+            if values.min() < -ROUNDING * np.abs(values).max():
+                raise ParameterError(
+                    name, _plain(given[name]), "positive semidefinite: no motion may gain energy by it"
+                )
+    if not np.any(given["along"]):
+        raise ParameterError("along", _plain(given["along"]), "other than zero: it is n of the gap n . x")
+    several = [name for name in DAMPING if given[name] is not None]
+    if len(several) > 1:
+        raise ParameterError(several[1], _plain(given[several[1]]), f"left out where {several[0]} is given")
+
+
+def _check_symmetric(name: str, matrix: np.ndarray) -> None:
+    apart = np.abs(matrix - matrix.T)
+    if apart.max() > ROUNDING * np.abs(matrix).max():
+        i, j = (int(one) for one in np.unravel_index(apart.argmax(), apart.shape))
+        entries = f"entries {i + 1}, {j + 1} and {j + 1}, {i + 1} differ: {matrix[i, j]:g} and {matrix[j, i]:g}"
+        raise ParameterError(name, matrix.tolist(), f"symmetric; {entries}")
+
+
+def _plain(value):
+    return [_plain(one) for one in value] if isinstance(value, tuple) else value
+
+
+def _list(name: str, symbol: str, label: str, text: str, **more) -> Parameter:
+    more = {"range": NUMBER, "each": "mass", "default": 0.0} | more
+    return Parameter(name, symbol, "1", label=label, text=text, free_motion=True, **more)
+
+
+MODEL = Model(
+    name="linear",
+    title="any linear oscillator with one contact, by its matrices",
+    sketch=r"""
+        M, C, K: N masses, joined in any way
+        g = along . x    along = (1, 0, ..):  mass 1 and a wall;   (-1, 1, 0, ..): masses 1 and 2
+""",
+    equations="""
+    M x'' + C x' + K x
+        = constant + omega^force_power (force sin(omega t + tau) + force_cos cos(omega t + tau))
+    offset - b <= along . x <= offset + b
+    force_power: 2   unbalance, or a shaken base
+""",
+    source="docs/model.md",
+    numbers=(
+        _list("force", "f", "force", "amplitude of the force with sin(omega t + tau)"),
+        _list("force_cos", r"\tilde f", "force (cos)", "amplitude of the force with cos(omega t + tau)"),
+        _list("constant", r"\bar f", "constant force", "constant force"),
+        Parameter(
+            "force_power",
+            "p",
+            "1",
+            NUMBER,
+            "power of omega",
+            "the force grows like omega to this power",
+            default=0.0,
+            free_motion=True,
+        ),
+        _list(
+            "modal_damping",
+            r"\zeta",
+            "damping ratio",
+            "damping ratio, in the order of rising frequency",
+            range=NOT_NEGATIVE,
+            each="mode",
+            default=None,
+            optional=True,
+        ),
+        _list(
+            "rayleigh",
+            "r",
+            "Rayleigh damping",
+            "alpha and beta of C = alpha M + beta K",
+            range=NOT_NEGATIVE,
+            each="coefficient",
+            default=None,
+            optional=True,
+        ),
+        *CONTACT,
+    ),
+    options=(
+        Option("M", "matrix", "masses: symmetric, positive definite"),
+        Option("K", "matrix", "stiffnesses: symmetric, positive semidefinite"),
+        Option("C", "matrix", "damping: symmetric, positive semidefinite", optional=True),
+        Option("along", "vector", "n of the gap g = n . x"),
+        WHICH_STOPS,
+    ),
+    masses=lambda given: len(given["M"]),
+    build=linear,
+    check=_check,
+)

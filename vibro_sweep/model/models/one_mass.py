@@ -1,0 +1,68 @@
+"""One mass on a spring, with one stop or two; without the spring a bouncing ball, or the rattle of gears."""
+
+import numpy as np
+
+from vibro_sweep.model.linear import Linear, contact
+from vibro_sweep.model.models.declaration import CONTACT, WHICH_STOPS, Model, Option
+from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter
+
+
+def one_mass(*, k, zeta, F, constant, base, omega, R, R_left, b, offset, tau, stops) -> Linear:
+    """Also for complex numbers."""
+    return Linear(
+        M=np.ones((1, 1)),
+        K=np.array([[k]]),
+        C=np.array([[2 * zeta]]),
+        along=np.ones(1),
+        constant=np.array([constant]),
+        sine=np.array([F * omega**2 if base else F]),
+        cosine=np.zeros(1),
+        omega=omega,
+        tau=None if isinstance(tau, str) else tau,
+        **contact(b, offset, R, R_left, stops),
+    )
+
+
+MODEL = Model(
+    name="one_mass",
+    title="one mass, one stop or two; k = 0: bouncing ball, rattling gears",
+    sketch=r"""
+           L |<-- b -->.-----.<-- b -->| R      stops at offset - b and offset + b
+                       |  1  |
+    ||---/\/\--[--]----'-----'                  spring k and damper 2 zeta
+                         x1
+""",
+    equations="""
+    x1'' + 2 zeta x1' + k x1 = constant + F sin(omega t + tau)
+    base: true   the wall moves: F omega^2 in place of F (x1 is counted from the wall)
+    bouncing ball on a table A sin(omega t), gravity G: k = 0, zeta = 0, constant = -G, base: true, F = A,
+    stops: left, b = 0
+""",
+    source="S. W. Shaw and P. J. Holmes, J. Sound Vib. 90 (1983) 129; bouncing ball: P. J. Holmes, J. Sound Vib. 84 "
+    "(1982) 173; orbits to compare with: arXiv 2510.16218",
+    numbers=(
+        Parameter("k", "k", "1", NOT_NEGATIVE, "stiffness", "stiffness of the spring", default=1.0, free_motion=True),
+        Parameter(
+            "zeta", r"\zeta", "1", NOT_NEGATIVE, "damping ratio", "half the damping coefficient", free_motion=True
+        ),
+        Parameter(
+            "F",
+            "F",
+            "1",
+            NUMBER,
+            "forcing amplitude",
+            "amplitude of the force, or of the wall's motion",
+            free_motion=True,
+        ),
+        Parameter(
+            "constant", r"\bar f", "1", NUMBER, "constant force", "constant force", default=0.0, free_motion=True
+        ),
+        *CONTACT,
+    ),
+    options=(
+        Option("base", "flag", "true: the wall moves, and the force is F omega^2", False),
+        WHICH_STOPS,
+    ),
+    masses=lambda given: 1,
+    build=one_mass,
+)

@@ -1,0 +1,46 @@
+"""The paper's oscillator (eqs. 3, 4): the default."""
+
+import numpy as np
+
+from vibro_sweep.model.linear import Linear, contact
+from vibro_sweep.model.models.declaration import WHICH_STOPS, Model
+from vibro_sweep.model.parameters import PARAMETERS
+
+
+def two_mass(*, mu_m, mu_k, zeta, f2, omega, R, b, tau, stops, offset=0.0, R_left=None, mu_c=None) -> Linear:
+    """Also for complex numbers."""
+    return Linear(
+        M=np.array([[1, 0], [0, mu_m]]),
+        K=np.array([[1, -1], [-1, 1 + mu_k]]),
+        C=2 * zeta * np.array([[1, -1], [-1, 1 + (mu_k if mu_c is None else mu_c)]]),
+        along=np.array([1.0, 0.0]),
+        constant=np.zeros(2),
+        sine=np.array([1 - f2, f2]),
+        cosine=np.zeros(2),
+        omega=omega,
+        tau=None if isinstance(tau, str) else tau,
+        **contact(b, offset, R, R_left, stops),
+    )
+
+
+MODEL = Model(
+    name="two_mass",
+    title="two masses in a chain, the first between two stops",
+    sketch=r"""
+    C |<-- b -->.-----.<-- b -->| A            stops at offset - b and offset + b
+                |  1  |                .------.
+                |     |---/\/\--[--]---| mu_m |---/\/\--[--]---||
+                '-----'    1, 2 zeta   '------'   mu_k, 2 zeta mu_c
+                  x1                      x2
+""",
+    equations="""
+    x1'' + 2 zeta (x1' - x2') + x1 - x2 = (1 - f2) sin(omega t + tau)
+    mu_m x2'' + 2 zeta ((1 + mu_c) x2' - x1') + (1 + mu_k) x2 - x1 = f2 sin(omega t + tau)
+    offset - b <= x1 <= offset + b;   mu_c = mu_k unless it is given
+""",
+    source="the paper that this package follows, eqs. (3), (4): docs/model.md",
+    numbers=PARAMETERS,
+    options=(WHICH_STOPS,),
+    masses=lambda given: 2,
+    build=two_mass,
+)

@@ -1,0 +1,74 @@
+"""How the Lyapunov exponents of an orbit were found, period by period."""
+
+import numpy as np
+
+from vibro_sweep.plotting.orbits import legend
+from vibro_sweep.plotting.result import Result
+from vibro_sweep.plotting.style import DASHES, INK, PER_TIME, exponent, exponent_colour, limits
+
+
+def shows_convergence(result: Result) -> bool:
+    """Exponents as they converge."""
+    return "lyapunov_running" in result
+
+
+def convergence(result: Result):
+    """The spectrum as it was computed, period by period: lambda_1 beside zero, and below all of them. Up to two orbits.
+
+    Where the file has them: a dashed line at each final value, around it a band in which zero would not differ from it.
+    """
+    points = result.points(2)
+    fig = result.page(5.2, result.title("Convergence of the Lyapunov exponents"))
+    grid = fig.subplots(2, len(points), sharex=True, sharey="row", squeeze=False, height_ratios=(1.2, 1))
+    periods = result.coordinate("elapsed")
+    settled = slice(len(periods) // 10, None)
+    for (largest, spectrum), point in zip(grid.T, points, strict=True):
+        running = np.where(np.isfinite(values := result.one("lyapunov_running", point)), values, np.nan)
+        for i in range(running.shape[1]):
+            spectrum.plot(periods, running[:, i], color=exponent_colour(i), label=exponent(i + 1), zorder=3 - i / 9)
+        order = np.argsort(-np.nan_to_num(running[-1], nan=-np.inf))
+        largest.plot(periods, running[:, order[0]], color=exponent_colour(order[0]))
+        text = point.label
+        if "lyapunov" in result:
+            text = ", ".join(filter(None, [text, _final_values((largest, spectrum), result, point)]))
+        largest.axhline(0, color=INK, lw=0.6)
+        largest.set_title(text)
+        spectrum.set_xlabel("forcing periods recorded")
+        spectrum.set_xlim(0, periods[-1])
+    for row, shown in zip(grid, (slice(0, 1), slice(None)), strict=True):
+        values = [
+            np.sort(result.one("lyapunov_running", point)[settled], axis=1)[:, ::-1][:, shown] for point in points
+        ]
+        finite = np.concatenate([v[np.isfinite(v)] for v in values] + [[0.0]])
+        row[0].set_ylim(limits(finite))
+    grid[0, 0].set_ylabel(f"{exponent(1)} {PER_TIME}")
+    grid[1, 0].set_ylabel(f"{exponent('i')} {PER_TIME}")
+    legend(fig)
+    fig.align_ylabels(grid[:, 0])
+    return fig
+
+
+def _final_values(panels, result, point) -> str:
+    """Draw the exponents of the file, and how far their errors reach; the first of them as text."""
+    final = result.one("lyapunov", point)
+    known = "lyapunov_error" in result
+    reach = result.interval(result.one("lyapunov_error", point)) if known else np.full(len(final), np.nan)
+    errors = f"± {result.significant:.2g} standard errors"
+    for ax, count in zip(panels, (1, len(final)), strict=True):
+        for i, (value, spread) in enumerate(list(zip(final, reach, strict=True))[:count]):
+            colour = exponent_colour(i)
+            if np.isfinite(value):
+                ax.axhline(value, color=colour, lw=0.7, ls=DASHES, label="_" if i else "final value")
+            if np.isfinite(value) and np.isfinite(spread):
+                label = "_" if i else errors
+                ax.axhspan(value - spread, value + spread, color=colour, alpha=0.15, lw=0, label=label)
+    value = rf"{_scientific(final[0], 2)} \pm {_scientific(reach[0], 0)}" if known else _scientific(final[0], 2)
+    return exponent(1, f" = {value}") + (f" ({errors})" if known else "")
+
+
+def _scientific(value, digits) -> str:
+    """A number for mathtext."""
+    if not np.isfinite(value) or value == 0:
+        return f"{value:.{digits}f}".replace("inf", r"\infty").replace("nan", "?")
+    mantissa, exponent = f"{value:.{digits}e}".split("e")
+    return rf"{mantissa} \times 10^{{{int(exponent)}}}"

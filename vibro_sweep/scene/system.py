@@ -1,0 +1,90 @@
+"""From the data of a scene to its oscillator and what is swept of it."""
+
+import numpy as np
+
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.general import Oscillator
+from vibro_sweep.model.models import DEFAULT, MODELS
+from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.parameters import Parameter, ParameterError, check_value
+from vibro_sweep.model.state import START
+
+from .axes import axis_values
+from .fields import Form
+from .problems import SceneError, problem
+from .slips import meant
+from .systems import PhysicalSystemForm
+
+
+def kind_of(data: object, name: str) -> tuple[str, int]:
+    """The model of a scene and its number of masses, as far as its data tell. Raises SceneError for no model."""
+    system = data.get("system") if isinstance(data, dict) else None
+    kind = system.get("type", DEFAULT) if isinstance(system, dict) else DEFAULT
+    if kind not in MODELS:
+        hint = f"did you mean `{found}`? " if (found := meant(kind, MODELS)) else ""
+        raise SceneError(name, [problem("system.type", kind, f"{hint}allowed: {', '.join(MODELS)}")])
+    try:
+        return kind, MODELS[kind].masses(system) if isinstance(system, dict) else 2
+    except (KeyError, TypeError):  # what they follow from is missing, or no list: the form says so
+        return kind, 1
+
+
+def sweep_of(form: Form, keys, kind: str, masses: int) -> tuple[dict[str, np.ndarray], list[str]]:
+    """The axes in the order of the text, and what is wrong with them; an axis with a problem is left out."""
+    if form.sweep is None:
+        return {}, []
+    if not 1 <= len(keys) <= 2:
+        return {}, [problem("sweep", list(keys), "must have one key or two, or be left out")]
+    numbers, sweep, problems = MODELS[kind].flat(masses), {}, []
+    for key in keys:
+        values, wrong = axis_values(f"sweep.{key}", getattr(form.sweep, key))
+        if values is not None and key in numbers:
+            wrong = _number_problems("sweep", numbers[key], values, getattr(form.system, "stops", "both"))
+        if not wrong:
+            sweep[START.get(key, key)] = values
+        problems += wrong
+    return sweep, problems
+
+
+def _number_problems(path: str, number: Parameter, value, stops: str) -> list[str]:
+    try:
+        check_value(number, value, stops)
+    except ParameterError as error:
+        return [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]
+    return []
+
+
+def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[AnyOscillator | None, list[str]]:
+    """The base system with the first swept values in it, or None and what is wrong."""
+    model = MODELS[kind]
+    numbers = model.flat(masses)
+    first = {key: float(values[0]) for key, values in sweep.items() if key in numbers}
+    if isinstance(form.system, PhysicalSystemForm):
+        physical = form.system.physical.model_dump()
+        try:
+            system = System.physical(**physical, tau=form.system.tau, stops=form.system.stops)
+            return system.replace(**first), []
+        except ParameterError as error:
+            path = "system.physical" if error.key in physical else "system"
+            return None, [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]
+    swept = form.sweep.model_fields_set.intersection(numbers) if form.sweep else set()
+    problems, given = [], {}
+    stops = getattr(form.system, "stops", "both")
+    for one in model.numbers:
+        value = getattr(form.system, one.name)
+        if value is None and one.name not in first and not one.each and not (one.follows or one.optional):
+            if one.name not in swept:
+                problems.append(f"system.{one.name}: missing; it must be given unless it is swept")
+        elif value is not None and not one.each and not isinstance(value, str):
+            problems += _number_problems("system", one, value, stops)
+        if value is not None:
+            given[one.name] = value
+    if problems or swept != first.keys():
+        return None, problems
+    given |= {name: value for name, value in first.items() if name in (one.name for one in model.numbers)}
+    given |= {one.name: getattr(form.system, one.name) for one in model.options}
+    try:
+        system = Oscillator.named(kind, **given)
+        return system.replace(**first) if first else system, []
+    except ParameterError as error:
+        return None, [problem(f"system.{error.key}", error.value, f"must be {error.allowed}")]

@@ -1,0 +1,80 @@
+"""The forms of `system`: one for each model, in its own numbers; and the paper's oscillator in physical units."""
+
+import functools
+from typing import Any, Literal
+
+from pydantic import ConfigDict, Field, create_model
+
+from vibro_sweep.model.models import DEFAULT, MODELS
+from vibro_sweep.model.models.declaration import WHICH_STOPS, Option
+from vibro_sweep.model.parameters import PHASE, PHYSICAL, POSITIVE, Parameter
+
+from .fields import TAU, WHICH, Form, Whole, given, number
+
+PhysicalNumbers = create_model(
+    "PhysicalNumbers",
+    __base__=Form,
+    __doc__="Physical quantities in any consistent units, as kg, m, s and N. "
+    "All must be given; a sweep over `omega`, `b` or `R` replaces the value that follows from `Omega`, `B` or `R`.",
+    **{one.name: (float, given(one.text, **one.range.bounds)) for one in PHYSICAL},
+)
+
+PhysicalSystemForm = create_model(
+    "PhysicalSystemForm",
+    __base__=Form,
+    __doc__="The impact oscillator in physical units, converted to nondimensional numbers.",
+    physical=(PhysicalNumbers, Field(description="the quantities")),
+    tau=TAU,
+    stops=WHICH,
+)
+
+
+# Two stops have a middle, from which both are as far away; one alone may stand anywhere.
+_ALONE = {
+    "if": {"properties": {"stops": {"enum": ["right", "left"]}}, "required": ["stops"]},
+    "else": {"properties": {"b": POSITIVE.bounds}},
+}
+
+
+class _Stopped(Form):
+    model_config = ConfigDict(json_schema_extra=_ALONE)
+
+
+@functools.cache
+def form_of(name: str) -> type[Form]:
+    """The form of a model; a number that is swept may be left out."""
+    model, default = MODELS[name], name == DEFAULT
+    kind = (Literal[(model.name,)], Field(default=DEFAULT if default else ..., description="the model"))
+    title = "".join(word.capitalize() for word in model.name.split("_")) + "Form"
+    return create_model(
+        "SystemForm" if default else title,
+        __base__=_Stopped if WHICH_STOPS in model.options else Form,
+        __doc__="The impact oscillator in nondimensional numbers; a number that is swept may be left out."
+        if default
+        else f"The model {model.name}: {model.title}. A number that is swept may be left out.",
+        **{one.name: _number(one) for one in model.numbers},
+        **{one.name: _option(one) for one in model.options},
+        type=kind,
+    )
+
+
+def _number(one: Parameter) -> tuple[Any, Any]:
+    if one.name == PHASE.name:
+        return TAU
+    if not one.each:
+        return number(one)
+    of_each = {"items": {"type": "number"} | one.range.bounds} if one.range.bounds else {}
+    text = f"{one.text}; a list, one for each {one.each}" + ("; left out: 0" if one.default == 0 else "")
+    return list[float], Field(default=None, description=text, json_schema_extra=of_each)
+
+
+def _option(one: Option) -> tuple[Any, Any]:
+    kind = {
+        "word": Literal[one.words] if one.words else str,
+        "flag": bool,
+        "whole": Whole,
+        "matrix": list[list[float]],
+        "vector": list[float],
+    }[one.kind]
+    required = one.default is None and not one.optional
+    return kind, Field(default=... if required else one.default, description=one.text)
