@@ -52,6 +52,15 @@ def test_a_second_start_compiles_nothing(program, tmp_path):
     assert program(NUMBA_CACHE_DIR=folder) == (1, [])
 
 
+def test_a_second_start_loads_nothing_that_compiling_takes(program, tmp_path):
+    """numba's own way to a kernel in the cache loads scipy and all of numba's registries: a quarter of a second."""
+    source = tmp_path / "program.py"
+    source.write_text("import sys\n" + PROGRAM + "print('numba.np.linalg' in sys.modules, file=sys.stderr)\n")
+    folder = str(tmp_path / "cache")
+    assert program(NUMBA_CACHE_DIR=folder) == (0, ["True"])
+    assert program(NUMBA_CACHE_DIR=folder) == (1, ["False"])
+
+
 def test_a_cut_entry_is_named_and_mended(program, tmp_path):
     """Index or code, empty or halved; what each start has mended the next one finds whole."""
     folder = str(tmp_path / "cache")

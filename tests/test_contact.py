@@ -63,9 +63,8 @@ def first_contacts_by_eights(c, gap, side, third, rest, out):
     """As an orbit finds them: by the long way what is not clear at once. Returns how many are."""
     first_contacts(c, gap, side, third, rest, out)
     t = np.zeros(1, strikes_of(2))
-    t["restitution"] = (
-        1e3  # it leaves fast enough not to come back within the cell: the first contact alone is judged here
-    )
+    # it leaves fast enough not to come back within the cell: the first contact alone is judged here
+    t["restitution"] = 1e3
     return strikes(t[0], c, gap, side, third, rest, out)
 
 

@@ -68,8 +68,9 @@ class _Cache(FunctionCache):
     """numba's, but what cannot be read is compiled anew and put in its place, and what cannot be written is not."""
 
     def load_overload(self, sig, target_context):
+        """By itself numba loads all that compiling takes, scipy too, before it looks for what is compiled already."""
         try:
-            return super().load_overload(sig, target_context)
+            return self._load_overload(sig, target_context)
         except Exception as error:  # of pickle, any: the entry is empty or cut off
             _tell(self.cache_path, error)
             with contextlib.suppress(OSError):

@@ -1,7 +1,6 @@
 """Any linear oscillator with one contact, by its matrices."""
 
 import numpy as np
-from scipy.linalg import eigh
 
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import CONTACT, WHICH_STOPS, Model, Option
@@ -37,6 +36,8 @@ def damping(M, K, C, modal_damping, rayleigh) -> np.ndarray:
     if rayleigh is not None:
         return rayleigh[0] * M + rayleigh[1] * K
     if modal_damping is not None:
+        from scipy.linalg import eigh  # slow to import
+
         squares, psi = eigh(K, M)  # psi^T M psi = 1
         carried = M @ psi
         return (carried * (2 * np.array(modal_damping) * np.sqrt(np.maximum(squares, 0)))) @ carried.T
