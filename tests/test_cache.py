@@ -114,3 +114,28 @@ def test_a_relative_cache_home_is_ignored(program, tmp_path):
     before = {path.name for path in tmp_path.iterdir()}
     hits, told = program(NUMBA_CACHE_DIR=None, XDG_CACHE_HOME="relative", HOME=str(tmp_path / "home"))
     assert (hits, told) == (0, []) and {path.name for path in tmp_path.iterdir()} - before == {"home"}
+
+
+SWEEP = "vs.sweep(system, {'b': [6.6, 6.7]}, transient=10, record=10)"
+SIMULATE = "vs.simulate(system, (0, 0, 0, 0), periods=10)"
+BOTH = """
+import vibro_sweep as vs
+from vibro_sweep.engine import points
+from vibro_sweep.engine.motion import ensemble, orbits
+
+system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
+{}
+print(sum(one.compiled for one in (points.prepare, points.run_points, ensemble.carry, orbits.place)))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first, second", [(SWEEP, SIMULATE), (SIMULATE, SWEEP)])
+def test_sweeps_and_single_orbits_are_compiled_together(first, second, tmp_path):
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    compiled = []
+    for what in (first, second):
+        command = [sys.executable, "-c", BOTH.format(what)]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+        compiled.append(int(done.stdout))
+    assert compiled == [4, 0]

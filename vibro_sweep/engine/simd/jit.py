@@ -10,6 +10,7 @@ import hashlib
 import logging
 import os
 import tempfile
+import time
 from pathlib import Path
 
 import llvmlite
@@ -70,22 +71,38 @@ class _Cache(FunctionCache):
     def load_overload(self, sig, target_context):
         """By itself numba loads all that compiling takes, scipy too, before it looks for what is compiled already."""
         try:
-            return self._load_overload(sig, target_context)
+            found = self._load_overload(sig, target_context)
         except Exception as error:  # of pickle, any: the entry is empty or cut off
             _tell(self.cache_path, error)
             with contextlib.suppress(OSError):
                 self.flush()
-            return None
+            found = None
+        if found is None:
+            _announce(self.cache_path)
+            self._began = time.perf_counter()
+        return found
 
     def save_overload(self, sig, data):
+        seconds = time.perf_counter() - self._began
+        if seconds > WORTH_SAYING:
+            _log.info("compiled %s in %.0f s", self._py_func.__name__, seconds)
         try:
             super().save_overload(sig, data)
         except OSError as error:
             _tell(self.cache_path, error)
 
 
+def _announce(folder: str) -> None:
+    """Say once why there is a wait."""
+    global _announced
+    if not _announced:
+        _announced = True
+        _log.info("compiling kernels, once: they are kept in %s", folder)
+
+
+WORTH_SAYING = 1.0  # seconds
 _log = logging.getLogger("vibro_sweep")
-_told = False
+_told = _announced = False
 _FOLDER = _cache_folder()
 
 
@@ -114,6 +131,11 @@ class entry:  # noqa: N801  # a decorator
 
     def __call__(self, *args):
         return self._whole(*args)
+
+    @property
+    def compiled(self) -> int:
+        """How many kernels this process has compiled of it, not having found them."""
+        return sum(self._whole.stats.cache_misses.values())
 
     @property
     def _numba_type_(self):  # what other kernels see of it
