@@ -114,7 +114,7 @@ class Engine:
             self._compile_others(workspace, plan)
 
     def _compile_others(self, workspace: points.Workspace, plan: points.Plan) -> None:
-        """Nearly all of what sweeps and single orbits are compiled from is the same: together they take half the time."""
+        """Sweeps and single orbits are compiled from nearly the same: together they take half the time."""
         masses = self.kind.masses
         self.put(np.zeros(self.states))
         self.carry(orbits.new_records(1, masses=masses), np.empty((0, self.states)))
