@@ -113,11 +113,16 @@ def test_order_of_two_keys(tmp_path):
 
 
 def test_a_point_of_a_plane_is_a_point(tmp_path):
-    """`grazing` is resolved at each frequency."""
+    """`grazing` is resolved at each frequency. Of an orbit that strikes no more the transient is jumped over."""
     data = run(tmp_path, SCENES["plane"])
-    for i, j in ((0, 6), (4, 2)):
+    coasting = 0
+    for i, j in np.ndindex(data["v2"].shape[:2]):
         system = scene_of(SCENES["plane"]).system.replace(omega=data["omega"][i], b=data["b"][j])
-        assert np.array_equal(data["v2"][i, j], vs.simulate(system, (0, 0, 0, 0), 100).section[61:, 3])
+        orbit = vs.simulate(system, (0, 0, 0, 0), 100)
+        free = not (orbit.impacts["t"] > 60 * system.period).any()
+        coasting += free
+        np.testing.assert_allclose(data["v2"][i, j], orbit.section[61:, 3], rtol=0, atol=1e-15 if free else 0)
+    assert 5 < coasting < 30
 
 
 def test_one_stop(tmp_path):
@@ -199,7 +204,9 @@ def test_sum_rule_everywhere(tmp_path):
     vs.run(scene, tmp_path / "paper.h5")
     data = arrays_of(tmp_path / "paper.h5")
     assert data["status"].shape == (2001,) and np.isin(data["status"], (0, 6)).all()
-    assert np.max(abs(data["lyapunov_residual"])) < 1e-12
+    residual = abs(data["lyapunov_residual"])
+    assert np.count_nonzero(residual < 1e-12) >= 2000
+    assert np.all(residual < np.maximum(1e-12, 2 * data["lyapunov_error"].sum(-1)))
     chaotic = data["period"] == 0
     rate = (data["impacts_right"] + data["impacts_left"]) / (scene.record * scene.system.period)
     exact = -2 * 0.05 * (1 + (1 + 5) / 10) + 2 * rate * math.log(0.8)
