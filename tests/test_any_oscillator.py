@@ -29,7 +29,7 @@ def moved(q, state, rng):
     numbers = {name: one(value) if np.ndim(value) else one(value)[0] for name, value in q._asdict().items()}
     clearance = mpf(float(q.high - q.low)) * part
     return SimpleNamespace(**numbers), [
-        mpf(float(x)) + int(s) * clearance for x, s in zip(state, rng.choice([-1, 1], len(state)))
+        mpf(float(x)) + int(s) * clearance for x, s in zip(state, rng.choice([-1, 1], len(state)), strict=True)
     ]
 
 
