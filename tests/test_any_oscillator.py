@@ -10,6 +10,8 @@ from reference.any_naive import simulate
 from support.any_oscillators import drawn
 
 import vibro_sweep as vs
+from vibro_sweep.engine.period_map import PeriodMap
+from vibro_sweep.model.parameters import NAMES
 
 FAST, SLOW = (1, 2, 3), (5, 8)
 COUNT = 30  # impacts compared
@@ -274,3 +276,29 @@ def test_impacts_at_the_sections():
     assert orbit.status == "ok" and len(orbit.impacts) in (50, 51)
     np.testing.assert_allclose(orbit.impacts["v1"], -speed, rtol=1e-12)
     assert np.isfinite(vs.lyapunov(ball, [0.0, -speed], transient=0, periods=20)).all()
+
+
+@pytest.mark.parametrize(
+    "changes", [dict(offset=0.3, R_left=0.6), dict(offset=0.2), dict(mu_c=2.0, offset=-0.2, R_left=0.7), dict(mu_c=9.0)]
+)
+def test_derivatives_of_the_period_map(changes):
+    """By the state and by every parameter, against difference quotients; unequal stops, damping not proportional."""
+    numbers = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.25, omega=0.63, R=0.8, b=2.0, tau=0.4) | changes
+    state = np.array([0.1, 0.9, 0.3, -0.1])
+
+    def end(state, **more):
+        return PeriodMap(vs.System(**numbers | more))([state], 2).states[0]
+
+    found = PeriodMap(vs.System(**numbers))([state], 2, jacobian=True, parameters=True)
+    assert set(found.impacts[0]["side"]) == {-1, 1}
+    h, size = 1e-6, np.abs(found.jacobian[0]).max()
+    for j, unit in enumerate(np.eye(4)):
+        quotient = (end(state + h * unit) - end(state - h * unit)) / (2 * h)
+        np.testing.assert_allclose(found.jacobian[0][:, j], quotient, atol=1e-7 * size)
+    for j, name in enumerate(NAMES):
+        step = h * numbers[name]
+        quotient = (end(state, **{name: numbers[name] + step}) - end(state, **{name: numbers[name] - step})) / (
+            2 * step
+        )
+        bound = 1e-6 * max(np.abs(found.parameters[0][:, j]).max(), 1)
+        np.testing.assert_allclose(found.parameters[0][:, j], quotient, atol=bound, err_msg=name)
