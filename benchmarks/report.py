@@ -8,12 +8,13 @@ import time
 import compile_time
 import driver
 import floor
+import masses
 import scaling
 import speed
 import work_precision
 from book import GOAL_HEADER, arguments, machine, section, table
 
-ROOMS = (speed, work_precision, floor, scaling, driver, compile_time)
+ROOMS = (speed, work_precision, floor, masses, scaling, driver, compile_time)
 
 
 def main() -> None:

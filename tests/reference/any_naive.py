@@ -31,6 +31,7 @@ class Oscillator:
         self.R = {-1: number(q.R_low), 1: number(q.R_high)}
         self.sides = [side for side, wall in ((1, self.high), (-1, self.low)) if wall is not None]
         self.brief = to_gmp(mpf(10) ** (-digits / mpf(2)))
+        self.rounding = to_gmp(mpf(10) ** -digits)
         M = mp.matrix([[mpf(a) for a in row] for row in q.M])
         inverse = mp.inverse(M)
         solve = lambda a: inverse * mp.matrix([[mpf(x) for x in row] for row in a])  # noqa: E731
@@ -82,9 +83,11 @@ class Oscillator:
         v = self.speed(y)
         if side * v > 0:
             y = self.kick(y, -(1 + self.R[side]) * v)
+        if abs(self.speed(y)) <= self.rounding * max(map(abs, y)):
+            y = self.kick(y, -self.speed(y))
         gap = self.gap(self.free.taylor(y), side)
         gap[0] = ZERO
-        if side * v <= 0:  # it touches without speed
+        if abs(gap[1]) <= self.rounding * max(map(abs, y)):
             gap[1] = ZERO
         leading = next(n for n, c in enumerate(gap) if c)
         speed, pull = gap[1], -2 * gap[2]

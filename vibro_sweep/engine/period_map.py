@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibro_sweep.engine.one_system import Engine
+from vibro_sweep.engine.one_system import Engine, is_paper
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.grazing_map import Expansion, iterate
 from vibro_sweep.engine.variational.propagator import SIZE, new_scratch
@@ -91,13 +91,18 @@ class PeriodMap:
         return Mapped(ends, codes, impacts, sticking, by_state, by_parameter)
 
     def _equations(self, engine: Engine, parameters: bool) -> Equations:
-        numbers = self.system.parameters()
-        free, held = flight_equations(numbers), rest_equations(numbers)
+        numbers, q = self.system.parameters(), self.system.linear
+        free, held = (make(numbers, self.system.mu_c is None) for make in (flight_equations, rest_equations))
         rate = max(abs(np.linalg.eigvals(matrix)).max() for matrix in (free.A, held.A))
         count = len(FREE_MOTION) if parameters else 0
+        walls, restitution = np.zeros((2, 2, 4 + len(NAMES) if parameters else 4))
+        if parameters:
+            walls[:, 4 + NAMES.index("b")] = -1, 1
+            restitution[:, 4 + NAMES.index("R")] = self.system.R_left is None, 1
         return Equations(
             free.A, free.A_p[:count], held.A, held.A_p[:count], float(rate),
-            numbers["omega"], numbers["R"], numbers["b"], 2 * numbers["zeta"] / numbers["mu_m"],
+            numbers["omega"], np.array([q.low, q.high]), np.array([q.R_low, q.R_high]), walls, restitution,
+            2 * numbers["zeta"] / numbers["mu_m"],
             float(engine.point["tau"][0]), engine.cells, engine.width,
         )  # fmt: skip
 
@@ -166,7 +171,10 @@ class PeriodMap:
     def _with_phase(self, derivatives: np.ndarray) -> np.ndarray:
         """Total derivatives (n, 4, 8) where tau follows the other parameters."""
         if self.order == 0 and self.system.tau == "grazing":
-            dtau, _ = grazing_derivatives(self.system.parameters())
+            if is_paper(self.system):
+                dtau, _ = grazing_derivatives(self.system.parameters())
+            else:
+                dtau = [self.system.family.derivative(name).tau for name in FREE_MOTION]
             for name, change in zip(FREE_MOTION, dtau, strict=True):
                 derivatives[..., NAMES.index(name)] += change * derivatives[..., TAU]
         return derivatives

@@ -18,17 +18,18 @@ class Linear(NamedTuple):
     A_p: np.ndarray  # (5, 6, 6)
 
 
-def flight_equations(p: dict[str, float]) -> Linear:
-    """Eq. (3) between the stops."""
+def flight_equations(p: dict[str, float], follows: bool = True) -> Linear:
+    """Eq. (3) between the stops. follows: whether mu_c changes with mu_k."""
     m, above, drag, f2, omega = p["mu_m"], 1 + p["mu_k"], 2 * p["zeta"], p["f2"], p["omega"]
+    below = 1 + p["mu_c"]
     A, A_p = np.zeros((6, 6)), np.zeros((5, 6, 6))
     A[0, 1] = A[2, 3] = 1
     A[1] = [-1, -drag, 1, drag, 1 - f2, 0]
-    A[3] = np.array([1, drag, -above, -drag * above, f2, 0]) / m
+    A[3] = np.array([1, drag, -above, -drag * below, f2, 0]) / m
     A_p[0, 3] = -A[3] / m
-    A_p[1, 3] = np.array([0, 0, -1, -drag, 0, 0]) / m
+    A_p[1, 3] = np.array([0, 0, -1, -drag if follows else 0, 0, 0]) / m
     A_p[2, 1] = [0, -2, 0, 2, 0, 0]
-    A_p[2, 3] = np.array([0, 2, 0, -2 * above, 0, 0]) / m
+    A_p[2, 3] = np.array([0, 2, 0, -2 * below, 0, 0]) / m
     A_p[3, 1, 4], A_p[3, 3, 4] = -1, 1 / m
     A, A_p = A / omega, A_p / omega
     A_p[4] = -A / omega
@@ -36,9 +37,9 @@ def flight_equations(p: dict[str, float]) -> Linear:
     return Linear(A, A_p)
 
 
-def rest_equations(p: dict[str, float]) -> Linear:
+def rest_equations(p: dict[str, float], follows: bool = True) -> Linear:
     """Eq. (3) while a stop holds M1."""
-    A, A_p = (array.copy() for array in flight_equations(p))
+    A, A_p = (array.copy() for array in flight_equations(p, follows))
     A[:2], A_p[:, :2] = 0, 0
     return Linear(A, A_p)
 

@@ -126,13 +126,19 @@ def size_at(c, u):
 
 
 @jit
-def is_beyond(stops, o, nodes, k):
-    """Whether M1 is further behind a stop at node k than the rounding of its flight from node `base` explains."""
+def is_beyond(stops, o, f, k):
+    """Whether M1 is further behind a stop at node k than the rounding of its flight from node `base` explains.
+
+    Of the flight that ended at node `base` no more is known than that it took up to a period.
+    """
+    q, nodes = f.oscillator[0], f.nodes
     beyond = max(o.X[0] - stops.right, stops.left - o.X[0])
     if beyond <= 0.0:
         return False
     size = abs(o.X[0])
-    if k > o.base:
+    if k == o.base:
+        size += abs(o.X[1]) * q.width * q.cells + q.largest
+    else:
         E = nodes[k - o.base].E
         size += 0.0 if o.careful else abs(nodes[k].z[0])
         for j in range(len(E)):
@@ -145,7 +151,7 @@ def cross_cell(f, stops, o, records, t, k, s):
     """Follow the orbit from offset s in cell k to the cell's end, through all that happens. Returns a status."""
     q, node, X, c1 = f.oscillator[0], f.nodes[k], o.X, o.c[0]
     released = False
-    if s == 0.0 and is_beyond(stops, o, f.nodes, k):
+    if s == 0.0 and is_beyond(stops, o, f, k):
         return status.BEYOND_STOP
     while o.events < MOST_EVENTS:
         left = q.width - s

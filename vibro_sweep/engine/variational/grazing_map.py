@@ -17,7 +17,7 @@ import numpy as np
 from vibro_sweep.engine.graze import impact_near_graze, impact_slopes
 from vibro_sweep.engine.simd.jit import entry, jit
 from vibro_sweep.engine.variational.propagator import propagate
-from vibro_sweep.engine.variational.sensitivity import B_COLUMN, R_COLUMN
+from vibro_sweep.engine.variational.sensitivity import place_of
 
 OMEGA_COLUMN = 8  # the five parameters of flight stand in columns 4 .. 8
 
@@ -49,7 +49,8 @@ def acceleration_row(e, j, k):
 def jump(e, x, side, X, dX, w, row):
     """C1 (side 1) or C2 (side -1). row (7,) receives the impact as in `Records`. Returns whether there was one."""
     second = x.order == 2
-    psi, v = side * X[0] - e.b, side * X[1]
+    n = place_of(side)
+    R, psi, v = e.restitution[n], side * (X[0] - e.walls[n]), side * X[1]
     a = -e.omega * e.omega * x.graze[0]
     if second:
         for k in range(4):
@@ -60,7 +61,7 @@ def jump(e, x, side, X, dX, w, row):
     row[3], row[4], row[5], row[6] = side, side * speed, X[2], X[3]
     propagate(e.A, e.A_p, e.rate, -e.omega * late, w)
     for j in range(dX.shape[1]):
-        d_psi = side * dX[0, j] - (1.0 if j == B_COLUMN else 0.0)
+        d_psi = side * (dX[0, j] - e.wall_slopes[n, j])
         dv = side * dX[1, j]
         da = -e.omega * (2.0 * of_rate(e, j) * x.graze[0] + e.omega * x.d_graze[0, j])
         if second:
@@ -69,14 +70,14 @@ def jump(e, x, side, X, dX, w, row):
                 da += acceleration_row(e, j, k) * (side * X[k] - x.graze[k])
         d_speed, d_late = impact_slopes(a, psi, v, speed, late, second, da, d_psi, dv)
         d_angle = -(e.omega * d_late + of_rate(e, j) * late)
-        d_push = (1.0 + e.R) * d_speed + (speed if j == R_COLUMN else 0.0)
+        d_push = (1.0 + R) * d_speed + speed * e.restitution_slopes[n, j]
         for i in range(4):
             de = w.E_p[j - 4, i, 1] if 4 <= j < 4 + len(e.A_p) else 0.0
             for k in range(4):
                 de += e.A[i, k] * w.E[k, 1] * d_angle
-            dX[i, j] -= side * (d_push * w.E[i, 1] + (1.0 + e.R) * speed * de)
+            dX[i, j] -= side * (d_push * w.E[i, 1] + (1.0 + R) * speed * de)
     for i in range(4):
-        X[i] -= side * (1.0 + e.R) * speed * w.E[i, 1]
+        X[i] -= side * (1.0 + R) * speed * w.E[i, 1]
     return True
 
 

@@ -2,10 +2,10 @@
 
 The impacts and rests on the way are given, as the event loop recorded them. With z' = A z between them (z in phase s =
 omega t, see model/sensitivity.py) a derivative dz obeys the same equation with the source (A_p/dp) z. Where dz is kept
-at a fixed phase, an event acts on it through the distance d = dx1 - side db by which it moves M1 towards the stop:
+at a fixed phase, an event acts on it through the distance d = dx1 - dw by which it moves M1 towards the stop at w:
 
     impact   dx1 -> dx1 - (1 + R) d,     dv1 -> -R dv1 + d (a1+ + R a1-)/v1 - v1 dR,     dv2 -> dv2 - (1 + R) kappa d
-    rest     dx1 -> side db,             dv1 -> 0,                                       dv2 -> dv2 - kappa d
+    rest     dx1 -> dw,                  dv1 -> 0,                                       dv2 -> dv2 - kappa d
 
 with kappa = 2 zeta/mu_m, v1 the speed before the impact, and a1-, a1+ the accelerations about it: the saltation matrix,
 with the motion of the stop and of R. At a rest M2 receives through the damper what moves M1 to the stop at once. The
@@ -22,7 +22,7 @@ from vibro_sweep.engine.simd.jit import entry, jit
 from vibro_sweep.engine.variational.propagator import advance
 from vibro_sweep.model import status
 
-R_COLUMN, B_COLUMN, TAU_COLUMN = 9, 10, 11  # of dz: four of the state, then eight in the order of the parameters
+TAU_COLUMN = 11  # of dz: four of the state, then eight in the order of the parameters
 
 
 class Equations(NamedTuple):
@@ -34,8 +34,10 @@ class Equations(NamedTuple):
     A_held_p: np.ndarray
     rate: float  # the fastest of A and A_held
     omega: float
-    R: float
-    b: float
+    walls: np.ndarray  # (2,): positions of the left stop and of the right one,
+    restitution: np.ndarray  # (2,), and
+    wall_slopes: np.ndarray  # (2, columns of dz) their derivatives
+    restitution_slopes: np.ndarray  # (2, columns)
     kappa: float
     tau: float  # phase of the force at node 0 of the grid
     cells: int
@@ -52,15 +54,16 @@ def set_phase(e, cell, offset, z, dz):
 
 
 @jit
-def change_of_gap(j, side, dz):
-    """dx1 - side db in column j."""
-    return dz[0, j] - (side if j == B_COLUMN else 0.0)
+def place_of(side):
+    """Of a stop among the two."""
+    return 1 if side > 0.0 else 0
 
 
 @jit
 def cross_impact(e, side, z, dz):
     """z and dz across an impact on this side."""
-    R, v, before, after = e.R, z[1], 0.0, 0.0
+    n = place_of(side)
+    R, v, before, after = e.restitution[n], z[1], 0.0, 0.0
     for k in range(6):
         before += e.omega * e.A[1, k] * z[k]
     z[1] = -R * v
@@ -68,20 +71,21 @@ def cross_impact(e, side, z, dz):
         after += e.omega * e.A[1, k] * z[k]
     steepness = (after + R * before) / v
     for j in range(dz.shape[1]):
-        d = change_of_gap(j, side, dz)
+        d = dz[0, j] - e.wall_slopes[n, j]
         dz[0, j] -= (1.0 + R) * d
         dz[1, j] = steepness * d - R * dz[1, j]
         dz[3, j] -= (1.0 + R) * e.kappa * d
-    if dz.shape[1] > R_COLUMN:
-        dz[1, R_COLUMN] -= v
+        if e.restitution_slopes[n, j] != 0.0:
+            dz[1, j] -= v * e.restitution_slopes[n, j]
 
 
 @jit
 def come_to_rest(e, side, z, dz):
     """z and dz where M1 comes to rest on the stop."""
-    z[0], z[1] = side * e.b, 0.0
+    n = place_of(side)
+    z[0], z[1] = e.walls[n], 0.0
     for j in range(dz.shape[1]):
-        d = change_of_gap(j, side, dz)
+        d = dz[0, j] - e.wall_slopes[n, j]
         dz[0, j] -= d
         dz[1, j] = 0.0
         dz[3, j] -= e.kappa * d
@@ -124,12 +128,12 @@ def follow(e, impacts, rests, now, end, z, dz, w):
         if impact_next:
             row = impacts[i]
             fly_to(e, resting, now, row, z, dz, w)
-            z[0], z[1], z[2], z[3] = row[3] * e.b, row[4], row[5], row[6]
+            z[0], z[1], z[2], z[3] = e.walls[place_of(row[3])], row[4], row[5], row[6]
             cross_impact(e, row[3], z, dz)
             i += 1
             continue
         row = rests[j]
-        summed_up = row[3] != 0.0 and z[0] == row[3] * e.b and z[1] != 0.0
+        summed_up = row[3] != 0.0 and z[0] == e.walls[place_of(row[3])] and z[1] != 0.0
         if not summed_up:
             fly_to(e, resting, now, row, z, dz, w)
         if row[3] != 0.0:

@@ -1,0 +1,304 @@
+"""Any linear oscillator with one contact, against a reference that works in the coordinates of its masses."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from reference.any_naive import simulate
+from support.any_oscillators import drawn
+
+import vibro_sweep as vs
+from vibro_sweep.engine.period_map import PeriodMap
+from vibro_sweep.model.parameters import NAMES
+
+FAST, SLOW = (1, 2, 3), (5, 8)
+COUNT = 30  # impacts compared
+
+
+def moved(q, state, rng):
+    """All inputs moved by one part in 2^53, up or down; of a state by as much of the clearance."""
+    part = mp.ldexp(1, -53)
+
+    def one(value):
+        value = np.atleast_1d(value)
+        signs = rng.choice([-1, 1], value.shape)
+        if value.ndim == 2:
+            signs = np.triu(signs) + np.triu(signs, 1).T
+        return np.vectorize(lambda x, sign: mpf(float(x)) * (1 + int(sign) * part), otypes=[object])(value, signs)
+
+    numbers = {name: one(value) if np.ndim(value) else one(value)[0] for name, value in q._asdict().items()}
+    clearance = mpf(float(q.high - q.low)) * part
+    return SimpleNamespace(**numbers), [
+        mpf(float(x)) + int(s) * clearance for x, s in zip(state, rng.choice([-1, 1], len(state)), strict=True)
+    ]
+
+
+def fast_impacts(orbit):
+    """How many impacts there are before the first slow one.
+
+    Rounding of the gap acts on slow impacts like 1/v, and moved inputs do not.
+    """
+    speeds = np.abs(orbit.impacts["v1"][:COUNT])
+    slow = np.flatnonzero(speeds < 0.2 * speeds.max(initial=0.0))
+    return int(slow[0]) if len(slow) else len(speeds)
+
+
+def compare_impacts(system, state, orbit, seed):
+    """The first impacts, no further from 30 digits than 10 times what rounding the inputs does.
+
+    That is the sum of what each of some forty inputs does alone. Moved all at once, up or down at random, they do less,
+    also where three such moves are added up.
+    """
+    count, rng = fast_impacts(orbit), np.random.default_rng(seed)
+    impacts, _, _ = simulate(system.linear, state, impacts=count)
+    others = [simulate(*moved(system.linear, state, rng), impacts=count)[0] for _ in range(3)]
+    for i, (hit, found) in enumerate(zip(impacts, orbit.impacts[:count], strict=True)):
+        assert hit.side == found["side"]
+        moved_by = {"t": [other[i].t - hit.t for other in others], "v1": [other[i].v - hit.v for other in others]}
+        for name, exact in (("t", hit.t), ("v1", hit.v)):
+            effect = sum(map(abs, moved_by[name])) + math.ulp(float(exact))
+            assert abs(mpf(float(found[name])) - exact) < 10 * effect, (i, name)
+        size = max(abs(float(a)) for a in hit.y)
+        apart = ([abs(a - b) for a, b in zip(other[i].y, hit.y, strict=True)] for other in others)
+        effect = sum(map(max, apart)) + math.ulp(size)
+        both = zip((*found["x"], *found["xdot"]), hit.y[0::2] + hit.y[1::2], strict=True)
+        assert all(abs(mpf(float(a)) - b) < 10 * effect for a, b in both), i
+
+
+@pytest.mark.parametrize(
+    ("masses", "orbits"),
+    [
+        *((n, 2) for n in FAST),
+        *(pytest.param(*case, marks=pytest.mark.slow) for case in ((1, 20), (2, 20), (3, 20), (5, 8), (8, 4))),
+    ],
+)
+def test_first_impacts(masses, orbits):
+    seed, compared = 0, 0
+    while compared < orbits:
+        seed += 1
+        system, state = drawn(seed, masses)
+        orbit = vs.simulate(system, state, 60)
+        assert orbit.status == "ok"
+        if fast_impacts(orbit) > 20:
+            compare_impacts(system, state, orbit, seed)
+            compared += 1
+
+
+@pytest.mark.parametrize("masses", FAST)
+def test_sticking_and_release(masses):
+    """Chatter summed up, and rests that the other masses outlast: their times and the states that they lead to."""
+    rests = 0
+    for seed, R in ((3, 0.3), (4, 0.0), (5, 0.4)):
+        system, state = drawn(seed, masses, R=R, R_left=R, b=0.15)
+        orbit = vs.simulate(system, state, 6)
+        _, sticking, section = simulate(system.linear, state, periods=6)
+        assert orbit.status == "ok"
+        long = [rest for rest in sticking if rest[1] - rest[0] > 1e-6]
+        found = orbit.sticking[orbit.sticking["t_off"] - orbit.sticking["t_on"] > 1e-6]
+        np.testing.assert_allclose(found["t_on"], [float(rest[0]) for rest in long], rtol=0, atol=1e-9)
+        np.testing.assert_allclose(found["t_off"], [float(rest[1]) for rest in long], rtol=0, atol=1e-9)
+        assert list(found["side"]) == [rest[2] for rest in long]
+        np.testing.assert_allclose(orbit.section, np.array(section, float), rtol=0, atol=1e-9)
+        rests += len(long)
+    assert rests > 5
+
+
+def monodromy(q, state, periods):
+    """The Jacobian of the map over so many periods, by difference quotients in 30 digits."""
+    columns = []
+    with mp.workdps(30):
+        step = mpf(10) ** -14
+        for j in range(len(state)):
+            ends = []
+            for sign in (1, -1):
+                start = [mpf(float(x)) + (sign * step if i == j else 0) for i, x in enumerate(state)]
+                ends.append(simulate(q, start, periods=periods, digits=30)[2][periods])
+            columns.append([float((a - b) / (2 * step)) for a, b in zip(*ends, strict=True)])
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize("masses", FAST)
+def test_growth_of_tangent_vectors(masses):
+    """Over a record of some periods: singular values of its Jacobian, in the metric of the tangent vectors.
+
+    The sum rule alone would not see a wrong term beside the diagonal of the saltation matrix.
+    """
+    for seed in (6, 7):
+        system, state = drawn(seed, masses)
+        periods = 2
+        jacobian = monodromy(system.linear, state, periods)
+        point = vs.simulate(system, state, 0)._engine.point[0]
+        turned = np.kron(point["T"], np.eye(2))
+        frame = point["to_frame"] @ turned
+        lengths = np.abs(np.diag(np.linalg.qr(frame @ jacobian @ np.linalg.inv(frame))[1]))
+        exponents = vs.lyapunov(system, state, transient=0, periods=periods)
+        assert abs(exponents.residual) < 1e-12
+        np.testing.assert_allclose(exponents, np.sort(np.log(lengths) / (periods * system.period))[::-1], atol=1e-9)
+
+
+@pytest.mark.parametrize("masses", [*FAST, *(pytest.param(n, marks=pytest.mark.slow) for n in SLOW)])
+def test_sum_rule(masses):
+    for seed in (8, 9, 10):
+        system, state = drawn(seed, masses)
+        exponents = vs.lyapunov(system, state, transient=50, periods=500)
+        hits = len(vs.simulate(system, state, 100).impacts)
+        assert hits > 50 and (abs(exponents.residual) < 1e-12 or exponents[-1] == -np.inf)
+
+
+@pytest.mark.parametrize("masses", (2, 3))
+def test_other_coordinates(masses):
+    """x -> S x and n -> S^-T n: the same gap, whatever the coordinates."""
+    system, state = drawn(11, masses)
+    q = system.linear
+    S = np.linalg.inv(np.random.default_rng(5).normal(size=(masses, masses)) + 2 * np.eye(masses))  # x = S y
+    same = vs.Oscillator(
+        *(S.T @ matrix @ S for matrix in (q.M, q.K, q.C)), along=S.T @ q.along,
+        force=S.T @ q.sine, force_cos=S.T @ q.cosine, constant=S.T @ q.constant,
+        omega=system.omega, tau=system.tau, b=system.b, offset=system.offset, R=system.R, R_left=system.R_left,
+    )  # fmt: skip
+    there = np.kron(np.linalg.inv(S), np.eye(2)) @ state
+    one, other = vs.simulate(system, state, 20), vs.simulate(same, there, 20)
+    for name in ("t", "v1"):
+        np.testing.assert_allclose(other.impacts[name][:10], one.impacts[name][:10], rtol=0, atol=2e-12)
+    np.testing.assert_allclose(other.impacts["x"][:10] @ S.T, one.impacts["x"][:10], rtol=0, atol=1e-11)
+
+
+def test_mirror_image():
+    """offset -> -offset, R exchanged, tau + pi, state -> -state."""
+    numbers = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0.25, omega=0.63, b=2.0)
+    one = vs.System(**numbers, tau=0.4, offset=0.3, R=0.8, R_left=0.6)
+    other = vs.System(**numbers, tau=0.4 + math.pi, offset=-0.3, R=0.6, R_left=0.8)
+    state = np.array([0.1, 0.2, 0.3, -0.1])
+    hits, mirrored = (vs.simulate(system, x, 20).impacts[:10] for system, x in ((one, state), (other, -state)))
+    assert np.array_equal(hits["side"], -mirrored["side"]) and set(hits["side"]) == {-1, 1}
+    np.testing.assert_allclose(hits["t"], mirrored["t"], rtol=0, atol=1e-13 * 30)
+    for name in ("v1", "x2", "v2"):
+        np.testing.assert_allclose(hits[name], -mirrored[name], rtol=0, atol=1e-13)
+
+
+def test_unequal_restitution_in_the_sum_rule():
+    system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0.25, omega=0.63, b=2.0, offset=0.3, R=0.8, R_left=0.6)
+    exponents = vs.lyapunov(system, [0.1, 0.2, 0.3, -0.1], transient=100, periods=1000)
+    sides = vs.simulate(system, [0.1, 0.2, 0.3, -0.1], 200).impacts["side"]
+    assert set(sides) == {-1, 1} and abs(exponents.residual) < 1e-13
+
+
+def one_mass(**numbers):
+    return vs.Oscillator(**(dict(M=[[1.0]], K=[[0.0]], along=[1.0]) | numbers))
+
+
+@pytest.mark.parametrize(("R", "n", "gamma"), [(0.8, 1, 1.05), (0.8, 1, 0.5), (0.5, 2, 2.3)])
+def test_bouncing_ball(R, n, gamma):
+    """One impact every n periods of the table: speed n T G/(1 + R) at cos(phi) = n pi (1 - R)/((1 + R) gamma)."""
+    speed, phi = n * 2 * math.pi / (1 + R), math.acos(n * math.pi * (1 - R) / ((1 + R) * gamma))
+    ball = one_mass(force=[gamma], constant=[-1.0], omega=1.0, tau=phi, b=0.0, R=R, stops="left")
+    hits = vs.simulate(ball, [0.0, -speed], 10 * n).impacts
+    assert len(hits) >= 10
+    np.testing.assert_allclose(hits["v1"], -speed, rtol=1e-13)
+    np.testing.assert_allclose(np.diff(hits["t"]), n * 2 * math.pi, rtol=1e-13)
+
+
+@pytest.mark.parametrize(("R", "n", "flip"), [(0.8, 1, 1.07083646824791), (0.5, 2, 2.37087721026694)])
+def test_flip_of_the_bouncing_ball(R, n, flip):
+    """Within 1e-9 of the flip lambda_1 changes its sign. The orbit begins a time 1 after an impact."""
+    signs = []
+    for gamma in (flip - 1e-9, flip + 1e-9):
+        speed, phi = n * 2 * math.pi / (1 + R), math.acos(n * math.pi * (1 - R) / ((1 + R) * gamma))
+        later = phi + 1
+        x = R * speed - 0.5 + gamma * (math.sin(phi) + math.cos(phi) - math.sin(later))
+        v = R * speed - 1 + gamma * (math.cos(phi) - math.cos(later))
+        ball = one_mass(force=[gamma], constant=[-1.0], omega=1.0, tau=later, b=0.0, R=R, stops="left")
+        signs.append(np.sign(vs.lyapunov(ball, [x, v], transient=0, periods=20)[0]))
+    assert signs == [-1, 1]
+
+
+def test_preload():
+    """At rest on a stop, until the force has grown to what holds it there."""
+    preload, force = 0.5, 1.3
+    system = one_mass(
+        K=[[1.0]], C=[[0.1]], force=[force], constant=[-preload], omega=0.9, tau=0.0, b=0.0, R=0.5, stops="left"
+    )
+    first = vs.simulate(system, [0.0, 0.0], 1).sticking[0]
+    assert first["t_on"] == 0 and first["side"] == -1
+    assert abs(first["t_off"] - math.asin(preload / force) / 0.9) < 1e-13
+
+
+def test_stiffly_joined_masses():
+    """Masses 2 and 3 joined by a spring k: the difference from two masses falls like 1/k."""
+    two = vs.Oscillator(
+        [[1, 0], [0, 3]], [[1, -1], [-1, 3]], 0.1 * np.array([[1, -1], [-1, 3]]),
+        along=[1, 0], force=[1, 0], constant=[0.1, 0], omega=0.7, tau=0.2, b=0.3, R=0.8,
+    )  # fmt: skip
+    hits, apart = vs.simulate(two, np.zeros(4), 20).impacts[:5], []
+    for k in (1e4, 1e6, 1e8):
+        K = np.array([[1, -1, 0], [-1, 3 + k, -k], [0, -k, k]])
+        C = 0.1 * np.array([[1, -1, 0], [-1, 3, 0], [0, 0, 0]])
+        three = vs.Oscillator(
+            np.diag([1.0, 1, 2]), K, C, along=[1, 0, 0], force=[1, 0, 0], constant=[0.1, 0, 0],
+            omega=0.7, tau=0.2, b=0.3, R=0.8,
+        )  # fmt: skip
+        apart.append(np.abs(vs.simulate(three, np.zeros(6), 20).impacts[:5]["t"] - hits["t"]).max())
+    assert apart[0] < 1e-2 and apart[1] < apart[0] / 30 and apart[2] < apart[1] / 30
+
+
+def test_kinds_of_damping_and_of_modes():
+    """Free, critical, overdamped, equal and unseen modes: without impacts the exponents are real parts of the roots."""
+    chain = np.array([[1.0, -1, 0], [-1, 2, -1], [0, -1, 1]])
+    eye = np.eye(3)
+    kinds = {
+        "free, undamped": (chain, 0 * eye),
+        "free, damped inside": (chain, 0.1 * chain),
+        "free, damped outside": (chain, np.diag([0, 0, 0.3])),
+        "dampers alone": (0 * eye, 0.2 * chain + 0.1 * eye),
+        "critical": (np.diag([1.0, 4, 9]), np.diag([2.0, 0.2, 6])),
+        "overdamped": (chain + eye, np.diag([9.0, 0.1, 4])),
+        "equal": (2 * eye, 0.1 * eye),
+        "equal, not classical": (2 * eye, np.array([[0.3, 0.1, 0], [0.1, 0.2, 0], [0, 0, 0.1]])),
+    }
+    for name, (K, C) in kinds.items():
+        system = vs.Oscillator(
+            eye, K, C, along=[1, 0, 0], force=[1e-3, 0, 0], constant=[0, 1e-6, 0], omega=0.7, tau=0.0, b=1e6, R=0.8
+        )
+        A = np.block([[0 * eye, eye], [-K, -C]])
+        exact = np.sort(np.linalg.eigvals(A).real)[::-1]
+        found = vs.lyapunov(system, np.zeros(6), transient=200, periods=50)
+        np.testing.assert_allclose(found, exact, atol=1e-6 if "critical" in name else 1e-7, err_msg=name)
+        assert abs(found.residual) < 1e-12, name
+
+
+def test_impacts_at_the_sections():
+    """The stop is at 0, where the gap has no size of its own to which its rounding could be compared."""
+    speed, phi = 2 * math.pi / 1.8, math.acos(0.2 * math.pi / 1.8)
+    ball = one_mass(force=[1.0], constant=[-1.0], omega=1.0, tau=phi, b=0.0, R=0.8, stops="left")
+    orbit = vs.simulate(ball, [0.0, -speed], 50)
+    assert orbit.status == "ok" and len(orbit.impacts) in (50, 51)
+    np.testing.assert_allclose(orbit.impacts["v1"], -speed, rtol=1e-12)
+    assert np.isfinite(vs.lyapunov(ball, [0.0, -speed], transient=0, periods=20)).all()
+
+
+@pytest.mark.parametrize(
+    "changes", [dict(offset=0.3, R_left=0.6), dict(offset=0.2), dict(mu_c=2.0, offset=-0.2, R_left=0.7), dict(mu_c=9.0)]
+)
+def test_derivatives_of_the_period_map(changes):
+    """By the state and by every parameter, against difference quotients; unequal stops, damping not proportional."""
+    numbers = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.25, omega=0.63, R=0.8, b=2.0, tau=0.4) | changes
+    state = np.array([0.1, 0.9, 0.3, -0.1])
+
+    def end(state, **more):
+        return PeriodMap(vs.System(**numbers | more))([state], 2).states[0]
+
+    found = PeriodMap(vs.System(**numbers))([state], 2, jacobian=True, parameters=True)
+    assert set(found.impacts[0]["side"]) == {-1, 1}
+    h, size = 1e-6, np.abs(found.jacobian[0]).max()
+    for j, unit in enumerate(np.eye(4)):
+        quotient = (end(state + h * unit) - end(state - h * unit)) / (2 * h)
+        np.testing.assert_allclose(found.jacobian[0][:, j], quotient, atol=1e-7 * size)
+    for j, name in enumerate(NAMES):
+        step = h * numbers[name]
+        quotient = (end(state, **{name: numbers[name] + step}) - end(state, **{name: numbers[name] - step})) / (
+            2 * step
+        )
+        bound = 1e-6 * max(np.abs(found.parameters[0][:, j]).max(), 1)
+        np.testing.assert_allclose(found.parameters[0][:, j], quotient, atol=bound, err_msg=name)
