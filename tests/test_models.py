@@ -206,6 +206,19 @@ def test_rest_held_by_a_stop():
     assert held_state(ball.linear).tolist() == [3.0]
 
 
+@pytest.mark.parametrize("stop_at", [1, 2])
+def test_the_mass_at_the_stops_is_the_one_that_stays_between_them(stop_at):
+    """Coordinates that are only exchanged are their own inverse, and not the same for that."""
+    one = vs.Oscillator.named(
+        "chain", m=[1, 2], k=[1, 1, 1], c=[0.1, 0.1, 0.1], force=[1, 0], stop_at=stop_at, omega=0.9, R=0.6, b=0.3
+    )
+    orbit = vs.simulate(one, (0, 0, 0, 0), 40)
+    assert len(orbit.impacts) > 20
+    largest = np.abs(orbit.sample(np.linspace(0, 40 * one.period, 4001))[:, 0::2]).max(axis=0)
+    assert largest[stop_at - 1] <= 0.3 * (1 + 1e-12) and largest[2 - stop_at] > 0.35
+    assert np.abs(orbit.impacts["x"][:, stop_at - 1] - 0.3 * orbit.impacts["side"]).max() < 1e-15
+
+
 def test_docs_show_every_model():
     page = (ROOT / "docs" / "models.md").read_text()
     for name, model in MODELS.items():
