@@ -206,6 +206,19 @@ def test_rest_held_by_a_stop():
     assert held_state(ball.linear).tolist() == [3.0]
 
 
+@pytest.mark.parametrize("stop_at", [1, 2])
+def test_the_mass_at_the_stops_is_the_one_that_stays_between_them(stop_at):
+    """Coordinates that are only exchanged are their own inverse, and not the same for that."""
+    one = vs.Oscillator.named(
+        "chain", m=[1, 2], k=[1, 1, 1], c=[0.1, 0.1, 0.1], force=[1, 0], stop_at=stop_at, omega=0.9, R=0.6, b=0.3
+    )
+    orbit = vs.simulate(one, (0, 0, 0, 0), 40)
+    assert len(orbit.impacts) > 20
+    largest = np.abs(orbit.sample(np.linspace(0, 40 * one.period, 4001))[:, 0::2]).max(axis=0)
+    assert largest[stop_at - 1] <= 0.3 * (1 + 1e-12) and largest[2 - stop_at] > 0.35
+    assert np.abs(orbit.impacts["x"][:, stop_at - 1] - 0.3 * orbit.impacts["side"]).max() < 1e-15
+
+
 def test_docs_show_every_model():
     page = (ROOT / "docs" / "models.md").read_text()
     for name, model in MODELS.items():
@@ -227,3 +240,27 @@ def test_the_command_lists_them(capsys):
     assert [line.split()[0] for line in lines] == list(MODELS)
     assert main(["models", "chains"]) == 2
     assert "did you mean chain?" in capsys.readouterr().err
+
+
+def test_a_sweep_of_what_a_function_makes(tmp_path):
+    """Any number of any model: the same orbits as of the oscillators themselves, and their matrices in the file."""
+
+    def damper(play, share):
+        return oscillator("ball_in_cavity", b=play, mass_ratio=share)
+
+    given = dict(start=(0, 0.1, 0, 0), transient=20, record=10, observe=("section", "impacts"))
+    axes = {"play": [0.5, 1.0, 1.5], "share": [0.02, 0.05]}
+    data = vs.sweep(damper, axes, **given, output=tmp_path / "damper.h5")
+    assert data.attrs["type"] == "build" and data.attrs["build"] == "damper"
+    for i, play in enumerate(axes["play"]):
+        for j, share in enumerate(axes["share"]):
+            here, q = data.isel(play=i, share=j), damper(play, share).linear
+            orbit = vs.simulate(damper(play, share), (0, 0.1, 0, 0), 30)
+            np.testing.assert_array_equal(here["x2"], orbit.section[21:, 2])
+            assert (here["M22"], here["high"], here["R_low"]) == (share, play, 0.7)
+            assert [[here["K11"], here["K12"]], [here["K12"], here["K22"]]] == q.K.tolist()
+    vs.plot(data.isel(share=0), kind="bifurcation")
+    with pytest.raises(TypeError, match="a System or an Oscillator"):
+        vs.sweep(lambda play: play, {"play": [1.0]})
+    with pytest.raises(ValueError, match="axes: play"):
+        vs.sweep(damper, {"play": ["a"]})

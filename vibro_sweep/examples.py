@@ -29,7 +29,7 @@ def write_example(name: str) -> list[Path]:
         raise ExampleError(f"NAME {name!r}: there is no such example; {hint}there are {', '.join(known)}")
     scene = Path(f"{name}.yaml")
     text = known[name].read_text(encoding="utf-8")
-    text = re.sub(r"configs/(paper/)?", "", text).replace("../", "./")  # the files are in this folder now
+    text = re.sub(r"configs/(paper/|models/)?", "", text).replace("../", "./")  # the files are in this folder now
     try:
         with open(scene, "x", encoding="utf-8") as file:
             file.write(text)

@@ -21,6 +21,7 @@ SOURCES = (
     "scene",
     "driver/blocks.py",
     "driver/compute.py",
+    "driver/energy.py",
     "driver/starts.py",
     "driver/tables.py",
     "driver/trajectories.py",

@@ -9,6 +9,7 @@ import numpy as np
 
 from vibro_sweep.analysis import attractors
 from vibro_sweep.driver.blocks import Block, version
+from vibro_sweep.driver.energy import energies_of
 from vibro_sweep.driver.starts import starts_of
 from vibro_sweep.driver.tables import table_of
 from vibro_sweep.driver.trajectories import trajectories_of
@@ -83,20 +84,22 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     first = anew if block.begun is None else block.begun
     workspace = _workspace(block, kind, int(table["cells"].max()), min(steps.shape[1], LANES))
     mapping = Mapping(plan.order) if plan.order else None
-    compiled = points.run_points.compiled
-    points.run_points(steps, np.stack([first, anew]), *arrays.values(), workspace, plan, mapping)
+    compiled, begins = points.run_points.compiled, np.stack([first, anew])
+    points.run_points(steps, begins, *arrays.values(), workspace, plan, mapping)
     if points.run_points.compiled > compiled and not plan.order:
         with contextlib.suppress(ParameterError):  # of a point that is none of the sweep's
             Engine(block.system)  # compiles what single orbits take, too
+    energies = energies_of(block, steps, kind, arrays["results"], begins) if "impact_power" in block.wanted else {}
     last = arrays["results"][-1]
     ends = np.where(status.stands(last["status"])[:, None], last["end"], anew)
     if plan.lyapunov:
         _drop_without_exponents(arrays)
+    turn = -1 if block.reverse else 1
     for name, values in arrays.items():
-        values = values[:: -1 if block.reverse else 1]
+        values = values[::turn]
         arrays[name] = values.reshape(table.size, n_starts, *values.shape[2:])
     lead = table.shape + ((n_starts,) if n_starts > 1 or len(block.box) > table.ndim else ())
-    named = _by_name(block, arrays, lead)
+    named = _by_name(block, arrays, lead) | {name: values[::turn].reshape(lead) for name, values in energies.items()}
     if plan.attractors:
         named |= _attractors(arrays["results"], lead)
     if block.samples:

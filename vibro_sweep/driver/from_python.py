@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Any
 from vibro_sweep import store
 from vibro_sweep.driver.sweep import run
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.arguments import is_number
+from vibro_sweep.model.built import Built
 from vibro_sweep.model.oscillator import checked_system
+from vibro_sweep.model.state import START
 from vibro_sweep.scene import Section, Start, Trajectory, scene_of
 from vibro_sweep.scene.written import changed
 
@@ -19,8 +22,17 @@ if TYPE_CHECKING:
 MOST = 10**9  # bytes of results without a file of the caller's
 
 
+def _first(name: str, values) -> float:
+    """The first value of an axis, as it is written. Raises ValueError."""
+    first = values.get("start", next(iter(values.get("values", [])), None)) if isinstance(values, Mapping) else None
+    first = next(iter(values), None) if first is None and not isinstance(values, Mapping) else first
+    if not is_number(first):
+        raise ValueError(f"axes: {name} = {values!r} is not allowed; it must be numbers")
+    return float(first)
+
+
 def sweep(
-    system: AnyOscillator,
+    system: AnyOscillator | Callable[..., AnyOscillator],
     axes: "Mapping[str, np.ndarray | Sequence[float] | Mapping[str, Any]]",
     *,
     observe: Iterable[str] = ("section", "lyapunov"),
@@ -37,6 +49,8 @@ def sweep(
 
     Parameters
     ----------
+    system : a System or an Oscillator; or a function from the swept numbers, by whatever names, to one of these. The
+        file then says so (`type`: build) and holds the matrices of every point; no run continues it.
     axes : name -> values (n,), rising or falling, as {"b": np.linspace(6.5, 6.9, 2001)}; or an axis as in YAML, as
         {"b": {"start": 6.5, "stop": 6.9, "step": 0.0002}}, whose values are the decimal numbers
     observe, start, section, trajectory : as the keys of a scene in YAML; `start` may be a state (x1, v1, x2, v2) too
@@ -47,10 +61,20 @@ def sweep(
     Outcomes of points are in `status`. Raises TypeError where `system` is no System, `SceneError` for what is no
     scene, ValueError for more results than go without a file, and what `run` raises.
     """
-    checked_system(system)
-    given = {"system": system, "sweep": axes, "start": start, "transient": transient, "record": record}
+    built = None
+    if callable(system) and not isinstance(system, AnyOscillator):
+        built = Built(system, {name: _first(name, values) for name, values in axes.items() if name not in START})
+    else:
+        checked_system(system)
+    given = {
+        "system": {"build": built.name, "stops": built.options["stops"]} if built else system,
+        "sweep": axes,
+        "start": start,
+        "transient": transient,
+        "record": record,
+    }
     given |= {"section": section, "observe": observe, "trajectory": trajectory}
-    scene = scene_of(changed({}, given), "sweep")
+    scene = scene_of(changed({}, given), "sweep", built=built)
     if output is not None:
         run(scene, output, workers, progress=progress)
         return store.open(output)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from vibro_sweep.driver.blocks import Block
+from vibro_sweep.driver.energy import at_contact
 from vibro_sweep.engine.points import Workspace
 from vibro_sweep.model.observables import of_an_impact
 from vibro_sweep.model.state import state
@@ -18,7 +19,8 @@ def trajectories_of(
 
     states, shape = 2 * block.system.masses, results.shape
     kept = new_trajectories(shape, block.samples, block.plan.periods, block.samples, block.system.masses)
-    room, most, begins = 0, ROOM, _at_contact(table.reshape(-1), results)
+    room, most, begins = 0, ROOM, results.copy()
+    begins["end"] = at_contact(table.reshape(-1, 1), results["end"], results["resting"])
     while most > room:
         room = most
         run_trajectories(table.reshape(-1), begins, np.empty((1, room, states + 3)), kept, workspace, block.plan)
@@ -32,20 +34,6 @@ def trajectories_of(
     named |= {f"trajectory_section_{name}": sections[..., i] for i, name in enumerate(state(states // 2))}
     named["trajectory_impacts"] = kept.counts
     return {name: values.reshape(lead + values.shape[2:]) for name, values in named.items()}
-
-
-def _at_contact(points: np.ndarray, results: np.ndarray) -> np.ndarray:
-    """Results (p, s) whose ends are in contact coordinates, none behind a stop, and at one where they rest."""
-    if "T" not in points.dtype.names:
-        return results
-    found = results.copy()
-    ends = found["end"]
-    ends[...] = np.einsum("pij,psjk->psik", points["T"], ends.reshape(*ends.shape[:2], -1, 2)).reshape(ends.shape)
-    low, high = points["stops"][:, :1], points["stops"][:, 1:2]
-    side = found["resting"]
-    ends[..., 0] = np.where(side > 0, high, np.where(side < 0, low, np.clip(ends[..., 0], low, high)))
-    ends[..., 1] = np.where(side == 0, ends[..., 1], 0.0)
-    return found
 
 
 def _of_the_masses(block: Block, points: np.ndarray, kept) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -36,7 +36,11 @@ def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
     point = np.zeros((), point_of(kind))
     contact = contact_coordinates(q)
     point["omega"], point["tau"] = q.omega, q.tau
-    point["T"], point["back"], point["turned"] = contact.T, contact.back, not np.array_equal(contact.T, contact.back)
+    point["T"], point["back"], point["turned"] = (
+        contact.T,
+        contact.back,
+        not np.array_equal(contact.T, np.eye(len(contact.T))),
+    )
     point["stiffness"], point["damping"], point["force"] = contact.stiffness, contact.damping, contact.force
     point["divergence"] = -np.trace(contact.damping)
     point["rate"] = fastest_rate(contact.stiffness, contact.damping)

@@ -193,7 +193,8 @@ class Engine:
         """Period, cell and offset of absolute times."""
         times = np.asarray(times, float)
         period = np.floor(times / self.period)
-        cell, offset = np.divmod(times - period * self.period, self.width)
+        # a quotient that was rounded up to a whole number leaves a remainder below zero
+        cell, offset = np.divmod(np.maximum(times - period * self.period, 0.0), self.width)
         late = cell >= self.cells
         return (period + late).astype(np.int64), np.where(late, 0, cell).astype(np.int64), np.where(late, 0.0, offset)
 

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.built import Built, sizes_of
 from vibro_sweep.model.grazing import resolved
 from vibro_sweep.model.linear import Linear
 from vibro_sweep.model.oscillator import System
@@ -21,9 +22,11 @@ def grid(system: AnyOscillator, axes: dict[str, np.ndarray]) -> dict[str, np.nda
     if isinstance(system, System):
         numbers = resolved(numbers)
     else:
+        if isinstance(system, Built):
+            numbers |= _sizes(linears(system, axes))
         numbers |= {one.name: numbers[one.follows] for one in system.described.values() if _follows(one, numbers)}
         numbers = {name: value for name, value in numbers.items() if value is not None}
-        if isinstance(numbers["tau"], str):
+        if isinstance(numbers.get("tau"), str):
             numbers["tau"] = np.array([q.tau for q in linears(system, axes).flat]).reshape(shape)
     return {name: np.broadcast_to(value, shape) for name, value in numbers.items()}
 
@@ -38,6 +41,11 @@ def linears(system: AnyOscillator, axes: dict[str, np.ndarray]) -> np.ndarray:
         changes = {key: value for key, value in zip(axes, values, strict=True) if key in keys}
         result[place] = _one(family, changes)
     return result
+
+
+def _sizes(each: np.ndarray) -> dict[str, np.ndarray]:
+    found = [sizes_of(q) for q in each.flat]
+    return {name: np.array([one[name] for one in found]).reshape(each.shape) for name in found[0]}
 
 
 def _one(family, changes) -> Linear:

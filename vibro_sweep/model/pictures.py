@@ -7,6 +7,7 @@ PICTURES = (
     "bifurcation",
     "lyapunov",
     "impacts",
+    "energy",
     "phase-portrait",
     "configuration",
     "history",

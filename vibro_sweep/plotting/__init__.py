@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibro_sweep.model.pictures import PICTURES
-from vibro_sweep.plotting import basins, coexistence, convergence, orbits, planes, sweeps
+from vibro_sweep.plotting import basins, coexistence, convergence, energy, orbits, planes, sweeps
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.pictures import check_output, save
@@ -44,6 +44,7 @@ _DRAWN = {
     "bifurcation": Kind(sweeps.shows_bifurcation, sweeps.bifurcation, sweeps.section_variables),
     "lyapunov": Kind(sweeps.shows_lyapunov, sweeps.lyapunov),
     "impacts": Kind(sweeps.shows_impacts, sweeps.impacts),
+    "energy": Kind(energy.shows, energy.energy, energy.variables),
     "phase-portrait": Kind(orbits.shows_trajectory, orbits.phase_portrait, orbits.displacements, True),
     "configuration": Kind(orbits.shows_both_masses, orbits.configuration, of_orbits=True),
     "history": Kind(orbits.shows_trajectory, orbits.history, orbits.coordinates, True),

@@ -15,6 +15,8 @@ from vibro_sweep.plotting.source import PlotError, source_of
 from vibro_sweep.plotting.style import equation, page
 from vibro_sweep.store.settings import settings_of
 
+LONGEST_LINE = 150  # letters of TeX
+
 
 class Point(NamedTuple):
     """One orbit of the file: its place in the arrays, its place in the sweep, and what to call it."""
@@ -207,12 +209,39 @@ class Result:
 
     def title(self, what="") -> str:
         """What is shown, the numbers that are the same at every point, and how much is there if not all."""
-        numbers = ", ".join(equation(key, self.settings[key]) for key in OF_A_SYSTEM if key in self.settings)
+        numbers = self._numbers()
         stops = self.settings.get("stops")
         if stops in ("right", "left"):
-            numbers += f", {stops} stop only"
+            numbers.append(f"{stops} stop only")
         missing = "" if self.done.all() else f"{self.done.sum()} of {self.done.size} points computed"
-        return "\n".join(filter(None, ["; ".join(filter(None, [what, self.model(), missing])), numbers]))
+        kind = str(self.settings.get("type", "")).replace("_", " ")
+        return "\n".join(
+            [*filter(None, ["; ".join(filter(None, [what, kind, self.model(), missing]))]), *_lines(numbers)]
+        )
+
+    def _numbers(self) -> list[str]:
+        """Those of the system as equations; without what has its default, and lists as one."""
+        found, lists = [], {}
+        for key, one in OF_A_SYSTEM.items():
+            if key in self.settings and one.each:
+                lists.setdefault(key.rstrip("0123456789"), []).append(self.settings[key])
+            elif key in self.settings and (one.default is None or self.settings[key] != one.default):
+                found.append(equation(key, self.settings[key]))
+        for name, values in lists.items():
+            if any(value != OF_A_SYSTEM[f"{name}1"].default for value in values):
+                letter = OF_A_SYSTEM[f"{name}1"].symbol.removesuffix("_{1}").removesuffix("{}")
+                found.append(f"${letter} = {', '.join(f'{value:.4g}' for value in values)}$")
+        return found
+
+
+def _lines(items: list[str]) -> list[str]:
+    """The items in lines that a page has room for."""
+    lines = [""]
+    for item in items:
+        if len(lines[-1]) + len(item) > LONGEST_LINE:
+            lines.append("")
+        lines[-1] += f", {item}" if lines[-1] else item
+    return [line for line in lines if line]
 
 
 def _spread(items, most) -> list:

@@ -44,6 +44,9 @@ def _map_problems(form: Form) -> list[str]:
         if default is not None and (value != default.default or swept):
             text = "the map is that of the paper's oscillator with equal stops and proportional damping; leave it out"
             problems.append(problem(f"sweep.{key}" if swept else f"system.{key}", None if swept else value, text))
+    if "energy" in form.observe:
+        text = "the map has no motion between its points; leave energy out"
+        problems.append(problem("observe", sorted(form.observe), text))
     if form.trajectory:
         text = "the map has no motion between its points; leave it out"
         problems.append(problem("trajectory", form.trajectory.model_dump(), text))

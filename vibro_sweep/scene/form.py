@@ -11,6 +11,7 @@ from typing import Annotated, Literal, get_args
 from pydantic import ConfigDict, Discriminator, Field, Strict, Tag, WithJsonSchema, create_model
 
 from vibro_sweep.model.arguments import MAX_COUNT
+from vibro_sweep.model.built import Built
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import Model
 from vibro_sweep.model.observables import WORDS
@@ -18,7 +19,7 @@ from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.model.pictures import PICTURES
 from vibro_sweep.model.state import coordinates
 
-from .fields import Form, Whole, given, keys, swept
+from .fields import WHICH, Form, Whole, given, keys, swept
 from .slips import SYNONYMS
 from .systems import PhysicalSystemForm, form_of
 
@@ -138,6 +139,12 @@ def scene_form(name: str, masses: int) -> type[Form]:
     """The form of scenes of a model, with so many masses."""
     model = MODELS[name]
     return _scene_form(_systems([model]), model.flat(masses).values(), masses)
+
+
+def built_form(built: Built) -> type[Form]:
+    """That of a sweep whose oscillators a function makes; its `system` names the function."""
+    system = create_model("BuiltForm", __base__=Form, build=(str, ...), stops=WHICH)
+    return _scene_form(system, built.described.values(), built.masses)
 
 
 def _scene_form(system, numbers: Iterable[Parameter], masses: int) -> type[Form]:

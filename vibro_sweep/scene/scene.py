@@ -11,12 +11,13 @@ import numpy as np
 from pydantic import ValidationError
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.built import BUILD, Built
 from vibro_sweep.model.grid import grid
-from vibro_sweep.model.models import DEFAULT
+from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.state import START, start
 
 from .combinations import combination_problems
-from .form import scene_form
+from .form import built_form, scene_form
 from .problems import SceneError, form_problems, located
 from .size import size_problems
 from .starts import Start, start_of, start_problems, stops_of
@@ -65,6 +66,8 @@ class Scene:
     @cached_property
     def text(self) -> str:
         """The YAML text as given, if that is what this scene says; else generated. Raises SceneError for no scene."""
+        if isinstance(self.system, Built):
+            return self.to_yaml()  # which says what there is no text for
         if self.given is not None and _equal(parse_scene(self.given), self):
             return self.given
         return parse_scene(self.to_yaml(), self.name).given
@@ -208,17 +211,21 @@ def parse_scene(text: str, name: str = "scene") -> Scene:
         raise SceneError(name, located(error.problems, lines_of(text))) from None
 
 
-def scene_of(data: object, name: str, given: str | None = None) -> Scene:
-    """A Scene from the data that its YAML text, if there is one, holds. Raises SceneError."""
-    kind, masses = kind_of(data, name)
-    scheme = scene_form(kind, masses)
+def scene_of(data: object, name: str, given: str | None = None, built: Built | None = None) -> Scene:
+    """A Scene from the data that its YAML text, if there is one, holds. Raises SceneError.
+
+    built : an oscillator that a function makes, in place of `system`
+    """
+    kind, masses = kind_of(data, name) if built is None else (BUILD, built.masses)
+    numbers = MODELS[kind].flat(masses) if built is None else built.described
+    scheme = scene_form(kind, masses) if built is None else built_form(built)
     try:
         form = scheme.model_validate(data)
     except ValidationError as error:
         raise SceneError(name, form_problems(error, scheme, data)) from None
 
-    sweep, problems = sweep_of(form, data.get("sweep"), kind, masses)
-    system, more = system_of(form, sweep, kind, masses)
+    sweep, problems = sweep_of(form, data.get("sweep"), numbers)
+    system, more = system_of(form, sweep, kind, masses) if built is None else (built, [])
     problems += more + start_problems(form, sweep, system, masses) + combination_problems(form, data)
     if problems:
         raise SceneError(name, problems)

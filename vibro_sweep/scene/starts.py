@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.built import Built
 from vibro_sweep.model.state import START, state
 
 from .fields import Form
@@ -54,9 +55,11 @@ def start_problems(form: Form, sweep, system: AnyOscillator | None, masses: int)
     if system is None or form.model == "map":  # points of the map may lie beyond the stops
         return []
     if isinstance(form.start, RandomStart):
-        nowhere = float(system.b) == 0 or 0 in sweep.get("b", [])
+        nowhere = system.numbers.get("b", 1.0) == 0 or 0 in sweep.get("b", [])
         text = "random states lie within the clearance b, which is 0 here; give a state"
         return [problem("start.random", form.start.random, text)] if nowhere else []
+    if isinstance(system, Built):
+        return []  # where its stops are is known point by point; states behind one begin at it
     given = [name for name in names if name in swept or name in form.start.model_fields_set]
     return _behind(form, sweep, system, names, swept) if given else []
 
@@ -85,6 +88,8 @@ def _behind(form: Form, sweep, system: AnyOscillator, names, swept) -> list[str]
 
 def stops_of(system: AnyOscillator, sweep) -> tuple[float, float]:
     """The narrowest positions of the stops in a sweep, infinite where there is none."""
+    if isinstance(system, Built):
+        return system.linear.low, system.linear.high
     b, offset = (sweep.get(name, [system.numbers.get(name, 0.0)]) for name in ("b", "offset"))
     stops = system.options.get("stops", "both")
     low = float(max(offset) - min(b)) if stops != "right" else -np.inf

@@ -29,13 +29,13 @@ def kind_of(data: object, name: str) -> tuple[str, int]:
         return kind, 1
 
 
-def sweep_of(form: Form, keys, kind: str, masses: int) -> tuple[dict[str, np.ndarray], list[str]]:
+def sweep_of(form: Form, keys, numbers: dict[str, Parameter]) -> tuple[dict[str, np.ndarray], list[str]]:
     """The axes in the order of the text, and what is wrong with them; an axis with a problem is left out."""
     if form.sweep is None:
         return {}, []
     if not 1 <= len(keys) <= 2:
         return {}, [problem("sweep", list(keys), "must have one key or two, or be left out")]
-    numbers, sweep, problems = MODELS[kind].flat(masses), {}, []
+    sweep, problems = {}, []
     for key in keys:
         values, wrong = axis_values(f"sweep.{key}", getattr(form.sweep, key))
         if values is not None and key in numbers:

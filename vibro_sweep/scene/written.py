@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.built import Built
 from vibro_sweep.model.models import DEFAULT
 from vibro_sweep.model.state import START, start, state
 
@@ -98,6 +99,8 @@ def _plain(value):
 
 def _system(system: AnyOscillator, swept) -> dict[str, Any]:
     """Numbers and options that are not what they are if they are left out; those of lists that are swept stay."""
+    if isinstance(system, Built):
+        return dict(system.options)
     kind = {} if system.model.name == DEFAULT else {"type": system.model.name}
     given = {one.name: getattr(system, one.name) for one in system.model.numbers if one.name not in swept}
     left_out = {one.name: one.default for one in system.model.numbers if one.default is not None}

@@ -10,6 +10,7 @@ import math
 import h5py
 import numpy as np
 
+from vibro_sweep.model.built import stored_names
 from vibro_sweep.model.catalogue import AXES
 from vibro_sweep.model.exponents import RUNNING, periods_read
 from vibro_sweep.model.observables import (
@@ -150,7 +151,7 @@ def _create_following(file: h5py.File, scene: Scene) -> tuple[str, ...]:
         shape = tuple(len(scene.sweep[key]) for key in lead)
         chunk = chunk_shape(scene, shape, 8)
         dataset = file.create_dataset(name, shape, "f8", chunks=chunk, fillvalue=np.nan, **CHECKSUMS)
-        _describe(dataset, AXES[name])
+        _describe(dataset, AXES.get(name) or stored_names(scene.system.masses)[name])
         for i, key in enumerate(lead):
             dataset.dims[i].attach_scale(file[key])
     if len(numbers.depends_on(scene)) == 1:

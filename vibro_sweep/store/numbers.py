@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from vibro_sweep.model.built import Built, sizes_of, stored_names, stored_of
 from vibro_sweep.model.grazing import grazing_clearance
 from vibro_sweep.model.grid import grid, linears
 from vibro_sweep.model.linear import static_state, steady_gain
@@ -38,6 +39,8 @@ def attributes(scene: Scene) -> dict[str, Any]:
         result |= {name: float(value) for name, value in following(scene, ()).items() if name != "tau"}
     result = {name: value for name, value in result.items() if name not in (*scene.sweep, *dimensions(scene))}
     result |= {name: _plain(value) for name, value in system.options.items() if value is not None}
+    if isinstance(system, Built):
+        result = {name: value for name, value in result.items() if name != "tau"}
     result |= {} if system.model.name == DEFAULT else {"type": system.model.name}
     result |= {} if system.gap_is_x1 else {"along": system.linear.along}
     result |= {"model": scene.model}
@@ -74,6 +77,9 @@ def _graze(scene: Scene) -> tuple[str, ...]:
 def dimensions(scene: Scene) -> dict[str, tuple[str, ...]]:
     """The numbers that follow from swept ones, and the keys over which they are stored."""
     keys = depends_on(scene)
+    if isinstance(scene.system, Built):
+        names = (*stored_names(scene.system.masses), "b_right", "b_left")
+        return dict.fromkeys((name for name in names if name not in scene.sweep), keys) if keys else {}
     fixed = "tau" in scene.sweep or scene.system.tau != "grazing" or keys == ("offset",)
     names = (*(() if fixed else ("tau",)), *_graze(scene))
     return dict.fromkeys(names, keys) if keys else {}
@@ -82,6 +88,8 @@ def dimensions(scene: Scene) -> dict[str, tuple[str, ...]]:
 def following(scene: Scene, box: tuple[slice, ...]) -> dict[str, np.ndarray]:
     """What follows over a box of the keys of `depends_on`, each of the box's shape: tau, and where both stops graze."""
     axes = {key: scene.sweep[key][part] for key, part in zip(depends_on(scene), box, strict=True)}
+    if isinstance(scene.system, Built):
+        return _of_built(linears(scene.system, axes))
     numbers = grid(scene.system, axes)
     offset = numbers.get("offset", 0.0)
     if isinstance(scene.system, System):
@@ -91,6 +99,16 @@ def following(scene: Scene, box: tuple[slice, ...]) -> dict[str, np.ndarray]:
         size, middle = (np.array([one(q) for q in each.flat]).reshape(each.shape) for one in (_size, _middle))
     found = {"tau": numbers["tau"], "b_star": size, "b_right": size + middle - offset, "b_left": size - middle + offset}
     return {name: found[name] for name in ("tau", *_graze(scene))}
+
+
+def _of_built(each: np.ndarray) -> dict[str, np.ndarray]:
+    """All numbers of each oscillator, and the clearances at which its free motion touches the stops as they are."""
+    rows = []
+    for q in each.flat:
+        sizes = sizes_of(q)
+        touch = {"b_right": _size(q) + _middle(q) - sizes["offset"], "b_left": _size(q) - _middle(q) + sizes["offset"]}
+        rows.append(stored_of(q) | touch)
+    return {name: np.array([row[name] for row in rows]).reshape(each.shape) for name in rows[0]}
 
 
 def _size(q) -> float:

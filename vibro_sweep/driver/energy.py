@@ -1,0 +1,103 @@
+"""`observe: [energy]`: the orbits of a block over their records once more (engine/energy.py)."""
+
+import numpy as np
+
+from vibro_sweep.driver.blocks import Block
+from vibro_sweep.engine import points
+from vibro_sweep.engine.records import Kind, new_results
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.tables.flight import WIDTH
+from vibro_sweep.model import status
+from vibro_sweep.model.grid import linears
+from vibro_sweep.model.state import state
+
+ROOM = 64  # impacts of a period there is room for at first
+
+
+def energies_of(
+    block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray, starts: np.ndarray
+) -> dict[str, np.ndarray]:
+    """By dataset name, each of the shape of `steps` (n, m). starts: (2, m, 2 N), as of `run_points`."""
+    from vibro_sweep.engine.energy import new_scratch, run_energy
+
+    shape, states = steps.shape, starts.shape[-1]
+    begins = np.repeat(starts[1:], shape[0], axis=0)
+    begins[0] = starts[0]
+    going_on = status.stands(results["status"][:-1])[..., None]
+    begins[1:] = np.where(going_on, results["end"][:-1], begins[1:])  # where chains go on
+    flat, begins, resting = steps.reshape(-1), begins.reshape(-1, states), np.zeros(steps.size)
+    outcome = np.where(status.stands(results["status"]), status.NOT_COMPUTED, results["status"]).reshape(-1)
+    plan = block.plan._replace(states=False, lyapunov=False, impacts=False, attractors=False, section_side=0.0)
+    plan = plan._replace(warm_up=0, parts=0, periods=0, record=1, transient=block.plan.transient - 1)
+    workspace = points.new_workspace(plan, int(steps["cells"].max()), 0, LANES, kind)
+    if plan.transient >= 0:
+        passed = new_results((1, len(flat)), kind.masses)
+        nothing = np.empty((1, len(flat), 0))
+        points.run_points(
+            flat.reshape(1, -1), np.stack([begins, begins]), passed, nothing[..., None], nothing, nothing[..., None],
+            workspace, plan, None,
+        )  # fmt: skip
+        begins, resting = passed["end"][0], passed["resting"][0]
+    begins = at_contact(flat, begins, resting)
+    wanted = {
+        "loss": np.empty(len(flat)),
+        "squares": np.empty((len(flat), states)),
+        "peaks": np.empty((len(flat), states)),
+    }
+    back = (
+        flat["back"]
+        if "back" in flat.dtype.names
+        else np.broadcast_to(np.eye(kind.masses), (len(flat), kind.masses, kind.masses))
+    )
+    parts = _parts(flat)
+    masses, room = _contact_masses(block, shape).reshape(-1), ROOM
+    while True:  # once in any case: what a scene needs is compiled with its first point, however that goes
+        run_energy(
+            flat, begins, resting, masses, np.ascontiguousarray(back), block.plan.record, workspace, plan,
+            new_scratch(parts, room, kind.masses), *wanted.values(), outcome,
+        )  # fmt: skip
+        room *= 8
+        if not (outcome == status.NOT_COMPUTED).any():
+            break
+    known = np.where(status.stands(outcome), 1.0, np.nan)
+    time = block.plan.record * 2 * np.pi / flat["omega"]
+    named = {"impact_power": known * wanted["loss"] / time}
+    for i, name in enumerate(state(kind.masses)):
+        named[f"rms_{name}"] = known * np.sqrt(wanted["squares"][:, i] / time)
+        named[f"peak_{name}"] = known * wanted["peaks"][:, i]
+    return {name: values.reshape(shape) for name, values in named.items()}
+
+
+def _parts(flat: np.ndarray) -> int:
+    """At most so many parts of a period resolve every rate."""
+    rate = flat["rate"] if "rate" in flat.dtype.names else _fastest(flat)
+    least = np.maximum(rate, flat["omega"]) * 2 * np.pi / flat["omega"] / WIDTH
+    return int(np.max(flat["cells"] + least) + 1)
+
+
+def _fastest(flat: np.ndarray) -> np.ndarray:
+    """The largest modulus of the roots of the paper's oscillators."""
+    eta = flat["zeta"][:, None] * flat["omega_squared"]
+    beyond = np.sqrt(np.maximum(eta**2 - flat["omega_squared"], 0))
+    return np.maximum(np.sqrt(flat["omega_squared"]), eta + beyond).max(axis=-1)
+
+
+def _contact_masses(block: Block, shape: tuple[int, int]) -> np.ndarray:
+    """1/(n^T M^-1 n) of each point, of the shape of the steps."""
+    each = linears(block.system, block.axes)
+    masses = np.array([1 / (q.along @ np.linalg.solve(q.M, q.along)) for q in each.flat])
+    if block.follow:
+        return masses.reshape(len(each), -1)[:: -1 if block.reverse else 1]
+    return np.repeat(masses.reshape(1, -1), shape[1] // masses.size, axis=1)
+
+
+def at_contact(table: np.ndarray, ends: np.ndarray, resting: np.ndarray) -> np.ndarray:
+    """States (..., 2 N) of the masses in contact coordinates, none behind a stop, and at one where they rest."""
+    if "T" in table.dtype.names:
+        pairs = ends.reshape(*ends.shape[:-1], -1, 2)
+        ends = np.einsum("...ij,...jk->...ik", table["T"], pairs).reshape(ends.shape)
+    ends = np.array(ends)
+    low, high = table["stops"][..., 0], table["stops"][..., 1]
+    ends[..., 0] = np.where(resting > 0, high, np.where(resting < 0, low, np.clip(ends[..., 0], low, high)))
+    ends[..., 1] = np.where(resting == 0, ends[..., 1], 0.0)
+    return ends

@@ -1,0 +1,202 @@
+"""What the designer of a damper looks at: the energy that impacts take, root mean squares and peaks of all coordinates.
+
+A room of its own, which nothing enters that does not ask for it. The orbits are carried over their record once more, a
+period at a time: first for the times of their impacts and rests, then for samples between these. The motion is analytic
+between two of these times and within a cell, so that eight samples at the nodes of Gauss and Legendre give its mean
+square to rounding, and the polynomial through them its extremes.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.engine.motion.ensemble import Ensemble, Readings, carry
+from vibro_sweep.engine.motion.orbits import Records, Stops, place
+from vibro_sweep.engine.points import prepare
+from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.model import status
+
+NODES = 8
+_x, _w = np.polynomial.legendre.leggauss(NODES)
+PLACES, WEIGHTS = (_x + 1) / 2, _w / 2  # on 0 .. 1
+STEPS = 16  # of 0 .. 1, and one beyond on each side, at whose ends the polynomial is looked at for an extreme
+TO_POWERS = np.ascontiguousarray(np.linalg.inv(np.vander(PLACES, NODES)))  # from values there, highest power first
+
+
+class Scratch(NamedTuple):
+    """What one orbit needs on its way."""
+
+    hits: np.ndarray  # (1, room, 3 + 2 N)
+    rests: np.ndarray  # (1, room, 4)
+    cuts: np.ndarray
+    times: np.ndarray
+    samples: np.ndarray
+    values: np.ndarray  # (2, NODES)
+    begin: np.ndarray  # (2 N,)
+
+
+def new_scratch(parts: int, room: int, masses: int) -> Scratch:
+    """For periods of at most so many parts, impacts and rests."""
+    longest, states = parts + 1 + 2 * room, 2 * masses
+    return Scratch(
+        np.empty((1, room, 3 + states)),
+        np.empty((1, room, 4)),
+        np.empty(longest),
+        np.empty((NODES * longest, 2)),
+        np.empty((NODES * longest, states)),
+        np.empty((2, NODES)),
+        np.empty(states),
+    )
+
+
+@jit
+def parts_of(q):
+    """Of a cell, so that each resolves every rate."""
+    return int(math.ceil(q.width / q.step - 1e-3))  # noqa: RUF046  # compiled it is a float
+
+
+@jit
+def cuts_of(hits, rests, q, cuts):
+    """Times within a period, in cells, between which the motion is analytic; sorted. Returns how many."""
+    parts, count = parts_of(q), 0
+    for k in range(q.cells):
+        for i in range(parts):
+            cuts[count] = k + i / parts
+            count += 1
+    cuts[count] = q.cells
+    count += 1
+    for rows in (hits, rests):
+        for n in range(len(rows)):
+            time, i = rows[n, 1] + rows[n, 2] / q.width, count
+            while i > 0 and cuts[i - 1] > time:
+                cuts[i] = cuts[i - 1]
+                i -= 1
+            cuts[i] = time
+            count += 1
+    return count
+
+
+@jit
+def set_times(cuts, q, times):
+    """The nodes between neighbouring cuts, as cell and offset. Returns how many."""
+    count = 0
+    for i in range(len(cuts) - 1):
+        low, high = cuts[i], cuts[i + 1]
+        if high - low > 1e-12:
+            cell = min(math.floor(0.5 * (low + high)), q.cells - 1)
+            for n in range(NODES):
+                times[count, 0], times[count, 1] = cell, (low + (high - low) * PLACES[n] - cell) * q.width
+                count += 1
+    return count
+
+
+@jit
+def add_up(cuts, samples, back, squares, peaks, values):
+    """Add integrals of squares, in cells, and raise the peaks. values: scratch (2, NODES)."""
+    masses, count = len(back), 0
+    for i in range(len(cuts) - 1):
+        length = cuts[i + 1] - cuts[i]
+        if not length > 1e-12:
+            continue
+        for j in range(2 * masses):
+            for n in range(NODES):
+                values[0, n] = 0.0
+                for m in range(masses):
+                    values[0, n] += back[j // 2, m] * samples[count + n, 2 * m + j % 2]
+                squares[j] += length * WEIGHTS[n] * values[0, n] ** 2
+            peaks[j] = max(peaks[j], peak_of(values[0], values[1]))
+        count += NODES
+
+
+@jit
+def peak_of(values, c):
+    """The largest size on 0 .. 1 of the polynomial through these values at `PLACES`. c: scratch (NODES,).
+
+    An extreme is where the parabola through three neighbours has it.
+    """
+    for i in range(NODES):
+        c[i] = 0.0
+        for n in range(NODES):
+            c[i] += TO_POWERS[i, n] * values[n]
+    largest, before, here = 0.0, 0.0, 0.0
+    for i in range(-1, STEPS + 2):
+        after = polynomial(c, i / STEPS)
+        if i > 0:
+            largest = max(largest, abs(here))
+            if (here - before) * (after - here) < 0.0:
+                at = (i - 1 + 0.5 * (before - after) / (before - 2.0 * here + after)) / STEPS
+                if 0.0 <= at <= 1.0:
+                    largest = max(largest, abs(polynomial(c, at)))
+        before, here = here, after
+    return largest
+
+
+@jit
+def polynomial(c, u):
+    total = c[0]
+    for n in range(1, NODES):
+        total = total * u + c[n]
+    return total
+
+
+@jit
+def loss_of(hits, stops, mass):
+    """Energy that these impacts take."""
+    total = 0.0
+    for n in range(len(hits)):
+        R = stops.R_right if hits[n, 3] > 0.0 else stops.R_left
+        total += 0.5 * mass * (1.0 - R) * (1.0 + R) * hits[n, 4] ** 2
+    return total
+
+
+@jit
+def carry_one(e, w, begin, rest, part):
+    """The first orbit over one period, from a state in contact coordinates."""
+    o = e.orbits[0]
+    f = e.flights.nodes[o.table]
+    place(o, f, Stops(o.stops[0], o.stops[1], o.stops[2], o.stops[3]), 0, 0.0, begin)
+    o.resting, o.periods, o.log_side = rest, 1, 0.0
+    carry(Ensemble(e.flights, e.orbits, e.strike, e.tangent, part), None, Readings(w.section, False, w.growth, 0))
+
+
+@entry
+def run_energy(points, begins, resting, masses, back, periods, w, plan, scratch, loss, squares, peaks, outcome):
+    """Carry each orbit over its record. n = orbits.
+
+    points: (n,). begins: (n, 2 N) in contact coordinates, and `resting` (n,) the stops that they rest on. masses: (n,)
+    of the contact. back: (n, N, N), from contact coordinates. loss: (n,); squares: (n, 2 N), integrals over time;
+    peaks: (n, 2 N). outcome: (n,), NOT_COMPUTED where an orbit is wanted; then its status; NOT_COMPUTED again where
+    there was too little room.
+    """
+    e, hits, rests, begin = w.ensemble, scratch.hits, scratch.rests, scratch.begin
+    o, room, states = e.orbits[0], scratch.hits.shape[1], len(scratch.begin)
+    e.tangent[0].wanted = e.strike[0].measured = False
+    for i in range(1, LANES):
+        e.orbits[i].status = status.NOT_COMPUTED
+    for n in range(len(points)):
+        if outcome[n] != status.NOT_COMPUTED:
+            continue
+        stops = prepare(points[n : n + 1], 0, w, plan)
+        place(o, e.flights.nodes[o.table], stops, 0, 0.0, begins[n])
+        q = e.flights.oscillator[o.table, 0]
+        rest, loss[n], outcome[n] = resting[n], 0.0, status.OK
+        for j in range(states):
+            squares[n, j] = peaks[n, j] = 0.0
+        for _ in range(periods):
+            for j in range(states):
+                begin[j] = o.X[j]
+            carry_one(e, w, begin, rest, Records(hits, rests, scratch.times[:0], scratch.samples[:0]))
+            if o.status != status.OK or o.impacts_logged > room or o.rests_logged > room:
+                outcome[n] = o.status if o.status != status.OK else status.NOT_COMPUTED
+                break
+            struck = hits[0, : o.impacts_logged]
+            loss[n] += loss_of(struck, stops, masses[n])
+            cuts = scratch.cuts[: cuts_of(struck, rests[0, : o.rests_logged], q, scratch.cuts)]
+            count = set_times(cuts, q, scratch.times)
+            carry_one(e, w, begin, rest, Records(hits, rests, scratch.times[:count], scratch.samples[:count]))
+            add_up(cuts, scratch.samples, back[n], squares[n], peaks[n], scratch.values)
+            rest = o.resting
+        for j in range(states):
+            squares[n, j] *= q.width

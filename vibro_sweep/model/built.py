@@ -1,0 +1,106 @@
+"""Oscillators that a function of the caller's makes from numbers of any name, for `sweep`."""
+
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.linear import Family, Linear
+from vibro_sweep.model.models.declaration import Model
+from vibro_sweep.model.parameters import NUMBER, Parameter
+
+BUILD = "build"  # the `type` of files of such sweeps
+STORED = {  # of a Linear, with the symbol that it has in files
+    "M": "M", "K": "K", "C": "C", "along": "n", "constant": "f_0", "sine": "f_s", "cosine": "f_c",
+}  # fmt: skip
+
+
+class Built(AnyOscillator):
+    """What `function(**numbers)` returns, a System or an Oscillator. Raises TypeError where it is neither."""
+
+    def __init__(self, function: Callable[..., AnyOscillator], numbers: Mapping[str, float]):
+        self.function, self.given = function, dict(numbers)
+        self.base = function(**self.given)
+        check_type(f"{self.name}(...)", self.base, AnyOscillator, "a System or an Oscillator")
+        named = tuple(
+            Parameter(name, rf"\mathrm{{{name}}}", "1", NUMBER, name, name, free_motion=True) for name in numbers
+        )
+        self.model = Model(BUILD, self.name, "", "", "", named, (), lambda given: self.base.masses, self._linear)
+        self.described = {one.name: one for one in named}
+
+    def __eq__(self, other):
+        return isinstance(other, Built) and (self.function, self.given) == (other.function, other.given)
+
+    def __hash__(self):
+        return hash((self.function, tuple(self.given.items())))
+
+    def _linear(self, **numbers) -> Linear:
+        return self.function(**numbers).linear
+
+    @property
+    def name(self) -> str:
+        return getattr(self.function, "__name__", "function")
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        return dict(self.given)
+
+    @property
+    def options(self) -> dict[str, Any]:
+        return {BUILD: self.name, "stops": self.base.options.get("stops", "both")}
+
+    @property
+    def family(self) -> Family:
+        return Family(self._linear, self.given)
+
+    @cached_property
+    def linear(self) -> Linear:
+        return self.base.linear
+
+    @property
+    def omega(self) -> float:
+        return self.base.omega
+
+    tau = "grazing"  # whatever the function says of it, it may change with every number
+
+    def replace(self, **changes: Any) -> "Built":
+        return Built(self.function, self.given | changes)
+
+
+def sizes_of(q: Linear) -> dict[str, float]:
+    """What random starts and comparisons need of it, by the names that they have for all oscillators."""
+    two = np.isfinite(q.low) and np.isfinite(q.high)
+    b = (q.high - q.low) / 2 if two else q.high if np.isfinite(q.high) else -q.low
+    return {"omega": q.omega, "tau": q.tau, "b": b, "offset": (q.high + q.low) / 2 if two else 0.0}
+
+
+def stored_of(q: Linear) -> dict[str, float]:
+    """Every number of an oscillator by the name that files have for it: M11, M12, ..; along1; omega; low; R_low; ..."""
+    found = {}
+    for field in STORED:
+        values = getattr(q, field)
+        if values.ndim == 2:
+            found |= {f"{field}{i + 1}{j + 1}": values[i, j] for i in range(len(values)) for j in range(i, len(values))}
+        else:
+            found |= {f"{field}{i + 1}": value for i, value in enumerate(values)}
+    plain = ("omega", "tau", "low", "high", "R_low", "R_high")
+    return {name: float(value) for name, value in (found | {name: getattr(q, name) for name in plain}).items()}
+
+
+def stored_names(masses: int) -> dict[str, Parameter]:
+    """These, as files describe them."""
+    square = [f"{i}{j}" for i in range(1, masses + 1) for j in range(i, masses + 1)]
+    places = {field: square if field in ("M", "K", "C") else [f"{i}" for i in range(1, masses + 1)] for field in STORED}
+    texts = {"low": "left stop", "high": "right stop", "R_low": "restitution, left", "R_high": "restitution, right"}
+    texts |= {"omega": "forcing frequency", "tau": "forcing phase"}
+    named = {
+        f"{field}{place}": Parameter(
+            f"{field}{place}", f"{STORED[field]}_{{{place}}}", "1", NUMBER, "entry", f"{field}, {place}"
+        )
+        for field, all_of_it in places.items()
+        for place in all_of_it
+    }
+    return named | {name: Parameter(name, name, "1", NUMBER, text, text) for name, text in texts.items()}
