@@ -56,8 +56,8 @@ def contact_coordinates(q: Linear) -> Coordinates:
     return Coordinates(T, np.linalg.inv(T))
 
 
-def flow(q: Linear) -> Flow:
-    """Tables of the free flight. Raises TooStiffError."""
+def rates(q: Linear) -> np.ndarray:
+    """B of zeta' = B zeta, (m, m)."""
     N = len(q.along)
     T, inverse = contact_coordinates(q)
     to_y = T @ np.linalg.inv(q.M)
@@ -67,6 +67,13 @@ def flow(q: Linear) -> Flow:
     B[N:n, :N], B[N:n, N:n] = -to_y @ q.K @ inverse, -to_y @ q.C @ inverse
     B[N:n, n], B[N:n, n + 1], B[N:n, n + 2] = to_y @ q.cosine, to_y @ q.sine, to_y @ q.constant
     B[n, n + 1], B[n + 1, n] = -q.omega, q.omega
+    return B
+
+
+def flow(q: Linear) -> Flow:
+    """Tables of the free flight. Raises TooStiffError."""
+    B = rates(q)
+    n = len(B) - 3
     cells = 2 * cells_needed(q)
     if cells > MOST_CELLS:
         raise TooStiffError(f"a forcing period needs {cells} cells, at most {MOST_CELLS} are allowed")
@@ -79,8 +86,8 @@ def flow(q: Linear) -> Flow:
     row = np.zeros(n + 3, REAL)
     row[0] = 1
     rows = taylor_rows(B.astype(REAL), row).astype(float)
-    rates = np.linalg.eigvals(B[:n, :n]).real
-    return Flow(B, float(width), np.array(powers), rows, q.omega, float(q.tau), float(np.ptp(rates)))
+    decays = np.linalg.eigvals(B[:n, :n]).real
+    return Flow(B, float(width), np.array(powers), rows, q.omega, float(q.tau), float(np.ptp(decays)))
 
 
 def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
