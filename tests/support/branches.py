@@ -5,6 +5,7 @@ import pytest
 
 import vibro_sweep as vs
 from support.oscillators import PAPER
+from vibro_sweep.analysis.solution import Solution
 
 
 def types(branch):
@@ -41,3 +42,11 @@ def recorded(b, n, seed=1):
 def branch_of(b, n, bounds=(6.3, 6.9)):
     system, state = recorded(b, n)
     return vs.continue_orbit(vs.periodic_orbit(system, state=state, periods=n), "b", bounds)
+
+
+def repeated(orbit, times):
+    """The orbit as one of `times` its period: as many impacts more."""
+    s = orbit._solution.whole()
+    shifts = np.repeat(np.arange(times) * s.equations.P, s.K)
+    u = np.concatenate([np.tile(s.times, times) + shifts, np.tile(s.jumps, times)])
+    return Solution(s.family, 1, s.halves * times, s.sides * times, u)

@@ -13,8 +13,8 @@ from vibro_sweep.model.linear import Linear, forcing_period
 def dataset(walk: Walk, frame: tuple[int, int], rows: Rows) -> xr.Dataset:
     """Over `point`, in order: the parameter; `multiplier_re`, `multiplier_im` (multiplier) of the whole period;
     `unstable`, the number of multipliers outside the unit circle; the state x1 v1 .. at t = 0; `margin`;
-    `min_impact_speed`; `residual`, the largest jump of the gap between two flights relative to its size; and `impact_t`,
-    `impact_side`, `impact_v` (impact) as `orbit.impacts` of the first point, from there on continuous: times are not
+    `min_impact_speed`; `residual`, the largest jump of the gap between two flights, relative to its size; `impact_t`,
+    `impact_side` and `impact_v` (impact) as `orbit.impacts` of the first point, from there on continuous: times are not
     wrapped.
     """
     start = walk.start

@@ -13,7 +13,6 @@ from vibro_sweep.engine.impulses.places import Place, Steps, new_place, new_reco
 from vibro_sweep.engine.impulses.tables import ORDER, REAL
 from vibro_sweep.model.linear import Family, forcing_period
 
-DEGREE = 20  # of the polynomials in the parameter
 DECAYED = 1e-14  # relative size of their last coefficients
 NARROWEST = 1e-6  # of the branch's range
 AT_ONCE = 1024  # points of one call
@@ -42,18 +41,18 @@ def _sampled(family: Family, halves: int, name: str, p: float) -> np.ndarray:
     return np.append(rates(q).ravel(), [value if np.isfinite(value) else 0.0 for value in numbers])
 
 
-def medium_of(family: Family, halves: int, name: str, centre: float, reach: float) -> medium.Medium | None:
+def medium_of(family: Family, halves: int, name: str, centre: float, reach: float) -> np.ndarray | None:
     """The oscillator around a value of the parameter, to `reach` or as far as polynomials hold; None: they do not."""
-    nodes = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
+    nodes = np.cos(np.pi * (np.arange(medium.DEGREE + 1) + 0.5) / (medium.DEGREE + 1))
     least = NARROWEST * reach
     while reach > least:
         try:
             values = np.array([_sampled(family, halves, name, centre + branch.BEYOND * reach * x) for x in nodes])
         except (ValueError, np.linalg.LinAlgError):
-            values = np.full((DEGREE + 1, 1), np.nan)
+            values = np.full((medium.DEGREE + 1, 1), np.nan)
         if np.all(np.isfinite(values)):
             values[:, -2] = np.unwrap(values[:, -2])  # tau
-            c = chebyshev.chebfit(nodes, values, DEGREE)
+            c = chebyshev.chebfit(nodes, values, medium.DEGREE)
             c[np.abs(c) < 1e-17 * np.abs(values).max(axis=0)] = 0.0
             size = np.maximum(np.abs(values).max(axis=0), np.append(np.full(values.shape[1] - 2, 0.0), [1.0, 0.0]))
             if np.all(np.abs(c[-2:]) <= DECAYED * np.maximum(size, 1e-300)):
@@ -62,7 +61,7 @@ def medium_of(family: Family, halves: int, name: str, centre: float, reach: floa
     return None
 
 
-def _built(family, name, c, values, centre, reach) -> medium.Medium:
+def _built(family, name, c, values, centre, reach) -> np.ndarray:
     q = family.replace(**{name: centre}).linear
     f = flow(q)
     m = len(f.B)
@@ -73,26 +72,23 @@ def _built(family, name, c, values, centre, reach) -> medium.Medium:
         column = chebyshev.cheb2poly(c[: degree + 1, j])
         powers_of[: len(column), j] = column
     powers_of /= branch.BEYOND ** np.arange(len(powers_of))[:, None]
-    moves = bool(np.any(np.ptp(values[:, : m * m], axis=0) > 0))
-    if not moves:  # to the last digit
+    result = np.zeros(1, medium.medium_of(n // 2))
+    r = result[0]
+    r["moves"] = bool(np.any(np.ptp(values[:, : m * m], axis=0) > 0))
+    if not r["moves"]:  # to the last digit
         powers_of[:, : m * m] = 0.0
         powers_of[0, : m * m] = f.B.ravel()
-    bits = max(int(np.ceil(np.log2(2 * values[:, -1].max() / f.width))) + 1, 1)
-    stored = [np.zeros(powers_of.shape[1]) for _ in range(2)]
-    parts = [part for all_of in stored for part in (all_of[: m * m].reshape(m, m), all_of[m * m :])]
+    open_stops = ~np.isfinite([q.low, q.high])
+    powers_of[0, m * m : m * m + 2][open_stops] = np.array([-np.inf, np.inf])[open_stops]
+    r["centre"], r["reach"], r["degree"], r["width"] = centre, reach, len(powers_of) - 1, f.width
+    r["fit"][: len(powers_of)] = powers_of
+    r["bits"] = min(max(int(np.ceil(np.log2(2 * values[:, -1].max() / f.width))), 1), medium.BITS)
     series = [np.eye(n, m).astype(REAL)]
     for k in range(1, ORDER + 1):
         series.append(series[-1] @ f.B.astype(REAL) / k)
-    series = np.array(series).astype(float)
-    powers = np.array([*f.powers[:bits]])
-    B, numbers, B_slope, number_slopes = parts
-    open_stops = ~np.isfinite([q.low, q.high])
-    powers_of[0, m * m : m * m + 2][open_stops] = np.array([-np.inf, np.inf])[open_stops]
-    return medium.Medium(
-        powers_of, float(centre), float(reach), moves, f.width, *stored, B, B_slope, numbers, number_slopes,
-        series, np.zeros_like(series), powers, np.zeros_like(powers),
-        np.ascontiguousarray(series[:, 0].T), np.ascontiguousarray(f.powers[0].T),
-    )  # fmt: skip
+    r["series"], r["powers"][:], r["step"] = np.array(series), f.powers, f.powers[0].T
+    r["gap_rows"] = r["series"][:, 0].T
+    return result
 
 
 class Track:
@@ -111,7 +107,7 @@ class Track:
         self.size = float(first.solution.size_of_gap)
         self.medium = self._medium(first.p)
 
-    def _medium(self, p: float) -> medium.Medium | None:
+    def _medium(self, p: float) -> np.ndarray | None:
         lo, hi = self.bounds
         return medium_of(self.walk.family, self.walk.start.halves, self.walk.name, p, hi - lo)
 

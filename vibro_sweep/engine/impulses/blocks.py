@@ -14,10 +14,10 @@ Reflections keep all digits at any growth, and nothing is singular at D = 0.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.impulses.extremes import PIECES
 from vibro_sweep.engine.impulses.medium import (
     GAIN_HIGH,
     GAIN_LOW,
@@ -30,35 +30,46 @@ from vibro_sweep.engine.impulses.medium import (
     flight_slope,
     set_phase,
 )
+from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.lanes import record
 
 
-class Room(NamedTuple):
+def room_of(masses: int) -> np.dtype:
     """Room for the elimination. A panel has columns for xi_i (n), dt_i, dD_i, xi_{i+1} (n), xi_1 (n), dp, F."""
+    n, m = 2 * masses, 2 * masses + 3
+    wide = 3 * n + 4
+    return record([
+        ("panel", float, (2 * n + 2, wide)),
+        ("sums", float, wide),
+        ("change", float, n),
+        ("E", float, (n, m)),
+        ("other", float, (n, m)),
+        ("zeta", float, (4, m)),
+        ("ahead", float, (n, n)),
+        ("behind", float, (n, n)),
+        ("last", float, (n, 2)),  # columns of dp and F at the end
+        ("row", float, wide),
+        ("end", float, (n + 1, n + 3)),
+        ("matrix", float, (n, n)),
+        ("pair", float, (n, 2 * n)),
+        ("re", float, n),
+        ("im", float, n),
+        ("cell", float, ORDER + 1),
+        ("after", float, m),
+        ("nearest", float, 3),
+        ("waiting", float, (PIECES, 2)),
+    ])  # fmt: skip
 
-    panel: np.ndarray  # (2n + 2, 3n + 4)
-    kept: np.ndarray  # (K, n + 2, 3n + 4): what was eliminated, an upper triangle in front
-    sums: np.ndarray  # (3n + 4,)
-    E: np.ndarray  # (n, m)
-    other: np.ndarray  # (n, m)
-    zeta: np.ndarray  # (4, m)
-    rates: np.ndarray  # (K, n): z' before each impact
-    motion: np.ndarray  # (K, 2): gap velocity and acceleration before each impact
-    ahead: np.ndarray  # (n, n)
-    behind: np.ndarray  # (n, n)
-    last: np.ndarray  # (n, 2): columns of dp and F at the end
-    row: np.ndarray  # (3n + 4,)
-    end: np.ndarray  # (n + 1, n + 3)
-    matrix: np.ndarray  # (n, n)
 
-
-def new_room(K: int, n: int) -> Room:
-    wide, m = 3 * n + 4, n + 3
-    shapes = [
-        (2 * n + 2, wide), (K, n + 2, wide), (wide,), (n, m), (n, m), (4, m), (K, n), (K, 2), (n, n), (n, n), (n, 2),
-        (wide,), (n + 1, n + 3), (n, n),
-    ]  # fmt: skip
-    return Room(*(np.zeros(shape) for shape in shapes))
+def strike_of(masses: int) -> np.dtype:
+    """What is kept of each impact."""
+    n = 2 * masses
+    return record([
+        ("kept", float, (n + 2, 3 * n + 4)),  # what was eliminated, an upper triangle in front
+        ("rate", float, n),  # z' before it
+        ("motion", float, 2),  # gap velocity and acceleration before it
+    ])  # fmt: skip
 
 
 @jit
@@ -93,15 +104,15 @@ def reflect(panel, columns, sums):
 
 
 @jit
-def eliminate(f, sides, sigma, t, D, z, room):
+def eliminate(f, sides, sigma, t, D, z, room, strikes):
     """Fill `room` with the eliminated equations at the parameter to which f was moved; sign of the determinant's part.
 
     t, D: (K,); z: (K, n).
     """
-    K, n = z.shape
-    N, m = n // 2, n + 3
+    K, n, m = len(t), room.E.shape[0], room.E.shape[1]
+    N = n // 2
     P, d_omega, d_tau = f.numbers[PERIOD], f.number_slopes[OMEGA], f.number_slopes[TAU]
-    turning = f.moves or d_omega != 0.0 or d_tau != 0.0
+    turning = f.moves > 0 or d_omega != 0.0 or d_tau != 0.0
     A, B = n, 2 * n + 2  # columns of dt_i and of xi_1
     p, F = 3 * n + 2, 3 * n + 3
     panel = room.panel
@@ -122,9 +133,9 @@ def eliminate(f, sides, sigma, t, D, z, room):
             total = 0.0
             for j in range(m):
                 total += f.B[r, j] * zeta[j]
-            room.rates[i, r] = total
-        v, a = zeta[N], room.rates[i, N]
-        room.motion[i, 0], room.motion[i, 1] = v, a
+            strikes[i].rate[r] = total
+        v, a = zeta[N], strikes[i].rate[N]
+        strikes[i].motion[0], strikes[i].motion[1] = v, a
         length = (t[i + 1] if i + 1 < K else t[0] + P) - t[i]
         flight_matrix(f, length, room.E, room.other)
         E = room.E
@@ -147,23 +158,23 @@ def eliminate(f, sides, sigma, t, D, z, room):
             panel[line, n + 2 + r] = 1.0
             panel[line, F] = (z[i + 1, r] if i + 1 < K else sigma * z[0, r]) - end
             if i + 1 == K:
-                panel[line, p] = -sigma * room.rates[0, r] * f.number_slopes[PERIOD]
+                panel[line, p] = -sigma * strikes[0].rate[r] * f.number_slopes[PERIOD]
         if turning:
             turn = d_omega * t[i] + d_tau
             for j in range(m):
                 slope[j] = 0.0
             slope[n], slope[n + 1] = -turn * zeta[n + 1], turn * zeta[n]
-            if f.moves:
-                flight_slope(f, length, zeta, slope, room.sums[:n], room.zeta[2:])
+            if f.moves > 0:
+                flight_slope(f, length, zeta, slope, room.change, room.zeta[2:])
                 for r in range(n):
-                    panel[n + 2 + r, p] -= room.sums[r]
+                    panel[n + 2 + r, p] -= room.change[r]
             else:
                 for r in range(n):
                     panel[n + 2 + r, p] -= E[r, n] * slope[n] + E[r, n + 1] * slope[n + 1]
         sign *= reflect(panel, n + 2, room.sums)
         for r in range(n + 2):
             for j in range(r, 3 * n + 4):
-                room.kept[i, r, j] = panel[r, j]
+                strikes[i].kept[r, j] = panel[r, j]
         for r in range(n):
             for j in range(n):
                 panel[r, j] = panel[n + 2 + r, n + 2 + j]
@@ -180,20 +191,20 @@ def eliminate(f, sides, sigma, t, D, z, room):
 
 
 @jit
-def finish(sigma, row_t, row_jump, row_p, room, scale_p, dt, dD, dz, dp):
+def finish(sigma, row_t, row_jump, row_p, room, strikes, scale_p, dt, dD, dz, dp):
     """Solve for the changes with one equation more, row.(dt, dD, dp) = 0, and for the tangent, row.tangent = 1.
 
     dt, dD: (2, K), dz: (2, K, n) and dp: (2,) receive both, Newton's change first. False where it is singular.
     scale_p: unit of the parameter. `eliminate` comes first.
     """
-    K, n = dz.shape[1], dz.shape[2]
+    K, n = dz.shape[1], room.E.shape[0]
     A, B, p, F = n, 2 * n + 2, 3 * n + 2, 3 * n + 3
     row, end = room.row, room.end
     for j in range(3 * n + 4):
         row[j] = 0.0
     row[p] = row_p
     for i in range(K):  # the row is eliminated too; it is no part of the reflections, which would fill it
-        kept = room.kept[i]
+        kept = strikes[i].kept
         row[A], row[A + 1] = row_t[i], row_jump[i]
         for c in range(n + 2):
             factor = row[c] / kept[c, c]
@@ -213,7 +224,7 @@ def finish(sigma, row_t, row_jump, row_p, room, scale_p, dt, dD, dz, dp):
     for s in range(2):
         dp[s] = end[n, n + 1 + s] * scale_p
         for k in range(K - 1, -1, -1):
-            kept = room.kept[k]
+            kept = strikes[k].kept
             for r in range(n + 1, -1, -1):
                 total = kept[r, F] if s == 0 else 0.0
                 total -= kept[r, p] * dp[s]
@@ -235,7 +246,7 @@ def finish(sigma, row_t, row_jump, row_p, room, scale_p, dt, dD, dz, dp):
                     dz[s, k, r] = total
         for k in range(K):
             for j in range(n):
-                dz[s, k, j] += room.rates[k, j] * dt[s, k]
+                dz[s, k, j] += strikes[k].rate[j] * dt[s, k]
     return True
 
 

@@ -46,10 +46,10 @@ def correct(f, sides, sigma, steps, row_p, place, w):
         if abs(place.numbers[P] - f.centre) > BEYOND * f.reach:
             return 0
         move_to(f, place.numbers[P])
-        sign = eliminate(f, sides, sigma, place.t, place.D, place.z, w.room)
+        sign = eliminate(f, sides, sigma, place.t, place.D, place.z, w.room[0], w.strikes)
         if sign == 0.0:
             return 0
-        if not finish(sigma, w.row_t, w.row_jump, row_p, w.room, steps.scale_p, w.change_t, w.change_jump,
+        if not finish(sigma, w.row_t, w.row_jump, row_p, w.room[0], w.strikes, steps.scale_p, w.change_t, w.change_jump,
                       w.change_z, w.change_p):  # fmt: skip
             return 0
         change = abs(w.change_p[0]) / steps.scale_p
@@ -102,24 +102,25 @@ def cosine(steps, a, b):
 @jit
 def state_at(f, sigma, place, origin, state, w):
     """The state at the time `origin`, before an impact there."""
-    K, n = place.z.shape
+    room = w.room[0]
+    K, n = len(place.t), room.E.shape[0]
     P_now = f.numbers[PERIOD]
     turns = math.ceil((origin - place.t[0]) / P_now) - 1.0
     s = origin - turns * P_now  # in (t_1, t_1 + P]
     i = K - 1
     while i > 0 and not place.t[i] < s:
         i -= 1
-    zeta = w.room.zeta[0]
+    zeta = room.zeta[0]
     for j in range(n):
         zeta[j] = place.z[i, j]
     zeta[n // 2] += place.D[i]
     set_phase(f, zeta, place.t[i])
-    flight_matrix(f, max(s - place.t[i], 0.0), w.room.E, w.room.other)
+    flight_matrix(f, max(s - place.t[i], 0.0), room.E, room.other)
     sign = 1.0 if sigma > 0 or turns % 2.0 == 0.0 else -1.0
     for r in range(n):
         total = 0.0
         for j in range(n + 3):
-            total += w.room.E[r, j] * zeta[j]
+            total += room.E[r, j] * zeta[j]
         state[r] = sign * total
 
 
@@ -127,32 +128,34 @@ def state_at(f, sigma, place, origin, state, w):
 def keep(f, sigma, place, origin, record, count, w):
     for i in range(len(place.t)):
         record.t[count, i], record.D[count, i] = place.t[i], place.D[i]
-        record.motion[count, i, 0], record.motion[count, i, 1] = w.room.motion[i, 0], w.room.motion[i, 1]
+        record.motion[count, i, 0], record.motion[count, i, 1] = w.strikes[i].motion[0], w.strikes[i].motion[1]
     for i in range(len(place.numbers)):
         record.numbers[count, i] = place.numbers[i]
     state_at(f, sigma, place, origin, record.state[count], w)
 
 
 @entry
-def start(f, sides, sigma, steps, a, w):
+def start(media, sides, sigma, steps, a, w):
     """Correct `a` at its parameter on the plane across its own tangent, and test it. False where that fails."""
+    f = media[0]
     for i in range(len(sides)):
         w.row_t[i], w.row_jump[i] = a.tangent_t[i] / steps.scale_t**2, a.tangent_jump[i] / steps.scale_jump**2
     if correct(f, sides, sigma, steps, a.numbers[TANGENT] / steps.scale_p**2, a, w) == 0:
         return False
     take_tangent(steps, a, w)
-    certify(f, sides, sigma, a, w)
-    test(f, sides, sigma, a, w)
+    certify(f, sides, sigma, a, w.room[0], w.strikes)
+    test(f, sides, sigma, a, w.room[0], w.strikes)
     return True
 
 
 @entry
-def walk(f, sides, sigma, steps, size, origin, passed, first, a, b, record, w):
+def walk(media, sides, sigma, steps, size, origin, passed, first, a, b, record, w):
     """Steps from a until something happens. (reason, points recorded, corrections made).
 
     Recorded are the points before the step in which it happens; a and b are the two points of this step. size: of the
     gap. passed: points of the branch so far. origin: the state's time, in forcing periods.
     """
+    f = media[0]
     K, n = a.z.shape
     count, corrections = 0, 0
     length = a.numbers[LENGTH]
@@ -174,7 +177,7 @@ def walk(f, sides, sigma, steps, size, origin, passed, first, a, b, record, w):
             take_tangent(steps, b, w)
             turn = math.acos(min(1.0, max(-1.0, cosine(steps, a, b))))
         if turn <= steps.straight:
-            certify(f, sides, sigma, b, w)
+            certify(f, sides, sigma, b, w.room[0], w.strikes)
             if b.numbers[DEFECT_HERE] > DEFECT * size:
                 turn = np.inf
         corrections += made
@@ -184,7 +187,7 @@ def walk(f, sides, sigma, steps, size, origin, passed, first, a, b, record, w):
                 return FAILED, count, corrections
             continue
         b.numbers[LENGTH] = length
-        test(f, sides, sigma, b, w)
+        test(f, sides, sigma, b, w.room[0], w.strikes)
         if happens(sides, steps, a, b):
             return EVENT, count, corrections
         if passed + count >= EARLY and comes_back(steps, a, first, length):

@@ -15,13 +15,12 @@ from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
 
 @jit
-def certify(f, sides, sigma, place, w):
+def certify(f, sides, sigma, place, room, strikes):
     """The least distance of a turning point from its stop, the largest jump between flights, motion before impacts."""
-    K, n = place.z.shape
-    N, m = n // 2, n + 3
+    K, n, m = len(sides), room.E.shape[0], room.E.shape[1]
+    N = n // 2
     low, high = f.numbers[LOW], f.numbers[HIGH]
-    nearest, c, after = w.nearest, w.cell[0], w.cell[1]
-    zeta = w.room.zeta[0]
+    nearest, c, after, zeta = room.nearest, room.cell, room.after, room.zeta[0]
     nearest[0], largest = np.inf, 0.0
     for i in range(K):
         for j in range(n):
@@ -32,7 +31,7 @@ def certify(f, sides, sigma, place, w):
         a = -f.B[N, N] * place.D[i]
         for j in range(m):
             a += f.B[N, j] * zeta[j]
-        w.room.motion[i, 0], w.room.motion[i, 1] = place.z[i, N], a
+        strikes[i].motion[0], strikes[i].motion[1] = place.z[i, N], a
         length = (place.t[i + 1] if i + 1 < K else place.t[0] + f.numbers[PERIOD]) - place.t[i]
         cells = int(length / f.width)
         for k in range(cells + 1):
@@ -43,7 +42,7 @@ def certify(f, sides, sigma, place, w):
                     c[q] += zeta[j] * f.gap_rows[j, q]
             width = min(f.width * OVERLAP, length - k * f.width)
             if width > 0.0:
-                extremes_of_cell(c, width, low, high, nearest, w.waiting)
+                extremes_of_cell(c, width, low, high, nearest, room.waiting)
             if k < cells:
                 for j in range(m):
                     after[j] = 0.0
@@ -63,21 +62,20 @@ def certify(f, sides, sigma, place, w):
 
 
 @jit
-def test(f, sides, sigma, place, w):
+def test(f, sides, sigma, place, room, strikes):
     """The tests at a corrected point: reflection (flip, pitchfork), torus, releases."""
-    room = w.room
-    K, n = place.z.shape
+    K, n = len(sides), room.E.shape[0]
     for r in range(n):
         for j in range(n):
             room.matrix[r, j] = room.behind[r, j] - sigma * room.ahead[r, j]
     place.numbers[REFLECTION] *= sign_of_determinant(room.matrix)
     for i in range(K):
         gain = f.numbers[GAIN_HIGH if sides[i] > 0 else GAIN_LOW]
-        after = room.motion[i, 1] + place.D[i] * f.B[n // 2, n // 2]
+        after = strikes[i].motion[1] + place.D[i] * f.B[n // 2, n // 2]
         place.releases[i] = -sides[i] * after if gain == 1.0 else np.inf
     place.numbers[TORUS], place.numbers[UNSTABLE] = 1.0, -1.0
     # multipliers: eigenvalues of -sigma ahead^-1 behind
-    a = w.pair
+    a = room.pair
     for r in range(n):
         for j in range(n):
             a[r, j], a[r, n + j] = room.ahead[r, j], -sigma * room.behind[r, j]
@@ -86,15 +84,15 @@ def test(f, sides, sigma, place, w):
     for r in range(n):
         for j in range(n):
             room.matrix[r, j] = a[r, n + j]
-    if not eigenvalues(room.matrix, n, w.re, w.im):
+    if not eigenvalues(room.matrix, n, room.re, room.im):
         return
     outside = 0.0
     for i in range(n):
-        if w.re[i] * w.re[i] + w.im[i] * w.im[i] > 1.0:
+        if room.re[i] * room.re[i] + room.im[i] * room.im[i] > 1.0:
             outside += 1.0
     place.numbers[UNSTABLE] = outside
     if n > 2:
-        place.numbers[TORUS] = torus(w.re, w.im)
+        place.numbers[TORUS] = torus(room.re, room.im)
 
 
 @jit

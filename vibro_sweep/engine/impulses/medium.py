@@ -5,53 +5,65 @@ any value of it. Where the flight changes with the parameter, its tables are bui
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.lanes import record
 
 LOW, HIGH, GAIN_LOW, GAIN_HIGH, OMEGA, TAU, PERIOD = range(7)  # of `numbers`; gain: 1 + R, PERIOD: P
 NUMBERS = 7
 
 
-class Medium(NamedTuple):
-    """zeta' = B zeta for zeta = (y, y', cos(omega t + tau), sin(omega t + tau), 1), n = 2N, m = n + 3 (flights.py)."""
+DEGREE = 20  # of the polynomials, at most
+BITS = 18
 
-    fit: np.ndarray  # (degree + 1, m m + NUMBERS): coefficients of the powers of (p - centre)/reach
-    centre: float
-    reach: float
-    moves: bool  # whether B depends on the parameter
-    width: float  # of a cell
-    values: np.ndarray  # (m m + NUMBERS): here B and `numbers` are stored
-    slopes: np.ndarray  # their derivatives
-    B: np.ndarray  # (m, m)
-    B_slope: np.ndarray
-    numbers: np.ndarray  # (NUMBERS,)
-    number_slopes: np.ndarray
-    series: np.ndarray  # (ORDER + 1, n, m): first rows of B^k/k!
-    series_slopes: np.ndarray
-    powers: np.ndarray  # (bits, m, m): exp(B width 2^j)
-    power_slopes: np.ndarray
-    gap_rows: np.ndarray  # (m, ORDER + 1): the gap's Taylor coefficients, by columns
-    step: np.ndarray  # (m, m): exp(B width) by columns
+
+def medium_of(masses: int) -> np.dtype:
+    """zeta' = B zeta for zeta = (y, y', cos(omega t + tau), sin(omega t + tau), 1), n = 2N, m = n + 3 (flights.py)."""
+    n, m = 2 * masses, 2 * masses + 3
+    return record([
+        ("centre", float),  # of the interval of the parameter
+        ("reach", float),
+        ("degree", np.int64),
+        ("moves", np.int64),  # 1 where B depends on the parameter
+        ("width", float),  # of a cell
+        ("bits", np.int64),  # of the number of cells of the longest flight
+        ("fit", float, (DEGREE + 1, m * m + NUMBERS)),  # coefficients of the powers of (p - centre)/reach
+        ("values", float, m * m + NUMBERS),  # B and `numbers` one after the other
+        ("slopes", float, m * m + NUMBERS),  # their derivatives
+        ("B", float, (m, m)),
+        ("B_slope", float, (m, m)),
+        ("numbers", float, NUMBERS),
+        ("number_slopes", float, NUMBERS),
+        ("series", float, (ORDER + 1, n, m)),  # first rows of B^k/k!
+        ("series_slopes", float, (ORDER + 1, n, m)),
+        ("powers", float, (BITS, m, m)),  # exp(B width 2^j)
+        ("power_slopes", float, (BITS, m, m)),
+        ("gap_rows", float, (m, ORDER + 1)),  # the gap's Taylor coefficients, by columns
+        ("step", float, (m, m)),  # exp(B width) by columns
+    ])  # fmt: skip
 
 
 @jit
 def move_to(f, p):
     """Numbers and tables at the value p of the parameter."""
     s = (p - f.centre) / f.reach
-    last = len(f.fit) - 1
+    last = f.degree
     for i in range(len(f.values)):
         f.values[i], f.slopes[i] = f.fit[last, i], 0.0
     for k in range(last - 1, -1, -1):
         for i in range(len(f.values)):
             f.slopes[i] = f.slopes[i] * s + f.values[i]
             f.values[i] = f.values[i] * s + f.fit[k, i]
-    for i in range(len(f.values)):
-        f.slopes[i] /= f.reach
-    if f.moves:
+    m = len(f.B)
+    for i in range(NUMBERS):
+        f.numbers[i], f.number_slopes[i] = f.values[m * m + i], f.slopes[m * m + i] / f.reach
+    for i in range(m):
+        for j in range(m):
+            f.B[i, j], f.B_slope[i, j] = f.values[m * i + j], f.slopes[m * i + j] / f.reach
+    if f.moves > 0:
         build_series(f)
         build_powers(f)
 
@@ -93,7 +105,7 @@ def build_powers(f):
     one[n, n], one[n, n + 1], one[n + 1, n], one[n + 1, n + 1], one[n + 2, n + 2] = c, -s, s, c, 1.0
     one_slope[n, n], one_slope[n, n + 1] = -s * turn, -c * turn
     one_slope[n + 1, n], one_slope[n + 1, n + 1] = c * turn, -s * turn
-    for k in range(1, len(f.powers)):
+    for k in range(1, f.bits):
         for i in range(m):
             for j in range(m):
                 f.powers[k, i, j] = f.power_slopes[k, i, j] = 0.0

@@ -4,9 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.blocks import Room, new_room
-from vibro_sweep.engine.impulses.extremes import PIECES
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.blocks import room_of, strike_of
 
 
 class Place(NamedTuple):
@@ -51,19 +49,14 @@ class Record(NamedTuple):
 
 
 class Work(NamedTuple):
-    room: Room
+    room: np.ndarray  # (1,) `room_of`
+    strikes: np.ndarray  # (K,) `strike_of`
     change_t: np.ndarray  # (2, K)
     change_jump: np.ndarray  # (2, K)
     change_z: np.ndarray  # (2, K, n)
     change_p: np.ndarray  # (2,)
     row_t: np.ndarray  # (K,)
     row_jump: np.ndarray  # (K,)
-    cell: np.ndarray  # (2, max(m, ORDER + 1))
-    nearest: np.ndarray  # (3,)
-    waiting: np.ndarray  # (PIECES, 2)
-    re: np.ndarray  # (n,)
-    im: np.ndarray  # (n,)
-    pair: np.ndarray  # (n, 2n)
 
 
 def new_place(K: int, n: int) -> Place:
@@ -75,5 +68,5 @@ def new_record(most: int, K: int, n: int) -> Record:
 
 
 def new_work(K: int, n: int) -> Work:
-    shapes = [(2, K), (2, K), (2, K, n), 2, K, K, (2, max(n + 3, ORDER + 1)), 3, (PIECES, 2), n, n, (n, 2 * n)]
-    return Work(new_room(K, n), *map(np.zeros, shapes))
+    rooms = np.zeros(1, room_of(n // 2)), np.zeros(K, strike_of(n // 2))
+    return Work(*rooms, *map(np.zeros, [(2, K), (2, K), (2, K, n), 2, K, K]))
