@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from vibro_sweep.analysis import torus
 from vibro_sweep.analysis.births import criticality
 from vibro_sweep.analysis.events import Event, earliest, events_between, locate, reflection_test
 from vibro_sweep.analysis.periodic import PeriodicOrbit, orbit_of
@@ -133,10 +134,14 @@ class Way:
                     found.append(place)
         for event, _, point, error in sorted(found, key=lambda item: item[1]):
             self._add(point)
-            if event.type != "neimark_sacker" or _is_torus(point):
-                self.special.append(self._at(event.type, point, error))
+            if event.type == "neimark_sacker" and not _is_torus(point):
+                continue
+            special = self._at(event.type, point, error)
             if event.type in ("flip", "pitchfork"):
-                self.special[-1] = replace(self.special[-1], criticality=criticality(self.special[-1]))
+                special = replace(special, criticality=criticality(special))
+            elif event.type == "neimark_sacker":
+                special = replace(special, criticality=torus.criticality(point.solution))
+            self.special.append(special)
         if birth:
             self.special.append(birth[1])
             return True
