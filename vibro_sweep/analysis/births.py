@@ -22,20 +22,21 @@ def born(special: SpecialPoint, amplitude: float) -> Solution | None:
     name, value = next(iter(special.parameters.items()))
     K = parent.K
     J = parent.equations.linearised(-1, parent.sides, parent.u, parent.motion)[: 2 * K, : 2 * K]
-    doubled = _doubled(parent)
-    walk = Walk(doubled, name, max(abs(value), 1e-3))
+    twice = doubled(parent)
+    walk = Walk(twice, name, max(abs(value), 1e-3))
     scale = np.concatenate([walk.scale[:K], walk.scale[2 * K : 3 * K]])
     critical = np.linalg.svd(J * scale)[2][-1]
     dt, dD = critical[:K], critical[K:]
     normal = np.zeros(len(walk.scale))
     normal[: 4 * K] = np.concatenate([dt, -dt, dD, -parent.sigma * dD])
     normal /= np.linalg.norm(normal)
-    guess = np.append(doubled.u, value) / walk.scale + amplitude * normal
+    guess = np.append(twice.u, value) / walk.scale + amplitude * normal
     point = walk.correct(guess, normal, normal)
     return point and point.solution
 
 
-def _doubled(parent: Solution) -> Solution:
+def doubled(parent: Solution) -> Solution:
+    """The same orbit over the period of the branch that is born."""
     if parent.sigma == -1:
         return parent.whole()
     t, D = parent.times, parent.jumps

@@ -9,7 +9,9 @@ from vibro_sweep.analysis.impulse_equations import Equations
 from vibro_sweep.analysis.itinerary import is_mirrored, repetitions
 from vibro_sweep.model.linear import Family
 
-ALIKE = 1e-8  # relative difference below which two halves (periods) of an orbit are the same
+# Relative difference below which two halves (periods) of an orbit are the same. Born at a pitchfork (flip) it differs by
+# so much at a distance of some 1e-12; nearer to it, Newton's method does not tell the two orbits apart.
+ALIKE = 1e-6
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from vibro_sweep.analysis import torus
-from vibro_sweep.analysis.births import criticality
+from vibro_sweep.analysis.births import criticality, doubled
 from vibro_sweep.analysis.events import Event, earliest, events_between, locate, reflection_test
 from vibro_sweep.analysis.periodic import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.solution import Solution
@@ -104,10 +104,13 @@ class Way:
         self.special.append(self._at("closed", self.first, math.nan))
 
     def _add(self, point: Point) -> None:
-        s, system = point.solution, self.system.replace(**{self.walk.name: point.p})
+        self._add_solution(point.p, point.solution)
+
+    def _add_solution(self, p: float, s: Solution) -> None:
+        system = self.system.replace(**{self.walk.name: p})
         state = PeriodicOrbit(system, "ok", s, self.frame).state
         t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
-        values = point.p, t, D, motion, s.margin, s.change, state
+        values = p, t, D, motion, s.margin, s.change, state
         self.rows.append(Rows(*(np.array([value], float) for value in values)))
 
     def _comes_back(self, a: Point, length: float) -> bool:
@@ -143,6 +146,7 @@ class Way:
                 special = replace(special, criticality=torus.criticality(point.solution))
             self.special.append(special)
         if birth:
+            self._add_solution(birth[1].parameters[self.walk.name], doubled(birth[1].orbit._solution))
             self.special.append(birth[1])
             return True
         if end and end[0].type == "limit":
