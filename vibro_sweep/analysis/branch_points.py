@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from vibro_sweep.analysis.impulse_equations import multipliers_of
-from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.analysis.solution import Solution, equations_for
 from vibro_sweep.analysis.track import Rows
 from vibro_sweep.analysis.walk import Walk
 from vibro_sweep.model.linear import Linear, forcing_period
@@ -49,7 +49,11 @@ def dataset(walk: Walk, frame: tuple[int, int], rows: Rows) -> xr.Dataset:
 def _multipliers(start: Solution, oscillators: list[Linear], rows: Rows) -> np.ndarray:
     """(points, 2N) of the whole period, by falling modulus, of a pair +im first."""
     result = []
-    for q, t, D, motion in zip(oscillators, rows.t, rows.D, rows.motion, strict=True):
+    for q, t, D, ends, motion in zip(oscillators, rows.t, rows.D, rows.ends, rows.motion, strict=True):
+        if start.rests:
+            u = np.concatenate([t, D, ends])
+            result.append(equations_for(start, q).multipliers(start.sides, u, motion))
+            continue
         contacts = np.column_stack([q.stop(start.sides), 1 + q.restitution(start.sides)])
         P, u = forcing_period(q) / 2 * start.halves, np.concatenate([t, D])
         result.append(multipliers_of(q, start.sigma, P, contacts, u, motion))

@@ -34,6 +34,8 @@ def events_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
             events.append(Event("graze", lambda point, i=i: point.solution.pushes[i], i))
         if a.releases[i] > 0 >= b.releases[i]:
             events.append(Event("sticking", lambda point, i=i: point.releases[i], i))
+    if a.stays > 0 >= b.stays:
+        events.append(Event("sticking", lambda point: min(point.stays, 1.0)))
     if a.solution.margin > 0 >= b.solution.margin:
         most = 2 * abs(a.solution.margin) if math.isfinite(a.solution.margin) else 1.0
         events.append(Event("graze", lambda point: min(point.solution.margin, most)))

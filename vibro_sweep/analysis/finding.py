@@ -79,11 +79,28 @@ def _from_state(system, family, state, periods) -> PeriodicOrbit:
     if str(simulated.status) != "ok":
         return PeriodicOrbit(system, "not_converged")
     if len(simulated.sticking):
-        return PeriodicOrbit(system, "sticking")
+        return _from_rests(system, family, simulate(system, state, 2 * periods), periods)
     impacts = simulated.impacts
     if len(impacts):  # an impact at t = 0 comes again at the end
         impacts = impacts[impacts["t"] < impacts["t"][0] + periods * system.period * (1 - 1e-9)]
     return _from_guess(system, family, [(i["t"], i["side"], i["v1"]) for i in impacts], periods)
+
+
+def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
+    """From a simulation over two periods, in which the mass rests after impacts with R = 0."""
+    impacts, P = simulated.impacts, periods * system.period
+    if system.R != 0 or str(simulated.status) != "ok" or not len(impacts):
+        return PeriodicOrbit(system, "sticking")
+    begin = impacts["t"][0]
+    impacts = impacts[impacts["t"] < begin + P * (1 - 1e-9)]
+    resting = simulated.sticking
+    resting = resting[(resting["t_on"] > begin - 1e-9 * P) & (resting["t_on"] < begin + P * (1 - 1e-9))]
+    rests = tuple(int(np.argmin(np.abs(impacts["t"] - t))) for t in resting["t_on"])
+    if not rests or np.abs(impacts["t"][list(rests)] - resting["t_on"]).max() > 1e-9 * P:
+        return PeriodicOrbit(system, "sticking")
+    u = np.concatenate([impacts["t"], -impacts["v1"], resting["t_off"]])
+    found = Solution(family, 1, 2 * periods, tuple(map(int, impacts["side"])), u, 0.0, rests).corrected()
+    return orbit_of(system, found and found.reduced())
 
 
 def _from_guess(system, family, rows, periods) -> PeriodicOrbit:

@@ -34,13 +34,7 @@ class Equations:
         return bool(self.steady.free)
 
     def contacts(self, sides) -> np.ndarray:
-        """(K, 4) stop, 1 + R, and their derivatives by the parameter."""
-        result = np.zeros((len(sides), 4))
-        result[:, equations.STOP], result[:, equations.GAIN] = self.q.stop(sides), 1 + self.q.restitution(sides)
-        if self.slope is not None:
-            result[:, equations.STOP_SLOPE] = self.slope.stop(sides)
-            result[:, equations.GAIN_SLOPE] = self.slope.restitution(sides)
-        return result
+        return contacts_of(self.q, self.slope, sides)
 
     def size(self, sides) -> int:
         return 2 * len(sides) + self.free
@@ -106,6 +100,16 @@ def multipliers_of(q: Linear, sigma: int, P: float, contacts: np.ndarray, u, mot
     multipliers.multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work)
     values = sigma * multipliers.eigenvalues(product, columns, couplings)
     return values[np.lexsort((-values.imag, -np.abs(values)))]
+
+
+def contacts_of(q: Linear, slope: Linear | None, sides) -> np.ndarray:
+    """(K, 4) stop, 1 + R, and their derivatives by the parameter."""
+    result = np.zeros((len(sides), 4))
+    result[:, equations.STOP], result[:, equations.GAIN] = q.stop(sides), 1 + q.restitution(sides)
+    if slope is not None:
+        result[:, equations.STOP_SLOPE] = slope.stop(sides)
+        result[:, equations.GAIN_SLOPE] = slope.restitution(sides)
+    return result
 
 
 def steady(q: Linear, sigma: int, halves: int, slope: Linear | None) -> equations.Steady:
@@ -183,6 +187,11 @@ def _flow(key: _Keyed) -> flights.Flow:
     return flights.flow(key.q)
 
 
+@lru_cache(maxsize=16)
+def _held_flow(key: _Keyed) -> flights.Flow:
+    return flights.held_flow(key.q)
+
+
 @lru_cache(maxsize=64)
 def _closing(key: _Keyed, sigma: int, halves: int) -> np.ndarray:
     return flights.closing(key.q, sigma, halves)
@@ -190,6 +199,10 @@ def _closing(key: _Keyed, sigma: int, halves: int) -> np.ndarray:
 
 def flow(q: Linear) -> flights.Flow:
     return _flow(_Keyed(q, TABLES))
+
+
+def held_flow(q: Linear) -> flights.Flow:
+    return _held_flow(_Keyed(q, TABLES))
 
 
 def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:

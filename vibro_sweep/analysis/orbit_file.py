@@ -28,6 +28,7 @@ def save_orbit(orbit: PeriodicOrbit, path) -> Path:
         "sigma": s.sigma,
         "halves": s.halves,
         "sides": [int(side) for side in s.sides],
+        "rests": list(s.rests),
         "unknowns": [float(value) for value in s.u],
         "residual": float(s.change),
     }
@@ -50,15 +51,18 @@ def load_orbit(path) -> PeriodicOrbit:
         system = System(**record["system"])
         sigma, halves, sides = int(record["sigma"]), int(record["halves"]), tuple(map(int, record["sides"]))
         u, change = np.array(record["unknowns"], float), float(record["residual"])
+        rests = tuple(map(int, record.get("rests", ())))
         family = family_of(system)
         odd = sigma == -1 and halves % 2 == 1 and family.linear.symmetric
         even = sigma == 1 and halves % 2 == 0
         if not (odd or even) or halves < 1 or set(sides) - {1, -1}:
             raise ValueError("its symmetry, period or sides do not fit together")
-        if u.shape != (2 * len(sides),) or not np.all(np.isfinite(u)) or not math.isfinite(change):
+        if list(rests) != sorted(set(rests)) or not all(0 <= k < len(sides) for k in rests):
+            raise ValueError("its rests do not belong to impacts")
+        if u.shape != (2 * len(sides) + len(rests),) or not np.all(np.isfinite(u)) or not math.isfinite(change):
             raise ValueError("its impacts are not complete")
         if np.any(np.diff(u[: len(sides)]) <= 0):
             raise ValueError("its impacts are not in order")
     except (KeyError, TypeError, ValueError) as problem:
         raise ValueError(f"{path}: damaged: {problem}") from None
-    return orbit_of(system, Solution(family, sigma, halves, sides, u, change))
+    return orbit_of(system, Solution(family, sigma, halves, sides, u, change, rests))

@@ -64,6 +64,8 @@ class _Map:
 
 def criticality(solution: Solution) -> str | None:
     """ "super" or "sub" of a Neimark-Sacker point; None where the coefficient does not tell, also at a resonance."""
+    if solution.rests:
+        return None
     f = _Map(solution)
     mu = solution.multipliers
     theta = float(np.angle(mu[np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf))]))

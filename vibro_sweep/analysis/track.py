@@ -24,6 +24,7 @@ class Rows(NamedTuple):
     p: np.ndarray  # (points,)
     t: np.ndarray  # (points, K)
     D: np.ndarray  # (points, K)
+    ends: np.ndarray  # (points, rests)
     motion: np.ndarray  # (points, K, 2): gap velocity and acceleration before each impact
     margin: np.ndarray  # (points,)
     residual: np.ndarray  # (points,)
@@ -142,10 +143,9 @@ class Track:
         numbers = r.numbers[:count].copy()
         p = numbers[:, places.P]
         state = self._masses(p, r.state[:count])
-        rows = Rows(
-            p, r.t[:count].copy(), r.D[:count].copy(), r.motion[:count].copy(), numbers[:, places.MARGIN],
-            numbers[:, places.DEFECT_HERE] / self.size, state,
-        )  # fmt: skip
+        t, D, motion = (values[:count].copy() for values in (r.t, r.D, r.motion))
+        margin, residual = numbers[:, places.MARGIN], numbers[:, places.DEFECT_HERE] / self.size
+        rows = Rows(p, t, D, np.zeros((count, 0)), motion, margin, residual, state)
         return reason, rows
 
     def _masses(self, p: np.ndarray, states: np.ndarray) -> np.ndarray:

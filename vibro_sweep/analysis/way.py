@@ -49,7 +49,11 @@ class Way:
         """To the branch's end: by compiled steps where they can be, that is with impacts."""
         self._add(self.first)
         steps = LONGEST_STEP, SHORTEST_STEP, STRAIGHT
-        track = Track(self.first, self.walk, self.bounds, self.frame[1], *steps) if self.walk.start.K else None
+        track = (
+            Track(self.first, self.walk, self.bounds, self.frame[1], *steps)
+            if self.walk.start.K and not self.walk.start.rests
+            else None
+        )
         if track is not None and track.begin(self.first, FIRST_STEP):
             self._run(track)
         else:
@@ -110,7 +114,7 @@ class Way:
         system = self.system.replace(**{self.walk.name: p})
         state = PeriodicOrbit(system, "ok", s, self.frame).state
         t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
-        values = p, t, D, motion, s.margin, s.change, state
+        values = p, t, D, s.ends, motion, s.margin, s.change, state
         self.rows.append(Rows(*(np.array([value], float) for value in values)))
 
     def _comes_back(self, a: Point, length: float) -> bool:
@@ -200,7 +204,8 @@ class Way:
     def _parent_point(self, x: np.ndarray, sigma: int) -> SpecialPoint | None:
         w = self.walk
         system = self.system.replace(**{w.name: float(x[-1] * w.scale[-1])})
-        whole = Solution(family_of(system), 1, w.start.halves, w.start.sides, x[:-1] * w.scale[:-1])
+        u = x[:-1] * w.scale[:-1]
+        whole = Solution(family_of(system), 1, w.start.halves, w.start.sides, u, 0.0, w.start.rests)
         parent = whole.part(2, sigma, alike=0.1)
         if parent is None:
             return None
