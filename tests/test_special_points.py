@@ -1,34 +1,12 @@
 """Special points of branches in 40 digits, and onsets of sticking."""
 
-import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference.shooting import Shooting
-from support.branches import branch_of
+from support.branches import branch_of, exact
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.sticking import shrinking
-from vibro_sweep.model.linear import family_of
-
-
-def exact(special, name):
-    """The parameter of a special point in 40 digits, by shooting."""
-    solution, value = special.orbit._solution, special.parameters[name]
-    numbers = {key: number for key, number in family_of(special.orbit.system).numbers.items() if key != "stops"}
-    shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
-    x1, x2, v1, v2 = solution.states[0][:4]
-    u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
-    if special.type == "fold":
-        return shooting.where_multiplier(1, u, name, value)
-    if special.type in ("flip", "pitchfork"):
-        return shooting.where_multiplier(-1, u, name, value)
-    if special.type == "neimark_sacker":
-        return shooting.where_torus(u, name, value)
-    if special.impact is None:
-        _, time, side = solution.nearest
-        return shooting.where_touching(time, side, u, name, value)
-    return shooting.where_vanishing(int(np.argmin(solution.pushes)), u, name, value)
 
 
 @pytest.mark.parametrize("R", [0.2, 0.8, 0.95])

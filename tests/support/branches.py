@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from reference.shooting import Shooting
 
 import vibro_sweep as vs
 from support.oscillators import PAPER
 from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.model.linear import family_of
 
 
 def types(branch):
@@ -50,3 +52,22 @@ def repeated(orbit, times):
     shifts = np.repeat(np.arange(times) * s.equations.P, s.K)
     u = np.concatenate([np.tile(s.times, times) + shifts, np.tile(s.jumps, times)])
     return Solution(s.family, 1, s.halves * times, s.sides * times, u)
+
+
+def exact(special, name):
+    """The parameter of a special point in 40 digits, by shooting."""
+    solution, value = special.orbit._solution, special.parameters[name]
+    numbers = {key: number for key, number in family_of(special.orbit.system).numbers.items() if key != "stops"}
+    shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
+    x1, x2, v1, v2 = solution.states[0][:4]
+    u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
+    if special.type == "fold":
+        return shooting.where_multiplier(1, u, name, value)
+    if special.type in ("flip", "pitchfork"):
+        return shooting.where_multiplier(-1, u, name, value)
+    if special.type == "neimark_sacker":
+        return shooting.where_torus(u, name, value)
+    if special.impact is None:
+        _, time, side = solution.nearest
+        return shooting.where_touching(time, side, u, name, value)
+    return shooting.where_vanishing(int(np.argmin(solution.pushes)), u, name, value)

@@ -25,10 +25,9 @@ class Event:
 def events_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
     """What changes sign from a to b."""
     events = []
-    lo, hi = bounds
-    for limit, side in ((lo, -1), (hi, 1)):
-        if (b.p - limit) * side > 0 >= (a.p - limit) * side:
-            events.append(Event("limit", lambda point, limit=limit: point.p - limit))
+    for limit, side in zip(bounds, (-1, 1), strict=True):
+        if (b.p - limit) * side > 0:
+            events.append(Event("limit", _beyond(limit, side, a)))
     for i in range(walk.start.K):
         if a.solution.pushes[i] > 0 >= b.solution.pushes[i]:
             events.append(Event("graze", lambda point, i=i: point.solution.pushes[i], i))
@@ -48,6 +47,16 @@ def events_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
         if np.all(b.solution.pushes > 0) and a.torus * b.torus < 0:
             events.append(Event("neimark_sacker", lambda point: point.torus))
     return events
+
+
+def _beyond(limit: float, side: int, inside: Point):
+    """How far a point is beyond a limit; `inside` counts as inside where rounding puts it beyond."""
+
+    def test(point: Point) -> float:
+        distance = side * (point.p - limit)
+        return min(distance, 0.0) if point is inside else distance
+
+    return test
 
 
 def locate(walk: Walk, event: Event, a: Point, b: Point, length: float):
