@@ -21,7 +21,6 @@ from vibro_sweep.analysis.solution import Solution
 from vibro_sweep.analysis.track import Track
 from vibro_sweep.analysis.walk import Walk
 from vibro_sweep.analysis.way import LONGEST_STEP, SHORTEST_STEP, STRAIGHT
-from vibro_sweep.engine.impulses import branch
 
 GUESSES = 1000
 NEAR = 1e-4  # relative distance of a guess from its orbit
@@ -76,8 +75,7 @@ def points(solution: Solution, name="b", bounds=(3.3, 4.3)) -> tuple[float, floa
 
     def job():
         assert track.begin(first, length)
-        arguments = track.medium, track.sides, track.sigma, track.steps, track.size, 0.0, 1
-        counts.append(branch.walk(*arguments, track.first, track.a, track.b, track.record, track.work)[1:])
+        counts.append(track.record_steps(1)[1:])
 
     seconds = least(job)
     return counts[-1][0] / seconds, counts[-1][1] / counts[-1][0]

@@ -122,19 +122,28 @@ class Track:
         tangent = first.tangent * scale
         a.tangent_t[:], a.tangent_jump[:] = tangent[:K], tangent[K : 2 * K]
         a.numbers[places.P], a.numbers[places.TANGENT] = first.p, tangent[-1]
-        if not branch.start(self.medium, self.sides, self.sigma, self.steps, a, self.work):
+        nothing = new_record(0, K, a.z.shape[1])  # no step is made
+        if self._walk(1, nothing, True)[0] == branch.NO_START:
             return False
         a.numbers[places.LENGTH] = length
         for here, there in zip(a, self.first, strict=True):
             there[...] = here
         return True
 
+    def _walk(self, passed: int, record, begins: bool) -> tuple[int, int, int]:
+        """Reason, points recorded, corrections made."""
+        return branch.walk(
+            self.medium, self.sides, self.sigma, self.steps, self.size, float(self.origin), passed, self.first, self.a,
+            self.b, record, self.work, begins,
+        )  # fmt: skip
+
+    def record_steps(self, passed: int) -> tuple[int, int, int]:
+        """The compiled part of `run`: reason, points, corrections."""
+        return self._walk(passed, self.record, False)
+
     def run(self, passed: int) -> tuple[int, Rows]:
         """Steps until something happens, or `AT_ONCE` points: the reason and the points before the step."""
-        reason, count, _ = branch.walk(
-            self.medium, self.sides, self.sigma, self.steps, self.size, float(self.origin), passed, self.first, self.a,
-            self.b, self.record, self.work,
-        )  # fmt: skip
+        reason, count, _ = self.record_steps(passed)
         if reason == branch.FAR:
             self.medium = self._medium(float(self.a.numbers[places.P]))
             if self.medium is None:

@@ -14,7 +14,7 @@ from vibro_sweep.engine.impulses.medium import OMEGA, PERIOD, flight_matrix, mov
 from vibro_sweep.engine.impulses.places import DEFECT_HERE, LENGTH, REFLECTION, TANGENT, P
 from vibro_sweep.engine.simd.jit import entry, jit
 
-FULL, EVENT, CLOSED, FAILED, FAR = range(5)  # why a call ends; FAR: beyond the reach of the medium
+FULL, EVENT, CLOSED, FAILED, FAR, NO_START = range(6)  # why a call ends; FAR: beyond the reach of the medium
 MOST_CORRECTIONS = 8
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
 DEFECT = 1e-10  # largest jump of the motion between its flights, relative to the gap
@@ -134,10 +134,9 @@ def keep(f, sigma, place, origin, record, count, w):
     state_at(f, sigma, place, origin, record.state[count], w)
 
 
-@entry
-def start(media, sides, sigma, steps, a, w):
+@jit
+def start(f, sides, sigma, steps, a, w):
     """Correct `a` at its parameter on the plane across its own tangent, and test it. False where that fails."""
-    f = media[0]
     for i in range(len(sides)):
         w.row_t[i], w.row_jump[i] = a.tangent_t[i] / steps.scale_t**2, a.tangent_jump[i] / steps.scale_jump**2
     if correct(f, sides, sigma, steps, a.numbers[TANGENT] / steps.scale_p**2, a, w) == 0:
@@ -149,15 +148,21 @@ def start(media, sides, sigma, steps, a, w):
 
 
 @entry
-def walk(media, sides, sigma, steps, size, origin, passed, first, a, b, record, w):
+def walk(media, sides, sigma, steps, size, origin, passed, first, a, b, record, w, begins):
     """Steps from a until something happens. (reason, points recorded, corrections made).
 
-    Recorded are the points before the step in which it happens; a and b are the two points of this step. size: of the
-    gap. passed: points of the branch so far. origin: the state's time, in forcing periods.
+    Recorded are the points before the step in which it happens; a and b are the two points of this step.
+
+    size : of the gap
+    origin : time of the recorded states, in forcing periods
+    passed : points of the branch so far
+    begins : whether a, which then needs its place and tangent only, is corrected and tested first
     """
     f = media[0]
     K, n = a.z.shape
     count, corrections = 0, 0
+    if begins and not start(f, sides, sigma, steps, a, w):
+        return NO_START, count, corrections
     length = a.numbers[LENGTH]
     while count < len(record.t):
         if not abs(a.numbers[P] - f.centre) <= f.reach:
