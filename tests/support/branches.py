@@ -7,7 +7,8 @@ from reference.shooting import Shooting
 import vibro_sweep as vs
 from support.oscillators import PAPER
 from vibro_sweep.analysis.solution import Solution
-from vibro_sweep.model.linear import family_of
+
+NUMBERS = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")  # of the reference: both stops alike, offset 0
 
 
 def types(branch):
@@ -57,7 +58,7 @@ def repeated(orbit, times):
 def exact(special, name):
     """The parameter of a special point in 40 digits, by shooting."""
     solution, value = special.orbit._solution, special.parameters[name]
-    numbers = {key: number for key, number in family_of(special.orbit.system).numbers.items() if key != "stops"}
+    numbers = {key: getattr(special.orbit.system, key) for key in NUMBERS}
     shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
     x1, x2, v1, v2 = solution.states[0][:4]
     u = shooting.unknowns(solution.times, (x1, v1, x2, v2))

@@ -9,6 +9,7 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import family_of
 from vibro_sweep.model.oscillator import System
 
@@ -16,15 +17,20 @@ FORMAT = "vibro_sweep periodic orbit 1"
 
 
 def save_orbit(orbit: PeriodicOrbit, path) -> Path:
-    """Write `orbit`; FileExistsError where there is a file, ValueError for an orbit without a motion or a System."""
+    """Write `orbit`; FileExistsError where there is a file, ValueError for an orbit without a motion or of a Family."""
     s = orbit._solution
     if s is None:
         raise ValueError(f"this orbit has no motion to save: its status is {orbit.status!r}")
-    if not isinstance(orbit.system, System):
-        raise ValueError("only an orbit of a System can be saved")
+    system = orbit.system
+    if isinstance(system, System):
+        numbers = {field.name: getattr(system, field.name) for field in fields(system)}
+    elif isinstance(system, Oscillator):
+        numbers = {"type": system.model.name, **system.given}
+    else:
+        raise ValueError("an orbit of a Family cannot be saved: its function is no text")
     record = {
         "format": FORMAT,
-        "system": {field.name: getattr(orbit.system, field.name) for field in fields(orbit.system)},
+        "system": numbers,
         "sigma": s.sigma,
         "halves": s.halves,
         "sides": [int(side) for side in s.sides],
@@ -48,7 +54,9 @@ def load_orbit(path) -> PeriodicOrbit:
     if not isinstance(record, dict) or record.get("format") != FORMAT:
         raise ValueError(f"{path}: not a file of the format {FORMAT!r}")
     try:
-        system = System(**record["system"])
+        numbers = dict(record["system"])
+        model = numbers.pop("type", None)
+        system = System(**numbers) if model is None else Oscillator.named(model, **numbers)
         sigma, halves, sides = int(record["sigma"]), int(record["halves"]), tuple(map(int, record["sides"]))
         u, change = np.array(record["unknowns"], float), float(record["residual"])
         rests = tuple(map(int, record.get("rests", ())))

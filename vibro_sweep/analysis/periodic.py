@@ -12,6 +12,7 @@ from vibro_sweep.analysis.itinerary import canonical_start, word
 from vibro_sweep.analysis.solution import Solution
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.one_system import IMPACT, STICKING
+from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import Family, forcing_period
 from vibro_sweep.model.oscillator import System
 
@@ -35,7 +36,7 @@ class PeriodicOrbit:
     symmetric : x(t + period T/2) = -x(t)
     """
 
-    system: System | Family
+    system: System | Oscillator | Family
     status: str
     _solution: Solution | None = field(repr=False, default=None)
     _frame: tuple[int, int] | None = field(repr=False, default=None)  # (first impact, periods to shift by)

@@ -9,11 +9,13 @@ from vibro_sweep.analysis.impulse_equations import flow
 from vibro_sweep.analysis.walk import Point, Walk
 from vibro_sweep.engine.impulses import branch, medium, places
 from vibro_sweep.engine.impulses.flights import contact_coordinates, rates
+from vibro_sweep.engine.impulses.medium import NUMBERS, TAU
 from vibro_sweep.engine.impulses.places import Place, Steps, new_place, new_record, new_work
 from vibro_sweep.engine.impulses.tables import ORDER, REAL
 from vibro_sweep.model.linear import Family, forcing_period
 
-DECAYED = 1e-14  # relative size of their last coefficients
+DECAYED = 1e-14  # relative size of their last coefficients; or
+NOISE = 1e-11  # where half the interval makes them no smaller, which is what rounding leaves
 NARROWEST = 1e-6  # of the branch's range
 AT_ONCE = 1024  # points of one call
 
@@ -45,19 +47,22 @@ def _sampled(family: Family, halves: int, name: str, p: float) -> np.ndarray:
 def medium_of(family: Family, halves: int, name: str, centre: float, reach: float) -> np.ndarray | None:
     """The oscillator around a value of the parameter, to `reach` or as far as polynomials hold; None: they do not."""
     nodes = np.cos(np.pi * (np.arange(medium.DEGREE + 1) + 0.5) / (medium.DEGREE + 1))
-    least = NARROWEST * reach
+    least, before = NARROWEST * reach, np.inf
     while reach > least:
         try:
             values = np.array([_sampled(family, halves, name, centre + branch.BEYOND * reach * x) for x in nodes])
         except (ValueError, np.linalg.LinAlgError):
-            values = np.full((medium.DEGREE + 1, 1), np.nan)
+            values = np.full((medium.DEGREE + 1, NUMBERS + 1), np.nan)
         if np.all(np.isfinite(values)):
-            values[:, -2] = np.unwrap(values[:, -2])  # tau
-            c = chebyshev.chebfit(nodes, values, medium.DEGREE)
-            c[np.abs(c) < 1e-17 * np.abs(values).max(axis=0)] = 0.0
-            size = np.maximum(np.abs(values).max(axis=0), np.append(np.full(values.shape[1] - 2, 0.0), [1.0, 0.0]))
-            if np.all(np.abs(c[-2:]) <= DECAYED * np.maximum(size, 1e-300)):
+            values[:, TAU - NUMBERS] = np.unwrap(values[:, TAU - NUMBERS])
+            c, size = chebyshev.chebfit(nodes, values, medium.DEGREE), np.abs(values).max(axis=0)
+            size[:-NUMBERS] = size[:-NUMBERS].max()
+            size[TAU - NUMBERS] = max(size[TAU - NUMBERS], 1.0)
+            left = float(np.max(np.abs(c[-2:]) / np.maximum(size, 1e-300)))
+            if left <= DECAYED or (left <= NOISE and left > 0.3 * before):
+                c[np.abs(c) < 2e-16 * size] = 0.0
                 return _built(family, name, c, values, centre, reach)
+            before = left
         reach /= 2
     return None
 
@@ -142,12 +147,15 @@ class Track:
         return self._walk(passed, self.record, False)
 
     def run(self, passed: int) -> tuple[int, Rows]:
-        """Steps until something happens, or `AT_ONCE` points: the reason and the points before the step."""
+        """Steps until something happens, or `AT_ONCE` points: the reason and the points before the step.
+
+        NO_START: around the last point the oscillator is not to be had as polynomials of the parameter.
+        """
         reason, count, _ = self.record_steps(passed)
         if reason == branch.FAR:
             self.medium = self._medium(float(self.a.numbers[places.P]))
             if self.medium is None:
-                reason = branch.FAILED
+                reason = branch.NO_START
         r = self.record
         numbers = r.numbers[:count].copy()
         p = numbers[:, places.P]

@@ -48,16 +48,13 @@ class Way:
     def go(self) -> None:
         """To the branch's end: by compiled steps where they can be, that is with impacts."""
         self._add(self.first)
-        steps = LONGEST_STEP, SHORTEST_STEP, STRAIGHT
-        track = (
-            Track(self.first, self.walk, self.bounds, self.frame[1], *steps)
-            if self.walk.start.K and not self.walk.start.rests
-            else None
-        )
+        start, steps = self.walk.start, (LONGEST_STEP, SHORTEST_STEP, STRAIGHT)
+        compiled = start.K > 0 and not start.rests
+        track = Track(self.first, self.walk, self.bounds, self.frame[1], *steps) if compiled else None
         if track is not None and track.begin(self.first, FIRST_STEP):
             self._run(track)
         else:
-            self._step()
+            self._step(self.first, 1)
 
     def _run(self, track: Track) -> None:
         a, passed = self.first, 1
@@ -69,6 +66,9 @@ class Way:
             if reason in (branch.FULL, branch.FAR):
                 continue
             a, b = track.point(track.a), track.point(track.b)
+            if reason == branch.NO_START and a is not None:
+                self._step(a, passed)
+                return
             if reason == branch.FAILED or a is None or b is None:
                 break
             if reason == branch.CLOSED:
@@ -79,9 +79,9 @@ class Way:
             track.accept()
         self.special.append(self._at("failed", a or self.first, math.nan))
 
-    def _step(self) -> None:
-        """The same in Python, for orbits without impacts, and where a free mode that no impact sees may drift."""
-        a, length, passed = self.first, FIRST_STEP, 1
+    def _step(self, a: Point, passed: int) -> None:
+        """The same in Python: for orbits without impacts or with rests, and where compiled steps cannot go."""
+        length = FIRST_STEP
         while passed < MOST_POINTS and length >= SHORTEST_STEP:
             b = self.walk.step(a, length)
             turn = math.acos(min(1.0, a.tangent @ b.tangent)) if b is not None else math.inf
