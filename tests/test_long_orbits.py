@@ -2,20 +2,12 @@
 
 import numpy as np
 import pytest
+from support.branches import repeated
 from support.oscillators import CHAIN, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis import long_orbits
-from vibro_sweep.analysis.solution import Solution
 from vibro_sweep.analysis.walk import Walk
-
-
-def repeated(orbit, times):
-    """The orbit as one of `times` its period: as many impacts more."""
-    s = orbit._solution.whole()
-    shifts = np.repeat(np.arange(times) * s.equations.P, s.K)
-    u = np.concatenate([np.tile(s.times, times) + shifts, np.tile(s.jumps, times)])
-    return Solution(s.family, 1, s.halves * times, s.sides * times, u)
 
 
 @pytest.mark.parametrize("system", [PAPER, CHAIN])

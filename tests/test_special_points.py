@@ -1,34 +1,12 @@
-"""Special points of branches in 40 digits, onsets of sticking, and random branches against simulation."""
+"""Special points of branches in 40 digits, and onsets of sticking."""
 
-import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference.shooting import Shooting
-from support.branches import branch_of
+from support.branches import branch_of, exact
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.sticking import shrinking
-from vibro_sweep.model.linear import family_of
-
-
-def exact(special, name):
-    """The parameter of a special point in 40 digits, by shooting."""
-    solution, value = special.orbit._solution, special.parameters[name]
-    numbers = {key: number for key, number in family_of(special.orbit.system).numbers.items() if key != "stops"}
-    shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
-    x1, x2, v1, v2 = solution.states[0][:4]
-    u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
-    if special.type == "fold":
-        return shooting.where_multiplier(1, u, name, value)
-    if special.type in ("flip", "pitchfork"):
-        return shooting.where_multiplier(-1, u, name, value)
-    if special.type == "neimark_sacker":
-        return shooting.where_torus(u, name, value)
-    if special.impact is None:
-        _, time, side = solution.nearest
-        return shooting.where_touching(time, side, u, name, value)
-    return shooting.where_vanishing(int(np.argmin(solution.pushes)), u, name, value)
 
 
 @pytest.mark.parametrize("R", [0.2, 0.8, 0.95])
@@ -74,51 +52,3 @@ def test_special_points_in_40_digits(name, symmetric_branch, one_sided_branch):
                 assert difference < max(special.error, 1e-15) and difference < 1e-13
                 checked += 1
     assert checked >= 2
-
-
-@pytest.mark.slow
-def test_random_oscillators_agree_with_simulation():
-    """Attractors of random systems, followed both ways: at points in between the engine repeats the orbit."""
-    compared = 0
-    for seed in range(40):
-        rng = np.random.default_rng(seed)
-        system = vs.System(
-            mu_m=10 ** rng.uniform(-0.5, 1), mu_k=10 ** rng.uniform(-0.5, 1), zeta=10 ** rng.uniform(-2, -0.5),
-            f2=rng.choice([0, rng.uniform(0, 1)]), omega=rng.uniform(0.3, 2), R=rng.uniform(0.3, 1.0), b=1,
-            stops=str(rng.choice(["both", "right", "left"])),
-        )  # fmt: skip
-        graze = vs.grazing(system).b
-        system = system.replace(b=graze * rng.uniform(0.1, 1.05))
-        section = vs.simulate(system, [0, 0, rng.normal() * system.b, 0], 1500).section
-        periods = [n for n in range(1, 20) if np.abs(section[-1] - section[-1 - n]).max() < 1e-9]
-        if not periods:
-            continue
-        orbit = vs.periodic_orbit(system, state=section[-1], periods=periods[0])
-        if orbit.status == "sticking":
-            continue
-        assert orbit.ok and orbit.period == periods[0], seed
-        name = rng.choice(["b", "omega", "zeta", "R"])
-        value = getattr(system, name)
-        bounds = (
-            (0.1 * graze, 1.1 * graze)
-            if name == "b"
-            else (0.7 * value, min(1.3 * value, 1) if name == "R" else 1.3 * value)
-        )
-        branch = vs.continue_orbit(orbit, str(name), bounds)
-        assert all(special.type != "failed" and special.orbit.ok for special in branch.special), seed
-        points = branch.points.isel(point=slice(1, -1))
-        for i in np.linspace(0, points.sizes["point"] - 1, 8).astype(int):
-            point = points.isel(point=i)
-            largest = float(np.hypot(point.multiplier_re, point.multiplier_im).max())
-            if largest > 1e3:
-                continue
-            here = system.replace(**{str(name): float(point[name])})
-            state = np.array([float(point[x]) for x in ("x1", "v1", "x2", "v2")])
-            low, high = -here.b if here.stops != "right" else -np.inf, here.b if here.stops != "left" else np.inf
-            state[0] = np.clip(state[0], low, high)
-            simulated = vs.simulate(here, state, orbit.period)
-            tolerance = 1e-9 * max(1, largest) / min(float(point.min_impact_speed), 1)
-            assert np.abs(simulated.section[-1] - state).max() < tolerance * max(1, np.abs(state).max()), (seed, i)
-            assert len(simulated.impacts) == points.sizes["impact"] or np.any(point.impact_t % here.period < 1e-6)
-            compared += 1
-    assert compared > 100

@@ -5,7 +5,7 @@ At a prompt
 Sweeps
     sweep (from Python), load_scene and run (from YAML to an HDF5 file), open (that file as an xarray.Dataset), plot
 Periodic orbits
-    periodic_orbit, continue_orbit, switch, born_at_grazing, sticking_onset, load_orbit
+    periodic_orbit, continue_orbit, switch, follow_branches, born_at_grazing, sticking_onset, load_orbit
 Errors
     ParameterError, SceneError, StoreError, PlotError (each is a ValueError), RunError
 """
@@ -26,6 +26,7 @@ __all__ = [
     "born_at_grazing",
     "continue_orbit",
     "discontinuity_map",
+    "follow_branches",
     "grazing",
     "load_orbit",
     "load_scene",
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
     from vibro_sweep.analysis.continuation import continue_orbit
     from vibro_sweep.analysis.discontinuity import discontinuity_map
     from vibro_sweep.analysis.finding import periodic_orbit
+    from vibro_sweep.analysis.generations import follow_branches
     from vibro_sweep.analysis.lcp import born_at_grazing
     from vibro_sweep.analysis.orbit import lyapunov, simulate
     from vibro_sweep.analysis.orbit_file import load_orbit
@@ -73,6 +75,7 @@ else:
         "born_at_grazing": "analysis.lcp",
         "continue_orbit": "analysis.continuation",
         "discontinuity_map": "analysis.discontinuity",
+        "follow_branches": "analysis.generations",
         "grazing": "model.grazing",
         "load_orbit": "analysis.orbit_file",
         "load_scene": "scene",

@@ -2,9 +2,13 @@
 
 import numpy as np
 import pytest
+from reference.shooting import Shooting
 
 import vibro_sweep as vs
 from support.oscillators import PAPER
+from vibro_sweep.analysis.solution import Solution
+
+NUMBERS = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")  # of the reference: both stops alike, offset 0
 
 
 def types(branch):
@@ -41,3 +45,30 @@ def recorded(b, n, seed=1):
 def branch_of(b, n, bounds=(6.3, 6.9)):
     system, state = recorded(b, n)
     return vs.continue_orbit(vs.periodic_orbit(system, state=state, periods=n), "b", bounds)
+
+
+def repeated(orbit, times):
+    """The orbit as one of `times` its period: as many impacts more."""
+    s = orbit._solution.whole()
+    shifts = np.repeat(np.arange(times) * s.equations.P, s.K)
+    u = np.concatenate([np.tile(s.times, times) + shifts, np.tile(s.jumps, times)])
+    return Solution(s.family, 1, s.halves * times, s.sides * times, u)
+
+
+def exact(special, name):
+    """The parameter of a special point in 40 digits, by shooting."""
+    solution, value = special.orbit._solution, special.parameters[name]
+    numbers = {key: getattr(special.orbit.system, key) for key in NUMBERS}
+    shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
+    x1, x2, v1, v2 = solution.states[0][:4]
+    u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
+    if special.type == "fold":
+        return shooting.where_multiplier(1, u, name, value)
+    if special.type in ("flip", "pitchfork"):
+        return shooting.where_multiplier(-1, u, name, value)
+    if special.type == "neimark_sacker":
+        return shooting.where_torus(u, name, value)
+    if special.impact is None:
+        _, time, side = solution.nearest
+        return shooting.where_touching(time, side, u, name, value)
+    return shooting.where_vanishing(int(np.argmin(solution.pushes)), u, name, value)

@@ -1,11 +1,11 @@
 """The branch that is born at a pitchfork or flip: its orbits at a small amplitude, and on which side they exist."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from vibro_sweep.analysis.impulse_equations import Equations
-from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.analysis.solution import Solution, equations_for
 from vibro_sweep.analysis.special import SpecialPoint, slopes
 from vibro_sweep.analysis.walk import Walk
 
@@ -20,27 +20,31 @@ def born(special: SpecialPoint, amplitude: float) -> Solution | None:
     """
     parent = special.orbit._solution
     name, value = next(iter(special.parameters.items()))
-    K = parent.K
-    J = parent.equations.linearised(-1, parent.sides, parent.u, parent.motion)[: 2 * K, : 2 * K]
-    doubled = _doubled(parent)
-    walk = Walk(doubled, name, max(abs(value), 1e-3))
-    scale = np.concatenate([walk.scale[:K], walk.scale[2 * K : 3 * K]])
+    K, rests = parent.K, len(parent.rests)
+    size = 2 * K + rests
+    J = parent.equations.linearised(-1, parent.sides, parent.u, parent.motion)[:size, :size]
+    twice = doubled(parent)
+    walk = Walk(twice, name, max(abs(value), 1e-3))
+    scale = np.concatenate([walk.scale[:K], walk.scale[2 * K : 3 * K], walk.scale[4 * K : 4 * K + rests]])
     critical = np.linalg.svd(J * scale)[2][-1]
-    dt, dD = critical[:K], critical[K:]
+    dt, dD, de = critical[:K], critical[K : 2 * K], critical[2 * K :]
     normal = np.zeros(len(walk.scale))
-    normal[: 4 * K] = np.concatenate([dt, -dt, dD, -parent.sigma * dD])
+    normal[: 2 * size] = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])
     normal /= np.linalg.norm(normal)
-    guess = np.append(doubled.u, value) / walk.scale + amplitude * normal
+    guess = np.append(twice.u, value) / walk.scale + amplitude * normal
     point = walk.correct(guess, normal, normal)
     return point and point.solution
 
 
-def _doubled(parent: Solution) -> Solution:
+def doubled(parent: Solution) -> Solution:
+    """The same orbit over the period of the branch that is born."""
     if parent.sigma == -1:
         return parent.whole()
-    t, D = parent.times, parent.jumps
-    u = np.concatenate([t, t + parent.equations.P, D, D, parent.u[2 * parent.K :]])
-    return Solution(parent.family, 1, 2 * parent.halves, parent.sides * 2, u)
+    t, D, P, K = parent.times, parent.jumps, parent.equations.P, parent.K
+    tail = [parent.ends, parent.ends + P] if parent.rests else [parent.u[2 * K :]]
+    u = np.concatenate([t, t + P, D, D, *tail])
+    rests = (*parent.rests, *(k + K for k in parent.rests))
+    return Solution(parent.family, 1, 2 * parent.halves, parent.sides * 2, u, 0.0, rests)
 
 
 def criticality(special: SpecialPoint) -> str | None:
@@ -58,9 +62,9 @@ def criticality(special: SpecialPoint) -> str | None:
     step = math.copysign(max(abs(moved[0]), 1e-6 * abs(value)), moved[0])
     parent = special.orbit._solution
     slope = parent.family.derivative(name)
-    du = slopes(Equations(parent.family.linear, parent.sigma, parent.halves, slope), parent)
+    du = slopes(equations_for(parent, parent.family.linear, slope), parent)
     family = parent.family.replace(**{name: value + step})
-    beside = Solution(family, parent.sigma, parent.halves, parent.sides, parent.u + step * du).corrected()
+    beside = replace(parent, family=family, u=parent.u + step * du).corrected()
     if beside is None:
         return None
     critical = beside.multipliers[np.argmin(np.abs(beside.multipliers + 1))]

@@ -14,7 +14,8 @@ import xarray as xr
 from vibro_sweep.analysis.branch_points import dataset
 from vibro_sweep.analysis.periodic import PeriodicOrbit
 from vibro_sweep.analysis.special import SpecialPoint
-from vibro_sweep.analysis.walk import Point, Walk
+from vibro_sweep.analysis.track import Rows, join
+from vibro_sweep.analysis.walk import Walk
 from vibro_sweep.analysis.way import Way
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.linear import family_of
@@ -33,17 +34,20 @@ class Branch:
     begins: SpecialPoint
     ends: SpecialPoint
     closed: bool
-    _system: object
-    _points: list[Point]
+    _walk: Walk
+    _frame: tuple[int, int]
+    _rows: Rows
 
     @cached_property
     def points(self) -> xr.Dataset:
         """Dataset over `point`: the parameter, state at t = 0, multipliers, margin, impacts (docs of `dataset`)."""
-        return dataset(self._system, self.parameter, self._points)
+        return dataset(self._walk, self._frame, self._rows)
 
 
-def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float]) -> Branch:
+def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], progress=None) -> Branch:
     """Follow a periodic orbit both ways in `parameter`, a number of its system, within bounds = (lo, hi).
+
+    `progress(points, value)` is called now and then with the points so far, of this way, and where they are.
 
     Raises ValueError for an orbit that is not ok, a name that is no number of the system, or bounds that do not hold
     its value.
@@ -59,13 +63,14 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     if not (math.isfinite(lo) and math.isfinite(hi) and lo < hi and lo <= family.numbers[parameter] <= hi):
         raise ValueError(f"bounds: {bounds!r} is not allowed; it must be lo < hi around {family.numbers[parameter]!r}")
     walk = Walk(orbit._solution, parameter, hi - lo)
-    down = Way(walk, -1.0, lo, hi, orbit.system)
+    down = Way(walk, -1.0, lo, hi, orbit.system, progress)
     down.go()
     if down.closed:
         closed = down.special
-        return Branch(parameter, closed, closed[-1], closed[-1], True, orbit.system, down.points)
-    up = Way(walk, 1.0, lo, hi, orbit.system)
+        return Branch(parameter, closed, closed[-1], closed[-1], True, walk, down.frame, down.points)
+    up = Way(walk, 1.0, lo, hi, orbit.system, progress)
     up.go()
     special = [*reversed(down.special), *up.special]
-    points = [*reversed(down.points[1:]), *up.points]
-    return Branch(parameter, special, down.special[-1], up.special[-1], False, orbit.system, points)
+    backwards = Rows(*(values[:0:-1] for values in down.points))
+    rows = join([backwards, up.points])
+    return Branch(parameter, special, down.special[-1], up.special[-1], False, walk, down.frame, rows)

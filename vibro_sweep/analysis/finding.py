@@ -13,8 +13,7 @@ from vibro_sweep.analysis.orbit import simulate
 from vibro_sweep.analysis.periodic import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.solution import Solution
 from vibro_sweep.engine.impulses.green import ResonanceError, TooStiffError
-from vibro_sweep.model.linear import family_of, forcing_period
-from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.linear import Family, family_of, forcing_period
 
 SEEDS = 4000
 
@@ -73,17 +72,34 @@ def _checked_guess(q, guess, itinerary):
 
 
 def _from_state(system, family, state, periods) -> PeriodicOrbit:
-    if not isinstance(system, System):
-        raise ValueError("state: only a System can be simulated; give an itinerary or a guess")
+    if isinstance(system, Family):
+        raise ValueError("state: a Family cannot be simulated; give an itinerary or a guess")
     simulated = simulate(system, state, periods)
     if str(simulated.status) != "ok":
         return PeriodicOrbit(system, "not_converged")
     if len(simulated.sticking):
-        return PeriodicOrbit(system, "sticking")
+        return _from_rests(system, family, simulate(system, state, 2 * periods), periods)
     impacts = simulated.impacts
     if len(impacts):  # an impact at t = 0 comes again at the end
         impacts = impacts[impacts["t"] < impacts["t"][0] + periods * system.period * (1 - 1e-9)]
     return _from_guess(system, family, [(i["t"], i["side"], i["v1"]) for i in impacts], periods)
+
+
+def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
+    """From a simulation over two periods, in which the mass rests after impacts with R = 0."""
+    impacts, P, R = simulated.impacts, periods * system.period, family.linear.restitution
+    if np.any(R(simulated.sticking["side"]) != 0) or str(simulated.status) != "ok" or not len(impacts):
+        return PeriodicOrbit(system, "sticking")
+    begin = impacts["t"][0]
+    impacts = impacts[impacts["t"] < begin + P * (1 - 1e-9)]
+    resting = simulated.sticking
+    resting = resting[(resting["t_on"] > begin - 1e-9 * P) & (resting["t_on"] < begin + P * (1 - 1e-9))]
+    rests = tuple(int(np.argmin(np.abs(impacts["t"] - t))) for t in resting["t_on"])
+    if not rests or np.abs(impacts["t"][list(rests)] - resting["t_on"]).max() > 1e-9 * P:
+        return PeriodicOrbit(system, "sticking")
+    u = np.concatenate([impacts["t"], -(1 + R(impacts["side"])) * impacts["v1"], resting["t_off"]])
+    found = Solution(family, 1, 2 * periods, tuple(map(int, impacts["side"])), u, 0.0, rests).corrected()
+    return orbit_of(system, found and found.reduced())
 
 
 def _from_guess(system, family, rows, periods) -> PeriodicOrbit:

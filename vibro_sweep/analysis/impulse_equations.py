@@ -34,13 +34,7 @@ class Equations:
         return bool(self.steady.free)
 
     def contacts(self, sides) -> np.ndarray:
-        """(K, 4) stop, 1 + R, and their derivatives by the parameter."""
-        result = np.zeros((len(sides), 4))
-        result[:, equations.STOP], result[:, equations.GAIN] = self.q.stop(sides), 1 + self.q.restitution(sides)
-        if self.slope is not None:
-            result[:, equations.STOP_SLOPE] = self.slope.stop(sides)
-            result[:, equations.GAIN_SLOPE] = self.slope.restitution(sides)
-        return result
+        return contacts_of(self.q, self.slope, sides)
 
     def size(self, sides) -> int:
         return 2 * len(sides) + self.free
@@ -89,19 +83,33 @@ class Equations:
 
     def multipliers(self, sides, u, motion) -> np.ndarray:
         """(2N,) of the map over P, with the mirror for sigma = -1; by falling modulus, of a pair +im first."""
-        f = flow(self.q)
-        n = f.B.shape[0] - 3
-        if len(sides) == 0:
-            values = self.sigma * np.exp(np.linalg.eigvals(f.B[:n, :n]).astype(complex) * self.P)
-            return values[np.lexsort((-values.imag, -np.abs(values)))]
-        product, columns, couplings = np.empty((n, n)), np.empty((n, n)), np.zeros(n)
-        order, work = np.empty(n, np.int64), np.empty((4, n + 3, n + 3))
-        pieces = len(sides) + int(self.P * f.spread / 4.0)
-        contacts, motion = self.contacts(sides), np.ascontiguousarray(motion)
-        factors = np.empty((pieces, n, n))
-        multipliers.multiply(f, contacts, u, self.P, motion, product, columns, couplings, order, factors, work)
-        values = self.sigma * multipliers.eigenvalues(product, columns, couplings)
+        return multipliers_of(self.q, self.sigma, self.P, self.contacts(sides), u, motion)
+
+
+def multipliers_of(q: Linear, sigma: int, P: float, contacts: np.ndarray, u, motion) -> np.ndarray:
+    """`Equations.multipliers` without the tables of the equations; contacts (K, 2 or more): stop, 1 + R."""
+    f = flow(q)
+    n = f.B.shape[0] - 3
+    if len(contacts) == 0:
+        values = sigma * np.exp(np.linalg.eigvals(f.B[:n, :n]).astype(complex) * P)
         return values[np.lexsort((-values.imag, -np.abs(values)))]
+    product, columns, couplings = np.empty((n, n)), np.empty((n, n)), np.zeros(n)
+    order, work = np.empty(n, np.int64), np.empty((4, n + 3, n + 3))
+    factors = np.empty((len(contacts) + int(P * f.spread / 4.0), n, n))
+    motion = np.ascontiguousarray(motion)
+    multipliers.multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work)
+    values = sigma * multipliers.eigenvalues(product, columns, couplings)
+    return values[np.lexsort((-values.imag, -np.abs(values)))]
+
+
+def contacts_of(q: Linear, slope: Linear | None, sides) -> np.ndarray:
+    """(K, 4) stop, 1 + R, and their derivatives by the parameter."""
+    result = np.zeros((len(sides), 4))
+    result[:, equations.STOP], result[:, equations.GAIN] = q.stop(sides), 1 + q.restitution(sides)
+    if slope is not None:
+        result[:, equations.STOP_SLOPE] = slope.stop(sides)
+        result[:, equations.GAIN_SLOPE] = slope.restitution(sides)
+    return result
 
 
 def steady(q: Linear, sigma: int, halves: int, slope: Linear | None) -> equations.Steady:
@@ -179,6 +187,11 @@ def _flow(key: _Keyed) -> flights.Flow:
     return flights.flow(key.q)
 
 
+@lru_cache(maxsize=16)
+def _held_flow(key: _Keyed) -> flights.Flow:
+    return flights.held_flow(key.q)
+
+
 @lru_cache(maxsize=64)
 def _closing(key: _Keyed, sigma: int, halves: int) -> np.ndarray:
     return flights.closing(key.q, sigma, halves)
@@ -186,6 +199,10 @@ def _closing(key: _Keyed, sigma: int, halves: int) -> np.ndarray:
 
 def flow(q: Linear) -> flights.Flow:
     return _flow(_Keyed(q, TABLES))
+
+
+def held_flow(q: Linear) -> flights.Flow:
+    return _held_flow(_Keyed(q, TABLES))
 
 
 def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from vibro_sweep.analysis.impulse_equations import flow
+from vibro_sweep.analysis.impulse_equations import flow, held_flow
 from vibro_sweep.analysis.itinerary import canonical_start, word
 from vibro_sweep.analysis.solution import Solution
 from vibro_sweep.engine.impulses import flights
-from vibro_sweep.engine.one_system import IMPACT
+from vibro_sweep.engine.one_system import IMPACT, STICKING
+from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import Family, forcing_period
 from vibro_sweep.model.oscillator import System
 
@@ -19,7 +20,7 @@ STATUS = {
     "ok": "a periodic orbit, certified",
     "not_converged": "Newton's method found no orbit near the guess",
     "not_real": "a solution of the equations that passes a stop, or whose impulse pulls",
-    "sticking": "the orbit rests on a stop: such orbits are no finite list of impacts",
+    "sticking": "the orbit rests on a stop after infinitely many impacts: they are no finite list",
     "resonance": "an undamped mode repeats itself after the period: such orbits do not exist, or are not isolated",
     "too_stiff": "the rates of the oscillator are too far apart",
 }
@@ -35,7 +36,7 @@ class PeriodicOrbit:
     symmetric : x(t + period T/2) = -x(t)
     """
 
-    system: System | Family
+    system: System | Oscillator | Family
     status: str
     _solution: Solution | None = field(repr=False, default=None)
     _frame: tuple[int, int] | None = field(repr=False, default=None)  # (first impact, periods to shift by)
@@ -78,6 +79,21 @@ class PeriodicOrbit:
             t = np.concatenate([t[first:], t[:first] + self.period * T]) - shift * T
             sides, D, states = (np.roll(values, -first, 0) for values in (sides, D, states))
         return t, sides, D, states
+
+    @cached_property
+    def sticking(self) -> np.ndarray:
+        """Structured, fields t_on, t_off, side: the rests, with R = 0, of a period that begins with `impacts`."""
+        result = np.empty(0, STICKING)
+        if self._solution is not None and self._solution.rests:
+            s = self._solution.whole()
+            rests, T = list(s.rests), forcing_period(s.family.linear)
+            first, shift = self._frame or self._canonical_frame
+            later = np.where(np.array(rests) < first, self.period * T, 0.0) - shift * T
+            result = np.empty(len(rests), STICKING)
+            result["t_on"], result["t_off"] = s.times[rests] + later, s.ends + later
+            result["side"] = np.array(s.sides)[rests]
+            result = result[np.argsort(result["t_on"])]
+        return result
 
     @property
     def itinerary(self) -> str:
@@ -152,24 +168,39 @@ class PeriodicOrbit:
         times = np.atleast_1d(np.asarray(times, float))
         q = self._solution.family.linear
         length = self.period * forcing_period(q)
+        begins, starts, held = self._pieces
+        wrapped = times - length * np.ceil((times - begins[0]) / length - 1)  # in (begins[0], begins[0] + length]
+        wrapped = np.where(wrapped <= begins[0], wrapped + length, wrapped)
+        wrapped = np.where(wrapped > begins[0] + length, wrapped - length, wrapped)
+        which = np.searchsorted(begins, wrapped, side="left") - 1
+        out = np.empty((len(times), starts.shape[1]))
+        work = np.empty((2, starts.shape[1]))
+        for rests in (False, True):
+            chosen = np.flatnonzero(held[which] == rests)
+            if len(chosen):
+                part = np.empty((len(chosen), starts.shape[1]))
+                f = held_flow(q) if rests else flow(q)
+                flights.sample_flights(f, starts, begins, which[chosen], wrapped[chosen], part, work)
+                out[chosen] = part
+        return self._masses(out[:, : 2 * len(q.along)])
+
+    @cached_property
+    def _pieces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Begins of flights and rests in order, the states there in contact coordinates, and which are rests."""
+        s = self._solution
+        N, m = len(s.family.linear.along), flow(s.family.linear).B.shape[0]
+        if s.rests:
+            whole = s.whole()
+            pieces = whole.equations.starts(whole.sides, whole.u)
+            _, shift = self._frame or self._canonical_frame
+            begins = np.array([begin for _, _, begin, _, _ in pieces]) - shift * forcing_period(s.family.linear)
+            return begins, np.array([zeta for *_, zeta in pieces]), np.array([kind == "rest" for kind, *_ in pieces])
         t, _, D, states = self._whole
-        f = flow(q)
-        m = f.B.shape[0]
-        N = len(q.along)
-        starts = np.zeros((len(states), m))
-        starts[:, : 2 * N] = states
-        if len(t) == 0:
-            t = np.zeros(1)
-            starts = starts[:1]
-        else:
+        starts = np.zeros((max(len(t), 1), m))
+        starts[:, : 2 * N] = states[: len(starts)]
+        if len(t):
             starts[:, N] += D
-        wrapped = times - length * np.ceil((times - t[0]) / length - 1)  # in (t[0], t[0] + length]
-        wrapped = np.where(wrapped <= t[0], wrapped + length, wrapped)
-        wrapped = np.where(wrapped > t[0] + length, wrapped - length, wrapped)
-        which = np.searchsorted(t, wrapped, side="left") - 1
-        out = np.empty((len(times), m))
-        flights.sample_flights(f, starts, t, which, wrapped, out, np.empty((2, m)))
-        return self._masses(out[:, : 2 * N])
+        return t if len(t) else np.zeros(1), starts, np.zeros(len(starts), bool)
 
     @cached_property
     def state(self) -> np.ndarray:

@@ -1,20 +1,26 @@
 """A solution of the equations of periodic orbits, and what follows from it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from vibro_sweep.analysis.impulse_equations import Equations
 from vibro_sweep.analysis.itinerary import is_mirrored, repetitions
-from vibro_sweep.model.linear import Family
+from vibro_sweep.analysis.resting import RestEquations
+from vibro_sweep.model.linear import Family, Linear
 
-ALIKE = 1e-8  # relative difference below which two halves (periods) of an orbit are the same
+# Relative difference below which two halves (periods) of an orbit are the same. An orbit that is born at a pitchfork or
+# flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not tell the two orbits apart.
+ALIKE = 1e-6
 
 
 @dataclass(frozen=True)
 class Solution:
-    """z(t + P) = sigma z(t), P = halves T/2, with impacts u = (t_1 .. t_K, D_1 .. D_K) on `sides`."""
+    """z(t + P) = sigma z(t), P = halves T/2, with impacts u = (t_1 .. t_K, D_1 .. D_K) on `sides`.
+
+    With R = 0 the mass may rest after the impacts `rests`; u then goes on with the ends of the rests.
+    """
 
     family: Family
     sigma: int
@@ -22,10 +28,11 @@ class Solution:
     sides: tuple[int, ...]
     u: np.ndarray
     change: float = 0.0  # of the last Newton step
+    rests: tuple[int, ...] = ()
 
     @cached_property
-    def equations(self) -> Equations:
-        return Equations(self.family.linear, self.sigma, self.halves)
+    def equations(self) -> Equations | RestEquations:
+        return equations_for(self, self.family.linear)
 
     @property
     def K(self) -> int:
@@ -43,6 +50,16 @@ class Solution:
     @property
     def jumps(self) -> np.ndarray:
         return self.u[self.K : 2 * self.K]
+
+    @property
+    def ends(self) -> np.ndarray:
+        """Of the rests."""
+        return self.u[2 * self.K : 2 * self.K + len(self.rests)]
+
+    @cached_property
+    def hold(self) -> float:
+        """The least free acceleration into the stop during the rests; inf without a rest."""
+        return self.equations.hold(self.sides, self.u) if self.rests else np.inf
 
     @cached_property
     def motion(self) -> np.ndarray:
@@ -83,7 +100,8 @@ class Solution:
         """Whether every impulse pushes and every flight stays inside, to rounding."""
         rounding = 1e-13 * self.size_of_gap
         speed = self.family.linear.omega * rounding
-        return bool(np.all(self.pushes > -speed) and self.margin > -rounding)
+        held = self.hold > -self.family.linear.omega * speed and np.all(self.ends >= self.times[list(self.rests)])
+        return bool(np.all(self.pushes > -speed) and self.margin > -rounding and held)
 
     @cached_property
     def size_of_gap(self) -> float:
@@ -99,16 +117,17 @@ class Solution:
         ends, change = self.equations.newton(self.sides, self.u[None])
         if not np.isfinite(change[0]):
             return None
-        return Solution(self.family, self.sigma, self.halves, self.sides, ends[0], float(change[0]))
+        return replace(self, u=ends[0], change=float(change[0]))
 
     def whole(self) -> "Solution":
         """The same orbit over its whole period, sigma = +1."""
         if self.sigma == 1:
             return self
-        t, D = self.times, self.jumps
-        u = np.concatenate([t, t + self.equations.P, D, -D])
+        t, D, P = self.times, self.jumps, self.equations.P
+        u = np.concatenate([t, t + P, D, -D, self.ends, self.ends + P])
         sides = (*self.sides, *(-side for side in self.sides))
-        whole = Solution(self.family, 1, 2 * self.halves, sides, u, self.change)
+        rests = (*self.rests, *(k + self.K for k in self.rests))
+        whole = Solution(self.family, 1, 2 * self.halves, sides, u, self.change, rests)
         if whole.equations.free:
             whole = Solution(self.family, 1, 2 * self.halves, sides, np.append(u, 0.0), self.change)
             whole = whole.corrected() or whole
@@ -116,15 +135,17 @@ class Solution:
 
     def part(self, count: int, sigma: int, alike: float = ALIKE) -> "Solution | None":
         """The first of `count` equal parts (mirrored ones for sigma = -1), if they are equal to the share `alike`."""
-        K, P = self.K // count, self.equations.P / count
+        K, P, rests = self.K // count, self.equations.P / count, self.rests[: len(self.rests) // count]
+        if self.rests != tuple(k + K * i for i in range(count) for k in rests):
+            return None
         t, D = self.times.reshape(count, K), self.jumps.reshape(count, K)
         signs = float(sigma) ** np.arange(count)[:, None]
         shifted, aligned = t - P * np.arange(count)[:, None], D * signs
         scale = np.abs(D).max(initial=1e-300)
         if np.ptp(shifted, 0).max() > alike * P or np.ptp(aligned, 0).max() > alike * scale:
             return None
-        u = np.concatenate([shifted.mean(0), aligned.mean(0)])
-        found = Solution(self.family, sigma, self.halves // count, tuple(self.sides[:K]), u)
+        u = np.concatenate([shifted.mean(0), aligned.mean(0), self.ends[: len(rests)]])
+        found = Solution(self.family, sigma, self.halves // count, tuple(self.sides[:K]), u, 0.0, rests)
         if found.equations.free:
             found = Solution(self.family, sigma, found.halves, found.sides, np.append(u, self.u[-1]))
         found = found.corrected()
@@ -150,3 +171,10 @@ class Solution:
             if half is not None:
                 return half
         return whole
+
+
+def equations_for(s: Solution, q: Linear, slope: Linear | None = None) -> Equations | RestEquations:
+    """Of orbits like `s`, for the oscillator q; derivatives where it changes by `slope`."""
+    if s.rests:
+        return RestEquations(q, s.sigma, s.halves, slope, s.rests)
+    return Equations(q, s.sigma, s.halves, slope)

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.analysis.impulse_equations import Equations
 from vibro_sweep.analysis.periodic import PeriodicOrbit
-from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.analysis.solution import Solution, equations_for
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,8 @@ class SpecialPoint:
         first half), or None: one appears
     direction : of a graze +1 where the orbit without that impact exists at a larger parameter, -1 at a smaller one
     criticality : of a flip or pitchfork "super": the born orbit exists where its parent has the multiplier outside the
-        unit circle; "sub": where it is inside; None where it cannot be told, and for other types
+        unit circle; "sub": where it is inside. Of a neimark_sacker point "super": the circle that is born attracts the
+        orbits near it in its plane. None where it cannot be told, and for other types
     """
 
     type: str
@@ -56,7 +57,7 @@ class Graze:
 
 def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
     """Unfold a graze: `impact` vanishes, or (None) the turning point nearest to its stop becomes an impact."""
-    K = solution.K
+    K, rests = solution.K, np.array(solution.rests, int)
     if impact is None:
         _, time, side = solution.nearest
         period = solution.equations.P
@@ -67,14 +68,14 @@ def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
         sides = (*solution.sides[:index], side, *solution.sides[index:])
         if K == 0 and solution.family.linear.symmetric is False and solution.equations.free:
             u = np.append(u, 0.0)
-        without, touching = solution, _with(solution, sides, u)
+        without, touching = solution, _with(solution, sides, u, rests + (rests >= index))
     else:
         index, side = impact, solution.sides[impact]
         sides = solution.sides[:impact] + solution.sides[impact + 1 :]
         u = np.delete(solution.u, [impact, K + impact])
-        without, touching = _with(solution, sides, u), solution
+        without, touching = _with(solution, sides, u, rests - (rests > impact)), solution
     q, slope = solution.family.linear, solution.family.derivative(name)
-    e = Equations(q, solution.sigma, solution.halves, slope)
+    e = equations_for(touching, q, slope)
     du = slopes(e, touching)
     speed_slope = -side * du[touching.K + index] / (1 + q.restitution([side])[0])
     # At D = 0 the first equation of that impact is the gap less the stop, as the others leave it: take its change
@@ -82,14 +83,15 @@ def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
     held = np.zeros(touching.size)
     keep = np.delete(np.arange(touching.size), [index, touching.K + index])
     if without.K or e.free:
-        held[keep] = slopes(e, without)
+        held[keep] = slopes(equations_for(without, q, slope), without)
     _, J, Fp, _ = e.evaluate(touching.sides, touching.u)
     distance_slope = -side * float((J[index] @ held) + Fp[index])
     return Graze(without, touching, index, float(distance_slope), float(speed_slope))
 
 
-def _with(solution: Solution, sides, u) -> Solution:
-    return Solution(solution.family, solution.sigma, solution.halves, tuple(sides), u)
+def _with(solution: Solution, sides, u, rests) -> Solution:
+    rests = tuple(map(int, rests))
+    return Solution(solution.family, solution.sigma, solution.halves, tuple(sides), u, 0.0, rests)
 
 
 def slopes(e: Equations, solution: Solution) -> np.ndarray:

@@ -1,13 +1,13 @@
 """`switch`: from a pitchfork, a flip or a graze to the orbits that branch off there."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from vibro_sweep.analysis.births import AMPLITUDE, born
-from vibro_sweep.analysis.impulse_equations import Equations
 from vibro_sweep.analysis.periodic import PeriodicOrbit, orbit_of
-from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.analysis.solution import Solution, equations_for
 from vibro_sweep.analysis.special import SpecialPoint, graze_at, slopes
 from vibro_sweep.model.arguments import check_type
 
@@ -66,12 +66,12 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
     target = graze.touching if impact is None else graze.without
     slope = graze.speed_slope if impact is None else graze.distance_slope
     value = solution.family.numbers[name]
-    e = Equations(solution.family.linear, solution.sigma, solution.halves, solution.family.derivative(name))
+    e = equations_for(target, solution.family.linear, solution.family.derivative(name))
     du = slopes(e, target)
     step = math.copysign(BESIDE * max(abs(value), 1e-3), slope)
     for _ in range(20):
         family = solution.family.replace(**{name: value + step})
-        guess = Solution(family, target.sigma, target.halves, target.sides, target.u + step * du)
+        guess = replace(target, family=family, u=target.u + step * du)
         found = guess.corrected()
         if found is not None and found.real and np.abs(found.u - guess.u).max(initial=0.0) < 0.1:
             return found

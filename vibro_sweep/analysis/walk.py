@@ -11,7 +11,8 @@ import numpy as np
 
 from vibro_sweep.analysis.impulse_equations import Equations, moves_stops_only
 from vibro_sweep.analysis.long_orbits import is_long, sign_and_log_det, solve_bordered
-from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.analysis.solution import Solution, equations_for
+from vibro_sweep.engine.impulses.green import space
 
 MOST_CORRECTIONS = 12
 
@@ -46,7 +47,8 @@ class Point:
         w = self.walk
         u = self.x[:-1] * w.scale[:-1]
         family = w.family.replace(**{w.name: self.p})
-        solution = Solution(family, w.start.sigma, w.start.halves, w.start.sides, u, self.change)
+        s = w.start
+        solution = Solution(family, s.sigma, s.halves, s.sides, u, self.change, s.rests)
         solution.__dict__["equations"] = self.equations  # they are known
         return solution
 
@@ -83,8 +85,20 @@ class Point:
     def releases(self) -> np.ndarray:
         """(K,) acceleration away from the stop just after an impact with R = 0; infinite for other impacts."""
         e, sides = self.equations, np.array(self.walk.start.sides, float)
-        after = self.motion[:, 1] + self.solution.jumps * e.train.jumps[2]
-        return np.where(e.q.restitution(sides) == 0, -sides * after, np.inf)
+        s = space(e.q)
+        after = self.motion[:, 1] + self.solution.jumps * (s.e_g @ s.A @ (s.A @ s.e_v))
+        leaves = np.where(e.q.restitution(sides) == 0, -sides * after, np.inf)
+        leaves[list(self.walk.start.rests)] = np.inf
+        return leaves
+
+    @cached_property
+    def stays(self) -> float:
+        """The least of what makes a rest: its length, in 1/omega, and the acceleration into the stop; inf without."""
+        s, omega = self.solution, self.solution.family.linear.omega
+        if not s.rests:
+            return np.inf
+        lengths = (s.ends - s.times[list(s.rests)]) * omega
+        return float(min(lengths.min(), s.hold / (omega**2 * s.size_of_gap)))
 
 
 class Walk:
@@ -96,8 +110,8 @@ class Walk:
         speed = q.omega * start.size_of_gap
         self.scale = np.ones(start.size + 1)
         self.scale[:K], self.scale[K : 2 * K], self.scale[-1] = 1 / q.omega, speed, span
-        self.scale[2 * K : -1] = speed / q.omega
-        self._contact_only = moves_stops_only(self.family.derivative(name))
+        self.scale[2 * K : -1] = 1 / q.omega if start.rests else speed / q.omega
+        self._contact_only = not start.rests and moves_stops_only(self.family.derivative(name))
 
     def equations(self, p: float) -> Equations:
         """Raises ParameterError where the parameter leaves what is allowed."""
@@ -105,7 +119,7 @@ class Walk:
         if self._contact_only:
             return self.start.equations.with_stops(*family.stops(self.name, self.start.equations.q))
         q = family.linear
-        return Equations(q, self.start.sigma, self.start.halves, family.derivative(self.name, q))
+        return equations_for(self.start, q, family.derivative(self.name, q))
 
     def correct(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
         """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""

@@ -56,8 +56,8 @@ def contact_coordinates(q: Linear) -> Coordinates:
     return Coordinates(T, np.linalg.inv(T))
 
 
-def flow(q: Linear) -> Flow:
-    """Tables of the free flight. Raises TooStiffError."""
+def rates(q: Linear) -> np.ndarray:
+    """B of zeta' = B zeta, (m, m)."""
     N = len(q.along)
     T, inverse = contact_coordinates(q)
     to_y = T @ np.linalg.inv(q.M)
@@ -67,6 +67,26 @@ def flow(q: Linear) -> Flow:
     B[N:n, :N], B[N:n, N:n] = -to_y @ q.K @ inverse, -to_y @ q.C @ inverse
     B[N:n, n], B[N:n, n + 1], B[N:n, n + 2] = to_y @ q.cosine, to_y @ q.sine, to_y @ q.constant
     B[n, n + 1], B[n + 1, n] = -q.omega, q.omega
+    return B
+
+
+def flow(q: Linear) -> Flow:
+    """Tables of the free flight. Raises TooStiffError."""
+    B = rates(q)
+    return _flow(q, B, np.eye(len(B))[0])
+
+
+def held_flow(q: Linear) -> Flow:
+    """Tables of the motion while the gap stays as it is; rows: of what the gap's free acceleration is then."""
+    B = rates(q)
+    N = len(q.along)
+    held = B.copy()
+    held[0], held[N] = 0.0, 0.0
+    return _flow(q, held, B[N])
+
+
+def _flow(q: Linear, B: np.ndarray, row: np.ndarray) -> Flow:
+    n = len(B) - 3
     cells = 2 * cells_needed(q)
     if cells > MOST_CELLS:
         raise TooStiffError(f"a forcing period needs {cells} cells, at most {MOST_CELLS} are allowed")
@@ -76,11 +96,9 @@ def flow(q: Linear) -> Flow:
     for _ in range(DOUBLINGS):
         powers.append(step.astype(float))
         step = step @ step
-    row = np.zeros(n + 3, REAL)
-    row[0] = 1
-    rows = taylor_rows(B.astype(REAL), row).astype(float)
-    rates = np.linalg.eigvals(B[:n, :n]).real
-    return Flow(B, float(width), np.array(powers), rows, q.omega, float(q.tau), float(np.ptp(rates)))
+    rows = taylor_rows(B.astype(REAL), row.astype(REAL)).astype(float)
+    decays = np.linalg.eigvals(B[:n, :n]).real
+    return Flow(B, float(width), np.array(powers), rows, q.omega, float(q.tau), float(np.ptp(decays)))
 
 
 def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
@@ -243,6 +261,16 @@ def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, waiting, wor
         extremes(f, flying, end - begin, low, high, nearest, waiting, work)
         if nearest[0] < distance:
             nearest[1] += begin
+
+
+@entry
+def fly_once(f, z, begin, length, low, high, nearest, waiting, work):
+    """Fly `length` from z in place; lower `nearest` (distance, t, side) to the turning points of the gap."""
+    distance = nearest[0]
+    set_phase(f, z, begin)
+    extremes(f, z, length, low, high, nearest, waiting, work)
+    if nearest[0] < distance:
+        nearest[1] += begin
 
 
 @entry

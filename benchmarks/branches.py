@@ -1,0 +1,179 @@
+"""Periodic orbits and branches: orbits from guesses and points of branches per second, beside shooting.
+
+    python benchmarks/branches.py
+
+Times are of one core, the least of some rounds. Shooting has the state as unknown: Newton's method with differences on
+the map over a period, integrated by heyoka (tolerance 1e-16) or SciPy's DOP853 (1e-12).
+"""
+
+import time
+from importlib.util import find_spec
+
+import numpy as np
+import shared  # noqa: F401
+from scipy.integrate import solve_ivp
+from support.branches import repeated
+from support.oscillators import PAPER
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.periodic import orbit_of
+from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.analysis.track import Track
+from vibro_sweep.analysis.walk import Walk
+from vibro_sweep.analysis.way import LONGEST_STEP, SHORTEST_STEP, STRAIGHT
+
+GUESSES = 1000
+NEAR = 1e-4  # relative distance of a guess from its orbit
+ROUNDS = 5
+
+
+def least(job, rounds=ROUNDS) -> float:
+    """Seconds of the fastest of some calls, after one that compiles."""
+    job()
+    times = []
+    for _ in range(rounds):
+        began = time.perf_counter()
+        job()
+        times.append(time.perf_counter() - began)
+    return min(times)
+
+
+def one_sided(count: int) -> Solution:
+    """An orbit with `count` impacts."""
+    orbit = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
+    return repeated(orbit, count) if count > 1 else orbit._solution
+
+
+def from_guesses(solution: Solution) -> tuple[float, float]:
+    """Microseconds for an orbit from a guess in a compiled batch, and the share that converged."""
+    e, rng = solution.equations, np.random.default_rng(0)
+    guesses = solution.u * (1 + rng.uniform(-NEAR, NEAR, (GUESSES, solution.size)))
+    found = np.isfinite(e.newton(solution.sides, guesses)[1]).mean()
+    return least(lambda: e.newton(solution.sides, guesses)) / GUESSES * 1e6, found
+
+
+def additions(solution: Solution) -> dict[str, float]:
+    """Microseconds that the certificate, the multipliers and the call from Python add."""
+    e, sides, u, motion = solution.equations, solution.sides, solution.u, solution.motion
+    guess = [(t, side, -D / 1.8) for t, side, D in zip(solution.times, sides, solution.jumps, strict=True)]
+    periods = solution.halves // 2
+    system = PAPER.replace(b=4.0)
+    return {
+        "certificate": least(lambda: e.fly(sides, u)) * 1e6,
+        "multipliers": least(lambda: e.multipliers(sides, u, motion)) * 1e6,
+        "periodic_orbit, from Python": least(lambda: vs.periodic_orbit(system, guess=guess, periods=periods)) * 1e6,
+    }
+
+
+def points(solution: Solution, name="b", bounds=(3.3, 4.3)) -> tuple[float, float]:
+    """Points per second with all tests and the certificate, and corrections for each."""
+    walk = Walk(solution, name, bounds[1] - bounds[0])
+    first = walk.first(-1.0)
+    length = LONGEST_STEP / 25  # so that a run has enough points to be timed
+    track = Track(first, walk, bounds, 0, length, SHORTEST_STEP, STRAIGHT)
+    counts = []
+
+    def job():
+        assert track.begin(first, length)
+        counts.append(track.record_steps(1)[1:])
+
+    seconds = least(job)
+    return counts[-1][0] / seconds, counts[-1][1] / counts[-1][0]
+
+
+def shooting(period_map, state) -> np.ndarray:
+    """A fixed point of a map by Newton's method with differences, from a state near it."""
+    h = 1e-6
+    for _ in range(8):
+        image = period_map(state)
+        J = np.array([(period_map(state + h * axis) - image) / h for axis in np.eye(len(state))]).T
+        step = np.linalg.solve(J - np.eye(len(state)), image - state)
+        state = state - step
+        if np.abs(step).max() < 1e-10:
+            break
+    return state
+
+
+def scipy_map(system):
+    M, K = np.diag([1, system.mu_m]), np.array([[1, -1], [-1, 1 + system.mu_k]])
+    inverse, force = np.linalg.inv(M), np.array([1 - system.f2, system.f2])
+
+    def rate(t, z):
+        x, v = z[::2], z[1::2]
+        a = inverse @ (force * np.sin(system.omega * t + system.phase) - K @ x - 2 * system.zeta * K @ v)
+        return np.array([v[0], a[0], v[1], a[1]])
+
+    def high(t, z):
+        return system.b - z[0]
+
+    def low(t, z):
+        return z[0] + system.b
+
+    for event in (high, low):
+        event.terminal, event.direction = True, -1
+
+    def period_map(state):
+        t, z = 0.0, state
+        while t < system.period:
+            found = solve_ivp(rate, (t, system.period), z, method="DOP853", rtol=1e-12, atol=1e-12, events=(high, low))
+            t, z = found.t[-1], found.y[:, -1].copy()
+            if found.status == 1:
+                z[1] *= -system.R
+        return z
+
+    return period_map
+
+
+def heyoka_map(system):
+    import heyoka as hy
+    from peer_heyoka import equations, stops
+
+    numbers = {name: getattr(system, name) for name in ("mu_m", "mu_k", "zeta", "f2", "omega", "b")}
+
+    def strike(ta, _):
+        ta.state[1] *= -system.R
+        return True
+
+    events = stops(hy.t_event, numbers | {"tau": system.phase}, strike)
+    flow = equations(numbers | {"tau": system.phase})
+    ta = hy.taylor_adaptive(flow, [0.0] * 4, tol=1e-16, t_events=events, fast_math=True)
+
+    def period_map(state):
+        ta.time, ta.state[:] = 0.0, state
+        ta.reset_cooldowns()
+        ta.propagate_until(system.period)
+        return ta.state.copy()
+
+    return period_map
+
+
+def main() -> None:
+    print("An orbit from a guess, in a compiled batch:")
+    for count in (1, 4, 10):
+        spent, found = from_guesses(one_sided(count))
+        print(f"  {count:3d} impacts: {spent:7.2f} us, {100 * found:.0f} % converged")
+    solution = one_sided(1)
+    for what, spent in additions(solution).items():
+        print(f"  {what}: {spent:.0f} us")
+    orbit = orbit_of(PAPER.replace(b=4.0), solution)
+    maps = {"SciPy DOP853": scipy_map} | ({"heyoka": heyoka_map} if find_spec("heyoka") else {})
+    start = orbit.state * (1 + NEAR)
+    for name, make in maps.items():
+        period_map = make(orbit.system)
+        error = np.abs(shooting(period_map, start) - orbit.state).max()
+        spent = least(lambda period_map=period_map: shooting(period_map, start))
+        print(f"  shooting with {name}, 1 impact: {1e6 * spent:.0f} us, error {error:.0e}")
+    print("Points of a branch with all tests and the certificate:")
+    times = {}
+    for count in (1, 4, 10, 100):
+        speed, corrections = points(one_sided(count))
+        times[count] = 1 / speed
+        print(f"  {count:3d} impacts, in b: {speed:8.0f} per second, {corrections:.1f} corrections each")
+    print(f"  a point with 100 impacts takes {times[100] / times[10]:.1f} times as long as one with 10")
+    for name, bounds in (("omega", (0.62, 0.64)), ("zeta", (0.048, 0.055))):
+        speed, corrections = points(solution, name, bounds)
+        print(f"    1 impact, in {name}: {speed:8.0f} per second, {corrections:.1f} corrections each")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,69 @@
+"""Periodic orbits and branches of other oscillators than the paper's, against the engine's simulation."""
+
+import numpy as np
+import pytest
+
+import vibro_sweep as vs
+
+M = np.diag([1.0, 2.0, 1.5])
+K = np.array([[2, -1, 0], [-1, 2.5, -1], [0, -1, 1.2]])
+C = np.array([[0.2, -0.1, 0], [-0.1, 0.15, 0], [0, 0, 0.1]])
+named = vs.Oscillator.named
+THREE = vs.Oscillator(M, K, C, force=[1, 0, 0.5], along=[1, -1, 0], omega=0.8, b=0.6, offset=0.05, R=0.7, R_left=0.5)
+ONE = named("one_mass", zeta=0.05, F=1.0, omega=0.7, R=0.8, b=1.0, stops="right")
+CAVITY = named("ball_in_cavity", mass_ratio=0.1, zeta=0.05, F=1.0, omega=1.0, R=0.6, b=1.0, tau=0.0)
+LINKS = {"m": [1, 1, 2, 1], "k": [1, 2, 1, 1, 0.5], "c": [0.1] * 5, "force": [0, 0, 0, 1], "stop_at": 3}
+FOUR = named("chain", **LINKS, omega=0.9, R=0.7, b=0.4)
+DEAD = named("one_mass", zeta=0.05, F=1.0, omega=0.4, R=0.0, b=0.3, stops="both")
+CASES = {
+    "three masses, unequal stops": (THREE, "LLRR", "b", (0.5, 0.7)),
+    "three masses in R_left": (THREE.replace(b=0.7), "LLR", "R_left", (0.3, 0.7)),
+    "three masses in omega": (THREE.replace(b=0.8), "LR", "omega", (0.75, 0.9)),
+    "one mass": (ONE, "RR", "F", (0.8, 1.3)),
+    "ball in a cavity": (CAVITY, "LLLLRRRR", "b", (0.8, 1.2)),
+    "chain of four": (FOUR, "LLRR", "m3", (1.5, 2.5)),
+    "rests without restitution": (DEAD, "LR", "omega", (0.35, 0.45)),
+}
+
+
+def settled(system):
+    """A state on the attractor from rest, and its period."""
+    section = vs.simulate(system, np.zeros(2 * system.masses), 3000).section
+    period = next(n for n in range(1, 10) if np.abs(section[-1] - section[-1 - n]).max() < 1e-10)
+    return section[-1], period
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_branch_against_simulation(name):
+    system, itinerary, parameter, bounds = CASES[name]
+    state, period = settled(system)
+    orbit = vs.periodic_orbit(system, state=state, periods=period)
+    assert (orbit.status, orbit.itinerary, orbit.stable) == ("ok", itinerary, True)
+    assert np.abs(orbit.state - state).max() < 1e-9
+    simulated = vs.simulate(system, orbit.state, period)
+    times = np.linspace(0, period * system.period, 200)
+    assert np.abs(simulated.sample(times) - orbit.sample(times)).max() < 1e-10
+    assert orbit.impacts.dtype == simulated.impacts.dtype
+    branch = vs.continue_orbit(orbit, parameter, bounds)
+    points = branch.points
+    assert points.sizes["point"] > 10 and not [s for s in branch.special if s.type == "failed"]
+    columns = [f"{kind}{i + 1}" for i in range(system.masses) for kind in "xv"]
+    for i in np.linspace(1, points.sizes["point"] - 2, 8).astype(int):
+        point = points.isel(point=i)
+        here = system.replace(**{parameter: float(point[parameter])})
+        start = np.array([float(point[column]) for column in columns])
+        largest = float(np.hypot(point.multiplier_re, point.multiplier_im).max())
+        try:
+            after = vs.simulate(here, start, period)
+        except ValueError:  # by rounding beyond the stop on which it rests
+            continue
+        assert np.abs(after.section[-1] - start).max() < 1e-9 * max(1, largest)
+        if not len(orbit.sticking):
+            assert np.sort(after.impacts["v1"]) == pytest.approx(np.sort(point.impact_v), abs=1e-9 * max(1, largest))
+
+
+def test_orbit_of_an_oscillator_survives_its_file(tmp_path):
+    system = CASES["three masses, unequal stops"][0]
+    orbit = vs.periodic_orbit(system, state=settled(system)[0])
+    again = vs.load_orbit(orbit.save(tmp_path / "orbit.json"))
+    assert again.ok and again.system == system and again.impacts.tobytes() == orbit.impacts.tobytes()

@@ -1,0 +1,120 @@
+"""Compiled steps along a branch against the equations in times and impulses, which have their own tests."""
+
+import numpy as np
+import pytest
+from support.branches import repeated
+from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.periodic import PeriodicOrbit
+from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.analysis.track import Track
+from vibro_sweep.analysis.walk import Walk
+from vibro_sweep.analysis.way import FIRST_STEP, LONGEST_STEP, SHORTEST_STEP, STRAIGHT
+from vibro_sweep.engine.impulses import places
+from vibro_sweep.model.linear import Family
+
+
+def track_of(solution, name, bounds, forwards=1.0):
+    walk = Walk(solution, name, bounds[1] - bounds[0])
+    first = walk.first(forwards)
+    track = Track(first, walk, bounds, 0, LONGEST_STEP, SHORTEST_STEP, STRAIGHT)
+    assert track.begin(first, FIRST_STEP)
+    return first, track
+
+
+CASES = [
+    (PAPER.replace(b=3.0), "LR", "b", (1.0, 3.5)),
+    (PAPER.replace(b=3.0), "LR", "omega", (0.55, 0.7)),
+    (PAPER.replace(b=3.0, zeta=0.01), "LR", "zeta", (0.005, 0.05)),
+    (PAPER.replace(b=4.0), "R", "mu_m", (8.0, 12.0)),
+    (PAPER.replace(b=1.0), "LLRR", "R", (0.7, 0.9)),
+    (ONE_MASS.replace(F=0.37), "R", "omega", (0.7, 0.9)),
+    (ONE_MASS.replace(F=0.37), "R", "F", (0.35, 0.5)),
+    (CHAIN, "LR", "c", (0.05, 0.3)),
+    (CHAIN, "LR", "k", (0.5, 1.0)),
+    (CAVITY, "LR", "b", (0.3, 0.8)),
+    (CAVITY, "LR", "ratio", (0.1, 0.3)),
+    (BALL.replace(A=0.5), "L", "G", (0.8, 1.2)),
+    (LONG_CHAIN, "born", "b", (0.01, 60.0)),
+    (LONG_CHAIN, "born", "omega", (0.45, 0.55)),
+]
+
+
+def orbit_of(system, itinerary):
+    if itinerary == "born":
+        born = next(item.orbit for item in vs.born_at_grazing(system, 1) if item.itinerary == "LR")
+        points = vs.continue_orbit(born, "b", (0.01, 60)).points
+        point = points.isel(point=points.sizes["point"] // 2)
+        guess = zip(point.impact_t.values, point.impact_side.values, point.impact_v.values, strict=True)
+        return vs.periodic_orbit(system.replace(b=float(point.b)), guess=list(guess))
+    periods = 2 if isinstance(system, Family) and system.build is ONE_MASS.build else 1
+    orbit = vs.periodic_orbit(system, itinerary=itinerary, periods=periods)
+    assert orbit.ok
+    return orbit
+
+
+@pytest.mark.parametrize(("system", "itinerary", "name", "bounds"), CASES)
+def test_points_are_orbits(system, itinerary, name, bounds):
+    orbit = orbit_of(system, itinerary)
+    first, track = track_of(orbit._solution, name, bounds)
+    _, rows = track.run(1)
+    assert len(rows.p) >= 2 and rows.p[-1] != rows.p[0]
+    for i in np.linspace(0, len(rows.p) - 1, 5).astype(int):
+        family = first.walk.family.replace(**{name: rows.p[i]})
+        s = orbit._solution
+        u = np.concatenate([rows.t[i], rows.D[i]])
+        if s.equations.free:
+            point = first.walk.equations(rows.p[i])
+            u = np.append(u, 0.0)
+            u[-1] = -np.mean(point.evaluate(s.sides, u)[0][: s.K])
+        exact = Solution(family, s.sigma, s.halves, s.sides, u).corrected()
+        size = exact.size_of_gap
+        _, J, _, _ = exact.equations.evaluate(s.sides, exact.u)
+        error = 3e-13 * size * np.abs(np.linalg.inv(J)).sum(axis=1)  # what so much in the equations does
+        assert np.all(np.abs(exact.u - u) < error + 1e-13 * np.abs(u))
+        slack = float(error.max() + 1e-12 * size)
+        assert np.abs(exact.motion[:, :2] - rows.motion[i]).max() < 3 * slack
+        assert rows.margin[i] == pytest.approx(exact.margin, abs=slack)
+        found = PeriodicOrbit(orbit.system, "ok", exact, (0, 0))
+        assert rows.state[i] == pytest.approx(found.state, abs=slack)
+
+
+@pytest.mark.parametrize(("system", "itinerary", "name", "bounds"), CASES)
+def test_tests_have_the_signs_of_the_precise_ones(system, itinerary, name, bounds):
+    """Of det J(-1) up to a factor of one sign, of the torus test, of the tangent; and the count of multipliers."""
+    orbit = orbit_of(system, itinerary)
+    first, track = track_of(orbit._solution, name, bounds)
+    precise, found = [first], [track.a.numbers.copy()]
+    for _ in range(4):
+        track.run(1)
+        precise.append(track.point(track.a))
+        found.append(track.a.numbers.copy())
+        precise.append(track.point(track.b))
+        found.append(track.b.numbers.copy())
+        track.accept()
+    signs = {x.reflection[0] * np.sign(n[places.REFLECTION]) for x, n in zip(precise, found, strict=True) if x}
+    assert len(signs) == 1
+    for x, n in zip(precise, found, strict=True):
+        if x is not None:
+            if len(x.solution.multipliers) > 2:  # else it cannot vanish
+                assert n[places.TORUS] == pytest.approx(
+                    x.torus, rel=1e-6, abs=1e-9 * np.abs(x.solution.multipliers).max()
+                )
+            along = x.tangent[-1] * x.walk.scale[-1]  # of another length where a free mode adds an unknown
+            assert n[places.TANGENT] == pytest.approx(along, rel=1e-3 if x.equations.free else 1e-6, abs=1e-9)
+            assert n[places.UNSTABLE] == np.count_nonzero(np.abs(x.solution.multipliers) > 1)
+
+
+@pytest.mark.parametrize("count", [4, 30])
+def test_orbit_written_out_several_times_has_the_same_branch(count):
+    short = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
+    _, one = track_of(short._solution, "b", (3.5, 4.2))
+    _, many = track_of(repeated(short, count), "b", (3.5, 4.2))
+    for track in (one, many):
+        track.run(1)
+    for track in (one, many):
+        point = track.point(track.a)
+        same = vs.periodic_orbit(PAPER.replace(b=point.p), itinerary="R")._solution
+        assert np.abs(track.a.D - same.jumps).max() < 1e-11
+        assert np.abs(track.a.z - same.states[0, :4]).max() < 1e-11

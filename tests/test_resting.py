@@ -1,0 +1,113 @@
+"""Periodic orbits with rests after impacts without restitution: one event each, with the time at which it ends."""
+
+import numpy as np
+import pytest
+from support.oscillators import PAPER
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.resting import RestEquations
+from vibro_sweep.model.linear import family_of
+
+DEAD = PAPER.replace(R=0.0)
+
+
+def settled(b, periods=1):
+    """The orbit that the motion from rest comes to, and a state of it."""
+    system = DEAD.replace(b=b)
+    state = vs.simulate(system, (0, 0, 0, 0), 400).section[-1]
+    return vs.periodic_orbit(system, state=state, periods=periods), state
+
+
+@pytest.fixture(scope="module")
+def resting():
+    return settled(0.5)
+
+
+@pytest.fixture(scope="module")
+def branch(resting):
+    return vs.continue_orbit(resting[0], "b", (0.3, 3))
+
+
+@pytest.mark.parametrize("b", [0.05, 0.5, 1.2])
+def test_orbit_is_what_the_engine_simulates(b):
+    orbit, state = settled(b)
+    assert orbit.ok and orbit.symmetric and orbit.stable and orbit.itinerary == "LR" and orbit.residual < 1e-14
+    simulated = vs.simulate(orbit.system, state, 3)
+    times = np.linspace(0, 2 * orbit.system.period, 500)
+    assert np.abs(orbit.sample(times) - simulated.sample(times)).max() < 1e-12
+    length = orbit.system.period
+    for t_on, t_off, side in orbit.sticking:
+        there = simulated.sticking[(simulated.sticking["side"] == side) & (simulated.sticking["t_on"] > 0)][0]
+        assert (t_on - there["t_on"]) / length == pytest.approx(round((t_on - there["t_on"]) / length), abs=1e-12)
+        assert t_off - t_on == pytest.approx(there["t_off"] - there["t_on"], abs=1e-12)
+
+
+def test_multipliers_are_those_of_the_simulated_map(resting):
+    """Two are lost by the rest in which the period begins; the others by differences in x2 and v2."""
+    orbit, state = resting
+    assert abs(state[0]) == orbit.system.b and state[1] == 0
+    h = 1e-4
+    columns = []
+    for axis in np.eye(4)[2:]:
+        ends = [vs.simulate(orbit.system, state + sign * h * axis, 1).section[-1] for sign in (1, -1)]
+        columns.append((ends[0] - ends[1])[2:] / (2 * h))
+    expected = np.linalg.eigvals(np.array(columns).T)
+    assert orbit.multipliers[:2] == pytest.approx(expected[np.argsort(-expected.imag)], abs=1e-8)
+    assert np.all(orbit.multipliers[2:] == 0)
+
+
+@pytest.mark.parametrize("name", ["b", "omega", "zeta", "mu_m", "mu_k", "f2"])
+def test_derivatives_are_those_of_differences(resting, name):
+    solution, family = resting[0]._solution, family_of(resting[0].system)
+    whole = solution.whole()
+    for s in (solution, whole):
+        u, h = s.u + 0.01 * np.arange(len(s.u)), 1e-6
+        e = RestEquations(family.linear, s.sigma, s.halves, family.derivative(name), s.rests)
+        _, J, Fp, _ = e.evaluate(s.sides, u)
+        for j, axis in enumerate(np.eye(len(u))):
+            slope = (e.evaluate(s.sides, u + h * axis)[0] - e.evaluate(s.sides, u - h * axis)[0]) / (2 * h)
+            assert slope == pytest.approx(J[:, j], abs=1e-7)
+        value = family.numbers[name]
+        sides = [
+            RestEquations(family.replace(**{name: value + d}).linear, s.sigma, s.halves, None, s.rests) for d in (h, -h)
+        ]
+        slope = (sides[0].evaluate(s.sides, u)[0] - sides[1].evaluate(s.sides, u)[0]) / (2 * h)
+        assert slope == pytest.approx(Fp, abs=1e-6)
+
+
+def test_branch_ends_where_the_rest_does_not_begin_at_once(branch):
+    """There the acceleration into the stop vanishes just after the impact; beyond, a short flight precedes the rest."""
+    end = branch.ends
+    assert end.type == "sticking" and end.error < 1e-12
+    for beside, impacts in ((-1e-7, 2), (1e-7, 4)):
+        system = DEAD.replace(b=end.parameters["b"] + beside)
+        after = vs.simulate(system, vs.simulate(system, (0, 0, 0, 0), 400).section[-1], 2)
+        assert len(after.impacts) == 2 * impacts
+        orbit, _ = settled(end.parameters["b"] + 1e4 * beside)
+        assert orbit.ok and len(orbit.impacts) == impacts and len(orbit.sticking) == 2
+        assert abs(orbit.multipliers[0] - end.orbit.multipliers[0]) < 0.01
+
+
+def test_points_of_the_branch(branch):
+    points = branch.points
+    for i in np.linspace(1, points.sizes["point"] - 2, 6).astype(int):
+        point = points.isel(point=i)
+        state = np.array([float(point[x]) for x in ("x1", "v1", "x2", "v2")])
+        system = DEAD.replace(b=float(point.b))
+        state[0] = np.clip(state[0], -system.b, system.b)
+        assert np.abs(vs.simulate(system, state, 1).section[-1] - state).max() < 1e-11
+        orbit = vs.periodic_orbit(system, state=vs.simulate(system, state, 20).section[-1])
+        assert point.multiplier_re.values == pytest.approx(orbit.multipliers.real, abs=1e-11)
+
+
+def test_orbit_survives_its_file(resting, tmp_path):
+    orbit, _ = resting
+    again = vs.load_orbit(orbit.save(tmp_path / "orbit.json"))
+    assert again.ok and again.sticking.tobytes() == orbit.sticking.tobytes()
+    assert again.impacts.tobytes() == orbit.impacts.tobytes()
+
+
+def test_rest_after_chatter_stays_refused():
+    system = PAPER.replace(b=0.03)
+    state = vs.simulate(system, (0, 0, 0, 0), 200).section[-1]
+    assert vs.periodic_orbit(system, state=state).status == "sticking"

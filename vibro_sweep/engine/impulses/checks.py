@@ -1,0 +1,166 @@
+"""Tests and certificate of a point of a branch; what happens between two points."""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.impulses.blocks import sign_of_determinant
+from vibro_sweep.engine.impulses.extremes import extremes_of_cell
+from vibro_sweep.engine.impulses.flights import OVERLAP
+from vibro_sweep.engine.impulses.medium import GAIN_HIGH, GAIN_LOW, HIGH, LOW, PERIOD, set_phase
+from vibro_sweep.engine.impulses.places import DEFECT_HERE, MARGIN, REFLECTION, TANGENT, TORUS, UNSTABLE, P
+from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.variational.eigenvalues import eigenvalues
+
+
+@jit
+def certify(f, sides, sigma, place, room, strikes):
+    """The least distance of a turning point from its stop, the largest jump between flights, motion before impacts."""
+    K, n, m = len(sides), room.E.shape[0], room.E.shape[1]
+    N = n // 2
+    low, high = f.numbers[LOW], f.numbers[HIGH]
+    nearest, c, after, zeta = room.nearest, room.cell, room.after, room.zeta[0]
+    nearest[0], largest = np.inf, 0.0
+    for i in range(K):
+        for j in range(n):
+            zeta[j] = place.z[i, j]
+        gain = f.numbers[GAIN_HIGH if sides[i] > 0 else GAIN_LOW]
+        zeta[N] = zeta[N] + place.D[i] if gain > 1.0 else 0.0  # not even rounding is left of it
+        set_phase(f, zeta, place.t[i])
+        a = -f.B[N, N] * place.D[i]
+        for j in range(m):
+            a += f.B[N, j] * zeta[j]
+        strikes[i].motion[0], strikes[i].motion[1] = place.z[i, N], a
+        length = (place.t[i + 1] if i + 1 < K else place.t[0] + f.numbers[PERIOD]) - place.t[i]
+        cells = int(length / f.width)
+        for k in range(cells + 1):
+            for q in range(ORDER + 1):
+                c[q] = 0.0
+            for j in range(m):
+                for q in range(ORDER + 1):
+                    c[q] += zeta[j] * f.gap_rows[j, q]
+            width = min(f.width * OVERLAP, length - k * f.width)
+            if width > 0.0:
+                extremes_of_cell(c, width, low, high, nearest, room.waiting)
+            if k < cells:
+                for j in range(m):
+                    after[j] = 0.0
+                for l in range(m):  # noqa: E741
+                    for j in range(m):
+                        after[j] += zeta[l] * f.step[l, j]
+                for j in range(m):
+                    zeta[j] = after[j]
+        last, power = 0.0, 1.0
+        u = max(length - cells * f.width, 0.0)
+        for q in range(ORDER + 1):  # of the last cell
+            last += c[q] * power
+            power *= u
+        aim = place.z[i + 1, 0] if i + 1 < K else sigma * place.z[0, 0]
+        largest = max(largest, abs(last - aim))
+    place.numbers[MARGIN], place.numbers[DEFECT_HERE] = nearest[0], largest
+
+
+@jit
+def test(f, sides, sigma, place, room, strikes):
+    """The tests at a corrected point: reflection (flip, pitchfork), torus, releases."""
+    K, n = len(sides), room.E.shape[0]
+    for r in range(n):
+        for j in range(n):
+            room.matrix[r, j] = room.behind[r, j] - sigma * room.ahead[r, j]
+    place.numbers[REFLECTION] *= sign_of_determinant(room.matrix)
+    for i in range(K):
+        gain = f.numbers[GAIN_HIGH if sides[i] > 0 else GAIN_LOW]
+        after = strikes[i].motion[1] + place.D[i] * f.B[n // 2, n // 2]
+        place.releases[i] = -sides[i] * after if gain == 1.0 else np.inf
+    place.numbers[TORUS], place.numbers[UNSTABLE] = 1.0, -1.0
+    # multipliers: eigenvalues of -sigma ahead^-1 behind
+    a = room.pair
+    for r in range(n):
+        for j in range(n):
+            a[r, j], a[r, n + j] = room.ahead[r, j], -sigma * room.behind[r, j]
+    if not divide(a):
+        return
+    for r in range(n):
+        for j in range(n):
+            room.matrix[r, j] = a[r, n + j]
+    if not eigenvalues(room.matrix, n, room.re, room.im):
+        return
+    outside = 0.0
+    for i in range(n):
+        if room.re[i] * room.re[i] + room.im[i] * room.im[i] > 1.0:
+            outside += 1.0
+    place.numbers[UNSTABLE] = outside
+    if n > 2:
+        place.numbers[TORUS] = torus(room.re, room.im)
+
+
+@jit
+def torus(re, im):
+    """prod_{i<j} (1 - mu_i mu_j): zero at a Neimark-Sacker point, and at a neutral saddle. 1 without losses."""
+    x, y, u, v = 1.0, 0.0, 1.0, 0.0
+    for i in range(len(re)):
+        u, v = u * re[i] - v * im[i], u * im[i] + v * re[i]
+        for j in range(i):
+            p, q = 1.0 - re[i] * re[j] + im[i] * im[j], -re[i] * im[j] - im[i] * re[j]
+            x, y = x * p - y * q, x * q + y * p
+    return x if abs(math.hypot(u, v) - 1.0) > 1e-9 else 1.0
+
+
+@jit
+def divide(a):
+    """Overwrite the right half of (n, 2n) by the inverse of the left half times it."""
+    n = len(a)
+    for j in range(n):
+        best = j
+        for i in range(j + 1, n):
+            if abs(a[i, j]) > abs(a[best, j]):
+                best = i
+        if not abs(a[best, j]) > 0.0:
+            return False
+        if best != j:
+            for k in range(j, 2 * n):
+                a[best, k], a[j, k] = a[j, k], a[best, k]
+        inverse = 1.0 / a[j, j]
+        for k in range(j, 2 * n):
+            a[j, k] *= inverse
+        for i in range(n):
+            if i != j:
+                factor = a[i, j]
+                for k in range(j, 2 * n):
+                    a[i, k] -= factor * a[j, k]
+    return True
+
+
+@jit
+def happens(sides, steps, a, b):
+    """Whether a test changes its sign between two points."""
+    x, y = a.numbers, b.numbers
+    if not steps.low < y[P] < steps.high:
+        return True
+    pushing = True
+    for i in range(len(a.t)):
+        pushing = pushing and sides[i] * b.D[i] < 0.0
+        if a.releases[i] > 0.0 >= b.releases[i]:
+            return True
+    if not pushing or x[MARGIN] > 0.0 >= y[MARGIN] or x[TANGENT] * y[TANGENT] < 0.0:
+        return True
+    return x[REFLECTION] * y[REFLECTION] < 0.0 or x[TORUS] * y[TORUS] < 0.0
+
+
+@jit
+def comes_back(steps, a, first, length):
+    """Whether the step from a passes the first point; times count modulo the forcing period."""
+    K = len(a.t)
+    shift = 0.0
+    for i in range(K):
+        shift += (first.t[i] - a.t[i]) / steps.scale_t / K
+    turn = 2.0 * math.pi
+    shift = steps.scale_t * turn * math.floor(shift / turn + 0.5)
+    offset = (first.numbers[P] - a.numbers[P]) / steps.scale_p
+    along, size = offset * a.numbers[TANGENT] / steps.scale_p, offset * offset
+    for i in range(K):
+        x, y = (first.t[i] - a.t[i] - shift) / steps.scale_t, (first.D[i] - a.D[i]) / steps.scale_jump
+        along += x * a.tangent_t[i] / steps.scale_t + y * a.tangent_jump[i] / steps.scale_jump
+        size += x * x + y * y
+    return 0.0 <= along <= length and size - along * along < 0.01 * length * length
