@@ -1,20 +1,9 @@
 """Control points of x1 over the cells, by which a scan excludes cells without contact."""
 
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.tables.flight import CHUNK, ORDER
+from vibro_sweep.engine.tables.exclusion import bound_fourth
+from vibro_sweep.engine.tables.flight import CHUNK
 from vibro_sweep.engine.tables.stiff import add_stiff_remainder, slow_part
-
-
-@jit
-def fourth_derivative_bound(q, x1, v1, x2, v2, sin, cos):
-    """Bound on the fourth derivative of x1 over a cell that begins with this state: the sum of its terms' sizes."""
-    s = q.series[0]
-    total, power = 0.0, 1.0
-    for n in range(4, ORDER):
-        c = (s[0, n] * x1 + s[1, n] * v1) + (s[2, n] * x2 + s[3, n] * v2) + (s[4, n] * sin + s[5, n] * cos)
-        total += n * (n - 1.0) * (n - 2.0) * (n - 3.0) * power * abs(c)
-        power *= q.width
-    return total
 
 
 @jit
@@ -41,10 +30,8 @@ def fill_scan(q, nodes, scan, psi, omega_squared, mu_m, f2):
                 scan[i, 2 * k - 1] = x - third * v
         if not q.stiff:
             for i in range(4):
-                free = fourth_derivative_bound(q, E[i, 0], E[i, 1], E[i, 2], E[i, 3], 0.0, 0.0)
-                q.remainder[i] = max(q.remainder[i], free)
-            forced = fourth_derivative_bound(q, z[0], z[1], z[2], z[3], z[4], z[5])
-            q.remainder[4] = max(q.remainder[4], forced)
+                q.remainder[i] = max(q.remainder[i], bound_fourth(q, E[i], 4))
+            q.remainder[4] = max(q.remainder[4], bound_fourth(q, z, 6))
     for i in range(5):
         largest = 0.0
         for p in range(2 * q.cells + 1):

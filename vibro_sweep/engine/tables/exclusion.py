@@ -3,6 +3,7 @@
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.lanes import LANES, eight, number
 from vibro_sweep.engine.tables.flight import CHUNK, ORDER
 
 ROUNDING = 1e-15  # of a control point of two masses, a few units in the last place of each of its terms
@@ -11,14 +12,14 @@ ROUNDING = 1e-15  # of a control point of two masses, a few units in the last pl
 @jit
 def bound_fourth(q, X, count):
     """Bound on the fourth derivative of x1 over a cell that begins with the first `count` inputs X."""
-    s, total, power = q.series[0], 0.0, 1.0
-    for n in range(4, ORDER):
-        c = 0.0
-        for j in range(count):
-            c += s[j, n] * X[j]
-        total += n * (n - 1.0) * (n - 2.0) * (n - 3.0) * power * abs(c)
-        power *= q.width
-    return total
+    s = q.series[0]
+    first, second = eight(s, 0) * X[0], eight(s, LANES) * X[0]
+    for j in range(1, count):
+        first = first + eight(s, ORDER * j) * X[j]
+        second = second + eight(s, ORDER * j + LANES) * X[j]
+    terms = abs(first) * eight(q.fourth, 0) + abs(second) * eight(q.fourth, LANES)
+    low = (number(terms, 0) + number(terms, 1)) + (number(terms, 2) + number(terms, 3))
+    return low + ((number(terms, 4) + number(terms, 5)) + (number(terms, 6) + number(terms, 7)))
 
 
 @jit

@@ -63,7 +63,8 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         ("rest_response", float, 2),  # steady response of x2 to sin and cos
         ("reach", float, ORDER),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
         ("impulse_third", float),  # bound on |d3 x1/du3| over a cell after a unit impulse on M1
-        ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell
+        ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell, and
+        ("fourth", float, ORDER),  # on the fourth
         ("frame_series", float, (ORDER, states)),  # of tangent.py, like all that follow
         ("vanishing", np.int64),  # directions that a flight over a cell takes below the rounding of the others
         ("stretch", np.int64),  # cells that may be flown between looks at the tangent vectors, and
@@ -97,6 +98,7 @@ def node_of(masses: int, constant: bool = False) -> np.dtype:
         # flight from node 0: row j is X here of the unit state j there, the others that of the force's sin and cos
         ("E", float, (inputs + inputs % 2, width)),  # there, and of the constant force, from rest; padded
         ("forced", float, (masses, 2, 2)),  # modal motion from rest at node 0: mode; xi, xi'; to sin, cos there
+        ("turn", float, 2),  # sin and cos of omega t
         ("frame", float, states),  # c_1, s_1, c_2, s_2, ... of a flight from node 0
     ]
     return record(fields)

@@ -39,6 +39,8 @@ def fill_motion(q, nodes, psi, omega_squared, f2, tau):
         for i in range(LANES):
             z[i] = 0.0
         z[4], z[5] = math.sin(phase), math.cos(phase)
+        angle = 2.0 * math.pi * (k / cells)
+        nodes[k].turn[0], nodes[k].turn[1] = math.sin(angle), math.cos(angle)
     for j in range(2):
         eta, square = q.zeta * omega_squared[j], omega_squared[j]
         force = psi[0, j] * (1.0 - f2) + psi[1, j] * f2
@@ -53,32 +55,36 @@ def fill_motion(q, nodes, psi, omega_squared, f2, tau):
                 add_mode(nodes[k].z, psi, j, xi, rate)
                 add_fast_response(q, nodes[k].E, psi, j, square, size * detuning, size * damping, k)
             continue
-        first, one = nodes[0].forced[j], nodes[1].forced[j]
-        first[0, 0] = first[0, 1] = first[1, 0] = first[1, 1] = 0.0
-        one[0, 0], one[1, 0] = forced_series(eta, square, q.omega, q.width, 1.0, 0.0)
-        one[0, 1], one[1, 1] = forced_series(eta, square, q.omega, q.width, 0.0, 1.0)
+        fill_mode(q, nodes, j, eta, square)
+        sin, cos = nodes[0].z[4], nodes[0].z[5]
         for k in range(cells + 1):
-            if k > 1:
-                step = k & -k if k & (k - 1) else k // 2
-                before, after, out = nodes[k - step].forced[j], nodes[step].forced[j], nodes[k].forced[j]
-                _, s, xi, rate = decaying(eta, square, step * q.width)
-                angle = 2.0 * math.pi * ((k - step) / cells)
-                swing, turn = math.sin(angle), math.cos(angle)
-                for i in range(2):  # to sin and cos at node 0
-                    there = (
-                        after[0, 0] * turn - after[0, 1] * swing if i == 0 else after[0, 0] * swing + after[0, 1] * turn
-                    )
-                    moving = (
-                        after[1, 0] * turn - after[1, 1] * swing if i == 0 else after[1, 0] * swing + after[1, 1] * turn
-                    )
-                    out[0, i] = xi * before[0, i] + s * before[1, i] + there
-                    out[1, i] = rate * before[1, i] - square * s * before[0, i] + moving
-            g, sin, cos = nodes[k].forced[j], nodes[0].z[4], nodes[0].z[5]
+            g = nodes[k].forced[j]
             add_mode(nodes[k].E[4], psi, j, force * g[0, 0], force * g[1, 0])
             add_mode(nodes[k].E[5], psi, j, force * g[0, 1], force * g[1, 1])
             add_mode(
                 nodes[k].z, psi, j, force * (g[0, 0] * sin + g[0, 1] * cos), force * (g[1, 0] * sin + g[1, 1] * cos)
             )
+
+
+@jit
+def fill_mode(q, nodes, j, eta, square):
+    """What sin and cos at node 0 do to mode j from rest, at each node."""
+    first, one = nodes[0].forced[j], nodes[1].forced[j]
+    first[0, 0] = first[0, 1] = first[1, 0] = first[1, 1] = 0.0
+    one[0, 0], one[1, 0] = forced_series(eta, square, q.omega, q.width, 1.0, 0.0)
+    one[0, 1], one[1, 1] = forced_series(eta, square, q.omega, q.width, 0.0, 1.0)
+    for k in range(2, q.cells + 1):
+        step = k & -k if k & (k - 1) else k // 2
+        before, after, out = nodes[k - step].forced[j], nodes[step].forced[j], nodes[k].forced[j]
+        c, s = nodes[step].frame[2 * j], nodes[step].frame[2 * j + 1]
+        xi, rate = c + eta * s, c - eta * s
+        if eta * eta > square:  # overdamped: the difference would cancel
+            _, _, xi, rate = decaying(eta, square, step * q.width)
+        swing, turn = nodes[k - step].turn[0], nodes[k - step].turn[1]
+        out[0, 0] = xi * before[0, 0] + s * before[1, 0] + (after[0, 0] * turn - after[0, 1] * swing)
+        out[0, 1] = xi * before[0, 1] + s * before[1, 1] + (after[0, 0] * swing + after[0, 1] * turn)
+        out[1, 0] = rate * before[1, 0] - square * s * before[0, 0] + (after[1, 0] * turn - after[1, 1] * swing)
+        out[1, 1] = rate * before[1, 1] - square * s * before[0, 1] + (after[1, 0] * swing + after[1, 1] * turn)
 
 
 @jit

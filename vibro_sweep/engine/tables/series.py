@@ -37,6 +37,8 @@ def set_grid(q, cells, omega, rate):
         q.reach[n] = power if n > 0 else 0.0
         if n < ORDER - 3:
             q.third[n + 3] = (n + 3.0) * (n + 2.0) * (n + 1.0) * power
+        if n < ORDER - 4:
+            q.fourth[n + 4] = (n + 4.0) * (n + 3.0) * (n + 2.0) * (n + 1.0) * power
         power *= q.step
 
 
