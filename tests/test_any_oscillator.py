@@ -10,6 +10,7 @@ from reference.any_naive import highest_turn, simulate
 from support.any_oscillators import drawn
 
 import vibro_sweep as vs
+from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.period_map import PeriodMap
 from vibro_sweep.model.parameters import NAMES
 
@@ -340,3 +341,20 @@ def test_a_free_mode_of_the_paper():
     system = vs.System(mu_m=10, mu_k=0, zeta=0.05, f2=0.2, omega=0.63, R=0.8, b=1e3, tau=0.3)
     exponents = vs.lyapunov(system, [0.1, 0.2, 0.3, 0.1], transient=0, periods=20)
     np.testing.assert_allclose(exponents, [0, 0, -0.055, -0.055], rtol=0, atol=1e-13)  # eta_2 = zeta (1 + 1/mu_m)
+
+
+@pytest.mark.parametrize("masses", FAST)
+def test_eight_orbits_are_as_one_alone(masses):
+    """Bit for bit, whatever the others do; chatter and rests among them."""
+    system, state = drawn(2, masses, R=0.5, b=0.4)
+    engine = Engine(system)
+    states = engine.to_contact(state + 0.05 * np.random.default_rng(1).normal(size=(8, 2 * masses)))
+    states = states[(states[:, 0] > engine.stops.left) & (states[:, 0] < engine.stops.right)]
+    together, records = engine.carry_eight(states, 0, 20)
+    ends, logged = together["X"].copy(), together["impacts_logged"].copy()
+    rows = [records.impacts[i, :count].copy() for i, count in enumerate(logged)]
+    assert len(states) > 4 and logged.sum() > 100
+    for i, start in enumerate(states):
+        alone, record = engine.carry_eight(start[None], 0, 20)
+        assert np.array_equal(alone["X"][0], ends[i])
+        assert np.array_equal(record.impacts[0, : logged[i]], rows[i])
