@@ -6,10 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference.any_naive import simulate
+from reference.any_naive import highest_turn, simulate
 from support.any_oscillators import drawn
 
 import vibro_sweep as vs
+from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.period_map import PeriodMap
 from vibro_sweep.model.parameters import NAMES
 
@@ -302,3 +303,58 @@ def test_derivatives_of_the_period_map(changes):
         )
         bound = 1e-6 * max(np.abs(found.parameters[0][:, j]).max(), 1)
         np.testing.assert_allclose(found.parameters[0][:, j], quotient, atol=bound, err_msg=name)
+
+
+def without_stops(system):
+    return system.replace(stops="right", offset=0.0, b=1e9)
+
+
+@pytest.mark.parametrize(
+    ("masses", "flights"),
+    [*((n, 20) for n in FAST), *(pytest.param(n, 600, marks=pytest.mark.slow) for n in (*FAST, *SLOW))],
+)
+def test_near_grazes(masses, flights):
+    """The stop a part 10^-1 .. 10^-15 below or beyond the highest turning point: none missed and none invented."""
+    rng, found = np.random.default_rng(masses), 0
+    while found < flights:
+        system, state = drawn(int(rng.integers(40)), masses)
+        free = without_stops(system)
+        state = state + rng.normal(size=2 * masses)
+        turn = highest_turn(free.linear, state)
+        begin = free.linear.along @ state[0::2]
+        if turn is None or not turn[0] > begin + 0.1:
+            continue
+        part = 10.0 ** -rng.uniform(1, 15) * rng.choice([-1, 1])
+        wall = float(turn[0]) * (1 - part)
+        sizes = np.abs(free.linear.along) @ np.abs(state[0::2]) + abs(wall)
+        beyond = float(turn[0] - mpf(wall))
+        if abs(beyond) < 1e-14 * sizes or wall <= begin:  # either answer is right
+            continue
+        found += 1
+        times = vs.simulate(free.replace(b=wall), state, 1).impacts["t"]
+        # after its highest turning point the gap may still rise up to the end of the period
+        assert bool((times < float(turn[1]) + 1e-6).any()) == (beyond > 0), (part, beyond)
+
+
+def test_a_free_mode_of_the_paper():
+    """Without a spring to the ground: two exponents are zero."""
+    system = vs.System(mu_m=10, mu_k=0, zeta=0.05, f2=0.2, omega=0.63, R=0.8, b=1e3, tau=0.3)
+    exponents = vs.lyapunov(system, [0.1, 0.2, 0.3, 0.1], transient=0, periods=20)
+    np.testing.assert_allclose(exponents, [0, 0, -0.055, -0.055], rtol=0, atol=1e-13)  # eta_2 = zeta (1 + 1/mu_m)
+
+
+@pytest.mark.parametrize("masses", FAST)
+def test_eight_orbits_are_as_one_alone(masses):
+    """Bit for bit, whatever the others do; chatter and rests among them."""
+    system, state = drawn(2, masses, R=0.5, b=0.4)
+    engine = Engine(system)
+    states = engine.to_contact(state + 0.05 * np.random.default_rng(1).normal(size=(8, 2 * masses)))
+    states = states[(states[:, 0] > engine.stops.left) & (states[:, 0] < engine.stops.right)]
+    together, records = engine.carry_eight(states, 0, 20)
+    ends, logged = together["X"].copy(), together["impacts_logged"].copy()
+    rows = [records.impacts[i, :count].copy() for i, count in enumerate(logged)]
+    assert len(states) > 4 and logged.sum() > 100
+    for i, start in enumerate(states):
+        alone, record = engine.carry_eight(start[None], 0, 20)
+        assert np.array_equal(alone["X"][0], ends[i])
+        assert np.array_equal(record.impacts[0, : logged[i]], rows[i])

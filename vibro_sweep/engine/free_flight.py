@@ -11,6 +11,7 @@ import numpy as np
 from vibro_sweep.engine.motion.free import find_contacts, find_extremes
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.variational.propagator import SIZE, fly, new_scratch
+from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.sensitivity import flight_equations
 
@@ -39,6 +40,7 @@ class FreeFlight:
     """
 
     def __init__(self, system: System):
+        check_type("system", system, System, "a System")
         self._engine = Engine(system)
         self._numbers = system.parameters()
         self._A = flight_equations(self._numbers).A

@@ -23,6 +23,7 @@ from vibro_sweep.engine.variational.grazing_map import Expansion, iterate
 from vibro_sweep.engine.variational.propagator import SIZE, new_scratch
 from vibro_sweep.engine.variational.sensitivity import Equations, differentiate
 from vibro_sweep.model import status
+from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.grazing import expansion_point
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.parameters import FREE_MOTION, NAMES
@@ -60,10 +61,11 @@ class PeriodMap:
         whatever the system's tau, and which knows no behind of a stop
     expand_at : clearance at which that is expanded, by default the exact b*
 
-    Raises ValueError for another order.
+    Raises ValueError for another order, TypeError for an oscillator that is no System.
     """
 
     def __init__(self, system: System, order: int = 0, expand_at: float | None = None):
+        check_type("system", system, System, "a System")
         if order not in (0, 1, 2):
             raise ValueError(f"order: {order!r} is not allowed; it must be 0 (the flow), 1 or 2")
         self.system = system if order == 0 else system.replace(tau="grazing")

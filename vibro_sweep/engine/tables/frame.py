@@ -30,6 +30,8 @@ def fill_frame(q, psi, omega_squared, mu_m):
         slowest = min(slowest, eta if square >= 0.0 else omega_squared[j] / (eta + math.sqrt(-square)))
         # near critical damping the plane shears instead of turning; any scale then serves
         scale = max(math.sqrt(abs(square)), 1e-3 * math.sqrt(omega_squared[j]))
+        if scale == 0.0:  # a free mode
+            scale = q.omega
         turning = turning and square > 1e-6 * omega_squared[j]
         q.frame_square[j], q.frame_scale[j] = square, scale
         series[0, 2 * j], series[1, 2 * j] = 1.0, -eta
