@@ -101,3 +101,23 @@ def test_the_double_graze_unfolds_in_a_plane(tmp_path):
     for label, (offset, b) in curves.items():
         sign = -1 if "right" in label else 1
         np.testing.assert_allclose(b, star + sign * np.asarray(offset), rtol=1e-14)
+
+
+@pytest.mark.parametrize("name", ["cavity", "one"])
+def test_a_single_orbit(name):
+    """As a Dataset, and as a picture of its gap."""
+    if name == "cavity":
+        system = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.05, zeta=0.01, F=0.1, omega=1.0, R=0.7, b=1.0)
+        start = (0, 0.1, 0, 0)
+    else:
+        system, start = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4, offset=0.5), (0, 0, 0, 0)
+    orbit = vs.simulate(system, start, 40)
+    data = orbit.to_xarray()
+    assert data.x2.shape == (41,) and len(data.impact_t) == len(orbit.impacts) > 10
+    portrait = orbit.plot().axes[0]
+    low, high = (-3.5, 4.5) if name == "one" else (-1, 1)
+    x = portrait.lines[0].get_xdata()
+    assert np.nanmin(x) == pytest.approx(low, abs=1e-12) and np.nanmax(x) <= high + 1e-12
+    if name == "cavity":
+        np.testing.assert_allclose(data.impact_x2 - data.impact_x1, data.impact_side, rtol=1e-14)
+        assert (portrait.get_xlabel(), data.attrs["mass_ratio"]) == ("$g$", 0.05)
