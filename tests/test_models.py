@@ -264,3 +264,30 @@ def test_a_sweep_of_what_a_function_makes(tmp_path):
         vs.sweep(lambda play: play, {"play": [1.0]})
     with pytest.raises(ValueError, match="axes: play"):
         vs.sweep(damper, {"play": ["a"]})
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 1.0])
+def test_attractors_of_one_mass(stiffness):
+    """Random starts, which are grouped and numbered for any number of masses."""
+    one = oscillator("one_mass", F=0.6, k=stiffness, stops="both", zeta=0.1)
+    data = vs.sweep(
+        one, {"b": [0.8, 1.0]}, start={"random": 6}, observe=("attractors", "section"), transient=300, record=60
+    )
+    assert (data["status"] == 0).all() and (data["attractor_id"] >= 1).all()
+    assert data.sizes["averaged"] == 5
+    first = data.isel(b=0)
+    for i in range(6):
+        same = first["attractor"] == first["attractor"][i]
+        assert first["share"][i] == same.mean()
+
+
+def test_no_spring_to_the_ground():
+    """mu_k = 0: the centre of mass drifts freely, x1 + mu_m x2 as the force pushes it."""
+    system = vs.System(**(PAPER | dict(mu_k=0.0, b=1e6, zeta=0.0, tau=0.4)))
+    orbit = vs.simulate(system, (0, 0.2, 0, 0.1), 10)
+    t, (x1, v1, x2, v2) = orbit.section_times, orbit.section.T
+    w, momentum = 0.63, 0.2 + 10 * 0.1
+    push = (math.cos(0.4) - np.cos(w * t + 0.4)) / w
+    way = (momentum + math.cos(0.4) / w) * t - (np.sin(w * t + 0.4) - math.sin(0.4)) / w**2
+    np.testing.assert_allclose(v1 + 10 * v2, momentum + push, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(x1 + 10 * x2, way, rtol=1e-12, atol=1e-11)

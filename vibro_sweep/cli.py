@@ -3,7 +3,6 @@
 Commands import what they need when they run, so that `--help` answers at once.
 """
 
-import contextlib
 import shlex
 from pathlib import Path
 from typing import Annotated
@@ -14,6 +13,7 @@ from vibro_sweep.model.pictures import PICTURES
 
 from . import interrupt
 from .console import BAD_INPUT, BAD_POINTS, InputError, ended, input_errors, messages, say
+from .options import executor_of, key_and_value, number_in, positive
 from .usage import called
 
 app = typer.Typer(
@@ -35,14 +35,6 @@ DataFile = Annotated[Path, typer.Argument(metavar="FILE.h5", exists=True, dir_ok
 def main(argv: list[str] | None = None) -> int:
     """Run the program with `argv`, by default the arguments of the process; return its exit status."""
     return ended(lambda: called(app, argv))
-
-
-def _positive(text: str) -> int:
-    from .driver import MOST_WORKERS
-
-    if not text.isdecimal() or len(text) > 9 or not 1 <= int(text) <= MOST_WORKERS:
-        raise typer.BadParameter(f"{text!r} is not a whole number >= 1 and <= {MOST_WORKERS}")
-    return int(text)
 
 
 def _show_version(wanted: bool):
@@ -71,7 +63,7 @@ def run(
     ] = None,
     workers: Annotated[
         int | None,
-        typer.Option(parser=_positive, metavar="N", help="Threads; by default one for each core."),
+        typer.Option(parser=positive, metavar="N", help="Threads; by default one for each core."),
     ] = None,
     scheduler: Annotated[
         str | None,
@@ -111,7 +103,7 @@ def run(
     from .driver import sweep
     from .progress import progress_bar
 
-    workers_of_a_cluster = _executor(scheduler)
+    workers_of_a_cluster = executor_of(scheduler)
     with input_errors(StoreError), interrupt.tidied_up():
         interrupt.tells(to_continue)
         try:
@@ -170,12 +162,12 @@ def plot_command(
     ] = False,
 ):
     """Draw what a file holds."""
-    values = dict(_value(one) for one in at or ())
+    values = dict(key_and_value(one) for one in at or ())
     pairs = [
-        pair and tuple(_number(f"--{name}", text) for text in pair)
+        pair and tuple(number_in(f"--{name}", text) for text in pair)
         for name, pair in (("xlim", xlim), ("ylim", ylim), ("size", size))
     ]
-    _draw(file, output, kind, overwrite, False, values, variable, *pairs, dpi and _number("--dpi", dpi))
+    _draw(file, output, kind, overwrite, False, values, variable, *pairs, dpi and number_in("--dpi", dpi))
 
 
 @app.command()
@@ -276,42 +268,6 @@ def schema():
     from .scene import json_schema
 
     say(json.dumps(json_schema(), indent=2))
-
-
-def _executor(scheduler: str | None) -> contextlib.AbstractContextManager:
-    """That of a Dask scheduler, or None for threads."""
-    if scheduler is None:
-        return contextlib.nullcontext()
-    try:
-        from .driver.cluster import ClusterError, cluster
-    except ImportError:
-        text = f"--scheduler {scheduler} needs the package dask.distributed: pip install distributed"
-        raise InputError(text) from None
-
-    @contextlib.contextmanager
-    def connected():
-        try:
-            with cluster(scheduler) as executor:
-                yield executor
-        except ClusterError as error:
-            raise InputError(f"--scheduler {scheduler}: {error}") from None
-
-    return connected()
-
-
-def _value(text: str) -> tuple[str, float]:
-    """KEY=VALUE, as --at has it."""
-    key, equals, value = text.partition("=")
-    if not equals:
-        raise InputError(f"--at {text}: write KEY=VALUE, for example b=6.6")
-    return key.strip(), _number(f"--at {key}", value)
-
-
-def _number(option: str, text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise InputError(f"{option}: {text!r} is no number") from None
 
 
 def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, *look):

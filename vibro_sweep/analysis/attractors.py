@@ -25,7 +25,7 @@ def group(period, average, error) -> np.ndarray:
     Parameters
     ----------
     period : (..., orbits), 0 where there is none
-    average, error : (..., orbits, 7), as `AVERAGED`; NaN of an orbit that has not settled
+    average, error : (..., orbits, 2 N + 3), as `averaged` says; NaN of an orbit that has not settled
     """
     low, high = ranges(period, average, error)
     waiting = settled(low)
@@ -46,20 +46,20 @@ def group(period, average, error) -> np.ndarray:
 
 
 def ranges(period, average, error) -> tuple[np.ndarray, np.ndarray]:
-    """Where the averages of an orbit may be, (..., 7): least and greatest."""
+    """Where the averages of an orbit may be, (..., 2 N + 3): least and greatest."""
     low, high = average - ERRORS * error, average + ERRORS * error
-    low[period > 0, 6], high[period > 0, 6] = -np.inf, np.inf  # a periodic orbit is known better by the rest
+    low[period > 0, -1], high[period > 0, -1] = -np.inf, np.inf  # a periodic orbit is known better by the rest
     return low, high
 
 
 def settled(low) -> np.ndarray:
     """Whether the averages of an orbit are known."""
-    return np.isfinite(low[..., :6]).all(axis=-1)
+    return np.isfinite(low[..., :-1]).all(axis=-1)
 
 
 def doubtful(period, average, error) -> np.ndarray:
     """Whether an orbit may be on its way to a periodic one."""
-    return (period == 0) & (average[..., 6] <= CERTAIN * error[..., 6])
+    return (period == 0) & (average[..., -1] <= CERTAIN * error[..., -1])
 
 
 def alike(period, base) -> np.ndarray:

@@ -24,8 +24,9 @@ class Attractors(NamedTuple):
     """What is known of attractors, (..., attractors): those of a point along the last axis, in any order."""
 
     period: np.ndarray  # forcing periods; 0: none; -1: there is no attractor
-    mean: np.ndarray  # (..., attractors, 6): x1, v1/omega, x2, v2/omega at the section, impacts right and left
-    error: np.ndarray  # (..., attractors, 6), of the mean
+    # (..., attractors, 2 N + 2): x1, v1/omega, ... at the section, impacts right and left
+    mean: np.ndarray
+    error: np.ndarray  # of the mean
     size: np.ndarray  # of the motion: the greatest of b and the mean's coordinates
     first: np.ndarray  # the first orbit that reaches it
 
@@ -41,25 +42,25 @@ def known(first, period, average, error, omega, b) -> Attractors:
     ----------
     first : (points, attractors), its place among the point's orbits; -1: there is no attractor
     period : (points, orbits)
-    average, error : (points, orbits, 7), as `attractors.group` has them
+    average, error : (points, orbits, 2 N + 3), as `attractors.group` has them
     omega, b : (points,)
     """
     there = first >= 0
-    unit = np.ones((len(first), 1, 6))
-    unit[:, 0, 1] = unit[:, 0, 3] = 1 / omega
+    unit = np.ones((len(first), 1, average.shape[-1] - 1))
+    unit[:, 0, 1:-2:2] = 1 / omega[:, None]
     mean, spread = (
-        np.where(there[..., None], unit * np.take_along_axis(values[..., :6], first[..., None], axis=1), 0.0)
+        np.where(there[..., None], unit * np.take_along_axis(values[..., :-1], first[..., None], axis=1), 0.0)
         for values in (average, error)
     )
-    size = np.maximum(np.abs(mean[..., :4]).max(axis=-1), b[:, None])
+    size = np.maximum(np.abs(mean[..., :-2]).max(axis=-1), b[:, None])
     return Attractors(np.where(there, np.take_along_axis(period, first, axis=1), -1), mean, spread, size, first)
 
 
-def none(points: int, most: int) -> Attractors:
-    """Room for so many attractors, with none there."""
+def none(points: int, most: int, means: int = 6) -> Attractors:
+    """Room for so many attractors with so many means, with none there."""
     shape = (points, most)
     return Attractors(
-        np.full(shape, -1), np.zeros((*shape, 6)), np.zeros((*shape, 6)), np.ones(shape), np.full(shape, -1)
+        np.full(shape, -1), np.zeros((*shape, means)), np.zeros((*shape, means)), np.ones(shape), np.full(shape, -1)
     )
 
 
@@ -71,16 +72,17 @@ def distance(one: Attractors, other: Attractors) -> np.ndarray:
     """
     farthest = np.zeros((*one.period.shape, other.period.shape[-1]))
     size = np.maximum(one.size[..., :, None], other.size[..., None, :])
-    rates = [np.maximum(known.mean[..., 4], known.mean[..., 5]) for known in (one, other)]
+    rates = [known.mean[..., -2:].max(axis=-1) for known in (one, other)]
     rate = np.maximum(np.maximum(rates[0][..., :, None], rates[1][..., None, :]), EQUAL)
     periods = one.period[..., :, None], other.period[..., None, :]
     same = (periods[0] >= 0) & (periods[1] >= 0) & ((periods[0] > 0) == (periods[1] > 0))
-    for i in range(6):
+    means = one.mean.shape[-1]
+    for i in range(means):
         change = np.abs(one.mean[..., :, None, i] - other.mean[..., None, :, i])
         change -= ERRORS * (one.error[..., :, None, i] + other.error[..., None, :, i])
-        if i >= 4:
+        if i >= means - 2:
             same &= (periods[0] == 0) | (change <= EQUAL)
-        farthest = np.maximum(farthest, change / (size if i < 4 else rate))
+        farthest = np.maximum(farthest, change / (size if i < means - 2 else rate))
     return np.where(same & (farthest <= NEAR), farthest, np.inf)
 
 
@@ -105,9 +107,10 @@ def partners(apart: np.ndarray) -> np.ndarray:
 class Follower:
     """Numbers 1, 2, ... for the attractors along a curve of points, in the order in which they are met."""
 
-    def __init__(self):
-        self._last, self._before = none(1, 0), []  # the attractors of the last point, and their numbers
-        self._lost, self._numbers = none(1, REMEMBERED), [0] * REMEMBERED
+    def __init__(self, masses: int = 2):
+        means = 2 * masses + 2
+        self._last, self._before = none(1, 0, means), []  # the attractors of the last point, and their numbers
+        self._lost, self._numbers = none(1, REMEMBERED, means), [0] * REMEMBERED
         self._next, self._slot = 1, 0
 
     def number(self, found: Attractors) -> np.ndarray:

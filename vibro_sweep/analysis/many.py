@@ -14,8 +14,8 @@ class Orbits(NamedTuple):
     """What is known of some orbits, as `attractors.group` takes it."""
 
     period: np.ndarray  # (orbits,)
-    average: np.ndarray  # (orbits, 7)
-    error: np.ndarray  # (orbits, 7)
+    average: np.ndarray  # (orbits, 2 N + 3)
+    error: np.ndarray  # (orbits, 2 N + 3)
 
 
 def group_pieces(ends: list[int], read: Callable[[int], Orbits], room: int = ROOM) -> np.ndarray:

@@ -32,7 +32,7 @@ def number_attractors(scene: Scene, file: Arrays, room: int = ROOM) -> None:
     names = [*scene.sweep, *(["start"] if scene.n_starts > 1 else [])]
     keys = [axis for axis, name in enumerate(names) if not name.startswith("start")]
     orbits = math.prod(extent for axis, extent in enumerate(scene.shape) if axis not in keys)
-    follower = Follower()
+    follower = Follower(scene.system.masses)
     for part, order in _curve(tuple(scene.shape[axis] for axis in keys), max(1, room // orbits)):
         box = [slice(0, extent) for extent in scene.shape]
         for axis, one in zip(keys, part, strict=True):

@@ -37,18 +37,14 @@ def energies_of(
             flat.reshape(1, -1), np.stack([begins, begins]), passed, nothing[..., None], nothing, nothing[..., None],
             workspace, plan, None,
         )  # fmt: skip
-        begins, resting = passed["end"][0], passed["resting"][0]
+        begins, resting = passed["end"][0], passed["resting"][0].copy()  # as laid out as the other
     begins = at_contact(flat, begins, resting)
     wanted = {
         "loss": np.empty(len(flat)),
         "squares": np.empty((len(flat), states)),
         "peaks": np.empty((len(flat), states)),
     }
-    back = (
-        flat["back"]
-        if "back" in flat.dtype.names
-        else np.broadcast_to(np.eye(kind.masses), (len(flat), kind.masses, kind.masses))
-    )
+    back = flat["back"] if "back" in flat.dtype.names else np.tile(np.eye(kind.masses), (len(flat), 1, 1))
     parts = _parts(flat)
     masses, room = _contact_masses(block, shape).reshape(-1), ROOM
     while True:  # once in any case: what a scene needs is compiled with its first point, however that goes

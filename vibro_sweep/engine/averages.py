@@ -13,8 +13,8 @@ COARSEST, FINEST = 5, 20  # parts of the record; the longer ones show correlatio
 def keep_averages(section, T, repeat, o, result):
     """Keep the averages of an orbit that has settled, and their errors.
 
-    (7,): x1, v1, x2, v2 of the section points, impacts in a forcing period on the right and on the left, lambda_1. Of
-    a periodic orbit over one period, the one that o has just counted impacts in; the error is how far it can be from
+    (2 N + 3,): x1, v1, ... of the section points, impacts in a forcing period on the right and on the left, lambda_1.
+    Of a periodic orbit over one period, the one that o has just counted impacts in; the error is how far it can be from
     where it converges to, if its points change by no more than the part `repeat` in a period. Else over the record,
     with the standard error.
     """

@@ -65,8 +65,8 @@ def plan_of(transient: int = 0, record: int = 0, lyapunov: bool = False) -> poin
 
 
 def is_paper(system) -> bool:
-    """Whether it is the paper's oscillator, with proportional damping."""
-    return isinstance(system, System) and (system.mu_c is None or system.mu_c == system.mu_k)
+    """Whether it is the paper's oscillator, with proportional damping and without a free mode."""
+    return isinstance(system, System) and system.mu_k > 0 and (system.mu_c is None or system.mu_c == system.mu_k)
 
 
 def point_of_one(system, later: float) -> tuple[np.ndarray, Kind]:

@@ -141,7 +141,7 @@ def poincare(result: Result):
         size = np.clip(60 / np.sqrt(_different(x)), 2, 8)
         ax.plot(x, v, ".", color=SECTION, markersize=size, markeredgewidth=0, rasterized=True)
         if np.isfinite(x).any():
-            least = 0.01 * (result.number("b", point.place) or 0.0)
+            least = 0.01 * abs(result.number("b", point.place) or 0.0)
             ax.set(xlim=limits(x, least), ylim=limits(v, least))
         if x_name == "x1" and result.along is None:
             _walls(ax, result, point)

@@ -1,0 +1,51 @@
+"""Values of the command line's options: what their texts mean, and what is wrong with them."""
+
+import contextlib
+
+import typer
+
+from .console import InputError
+
+
+def positive(text: str) -> int:
+    from .driver import MOST_WORKERS
+
+    if not text.isdecimal() or len(text) > 9 or not 1 <= int(text) <= MOST_WORKERS:
+        raise typer.BadParameter(f"{text!r} is not a whole number >= 1 and <= {MOST_WORKERS}")
+    return int(text)
+
+
+def executor_of(scheduler: str | None) -> contextlib.AbstractContextManager:
+    """That of a Dask scheduler, or None for threads."""
+    if scheduler is None:
+        return contextlib.nullcontext()
+    try:
+        from .driver.cluster import ClusterError, cluster
+    except ImportError:
+        text = f"--scheduler {scheduler} needs the package dask.distributed: pip install distributed"
+        raise InputError(text) from None
+
+    @contextlib.contextmanager
+    def connected():
+        try:
+            with cluster(scheduler) as executor:
+                yield executor
+        except ClusterError as error:
+            raise InputError(f"--scheduler {scheduler}: {error}") from None
+
+    return connected()
+
+
+def key_and_value(text: str) -> tuple[str, float]:
+    """KEY=VALUE, as --at has it."""
+    key, equals, value = text.partition("=")
+    if not equals:
+        raise InputError(f"--at {text}: write KEY=VALUE, for example b=6.6")
+    return key.strip(), number_in(f"--at {key}", value)
+
+
+def number_in(option: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"{option}: {text!r} is no number") from None
