@@ -19,13 +19,16 @@ def of_state(system, periods=1, settle=2000):
     return vs.periodic_orbit(system, state=state, periods=periods)
 
 
-def test_sixty_eight_impacts_near_the_onset_of_sticking():
-    orbit = of_state(PAPER.replace(b=0.0647), settle=400)
-    assert orbit.ok and orbit.symmetric and len(orbit.impacts) == 68 and orbit.residual < 1e-10
+@pytest.mark.parametrize(("b", "impacts"), [(0.0647, 68), (0.06464, 106)])
+def test_many_impacts_near_the_onset_of_sticking(b, impacts):
+    """The onset is b = 0.064639143358."""
+    orbit = of_state(PAPER.replace(b=b), settle=400)
+    assert orbit.ok and orbit.symmetric and len(orbit.impacts) == impacts and orbit.residual < 1e-8
     simulated = vs.simulate(orbit.system, orbit.state, 1)
-    assert np.abs(simulated.section[-1] - orbit.state).max() < 1e-11
+    rounding = 1e-17 / np.abs(orbit.impacts["v1"]).min()  # of the gap, over the slowest impact
+    assert np.abs(simulated.section[-1] - orbit.state).max() < 1e-11 + rounding
     assert np.sort(simulated.impacts["v1"]) == pytest.approx(np.sort(orbit.impacts["v1"]), abs=1e-10)
-    expected = 68 * 2 * math.log(PAPER.R) + orbit.system.divergence * orbit.system.period
+    expected = impacts * 2 * math.log(PAPER.R) + orbit.system.divergence * orbit.system.period
     product = np.prod(orbit.half_multipliers)
     assert 2 * math.log(abs(product)) == pytest.approx(expected, rel=1e-9)
     branch = vs.continue_orbit(orbit, "b", (0.06, 0.07))

@@ -12,6 +12,7 @@ import numpy as np
 from vibro_sweep.analysis.impulse_equations import Equations, moves_stops_only
 from vibro_sweep.analysis.long_orbits import is_long, sign_and_log_det, solve_bordered
 from vibro_sweep.analysis.solution import Solution, equations_for
+from vibro_sweep.engine.impulses.equations import ROUNDING
 from vibro_sweep.engine.impulses.green import space
 
 MOST_CORRECTIONS = 12
@@ -139,7 +140,8 @@ class Walk:
             t = x[: self.start.K] * self.scale[0]
             if len(t) and not (np.all(np.diff(t) > 0) and t[-1] - t[0] < e.P):
                 return None
-            if change <= 1e-15 or (change < 1e-9 and change >= 0.3 * before):
+            held = np.abs(F[: self.start.K]).max(initial=0.0) <= ROUNDING * self.start.size_of_gap
+            if change <= 1e-15 or (change < (1e-8 if held else 1e-9) and change >= 0.3 * before):
                 return Point(self, x, e, rows, motion, change, corrections, forwards)
             before = change
         return None

@@ -207,18 +207,26 @@ def linearised(train, contacts, u, motion, J, scratch):
 
 
 MOST_STEPS = 30
+ROUNDING = 1e-13  # of the gap's size
 
 
 @jit
 def newton(train, q, contacts, u, size, F, J, Fp, motion, scratch, rows):
     """Newton's method on u, in place. Returns the size of the last step relative to u, or NaN without convergence.
 
-    Steps longer than a quarter of the least distance between impacts are shortened.
+    Steps longer than a quarter of the least distance between impacts are shortened. It has converged where steps grow
+    no smaller; steps up to 1e-8, as slow impacts leave them, count if the equations hold to rounding.
     """
     K = len(contacts)
-    before = np.inf
+    before, gap = np.inf, math.hypot(q.real, q.imag)
+    for i in range(K):
+        gap = max(gap, abs(contacts[i, STOP]))
     for _ in range(MOST_STEPS):
         equations(train, q, contacts, u, F, J, Fp, motion, scratch)
+        left = 0.0
+        for i in range(K):
+            left = max(left, abs(F[i]), abs(F[K + i]) / q.omega)
+        most = 1e-8 if left <= ROUNDING * gap else 1e-9
         if not solve(J, F, size, rows):
             return np.nan
         longest, reach = 0.0, train.P
@@ -240,7 +248,7 @@ def newton(train, q, contacts, u, size, F, J, Fp, motion, scratch, rows):
             following = u[i + 1] if i + 1 < K else u[0] + train.P
             if not following > u[i]:
                 return np.nan
-        if damping == 1.0 and (change <= 4e-16 or (change < 1e-9 and change >= 0.5 * before)):
+        if damping == 1.0 and (change <= 4e-16 or (change < most and change >= 0.5 * before)):
             return change
         before = change if damping == 1.0 else np.inf
     return np.nan
