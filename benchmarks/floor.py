@@ -17,7 +17,8 @@ from timing import interleaved, spent
 
 from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.engine.simd.jit import entry, jit
-from vibro_sweep.engine.simd.lanes import LANES, new_lines, put, row
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.simd.memory import new_lines, put, row
 from vibro_sweep.engine.tables.economy import FEWER_TERMS
 from vibro_sweep.model.oscillator import System
 

@@ -5,28 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from vibro_sweep.engine.simd.columns import put_transposed, sizes, transposed, weigh
 from vibro_sweep.engine.simd.jit import entry
-from vibro_sweep.engine.simd.lanes import (
-    LANES,
-    LINE,
-    alike,
-    bits,
-    count_leading,
-    eight,
-    lanes_of,
-    new_lines,
-    number,
-    put,
-    put_state,
-    put_transposed,
-    record,
-    row,
-    select,
-    sizes,
-    state_and_rest,
-    transposed,
-    weigh,
-)
+from vibro_sweep.engine.simd.lanes import LANES, alike, bits, count_leading, lanes_of, number, select, state_and_rest
+from vibro_sweep.engine.simd.memory import LINE, eight, new_lines, put, put_state, record, row
 
 SPECIAL = np.array([0.0, -0.0, 1.0, np.inf, -np.inf, np.nan, 1e-310, -1e300])
 

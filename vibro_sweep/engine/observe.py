@@ -11,7 +11,8 @@ from vibro_sweep.engine.motion.orbits import reset_counts
 from vibro_sweep.engine.periods import REPEAT, find_period, has_settled
 from vibro_sweep.engine.point_tables import to_masses
 from vibro_sweep.engine.simd.jit import aside, jit
-from vibro_sweep.engine.simd.lanes import LANES, put
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.simd.memory import put
 from vibro_sweep.engine.variational.multipliers import begin_period, read_period
 from vibro_sweep.engine.variational.spectrum import (
     begin_warm_up,

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.motion.ensemble import Ensemble, Readings, carry
+from vibro_sweep.engine.motion.eight import Ensemble, Readings
+from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Records, place
 from vibro_sweep.engine.points import prepare
 from vibro_sweep.engine.simd.jit import entry, jit

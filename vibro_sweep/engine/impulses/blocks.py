@@ -32,7 +32,7 @@ from vibro_sweep.engine.impulses.medium import (
 )
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.simd.lanes import record
+from vibro_sweep.engine.simd.memory import record
 
 
 def room_of(masses: int) -> np.dtype:

@@ -10,7 +10,7 @@ import numpy as np
 
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.simd.lanes import record
+from vibro_sweep.engine.simd.memory import record
 
 LOW, HIGH, GAIN_LOW, GAIN_HIGH, OMEGA, TAU, PERIOD = range(7)  # of `numbers`; gain: 1 + R, PERIOD: P
 NUMBERS = 7

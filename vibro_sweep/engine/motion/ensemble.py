@@ -10,85 +10,28 @@ import numpy as np
 
 from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
+from vibro_sweep.engine.motion.eight import flight_of, records_of, stops_of
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
 from vibro_sweep.engine.motion.orbits import (
-    Records,
-    Stops,
     add_count,
     keep_start,
-    new_records,
-    orbit_of,
     take_off,
     take_samples,
 )
 from vibro_sweep.engine.motion.scan import careful_state, first_suspect, open_cell, state_at, suspect_state
-from vibro_sweep.engine.motion.strike import clear_counts, strike, strikes_of
+from vibro_sweep.engine.motion.strike import clear_counts, strike
 from vibro_sweep.engine.simd.jit import aside, entry, inline
-from vibro_sweep.engine.simd.lanes import LANES, lanes_of, new_lines, number, put, put_state, row, select
-from vibro_sweep.engine.tables.flight import Flight, load, new_flight
+from vibro_sweep.engine.simd.lanes import LANES, lanes_of, number, select
+from vibro_sweep.engine.simd.memory import put, put_state, row
+from vibro_sweep.engine.tables.flight import load
 from vibro_sweep.engine.variational import tangent
-from vibro_sweep.engine.variational.tangent import tangents_of
 from vibro_sweep.model import status
-
-
-class Ensemble(NamedTuple):
-    """Eight orbits on their way."""
-
-    flights: Flight  # with a first axis: the tables of each oscillator
-    orbits: np.ndarray  # (LANES,) `orbit_of`
-    strike: np.ndarray  # (1,) `strikes_of`
-    tangent: np.ndarray  # (1,) `tangents_of`
-    records: Records  # with a first axis: one for each orbit
 
 
 class Mapping(NamedTuple):
     """The discontinuity mapping in place of the flow: a type of its own, so that it is compiled only if asked for."""
 
     order: int  # 1 or 2
-
-
-class Readings(NamedTuple):
-    """What is read of eight orbits at the ends of their periods, and where it is kept."""
-
-    states: np.ndarray  # (LANES, periods, 2 N): the states there
-    keep: bool  # whether they are kept
-    growth: np.ndarray  # (LANES, parts, 2 N): logarithms of the growth of the tangent vectors since the first one
-    parts: int  # of the periods, after each of which the growth is read; 0: never
-
-
-def new_ensemble(
-    cells: int, impacts: int = 0, rests: int = 0, samples: int = 0, masses: int = 2, constant: bool = False
-) -> Ensemble:
-    """Orbits of oscillators with at most so many cells, and room for what is kept of each."""
-    orbits = new_lines(LANES, orbit_of(masses, constant))
-    orbits["lane"] = np.arange(LANES)
-    return Ensemble(
-        new_flight(LANES, cells, masses, constant),
-        orbits,
-        new_lines(1, strikes_of(masses, constant)),
-        new_lines(1, tangents_of(masses)),
-        new_records(LANES, impacts, rests, samples, masses),
-    )
-
-
-@inline
-def flight_of(e, o):
-    """The tables of an orbit's oscillator."""
-    n = np.uint64(o.table)  # unsigned: else numba looks for negative indices
-    return Flight(e.flights.oscillator[n], e.flights.nodes[n], e.flights.scan[n])
-
-
-@inline
-def stops_of(o):
-    """The stops of an orbit."""
-    return Stops(o.stops[0], o.stops[1], o.stops[2], o.stops[3])
-
-
-@inline
-def records_of(e, o):
-    """What is kept of an orbit."""
-    n = o.lane
-    return Records(e.records.impacts[n], e.records.rests[n], e.records.times, e.records.samples)
 
 
 @inline

@@ -19,7 +19,7 @@ from vibro_sweep.engine.motion.orbits import advance, is_finite, place, take_off
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.motion.scan import state_at
 from vibro_sweep.engine.simd.jit import entry, jit
-from vibro_sweep.engine.simd.lanes import put, row
+from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.tables.flight import ORDER, bounds, load
 from vibro_sweep.model import status
 

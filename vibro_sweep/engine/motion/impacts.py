@@ -8,7 +8,8 @@ from vibro_sweep.engine.motion.contact import first_contact, set_gap
 from vibro_sweep.engine.motion.orbits import advance, is_finite, restitution_of, take_samples, wall_of
 from vibro_sweep.engine.motion.rest import begin_rest, chatter, first_nonzero, stay_at_rest
 from vibro_sweep.engine.simd.jit import aside, jit
-from vibro_sweep.engine.simd.lanes import alike, row
+from vibro_sweep.engine.simd.lanes import alike
+from vibro_sweep.engine.simd.memory import row
 from vibro_sweep.engine.tables.flight import ORDER, bounds, evaluate, load
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.model import status

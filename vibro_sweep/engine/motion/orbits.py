@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import aside, entry, inline, jit
-from vibro_sweep.engine.simd.lanes import put, record, row, state_and_rest
+from vibro_sweep.engine.simd.lanes import state_and_rest
+from vibro_sweep.engine.simd.memory import put, record, row
 from vibro_sweep.engine.tables.flight import ORDER, evaluate, width_of
 from vibro_sweep.model import status
 

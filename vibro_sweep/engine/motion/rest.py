@@ -9,7 +9,7 @@ from vibro_sweep.engine.motion.orbits import restitution_of, take_samples
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, evaluate
 from vibro_sweep.engine.tables.resting import bound_third_over, carry_over_rest, state_after
-from vibro_sweep.engine.variational import tangent
+from vibro_sweep.engine.variational import held, tangent
 
 CHATTER = 2.0**-53  # of a period: the error allowed in time when the rest of a chatter sequence is summed up
 
@@ -46,7 +46,7 @@ def begin_rest(f, o, records, t, k, s, side, w):
     if t.wanted:
         q = f.oscillator[0]
         tangent.fly_to(t, o.lane, q, f.nodes, k, s - w)
-        tangent.rest(t, o.lane, q.kappa)
+        held.rest(t, o.lane, q.kappa)
         carry_tangent(t, o.lane, q, w)
         t.cell[o.lane], t.offset[o.lane] = k, s
 
@@ -72,7 +72,7 @@ def carry_tangent(t, i, q, w):
     """Tangent vectors over a rest of the time w within a cell."""
     if q.rest_square > 0.0:
         t.held[2, 2], t.held[2, 3], t.held[3, 2], t.held[3, 3] = carry_over_rest(q, w)
-        tangent.release(t, i)
+        held.release(t, i)
         return
     while w > 0.0:
         step = min(w, q.rest_step)
@@ -80,7 +80,7 @@ def carry_tangent(t, i, q, w):
         for m in range(1, len(q.series)):
             for j in range(2, len(t.growth)):
                 t.held[2 * m, j], t.held[2 * m + 1, j] = evaluate(q.resting[m, j - 1], step)
-        tangent.release(t, i)
+        held.release(t, i)
 
 
 @jit

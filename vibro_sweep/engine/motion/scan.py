@@ -3,7 +3,8 @@
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.simd.lanes import LANES, bits, count_leading, eight, number, row, state_and_rest
+from vibro_sweep.engine.simd.lanes import LANES, bits, count_leading, number, state_and_rest
+from vibro_sweep.engine.simd.memory import eight, row
 from vibro_sweep.engine.tables.flight import CHUNK
 
 

@@ -8,19 +8,10 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.simd.columns import put_transposed, sizes, transposed, weigh
 from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.simd.lanes import (
-    LANES,
-    bits,
-    put,
-    put_transposed,
-    record,
-    row,
-    select,
-    sizes,
-    transposed,
-    weigh,
-)
+from vibro_sweep.engine.simd.lanes import LANES, bits, select
+from vibro_sweep.engine.simd.memory import put, record, row
 from vibro_sweep.engine.tables import flight
 from vibro_sweep.engine.tables.economy import FEWER_TERMS, TERMS, TO_FEWER_TERMS, TO_TERMS, economise
 from vibro_sweep.engine.tables.flight import inputs_of, width_of

@@ -4,40 +4,21 @@ Jitted code writes a formula for `Lanes` as it would for floats; each operation 
 compiler has to find out by itself that a loop can be turned into vectors. A lane never sees its neighbours: its
 digits are the same whatever they hold. Where orbits part ways, both ways are computed and `select` takes one.
 
-How many numbers there are belongs to the type: `Lanes(8)` for eight orbits, `Lanes(width)` for a state. It is read from
-the shape of the field of a record; arrays without one have rows of eight.
+How many numbers there are belongs to the type: `Lanes(8)` for eight orbits, `Lanes(width)` for a state.
 """
 
 import itertools
 import math
 import operator
 
-import numpy as np
 from llvmlite import ir
 from numba.core import types
 from numba.core.extending import intrinsic, lower_builtin, models, register_model
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 
 LANES = 8
-LINE = 64  # bytes of a cache line, which is as much as eight floats: what lies across two of them takes twice as long
-
-
-def record(fields: list) -> np.dtype:
-    """A structured dtype that fills whole cache lines; fields of eight numbers should come first."""
-    missing = -np.dtype(fields).itemsize % LINE
-    return np.dtype([*fields, ("padding", np.uint8, missing)])
-
-
-def new_lines(shape: int | tuple[int, ...], dtype) -> np.ndarray:
-    """Zeros that begin with a cache line."""
-    size = math.prod(np.atleast_1d(shape)) * np.dtype(dtype).itemsize
-    space = np.zeros(size + LINE, np.uint8)
-    first = -space.ctypes.data % LINE
-    return space[first : first + size].view(dtype).reshape(shape)
-
-
-_DOUBLE, _INDEX = ir.DoubleType(), ir.IntType(32)
-_CONTRACT = ("contract",)  # as in jit.py
+DOUBLE, INDEX = ir.DoubleType(), ir.IntType(32)
+CONTRACT = ("contract",)  # as in jit.py
 
 
 class LanesType(types.Type):
@@ -58,7 +39,7 @@ lanes, mask = LanesType(LANES), MaskType(LANES)
 @register_model(LanesType)
 class _LanesModel(models.PrimitiveModel):
     def __init__(self, dmm, fe_type):
-        super().__init__(dmm, fe_type, ir.VectorType(_DOUBLE, fe_type.count))
+        super().__init__(dmm, fe_type, ir.VectorType(DOUBLE, fe_type.count))
 
 
 @register_model(MaskType)
@@ -67,14 +48,14 @@ class _MaskModel(models.PrimitiveModel):
         super().__init__(dmm, fe_type, ir.VectorType(ir.IntType(1), fe_type.count))
 
 
-def _spread(context, builder, kind, value, count):
+def spread(context, builder, kind, value, count):
     """A float as so many equal ones; lanes as they are."""
     if isinstance(kind, LanesType):
         return value
     value = context.cast(builder, value, kind, types.float64)
-    nothing = ir.Constant(ir.VectorType(_DOUBLE, count), ir.Undefined)
-    first = builder.insert_element(nothing, value, ir.Constant(_INDEX, 0))
-    return builder.shuffle_vector(first, nothing, ir.Constant(ir.VectorType(_INDEX, count), [0] * count))
+    nothing = ir.Constant(ir.VectorType(DOUBLE, count), ir.Undefined)
+    first = builder.insert_element(nothing, value, ir.Constant(INDEX, 0))
+    return builder.shuffle_vector(first, nothing, ir.Constant(ir.VectorType(INDEX, count), [0] * count))
 
 
 def _count(kinds):
@@ -97,7 +78,7 @@ def _define(function, result, emit, count=2):
 
     def lower(context, builder, sig, args):
         count, pairs = _count(sig.args), zip(sig.args, args, strict=True)
-        return emit(builder, *(_spread(context, builder, kind, arg, count) for kind, arg in pairs))
+        return emit(builder, *(spread(context, builder, kind, arg, count) for kind, arg in pairs))
 
     infer_global(function)(Typing)
     for kinds in itertools.product((LanesType, types.Number), repeat=count):
@@ -105,7 +86,7 @@ def _define(function, result, emit, count=2):
             lower_builtin(function, *kinds)(lower)
 
 
-def _call(name):
+def call(name):
     """An LLVM function of floats, on vectors."""
 
     def emit(builder, *vectors):
@@ -119,17 +100,17 @@ def _call(name):
 
 
 for _add in (operator.add, operator.iadd):
-    _define(_add, LanesType, lambda builder, x, y: builder.fadd(x, y, flags=_CONTRACT))
-_define(operator.sub, LanesType, lambda builder, x, y: builder.fsub(x, y, flags=_CONTRACT))
-_define(operator.mul, LanesType, lambda builder, x, y: builder.fmul(x, y, flags=_CONTRACT))
+    _define(_add, LanesType, lambda builder, x, y: builder.fadd(x, y, flags=CONTRACT))
+_define(operator.sub, LanesType, lambda builder, x, y: builder.fsub(x, y, flags=CONTRACT))
+_define(operator.mul, LanesType, lambda builder, x, y: builder.fmul(x, y, flags=CONTRACT))
 _define(operator.truediv, LanesType, lambda builder, x, y: builder.fdiv(x, y))
 _define(operator.neg, LanesType, lambda builder, x: builder.fneg(x), 1)
 _define(operator.lt, MaskType, lambda builder, x, y: builder.fcmp_ordered("<", x, y))
 _define(operator.le, MaskType, lambda builder, x, y: builder.fcmp_ordered("<=", x, y))
 _define(operator.gt, MaskType, lambda builder, x, y: builder.fcmp_ordered(">", x, y))
 _define(operator.ge, MaskType, lambda builder, x, y: builder.fcmp_ordered(">=", x, y))
-_define(abs, LanesType, _call("fabs"), 1)
-_define(math.sqrt, LanesType, _call("sqrt"), 1)
+_define(abs, LanesType, call("fabs"), 1)
+_define(math.sqrt, LanesType, call("sqrt"), 1)
 
 
 @intrinsic
@@ -139,7 +120,7 @@ def select(typingctx, condition, x, y):
 
         def codegen(context, builder, sig, args):
             pairs = zip(sig.args[1:], args[1:], strict=True)
-            x, y = (_spread(context, builder, kind, arg, condition.count) for kind, arg in pairs)
+            x, y = (spread(context, builder, kind, arg, condition.count) for kind, arg in pairs)
             return builder.select(args[0], x, y)
 
         return LanesType(condition.count)(condition, x, y), codegen
@@ -164,7 +145,7 @@ _define_logic(operator.invert, lambda builder, x: builder.not_(x), 1)
 def alike(typingctx, x):
     """Eight equal numbers."""
     if isinstance(x, types.Number):
-        return lanes(x), lambda context, builder, sig, args: _spread(context, builder, sig.args[0], args[0], LANES)
+        return lanes(x), lambda context, builder, sig, args: spread(context, builder, sig.args[0], args[0], LANES)
 
 
 @intrinsic
@@ -213,72 +194,6 @@ def lanes_of(typingctx, number):
         return mask(number), codegen
 
 
-def _width(array):
-    """Numbers in a row."""
-    return array.shape[-1] if isinstance(array, types.NestedArray) else LANES
-
-
-def _address(context, builder, kinds, args, scale, count):
-    """Of `count` numbers, from number `scale` args[1] of the array args[0] on."""
-    data = context.data_model_manager[kinds[0]].get(builder, args[0], "data")
-    place = context.cast(builder, args[1], kinds[1], types.intp)
-    place = builder.mul(place, ir.Constant(place.type, scale)) if scale > 1 else place
-    first = builder.gep(builder.bitcast(data, _DOUBLE.as_pointer()), [place])
-    return builder.bitcast(first, ir.VectorType(_DOUBLE, count).as_pointer())
-
-
-@intrinsic
-def row(typingctx, array, n):
-    """The n-th row of a contiguous array: as many numbers as rows of the field of a record have, else eight."""
-    if isinstance(array, types.Array) and isinstance(n, types.Integer):
-        width = _width(array)
-
-        def codegen(context, builder, sig, args):
-            return builder.load(_address(context, builder, sig.args, args, width, width), align=8)
-
-        return LanesType(width)(array, n), codegen
-
-
-@intrinsic
-def eight(typingctx, array, place):
-    """Eight numbers of a contiguous array, from `place` on."""
-    if isinstance(array, types.Array) and isinstance(place, types.Integer):
-
-        def codegen(context, builder, sig, args):
-            return builder.load(_address(context, builder, sig.args, args, 1, LANES), align=8)
-
-        return lanes(array, place), codegen
-
-
-@intrinsic
-def put(typingctx, array, n, value):
-    """The n-th row of a contiguous array becomes `value`."""
-    if isinstance(array, types.Array) and isinstance(value, (LanesType, types.Number)):
-        width = _width(array)
-
-        def codegen(context, builder, sig, args):
-            value = _spread(context, builder, sig.args[2], args[2], width)
-            builder.store(value, _address(context, builder, sig.args, args, width, width), align=8)
-            return context.get_dummy_value()
-
-        return types.void(array, n, value), codegen
-
-
-@intrinsic
-def put_state(typingctx, array, n, x, like):
-    """The n-th 2 N numbers of a contiguous array become the first of x; like: a field with N rows."""
-    if isinstance(array, types.Array) and isinstance(x, LanesType) and isinstance(like, types.NestedArray):
-        states = 2 * like.shape[0]
-
-        def codegen(context, builder, sig, args):
-            first = ir.Constant(ir.VectorType(_INDEX, states), list(range(states)))
-            value = builder.shuffle_vector(args[2], args[2], first)
-            builder.store(value, _address(context, builder, sig.args, args, states, states), align=8)
-            return context.get_dummy_value()
-
-        return types.void(array, n, x, like), codegen
-
-
 @intrinsic
 def state_and_rest(typingctx, x, rest, like):
     """The first 2 N numbers of x, then those of `rest`; like: a field with N rows."""
@@ -287,104 +202,6 @@ def state_and_rest(typingctx, x, rest, like):
 
         def codegen(context, builder, sig, args):
             chosen = [i if i < states else width + i for i in range(width)]
-            return builder.shuffle_vector(args[0], args[1], ir.Constant(ir.VectorType(_INDEX, width), chosen))
+            return builder.shuffle_vector(args[0], args[1], ir.Constant(ir.VectorType(INDEX, width), chosen))
 
         return x(x, rest, like), codegen
-
-
-def _transpose(builder, rows):
-    """Eight vectors as the columns of eight others: neighbours, then pairs, then fours change places."""
-    kind = ir.VectorType(_INDEX, LANES)
-    for step in (1, 2, 4):
-        own = [i & step == 0 for i in range(LANES)]  # the other half comes from the partner, `step` rows away
-        low = ir.Constant(kind, [i if own[i] else i - step + LANES for i in range(LANES)])
-        high = ir.Constant(kind, [i + step if own[i] else i + LANES for i in range(LANES)])
-        rows = [
-            builder.shuffle_vector(*((rows[i], rows[i + step], low) if own[i] else (rows[i - step], rows[i], high)))
-            for i in range(LANES)
-        ]
-    return rows
-
-
-def _blocks(array):
-    """How many eights a row has."""
-    return _width(array) // LANES
-
-
-def _rows(builder, first, blocks, block):
-    """The places of eight numbers in each of eight rows: block number `block` of so many."""
-    return [builder.gep(first, [ir.Constant(_INDEX, i * blocks + block)]) for i in range(LANES)]
-
-
-def _first(context, builder, kind, array):
-    return _address(context, builder, (kind, types.intp), (array, ir.Constant(ir.IntType(64), 0)), 1, LANES)
-
-
-@intrinsic
-def transposed(typingctx, array, like):
-    """The columns of a field (LANES, width), as many as `like`, another field, has rows."""
-    if isinstance(array, types.Array) and isinstance(like, types.NestedArray):
-        count, blocks = like.shape[0], _blocks(array)
-
-        def codegen(context, builder, sig, args):
-            first, columns = _first(context, builder, sig.args[0], args[0]), []
-            for block in range(blocks):
-                places = _rows(builder, first, blocks, block)
-                columns += _transpose(builder, [builder.load(place, align=8) for place in places])
-            return context.make_tuple(builder, sig.return_type, columns[:count])
-
-        return types.UniTuple(lanes, count)(array, like), codegen
-
-
-@intrinsic
-def put_transposed(typingctx, array, columns):
-    """The rows of `columns`, a field (m, LANES), become the first m columns of a field (LANES, width), others zero."""
-    if isinstance(array, types.Array) and isinstance(columns, types.NestedArray):
-        blocks, count = _blocks(array), columns.shape[0]
-
-        def codegen(context, builder, sig, args):
-            to, of = (_first(context, builder, kind, arg) for kind, arg in zip(sig.args, args, strict=True))
-            for block in range(blocks):
-                places = _rows(builder, of, 1, LANES * block)
-                rows = [builder.load(place, align=8) for place in places[: max(0, count - LANES * block)]]
-                rows += [ir.Constant(ir.VectorType(_DOUBLE, LANES), [0.0] * LANES)] * (LANES - len(rows))
-                for place, row in zip(_rows(builder, to, blocks, block), _transpose(builder, rows), strict=True):
-                    builder.store(row, place, align=8)
-            return context.get_dummy_value()
-
-        return types.void(array, columns), codegen
-
-
-@intrinsic
-def sizes(typingctx, vectors):
-    """The absolute values of a tuple of vectors."""
-    if isinstance(vectors, types.UniTuple):
-
-        def codegen(context, builder, sig, args):
-            found = [_call("fabs")(builder, builder.extract_value(args[0], i)) for i in range(len(vectors))]
-            return context.make_tuple(builder, sig.return_type, found)
-
-        return vectors(vectors), codegen
-
-
-@intrinsic
-def weigh(typingctx, rows, n, step, vectors):
-    """Row n of `rows` times the first of the vectors, that `step` rows on times the second, ..., added by pairs."""
-    if isinstance(rows, types.Array) and isinstance(vectors, types.UniTuple):
-
-        def codegen(context, builder, sig, args):
-            place = context.cast(builder, args[1], sig.args[1], types.intp)
-            step = context.cast(builder, args[2], sig.args[2], types.intp)
-            total, pair, count = None, None, len(vectors)
-            for i in range(len(vectors)):
-                kinds = (sig.args[0], types.intp)
-                weight = builder.load(_address(context, builder, kinds, (args[0], place), LANES, LANES), align=8)
-                term = builder.fmul(weight, builder.extract_value(args[3], i), flags=_CONTRACT)
-                place = builder.add(place, step)
-                pair = term if i % 2 == 0 else builder.fadd(pair, term, flags=_CONTRACT)
-                if i % 2 == 0 and i + 1 < count:
-                    continue
-                total = pair if total is None else builder.fadd(total, pair, flags=_CONTRACT)
-            return total
-
-        return lanes(rows, n, step, vectors), codegen

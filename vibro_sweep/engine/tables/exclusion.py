@@ -3,7 +3,8 @@
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.simd.lanes import LANES, eight, number
+from vibro_sweep.engine.simd.lanes import LANES, number
+from vibro_sweep.engine.simd.memory import eight
 from vibro_sweep.engine.tables.flight import CHUNK, ORDER
 
 ROUNDING = 1e-15  # of a control point of two masses, a few units in the last place of each of its terms

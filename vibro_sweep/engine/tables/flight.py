@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.simd.lanes import LANES, new_lines, number, record
+from vibro_sweep.engine.simd.lanes import LANES, number
+from vibro_sweep.engine.simd.memory import new_lines, record
 
 ORDER = 16  # Taylor coefficients of a cell: with rate * width <= WIDTH the first one left out is below 2^-53 / 1000
 WIDTH = 0.5

@@ -8,7 +8,8 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import aside, inline, jit
-from vibro_sweep.engine.simd.lanes import LANES, bits, put, row, select
+from vibro_sweep.engine.simd.lanes import LANES, bits, select
+from vibro_sweep.engine.simd.memory import put, row
 
 CONDITION = 1e3  # bound on the condition number of Z past which it is orthonormalised
 SMALLEST = 1e-30  # of the squares of all vectors together: where all decay alike, none lies too close to another

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.engine.point_tables import divergence_of
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.variational import tangent
+from vibro_sweep.engine.variational import held, tangent
 from vibro_sweep.engine.variational.orthonormal import CONDITION
 from vibro_sweep.model import exponents, status
 
@@ -45,7 +45,7 @@ def end_warm_up(e, count):
 def keep_at_rest(e, i):
     """Where M1 rests on a stop, two of the four directions are lost already."""
     if e.orbits[i].resting != 0.0:
-        tangent.rest(e.tangent[0], i, e.flights.oscillator[e.orbits[i].table, 0].kappa)
+        held.rest(e.tangent[0], i, e.flights.oscillator[e.orbits[i].table, 0].kappa)
 
 
 @jit

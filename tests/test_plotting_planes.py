@@ -1,0 +1,92 @@
+"""Pictures over two parameters: the figure holds the file's numbers."""
+
+import numpy as np
+import pytest
+from support.pictures import image, write
+
+from vibro_sweep import plotting
+
+
+def test_plane_shows_the_start_with_the_largest_exponent(plane):
+    fig = plotting.figure(plane)
+    largest, period = fig.axes[:2]
+    assert (largest.get_xlabel(), largest.get_ylabel()) == ("clearance $b$", r"forcing frequency $\omega$")
+    values, periods = image(largest).get_array(), image(period).get_array()
+    assert values.shape == (3, 4)  # rows: the second key
+    assert values[2, 1] == 0.02
+    assert periods[2, 1] == 0
+    assert values.mask[0, 0]
+    assert periods.mask[0, 0]
+    assert values.mask.sum() == 1
+    assert "2 starts" in fig.get_suptitle()
+    assert "22 of 24" in fig.get_suptitle()
+
+
+def test_plane_colours_change_sign_at_zero_and_count_periods(plane):
+    largest, period = plotting.figure(plane).axes[:2]
+    norm, picture = image(largest).norm, image(period)
+    assert norm(0.0) == 0.5
+    assert norm.vmin < 0 < norm.vmax
+    shades = [tuple(picture.cmap(picture.norm(n))) for n in range(14)]
+    assert len(set(shades)) == 14
+    assert picture.get_array()[0, 3] == 13  # 40, beyond the colours
+
+
+def test_ticks_are_round_numbers(tmp_path):
+    rng = np.random.default_rng(0)
+    largest = np.concatenate([-0.0372 * rng.uniform(0, 1, 300), 0.0191 * rng.uniform(0, 1, 100)])
+    spectrum = np.full((20, 20, 4), -0.1)
+    spectrum[..., 0] = largest.reshape(20, 20)
+    coordinates = {"b": np.arange(20.0), "R": np.linspace(0, 1, 20)}
+    fig = plotting.figure(write(tmp_path / "p.h5", coordinates, {"lyapunov": spectrum}))
+    (bar,) = (ax for ax in fig.axes if ax.get_label() == "<colorbar>")
+    assert np.round(bar.get_xticks(), 6).tolist() == [-0.03, -0.02, -0.01, 0, 0.005, 0.01, 0.015]
+    told = [label.get_text().replace("\N{MINUS SIGN}", "-") for label in bar.get_xticklabels()]
+    assert told == ["-0.03", "-0.02", "-0.01", "0", "0.005", "0.01", "0.015"]
+
+
+@pytest.mark.parametrize("size", [40, 1300])
+def test_periods_are_written_where_there_is_room(tmp_path, size):
+    period = np.ones((size, size), np.int8)
+    side = 3 * size // 8
+    period[:side, :side] = 25  # beyond the colours
+    period[3 * size // 4, 3 * size // 4] = 7  # one cell
+    coordinates = {"b": np.arange(float(size)), "R": np.linspace(0, 1, size)}
+    ax = plotting.figure(write(tmp_path / "p.h5", coordinates, {"period": period})).axes[0]
+    found = {text.get_text(): text.get_position() for text in ax.texts}
+    assert found.keys() == {"1", "25"}
+    (b, R), (far, _) = found["25"], found["1"]
+    assert 0.1 < b / side < 0.9 and 0.05 < R < 0.3 and far > side
+
+
+def test_what_has_no_number_is_hatched_and_named(plane):
+    fig = plotting.figure(plane)
+    assert fig.axes[0].patch.get_hatch()
+    assert [text.get_text() for text in fig.legends[0].get_texts()][1:] == ["no number"]
+
+
+@pytest.mark.parametrize("value", [-0.02, 0.03, 0.0])
+def test_plane_of_one_sign(tmp_path, value):
+    coordinates = {"b": [1.0, 2.0], "R": [0.1, 0.2]}
+    file = write(tmp_path / "s.h5", coordinates, {"lyapunov": np.full((2, 2, 4), value)})
+    fig = plotting.figure(file)
+    fig.draw_without_rendering()
+    assert np.sign(image(fig.axes[0]).norm(value) - 0.5) == np.sign(value)
+
+
+@pytest.mark.parametrize("keys", [("b", "omega"), ("omega", "b")])
+def test_the_grazing_curve_on_a_plane(tmp_path, keys):
+    coordinates = {key: {"b": np.linspace(3, 9, 4), "omega": np.array([0.66, 0.63, 0.6])}[key] for key in keys}
+    shape = tuple(len(values) for values in coordinates.values())
+    along = {"b_star": ("omega", np.array([9.0, 6.7, 5.0]))}
+    ax = plotting.figure(write(tmp_path / "p.h5", coordinates, {"period": np.ones(shape, int)}, along=along)).axes[0]
+    (curve,) = (line for line in ax.lines if line.get_gid() == "grazing")
+    omega, b = curve.get_data()[:: 1 if keys[1] == "b" else -1]
+    assert omega.tolist() == [0.6, 0.63, 0.66] and b.tolist() == [5.0, 6.7, 9.0]
+    assert "$b^*$" in ax.figure.legends[0].get_texts()[0].get_text()
+
+
+def test_no_numbers_no_grazing_curve(tmp_path):
+    coordinates = {"b": np.linspace(3, 9, 4), "omega": np.array([0.6, 0.63])}
+    file = write(tmp_path / "p.h5", coordinates, {"period": np.ones((4, 2), int)}, settings={"record": 20})
+    assert not plotting.figure(file).axes[0].lines
