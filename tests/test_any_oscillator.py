@@ -72,7 +72,8 @@ def compare_impacts(system, state, orbit, seed):
     ("masses", "orbits"),
     [
         *((n, 2) for n in FAST),
-        *(pytest.param(*case, marks=pytest.mark.slow) for case in ((1, 20), (2, 20), (3, 20), (5, 8), (8, 4))),
+        *(pytest.param(*case, marks=pytest.mark.slow) for case in ((1, 5), (2, 5), (3, 5), (5, 2), (8, 1))),
+        *(pytest.param(n, 20, marks=pytest.mark.soak) for n in (*FAST, *SLOW)),
     ],
 )
 def test_first_impacts(masses, orbits):
@@ -120,7 +121,7 @@ def monodromy(q, state, periods):
     return np.array(columns).T
 
 
-@pytest.mark.parametrize("masses", FAST)
+@pytest.mark.parametrize("masses", [*(pytest.param(n, marks=pytest.mark.slow) for n in FAST[:-1]), FAST[-1]])
 def test_growth_of_tangent_vectors(masses):
     """Over a record of some periods: singular values of its Jacobian, in the metric of the tangent vectors.
 
@@ -311,7 +312,11 @@ def without_stops(system):
 
 @pytest.mark.parametrize(
     ("masses", "flights"),
-    [*((n, 20) for n in FAST), *(pytest.param(n, 600, marks=pytest.mark.slow) for n in (*FAST, *SLOW))],
+    [
+        *((n, 20) for n in FAST),
+        *(pytest.param(n, 150, marks=pytest.mark.slow) for n in (*FAST, *SLOW)),
+        *(pytest.param(n, 10_000, marks=pytest.mark.soak) for n in (*FAST, *SLOW)),
+    ],
 )
 def test_near_grazes(masses, flights):
     """The stop a part 10^-1 .. 10^-15 below or beyond the highest turning point: none missed and none invented."""

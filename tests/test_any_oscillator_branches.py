@@ -33,7 +33,10 @@ def settled(system):
     return section[-1], period
 
 
-@pytest.mark.parametrize("name", CASES)
+FAST = ("one mass", "rests without restitution")  # each number of masses compiles kernels of its own
+
+
+@pytest.mark.parametrize("name", [n if n in FAST else pytest.param(n, marks=pytest.mark.slow) for n in CASES])
 def test_branch_against_simulation(name):
     system, itinerary, parameter, bounds = CASES[name]
     state, period = settled(system)

@@ -36,8 +36,8 @@ CASES = [
     (CAVITY, "LR", "b", (0.3, 0.8)),
     (CAVITY, "LR", "ratio", (0.1, 0.3)),
     (BALL.replace(A=0.5), "L", "G", (0.8, 1.2)),
-    (LONG_CHAIN, "born", "b", (0.01, 60.0)),
-    (LONG_CHAIN, "born", "omega", (0.45, 0.55)),
+    pytest.param(LONG_CHAIN, "born", "b", (0.01, 60.0), marks=pytest.mark.slow),
+    pytest.param(LONG_CHAIN, "born", "omega", (0.45, 0.55), marks=pytest.mark.slow),
 ]
 
 

@@ -14,7 +14,7 @@ from support.decades import DECADES, EPS, show
 
 import vibro_sweep as vs
 from vibro_sweep.engine import one_system
-from vibro_sweep.engine.motion import eight, ensemble, impacts, orbits, scan
+from vibro_sweep.engine.motion import ensemble, impacts, orbits, scan, together
 from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.model import status
 
@@ -24,7 +24,7 @@ CHAIN = 8 * EPS  # of the largest term of x1 along the flight: rounding allowed 
 @entry  # like the kernels, without reference counts: a view of an array passes from one to the other
 def first_impacts(e, stops, states, record, suspects, nothing):
     o, t = e.orbits[0], e.tangent[0]
-    f, records = eight.flight_of(e, o), eight.records_of(e, o)
+    f, records = together.flight_of(e, o), together.records_of(e, o)
     for i in range(len(states)):
         x = states[i]
         orbits.place(o, f.nodes, stops, 0, 0.0, x)
@@ -37,7 +37,7 @@ def first_impacts(e, stops, states, record, suspects, nothing):
         if o.impacts_logged == 0:
             orbits.place(o, f.nodes, stops, 0, 0.0, x)
             o.periods = 1
-            ensemble.carry(e, None, eight.Readings(nothing, False, nothing, 0))
+            ensemble.carry(e, None, together.Readings(nothing, False, nothing, 0))
             outcome = o.status
         record[i, 0] = records.impacts[0, 1] if o.impacts_logged else np.inf
         record[i, 1] = records.impacts[0, 2]

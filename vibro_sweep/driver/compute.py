@@ -16,7 +16,7 @@ from vibro_sweep.driver.trajectories import trajectories_of
 from vibro_sweep.engine import points
 from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.one_system import Engine
-from vibro_sweep.engine.records import Kind, new_results
+from vibro_sweep.engine.records import PAPER, Kind, new_results
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 from vibro_sweep.model.grazing import expansion_point
@@ -86,7 +86,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     mapping = Mapping(plan.order) if plan.order else None
     compiled, begins = points.run_points.compiled, np.stack([first, anew])
     points.run_points(steps, begins, *arrays.values(), workspace, plan, mapping)
-    if points.run_points.compiled > compiled and not plan.order:
+    if points.run_points.compiled > compiled and kind == PAPER and not plan.order:
         with contextlib.suppress(ParameterError):  # of a point that is none of the sweep's
             Engine(block.system)  # compiles what single orbits take, too
     energies = energies_of(block, steps, kind, arrays["results"], begins) if "impact_power" in block.wanted else {}

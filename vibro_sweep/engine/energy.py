@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.motion.eight import Ensemble, Readings
 from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Records, Stops, place
+from vibro_sweep.engine.motion.together import Ensemble, Readings
 from vibro_sweep.engine.points import prepare
 from vibro_sweep.engine.simd.jit import entry, jit
 from vibro_sweep.engine.simd.lanes import LANES

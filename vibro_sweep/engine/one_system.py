@@ -4,7 +4,7 @@ import numpy as np
 
 from vibro_sweep.engine import points
 from vibro_sweep.engine.any_points import any_points, kind_of
-from vibro_sweep.engine.motion import eight, ensemble, orbits
+from vibro_sweep.engine.motion import ensemble, orbits, together
 from vibro_sweep.engine.point_tables import ON_STOP
 from vibro_sweep.engine.records import PAPER, POINT, Kind, new_results
 from vibro_sweep.engine.simd.lanes import LANES
@@ -110,7 +110,7 @@ class Engine:
         self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
         self.orbit = self.ensemble.orbits[:1]
         self.flight = Flight(*(table[0] for table in self.ensemble.flights))
-        if points.prepare.compiled > compiled:
+        if points.prepare.compiled > compiled and self.kind == PAPER:
             self._compile_others(workspace, plan)
 
     def _compile_others(self, workspace: points.Workspace, plan: points.Plan) -> None:
@@ -167,7 +167,7 @@ class Engine:
         """Carry the orbit over as many periods as `section` (n, 2 N) has rows. Returns a status."""
         self.orbit["periods"] = len(section)
         self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
-        readings = eight.Readings(section[None], True, np.empty((1, 0, self.states)), 0)
+        readings = together.Readings(section[None], True, np.empty((1, 0, self.states)), 0)
         ensemble.carry(self.ensemble._replace(records=records), None, readings)
         return int(self.orbit["status"][0])
 
@@ -182,7 +182,7 @@ class Engine:
             eight["periods"] = periods
             records = orbits.new_records(LANES, impacts=room, rests=room, masses=self.kind.masses)
             nothing = np.empty((1, 0, self.states))
-            ensemble.carry(self.ensemble._replace(records=records), None, eight.Readings(nothing, False, nothing, 0))
+            ensemble.carry(self.ensemble._replace(records=records), None, together.Readings(nothing, False, nothing, 0))
             here = eight[: len(states)]
             logged = max(here["impacts_logged"].max(), here["rests_logged"].max())
             if logged <= room:

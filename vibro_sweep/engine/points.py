@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.motion import strike
-from vibro_sweep.engine.motion.eight import Ensemble, Readings, flight_of, new_ensemble
 from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Stops, new_records, place
+from vibro_sweep.engine.motion.together import Ensemble, Readings, flight_of, new_ensemble
 from vibro_sweep.engine.observe import PHASES, RECORD, begin_phase, close, end_phase
 from vibro_sweep.engine.point_tables import fill_tables, same_tables, set_graze, to_contact
 from vibro_sweep.engine.records import PAPER, Kind, point_of

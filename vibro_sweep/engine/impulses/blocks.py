@@ -17,6 +17,7 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.impulses.elimination import solve
 from vibro_sweep.engine.impulses.extremes import PIECES
 from vibro_sweep.engine.impulses.medium import (
     GAIN_HIGH,
@@ -219,7 +220,7 @@ def finish(sigma, row_t, row_jump, row_p, room, strikes, scale_p, dt, dD, dz, dp
     for j in range(n):
         end[n, j] = sigma * row[j] + row[B + j]
     end[n, n], end[n, n + 1], end[n, n + 2] = row[p] * scale_p, row[F], 1.0
-    if not solve_end(end):
+    if not solve(end):
         return False
     for s in range(2):
         dp[s] = end[n, n + 1 + s] * scale_p
@@ -248,52 +249,3 @@ def finish(sigma, row_t, row_jump, row_p, room, strikes, scale_p, dt, dD, dz, dp
             for j in range(n):
                 dz[s, k, j] += strikes[k].rate[j] * dt[s, k]
     return True
-
-
-@jit
-def solve_end(a):
-    """Overwrite the last two columns of a (size, size + 2) by the solutions: Gaussian elimination with pivots."""
-    size = len(a)
-    for j in range(size):
-        best = j
-        for i in range(j + 1, size):
-            if abs(a[i, j]) > abs(a[best, j]):
-                best = i
-        if not abs(a[best, j]) > 0.0:
-            return False
-        if best != j:
-            for k in range(size + 2):
-                a[best, k], a[j, k] = a[j, k], a[best, k]
-        for i in range(size):
-            if i != j and a[i, j] != 0.0:
-                factor = a[i, j] / a[j, j]
-                for k in range(j + 1, size + 2):
-                    a[i, k] -= factor * a[j, k]
-    for j in range(size):
-        a[j, size] /= a[j, j]
-        a[j, size + 1] /= a[j, j]
-    return True
-
-
-@jit
-def sign_of_determinant(a):
-    """Of a square matrix, which is destroyed."""
-    n, sign = len(a), 1.0
-    for j in range(n):
-        best = j
-        for i in range(j + 1, n):
-            if abs(a[i, j]) > abs(a[best, j]):
-                best = i
-        if not abs(a[best, j]) > 0.0:
-            return 0.0
-        if best != j:
-            sign = -sign
-            for k in range(n):
-                a[best, k], a[j, k] = a[j, k], a[best, k]
-        if a[j, j] < 0.0:
-            sign = -sign
-        for i in range(j + 1, n):
-            factor = a[i, j] / a[j, j]
-            for k in range(j, n):
-                a[i, k] -= factor * a[j, k]
-    return sign

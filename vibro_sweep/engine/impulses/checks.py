@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.blocks import sign_of_determinant
+from vibro_sweep.engine.impulses.elimination import sign_of_determinant, solve
 from vibro_sweep.engine.impulses.extremes import extremes_of_cell
 from vibro_sweep.engine.impulses.flights import OVERLAP
 from vibro_sweep.engine.impulses.medium import GAIN_HIGH, GAIN_LOW, HIGH, LOW, PERIOD, set_phase
@@ -79,7 +79,7 @@ def test(f, sides, sigma, place, room, strikes):
     for r in range(n):
         for j in range(n):
             a[r, j], a[r, n + j] = room.ahead[r, j], -sigma * room.behind[r, j]
-    if not divide(a):
+    if not solve(a):
         return
     for r in range(n):
         for j in range(n):
@@ -105,31 +105,6 @@ def torus(re, im):
             p, q = 1.0 - re[i] * re[j] + im[i] * im[j], -re[i] * im[j] - im[i] * re[j]
             x, y = x * p - y * q, x * q + y * p
     return x if abs(math.hypot(u, v) - 1.0) > 1e-9 else 1.0
-
-
-@jit
-def divide(a):
-    """Overwrite the right half of (n, 2n) by the inverse of the left half times it."""
-    n = len(a)
-    for j in range(n):
-        best = j
-        for i in range(j + 1, n):
-            if abs(a[i, j]) > abs(a[best, j]):
-                best = i
-        if not abs(a[best, j]) > 0.0:
-            return False
-        if best != j:
-            for k in range(j, 2 * n):
-                a[best, k], a[j, k] = a[j, k], a[best, k]
-        inverse = 1.0 / a[j, j]
-        for k in range(j, 2 * n):
-            a[j, k] *= inverse
-        for i in range(n):
-            if i != j:
-                factor = a[i, j]
-                for k in range(j, 2 * n):
-                    a[i, k] -= factor * a[j, k]
-    return True
 
 
 @jit

@@ -10,7 +10,6 @@ import numpy as np
 
 from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
-from vibro_sweep.engine.motion.eight import flight_of, records_of, stops_of
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
 from vibro_sweep.engine.motion.orbits import (
     add_count,
@@ -20,6 +19,7 @@ from vibro_sweep.engine.motion.orbits import (
 )
 from vibro_sweep.engine.motion.scan import careful_state, first_suspect, open_cell, state_at, suspect_state
 from vibro_sweep.engine.motion.strike import clear_counts, strike
+from vibro_sweep.engine.motion.together import flight_of, records_of, stops_of
 from vibro_sweep.engine.simd.jit import aside, entry, inline
 from vibro_sweep.engine.simd.lanes import LANES, lanes_of, number, select
 from vibro_sweep.engine.simd.memory import put, put_state, row
