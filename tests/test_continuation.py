@@ -146,6 +146,7 @@ def test_other_oscillators(family):
             assert np.abs(special.multipliers - 1).min() < 1e-11
 
 
+@pytest.mark.slow
 def test_eight_masses():
     """From the free motion through its graze to the orbit that is born there; the product of 16 multipliers."""
     branch = vs.continue_orbit(vs.periodic_orbit(LONG_CHAIN, itinerary=""), "b", (0.01, 60))
