@@ -61,6 +61,9 @@ for special in branch.special:
     if special.type == "graze":
         print(vs.switch(special), vs.sticking_onset(special))
 print([one.itinerary for one in vs.born_at_grazing(system, periods=1)])
+print(len(vs.follow_branches(again, "b", (6.6, 7.0), depth=1)))
+pair = vs.Oscillator([[1, 0], [0, 2]], np.eye(2), rayleigh=(0.1, 0), force=[1, 0], along=[1, -1], omega=0.8, b=1, R=0.7)
+print(vs.grazing(pair).b_right, vs.simulate(pair.replace(b=0.5), (0, 0, 0, 0), periods=2).impacts["xdot"])
 try:
     vs.System(mu_m=-1, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 except vs.ParameterError as error:

@@ -13,8 +13,9 @@ from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.one_system import Engine, plan_of
 from vibro_sweep.engine.records import new_results
 from vibro_sweep.model import status
+from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import checked_count, is_number
-from vibro_sweep.model.oscillator import System, checked_system
+from vibro_sweep.model.oscillator import checked_system
 
 if TYPE_CHECKING:
     import xarray
@@ -51,7 +52,7 @@ class Orbit:
     status : "ok", or what went wrong; `status.note` counts the chatter sequences whose end was summed up
     """
 
-    system: System
+    system: AnyOscillator
     start_time: float
     impacts: np.ndarray
     sticking: np.ndarray
@@ -120,7 +121,7 @@ class Orbit:
         return engine.to_masses(result)
 
 
-def simulate(system: System, state: ArrayLike, periods: int, start_time: float = 0.0) -> Orbit:
+def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: float = 0.0) -> Orbit:
     """Simulate one orbit of the impact oscillator (3), (4).
 
     Parameters
@@ -179,7 +180,7 @@ def simulate(system: System, state: ArrayLike, periods: int, start_time: float =
     )
 
 
-def lyapunov(system: System, state: ArrayLike, transient: int = 1000, periods: int = 10_000) -> Exponents:
+def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, periods: int = 10_000) -> Exponents:
     """Lyapunov spectrum (4,) of the orbit from `state` at t = 0: descending, natural logarithm, per unit time.
 
     An array that has `.error`, the standard errors (4,), and `.residual`, the sum minus its exact value, too.

@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Mapping
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.linear import Family, Linear
@@ -33,9 +34,12 @@ class Oscillator(AnyOscillator):
     """
 
     def __init__(
-        self, M, K, C=None, *, modal_damping=None, rayleigh=None, force=0, force_cos=0, constant=0, force_power=0,
-        along, omega, b, offset=0.0, R, R_left=None, tau="grazing", stops="both",
-    ):  # fmt: skip
+        self, M: ArrayLike, K: ArrayLike, C: ArrayLike | None = None, *, modal_damping: ArrayLike | None = None,
+        rayleigh: ArrayLike | None = None, force: ArrayLike = 0, force_cos: ArrayLike = 0, constant: ArrayLike = 0,
+        force_power: float = 0, along: ArrayLike, omega: float, b: float, offset: float = 0.0, R: float,
+        R_left: float | None = None, tau: float | Literal["grazing"] = "grazing",
+        stops: Literal["both", "right", "left"] = "both",
+    ) -> None:  # fmt: skip
         given = {name: value for name, value in locals().items() if name != "self"}
         self._set(MODELS["linear"], given)
 
