@@ -117,7 +117,8 @@ def stopped(cluster, path, output, stop):
     run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     cluster.wait(lambda: done(output))
     stop(run)
-    (error,) = run.communicate(timeout=LIMIT)[1].splitlines()
+    *estimate, error = run.communicate(timeout=LIMIT)[1].splitlines()
+    assert all("orbits, about" in line for line in estimate)  # said where the machine is busy
     return run.returncode, error
 
 

@@ -87,7 +87,8 @@ class Family:
 
 def dynamic_stiffness(q: Linear) -> np.ndarray:
     """K - omega^2 M + i omega C, (N, N)."""
-    return q.K - q.omega**2 * q.M + 1j * q.omega * q.C
+    with np.errstate(all="ignore"):  # beyond the range of the floats it is infinite
+        return q.K - q.omega * q.omega * q.M + 1j * q.omega * q.C
 
 
 def amplitudes(q: Linear) -> np.ndarray:
@@ -97,7 +98,12 @@ def amplitudes(q: Linear) -> np.ndarray:
 
 def amplitude_slopes(q: Linear, slope: Linear) -> np.ndarray:
     """Derivatives (N,) of `amplitudes` where q changes by `slope`."""
-    dz = slope.K - 2 * q.omega * slope.omega * q.M - q.omega**2 * slope.M + 1j * (slope.omega * q.C + q.omega * slope.C)
+    dz = (
+        slope.K
+        - 2 * q.omega * slope.omega * q.M
+        - q.omega * q.omega * slope.M
+        + 1j * (slope.omega * q.C + q.omega * slope.C)
+    )
     return np.linalg.solve(dynamic_stiffness(q), slope.cosine - 1j * slope.sine - dz @ amplitudes(q))
 
 

@@ -16,7 +16,8 @@ def linear(
 ) -> Linear:  # fmt: skip
     """Also for complex numbers, but in the matrices."""
     M, K = np.array(M, float), np.array(K, float)
-    power = omega**force_power if force_power else 1.0
+    with np.errstate(all="ignore"):
+        power = np.power(omega, force_power) if force_power else 1.0
     return Linear(
         M=M,
         K=K,

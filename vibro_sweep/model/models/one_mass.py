@@ -15,7 +15,7 @@ def one_mass(*, k, zeta, F, constant, base, omega, R, R_left, b, offset, tau, st
         C=np.array([[2 * zeta]]),
         along=np.ones(1),
         constant=np.array([constant]),
-        sine=np.array([F * omega**2 if base else F]),
+        sine=np.array([F * omega * omega if base else F]),
         cosine=np.zeros(1),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
