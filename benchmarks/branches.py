@@ -16,11 +16,11 @@ from support.branches import repeated
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.periodic import orbit_of
-from vibro_sweep.analysis.solution import Solution
-from vibro_sweep.analysis.track import Track
-from vibro_sweep.analysis.walk import Walk
-from vibro_sweep.analysis.way import LONGEST_STEP, SHORTEST_STEP, STRAIGHT
+from vibro_sweep.analysis.branches.track import Track
+from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.branches.way import LONGEST_STEP, SHORTEST_STEP, STRAIGHT
+from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.solution import Solution
 
 GUESSES = 1000
 NEAR = 1e-4  # relative distance of a guess from its orbit

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from pathlib import Path
 
 from book import HERE, Goal, digits, main, table
 
@@ -20,11 +21,11 @@ SCENE = HERE.parent / "configs" / "quickstart.yaml"
 ASKED_COMPILE, ASKED_START = 10, 1
 
 
-def start(cache: str) -> dict:
+def start(cache: str, scene: Path = SCENE) -> dict:
     """first_point.py in a fresh Python with this cache; seconds count from the start of that Python."""
     began = time.time()
     environment = os.environ | {"NUMBA_CACHE_DIR": cache}
-    command = [sys.executable, HERE / "first_point.py", SCENE]
+    command = [sys.executable, HERE / "first_point.py", scene]
     found = json.loads(subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout)
     return {
         "loaded": found["loaded"] - began,

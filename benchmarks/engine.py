@@ -10,6 +10,7 @@ from peers import Solver
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks, compute
 from vibro_sweep.engine.tables import cells as grid
+from vibro_sweep.model import status
 from vibro_sweep.scene import scene
 
 
@@ -53,7 +54,7 @@ def _solver(params, states, observe, cells) -> Solver:
         def run():
             with grid():
                 arrays = thread.submit(compute.compute, block).result()[1]
-            if arrays["status"].any():
+            if not status.stands(arrays["status"]).all():
                 raise ArithmeticError(f"status {arrays['status']}")
             return int(arrays["impacts_right"].sum() + arrays["impacts_left"].sum())
 

@@ -23,7 +23,7 @@ GROUPS = 100  # times of the extremum
 def flights(reference, decade, behind, count, rng):
     """States (count, 4) at t = 0, and the times just after the extremum up to which the flight is watched."""
     b, period = SYSTEM.b, SYSTEM.period
-    force = np.array([float(reference.A[1, j]) for j in range(6)])
+    force = reference.acceleration.astype(float)
     states, ends, need = [], [], -(-count // GROUPS)
     for _ in range(GROUPS):
         u = period * rng.uniform(0.05, 0.95)
@@ -196,7 +196,7 @@ def main():
     parser.add_argument("--decades", type=int, nargs="+", default=[2, 3, 4, 5, 6, 8, 10, 12, 14])
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
     options = parser.parse_args()
-    reference = certified.Reference(SYSTEM.parameters())
+    reference = certified.of_paper(SYSTEM.parameters())
     rng = np.random.default_rng(1)
     sets = [[flights(reference, k, behind, options.flights, rng) for behind in (True, False)] for k in options.decades]
     print(f"{options.flights} flights that pass a stop by 10^-k b: missed, and (+) of as many that turn 10^-k b before")

@@ -18,19 +18,20 @@ class Result(NamedTuple):
     errors: dict[float, dict[str, problem.Error]]
 
 
-def settings(quick: bool):
-    """(label, method, setting), the fast ones first."""
+def settings(quick: bool, b: float):
+    """(label, method, setting), the fast ones first; of a chaotic orbit only these."""
     slow = ("CVODE", "SciPy") if quick else ()
-    chosen = [m for m in available(METHODS) if not m.name.startswith(slow)]
+    fast = ("vibro_sweep", "heyoka") if b in problem.CHAOTIC else ""
+    chosen = [m for m in available(METHODS) if m.name.startswith(fast) and not m.name.startswith(slow)]
     rows = [(m.name, m, m.fine) for m in chosen]
     return rows + [(f"{m.name}, tol 1e-14", m, LOOSER) for m in chosen if m.name in (BATCH, SCALAR)]
 
 
 def measure(quick: bool) -> Result:
     costs, errors = {}, {}
-    for b in problem.CLEARANCES:
+    for b in (*problem.CLEARANCES, *problem.CHAOTIC):
         params, states = problem.on_attractor(b)
-        rows = settings(quick)
+        rows = settings(quick, b)
         solvers = {label: m.solver(params, states, **setting) for label, m, setting in rows}
         costs[b] = interleaved(solvers, problem.CYCLE[b], 0.03 if quick else 0.2, 3 if quick else 15)
         errors[b] = {
@@ -53,14 +54,14 @@ def ratio(result: Result, b: float, peer: str, ours: str = ENGINE) -> float:
     return result.costs[b][peer].median / result.costs[b][ours].median
 
 
-def text(result: Result) -> str:
-    """Table of times with the ratio to ours, then errors."""
+def times(result: Result, clearances: tuple[float, ...]) -> str:
+    """Table of times with the ratio to ours, and errors."""
     header, rows = ["method"], []
-    for b in problem.CLEARANCES:
+    for b in clearances:
         header += [f"b = {b:g}", "ratio", "error"]
-    for label in result.costs[problem.CLEARANCES[0]]:
+    for label in result.costs[clearances[0]]:
         row = [label]
-        for b in problem.CLEARANCES:
+        for b in clearances:
             found = result.errors[b].get(label)
             ours = EXPONENTS if "exponents" in label else ENGINE
             row += [digits(result.costs[b][label].microseconds()), f"{ratio(result, b, label, ours):.3g}"]
@@ -69,8 +70,13 @@ def text(result: Result) -> str:
             else:
                 row.append(f"{found.matched} of {problem.COUNT} impacts")
         rows.append(row)
-    impacts = ", ".join(f"{result.costs[b][ENGINE].impacts:.2f} (b = {b:g})" for b in problem.CLEARANCES)
-    rounding = ", ".join(f"{problem.rounding(b):.0e} (b = {b:g})" for b in problem.CLEARANCES)
+    return table(header, rows)
+
+
+def text(result: Result) -> str:
+    """Tables of the periodic and of the chaotic orbits, and what the methods are."""
+    impacts = ", ".join(f"{cost[ENGINE].impacts:.2f} (b = {b:g})" for b, cost in result.costs.items())
+    rounding = ", ".join(f"{problem.rounding(b):.0e} (b = {b:g})" for b in result.costs)
     spread = max(max(c.rounds) / min(c.rounds) for costs in result.costs.values() for c in costs.values())
     notes = [f"- {m.name}: {m.note}" for m in METHODS if m.note and m.name in result.costs[problem.CLEARANCES[0]]]
     return (
@@ -78,7 +84,9 @@ def text(result: Result) -> str:
         f"fastest: at most {spread:.2f}). Impacts per period: {impacts}. The error is the largest of the first "
         f"{problem.COUNT} impact times of three orbits, in units of time; the rounding of the inputs alone makes "
         f"{rounding}. Ratios are to this package, with the exponents where the peer has them.\n\n"
-        + table(header, rows)
+        + times(result, problem.CLEARANCES)
+        + "\nChaotic motions, of eight orbits that have parted:\n\n"
+        + times(result, problem.CHAOTIC)
         + "\n"
         + "\n".join(notes)
         + "\n"
@@ -87,7 +95,7 @@ def text(result: Result) -> str:
 
 def goals(result: Result) -> list[Goal]:
     rows = []
-    with_heyoka = [b for b in problem.CLEARANCES if BATCH in result.costs[b]]
+    with_heyoka = [b for b, costs in result.costs.items() if BATCH in costs]
     for b in with_heyoka:
         peer = best(result, b)
         times, ours, theirs = ratio(result, b, peer), result.errors[b][ENGINE].largest, result.errors[b][peer].largest
@@ -109,7 +117,7 @@ def goals(result: Result) -> list[Goal]:
         reached = f"{times:.1f} times ({peer}); {scalar:.1f} times one orbit"
         asked = f"b = {b:g}: {ASKED_EXPONENTS} times heyoka's variational run"
         rows.append(Goal(asked, reached, times / ASKED_EXPONENTS, COMMAND))
-    for b in problem.CLEARANCES:
+    for b in result.costs:
         share = ratio(result, b, EXPONENTS, ENGINE) - 1
         asked = f"b = {b:g}: exponents cost less than the orbit"
         rows.append(Goal(asked, f"{share:.2f} of the orbit", 1 / max(share, 1e-3), COMMAND))

@@ -16,8 +16,9 @@ import time
 from pathlib import Path
 
 from book import HERE, digits, machine, table
+from problem import CHAOTIC, CLEARANCES
 
-PERIODIC, CHAOTIC = (6.8, 6.69, 3.0, 1.0), (5.8, 4.6, 0.5)
+PERIODIC = (6.8, *CLEARANCES)
 SIZES = {"impacts": 40_000, "impacts, lyapunov": 24_000}  # periods of an orbit
 SYSTEM = {"mu_m": 10, "mu_k": 5, "zeta": 0.05, "f2": 0, "omega": 0.63, "R": 0.8, "b": 6.6}
 SCENE = f"""

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference.any_naive import highest_turn, simulate
+from reference.any_naive import simulate
 from support.any_oscillators import drawn
 
 import vibro_sweep as vs
@@ -48,26 +48,29 @@ def fast_impacts(orbit):
     return int(slow[0]) if len(slow) else len(speeds)
 
 
-def compare_impacts(system, state, orbit, seed):
-    """The first impacts, no further from 30 digits than 10 times what rounding the inputs does.
+def errors_of_impacts(system, state, orbit, seed, moves=3):
+    """Largest errors of times, speeds and states of the first impacts, in units of what rounding the inputs does.
 
     That is the sum of what each of some forty inputs does alone. Moved all at once, up or down at random, they do less,
-    also where three such moves are added up.
+    also where three such moves are added up: three times the mean of so many moves. Returns these errors and the number
+    of impacts.
     """
     count, rng = fast_impacts(orbit), np.random.default_rng(seed)
     impacts, _, _ = simulate(system.linear, state, impacts=count)
-    others = [simulate(*moved(system.linear, state, rng), impacts=count)[0] for _ in range(3)]
+    others = [simulate(*moved(system.linear, state, rng), impacts=count)[0] for _ in range(moves)]
+    largest = {"t": 0.0, "v1": 0.0, "x": 0.0}
     for i, (hit, found) in enumerate(zip(impacts, orbit.impacts[:count], strict=True)):
         assert hit.side == found["side"]
         moved_by = {"t": [other[i].t - hit.t for other in others], "v1": [other[i].v - hit.v for other in others]}
         for name, exact in (("t", hit.t), ("v1", hit.v)):
-            effect = sum(map(abs, moved_by[name])) + math.ulp(float(exact))
-            assert abs(mpf(float(found[name])) - exact) < 10 * effect, (i, name)
+            effect = 3 * sum(map(abs, moved_by[name])) / moves + math.ulp(float(exact))
+            largest[name] = max(largest[name], float(abs(mpf(float(found[name])) - exact) / effect))
         size = max(abs(float(a)) for a in hit.y)
         apart = ([abs(a - b) for a, b in zip(other[i].y, hit.y, strict=True)] for other in others)
-        effect = sum(map(max, apart)) + math.ulp(size)
+        effect = 3 * sum(map(max, apart)) / moves + math.ulp(size)
         both = zip((*found["x"], *found["xdot"]), hit.y[0::2] + hit.y[1::2], strict=True)
-        assert all(abs(mpf(float(a)) - b) < 10 * effect for a, b in both), i
+        largest["x"] = max(largest["x"], *(float(abs(mpf(float(a)) - b) / effect) for a, b in both))
+    return largest, count
 
 
 @pytest.mark.parametrize(
@@ -78,16 +81,26 @@ def compare_impacts(system, state, orbit, seed):
         *(pytest.param(n, 20, marks=pytest.mark.soak) for n in (*FAST, *SLOW)),
     ],
 )
-def test_first_impacts(masses, orbits):
-    seed, compared = 0, 0
+def test_first_impacts(masses, orbits, capsys):
+    """No further from 30 digits than 10 times what rounding the inputs does. All: tests/data/first_impacts.log."""
+    seed, compared, lines = 0, 0, []
     while compared < orbits:
         seed += 1
         system, state = drawn(seed, masses)
         orbit = vs.simulate(system, state, 60)
         assert orbit.status == "ok"
         if fast_impacts(orbit) > 20:
-            compare_impacts(system, state, orbit, seed)
+            largest, count = errors_of_impacts(system, state, orbit, seed)
+            if max(largest.values()) > 10:  # three moves may by accident do next to nothing to one of the numbers
+                largest, _ = errors_of_impacts(system, state, orbit, seed, moves=12)
+            assert max(largest.values()) < 10, (seed, largest)
             compared += 1
+            lines.append(f"{seed:5d} {count:8d} {largest['t']:7.2f} {largest['v1']:7.2f} {largest['x']:7.2f}")
+    if orbits == 20:
+        with capsys.disabled():
+            print(f"\n{masses} masses: {seed} orbits drawn, {compared} with 21 .. {COUNT} impacts before a slow one")
+            print(" draw  impacts    t      v1      x: largest errors, in units of what rounding the inputs does")
+            print("\n".join(lines))
 
 
 @pytest.mark.parametrize("masses", SMALL)
@@ -170,17 +183,32 @@ def test_other_coordinates(masses):
     np.testing.assert_allclose(other.impacts["x"][:10] @ S.T, one.impacts["x"][:10], rtol=0, atol=1e-11)
 
 
-def test_mirror_image():
+@pytest.mark.parametrize("tau", [0.4, -2.0, 1.1])
+def test_mirror_image(tau):
     """offset -> -offset, R exchanged, tau + pi, state -> -state."""
     numbers = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0.25, omega=0.63, b=2.0)
-    one = vs.System(**numbers, tau=0.4, offset=0.3, R=0.8, R_left=0.6)
-    other = vs.System(**numbers, tau=0.4 + math.pi, offset=-0.3, R=0.6, R_left=0.8)
+    one = vs.System(**numbers, tau=tau, offset=0.3, R=0.8, R_left=0.6)
+    other = vs.System(**numbers, tau=tau + math.pi, offset=-0.3, R=0.6, R_left=0.8)
     state = np.array([0.1, 0.2, 0.3, -0.1])
     hits, mirrored = (vs.simulate(system, x, 20).impacts[:10] for system, x in ((one, state), (other, -state)))
     assert np.array_equal(hits["side"], -mirrored["side"]) and set(hits["side"]) == {-1, 1}
-    np.testing.assert_allclose(hits["t"], mirrored["t"], rtol=0, atol=1e-13 * 30)
+    np.testing.assert_allclose(hits["t"], mirrored["t"], rtol=0, atol=1e-13)
     for name in ("v1", "x2", "v2"):
         np.testing.assert_allclose(hits[name], -mirrored[name], rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("masses", SMALL)
+def test_mirror_image_of_any(masses):
+    """The same, with the constant force turned round."""
+    system, state = drawn(13, masses)
+    turned = [-force for force in system.constant]
+    other = system.replace(offset=-system.offset, R=system.R_left, R_left=system.R, constant=turned)
+    other = other.replace(tau=system.tau + math.pi)
+    hits, mirrored = (vs.simulate(one, x, 20).impacts[:10] for one, x in ((system, state), (other, -state)))
+    assert np.array_equal(hits["side"], -mirrored["side"]) and len(hits) == 10
+    np.testing.assert_allclose(hits["t"], mirrored["t"], rtol=0, atol=1e-13)
+    for name in ("v1", "x", "xdot"):
+        np.testing.assert_allclose(hits[name], -mirrored[name], rtol=0, atol=1e-13 * np.abs(hits[name]).max())
 
 
 def test_unequal_restitution_in_the_sum_rule():
@@ -273,6 +301,25 @@ def test_kinds_of_damping_and_of_modes():
         assert abs(found.residual) < 1e-12, name
 
 
+@pytest.mark.parametrize(("R", "K1"), [(0.6, 0.0), (0.6, 4.0), (0.0, 4.0)])
+@pytest.mark.parametrize(("K2", "C2"), [(1.0, 0.1), (0.0, 0.0), (9.0, 0.2)])
+def test_masses_that_the_contact_does_not_see(R, K1, K2, C2):
+    """They keep their exponents, whatever a rest or an impact without restitution takes from the other."""
+    system = vs.Oscillator(
+        np.eye(3), np.diag([K1, K2, 2]), np.diag([0.02, C2, 0.06]), along=[1, 0, 0], force=[1, 0, 0],
+        constant=[-1, 0, 0], omega=0.8, tau=0.0, b=0.0, R=R, stops="left",
+    )  # fmt: skip
+    state = np.array([0.2, 0.0, 0.1, 0.0, 0.1, 0.2])
+    found, orbit = vs.lyapunov(system, state, 20, 200), vs.simulate(system, state, 200)
+    alone = vs.Oscillator(
+        [[1.0]], [[K1]], [[0.02]], along=[1], force=[1], constant=[-1], omega=0.8, tau=0.0, b=0.0, R=R, stops="left"
+    )
+    other = vs.lyapunov(alone, state[:2], 20, 200)
+    assert len(orbit.impacts) > 10
+    exact = np.sort([*other, -C2 / 2, -C2 / 2, -0.03, -0.03])[::-1]
+    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-6)
+
+
 def test_impacts_at_the_sections():
     """The stop is at 0, where the gap has no size of its own to which its rounding could be compared."""
     speed, phi = 2 * math.pi / 1.8, math.acos(0.2 * math.pi / 1.8)
@@ -307,41 +354,6 @@ def test_derivatives_of_the_period_map(changes):
         )
         bound = 1e-6 * max(np.abs(found.parameters[0][:, j]).max(), 1)
         np.testing.assert_allclose(found.parameters[0][:, j], quotient, atol=bound, err_msg=name)
-
-
-def without_stops(system):
-    return system.replace(stops="right", offset=0.0, b=1e9)
-
-
-@pytest.mark.parametrize(
-    ("masses", "flights"),
-    [
-        *((n, 20) for n in FAST),
-        *(pytest.param(n, 150, marks=pytest.mark.slow) for n in (*FAST, *SLOW)),
-        *(pytest.param(n, 10_000, marks=pytest.mark.soak) for n in (*FAST, *SLOW)),
-    ],
-)
-def test_near_grazes(masses, flights):
-    """The stop a part 10^-1 .. 10^-15 below or beyond the highest turning point: none missed and none invented."""
-    rng, found = np.random.default_rng(masses), 0
-    while found < flights:
-        system, state = drawn(int(rng.integers(40)), masses)
-        free = without_stops(system)
-        state = state + rng.normal(size=2 * masses)
-        turn = highest_turn(free.linear, state)
-        begin = free.linear.along @ state[0::2]
-        if turn is None or not turn[0] > begin + 0.1:
-            continue
-        part = 10.0 ** -rng.uniform(1, 15) * rng.choice([-1, 1])
-        wall = float(turn[0]) * (1 - part)
-        sizes = np.abs(free.linear.along) @ np.abs(state[0::2]) + abs(wall)
-        beyond = float(turn[0] - mpf(wall))
-        if abs(beyond) < 1e-14 * sizes or wall <= begin:  # either answer is right
-            continue
-        found += 1
-        times = vs.simulate(free.replace(b=wall), state, 1).impacts["t"]
-        # after its highest turning point the gap may still rise up to the end of the period
-        assert bool((times < float(turn[1]) + 1e-6).any()) == (beyond > 0), (part, beyond)
 
 
 def test_a_free_mode_of_the_paper():

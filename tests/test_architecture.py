@@ -15,8 +15,18 @@ ALLOWED = {
     "driver": {"model", "engine", "analysis", "scene", "store"},
     "plotting": {"store", "model"},
 }
+FLOORS = ["single", "attractors", "periodic", "branches", "curves", "windows"]  # of analysis/: in this order
 EVERYWHERE = {"identity", "__version__"}  # what numbers depend on, and the version
-TABLES = {"catalogue", "observables", "parameters", "pictures", "state", "status"}  # of model/: names and labels
+TABLES = {
+    "bifurcations",
+    "branch_file",
+    "catalogue",
+    "observables",
+    "parameters",
+    "pictures",
+    "state",
+    "status",
+}  # of model/: names and labels
 
 
 def imported(path):
@@ -40,6 +50,16 @@ def test_imports_lead_only_where_the_table_says(room):
     for path in modules:
         for other, node in imported(path):
             assert other in {room, *EVERYWHERE} | ALLOWED[room], f"{path}:{node.lineno} imports {other}"
+
+
+def test_analysis_stands_on_floors():
+    home = HOME / "analysis"
+    assert {path.name for path in home.iterdir() if path.is_dir() and path.name != "__pycache__"} == set(FLOORS)
+    for floor, name in enumerate(FLOORS):
+        for path in (home / name).rglob("*.py"):
+            for other, node in imported(path):
+                if other == "analysis":
+                    assert node.module.split(".")[2] in FLOORS[: floor + 1], f"{path}:{node.lineno}: {node.module}"
 
 
 def test_pictures_are_drawn_only_where_they_are_asked_for():

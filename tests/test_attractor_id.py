@@ -6,7 +6,7 @@ from support.attractors import same_partition
 from support.scenes import OSCILLATOR, run, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.analysis import attractors
+from vibro_sweep.analysis.attractors import grouping
 from vibro_sweep.driver.attractor_ids import number_attractors
 
 
@@ -146,7 +146,7 @@ def test_basins_are_in_the_file(tmp_path):
     number = data["attractor_id"]
     flat = (data["period"].ravel(), data["average"].reshape(-1, 7), data["average_error"].reshape(-1, 7))
     assert set(np.unique(number)) == {1, 2, 3} and set(np.unique(data["attractor"])) == {1}
-    assert same_partition(number.ravel(), attractors.group(*flat)) and in_order(number)
+    assert same_partition(number.ravel(), grouping.group(*flat)) and in_order(number)
     impacts = data["average"][..., 4:6]
     assert len(np.unique(number[(impacts == 0).all(axis=-1)])) == 1
     for room in (1, 3, 5, 26, 27):

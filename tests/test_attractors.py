@@ -6,7 +6,7 @@ from support.attractors import same_partition
 from support.scenes import OSCILLATOR, run, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.analysis import attractors
+from vibro_sweep.analysis.attractors import grouping
 from vibro_sweep.driver import blocks
 from vibro_sweep.driver.starts import starts_of
 from vibro_sweep.scene import SceneError
@@ -140,7 +140,7 @@ def test_basins_against_simulate(basins):
         orbit = vs.simulate(system, states[at], 5200)
         assert np.array_equal(orbit.section[-200:, 0], basins["x1"].reshape(24, 200)[at])
     slow, kept = by_hand(system, states, 5200, record=160)
-    label = attractors.group(
+    label = grouping.group(
         basins["period"].ravel(), basins["average"].reshape(-1, 7), basins["average_error"].reshape(-1, 7)
     )
     assert len(kept) == label.max() == 3 and same_partition(slow, label)

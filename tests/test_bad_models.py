@@ -52,6 +52,7 @@ BAD_OSCILLATORS = {
     "constant too short": (dict(constant=[1]), "constant", "a list of 2 numbers"),
     "power of text": (dict(force_power="2"), "force_power", "a number"),
     "along zero": (dict(along=[0, 0]), "along", "other than zero"),
+    "along next to zero": (dict(along=[1e-200, 0]), "along", "from 1e-100 to 1e+100"),
     "along too long": (dict(along=[1, 0, 0]), "along", "a list of 2 numbers"),
     "along a matrix": (dict(along=[[1, 0]]), "along", "a list of finite numbers"),
     "along not finite": (dict(along=[math.nan, 1]), "along", "a list of finite numbers"),
@@ -83,6 +84,7 @@ CHAIN = "type: chain, m: [1, 2], k: [1, 1, 0], force: [1, 0], omega: 0.7, b: 1, 
 ONE = "type: one_mass, zeta: 0.02, F: 1, omega: 0.7, b: 1, R: 0.8"
 BAD_SCENES = {
     "no such model": ("type: chains", ['system.type = "chains"', "did you mean `chain`?"]),
+    "a model in a list": ("type: [chain]", ["system.type = [\"chain\"]", "allowed: two_mass"]),
     "a key of another model": (f"{ONE}, mu_m: 2", ["system.mu_m", "unknown key", "allowed here: k, zeta"]),
     "a number missing": (ONE.replace("F: 1, ", ""), ["system.F: missing"]),
     "stiffness negative": (f"{ONE}, k: -1", ["system.k = -1", ">= 0"]),
@@ -123,6 +125,17 @@ def test_bad_scenes(name):
 def test_bad_sweeps(sweep, words):
     with pytest.raises(SceneError, match=words.replace("(", r"\(")):
         parse_scene(f"system: {{{CHAIN}}}\nsweep: {sweep}\norbit: {{transient: 1, record: 1}}")
+
+
+def test_a_sweep_of_a_list_that_is_not_given():
+    text = "{type: linear, M: [[1]], K: [[1]], along: [1], omega: 1, b: 1, R: 1}"
+    with pytest.raises(
+        SceneError, match=r"sweep\.modal_damping1: is one of modal_damping, which is not given"
+    ) as error:
+        parse_scene(
+            f"system: {text}\nsweep: {{modal_damping1: {{values: [0, 1]}}}}\norbit: {{transient: 1, record: 1}}"
+        )
+    assert len(error.value.problems) == 1
 
 
 def test_an_oscillator_is_not_changed():

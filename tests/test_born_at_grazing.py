@@ -7,7 +7,7 @@ import pytest
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.lcp import complementary, representatives
+from vibro_sweep.analysis.periodic.lcp import complementary, representatives
 
 
 def test_orbits_born_at_the_double_graze_of_the_paper():
@@ -30,6 +30,33 @@ def test_orbits_born_at_a_graze_have_the_speeds_that_they_say(omega):
     assert len({(item.period, item.itinerary, tuple(np.round(item.speed_per_distance, 6))) for item in born}) == len(
         born
     )
+
+
+@pytest.mark.parametrize("constant", [-2.0, -3.0])
+def test_clearance_at_the_graze_may_have_any_sign(constant):
+    """One stop: a constant force moves the graze, and nothing else."""
+    oscillator = vs.Oscillator.named(
+        "one_mass", k=1, zeta=0.1, F=1, omega=0.8, R=0.8, b=1, tau=0, constant=constant, stops="right"
+    )
+    born = vs.born_at_grazing(oscillator, periods=3)
+    b = vs.grazing(oscillator).b_right
+    assert (b > 0) == (constant == -2.0)
+    assert [(item.period, item.itinerary, item.born) for item in born] == [
+        (1, "R", "below"), (2, "R", "below"), (3, "R", "above"), (3, "RR", "below"),
+    ]  # fmt: skip
+    assert all(item.orbit.ok and (item.orbit.system.b > b) == (item.born == "above") for item in born)
+
+
+@pytest.mark.parametrize("periods", [0, 2.5, "a", None, np.nan, 100])
+def test_bad_periods_are_refused(periods):
+    with pytest.raises(ValueError, match=f"periods: {periods!r} is not allowed"):
+        vs.born_at_grazing(PAPER, periods=periods)
+
+
+def test_without_force_nothing_grazes():
+    oscillator = vs.Oscillator.named("one_mass", k=1, zeta=0.1, F=0, omega=1, R=0.8, b=1, tau=0, constant=0.3)
+    with pytest.raises(ValueError, match="force"):
+        vs.born_at_grazing(oscillator)
 
 
 def test_complementarity_problem_against_all_sign_patterns():

@@ -139,3 +139,30 @@ def test_sweeps_and_single_orbits_are_compiled_together(first, second, tmp_path)
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
         compiled.append(int(done.stdout))
     assert compiled == [4, 0]
+
+
+NAMES = """
+import sys
+
+import numpy as np
+from numba.core import itanium_mangler
+from numba.core.typing.typeof import typeof
+
+from vibro_sweep.engine.simd import jit
+
+for size in map(int, sys.argv[1:]):
+    print(itanium_mangler.mangle_type(typeof(np.empty(1, [("x", float, size)]))))
+"""
+
+
+def test_names_of_kernels_in_machine_code_tell_records_apart(tmp_path):
+    """In all processes alike: numba counts records as they come up, and a kernel from the cache was called in place of
+    another one (wrong numbers, or a crash)."""
+    (tmp_path / "program.py").write_text(NAMES)
+
+    def names(*sizes):
+        command = [sys.executable, "program.py", *map(str, sizes)]
+        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout.split()
+
+    three, five = names(3, 5)
+    assert three != five and names(5, 3) == [five, three]

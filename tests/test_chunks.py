@@ -7,7 +7,7 @@ from support.faults import TEXT
 
 from vibro_sweep import store
 from vibro_sweep.scene import parse_scene
-from vibro_sweep.store import layout
+from vibro_sweep.store import datasets, layout
 
 
 @pytest.mark.parametrize("follow", [False, True])
@@ -38,7 +38,7 @@ def test_a_large_file_is_made_at_once(path):
     )
     assert store.size(scene) > 39e9
     with h5py.File(path, "w", libver="v110") as file:
-        layout.create(file, scene)
+        datasets.create(file, scene)
         assert file["status"].size > 9.98e8 and file["status"][31599, 31599] == -1
         assert np.isnan(file["sticking_time"][5, 7])
     assert path.stat().st_size < 3e6

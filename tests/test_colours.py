@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from vibro_sweep.plotting import families, style
+from vibro_sweep.plotting import curves, families, style
 
 # Machado, Oliveira, Fernandes, IEEE Trans. Vis. Comput. Graph. 15 (2009) 1291, table 1: severity 1.0, on linear sRGB
 VISIONS = {
@@ -35,6 +35,7 @@ LEGENDS = {
     "exponents": (itertools.combinations(style.EXPONENTS, 2), 39),
     "kinds of attractors": (itertools.combinations([colour for _, colour in families.KINDS.values()], 2), 32),
     "branches": (itertools.combinations((*style.BRANCHES.values(), style.INK), 2), 45),
+    "curves": (itertools.combinations(curves.COLOURS.values(), 2), 26),
     "sides": ([(style.RIGHT, style.LEFT)], 82),
     "portrait": (itertools.combinations((style.INK, style.SECTION, style.IMPACT, style.FAINT), 2), 32),
 }

@@ -6,11 +6,11 @@ from support.branches import repeated
 from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.periodic import PeriodicOrbit
-from vibro_sweep.analysis.solution import Solution
-from vibro_sweep.analysis.track import Track
-from vibro_sweep.analysis.walk import Walk
-from vibro_sweep.analysis.way import FIRST_STEP, LONGEST_STEP, SHORTEST_STEP, STRAIGHT
+from vibro_sweep.analysis.branches.track import Track
+from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.branches.way import FIRST_STEP, LONGEST_STEP, SHORTEST_STEP, STRAIGHT
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import places
 from vibro_sweep.model.linear import Family
 
@@ -45,7 +45,8 @@ def orbit_of(system, itinerary):
     if itinerary == "born":
         born = next(item.orbit for item in vs.born_at_grazing(system, 1) if item.itinerary == "LR")
         points = vs.continue_orbit(born, "b", (0.01, 60)).points
-        point = points.isel(point=points.sizes["point"] // 2)
+        middle = (points.b.min() + points.b.max()) / 2
+        point = points.isel(point=int(abs(points.b - middle).argmin()))
         guess = zip(point.impact_t.values, point.impact_side.values, point.impact_v.values, strict=True)
         return vs.periodic_orbit(system.replace(b=float(point.b)), guess=list(guess))
     periods = 2 if isinstance(system, Family) and system.build is ONE_MASS.build else 1

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from support.attractors import known_orbits, same_partition
 
-from vibro_sweep.analysis import attractors, following
-from vibro_sweep.analysis.following import Attractors, Follower
-from vibro_sweep.analysis.many import Orbits, group_pieces
+from vibro_sweep.analysis.attractors import following, grouping
+from vibro_sweep.analysis.attractors.following import Attractors, Follower
+from vibro_sweep.analysis.attractors.many import Orbits, group_pieces
 
 # Grouping more orbits than memory holds
 
@@ -28,7 +28,7 @@ def test_pieces_have_the_groups_of_the_whole(seed, room):
         asked.append(n)
         return Orbits(*(values[starts[n] : ends[n]] for values in orbits))
 
-    label, whole = group_pieces(ends, read, room), attractors.group(*orbits)
+    label, whole = group_pieces(ends, read, room), grouping.group(*orbits)
     assert np.array_equal(label == 0, whole == 0) and same_partition(label, whole) and whole.max() >= 6
     assert len(asked) > len(ends)
 

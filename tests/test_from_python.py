@@ -16,7 +16,7 @@ from vibro_sweep.scene import Section, Start, Trajectory, load_scene, parse_scen
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
-SCENES = sorted(ROOT.glob("configs/**/*.yaml"))
+SCENES = sorted(path for path in ROOT.glob("configs/**/*.yaml") if path.parent.name != "branches")
 SHORT = dict(transient=20, record=10)
 
 

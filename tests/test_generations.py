@@ -6,9 +6,9 @@ from support.branches import types
 from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.generations import passes
-from vibro_sweep.analysis.periodic import orbit_of
-from vibro_sweep.analysis.switching import mirrored
+from vibro_sweep.analysis.branches.generations import passes
+from vibro_sweep.analysis.branches.switching import mirrored
+from vibro_sweep.analysis.periodic.orbit import orbit_of
 
 BOUNDS = (0.3, 6.8)
 

@@ -4,25 +4,25 @@ import numpy as np
 import pytest
 from support.attractors import known_orbits, same_partition
 
-from vibro_sweep.analysis import attractors
+from vibro_sweep.analysis.attractors import grouping
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_groups(seed):
     truth, period, average, error = known_orbits(300, seed)
-    label = attractors.group(period, average, error)
+    label = grouping.group(period, average, error)
     assert same_partition(label, truth)
     sizes = np.bincount(label)
     assert sizes[0] == 0 and np.all(np.diff(sizes[1:]) <= 0)
     order = np.random.default_rng(seed).permutation(300)
-    assert same_partition(attractors.group(period[order], average[order], error[order]), truth[order])
+    assert same_partition(grouping.group(period[order], average[order], error[order]), truth[order])
 
 
 def test_points_do_not_matter_to_each_other():
     some = [known_orbits(40, seed)[1:] for seed in range(12)]
-    together = attractors.group(*(np.stack(arrays) for arrays in zip(*some, strict=True)))
+    together = grouping.group(*(np.stack(arrays) for arrays in zip(*some, strict=True)))
     for label, one in zip(together, some, strict=True):
-        assert np.array_equal(label, attractors.group(*one))
+        assert np.array_equal(label, grouping.group(*one))
 
 
 def test_equal_shares_are_numbered_by_the_first_start():
@@ -30,7 +30,7 @@ def test_equal_shares_are_numbered_by_the_first_start():
     first = [int(np.flatnonzero(period == p)[0]) for p in (1, 5, 10)]
     for order in ([0, 1, 2], [2, 0, 1], [1, 2, 0]):
         chosen = np.array(first)[order]
-        assert attractors.group(period[chosen], average[chosen], error[chosen]).tolist() == [1, 2, 3]
+        assert grouping.group(period[chosen], average[chosen], error[chosen]).tolist() == [1, 2, 3]
 
 
 def test_chaos_that_changes_sides_seldom_is_one():
@@ -39,9 +39,9 @@ def test_chaos_that_changes_sides_seldom_is_one():
     average[:, 1] = np.random.default_rng(0).permutation(np.linspace(-1, 1, 40))
     average[:, 6], error[:, 6] = 0.01, 0.001
     period = np.zeros(40, int)
-    assert np.all(attractors.group(period, average, error) == 1)
+    assert np.all(grouping.group(period, average, error) == 1)
     apart = abs(average[:, 1]) > 0.8  # nothing between the sides: two
-    assert attractors.group(period[apart], average[apart], error[apart]).max() == 2
+    assert grouping.group(period[apart], average[apart], error[apart]).max() == 2
 
 
 def test_an_orbit_on_its_way_is_no_attractor():
@@ -52,11 +52,11 @@ def test_an_orbit_on_its_way_is_no_attractor():
     error[2:, :6], error[2:, 6] = 0.01, 1e-3
     period = np.array([35, 105, 0, 0])
     for order in ([0, 1, 2, 3], [2, 3, 1, 0], [3, 2, 0, 1]):
-        label = attractors.group(period[order], average[order], error[order])
+        label = grouping.group(period[order], average[order], error[order])
         assert label.tolist() == [(1, 1, 0, 2)[i] for i in order]
 
 
 def test_failed_orbits_and_those_that_have_not_settled():
     label = np.array([[1, 1, 0, -1], [-1, -1, -1, -1]])
-    share = attractors.share(label)
+    share = grouping.share(label)
     assert share[0, :3].tolist() == [2 / 3, 2 / 3, 1 / 3] and np.isnan(share[0, 3]) and np.isnan(share[1]).all()

@@ -8,7 +8,7 @@ from scipy.linalg import expm
 from support.oscillators import BALL, CAVITY, CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.impulse_equations import Equations
+from vibro_sweep.analysis.periodic.impulse_equations import Equations
 from vibro_sweep.engine.impulses.green import MOST_CELLS, ResonanceError, TooStiffError, space, train
 from vibro_sweep.model.linear import family_of, forcing_period
 

@@ -1,13 +1,15 @@
 """Orbits with many impacts: the sparse equations give what the dense ones give, at a cost that grows like K."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.branches import repeated
 from support.oscillators import CHAIN, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis import long_orbits
-from vibro_sweep.analysis.walk import Walk
+from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.periodic import long_orbits
 
 
 @pytest.mark.parametrize("system", [PAPER, CHAIN])
@@ -41,3 +43,19 @@ def test_long_orbit_is_followed_like_the_short_one():
     found = vs.periodic_orbit(PAPER.replace(b=point.p), itinerary="R")
     assert point.solution.jumps == pytest.approx(-1.8 * found.impacts["v1"][0], rel=1e-12)
     assert point.reflection[0] == start.reflection[0]
+
+
+@pytest.mark.parametrize("system", [PAPER, CHAIN])
+def test_newton_with_states_finds_what_the_dense_one_finds(system):
+    long = repeated(vs.periodic_orbit(system, itinerary="LR"), 35)
+    assert long_orbits.is_long(long.equations, long.sides)
+    rng = np.random.default_rng(0)
+    near = replace(long, u=long.u * (1 + 1e-6 * rng.normal(size=long.size)))
+    found, change = long_orbits.newton(near.equations, near.sides, near.u, near.states)
+    ends, _ = near.equations.newton(near.sides, near.u[None])
+    assert change < 1e-11 and np.abs(found - ends[0]).max() < 1e-11 and np.abs(found - long.u).max() < 1e-11
+    assert near.corrected().real
+    far = replace(long, u=long.u * (1 + 0.3 * rng.normal(size=long.size)))
+    found = long_orbits.newton(far.equations, far.sides, far.u, far.states)
+    if found is not None:
+        assert np.abs(far.equations.evaluate(far.sides, found[0])[0]).max() < 1e-9

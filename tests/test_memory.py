@@ -82,7 +82,7 @@ def test_parts_of_points_and_chains_give_the_same_bits(name, monkeypatch):
         return table
 
     if name == "failing":
-        monkeypatch.setattr("vibro_sweep.driver.tables.points_of", too_stiff)
+        monkeypatch.setattr("vibro_sweep.analysis.single.tables.points_of", too_stiff)
     scene = scene_of((SCENES | MORE)[name])
     whole, _ = computed(scene, 10**6, None)
     if name == "failing":

@@ -192,6 +192,40 @@ def test_no_steady_motion():
     assert resonant.phase == 0 and not vs.grazing(resonant).satisfied
 
 
+def test_stops_about_the_static_equilibrium():
+    """Both stops are grazed at the same clearance, whatever the rounding of the static state."""
+    K = np.array([[3, -1.1, 0.3], [-1.1, 2.3, -0.7], [0.3, -0.7, 1.9]])
+    rest, along = np.array([0.3, 0.1, -0.2]), np.array([1.0, 0, 0])
+    given = dict(M=np.eye(3), K=K, C=K / 30, force=[1, 0, 0.2], along=along, omega=1.1, b=1, R=0.8)
+    touch = vs.grazing(vs.Oscillator(**given, constant=K @ rest, offset=along @ rest))
+    amplitude = abs(np.linalg.solve(K - 1.1**2 * np.eye(3) + 1.1j * K / 30, [1, 0, 0.2])[0])
+    assert touch.satisfied and touch.b == touch.b_right == touch.b_left
+    assert touch.b == pytest.approx(amplitude, rel=1e-14, abs=0)
+    apart = vs.grazing(vs.Oscillator(**given, constant=K @ rest, offset=0.3 + 1e-9))
+    assert math.isnan(apart.b) and apart.b_left - apart.b_right == pytest.approx(2e-9, rel=1e-5, abs=0)
+
+
+def test_condition_of_motions_that_are_not_the_only_ones():
+    """A free mode; an undamped mode in resonance that no force excites: the determinant is 0, and (19) fails."""
+    free = vs.System(**(PAPER | dict(mu_k=0)))
+    chain = oscillator("chain", k=[0, 1, 1, 0], c=[0, 0.1, 0.1, 0])
+    resonant = vs.Oscillator(
+        np.eye(2), [[2, -1], [-1, 2]], 0, force=[1, 1], along=[1, 0], omega=math.sqrt(3), b=1, R=0.8
+    )
+    for system in (free, chain, resonant):
+        touch = vs.grazing(system)
+        assert (touch.determinant, touch.satisfied) == (0.0, False) and touch.b > 0
+    assert vs.grazing(resonant).b == pytest.approx(0.5, rel=1e-13, abs=0)
+
+
+def test_numbers_of_a_list_that_is_not_given():
+    """They are none of the oscillator's; a damping matrix of 0 is none."""
+    given = dict(M=np.eye(2), K=np.eye(2), along=[1, 0], omega=0.7, b=1, R=0.8)
+    plain, damped = vs.Oscillator(**given, C=0), vs.Oscillator(**given, C=0, rayleigh=[0.1, 0])
+    assert not plain.linear.C.any() and not hasattr(plain, "rayleigh1")
+    assert damped.rayleigh1 == 0.1 and np.array_equal(damped.linear.C, 0.1 * np.eye(2))
+
+
 def test_rest_held_by_a_stop():
     """Zero between the stops; else the gap at the nearer stop, and no force but that of the stop."""
     assert held_state(oscillator("chain").linear).tolist() == [0, 0, 0]
@@ -264,8 +298,52 @@ def test_a_sweep_of_what_a_function_makes(tmp_path):
         vs.sweep(lambda play: play, {"play": [1.0]})
     with pytest.raises(ValueError, match="axes: play"):
         vs.sweep(damper, {"play": ["a"]})
+    with pytest.raises(ValueError, match=r"start: \[0, 0\] is not allowed; it must be four finite numbers"):
+        vs.sweep(damper, {"play": [0.5, 1.0], "share": [0.1]}, start=[0, 0])
+    other = oscillator("one_mass")
+    with pytest.raises(ValueError, match=r"play=2.0\): 1 masses are not allowed; there must be as many"):
+        vs.sweep(lambda play: other if play == 2 else damper(play, 0.1), {"play": [1.0, 2.0]}, transient=1, record=1)
 
 
+@pytest.mark.slow
+def test_an_interrupted_sweep_of_a_function_is_continued_by_the_same_matrices(tmp_path):
+    class StoppedError(Exception):
+        pass
+
+    def ball(F, zeta=0.1):
+        return oscillator("one_mass", F=F, zeta=zeta)
+
+    given = dict(start=(0, 0), transient=50, record=10, observe=("section",), workers=1)
+    axes, output = {"F": np.linspace(0.5, 1.5, 301)}, tmp_path / "ball.h5"
+
+    def stop(done, total):
+        if 0 < done < total:
+            raise StoppedError
+
+    whole = vs.sweep(ball, axes, **given)
+    with pytest.raises(StoppedError):
+        vs.sweep(ball, axes, **given, output=output, progress=stop)
+    with pytest.raises(vs.StoreError, match="`resume` continues it"):
+        vs.sweep(ball, axes, **given, output=output)
+
+    def other(F):
+        return ball(F, zeta=0.2)
+
+    other.__name__ = "ball"
+    with pytest.raises(vs.StoreError, match="made from another scene"):
+        vs.sweep(other, axes, **given, output=output, mode="resume")
+    begun = []
+    data = vs.sweep(ball, axes, **given, output=output, mode="resume", progress=lambda done, total: begun.append(done))
+    assert begun[0] > 0
+    np.testing.assert_array_equal(data["x1"], whole["x1"])
+    np.testing.assert_array_equal(vs.sweep(ball, axes, **given, output=output)["x1"], whole["x1"])  # it is complete
+    with pytest.raises(vs.StoreError, match="is not what this scene makes"):
+        vs.sweep(other, axes, **given, output=output)
+    with pytest.raises(ValueError, match="mode: 'resume' is not allowed; without a file"):
+        vs.sweep(ball, axes, **given, mode="resume")
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("stiffness", [0.0, 1.0])
 def test_attractors_of_one_mass(stiffness):
     """Random starts, which are grouped and numbered for any number of masses."""

@@ -51,6 +51,8 @@ bad: int = report.bad
 with vs.open("sweep.h5") as data:
     figure = vs.plot(data, "bifurcation")
 figure.savefig("figure.png")
+for window in vs.windows("sweep.h5"):
+    print(window.lo, window.lower.type, window.hi, window.upper.error, window.period, window.orbit.stable)
 found = vs.sweep(system, {"b": np.linspace(6.5, 6.6, 3)}, transient=10, record=4)
 print(found.lyapunov)
 periodic = vs.periodic_orbit(system.replace(b=6.9), state=(0, 0, 0, 0))
@@ -60,6 +62,8 @@ branch = vs.continue_orbit(again, "b", (6.6, 7.0))
 for special in branch.special:
     if special.type == "graze":
         print(vs.switch(special), vs.sticking_onset(special))
+        curve = vs.bifurcation_curve(special, ("b", "omega"), ((6, 7), (0.6, 0.7)))
+        print(curve.points.b, curve.closed, curve.begins.type, [one.parameters["omega"] for one in curve.special])
 print([one.itinerary for one in vs.born_at_grazing(system, periods=1)])
 print(len(vs.follow_branches(again, "b", (6.6, 7.0), depth=1)))
 pair = vs.Oscillator([[1, 0], [0, 2]], np.eye(2), rayleigh=(0.1, 0), force=[1, 0], along=[1, -1], omega=0.8, b=1, R=0.7)
@@ -191,6 +195,7 @@ def test_arguments_of_run(tmp_path, monkeypatch, arguments, message):
         (lambda: vs.continue_orbit(3, "b", (1, 2)), "orbit: 3 is not allowed"),
         (lambda: vs.switch(3), "special: 3 is not allowed"),
         (lambda: vs.sticking_onset(3), "special: 3 is not allowed"),
+        (lambda: vs.bifurcation_curve(3, ("b", "R"), ((1, 2), (0, 1))), "special: 3 is not allowed"),
         (lambda: vs.sweep(3, {"b": [1]}), "system: 3 is not allowed"),
         (lambda: vs.plot(3), "data: 3 is not allowed"),
         (lambda: vs.open(3), "path: 3 is not allowed"),

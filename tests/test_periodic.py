@@ -10,7 +10,7 @@ from reference.shooting import Shooting
 from support.oscillators import BALL, CAVITY, CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.itinerary import canonical_start
+from vibro_sweep.analysis.periodic.itinerary import canonical_start
 
 
 def agrees_with_simulation(orbit, tolerance):
@@ -217,6 +217,14 @@ def test_thousand_guesses_give_the_orbit_or_an_honest_failure():
     assert max(residuals) < 1e-12
 
 
+def test_guess_may_be_a_rotation_of_the_itinerary():
+    orbit = vs.periodic_orbit(PAPER, itinerary="LR")
+    guess = [(hit["t"], hit["side"], hit["v1"]) for hit in orbit.impacts[::-1]]
+    guess[1] = (guess[1][0] + PAPER.period, *guess[1][1:])
+    again = vs.periodic_orbit(PAPER, itinerary="LR", guess=guess)
+    assert again.ok and again.impacts["t"] == pytest.approx(orbit.impacts["t"], abs=1e-13)
+
+
 def test_failures_are_told_by_status():
     assert vs.periodic_orbit(PAPER.replace(b=9.0), guess=[(0.0, 1, 3.0)]).status in ("not_converged", "not_real")
     resonant = PAPER.replace(zeta=0.0, tau=0.0, omega=math.sqrt(PAPER.modes.omega_squared[0]))
@@ -235,7 +243,12 @@ def test_failures_are_told_by_status():
         ({"itinerary": "RX"}, "word of R and L"),
         ({"itinerary": "R", "periods": 0}, "whole number"),
         ({"guess": [(1.0, 1, 0.1), (0.5, -1, -0.1)]}, "must rise"),
+        ({"state": (0, 0, 0, 0), "periods": math.inf}, "whole number"),
+        ({"state": (0, 0, 0, 0), "periods": math.nan}, "whole number"),
         ({"guess": [(1.0, 2, 0.1)]}, "side 1 or -1"),
+        ({"guess": [(1.0, 1.5, 0.1)]}, "side 1 or -1"),
+        ({"guess": [(1.0, math.inf, 0.1)]}, "side 1 or -1"),
+        ({"guess": [(1.0, 1, 0.1)], "itinerary": ""}, "differs"),
         ({"guess": [(1.0, 1, 0.1)], "itinerary": "L"}, "differs"),
         ({"guess": [(1.0, 1, 0.1), (50.0, 1, 0.1)]}, "one period"),
     ],

@@ -1,12 +1,10 @@
-"""Models with names against published numbers and closed forms, by way of their periodic orbits.
-
-x'' + 0.04 x' + x = F cos(omega t), x <= 1, R = 0.9: arXiv 2510.16218, worked out anew in 30 digits.
-"""
+"""Models with names against published numbers and closed forms, by way of their periodic orbits."""
 
 import math
 
 import numpy as np
 import pytest
+from mpmath import mp, mpc, mpf
 
 import vibro_sweep as vs
 
@@ -19,16 +17,69 @@ def specials(branch, kind):
     return [one for one in branch.special if one.type == kind]
 
 
+ETA, R = 0.02, 0.9
+
+
+def flight(omega):
+    """E over two periods, and a and c: from one impact at speed v to the next the flight is linear about the steady
+    motion s, (1 - E)(1 - s, -s') = E (0, -R v) - (0, v). So s = 1 - a v and s' = c v at the impact.
+    """
+    eta, u = mpf(ETA), 4 * mp.pi / mpf(omega)
+    root = mp.sqrt(1 - eta**2)
+    cos, sin = mp.cos(root * u), mp.sin(root * u) / root
+    E = mp.exp(-eta * u) * mp.matrix([[cos + eta * sin, sin], [-sin, cos - eta * sin]])
+    a, minus_c = mp.lu_solve(mp.eye(2) - E, E * mp.matrix([0, -mpf(R)]) - mp.matrix([0, 1]))
+    return E, a, -minus_c
+
+
+def force_of_speed(omega, v):
+    """F of the orbit with this speed: F |g| is the amplitude of s."""
+    with mp.workdps(30):
+        (_, a, c), omega, v = flight(omega), mpf(omega), mpf(v)
+        return float(mp.hypot(1 - a * v, c * v / omega) * abs(mpc(1 - omega**2, 2 * mpf(ETA) * omega)))
+
+
+def special(omega, kind):
+    """F and the speed at the fold or the flip of the orbits with one impact in two periods, in 30 digits.
+
+    x'' + 0.04 x' + x = F cos(omega t), x <= 1, R = 0.9 (arXiv 2510.16218). F is least at the fold. At the flip
+    1 + tr + det of the monodromy matrix E S is zero, which is linear in the speed.
+    """
+    with mp.workdps(30):
+        (E, a, c), w, back = flight(omega), mpf(omega), mpf(R)
+        if kind == "fold":
+            v = a / (a**2 + (c / w) ** 2)
+        else:
+            steepness = (back * (E[0, 0] + E[1, 1]) - 1 - back**2 * mp.det(E)) / E[0, 1]
+            # steepness v = (1 + R)(f - 1), with the force f = (1 - omega^2) s + 2 eta s'
+            v = (1 + back) * -(w**2) / (steepness + (1 + back) * ((1 - w**2) * a - 2 * mpf(ETA) * c))
+        return force_of_speed(omega, v), float(v)
+
+
 @pytest.mark.parametrize(
-    ("omega", "begin", "kind", "F", "speed"),
-    [(0.81, 0.4, "flip", 0.347533397, 0.0653039433), (0.799, 0.364, "fold", 0.362836202, 0.1240873449)],
+    ("omega", "begin", "kind", "published"),
+    [(0.81, 0.4, "flip", (0.347533397, 0.0653039433)), (0.799, 0.364, "fold", (0.362836202, 0.1240873449))],
 )
-def test_one_impact_in_two_periods(omega, begin, kind, F, speed):
+def test_one_impact_in_two_periods(omega, begin, kind, published):
+    """F of the published tables to 5e-7; of the closed form to 1e-12, with the speed."""
+    F, speed = special(omega, kind)
+    assert (F, speed) == pytest.approx(published, abs=6e-10)
     orbit = vs.periodic_orbit(wall(omega, begin), itinerary="R", periods=2)
     branch = vs.continue_orbit(orbit, "F", (0.3, 0.5))
     (found,) = [one for one in specials(branch, kind) if abs(one.parameters["F"] - F) < 1e-3]
-    assert found.parameters["F"] == pytest.approx(F, abs=6e-10)
-    assert found.orbit.impacts["v1"] == pytest.approx(speed, abs=6e-11)
+    assert found.parameters["F"] == pytest.approx(F, abs=1e-12)
+    assert found.orbit.impacts["v1"] == pytest.approx(speed, abs=1e-12)
+
+
+@pytest.mark.parametrize(("omega", "begin"), [(0.81, 0.4), (0.799, 0.364)])
+def test_orbits_of_the_published_tables(omega, begin):
+    """Along the branch, unstable orbits among them: F of each speed."""
+    orbit = vs.periodic_orbit(wall(omega, begin), itinerary="R", periods=2)
+    points = vs.continue_orbit(orbit, "F", (0.3, 0.5)).points
+    assert points.sizes["point"] > 20
+    speeds, forces = points.impact_v.values[:, 0], points.F.values
+    sums = [force_of_speed(omega, speed) for speed in speeds]
+    np.testing.assert_allclose(forces, sums, rtol=0, atol=1e-12)
 
 
 def test_bouncing_ball():

@@ -18,7 +18,16 @@ PAGES = {
     ]
     for path in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 }
-SLOW = ("README.md", "cluster.md", "gallery.md", "physical_units.md", "periodic_orbits.md", "architecture.md")
+SLOW = (
+    "README.md",
+    "cluster.md",
+    "gallery.md",
+    "physical_units.md",
+    "periodic_orbits.md",
+    "architecture.md",
+    "windows.md",
+    "curves.md",
+)
 NETWORK = "ip link set lo up\nip addr add dev lo 10.0.0.1\n"  # the address of docs/cluster.md
 
 # What these pages take from other packages, where these are not installed; workers of this machine in their place.

@@ -1,11 +1,13 @@
 """Periodic orbits with rests after impacts without restitution: one event each, with the time at which it ends."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.resting import RestEquations
+from vibro_sweep.analysis.periodic.resting import RestEquations
 from vibro_sweep.model.linear import family_of
 
 DEAD = PAPER.replace(R=0.0)
@@ -105,6 +107,39 @@ def test_orbit_survives_its_file(resting, tmp_path):
     again = vs.load_orbit(orbit.save(tmp_path / "orbit.json"))
     assert again.ok and again.sticking.tobytes() == orbit.sticking.tobytes()
     assert again.impacts.tobytes() == orbit.impacts.tobytes()
+
+
+@pytest.mark.parametrize("b", [0.05, 0.5, 1.2])
+def test_orbit_with_rests_from_its_itinerary_and_from_a_guess(b):
+    orbit, _ = settled(b)
+    near = [(i["t"] + 0.02, i["side"], 1.1 * i["v1"]) for i in orbit.impacts]
+    for found in (vs.periodic_orbit(orbit.system, itinerary="LR"), vs.periodic_orbit(orbit.system, guess=near)):
+        assert found.ok and len(found.sticking) == 2 and found.symmetric
+        assert np.abs(found.state - orbit.state).max() < 1e-12
+
+
+def test_short_flight_before_the_rest(branch):
+    """Two impacts on each stop; the mass rests after the second one only."""
+    orbit, _ = settled(branch.ends.parameters["b"] + 0.01)
+    assert orbit.itinerary == "LLRR" and len(orbit.sticking) == 2
+    near = [(i["t"] + 1e-3, i["side"], i["v1"]) for i in orbit.impacts]
+    found = vs.periodic_orbit(orbit.system, guess=near)
+    assert found.ok and np.abs(found.state - orbit.state).max() < 1e-12
+
+
+def test_ball_that_rests_in_its_cavity():
+    cavity = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.1, zeta=0.05, F=1.0, omega=0.7, R=0.0, b=0.2)
+    section = vs.simulate(cavity, np.zeros(4), 500).section
+    found = vs.periodic_orbit(cavity, itinerary="LR")
+    assert found.ok and len(found.sticking) == 2 and np.abs(found.state - section[-1]).max() < 1e-9
+
+
+def test_a_rest_after_one_impact_is_not_followed_to_other_restitutions(resting):
+    with pytest.raises(ValueError, match=r"parameter: 'R' is not allowed: .* at R = 0"):
+        vs.continue_orbit(resting[0], "R", (0.0, 0.5))
+    orbit, _ = resting
+    other = replace(orbit._solution, family=family_of(orbit.system.replace(R=0.1)))
+    assert orbit._solution.real and not other.real
 
 
 def test_rest_after_chatter_stays_refused():

@@ -76,7 +76,7 @@ def flights(reference, b, count, rng):
     z[:, 2] = b * rng.normal(size=count)
     z[:, 3] = b * rng.normal(size=count)
     z[:, 4:] = reference.phase(u)
-    force = np.array([certified.longdouble(reference.A[1, j]) for j in range(6)])
+    force = reference.acceleration
     z[:, 2] = np.where(side * (z @ force) < 0, z[:, 2], -z[:, 2])
     curved = rng.random(count) < 0.85
     z[~curved, 2] -= (z @ force / force[2])[~curved]  # an inflection: no acceleration at the stop, or nearly none
@@ -89,7 +89,7 @@ def flights(reference, b, count, rng):
 def judge_flights(count, rng):
     """Rows (decade, missing, 5) of flights, missed, invented, contacts, wrongly excluded."""
     system = random_system(rng)
-    reference = certified.Reference(system.parameters())
+    reference = certified.of_paper(system.parameters())
     batches = [flights(reference, system.b, count // 8, rng) for _ in range(8)]
     states, decade, missing = (np.concatenate(parts) for parts in zip(*batches, strict=True))
     leaving = rng.random(len(states)) < 0.1  # flights that begin on a stop
@@ -107,7 +107,7 @@ def judge_flights(count, rng):
     time = np.where(hit, record[:, 0] * engine.width + record[:, 1], engine.period)
     verdict = reference.inside(z, system.b, (time * (1 - 2 * EPS)).astype(REAL), tolerance)
     missed = verdict != POSITIVE
-    x1, error = reference.x1(z, time.astype(REAL))
+    x1, error = reference.gap(z, time.astype(REAL))
     invented = hit & (record[:, 2] * x1 < system.b - tolerance - error)
     excluded = np.minimum(suspects * engine.width, engine.period)
     wrong, later = missed & (excluded >= time), excluded > time  # up to `time` it is judged already
@@ -123,7 +123,7 @@ def test_the_reference_sees_what_was_built():
     free = 0
     for _ in range(4):
         system = random_system(rng)
-        reference = certified.Reference(system.parameters())
+        reference = certified.of_paper(system.parameters())
         batches = [flights(reference, system.b, 200, rng) for _ in range(4)]
         states, decade, missing = (np.concatenate(parts) for parts in zip(*batches, strict=True))
         end, none = np.full(len(states), reference.period, REAL), np.zeros(len(states), REAL)

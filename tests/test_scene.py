@@ -160,6 +160,12 @@ class TestScene:
             assert other.zeta == pytest.approx(system.zeta) and other.omega == pytest.approx(system.omega)
         swept = parse_scene(text + "sweep: {b: {values: [1, 2]}}")
         assert swept.system == system.replace(b=1)
+        unequal = text.replace("B: 3.3", "B: 3.3, B0: -0.4, R_left: 0.5, C2: 1").replace("C2: 2, ", "")
+        assert parse_scene(unequal).system == system.replace(offset=-0.8, R_left=0.5, mu_c=2.5)
+        beyond = text.replace("B: 3.3", "B: -3.3")  # one stop may stand anywhere
+        assert parse_scene(beyond).system == system.replace(b=-6.6)
+        with pytest.raises(SceneError, match=r"system\.physical\.B = -3\.3: must be a finite number > 0"):
+            parse_scene(beyond.replace("left", "both"))
 
     @pytest.mark.parametrize("direction, n_starts", [("up", 1), ("down", 1), ("both", 2)])
     def test_follow(self, direction, n_starts):

@@ -6,7 +6,7 @@ from support.branches import branch_of, exact
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.sticking import shrinking
+from vibro_sweep.analysis.branches.sticking import shrinking
 
 
 @pytest.mark.parametrize("R", [0.2, 0.8, 0.95])

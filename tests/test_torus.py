@@ -5,7 +5,7 @@ import pytest
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis import torus
+from vibro_sweep.analysis.branches import torus
 
 
 class NormalForm:

@@ -5,7 +5,9 @@ At a prompt
 Sweeps
     sweep (from Python), load_scene and run (from YAML to an HDF5 file), open (that file as an xarray.Dataset), plot
 Periodic orbits
-    periodic_orbit, continue_orbit, switch, follow_branches, born_at_grazing, sticking_onset, load_orbit
+    periodic_orbit, continue_orbit, switch, follow_branches, bifurcation_curve, born_at_grazing, sticking_onset,
+    load_orbit
+    windows (of a sweep's file)
 Errors
     ParameterError, SceneError, StoreError, PlotError (each is a ValueError), RunError
 """
@@ -23,6 +25,7 @@ __all__ = [
     "SceneError",
     "StoreError",
     "System",
+    "bifurcation_curve",
     "born_at_grazing",
     "continue_orbit",
     "discontinuity_map",
@@ -39,21 +42,24 @@ __all__ = [
     "sticking_onset",
     "sweep",
     "switch",
+    "windows",
 ]
 
 if TYPE_CHECKING:
-    from vibro_sweep.analysis.continuation import continue_orbit
-    from vibro_sweep.analysis.discontinuity import discontinuity_map
-    from vibro_sweep.analysis.finding import periodic_orbit
-    from vibro_sweep.analysis.generations import follow_branches
-    from vibro_sweep.analysis.lcp import born_at_grazing
-    from vibro_sweep.analysis.orbit import lyapunov, simulate
-    from vibro_sweep.analysis.orbit_file import load_orbit
-    from vibro_sweep.analysis.sticking import sticking_onset
-    from vibro_sweep.analysis.switching import switch
+    from vibro_sweep.analysis.branches.continuation import continue_orbit
+    from vibro_sweep.analysis.branches.generations import follow_branches
+    from vibro_sweep.analysis.branches.sticking import sticking_onset
+    from vibro_sweep.analysis.curves.continuation import bifurcation_curve
+    from vibro_sweep.analysis.curves.switching import switch
+    from vibro_sweep.analysis.periodic.file import load_orbit
+    from vibro_sweep.analysis.periodic.finding import periodic_orbit
+    from vibro_sweep.analysis.periodic.lcp import born_at_grazing
+    from vibro_sweep.analysis.single.discontinuity import discontinuity_map
+    from vibro_sweep.analysis.single.orbit import lyapunov, simulate
     from vibro_sweep.driver.compute import RunError
     from vibro_sweep.driver.from_python import sweep
     from vibro_sweep.driver.sweep import run
+    from vibro_sweep.driver.windows import windows
     from vibro_sweep.model.general import Oscillator
     from vibro_sweep.model.grazing import grazing
     from vibro_sweep.model.oscillator import System
@@ -72,22 +78,24 @@ else:
         "SceneError": "scene",
         "StoreError": "store",
         "System": "model.oscillator",
-        "born_at_grazing": "analysis.lcp",
-        "continue_orbit": "analysis.continuation",
-        "discontinuity_map": "analysis.discontinuity",
-        "follow_branches": "analysis.generations",
+        "bifurcation_curve": "analysis.curves.continuation",
+        "born_at_grazing": "analysis.periodic.lcp",
+        "continue_orbit": "analysis.branches.continuation",
+        "discontinuity_map": "analysis.single.discontinuity",
+        "follow_branches": "analysis.branches.generations",
         "grazing": "model.grazing",
-        "load_orbit": "analysis.orbit_file",
+        "load_orbit": "analysis.periodic.file",
         "load_scene": "scene",
-        "lyapunov": "analysis.orbit",
+        "lyapunov": "analysis.single.orbit",
         "open": "store",
-        "periodic_orbit": "analysis.finding",
+        "periodic_orbit": "analysis.periodic.finding",
         "plot": "plotting.front",
         "run": "driver.sweep",
-        "simulate": "analysis.orbit",
-        "sticking_onset": "analysis.sticking",
+        "simulate": "analysis.single.orbit",
+        "sticking_onset": "analysis.branches.sticking",
         "sweep": "driver.from_python",
-        "switch": "analysis.switching",
+        "switch": "analysis.curves.switching",
+        "windows": "driver.windows",
     }
 
     def __getattr__(name: str):

@@ -4,6 +4,7 @@ Commands import what they need when they run, so that `--help` answers at once.
 """
 
 import shlex
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -82,10 +83,11 @@ def run(
     to_continue = f"to continue: {shlex.join([*again, '--resume'])}"
     # until the run has begun, what is to be overwritten is there, and would be taken for its result
     interrupt.tells(f"to continue: {shlex.join([*again, '--overwrite'])}" if overwrite else to_continue)
-    from .scene import SceneError, load_scene
+    from .scene import SceneError, is_continuation_file, load_continuation, load_scene
 
     with input_errors(SceneError):
-        scene = load_scene(scene_file)
+        of_branches = is_continuation_file(scene_file)
+        scene = load_continuation(scene_file) if of_branches else load_scene(scene_file)
     if resume and overwrite:
         raise InputError("--resume and --overwrite exclude each other: continue the old file or replace it")
     mode = "resume" if resume else "overwrite" if overwrite else "new"
@@ -100,6 +102,11 @@ def run(
     with input_errors(StoreError):
         check_output(output, scene_file, picture, mode)
 
+    if of_branches:
+        _follow(scene, output, workers, scheduler, mode, quiet, to_continue)
+        if plot:
+            _draw(output, picture, None, overwrite, quiet)
+        return
     from .driver import sweep
     from .progress import progress_bar
 
@@ -122,6 +129,77 @@ def run(
         _draw(output, picture, None, overwrite, quiet)
     if report.bad:
         raise typer.Exit(BAD_POINTS)
+
+
+@app.command("windows")
+def windows_command(
+    file: DataFile,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE.h5", help="By default FILE.windows.h5 in the current folder."),
+    ] = None,
+    along: Annotated[
+        str | None, typer.Option(metavar="KEY", help="The swept number, of a plane; by default the first.")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(parser=positive, metavar="N", help="Processes; by default one.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Compute on the workers of a dask scheduler instead.")
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")] = False,
+    plot: Annotated[bool, typer.Option("--plot", help="Draw the sweep with its windows, next to the file.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but warnings and errors.")] = False,
+):
+    """Find the windows of a sweep and what ends them; write their file.
+
+    A window is an interval on which one periodic orbit is stable. The sweep's file stays as it is.
+    """
+    if resume and overwrite:
+        raise InputError("--resume and --overwrite exclude each other: continue the old file or replace it")
+    mode = "resume" if resume else "overwrite" if overwrite else "new"
+    output = output or Path(f"{file.name.removesuffix('.h5')}.windows.h5")
+    picture = output.with_suffix(".png") if plot else None
+    from .places import check_output
+    from .store import StoreError
+
+    with input_errors(StoreError):
+        check_output(output, file, picture, mode)
+    again = ["vibro-sweep", "windows", str(file), "-o", str(output)]
+    again += ["--along", along] if along else []
+    again += ["--scheduler", scheduler] if scheduler else ["--workers", str(workers)] if workers else []
+    to_continue = f"to continue: {shlex.join([*again, '--resume'])}"
+    interrupt.tells(to_continue)
+    from .driver.windows import run_windows
+
+    _in_pieces(partial(run_windows, file, output, along), output, workers, scheduler, mode, quiet, to_continue)
+    if picture:
+        _draw(file, picture, None, overwrite, quiet, windows=output)
+
+
+def _follow(scene, output: Path, *how):
+    from .driver.branches import run_branches
+
+    _in_pieces(partial(run_branches, scene, output), output, *how)
+
+
+def _in_pieces(compute, output: Path, workers, scheduler, mode: str, quiet: bool, to_continue: str):
+    """Compute a file of branches or windows, and print its tables."""
+    from .driver.compute import RunError
+    from .progress import progress_bar
+    from .store import StoreError, tables
+
+    with input_errors(StoreError, ValueError), interrupt.tidied_up():
+        interrupt.tells(to_continue)
+        try:
+            bar, workers_of_a_cluster = progress_bar(0, quiet), executor_of(scheduler)
+            with messages(quiet), workers_of_a_cluster as executor, bar as progress:
+                compute(workers, executor, progress, mode)
+        except RunError as error:
+            raise InputError(f"{error}. Nothing that was computed is lost; {to_continue}") from None
+    if not quiet:
+        say("\n".join([f"{output}", *tables(output)]))
 
 
 @app.command("plot")
@@ -157,6 +235,14 @@ def plot_command(
         typer.Option(metavar="WIDTH HEIGHT", help="In inches; by default 7 wide."),
     ] = None,
     dpi: Annotated[str | None, typer.Option(metavar="N", help="Pixels an inch; by default 200.")] = None,
+    windows: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.h5", exists=True, dir_okay=False, help="Show the windows of a sweep below it."),
+    ] = None,
+    over: Annotated[
+        Path | None,
+        typer.Option(metavar="SWEEP.h5", exists=True, dir_okay=False, help="Draw branches over a sweep."),
+    ] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an existing file, also one that is no picture of this program.")
     ] = False,
@@ -167,7 +253,8 @@ def plot_command(
         pair and tuple(number_in(f"--{name}", text) for text in pair)
         for name, pair in (("xlim", xlim), ("ylim", ylim), ("size", size))
     ]
-    _draw(file, output, kind, overwrite, False, values, variable, *pairs, dpi and number_in("--dpi", dpi))
+    look = (values, variable, *pairs, dpi and number_in("--dpi", dpi))
+    _draw(file, output, kind, overwrite, False, *look, windows=windows, over=over)
 
 
 @app.command()
@@ -188,9 +275,12 @@ def info(file: DataFile):
 @app.command()
 def check(scene_file: SceneFile):
     """Validate a scene; say what it computes, its size and time."""
-    from .scene import SceneError, load_scene
+    from .scene import SceneError, is_continuation_file, load_continuation, load_scene
 
     with input_errors(SceneError):
+        if is_continuation_file(scene_file):
+            say(f"{scene_file}: {load_continuation(scene_file)}")
+            return
         scene = load_scene(scene_file)
 
     from .driver.compute import RunError
@@ -270,11 +360,11 @@ def schema():
     say(json.dumps(json_schema(), indent=2))
 
 
-def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, *look):
+def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, *look, **beside):
     from .plotting import Look, PlotError, plot
     from .store import StoreError
 
     with input_errors(PlotError, StoreError), interrupt.tidied_up():
-        pictures = plot(file, output, kind, overwrite, Look(*look))
+        pictures = plot(file, output, kind, overwrite, Look(*look, **beside))
     if not quiet:
         say("\n".join(str(picture) for picture in pictures))

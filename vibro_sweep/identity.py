@@ -23,7 +23,6 @@ SOURCES = (
     "driver/compute.py",
     "driver/energy.py",
     "driver/starts.py",
-    "driver/tables.py",
     "driver/trajectories.py",
     "driver/attractor_ids.py",
     "store/numbers.py",

@@ -154,21 +154,3 @@ def simulate(q, state, periods=None, impacts=None, digits=30):
         if resting:
             sticking.append((from_gmp(t_on), from_gmp(end), resting))
         return hits, sticking, section
-
-
-def highest_turn(q, state, digits=30):
-    """The gap at its highest turning point in the first period of a flight without stops, and the time; or None."""
-    with mp.workdps(digits + 10), context():
-        o = Oscillator(q, digits)
-        t, period, tau = ZERO, 2 * gmpy2.const_pi() / o.omega, to_gmp(mpf(q.tau))
-        y = [to_gmp(mpf(x)) for x in state] + [gmpy2.sin(tau), gmpy2.cos(tau), ZERO + 1]
-        found = []
-        while t < period:
-            terms, ahead = o.free.taylor(y), o.free.step(y)
-            if o.speed(y) > 0 > o.speed(ahead):
-                slope = [n * o.position(term) for n, term in enumerate(terms)][1:]
-                u = falling_root(slope, ZERO, o.free.h)
-                if u is not None and t + u < period:
-                    found.append((o.position(evaluate(terms, u)), t + u))
-            t, y = t + o.free.h, ahead
-        return tuple(map(from_gmp, max(found))) if found else None

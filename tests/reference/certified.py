@@ -11,7 +11,8 @@ import math
 import numpy as np
 from mpmath import mp, mpf
 
-from reference.gmp import expm
+from reference.any_naive import Oscillator
+from reference.gmp import context, expm, from_gmp, to_gmp
 
 REAL = np.longdouble
 UNIT = float(np.finfo(REAL).eps) / 2  # 2^-64 where longdouble is the x87 format
@@ -89,75 +90,66 @@ def _sign(c, low, high, error):
 class Reference:
     """Free flights of one oscillator from the section t = 0, over one forcing period.
 
-    z = (x1, v1, x2, v2, sin, cos) obeys z' = A z; `shift[k]` takes z(0) to the Taylor coefficients of x1 about the
-    node k of a grid of `cells` cells. digits: of the exponentials behind it.
+    z = (x1, v1, ..., xN, vN, sin, cos), or with 1 at its end, obeys z' = A z, and the gap is `along` z. `shift[k]`
+    takes z(0) to the Taylor coefficients of the gap about the node k of a grid of `cells` cells. digits: of the
+    exponentials behind it, the same as of A. Made by `of_paper` and `of_masses`.
     """
 
     ORDER = 20
 
-    def __init__(self, params, digits=40):
-        with mp.workdps(digits):
-            mu_m, mu_k, zeta, f2, omega, tau = (
-                mpf(params[name]) for name in ("mu_m", "mu_k", "zeta", "f2", "omega", "tau")
-            )
-            above = 1 + mu_k
-            A = mp.zeros(6)
-            A[0, 1] = A[2, 3] = 1
-            for j, a in enumerate((-1, -2 * zeta, 1, 2 * zeta, 1 - f2, 0)):
-                A[1, j] = a
-            for j, a in enumerate((1, 2 * zeta, -above, -2 * zeta * above, f2, 0)):
-                A[3, j] = a / mu_m
-            A[4, 5], A[5, 4] = omega, -omega
-            self.A, self.digits = A, digits
-            self.force = (mp.sin(tau), mp.cos(tau))
+    def __init__(self, A, along, omega, tau, digits):
+        with mp.workdps(digits), context():
+            self.A, self.digits, size = A, digits, A.rows
+            self.states = size - 2 - size % 2
+            self.force = [mp.sin(tau), mp.cos(tau), mpf(1)][: size - self.states]
             self.period = 2 * mp.pi / omega
             norm = mp.mnorm(A, mp.inf)
             self.cells = max(int(mp.ceil(2 * norm * self.period)), 32)
             self.h = self.period / self.cells
             self.width = REAL(mp.nstr(self.h, 25))
-            rows, row = [], mp.matrix([[1, 0, 0, 0, 0, 0]])
-            for n in range(self.ORDER + 1):
-                rows.append(row)
-                row = row * A / (n + 1)
-            E, step = mp.eye(6), expm(A * self.h)
-            self.shift = np.empty((self.cells, self.ORDER + 1, 6), REAL)
-            self.norms = np.empty((self.cells, 6))  # |first row left out| at the node, over all of the cell
+            rates, E = numbers(A), np.array([[to_gmp(mpf(i == j)) for j in range(size)] for i in range(size)])
+            step, rows = numbers(expm(A * self.h)), [np.array([to_gmp(a) for a in along])]
+            for n in range(self.ORDER):
+                rows.append(rows[-1] @ rates / (n + 1))
+            rows = np.array(rows)
+            self.acceleration = np.array([real(a) for a in 2 * rows[2]])
+            self.shift = np.empty((self.cells, self.ORDER + 1, size), REAL)
+            self.norms = np.empty((self.cells, size))  # |first row left out| at the node, over all of the cell
             # |A^m| h^m/m! for all m > ORDER, with |A| h <= 1/2, is below this times |E z|
-            left_out = mp.ldexp(1, -self.ORDER) / mp.factorial(self.ORDER + 1)
+            left_out = mp.ldexp(1, -self.ORDER) / mp.factorial(self.ORDER + 1) * sum(map(abs, along))
             for k in range(self.cells):
-                for n, row in enumerate(rows):
-                    self.shift[k, n] = [longdouble(a) for a in row * E]
-                self.norms[k] = [float(left_out * max(abs(E[i, j]) for i in range(6))) for j in range(6)]
-                E = step * E
+                self.shift[k] = np.vectorize(real, otypes=[REAL])(rows @ E)
+                self.norms[k] = float(left_out) * np.abs(E.astype(float)).max(0)
+                E = step @ E
 
     def before(self, u):
-        """Matrix (6, 6) that takes z(u) back to z(0), longdouble."""
+        """Matrix that takes z(u) back to z(0), longdouble."""
         with mp.workdps(self.digits):
             E = expm(-self.A * mpf(u))
-            return np.array([[longdouble(E[i, j]) for j in range(6)] for i in range(6)])
+            return np.array([[longdouble(a) for a in row] for row in E.tolist()])
 
     def phase(self, u):
-        """sin and cos of the force at the time u."""
+        """sin and cos of the force at the time u, and perhaps 1."""
         with mp.workdps(self.digits):
-            E = expm(self.A * mpf(u))
-            return tuple(longdouble(sum(E[4 + i, 4 + j] * self.force[j] for j in range(2))) for i in range(2))
+            turned = expm(self.A * mpf(u))[self.states :, self.states :] * mp.matrix(self.force)
+            return [longdouble(a) for a in turned]
 
     def forced(self, states):
-        """z(0) (N, 6) of states (N, 4) at the section."""
-        z = np.empty((len(states), 6), REAL)
-        z[:, :4] = states
-        z[:, 4:] = [longdouble(x) for x in self.force]
+        """z(0) of states (N, 2 masses) at the section."""
+        z = np.empty((len(states), self.A.rows), REAL)
+        z[:, : self.states] = states
+        z[:, self.states :] = [longdouble(x) for x in self.force]
         return z
 
     def coefficients(self, k, z):
-        """Coefficients (n, N) of x1 about node k, and a bound on the error of the polynomial over the cell."""
+        """Coefficients (n, N) of the gap about node k, and a bound on the error of the polynomial over the cell."""
         c = self.shift[k] @ z.T
         powers = self.width ** np.arange(self.ORDER + 1)
-        rounding = 8 * UNIT * (powers @ np.abs(self.shift[k])) @ np.abs(z.T)
+        rounding = (2 + len(self.norms[k])) * UNIT * (powers @ np.abs(self.shift[k])) @ np.abs(z.T)
         return c, rounding + self.norms[k] @ np.abs(z.T)
 
-    def x1(self, z, t):
-        """x1 (N,) at times t (N,) of the period, and a bound on its error."""
+    def gap(self, z, t):
+        """The gap (N,) at times t (N,) of the period, and a bound on its error."""
         k = np.minimum((t / self.width).astype(int), self.cells - 1)
         x, error = np.empty_like(t), np.empty_like(t)
         for cell in np.unique(k):
@@ -168,7 +160,7 @@ class Reference:
         return x, error
 
     def inside(self, z, b, end, margin):
-        """Whether |x1| < b + margin up to the time `end` (N,): POSITIVE, NEGATIVE or OPEN for each flight."""
+        """Whether |gap| < b + margin up to the time `end` (N,): POSITIVE, NEGATIVE or OPEN for each flight."""
         verdict = np.full(len(z), POSITIVE, np.int8)
         for k in range(self.cells):
             begin = k * self.width
@@ -197,3 +189,40 @@ def longdouble(x):
     if not math.isfinite(high):
         return REAL(high)
     return REAL(high) + REAL(float(x - mpf(high)))
+
+
+def numbers(matrix):
+    """A matrix of mpmath as an array of gmpy2's numbers."""
+    return np.array([[to_gmp(a) for a in row] for row in matrix.tolist()])
+
+
+def real(x):
+    """A number of gmpy2 to the nearest longdouble or next to it."""
+    high = float(x)
+    return REAL(high) + REAL(float(x - high))
+
+
+def of_paper(params, digits=40):
+    """The paper's oscillator; x1 is the gap."""
+    with mp.workdps(digits):
+        mu_m, mu_k, zeta, f2, omega, tau = (
+            mpf(params[name]) for name in ("mu_m", "mu_k", "zeta", "f2", "omega", "tau")
+        )
+        above = 1 + mu_k
+        A = mp.zeros(6)
+        A[0, 1] = A[2, 3] = 1
+        for j, a in enumerate((-1, -2 * zeta, 1, 2 * zeta, 1 - f2, 0)):
+            A[1, j] = a
+        for j, a in enumerate((1, 2 * zeta, -above, -2 * zeta * above, f2, 0)):
+            A[3, j] = a / mu_m
+        A[4, 5], A[5, 4] = omega, -omega
+        return Reference(A, [mpf(j == 0) for j in range(6)], omega, tau, digits)
+
+
+def of_masses(q, digits=40):
+    """Any oscillator (`Linear`), in the coordinates of its masses."""
+    with mp.workdps(digits), context():
+        A = mp.matrix([[from_gmp(a) for a in row] for row in Oscillator(q, digits).free.A])
+        along = [mpf(0)] * A.rows
+        along[0 : 2 * len(q.along) : 2] = map(mpf, q.along)
+        return Reference(A, along, mpf(q.omega), mpf(q.tau), digits)

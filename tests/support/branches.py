@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from reference.any_shooting import AnyShooting
 from reference.shooting import Shooting
 
 import vibro_sweep as vs
 from support.oscillators import PAPER
-from vibro_sweep.analysis.solution import Solution
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses.flights import contact_coordinates
 
 NUMBERS = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")  # of the reference: both stops alike, offset 0
 
@@ -62,6 +64,32 @@ def exact(special, name):
     shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
     x1, x2, v1, v2 = solution.states[0][:4]
     u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
+    if special.type == "fold":
+        return shooting.where_multiplier(1, u, name, value)
+    if special.type in ("flip", "pitchfork"):
+        return shooting.where_multiplier(-1, u, name, value)
+    if special.type == "neimark_sacker":
+        return shooting.where_torus(u, name, value)
+    if special.impact is None:
+        _, time, side = solution.nearest
+        return shooting.where_touching(time, side, u, name, value)
+    return shooting.where_vanishing(int(np.argmin(solution.pushes)), u, name, value)
+
+
+def shooting_of(orbit):
+    """(reference in many digits, its unknowns) of an orbit of an `Oscillator`."""
+    solution, q = orbit._solution, orbit.system.linear
+    N = len(q.along)
+    inverse = contact_coordinates(q).inverse
+    state = np.concatenate([inverse @ solution.states[0, :N], inverse @ solution.states[0, N : 2 * N]])
+    shooting = AnyShooting(orbit.system, solution.sigma, solution.halves, solution.sides)
+    return shooting, shooting.unknowns(solution.times, state)
+
+
+def exact_of_any(special, name):
+    """The parameter of a special point of an `Oscillator`, in many digits, by shooting."""
+    solution, value = special.orbit._solution, special.parameters[name]
+    shooting, u = shooting_of(special.orbit)
     if special.type == "fold":
         return shooting.where_multiplier(1, u, name, value)
     if special.type in ("flip", "pitchfork"):

@@ -1,6 +1,7 @@
 """Branches of attractors of random systems, held against simulation on their stable pieces and at the ends of these.
 
-python tests/support/random_branches.py 0 200     # prints what disagrees, and a summary
+python tests/support/random_branches.py 0 200                 # prints what disagrees, and a summary
+python tests/support/random_branches.py 0 200 oscillators     # one and three masses, unequal stops, any damping
 """
 
 import itertools
@@ -11,6 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 import vibro_sweep as vs
+from support.any_oscillators import positive
+from vibro_sweep.model.linear import amplitudes, static_state
 
 MOST_PERIODS = 20_000  # of one simulation
 INSIDE = (2e-3, 2e-2, 0.1, 0.5, 1.0)  # from the end of a piece to the point before it
@@ -36,13 +39,30 @@ def random_system(rng) -> vs.System:
     return system.replace(b=vs.grazing(system).b * rng.uniform(0.1, 1.05))
 
 
+def random_oscillator(rng) -> vs.Oscillator:
+    """One or three masses between unequal stops; the matrices are full and the damping is not proportional."""
+    n = int(rng.choice([1, 3]))
+    numbers = {
+        "M": positive(rng, n, 1.0), "K": positive(rng, n, 0.3), "C": 0.1 * positive(rng, n, 0.1),
+        "along": rng.normal(size=n), "force": rng.normal(size=n), "force_cos": rng.normal(size=n),
+        "constant": 0.2 * rng.normal(size=n), "omega": rng.uniform(0.3, 1.5), "tau": 0.3,
+        "R": rng.uniform(0.3, 0.9), "R_left": rng.uniform(0.3, 0.9),
+        "stops": str(rng.choice(["both", "right", "left"])),
+    }  # fmt: skip
+    q = vs.Oscillator(**numbers, b=1.0).linear
+    size, middle = abs(q.along @ amplitudes(q)), q.along @ static_state(q)
+    return vs.Oscillator(**numbers, b=size * rng.uniform(0.1, 1.05), offset=middle + 0.1 * size * rng.normal())
+
+
 def attractors(system, rng, most=3, tries=12):
     """(state, period) of different periodic attractors."""
-    found = []
+    found, q = [], system.linear
+    low = system.offset - (1 if system.stops != "right" else 2) * system.b
+    high = system.offset + (1 if system.stops != "left" else 2) * system.b
     for _ in range(tries):
-        low, high = (-1 if system.stops != "right" else -2) * system.b, (1 if system.stops != "left" else 2) * system.b
-        speed = system.omega * system.b
-        state = rng.uniform(low, high), rng.normal() * speed, rng.normal() * system.b, rng.normal() * speed
+        gap = rng.uniform(low, high)
+        state = rng.normal(size=2 * len(q.along)) * system.b * np.tile([1.0, system.omega], len(q.along))
+        state[::2] += q.along * (gap - q.along @ state[::2]) / (q.along @ q.along)
         section = vs.simulate(system, state, 2000).section
         periods = [n for n in range(1, 25) if np.abs(section[-1] - section[-1 - n]).max() < 1e-10 * system.b]
         if not periods:
@@ -56,25 +76,36 @@ def attractors(system, rng, most=3, tries=12):
 
 
 def within(system, state):
-    """A state with the first mass between its stops."""
-    low, high = -system.b if system.stops != "right" else -np.inf, system.b if system.stops != "left" else np.inf
-    return np.array([np.clip(state[0], low, high), *state[1:]])
+    """A state with the gap between the stops: moved along the gap if need be."""
+    q, state = system.linear, np.array(state, float)
+    gap = q.along @ state[::2]
+    state[::2] += q.along * (np.clip(gap, q.low, q.high) - gap) / (q.along @ q.along)
+    if len(q.along) == 1:  # to the last digit
+        state[0] = np.clip(state[0], *sorted((q.low / q.along[0], q.high / q.along[0])))
+    return state
 
 
 def bounds_of(system, name):
     value = getattr(system, name)
     if name == "b":
-        graze = vs.grazing(system).b
-        return 0.1 * graze, 1.1 * graze
-    return 0.7 * value, min(1.3 * value, 1) if name == "R" else 1.3 * value
+        graze = max(vs.grazing(system).b_right, vs.grazing(system).b_left)
+        return min(0.1 * graze, 0.9 * value), max(1.1 * graze, 1.1 * value)
+    if name == "offset":
+        return value - 0.3 * system.b, value + 0.3 * system.b
+    return 0.7 * value, min(1.3 * value, 1) if name.startswith("R") else 1.3 * value
 
 
-def settle(system, state, largest, periods):
-    """The section after so many periods that a small disturbance is gone, and the impacts of the last `periods`."""
+def settle(orbit, largest):
+    """The section after so many periods that a small disturbance is gone, and the impacts of the last `period`.
+
+    The disturbance is smaller than the distance of the orbit from a graze: beyond that the motion may go elsewhere.
+    """
+    system, state, periods = orbit.system, orbit.state, orbit.period
+    share = min(1e-7, 0.01 * orbit.margin / system.b)
     rate = -math.log(min(max(largest, 1e-3), 1 - 1e-9)) / periods
     count = periods * math.ceil(min(25 / rate, MOST_PERIODS) / periods)
-    scale = system.b * np.array([1, system.omega, 1, system.omega])
-    moved = np.asarray(state) + 1e-7 * scale * np.array([-np.sign(state[0]), 1, 1, -1])
+    N = len(state) // 2
+    moved = np.array(state) + share * system.b * np.tile([1, system.omega], N) * (-1.0) ** np.arange(2 * N)
     before = vs.simulate(system, within(system, moved), count)
     return before.section[-1], vs.simulate(system, before.section[-1], periods)
 
@@ -86,7 +117,7 @@ def compare(report, where, orbit, tolerance=1e-9):
         report.wrong.append(f"{where}: {orbit.status}, stable {orbit.stable}")
         return
     largest = float(np.abs(orbit.multipliers[0]))
-    reached, last = settle(system, orbit.state, largest, orbit.period)
+    reached, last = settle(orbit, largest)
     slow = largest ** (MOST_PERIODS / orbit.period) > 1e-4
     off = np.abs(reached - orbit.state).max() / max(system.b, np.abs(orbit.state).max())
     speed = np.abs(orbit.impacts["v1"]).min(initial=np.inf) / (system.omega * system.b)
@@ -109,15 +140,24 @@ def orbit_at(system, name, points, i, j, share, period):
     return vs.periodic_orbit(system, guess=guess, periods=period) if guess else vs.periodic_orbit(system, itinerary="")
 
 
-def study(seed: int) -> Report:
+DRAWN = {
+    "systems": (random_system, ("b", "omega", "zeta", "R")),
+    "oscillators": (random_oscillator, ("b", "omega", "offset", "R", "R_left")),
+}
+
+
+def study(seed: int, kind: str = "systems") -> Report:
     rng, report = np.random.default_rng(seed), Report(seed)
-    system = random_system(rng)
-    for state, n in attractors(system, rng):
+    draw, names = DRAWN[kind]
+    system = draw(rng)
+    found = attractors(system, rng)
+    names = rng.permutation(names)[: 3 if found else 0]  # three branches of each system, of different attractors if any
+    for k, name in enumerate(names.tolist()):
+        state, n = found[k % len(found)]
         orbit = vs.periodic_orbit(system, state=state, periods=n)
         if orbit.status == "sticking":
             report.sticking += 1
             continue
-        name = str(rng.choice(["b", "omega", "zeta", "R"]))
         where = f"seed {seed}, period {n}, {name}"
         if not (orbit.ok and n % orbit.period == 0 and orbit.stable):  # just beyond a flip the doubled one dies slowly
             report.wrong.append(f"{where}: attractor is {orbit.status}, period {orbit.period}, stable {orbit.stable}")
@@ -126,7 +166,8 @@ def study(seed: int) -> Report:
         branch = vs.continue_orbit(orbit, name, bounds_of(system, name))
         report.branches += 1
         for special in branch.special:
-            if special.type == "failed" or not special.orbit.ok or not special.error < 1e-10:
+            unknown = special.type == "failed" or not (special.error < 1e-10 or special.type == "closed")
+            if unknown or not (special.orbit.ok or special.type == "sticking"):
                 report.wrong.append(f"{where}: {special.type} at {special.parameters}, error {special.error}")
         points = branch.points
         inside = np.abs(points.multiplier_re + 1j * points.multiplier_im).values.max(axis=1)
@@ -162,7 +203,7 @@ def hold_end(report, where, system, name, branch, points, end, inner, n, kind):
             break
     report.ends += 1
     compare(report, f"{where}, inside {special.type} at {p[end]:.9g}", orbit)
-    outside = system.replace(**{name: float(2 * p[end] - orbit.system.parameters()[name])})
+    outside = system.replace(**{name: float(2 * p[end] - getattr(orbit.system, name))})
     reached = vs.simulate(outside, within(outside, orbit.state), MOST_PERIODS).section[-1]
     other = vs.periodic_orbit(outside, state=reached, periods=n)
     same = (other.itinerary, other.period, other.symmetric) == (orbit.itinerary, orbit.period, orbit.symmetric)
@@ -180,6 +221,6 @@ def summary(reports) -> str:
 if __name__ == "__main__":
     done = []
     for number in range(*map(int, sys.argv[1:3])):
-        done.append(study(number))
+        done.append(study(number, *sys.argv[3:4]))
         print(done[-1], flush=True)
     print(summary(done))

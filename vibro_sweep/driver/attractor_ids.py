@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from vibro_sweep.analysis.attractors import BAD, NOT_SETTLED, group, share
-from vibro_sweep.analysis.following import Follower, known
-from vibro_sweep.analysis.many import ROOM, Orbits, group_pieces
+from vibro_sweep.analysis.attractors.following import Follower, known
+from vibro_sweep.analysis.attractors.grouping import BAD, NOT_SETTLED, group, share
+from vibro_sweep.analysis.attractors.many import ROOM, Orbits, group_pieces
 from vibro_sweep.driver.blocks import boxes
 from vibro_sweep.model.grid import grid
 from vibro_sweep.scene import Scene

@@ -7,19 +7,21 @@ import threading
 
 import numpy as np
 
-from vibro_sweep.analysis import attractors
+from vibro_sweep.analysis.attractors import grouping
+from vibro_sweep.analysis.single.tables import table_of
 from vibro_sweep.driver.blocks import Block, version
 from vibro_sweep.driver.energy import energies_of
 from vibro_sweep.driver.starts import starts_of
-from vibro_sweep.driver.tables import table_of
 from vibro_sweep.driver.trajectories import trajectories_of
 from vibro_sweep.engine import points
+from vibro_sweep.engine.any_points import grazing_points
 from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.records import PAPER, Kind, new_results
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 from vibro_sweep.model.grazing import expansion_point
+from vibro_sweep.model.grid import linears
 from vibro_sweep.model.observables import GAP
 from vibro_sweep.model.parameters import ParameterError
 from vibro_sweep.model.state import state
@@ -64,9 +66,13 @@ def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
 
 def _compute(block: Block) -> dict[str, np.ndarray]:
     plan, states = block.plan, 2 * block.system.masses
-    table, kind = table_of(block.system, block.axes, frames=plan.lyapunov)
+    table, kind = table_of(block.system, block.axes, frames=plan.lyapunov or plan.order > 0)
     if plan.order:
-        table["graze"] = expansion_point(block.parameters, block.expand_at)
+        table["graze"] = (
+            expansion_point(block.parameters, block.expand_at)
+            if kind.paper
+            else grazing_points(linears(block.system, block.axes), block.expand_at)
+        )
     starts = starts_of(block)
     n_starts = starts.shape[1]
     if block.follow:  # chains along the first axis, one for each point of the others
@@ -132,10 +138,10 @@ def _workspace(block: Block, kind: Kind, cells: int, orbits: int) -> points.Work
 
 def _attractors(results: np.ndarray, lead: tuple[int, ...]) -> dict[str, np.ndarray]:
     """Which starts of a point end on the same attractor."""
-    label = attractors.group(results["period"], results["average"], results["average_error"])
-    label[~status.stands(results["status"])] = attractors.BAD
-    share = attractors.share(label)
-    unknown = np.full(lead, attractors.BAD)  # until all points are there (attractor_ids.py)
+    label = grouping.group(results["period"], results["average"], results["average_error"])
+    label[~status.stands(results["status"])] = grouping.BAD
+    share = grouping.share(label)
+    unknown = np.full(lead, grouping.BAD)  # until all points are there (attractor_ids.py)
     return {"attractor": label.reshape(lead), "share": share.reshape(lead), "attractor_id": unknown}
 
 

@@ -3,12 +3,12 @@
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from vibro_sweep import store
 from vibro_sweep.driver.sweep import run
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import is_number
+from vibro_sweep.model.arguments import checked_state, is_number
 from vibro_sweep.model.built import Built
 from vibro_sweep.model.oscillator import checked_system
 from vibro_sweep.model.state import START
@@ -44,19 +44,22 @@ def sweep(
     workers: int | None = None,
     output: str | Path | None = None,
     progress: Callable[[int, int], None] | None = None,
+    mode: Literal["new", "resume", "overwrite"] = "new",
 ) -> "xarray.Dataset":
     """Sweep one number or two of a system, or of the initial state; the results as an `xarray.Dataset`.
 
     Parameters
     ----------
     system : a System or an Oscillator; or a function from the swept numbers, by whatever names, to one of these. The
-        file then says so (`type`: build) and holds the matrices of every point; no run continues it.
+        file then says so (`type`: build) and holds the matrices of every point. It is continued, or found complete, by
+        a function of the same name that makes the same matrices (compared at 4096 points at most).
     axes : name -> values (n,), rising or falling, as {"b": np.linspace(6.5, 6.9, 2001)}; or an axis as in YAML, as
         {"b": {"start": 6.5, "stop": 6.9, "step": 0.0002}}, whose values are the decimal numbers
     observe, start, section, trajectory : as the keys of a scene in YAML; `start` may be a state (x1, v1, x2, v2) too
     transient, record : forcing periods
     workers, progress : as of `run`
     output : a file, which is kept and read when numbers are used; needed where the results take more than 1 GB
+    mode : as of `run`: "resume" continues an interrupted `output`, "overwrite" replaces it
 
     Outcomes of points are in `status`. Raises TypeError where `system` is no System, `SceneError` for what is no
     scene, ValueError for more results than go without a file, and what `run` raises.
@@ -66,6 +69,8 @@ def sweep(
         built = Built(system, {name: _first(name, values) for name, values in axes.items() if name not in START})
     else:
         checked_system(system)
+    if start is not None and not isinstance(start, (str, Mapping, Start)):
+        checked_state(start, (built or system).masses, "start")
     given = {
         "system": {"build": built.name, "stops": built.options["stops"]} if built else system,
         "sweep": axes,
@@ -75,8 +80,10 @@ def sweep(
     }
     given |= {"section": section, "observe": observe, "trajectory": trajectory}
     scene = scene_of(changed({}, given), "sweep", built=built)
+    if output is None and mode != "new":
+        raise ValueError(f"mode: {mode!r} is not allowed; without a file, `output`, it must be 'new'")
     if output is not None:
-        run(scene, output, workers, progress=progress)
+        run(scene, output, workers, progress=progress, mode=mode)
         return store.open(output)
     if store.size(scene) > MOST:
         size, most = store.size(scene) / 1e9, MOST / 1e9

@@ -4,7 +4,7 @@ import os
 
 import numpy as np
 
-from vibro_sweep.driver.tables import table_of
+from vibro_sweep.analysis.single.tables import table_of
 from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.flight import CHUNK, node_of

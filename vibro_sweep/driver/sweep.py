@@ -1,7 +1,6 @@
 """From a scene to its file: blocks of points, computed by an executor, handed to the store as they come."""
 
 import logging
-import platform
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
@@ -21,10 +20,11 @@ from vibro_sweep.driver.compute import CHAIN_ENDS, RunError
 from vibro_sweep.driver.cost import duration, orbit_seconds, points_per_block, side_by_side
 from vibro_sweep.driver.memory import available_cores, blocks_under_way, orbits_per_block
 from vibro_sweep.driver.pool import as_computed
+from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.status import STANDING, meaning
 from vibro_sweep.scene import Scene
-from vibro_sweep.store.layout import write_following
+from vibro_sweep.store.datasets import write_following
 
 __all__ = ["RunError", "RunReport", "run"]
 
@@ -97,7 +97,7 @@ def run(
                         progress(min(done, total), total)
         seconds = file.seconds if isinstance(file, store.Complete) else round(time.perf_counter() - began, 3)
         threads = (workers or available_cores()) if executor is None else None
-        statuses = file.finish(_provenance(scene, threads, executor, seconds), partial(_complete, scene))
+        statuses = file.finish(_made(scene, threads, executor, seconds), partial(_complete, scene))
     bad = sum(number for code, number in statuses.items() if code not in STANDING)
     named = {meaning(code): number for code, number in statuses.items()}
     return RunReport(total, bad, named, seconds, missing)
@@ -154,30 +154,8 @@ def _worker_count(pool: Executor, default: int) -> int:
     return getattr(pool, "num_workers", None) or getattr(pool, "_max_workers", None) or default
 
 
-def _provenance(scene: Scene, threads: int | None, executor: Executor | None, seconds: float) -> dict:
+def _made(scene: Scene, threads: int | None, executor: Executor | None, seconds: float) -> dict:
     """How the file was made, as one JSON record."""
-    from importlib.metadata import version
-
-    from vibro_sweep import __version__
-
-    packages = ("numpy", "numba", "llvmlite", "h5py")
-    return {
-        "vibro_sweep": __version__,
-        "python": platform.python_version(),
-        **{name: version(name) for name in packages},
-        "cpu": _cpu_name(),
-        "executor": "threads" if executor is None else type(executor).__name__,
-        "threads": threads,
-        "seed": scene.start.seed if scene.start.kind == "random" else None,
-        "wall_time_s": seconds,
-    }
-
-
-def _cpu_name() -> str:
-    try:
-        for line in Path("/proc/cpuinfo").read_text().splitlines():
-            if line.startswith("model name"):
-                return line.split(":", 1)[1].strip()
-    except OSError:
-        pass
-    return platform.processor() or platform.machine()
+    seed = scene.start.seed if scene.start.kind == "random" else None
+    here = "threads" if executor is None else type(executor).__name__
+    return provenance() | {"executor": here, "threads": threads, "seed": seed, "wall_time_s": seconds}

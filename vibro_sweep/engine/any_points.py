@@ -6,10 +6,13 @@ import numpy as np
 
 from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.tables import cells
+from vibro_sweep.engine.tables.flight import WIDTH
 from vibro_sweep.model.confinement import confinement_of
 from vibro_sweep.model.contact import contact_coordinates, fastest_rate
+from vibro_sweep.model.exponentials import gap_exponentials
 from vibro_sweep.model.frame import frame_of
-from vibro_sweep.model.linear import Linear
+from vibro_sweep.model.linear import Linear, steady_gain
+from vibro_sweep.model.sensitivity import grazing_state
 
 
 def kind_of(linears: Iterable[Linear]) -> Kind:
@@ -32,6 +35,21 @@ def any_points(linears: np.ndarray, kind: Kind, frames: bool = True) -> np.ndarr
     return result
 
 
+def grazing_points(linears: np.ndarray, expand_at: float | None) -> np.ndarray:
+    """X* at the right stop (..., 2 N), in contact coordinates; NaN where no steady motion grazes.
+
+    expand_at : the gap there, in place of the exact one
+    """
+    result = np.full((*linears.shape, 2 * len(linears.flat[0].along)), np.nan)
+    for place in np.ndindex(linears.shape):
+        q = linears[place]
+        if steady_gain(q):
+            state = np.kron(contact_coordinates(q).T, np.eye(2)) @ grazing_state(q)
+            state[0] = state[0] if expand_at is None else expand_at
+            result[place] = state
+    return result
+
+
 def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
     point = np.zeros((), point_of(kind))
     contact = contact_coordinates(q)
@@ -47,6 +65,10 @@ def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
     point["held_rate"] = fastest_rate(contact.stiffness[1:, 1:], contact.damping[1:, 1:])
     point["cells"] = cells.cells_for(np.maximum(point["rate"], q.omega), q.omega)
     point["steady"], point["middle"], point["swing"], point["confining"] = confinement_of(q, contact)
+    if point["cells"] == cells.STIFF_CELLS:
+        sums = gap_exponentials(contact, q.omega, q.tau, WIDTH * q.omega * cells.STIFF_CELLS / (2 * np.pi))
+        point["told"], point["begin"] = sums.told, sums.begin
+        point["root"], point["part"] = (np.stack([one.real, one.imag], -1) for one in (sums.roots, sums.parts))
     if frames and point["cells"] > 0:
         frame = frame_of(contact, q.omega)
         point["frame_eta"], point["frame_square"], point["frame_scale"] = frame.eta, frame.square, frame.scale

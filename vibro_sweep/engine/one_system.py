@@ -206,15 +206,22 @@ class Engine:
 
         Of the paper's oscillator `IMPACT`; of others with x and xdot (N,) of all masses before the impact.
         """
+        return self.impacts_of(rows[:, :5], self.impact_states(rows), start)
+
+    def impact_states(self, rows: np.ndarray) -> np.ndarray:
+        """States (..., 2 N) of the masses before recorded impacts (..., 3 + 2 N)."""
+        wall = np.where(rows[..., 3:4] > 0, self.stops.right, self.stops.left)
+        return self.to_masses(np.concatenate([wall, rows[..., 4:]], -1))
+
+    def impacts_of(self, rows: np.ndarray, states: np.ndarray, start: float = -np.inf) -> np.ndarray:
+        """The same from rows (m, 5) of period, cell, offset, side and speed of the gap, and states of the masses."""
         result = np.empty(len(rows), IMPACT if self.is_system else impact_of(self.kind.masses))
         result["t"] = np.maximum(self.time(rows[:, 0], rows[:, 1], rows[:, 2]), start)  # cell and offset round it
         result["side"], result["v1"] = rows[:, 3], rows[:, 4]
         if self.is_system:
-            result["x2"], result["v2"] = rows[:, 5], rows[:, 6]
-            return result
-        wall = np.where(rows[:, 3] > 0, self.stops.right, self.stops.left)
-        states = self.to_masses(np.column_stack([wall, rows[:, 4:]]))
-        result["x"], result["xdot"] = states[:, 0::2], states[:, 1::2]
+            result["x2"], result["v2"] = states[:, 2], states[:, 3]
+        else:
+            result["x"], result["xdot"] = states[:, 0::2], states[:, 1::2]
         return result
 
     def sticking(self, rows: np.ndarray, end: float) -> np.ndarray:

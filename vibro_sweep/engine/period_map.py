@@ -1,4 +1,4 @@
-"""The interface to the engine: the period map of one system, over whole and half forcing periods.
+"""The interface to the engine: the period map of one oscillator, over whole and half forcing periods.
 
     step = PeriodMap(system)                             # the flow; PeriodMap(system, order=1 or 2): discontinuity map
     mapped = step(states, periods=2.5, jacobian=True, parameters=True)
@@ -8,7 +8,7 @@ loop; derivatives are formed afterwards along the impacts and rests that it has 
 with nothing orthonormalised, and are compiled when they are first asked for. They are right to rounding times the
 condition of the orbit, which near a graze is about (omega |x1|/v1)^2, and belong to the orbit's own sequence of events.
 
-Where M1 begins at rest on a stop they are one-sided, into the gap. What flights without stops need is in
+Where an orbit begins at rest on a stop they are one-sided, into the gap. What flights without stops need is in
 free_flight.py.
 """
 
@@ -17,33 +17,32 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibro_sweep.engine.one_system import Engine, is_paper
+from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.grazing_map import Expansion, iterate
-from vibro_sweep.engine.variational.propagator import SIZE, new_scratch
+from vibro_sweep.engine.variational.propagator import new_scratch
 from vibro_sweep.engine.variational.sensitivity import Equations, differentiate
 from vibro_sweep.model import status
-from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.grazing import expansion_point
-from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.parameters import FREE_MOTION, NAMES
-from vibro_sweep.model.sensitivity import flight_equations, grazing_derivatives, rest_equations
-
-TAU = NAMES.index("tau")
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.arguments import is_number
+from vibro_sweep.model.linear import Linear, steady_gain
+from vibro_sweep.model.oscillator import System, checked_system
+from vibro_sweep.model.parameters import NAMES
+from vibro_sweep.model.sensitivity import grazing_state, grazing_state_slopes, motion, motion_slopes
 
 
 @dataclass(frozen=True)
 class Mapped:
     """What a `PeriodMap` returns for n states.
 
-    states : (n, 4) where they are mapped to; NaN where the status is not 0
+    states : (n, 2 N) where they are mapped to; NaN where the status is not 0
     status : (n,) int8, codes of model/status.py; a state behind a stop has BEYOND_STOP
-    impacts : n structured arrays, fields t (from the section at which the state starts), side, v1 (before), x2, v2;
-        of chatter those computed one by one
+    impacts : n structured arrays as those of `Orbit.impacts`, t from the section at which the state starts; of chatter
+        those computed one by one
     sticking : n structured arrays, fields t_on, t_off, side; t_off is the end of the map for a rest that outlasts it
-    jacobian : (n, 4, 4) or None; [., i, j] is the derivative of the i-th coordinate by the j-th at the start
-    parameters : (n, 4, 8) or None; the derivatives by the parameters in the order of `model.parameters.NAMES`, at a
-        fixed phase omega t. For tau: grazing the others include the change of tau; [..., 7] is by tau alone.
+    jacobian : (n, 2 N, 2 N) or None; [., i, j] is the derivative of the i-th coordinate by the j-th at the start
+    parameters : (n, 2 N, m) or None; the derivatives by the parameters `PeriodMap.names`, at a fixed phase omega t.
+        For tau: grazing the others include the change of tau; that by tau is by tau alone.
     """
 
     states: np.ndarray
@@ -55,128 +54,181 @@ class Mapped:
 
 
 class PeriodMap:
-    """P of one system; call it with states (n, 4) at t = 0 mod T.
+    """P of one oscillator; call it with states (n, 2 N) at t = 0 mod T.
 
     order : 0, the flow; 1 or 2, the discontinuity mapping (41), whose section is the phase of the right graze
         whatever the system's tau, and which knows no behind of a stop
     expand_at : clearance at which that is expanded, by default the exact b*
 
-    Raises ValueError for another order, TypeError for an oscillator that is no System.
+    `names` : the parameters by which it has derivatives, in order: those of a System are `model.parameters.NAMES`, of
+        others all numbers that are given. Raises ValueError for another order, and for the discontinuity mapping of an
+        oscillator that is not symmetric, or has no steady motion.
     """
 
-    def __init__(self, system: System, order: int = 0, expand_at: float | None = None):
-        check_type("system", system, System, "a System")
+    def __init__(self, system: AnyOscillator, order: int = 0, expand_at: float | None = None):
+        checked_system(system)
         if order not in (0, 1, 2):
             raise ValueError(f"order: {order!r} is not allowed; it must be 0 (the flow), 1 or 2")
         self.system = system if order == 0 else system.replace(tau="grazing")
         self.order, self.expand_at = order, expand_at
+        given = NAMES if isinstance(system, System) else tuple(self.system.numbers)
+        numbers = self.system.family.numbers
+        self.names = tuple(name for name in given if name == "tau" or is_number(numbers[name]))
+        if order != 0:
+            _check_symmetric(self.system)
+        self._linear = self.system.linear
         self._engine = Engine(self.system)
         self._half_engine: Engine | None = None
 
     def __call__(self, states, periods: float = 1, *, jacobian: bool = False, parameters: bool = False) -> Mapped:
-        """Map states (n, 4) over `periods`, a multiple of 1/2.
+        """Map states (n, 2 N) over `periods`, a multiple of 1/2.
 
         Raises ValueError for another number of periods, or for states of another shape.
         """
         halves = 2 * periods
         if not (math.isfinite(halves) and halves >= 0 and halves == int(halves)):
             raise ValueError(f"periods: {periods!r} is not allowed; it must be a multiple of 1/2, and not negative")
-        start = np.array(states, float)
-        if start.ndim != 2 or start.shape[1] != 4:
-            raise ValueError(f"states: shape {start.shape} is not allowed; it must be (n, 4)")
-        columns = 4 + len(NAMES) if parameters else 4
+        start, count = np.array(states, float), self._engine.states
+        if start.ndim != 2 or start.shape[1] != count:
+            raise ValueError(f"states: shape {start.shape} is not allowed; it must be (n, {count})")
         compute = self._flow if self.order == 0 else self._discontinuity_map
-        ends, codes, impacts, sticking, derivatives = compute(start, int(halves), columns, jacobian or parameters)
+        equations = self._equations(parameters) if jacobian or parameters or self.order else None
+        ends, codes, impacts, sticking, derivatives = compute(start, int(halves), equations)
         ends[codes != status.OK] = np.nan
-        by_state = derivatives[..., :4] if jacobian else None
-        by_parameter = self._with_phase(derivatives[..., 4:]) if parameters else None
+        by_state = derivatives[..., :count] if jacobian else None
+        by_parameter = derivatives[..., count:] if parameters else None
         return Mapped(ends, codes, impacts, sticking, by_state, by_parameter)
 
-    def _equations(self, engine: Engine, parameters: bool) -> Equations:
-        numbers, q = self.system.parameters(), self.system.linear
-        free, held = (make(numbers, self.system.mu_c is None) for make in (flight_equations, rest_equations))
-        rate = max(abs(np.linalg.eigvals(matrix)).max() for matrix in (free.A, held.A))
-        count = len(FREE_MOTION) if parameters else 0
-        walls, restitution = np.zeros((2, 2, 4 + len(NAMES) if parameters else 4))
-        if parameters:
-            walls[:, 4 + NAMES.index("b")] = -1, 1
-            restitution[:, 4 + NAMES.index("R")] = self.system.R_left is None, 1
+    def _slopes(self, parameters: bool) -> list[Linear]:
+        """Derivatives of the oscillator by each of `names`; none where they are not wanted."""
+        return [self._slope(name) for name in self.names] if parameters else []
+
+    def _slope(self, name: str) -> Linear:
+        if name == "tau":
+            nothing = {field: np.zeros(np.shape(value)) for field, value in self._linear._asdict().items()}
+            return Linear(**nothing)._replace(tau=1.0)
+        return self.system.family.derivative(name, self._linear)
+
+    def _equations(self, parameters: bool) -> Equations:
+        """In the order of kernels; the phase is that of the engine that carries the orbits."""
+        q, slopes = self._linear, self._slopes(parameters)
+        here, moved = motion(q), [motion_slopes(q, slope) for slope in slopes]
+        size, states = len(here.A), self._engine.states
+        moving = np.array([p for p, one in enumerate(moved) if np.any(one.A)], np.int64)
+        in_columns = lambda values: np.array([*[np.zeros_like(values[0])] * states, *values[1:]]).T.copy()  # noqa: E731
+        across = np.linalg.solve(q.M, q.C @ here.push)
+        rate = max(abs(np.linalg.eigvals(matrix)).max() for matrix in (here.A, here.held))
+        stops, restitution = np.array([q.low, q.high]), np.array([q.R_low, q.R_high])
         return Equations(
-            free.A, free.A_p[:count], held.A, held.A_p[:count], float(rate),
-            numbers["omega"], np.array([q.low, q.high]), np.array([q.R_low, q.R_high]), walls, restitution,
-            2 * numbers["zeta"] / numbers["mu_m"],
-            float(engine.point["tau"][0]), engine.cells, engine.width,
+            here.A, np.array([moved[p].A for p in moving]).reshape(-1, size, size),
+            here.held, np.array([moved[p].held for p in moving]).reshape(-1, size, size), states + moving,
+            float(rate), q.omega, np.array(q.along, float), here.push, across - here.push * (q.along @ across),
+            stops, restitution,
+            in_columns([here.push, *(one.push for one in moved)]),
+            in_columns([stops, *(np.array([slope.low, slope.high], float) for slope in slopes)]),
+            in_columns([restitution, *(np.array([slope.R_low, slope.R_high], float) for slope in slopes)]),
+            in_columns([0.0, *(float(slope.omega) for slope in slopes)]),
+            in_columns([0.0, *(0.0 if self.order else float(slope.tau) for slope in slopes)]),
+            float(self._engine.point["tau"][0]), self._engine.cells, self._engine.width,
         )  # fmt: skip
 
-    def _flow(self, start: np.ndarray, halves: int, columns: int, differentiated: bool):
+    def _flow(self, start: np.ndarray, halves: int, equations: Equations | None):
         """Half a period more than whole ones begins in the middle of a period of a force half a period later."""
         engine, cell = self._engine, 0
         if halves % 2:
             if self._half_engine is None:
                 self._half_engine = Engine(self.system, later=np.pi)
             engine, cell = self._half_engine, self._half_engine.cells // 2
-        periods, n = (halves + 1) // 2, len(start)
+        periods, (n, states) = (halves + 1) // 2, start.shape
         end, begin = halves / 2 * engine.period, engine.time(0, cell, 0.0)
-        ends, codes = np.full((n, 4), np.nan), np.full(n, status.OK, np.int8)
+        ends, codes = np.full((n, states), np.nan), np.full(n, status.OK, np.int8)
+        contact = engine.to_contact(start)
         finite = np.isfinite(start).all(axis=1)
-        allowed = finite & (start[:, 0] >= engine.stops.left) & (start[:, 0] <= engine.stops.right)
+        allowed = finite & (contact[:, 0] >= engine.stops.left) & (contact[:, 0] <= engine.stops.right)
         codes[~allowed], codes[~finite] = status.BEYOND_STOP, status.NOT_FINITE
-        impacts, sticking = [engine.impacts(np.empty((0, 7)))] * n, [engine.sticking(np.empty((0, 4)), end)] * n
-        derivatives = np.full((n, 4, columns), np.nan)
+        nothing = engine.impacts(np.empty((0, 3 + states)))
+        impacts, sticking = [nothing] * n, [engine.sticking(np.empty((0, 4)), end)] * n
+        columns = 0 if equations is None else len(equations.omega_slopes)
+        derivatives = np.full((n, states, columns), np.nan)
         for first in range(0, np.count_nonzero(allowed), LANES):
             chosen = np.flatnonzero(allowed)[first : first + LANES]
-            orbits, records = engine.carry_eight(start[chosen], cell, periods)
-            ends[chosen], codes[chosen] = orbits["X"][:, :4], orbits["status"]
+            orbits, records = engine.carry_eight(contact[chosen], cell, periods)
+            ends[chosen], codes[chosen] = engine.to_masses(orbits["X"][:, :states]), orbits["status"]
             for lane, i in enumerate(chosen):
                 impacts[i] = engine.impacts(records.impacts[lane, : orbits["impacts_logged"][lane]])
                 impacts[i]["t"] -= begin
                 sticking[i] = engine.sticking(records.rests[lane, : orbits["rests_logged"][lane]], end + begin)
                 sticking[i]["t_on"] -= begin
                 sticking[i]["t_off"] -= begin
-            if differentiated:
-                found = np.empty((len(chosen), 4, columns))
+            if equations is not None:
+                moved = equations._replace(tau=float(engine.point["tau"][0]))
+                on_stop = np.isin(contact[chosen, 0], [engine.stops.left, engine.stops.right])
+                events = np.concatenate([records.impacts[..., :5], engine.impact_states(records.impacts)], -1)
+                found = np.empty((len(chosen), states, columns))
                 differentiate(
-                    self._equations(engine, columns > 4), cell, start[chosen], codes[chosen],
-                    records.impacts, orbits["impacts_logged"], records.rests, orbits["rests_logged"],
-                    np.array([periods, 0.0, 0.0]), np.empty(3), np.empty(SIZE), np.empty((SIZE, columns)),
-                    new_scratch(len(FREE_MOTION) if columns > 4 else 0), found,
+                    moved, cell, start[chosen], on_stop & (contact[chosen, 1] != 0), codes[chosen],
+                    events, orbits["impacts_logged"], records.rests, orbits["rests_logged"],
+                    np.array([periods, 0.0, 0.0]), np.empty(3), *_scratch(moved, columns), found,
                 )  # fmt: skip
                 derivatives[chosen] = found
         return ends, codes, tuple(impacts), tuple(sticking), derivatives
 
-    def _discontinuity_map(self, start: np.ndarray, halves: int, columns: int, differentiated: bool):
-        engine, numbers, n = self._engine, self.system.parameters(), len(start)
-        d_graze = np.zeros((4, columns))
-        if columns > 4:
-            d_graze[:, 4 : 4 + len(FREE_MOTION)] = grazing_derivatives(numbers)[1]
+    def _discontinuity_map(self, start: np.ndarray, halves: int, equations: Equations):
+        engine, (n, states) = self._engine, start.shape
+        columns, masses = len(equations.omega_slopes), len(equations.along)
+        slopes = self._slopes(columns > states)
+        d_graze, d_pull = np.zeros((2, states, columns))
+        parameter = np.full(columns, -1)
+        parameter[equations.columns] = np.arange(len(equations.columns))
+        rows = slice(1, states, 2)
+        pull = equations.omega * (equations.along @ equations.A[rows, :states])
+        for j, slope in enumerate(slopes, states):
+            d_graze[:, j] = grazing_state_slopes(self._linear, slope)
             if self.expand_at is not None:
-                d_graze[0] = 0.0
-        stops = self.system.stops
-        expansion = Expansion(self.order, stops != "left", stops != "right", self.graze, d_graze)
-        ends, derivatives = np.empty((n, 4)), np.empty((n, 4, columns))
-        rows, counts = np.empty((n, halves + 1, 7)), np.empty(n, np.int64)
-        scratch = new_scratch(len(FREE_MOTION) if columns > 4 else 0)
-        iterate(
-            self._equations(engine, columns > 4), expansion, halves, start, ends, derivatives, rows, counts, scratch
+                d_graze[:, j] -= self._up_to(d_graze[0::2, j] @ equations.along, equations.push)
+                change = self.expand_at - grazing_state(self._linear)[0::2] @ equations.along
+                d_graze[:, j] += self._up_to(change, equations.push_slopes[:, j])
+            d_pull[:, j] = slope.omega * pull / equations.omega
+            if parameter[j] >= 0:
+                moved = equations.A_p[parameter[j]]
+                d_pull[:, j] += equations.omega * (equations.along @ moved[rows, :states])
+        stops = self.system.options.get("stops", "both")  # of a model that always has both
+        expansion = Expansion(
+            self.order, stops != "left", stops != "right", self.graze, d_graze, pull, d_pull, parameter
         )
+        ends, derivatives = np.empty((n, states)), np.empty((n, states, columns))
+        hits, counts = np.empty((n, halves + 1, 5 + states)), np.empty(n, np.int64)
+        scratch = new_scratch(2 * masses + 3, len(equations.columns))
+        iterate(equations, expansion, halves, start, ends, derivatives, hits, counts, scratch)
         codes = np.where(np.isfinite(ends).all(axis=1), status.OK, status.NOT_FINITE).astype(np.int8)
-        impacts = tuple(engine.impacts(rows[i, : counts[i]]) for i in range(n))
+        impacts = tuple(engine.impacts_of(hits[i, :k, :5], hits[i, :k, 5:]) for i, k in enumerate(counts))
         return ends, codes, impacts, (engine.sticking(np.empty((0, 4)), 0.0),) * n, derivatives
 
     @property
     def graze(self) -> np.ndarray:
-        """X* (4,), the point at which the discontinuity mapping is expanded."""
-        return expansion_point(
-            {name: np.array(value) for name, value in self.system.parameters().items()}, self.expand_at
-        )
+        """X* (2 N,), the point at which the discontinuity mapping is expanded."""
+        state = grazing_state(self._linear)
+        if self.expand_at is not None:
+            state += self._up_to(self.expand_at - self._linear.along @ state[0::2], motion(self._linear).push)
+        return state
 
-    def _with_phase(self, derivatives: np.ndarray) -> np.ndarray:
-        """Total derivatives (n, 4, 8) where tau follows the other parameters."""
-        if self.order == 0 and self.system.tau == "grazing":
-            if is_paper(self.system):
-                dtau, _ = grazing_derivatives(self.system.parameters())
-            else:
-                dtau = [self.system.family.derivative(name).tau for name in FREE_MOTION]
-            for name, change in zip(FREE_MOTION, dtau, strict=True):
-                derivatives[..., NAMES.index(name)] += change * derivatives[..., TAU]
-        return derivatives
+    @staticmethod
+    def _up_to(gap: float, push: np.ndarray) -> np.ndarray:
+        """A displacement (2 N,) of the gap by so much, in the direction of an impulse."""
+        return np.kron(gap * push, [1.0, 0.0])
+
+
+def _scratch(e: Equations, columns: int) -> tuple:
+    """z, dz, bend and w of `differentiate`."""
+    size, masses = len(e.A), len(e.along)
+    return np.empty(size), np.empty((size, columns)), np.empty((2, masses)), new_scratch(size, len(e.columns))
+
+
+def _check_symmetric(system: AnyOscillator) -> None:
+    """What the discontinuity mapping needs: the two halves of a period are mirror images, and a steady motion."""
+    q = system.linear
+    if getattr(system, "offset", 0.0) != 0 or q.R_low != q.R_high or np.any(q.constant):
+        allowed = "its stops must be equal and about 0, without a constant force, for the discontinuity mapping"
+        raise ValueError(f"system: {system!r} is not allowed; {allowed}")
+    if not steady_gain(q):
+        raise ValueError(f"system: {system!r} is not allowed; its gap must have a steady motion, which grazes")

@@ -8,7 +8,7 @@ and where the distance after the found period itself does not fade, the points o
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import inline, jit
 
 REPEAT = 1e-6  # section points this near to each other, relative to their size, are the same point
 ROUNDING = 1e-10  # relative distance that rounding may leave of it
@@ -29,12 +29,26 @@ def distance(section, size, n, p):
     return largest if largest == largest else np.inf
 
 
+@inline
+def is_further(section, size, n, p, limit):
+    """Whether `distance` is certainly not below a limit; without a division, as a rule by the first number."""
+    for i in range(section.shape[1]):
+        if abs(section[n, i] - section[n - p, i]) > limit * size[i] * (1.0 + 2.0**-50):
+            return True
+    return False
+
+
 @jit
-def window_distance(section, size, p, window, m, windows):
-    """Mean distance of points from those p before them, in the m-th of so many windows along the record."""
+def window_distance(section, size, p, window, m, windows, limit):
+    """Mean distance of points from those p before them, in the m-th of so many windows along the record.
+
+    Where it is above the limit: infinity, without looking at all of them.
+    """
     first, total = p + m * (len(section) - p - window) // (windows - 1), 0.0
     for n in range(first, first + window):
         total += distance(section, size, n, p)
+        if total > limit * window:
+            return np.inf
     return total / window
 
 
@@ -58,13 +72,13 @@ def repeats(section, size, p):
 def fades(section, size, d, p):
     """Whether the distance after d points fades away; points nearly repeat themselves after p, a multiple of d."""
     window = min(window_of(p), len(section) - d)
-    after = window_distance(section, size, d, window, 2, 3)
+    after = window_distance(section, size, d, window, 2, 3, np.inf)
     if after <= ROUNDING:
         return True
     if len(section) - d - window < window // 4:  # too few points to tell
         return d == p
-    before = window_distance(section, size, d, window, 0, 3)
-    between = window_distance(section, size, d, window, 1, 3)
+    before = window_distance(section, size, d, window, 0, 3, np.inf)
+    between = window_distance(section, size, d, window, 1, 3, np.inf)
     if not before > between > after:
         return False
     limit = after - (after - between) ** 2 / ((after - between) - (between - before))
@@ -98,15 +112,18 @@ def is_approaching(section, size):
     count = len(section)
     nearest, p = NEAR, 0
     for d in range(1, count // 2 - LEAST_WINDOW):
+        if is_further(section, size, count - 1, d, nearest):
+            continue
         here = distance(section, size, count - 1, d)
         if here < nearest:
             nearest, p = here, d
     if p == 0 or count - p - window_of(p) < WINDOWS:
         return False
-    first = before = window_distance(section, size, p, window_of(p), 0, WINDOWS)
+    first = before = window_distance(section, size, p, window_of(p), 0, WINDOWS, NEAR)
     for m in range(1, WINDOWS):
-        after = window_distance(section, size, p, window_of(p), m, WINDOWS)
-        if before > NEAR or after > UNEVEN * before:
+        limit = min(NEAR, UNEVEN * before)
+        after = window_distance(section, size, p, window_of(p), m, WINDOWS, limit)
+        if before > limit or after > limit:
             return False
         before = after
     return before < 0.9 * first

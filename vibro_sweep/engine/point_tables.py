@@ -42,11 +42,10 @@ def fill_tables(f, point, paper, other):
 
 
 @jit
-def set_graze(q, point, paper):
+def set_graze(q, point):
     """The point at which the discontinuity mapping is expanded."""
-    if paper is not None:
-        for j in range(len(q.graze)):
-            q.graze[j] = point.graze[j]
+    for j in range(len(q.graze)):
+        q.graze[j] = point.graze[j]
 
 
 @jit

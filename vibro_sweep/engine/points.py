@@ -88,7 +88,7 @@ def prepare(points, i, w, plan):
     if not same_tables(point, w.built[table], w.paper, w.other):
         fill_tables(f, point, w.paper, w.other)
         w.built[table] = point
-    set_graze(q, point, w.paper)
+    set_graze(q, point)
     stops = Stops(point.stops[0], point.stops[1], point.stops[2], point.stops[3])
     o.careful = int(q.stiff or q.largest > LARGE * clearance(stops))
     strike.set_oscillator(e.strike[0], i, q, stops)

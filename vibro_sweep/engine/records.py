@@ -46,10 +46,15 @@ def point_of(kind: Kind) -> np.dtype:
             ("turned", np.bool_),  # T is not the identity
             ("T", float, (n, n)),
             ("back", float, (n, n)),
+            ("graze", float, 2 * n),  # the point at which the discontinuity mapping is expanded
             ("steady", float, 2 * n),  # of model/confinement.py, as far as
             ("middle", float),
             ("swing", float),
             ("confining", float, (2 * n, 2 * n)),  # here
+            ("told", np.bool_),  # of model/exponentials.py, for a stiff system:
+            ("root", float, (2 * n + 3, 2)),  # real and imaginary parts
+            ("part", float, (2 * n + 1, 2 * n + 3, 2)),
+            ("begin", float, 2 * n),
             ("frame_eta", float, n),  # of tangent vectors (model/frame.py)
             ("frame_square", float, n),
             ("frame_scale", float, n),

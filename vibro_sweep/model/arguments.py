@@ -8,7 +8,7 @@ _COUNTS = {2: "two", 4: "four", 6: "six"}
 MAX_COUNT = 10**12  # periods
 
 
-def checked_state(state, masses: int = 2) -> np.ndarray:
+def checked_state(state, masses: int = 2, name: str = "state") -> np.ndarray:
     """A state (x1, v1, x2, v2, ...) as an array (2 N,). Raises ValueError unless it is so many finite numbers."""
     try:
         values = np.asarray(state)
@@ -18,7 +18,7 @@ def checked_state(state, masses: int = 2) -> np.ndarray:
     if not (good and np.isfinite(values.astype(float)).all()):
         count = _COUNTS.get(2 * masses, str(2 * masses))
         raise ValueError(
-            f"state: {state!r} is not allowed; it must be {count} finite numbers ({', '.join(names(masses))})"
+            f"{name}: {state!r} is not allowed; it must be {count} finite numbers ({', '.join(names(masses))})"
         )
     return values.astype(float)
 

@@ -38,7 +38,13 @@ class Built(AnyOscillator):
         return hash((self.function, tuple(self.given.items())))
 
     def _linear(self, **numbers) -> Linear:
-        return self.function(**numbers).linear
+        made = self.function(**numbers)
+        check_type(f"{self.name}(...)", made, AnyOscillator, "a System or an Oscillator")
+        if made.masses != self.base.masses:
+            told = ", ".join(f"{name}={value!r}" for name, value in numbers.items())
+            allowed = f"as many as at the first point, {self.base.masses}"
+            raise ValueError(f"{self.name}({told}): {made.masses} masses are not allowed; there must be {allowed}")
+        return made.linear
 
     @property
     def name(self) -> str:

@@ -6,7 +6,9 @@ The plane of a pair of roots of A has vectors e1, e2 with
 
 eta half of minus the sum of the roots and eta^2 + square their product: a complex pair turns in it, a real pair shears.
 With classical damping a plane is that of a mode. Otherwise it belongs to a complex pair of roots or to two real ones.
-e2 has no part in y1, so that the gap moves by the first number of each plane alone.
+e2 has no part in y1, so that the gap moves by the first number of each plane alone. Planes that the contact does not
+see come first: tangent vectors begin as the vectors of the planes, in this order, and what a rest takes is taken from
+the last of them.
 """
 
 from typing import NamedTuple
@@ -16,6 +18,7 @@ import numpy as np
 from vibro_sweep.model.contact import Contact, flight_matrix
 
 CLASSICAL = 1e-13  # of the matrices: what may couple modes and be neglected
+UNSEEN = 1e-10  # share of the gap in a plane, in the metric of the masses, that is none
 LEAST_SCALE = 1e-3  # of the rate of a plane: near critical damping it shears instead of turning, and any scale serves
 
 
@@ -36,6 +39,8 @@ def frame_of(contact: Contact, omega: float) -> Frame:
     if planes is None:
         planes = _planes(A, np.sqrt(np.repeat(contact.masses, 2)))
     eta, square, seconds = planes
+    order = np.argsort(np.abs(seconds[1]) * np.sqrt(contact.masses[0]) > UNSEEN, kind="stable")
+    eta, square, seconds = eta[order], square[order], seconds[:, order]
     product = square + eta**2
     scale = np.maximum(np.sqrt(np.abs(square)), LEAST_SCALE * np.sqrt(np.maximum(product, 0)))
     scale = np.where(scale > 0, scale, omega)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.arguments import is_number
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models import MODELS, model_named
 from vibro_sweep.model.models.declaration import Model, Option, linear_of
@@ -83,7 +84,7 @@ class Oscillator(AnyOscillator):
     @cached_property
     def described(self) -> dict[str, Parameter]:
         """Its numbers, those of lists one by one: m1, m2, ..."""
-        return self.model.flat(self.masses)
+        return {name: one for name, one in self.model.flat(self.masses).items() if name in self.numbers}
 
     @property
     def numbers(self) -> dict[str, Any]:
@@ -170,7 +171,8 @@ def checked(model: Model, given: Mapping[str, Any]) -> dict[str, Any]:
         result[one.name] = _checked_list(one, value, length)
     masses = model.masses(result)
     if not 1 <= masses <= MOST_MASSES:
-        raise ParameterError(next(iter(known)), _plain(next(iter(result.values()))), f"of 1 to {MOST_MASSES} masses")
+        name = "M" if "M" in result else lists[0].name
+        raise ParameterError(name, _plain(result[name]), f"of 1 to {MOST_MASSES} masses")
     model.check(result)
     for one in model.numbers:
         if not one.each:
@@ -201,7 +203,7 @@ def _entries(one: Parameter, value: Any) -> list:
 
 
 def _option(one: Option, value: Any) -> Any:
-    if value is None and one.optional:
+    if one.optional and (value is None or (is_number(value) and value == 0)):  # a matrix of zeros: nothing
         return None
     if one.kind == "word":
         if not (isinstance(value, str) and value in one.words):

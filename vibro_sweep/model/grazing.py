@@ -98,6 +98,9 @@ def expansion_point(parameters: dict[str, np.ndarray], expand_at: float | None =
     return np.stack([size if expand_at is None else np.full_like(size, expand_at), np.zeros_like(size), x2, v2], -1)
 
 
+ROUNDING = 1e-13  # of a static state, relative to it; of 1 - multiplier
+
+
 class Grazing(NamedTuple):
     """Where the free motion of period T touches the stops.
 
@@ -129,8 +132,11 @@ def grazing(system: AnyOscillator) -> Grazing:
     touch = _of_the_paper(system) if paper else _of_any(system)
     q = system.linear
     offset = getattr(system, "offset", 0.0)
-    middle = float(q.along @ rest) if (rest := static_state(q)) is not None else math.nan
-    right, left = touch.b + middle - offset, touch.b - middle + offset
+    rest = static_state(q)
+    middle, size = (float(q.along @ rest), float(np.abs(q.along * rest).sum())) if rest is not None else (math.nan,) * 2
+    if abs(middle - offset) <= ROUNDING * size:  # the same, but for the rounding of the static state
+        middle = offset
+    right, left = touch.b + (middle - offset), touch.b - (middle - offset)
     b = touch.b if right == left else math.nan
     return touch._replace(b=b, b_right=right, b_left=left, satisfied=touch.satisfied and bool(b > 0))
 
@@ -150,14 +156,16 @@ def _of_the_paper(system) -> Grazing:
         root = np.sqrt(complex(eta**2 - square))
         # 1 - multiplier over T, for both multipliers of the mode; the paper's 1 - e_j c_j is their mean
         left_over = -np.expm1(np.array([-eta + root, -eta - root]) * system.period)
-        determinant *= (left_over.prod() / left_over.mean()).real
+        determinant *= (left_over.prod() / left_over.mean()).real if square else 0.0  # of a free mode both are 1
     return Grazing(b, tau, state, float(determinant), bool(np.isfinite(b) and determinant != 0), b, b)
 
 
 def _of_any(system: AnyOscillator) -> Grazing:
     """As `_of_the_paper`, from the complex response: g = g_s + Re(G e^{i(omega t + tau)})."""
     q = system.linear
-    determinant = float((-np.expm1(rates(q) * system.period)).prod().real)
+    left_over = -np.expm1(rates(q) * system.period)  # 1 - multiplier
+    unique = not _free(q) and bool((np.abs(left_over) > ROUNDING).all())
+    determinant = float(left_over.prod().real) if unique else 0.0
     gain = steady_gain(q)
     if gain is None:
         nowhere = (math.nan,) * 2 * len(q.along)
@@ -165,7 +173,13 @@ def _of_any(system: AnyOscillator) -> Grazing:
     tau = grazing_phase(q)
     turned = amplitudes(q) * np.exp(1j * tau)
     state = np.stack([static_state(q) + turned.real, -q.omega * turned.imag], -1).reshape(-1)
-    return Grazing(abs(gain), tau, tuple(state.tolist()), determinant, determinant != 0, abs(gain), abs(gain))
+    return Grazing(abs(gain), tau, tuple(state.tolist()), determinant, unique, abs(gain), abs(gain))
+
+
+def _free(q: Linear) -> bool:
+    """Whether there is a free mode: K is singular, in units in which each mass is 1."""
+    size = 1 / np.sqrt(np.diag(q.M))
+    return int(np.linalg.matrix_rank(q.K * np.outer(size, size), hermitian=True)) < len(size)
 
 
 def rates(q: Linear) -> np.ndarray:

@@ -1,14 +1,18 @@
 """The numbers of an oscillator over a grid of values for some of them: what a sweep computes, point by point."""
 
+import hashlib
 import itertools
+import math
 
 import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.built import Built, sizes_of
+from vibro_sweep.model.built import Built, sizes_of, stored_of
 from vibro_sweep.model.grazing import resolved
 from vibro_sweep.model.linear import Linear
 from vibro_sweep.model.oscillator import System
+
+MOST_COMPARED = 4096
 
 
 def grid(system: AnyOscillator, axes: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -41,6 +45,21 @@ def linears(system: AnyOscillator, axes: dict[str, np.ndarray]) -> np.ndarray:
         changes = {key: value for key, value in zip(axes, values, strict=True) if key in keys}
         result[place] = _one(family, changes)
     return result
+
+
+def digest(system: Built, axes: dict[str, np.ndarray]) -> str:
+    """What the function makes at the points of such a grid, as a word: at no more than `MOST_COMPARED`, spread evenly.
+
+    Two functions of one name are told apart by it, and a file of one is not continued by the other.
+    """
+    axes = {key: values for key, values in axes.items() if key in system.described}
+    shape = tuple(len(values) for values in axes.values())
+    count, found = math.prod(shape), hashlib.sha256()
+    for i in range(min(count, MOST_COMPARED)):
+        place = np.unravel_index(i * count // min(count, MOST_COMPARED), shape) if shape else ()
+        changes = {key: float(values[k]) for (key, values), k in zip(axes.items(), place, strict=True)}
+        found.update(np.array([*stored_of(_one(system.family, changes)).values()]).tobytes())
+    return found.hexdigest()[:16]
 
 
 def _sizes(each: np.ndarray) -> dict[str, np.ndarray]:

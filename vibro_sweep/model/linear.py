@@ -8,6 +8,7 @@ An impulse acts along M^-1 n: it changes the velocity of the gap g = n.x, with t
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -58,7 +59,7 @@ class Family:
     def replace(self, **changes) -> "Family":
         return Family(self.build, self.numbers | changes)
 
-    @property
+    @cached_property
     def linear(self) -> Linear:
         """The oscillator, its phase resolved."""
         built = self.build(**self.numbers)

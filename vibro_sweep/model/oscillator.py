@@ -90,17 +90,22 @@ class System(AnyOscillator):
         Omega: float,
         R: float,
         B: float,
+        B0: float = 0.0,
+        R_left: float | None = None,
         tau: float | Literal["grazing"] = "grazing",
         stops: Stops = "both",
     ) -> "System":
-        """From physical quantities in any consistent units (section 2 of the paper). Raises `ParameterError`."""
-        given = {"M1": M1, "M2": M2, "K1": K1, "K2": K2, "C1": C1, "C2": C2, "P1": P1, "P2": P2, "Omega": Omega, "B": B}
+        """From physical quantities in any consistent units (section 2 of the paper). Raises `ParameterError`.
+
+        The stops stand at B0 - B and B0 + B; R_left, of the left one, is R where it is left out.
+        """
+        given = dict(M1=M1, M2=M2, K1=K1, K2=K2, C1=C1, C2=C2, P1=P1, P2=P2, Omega=Omega, B=B, B0=B0)
         for name, value in given.items():
-            allowed, number = physical_range(name), number_of(value)
+            allowed, number = physical_range(name, stops), number_of(value)
             if number is None or not (math.isfinite(number) and allowed.holds(number)):
                 raise ParameterError(name, value, allowed.text)
             given[name] = number
-        M1, M2, K1, K2, C1, C2, P1, P2, Omega, B = given.values()
+        M1, M2, K1, K2, C1, C2, P1, P2, Omega, B, B0 = given.values()
         if P1 + P2 == 0:
             raise ParameterError("P1", P1, "such that P1 + P2 > 0: lengths are measured in (P1 + P2)/K1")
         frequency = math.sqrt(K1) / math.sqrt(M1)  # no product of two given numbers: it could leave the range
@@ -111,11 +116,12 @@ class System(AnyOscillator):
             "f2": ("P2", P2 / (P1 + P2)),
             "omega": ("Omega", Omega / frequency),
             "b": ("B", B / (P1 + P2) * K1),
+            "offset": ("B0", B0 / (P1 + P2) * K1),
         }
         for name, (key, value) in numbers.items():
             if not math.isfinite(value) or (value == 0) != (given[key] == 0):
                 raise ParameterError(key, given[key], f"such that {name} = {value!r} is in the range of the floats")
-        system = cls(**{name: value for name, (_, value) in numbers.items()}, R=R, tau=tau, stops=stops)
+        system = cls(**{name: value for name, (_, value) in numbers.items()}, R=R, R_left=R_left, tau=tau, stops=stops)
         one, other = Fraction(C1) * Fraction(K2), Fraction(C2) * Fraction(K1)
         if abs(one - other) <= max(one, other) / 10**9:  # proportional, but for the rounding of the input
             return system

@@ -137,7 +137,17 @@ PHYSICAL = (
         "Omega", r"\Omega", "", POSITIVE, "forcing frequency", "angular frequency of the force, 2 pi times that in Hz"
     ),
     Parameter("R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution"),
-    Parameter("B", "B", "", POSITIVE, "clearance", "clearance on each side, from the middle to a stop"),
+    CLEARANCE._replace(name="B", symbol="B", units="", text="clearance on each side, from the middle to a stop"),
+    Parameter(
+        "B0",
+        "B_0",
+        "",
+        NUMBER,
+        "offset of the stops",
+        "middle of the stops, from where the first mass rests without a force",
+        default=0.0,
+    ),
+    RESTITUTION_LEFT,
 )
 
 B_STAR = Parameter(
@@ -169,7 +179,7 @@ class ParameterError(ValueError):
 
 def range_of(parameter: Parameter, stops: str) -> Range:
     """What a number may be where there are these stops: one alone may stand anywhere."""
-    if parameter.name != CLEARANCE.name:
+    if parameter.name not in (CLEARANCE.name, "B"):
         return parameter.range
     return POSITIVE if stops == "both" else NUMBER
 
@@ -211,7 +221,7 @@ def checked_number(parameter: Parameter, value: object, stops: str = "both", key
     return number
 
 
-def physical_range(name: str) -> Range:
+def physical_range(name: str, stops: str) -> Range:
     """That of a physical quantity, which must be finite."""
-    found = next(quantity.range for quantity in PHYSICAL if quantity.name == name)
+    found = range_of(next(quantity for quantity in PHYSICAL if quantity.name == name), stops)
     return found._replace(text=found.text.replace("a number", "a finite number"))

@@ -1,73 +1,89 @@
-"""How the equations of motion, the grazing phase and the grazing point change with the parameters of the oscillator.
+"""How the equations of motion, the impulse and the grazing point change with the parameters of an oscillator.
 
-Flight is the autonomous linear system dz/ds = A z for z = (x1, v1, x2, v2, sin(s + tau), cos(s + tau)), with the phase
-s = omega t in place of time: the section then stays at s = 0 mod 2 pi when omega changes.
+Flight is the autonomous linear system dz/ds = A z for z = (x1, v1, ..., xN, vN, sin(s + tau), cos(s + tau), 1), with
+the phase s = omega t in place of time: the section then stays at s = 0 mod 2 pi when omega changes.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.parameters import FREE_MOTION
+from vibro_sweep.model.linear import Linear, amplitude_slopes, amplitudes
 
 
-class Linear(NamedTuple):
-    """dz/ds = A z, and the derivatives of A by the parameters `FREE_MOTION`."""
+class Motion(NamedTuple):
+    """One oscillator in the coordinates of its masses; or, with the same fields, its derivatives by a parameter."""
 
-    A: np.ndarray  # (6, 6)
-    A_p: np.ndarray  # (5, 6, 6)
-
-
-def flight_equations(p: dict[str, float], follows: bool = True) -> Linear:
-    """Eq. (3) between the stops. follows: whether mu_c changes with mu_k."""
-    m, above, drag, f2, omega = p["mu_m"], 1 + p["mu_k"], 2 * p["zeta"], p["f2"], p["omega"]
-    below = 1 + p["mu_c"]
-    A, A_p = np.zeros((6, 6)), np.zeros((5, 6, 6))
-    A[0, 1] = A[2, 3] = 1
-    A[1] = [-1, -drag, 1, drag, 1 - f2, 0]
-    A[3] = np.array([1, drag, -above, -drag * below, f2, 0]) / m
-    A_p[0, 3] = -A[3] / m
-    A_p[1, 3] = np.array([0, 0, -1, -drag if follows else 0, 0, 0]) / m
-    A_p[2, 1] = [0, -2, 0, 2, 0, 0]
-    A_p[2, 3] = np.array([0, 2, 0, -2 * below, 0, 0]) / m
-    A_p[3, 1, 4], A_p[3, 3, 4] = -1, 1 / m
-    A, A_p = A / omega, A_p / omega
-    A_p[4] = -A / omega
-    A[4, 5], A[5, 4] = 1, -1
-    return Linear(A, A_p)
+    A: np.ndarray  # (2 N + 3, 2 N + 3), in flight
+    held: np.ndarray  # the same while a stop holds the gap
+    push: np.ndarray  # (N,): what an impulse that changes the gap's velocity by 1 does to the masses, p
 
 
-def rest_equations(p: dict[str, float], follows: bool = True) -> Linear:
-    """Eq. (3) while a stop holds M1."""
-    A, A_p = (array.copy() for array in flight_equations(p, follows))
-    A[:2], A_p[:, :2] = 0, 0
-    return Linear(A, A_p)
+def motion(q: Linear) -> Motion:
+    """M x'' = ..., between the stops and on one: x'' less p n.x'' there, with p = M^-1 n/(n.M^-1 n)."""
+    acceleration = np.linalg.solve(q.M, _forces(q))
+    push = _push(q)
+    return Motion(_by_phase(q, acceleration), _by_phase(q, acceleration - np.outer(push, q.along @ acceleration)), push)
 
 
-def grazing_derivatives(p: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives by the parameters `FREE_MOTION`: (5,) of tau*, eq. (18), and (4, 5) of the grazing point X*.
+def motion_slopes(q: Linear, slope: Linear) -> Motion:
+    """Derivatives of `motion` where q changes by `slope`. No parameter of a model moves `along`."""
+    acceleration, push = np.linalg.solve(q.M, _forces(q)), _push(q)
+    moved = np.linalg.solve(q.M, _forces(slope) - slope.M @ acceleration)
+    across = np.linalg.solve(q.M, slope.M @ push)
+    d_push = push * (q.along @ across) - across
+    held = acceleration - np.outer(push, q.along @ acceleration)
+    d_held = moved - np.outer(push, q.along @ moved) - np.outer(d_push, q.along @ acceleration)
+    return Motion(_by_phase_slope(q, slope, acceleration, moved), _by_phase_slope(q, slope, held, d_held), d_push)
 
-    The steady motion is Im(x e^{i (omega t + tau)}) with x = (K - omega^2 M + 2 i omega zeta K)^-1 P, and tau* =
-    pi/2 - arg x_1.
+
+def _forces(q: Linear) -> np.ndarray:
+    """M x'' as a function of z, (N, 2 N + 3)."""
+    n = len(q.along)
+    result = np.empty((n, 2 * n + 3))
+    result[:, 0 : 2 * n : 2], result[:, 1 : 2 * n : 2] = -q.K, -q.C
+    result[:, 2 * n :] = np.stack([q.sine, q.cosine, q.constant], -1)
+    return result
+
+
+def _push(q: Linear) -> np.ndarray:
+    push = np.linalg.solve(q.M, q.along)
+    return push / (q.along @ push)
+
+
+def _by_phase(q: Linear, acceleration: np.ndarray) -> np.ndarray:
+    n = len(q.along)
+    A = np.zeros((2 * n + 3, 2 * n + 3))
+    A[np.arange(0, 2 * n, 2), np.arange(1, 2 * n, 2)] = 1 / q.omega
+    A[1 : 2 * n : 2] = acceleration / q.omega
+    A[2 * n, 2 * n + 1], A[2 * n + 1, 2 * n] = 1, -1
+    return A
+
+
+def _by_phase_slope(q: Linear, slope: Linear, acceleration: np.ndarray, moved: np.ndarray) -> np.ndarray:
+    n = len(q.along)
+    A = -slope.omega / q.omega * _by_phase(q, acceleration)
+    A[2 * n :] = 0
+    A[1 : 2 * n : 2] += moved / q.omega
+    return A
+
+
+def grazing_state(q: Linear) -> np.ndarray:
+    """X* (2 N,): the steady motion without a constant force where its gap is largest, which is at rest there.
+
+    Infinite or NaN where there is no steady motion.
     """
-    m, k, zeta, f2, omega = (p[name] for name in FREE_MOTION)
-    M, K = np.diag([1.0, m]), np.array([[1, -1], [-1, 1 + k]])
-    second = np.diag([0.0, 1.0])
-    Z = K - omega**2 * M + 2j * omega * zeta * K
-    dZ = [
-        -(omega**2) * second,
-        (1 + 2j * omega * zeta) * second,
-        2j * omega * K,
-        0 * second,
-        -2 * omega * M + 2j * zeta * K,
-    ]
-    x = np.linalg.solve(Z, [1 - f2, f2])
-    pushes = np.array([-matrix @ x for matrix in dZ]).T
-    pushes[:, 3] += [-1, 1]
-    dx = np.linalg.solve(Z, pushes)
-    dtau = -(dx[0] / x[0]).imag
-    turn = np.exp(1j * (np.pi / 2 - np.angle(x[0])))
-    y, dy = x * turn, (dx + 1j * np.outer(x, dtau)) * turn
-    dX = np.stack([dy[0].imag, np.zeros(5), dy[1].imag, omega * dy[1].real])
-    dX[3, 4] += y[1].real
-    return dtau, dX
+    x, n = amplitudes(q), q.along
+    x = x * np.exp(-1j * np.angle(n @ x))
+    state = np.stack([x.real, -q.omega * x.imag], -1)
+    state[:, 1] -= _push(q) * (n @ state[:, 1])  # but for rounding it is zero
+    return state.reshape(-1)
+
+
+def grazing_state_slopes(q: Linear, slope: Linear) -> np.ndarray:
+    """Derivatives (2 N,) of `grazing_state` where q changes by `slope`."""
+    x, dx = amplitudes(q), amplitude_slopes(q, slope)
+    gain = q.along @ x
+    turn = np.exp(-1j * np.angle(gain))
+    dy = (dx - 1j * x * ((q.along @ dx) / gain).imag) * turn
+    return np.stack([dy.real, -slope.omega * (x * turn).imag - q.omega * dy.imag], -1).reshape(-1)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
@@ -17,7 +18,8 @@ class Look:
     """What is None is left to the kind of picture.
 
     at: swept key -> value, where single orbits are drawn; variable: what is drawn; xlim, ylim: ranges of the axes, of
-    several panels those of the first and of all that show the same; size: inches; dpi: pixels an inch.
+    several panels those of the first and of all that show the same; size: inches; dpi: pixels an inch; windows: a file
+    of the sweep's windows, which are shown below it; over: the file of a sweep over which branches are drawn.
     Raises `PlotError` for values that none of the kinds can use.
     """
 
@@ -27,6 +29,8 @@ class Look:
     ylim: tuple[float, float] | None = None
     size: tuple[float, float] | None = None
     dpi: float | None = None
+    windows: Path | None = None
+    over: Path | None = None
 
     def __post_init__(self):
         for name, limits in (("xlim", self.xlim), ("ylim", self.ylim)):

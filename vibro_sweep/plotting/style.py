@@ -53,6 +53,26 @@ PERIODS = (
     *("#771188", "#446644", "#eeaa44", "#9966aa", "#aa6611", "#dd99ff"),
 )
 
+# Special points: label, name, marker, colour; filled or not.
+SPECIAL = {
+    "graze": ("GR", "graze, persistence", "o", "#1a1a2e", True),
+    "nonsmooth_fold": ("GR", "graze, nonsmooth fold", "o", "#1a1a2e", False),
+    "fold": ("LP", "fold", "s", "#b2182b", True),
+    "flip": ("PD", "flip", "D", "#2f8fd8", True),
+    "pitchfork": ("BP", "pitchfork", "^", "#e0a030", True),
+    "neimark_sacker": ("NS", "Neimark-Sacker", "p", "#7b3294", True),
+    "sticking": ("ST", "sticking", "X", "#446644", True),
+}
+
+
+def special_mark(kind: str, size: float = 4.0) -> dict:
+    """How a special point is drawn, for `plot`."""
+    _, _, marker, colour, filled = SPECIAL[kind]
+    return {
+        "ls": "none", "marker": marker, "color": colour, "markerfacecolor": colour if filled else "white",
+        "markersize": size, "markeredgewidth": 0.7,
+    }  # fmt: skip
+
 
 def symbol(name) -> str:
     """A number or a variable of the table as in the paper, for mathtext."""

@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from vibro_sweep.model.state import MOST_MASSES, state
-from vibro_sweep.plotting import density
+from vibro_sweep.plotting import density, strip
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.spectrum import branches, curve, margin_note, spectrum
 from vibro_sweep.plotting.style import (
@@ -51,8 +51,10 @@ def shows_impacts(result: Result) -> bool:
 
 
 def bifurcation(result: Result):
-    """Section points over the parameter; below, on the same axis, spectrum and impacts where stored."""
-    panels = [(3.6, _section)]
+    """Section points over the parameter; below, on the same axis, windows, spectrum and impacts where there are any."""
+    panels = [(3.6, section)]
+    if result.look.windows:
+        panels.append((strip.HEIGHT, strip.windows))
     if shows_lyapunov(result):
         panels.append((1.7, spectrum))
     if shows_impacts(result):
@@ -151,7 +153,8 @@ def _explanations(fig, axes, result):
         fig.legend(handles=shown, loc="outside lower center", ncols=len(shown))
 
 
-def _section(ax, result, values, order):
+def section(ax, result, values, order):
+    """Section points over the parameter, on axes of the caller's."""
     name = result.look.variable or section_variables(result)[0]
     at_impact = "phase" in result
     points = result.array(name)[order]  # (values, starts, samples)

@@ -38,12 +38,14 @@ def _map_problems(form: Form) -> list[str]:
     if form.system.tau != "grazing" or (form.sweep and "tau" in form.sweep.model_fields_set):
         text = "the map's section is the phase of the graze; leave tau out, or say grazing"
         problems.append(problem("system.tau", form.system.tau, text))
-    for key in ("type", "offset", "R_left", "mu_c"):
+    for key in ("offset", "R_left", "constant"):
         value, default = getattr(form.system, key, None), type(form.system).model_fields.get(key)
-        swept = form.sweep is not None and key in form.sweep.model_fields_set
+        keys = form.sweep.model_fields_set if form.sweep is not None else ()
+        swept = [name for name in sorted(keys) if name.rstrip("0123456789") == key]  # a list's are constant1, ...
         if default is not None and (value != default.default or swept):
-            text = "the map is that of the paper's oscillator with equal stops and proportional damping; leave it out"
-            problems.append(problem(f"sweep.{key}" if swept else f"system.{key}", None if swept else value, text))
+            text = "the map's two halves are mirror images: equal stops about 0, no constant force; leave it out"
+            path, value = (f"sweep.{swept[0]}", None) if swept else (f"system.{key}", value)
+            problems.append(problem(path, value, text))
     if "energy" in form.observe:
         text = "the map has no motion between its points; leave energy out"
         problems.append(problem("observe", sorted(form.observe), text))

@@ -19,6 +19,7 @@ from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.model.pictures import PICTURES
 from vibro_sweep.model.state import coordinates
 
+from .continue_form import continue_form
 from .fields import WHICH, Form, Whole, given, keys, swept
 from .slips import SYNONYMS
 from .systems import PhysicalSystemForm, form_of
@@ -209,6 +210,20 @@ def _systems(models: Iterable[Model]):
     return Annotated[functools.reduce(operator.or_, forms), Discriminator(_system)]
 
 
+@functools.cache
+def continuation_form(name: str, masses: int) -> type[Form]:
+    """The form of scenes of branches of a model, with so many masses."""
+    model = MODELS[name]
+    body = continue_form(model.flat(masses).values(), masses)
+    return create_model(
+        "ContinuationForm",
+        __base__=Form,
+        __doc__="A scene of branches: what to follow.",
+        system=(_systems([model]), Field(description="the oscillator")),
+        **{"continue": (body, Field(description="branches of periodic orbits"))},
+    )
+
+
 def _system(value) -> str:
     if "physical" in keys(value):
         return "physical units"
@@ -219,7 +234,7 @@ def tagged(form: type[Form]) -> dict[str, type[Form]]:
     """The forms that a key of a scene may have, by the words that tell them apart in errors."""
     found = {"axis by step": StepAxis, "axis by number": CountAxis, "axis of values": ListAxis}
     for key in ("system", "start"):
-        for one in get_args(form.model_fields[key].annotation):
+        for one in get_args(form.model_fields[key].annotation) if key in form.model_fields else ():
             kind, tag = get_args(one)
             found[tag.tag] = kind
     return found
@@ -231,7 +246,30 @@ def json_schema(names: Iterable[str] = tuple(MODELS)) -> dict:
     masses = SHOWN if len(models) > 1 else 2
     numbers = {key: one for model in reversed(models) for key, one in model.flat(masses).items()}
     schema = _draft_7(_scene_form(_systems(models), numbers.values(), masses).model_json_schema())
+    _add_branches(schema, numbers.values(), masses)
     return {"$schema": "http://json-schema.org/draft-07/schema#"} | schema
+
+
+def _add_branches(schema: dict, numbers: Iterable[Parameter], masses: int) -> None:
+    """The key `continue`, with which a scene has no orbit and nothing that belongs to one."""
+    body = _draft_7(continue_form(numbers, masses).model_json_schema())
+    schema["definitions"] |= body.pop("definitions")
+    origin = body["properties"]["from"]
+    told = {"description": origin.pop("description")} if "description" in origin else {}
+    reference = origin["allOf"][0] if "allOf" in origin else origin
+    body["properties"]["from"] = {"anyOf": [{"const": "free"}, reference]} | told
+    schema["definitions"]["ContinueForm"] = body
+    text = "branches of periodic orbits, in place of a sweep and its orbits"
+    schema["properties"]["continue"] = {
+        "allOf": [{"$ref": "#/definitions/ContinueForm"}],
+        "description": text,
+    }
+    schema["required"].remove("orbit")
+    of_orbits = [key for key in schema["properties"] if key not in ("system", "continue")]
+    schema["anyOf"] = [
+        {"required": ["orbit"], "not": {"required": ["continue"]}},
+        {"required": ["continue"], "not": {"anyOf": [{"required": [key]} for key in of_orbits]}},
+    ]
 
 
 def _draft_7(node):

@@ -1,8 +1,6 @@
 """From a YAML text to a Scene: everything that a computation needs to know, checked as a whole."""
 
 import math
-import os
-import stat
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
@@ -12,20 +10,19 @@ from pydantic import ValidationError
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import BUILD, Built
-from vibro_sweep.model.grid import grid
+from vibro_sweep.model.grid import digest, grid
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.state import START, start
 
 from .combinations import combination_problems
 from .form import built_form, scene_form
 from .problems import SceneError, form_problems, located
+from .reading import text_of
 from .size import size_problems
 from .starts import Start, start_of, start_problems, stops_of
 from .system import kind_of, sweep_of, system_of
 from .written import changed, data_of, yaml_of
-from .yaml_text import MAX_BYTES, YAMLTextError, lines_of, read_yaml
-
-HDF5 = b"\x89HDF\r\n\x1a\n"  # how such files begin
+from .yaml_text import YAMLTextError, lines_of, read_yaml
 
 
 @dataclass(frozen=True)
@@ -66,8 +63,9 @@ class Scene:
     @cached_property
     def text(self) -> str:
         """The YAML text as given, if that is what this scene says; else generated. Raises SceneError for no scene."""
-        if isinstance(self.system, Built):
-            return self.to_yaml()  # which says what there is no text for
+        if isinstance(self.system, Built):  # there is no text for what the function does: its matrices stand for it
+            data = data_of(self)
+            return yaml_of(data | {"system": data["system"] | {"matrices": digest(self.system, self.sweep)}})
         if self.given is not None and _equal(parse_scene(self.given), self):
             return self.given
         return parse_scene(self.to_yaml(), self.name).given
@@ -174,21 +172,7 @@ def load_scene(path: str | Path) -> Scene:
 
     Raises SceneError for what is wrong with it, OSError where the file cannot be read.
     """
-    path = Path(path)
-    name = os.fsencode(path.name).decode(errors="replace")  # the name of a file need not be text
-    with open(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)), "rb") as file:  # waits for no pipe
-        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise SceneError(name, ["is no regular file"])
-        data = file.read(MAX_BYTES + 1)
-    if data.startswith(HDF5):
-        raise SceneError(name, ["is a data file, not a scene: `vibro-sweep info` and `plot` read it"])
-    if len(data) > MAX_BYTES:
-        raise SceneError(name, [f"longer than {MAX_BYTES} bytes"])
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise SceneError(name, [f"byte {error.start} is not UTF-8 text"]) from None
-    return parse_scene(text, name)
+    return parse_scene(*text_of(path))
 
 
 def _equal(one: Scene, other: Scene) -> bool:
@@ -216,6 +200,8 @@ def scene_of(data: object, name: str, given: str | None = None, built: Built | N
 
     built : an oscillator that a function makes, in place of `system`
     """
+    if isinstance(data, dict) and "continue" in data:
+        raise SceneError(name, ["continue: this is a scene of branches; `vibro-sweep run` follows them"])
     kind, masses = kind_of(data, name) if built is None else (BUILD, built.masses)
     numbers = MODELS[kind].flat(masses) if built is None else built.described
     scheme = scene_form(kind, masses) if built is None else built_form(built)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B")
+PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B", "B0")
 NONDIMENSIONAL = (
     "mu_m = M2/M1, mu_k = K2/K1, zeta = C1/(2 sqrt(K1 M1)), f2 = P2/(P1 + P2), omega = Omega sqrt(M1/K1), "
     "b = B K1/(P1 + P2)"
@@ -176,4 +176,8 @@ def _scales(numbers: Mapping[str, Any]) -> dict[str, tuple[str, str, float]]:
         length = numbers["K1"] / (numbers["P1"] + numbers["P2"])
     except (KeyError, TypeError, ValueError, ArithmeticError):
         return {}
-    return {"Omega": ("omega", "Omega sqrt(M1/K1)", frequency), "B": ("b", "B K1/(P1 + P2)", length)}
+    return {
+        "Omega": ("omega", "Omega sqrt(M1/K1)", frequency),
+        "B": ("b", "B K1/(P1 + P2)", length),
+        "B0": ("offset", "B0 K1/(P1 + P2)", length),
+    }

@@ -5,6 +5,7 @@ import numpy as np
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.models import DEFAULT, MODELS
+from vibro_sweep.model.models.declaration import entries
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.parameters import Parameter, ParameterError, check_value
 from vibro_sweep.model.state import START
@@ -20,8 +21,8 @@ def kind_of(data: object, name: str) -> tuple[str, int]:
     """The model of a scene and its number of masses, as far as its data tell. Raises SceneError for no model."""
     system = data.get("system") if isinstance(data, dict) else None
     kind = system.get("type", DEFAULT) if isinstance(system, dict) else DEFAULT
-    if kind not in MODELS:
-        hint = f"did you mean `{found}`? " if (found := meant(kind, MODELS)) else ""
+    if not (isinstance(kind, str) and kind in MODELS):
+        hint = f"did you mean `{found}`? " if (found := meant(str(kind), MODELS)) else ""
         raise SceneError(name, [problem("system.type", kind, f"{hint}allowed: {', '.join(MODELS)}")])
     try:
         return kind, MODELS[kind].masses(system) if isinstance(system, dict) else 2
@@ -67,11 +68,17 @@ def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[AnyOscillator 
         except ParameterError as error:
             path = "system.physical" if error.key in physical else "system"
             return None, [problem(f"{path}.{error.key}", error.value, f"must be {error.allowed}")]
-    swept = form.sweep.model_fields_set.intersection(numbers) if form.sweep else set()
+    axes = getattr(form, "sweep", None)  # scenes of branches have none
+    swept = axes.model_fields_set.intersection(numbers) if axes else set()
     problems, given = [], {}
     stops = getattr(form.system, "stops", "both")
     for one in model.numbers:
         value = getattr(form.system, one.name)
+        if value is None and one.each:
+            text = f"is one of {one.name}, which is not given; write it in system, one number for each {one.each}"
+            problems += [
+                f"sweep.{key}: {text}" for key in sorted(swept.intersection(each.name for each in entries(one, masses)))
+            ]
         if value is None and one.name not in first and not one.each and not (one.follows or one.optional):
             if one.name not in swept:
                 problems.append(f"system.{one.name}: missing; it must be given unless it is swept")

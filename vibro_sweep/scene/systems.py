@@ -11,12 +11,18 @@ from vibro_sweep.model.parameters import PHASE, PHYSICAL, POSITIVE, Parameter
 
 from .fields import TAU, WHICH, Form, Whole, given, number
 
+
+def _required(one: Parameter) -> tuple[Any, Any]:
+    return float, given(one.text, **one.range.bounds)
+
+
 PhysicalNumbers = create_model(
     "PhysicalNumbers",
     __base__=Form,
     __doc__="Physical quantities in any consistent units, as kg, m, s and N. "
-    "All must be given; a sweep over `omega`, `b` or `R` replaces the value that follows from `Omega`, `B` or `R`.",
-    **{one.name: (float, given(one.text, **one.range.bounds)) for one in PHYSICAL},
+    "All but B0 and R_left must be given; a sweep over `omega`, `b`, `offset` or `R` replaces the value that follows "
+    "from `Omega`, `B`, `B0` or `R`.",
+    **{one.name: number(one) if one.follows or one.default is not None else _required(one) for one in PHYSICAL},
 )
 
 PhysicalSystemForm = create_model(

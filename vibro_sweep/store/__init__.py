@@ -15,6 +15,7 @@ _HOME = {
     "open": "reading",
     "quantities": "layout",
     "size": "layout",
+    "tables": "reading",
     "writer": "beginning",
 }
 
@@ -28,6 +29,7 @@ __all__ = [
     "open",
     "quantities",
     "size",
+    "tables",
     "writer",
 ]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from vibro_sweep import __version__
 from vibro_sweep.scene import Scene
-from vibro_sweep.store import heap, layout, numbers, parts
+from vibro_sweep.store import datasets, heap, layout, numbers, parts
 from vibro_sweep.store.attributes import set_text, set_texts
 from vibro_sweep.store.checks import Piece
 from vibro_sweep.store.image import Frame
@@ -33,7 +33,7 @@ def skeleton_of(scene: Scene, identity: bytes) -> memoryview:
         set_texts(file, "quantities", [name for name in layout.quantities(scene) if name != "status"])
         for name, value in numbers.attributes(scene).items():
             file.attrs[name] = value
-        layout.create(file, scene)
+        datasets.create(file, scene)
     found = [(at, *heap.measured(image, at)) for at in heap.collections(image)]
     with h5py.File(image, "r+", libver=LIBVER) as file:
         file.attrs["heap"] = np.array(found, np.uint64).reshape(-1)

@@ -77,6 +77,8 @@ def _from_part(raw: BinaryIO, path: Path, names: Collection[str] | None) -> Open
     try:
         parts.copy_skeleton(raw, head, image)
         with checked(image, path, image) as file:
+            if is_flat(file):
+                raise StoreError(f"{path} is an interrupted run of {text(file, 'kind')}; `--resume` continues it")
             index = Index(raw, head, frame_of(file, quantities_of(file)))
         sink = Sink(image)
         with changing(sink) as file:
@@ -105,7 +107,7 @@ def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO) -> h5py.File:
             raise StoreError(f"{path} is a scene, not an HDF5 file: `vibro-sweep run {path}` makes that") from None
         raise StoreError(f"{path} is not an HDF5 file, or it is damaged ({error})") from None
     try:
-        if "status" not in result or "scene" not in result.attrs:
+        if not ("status" in result or "kind" in result.attrs) or "scene" not in result.attrs:
             raise StoreError(f"{path} is an HDF5 file, but none that vibro-sweep wrote")
         if not 1 <= format_of(result) <= FORMAT:
             raise StoreError(
@@ -145,6 +147,9 @@ def _check(file: h5py.File) -> None:
     if not isinstance(provenance, dict):
         raise ValueError("its provenance is no JSON object")
     check_numbers(file)
+    if is_flat(file):
+        _check_flat(file)
+        return
     axes = texts(file, "sweep_dimensions")
     for name in [*axes, *quantities_of(file)]:
         check_dataset(file, name)
@@ -168,6 +173,22 @@ def _check(file: h5py.File) -> None:
             raise ValueError(f"the axis `{name}` holds no numbers")
 
 
+def is_flat(file: h5py.File) -> bool:
+    """Whether it holds branches or windows, and no sweep."""
+    return "kind" in file.attrs
+
+
+def _check_flat(file: h5py.File) -> None:
+    """As `_check`, of a file of branches or windows; a run that has not ended has no datasets."""
+    for name in quantities_of(file) if "status" in file else []:
+        check_dataset(file, name)
+        if file[name].dtype.kind not in "if":
+            raise ValueError(f"`{name}` holds no numbers")
+        for axis, extent in zip(dimensions_of(file, name), file[name].shape, strict=True):
+            if file[axis].shape != (extent,):
+                raise ValueError(f"its datasets do not fit together: `{name}` and its dimension `{axis}`")
+
+
 def check_dataset(file: h5py.File, name: str) -> None:
     """Raise where it is missing, or leads to another place: links, virtual datasets, external storage."""
     if not isinstance(file.get(name, getlink=True), h5py.HardLink):
@@ -181,13 +202,17 @@ def check_dataset(file: h5py.File, name: str) -> None:
 
 def dimensions_of(file: h5py.File, name: str) -> list[str]:
     """Names of a dataset's dimensions: those of the sweep, `start` if there is one, its own by their scales."""
+    if is_flat(file):
+        return [dimension[0].name.removeprefix("/") for dimension in file[name].dims]
     lead = texts(file, "sweep_dimensions")
     lead += ["start"] * (file["status"].ndim - len(lead))
     return [*lead, *(dimension[0].name.removeprefix("/") for dimension in list(file[name].dims)[len(lead) :])]
 
 
 def axes_of(file: h5py.File) -> list[str]:
-    """All dimensions of a file."""
+    """All dimensions of a file that have coordinates: none of branches or windows."""
+    if is_flat(file):
+        return []
     return list(dict.fromkeys(axis for name in quantities_of(file) for axis in dimensions_of(file, name)))
 
 
@@ -218,6 +243,8 @@ def quantities_of(file: h5py.File) -> list[str]:
 
 def check_scene(file: h5py.File, path: Path, scene: "Scene") -> None:
     """A run is continued by the scene that began it, or its points would not belong together."""
+    if is_flat(file):
+        raise StoreError(f"{path} holds {text(file, 'kind')}, and no sweep; name another file, or overwrite it")
     old = text(file, "scene")
     if old != scene.text:
         raise StoreError(

@@ -8,10 +8,12 @@ import h5py
 import numpy as np
 
 from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.branch_file import WINDOWS
 from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STANDING, meaning
 from vibro_sweep.store import checks
 from vibro_sweep.store.attributes import text, texts
-from vibro_sweep.store.opening import StoreError, blocks_lost, open_file, opened, quantities_of
+from vibro_sweep.store.flat_tables import special_table, windows_table
+from vibro_sweep.store.opening import StoreError, blocks_lost, is_flat, open_file, opened, quantities_of
 
 if TYPE_CHECKING:
     import xarray
@@ -57,6 +59,12 @@ def describe(path: str | Path) -> str:
     return examine(path).text
 
 
+def tables(path: str | Path) -> list[str]:
+    """What a file of branches or windows holds, line by line. Raises StoreError."""
+    with opened(Path(path)) as (file, _):
+        return _tables(file)
+
+
 def examine(path: str | Path) -> Description:
     """As `describe`, and whether the file is damaged."""
     path = Path(path)
@@ -70,6 +78,9 @@ def examine(path: str | Path) -> Description:
 def _examined(file: h5py.File, path: Path, lost: int) -> Description:
     lines = [f"{path}: {text(file, 'title')}"]
     found = _damage(file, lost)
+    if is_flat(file):
+        lines += [f"damaged      {found}"] if found else [*_tables(file), "checksums    all hold"]
+        return Description("\n".join([*lines, *_made_by(file)]), bool(found))
     for name in texts(file, "sweep_dimensions"):
         lines.append(f"  {name:<10} {_ends(file[name])}({len(file[name]):,} values)")
     if file["status"].ndim > len(texts(file, "sweep_dimensions")):
@@ -81,12 +92,23 @@ def _examined(file: h5py.File, path: Path, lost: int) -> Description:
         lines.append(f"  {name:<18} {shape:<16} {_described(dataset)}")
     lines += _progress(file)
     lines.append(f"damaged      {found}; {REMEDY}" if found else "checksums    all hold")
-    lines += _accuracy(file)
-    lines.append("made by")
-    provenance = json.loads(text(file, "provenance"))
-    lines += [f"  {key:<12} {value}" for key, value in provenance.items() if value is not None]
-    lines += [f"  {entry}" for entry in text(file, "history").splitlines()]
+    lines += [*_accuracy(file), *_made_by(file)]
     return Description("\n".join(lines), bool(found))
+
+
+def _made_by(file: h5py.File) -> list[str]:
+    provenance = json.loads(text(file, "provenance"))
+    lines = [f"  {key:<12} {value}" for key, value in provenance.items() if value is not None]
+    return ["made by", *lines, *(f"  {entry}" for entry in text(file, "history").splitlines())]
+
+
+def _tables(file: h5py.File) -> list[str]:
+    """What a file of branches or windows holds."""
+    arrays = {name: file[name][()] for name in quantities_of(file)}
+    parameters = texts(file, "parameters")
+    if text(file, "kind") == WINDOWS:
+        return windows_table(arrays, parameters[0])
+    return special_table(arrays, parameters)
 
 
 def _ends(axis: h5py.Dataset) -> str:

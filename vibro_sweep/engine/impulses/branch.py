@@ -1,6 +1,7 @@
 """Many steps along a branch of periodic orbits: predictor, corrector, tests and certificate of every point.
 
-Distances along the branch are measured as analysis/walk.py does: times, impulses and the parameter in units `scale`.
+Distances along the branch are measured as analysis/branches/walk.py does: times, impulses and the parameter in units
+`scale`.
 A call ends where something happens between two points, so that the caller can locate it; both points are kept.
 """
 
@@ -18,6 +19,7 @@ FULL, EVENT, CLOSED, FAILED, FAR, NO_START = range(6)  # why a call ends; FAR: b
 MOST_CORRECTIONS = 8
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
 DEFECT = 1e-10  # largest jump of the motion between its flights, relative to the gap
+PASSED = 1e-13  # distance beyond a stop, relative to the gap, which rounding does not explain
 BEYOND = 1.5  # times the reach of the medium, up to where its polynomials hold
 EARLY = 10  # points before which a branch is not yet taken to be closed
 
@@ -148,6 +150,14 @@ def start(f, sides, sigma, steps, a, w):
 
 
 @entry
+def settle(media, sides, sigma, steps, place, w):
+    """Newton's method from `place` where no parameter changes. Corrections made; 0: none found."""
+    for i in range(len(sides)):
+        w.row_t[i] = w.row_jump[i] = 0.0
+    return correct(media[0], sides, sigma, steps, 1.0, place, w)
+
+
+@entry
 def walk(media, sides, sigma, steps, size, origin, passed, first, a, b, record, w, begins):
     """Steps from a until something happens. (reason, points recorded, corrections made).
 
@@ -193,7 +203,7 @@ def walk(media, sides, sigma, steps, size, origin, passed, first, a, b, record, 
             continue
         b.numbers[LENGTH] = length
         test(f, sides, sigma, b, w.room[0], w.strikes)
-        if happens(sides, steps, a, b):
+        if happens(sides, steps, a, b, PASSED * size):
             return EVENT, count, corrections
         if passed + count >= EARLY and comes_back(steps, a, first, length):
             return CLOSED, count, corrections

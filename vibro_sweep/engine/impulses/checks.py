@@ -13,6 +13,8 @@ from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
+ON_CIRCLE = 1e-6  # of |mu|^2: a multiplier that near to the unit circle is on neither side; UNSTABLE is -1
+
 
 @jit
 def certify(f, sides, sigma, place, room, strikes):
@@ -88,9 +90,12 @@ def test(f, sides, sigma, place, room, strikes):
         return
     outside = 0.0
     for i in range(n):
-        if room.re[i] * room.re[i] + room.im[i] * room.im[i] > 1.0:
+        size = room.re[i] * room.re[i] + room.im[i] * room.im[i]
+        if size > 1.0:
             outside += 1.0
-    place.numbers[UNSTABLE] = outside
+        if abs(size - 1.0) < ON_CIRCLE:
+            outside = -np.inf
+    place.numbers[UNSTABLE] = max(outside, -1.0)
     if n > 2:
         place.numbers[TORUS] = torus(room.re, room.im)
 
@@ -108,8 +113,11 @@ def torus(re, im):
 
 
 @jit
-def happens(sides, steps, a, b):
-    """Whether a test changes its sign between two points."""
+def happens(sides, steps, a, b, passed):
+    """Whether a test changes its sign between two points, multipliers cross the unit circle, or b is out of the stops.
+
+    passed: distance beyond a stop that rounding does not explain
+    """
     x, y = a.numbers, b.numbers
     if not steps.low < y[P] < steps.high:
         return True
@@ -118,9 +126,10 @@ def happens(sides, steps, a, b):
         pushing = pushing and sides[i] * b.D[i] < 0.0
         if a.releases[i] > 0.0 >= b.releases[i]:
             return True
-    if not pushing or x[MARGIN] > 0.0 >= y[MARGIN] or x[TANGENT] * y[TANGENT] < 0.0:
+    if not pushing or x[MARGIN] > 0.0 >= y[MARGIN] or y[MARGIN] < -passed or x[TANGENT] * y[TANGENT] < 0.0:
         return True
-    return x[REFLECTION] * y[REFLECTION] < 0.0 or x[TORUS] * y[TORUS] < 0.0
+    counted = x[UNSTABLE] >= 0.0 and y[UNSTABLE] >= 0.0
+    return (counted and x[UNSTABLE] != y[UNSTABLE]) or x[REFLECTION] * y[REFLECTION] < 0.0 or x[TORUS] * y[TORUS] < 0.0
 
 
 @jit

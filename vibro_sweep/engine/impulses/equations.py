@@ -5,6 +5,11 @@
 
 Unknowns u = (t_1 .. t_K, D_1 .. D_K), and the constant c with the last equation, only where the contact sees a free
 mode. Nothing is singular at D = 0, a graze.
+
+Towards the end of a chatter sequence flights and speeds vanish. From one impact to the next, after a short flight from
+the same stop, only what changes is summed up, so that rounding shrinks with the flight:
+
+    g(t_i) = g(t_{i-1}) + [g]        g'(t_i -) = g'(t_{i-1} -) + D_{i-1} + [g'],        [f] = f(t_i -) - f(t_{i-1} +)
 """
 
 import math
@@ -78,6 +83,32 @@ def delayed(train, t, i, k, out, slope):
         slope[n] *= factor
 
 
+SHORT = 1 / 16  # of a cell: a flight within which the polynomial of the cell in which it begins still holds
+
+
+@jit
+def follows(train, contacts, t, i):
+    """Whether impact i comes after a short flight from the same stop."""
+    return i > 0 and contacts[i, STOP] == contacts[i - 1, STOP] and t[i] - t[i - 1] < SHORT * train.width
+
+
+@jit
+def added(train, t, i, k, out):
+    """[gamma(t - t_k)] and [gamma'(t - t_k)] over the flight from t_{i-1} to t_i: by divided differences."""
+    y, s, factor = t[i - 1] - t[k], t[i] - t[i - 1], 1.0
+    if k >= i:
+        y += train.P
+        factor = train.ratio
+    cell = min(max(int(y / train.width), 0), len(train.coefficients) - 1)
+    c, y = train.coefficients[cell], y - cell * train.width
+    x = y + s
+    p, p1, d, d1 = c[ORDER], 0.0, 0.0, 0.0  # p(x) - p(y) = (x - y) d; d1: the same of the derivative
+    for n in range(ORDER - 1, -1, -1):
+        d, p = d * x + p, p * y + c[n]
+        d1, p1 = d1 * x + p1, p1 * y + (n + 1) * c[n + 1]
+    out[0], out[1] = factor * s * d, factor * s * d1
+
+
 @jit
 def steady_gap(q, t, out, slope):
     """g_lin and three derivatives at t, and the parameter's."""
@@ -92,6 +123,14 @@ def steady_gap(q, t, out, slope):
         c, s = -s, c
     out[0] += q.mean
     slope[0] += q.d_mean
+
+
+@jit
+def steady_added(q, t, i, out):
+    """[g_lin] and [g_lin'] over the flight from t_{i-1} to t_i."""
+    middle, turned = 0.5 * q.omega * (t[i - 1] + t[i]), 2.0 * math.sin(0.5 * q.omega * (t[i] - t[i - 1]))
+    d_cos, d_sin = -math.sin(middle) * turned, math.cos(middle) * turned
+    out[0], out[1] = q.real * d_cos - q.imag * d_sin, -q.omega * (q.real * d_sin + q.imag * d_cos)
 
 
 @jit
@@ -126,6 +165,15 @@ def equations(train, q, contacts, u, F, J, Fp, motion, scratch):
             J[i, 2 * K] = 1.0
             J[K + i, 2 * K] = 0.0
         F[i] = gap - contacts[i, STOP]
+        if follows(train, contacts, t, i):
+            steady_added(q, t, i, out)
+            rise, faster = out[0], out[1]
+            for k in range(K):
+                added(train, t, i, k, out)
+                rise += D[k] * out[0]
+                faster += D[k] * out[1]
+            F[i] = F[i - 1] + rise
+            v = motion[i - 1, 0] + D[i - 1] + faster
         F[K + i] = D[i] + gain * v
         Fp[i] = d_gap - contacts[i, STOP_SLOPE]
         Fp[K + i] = gain * d_v + d_gain * v
@@ -215,7 +263,8 @@ def newton(train, q, contacts, u, size, F, J, Fp, motion, scratch, rows):
     """Newton's method on u, in place. Returns the size of the last step relative to u, or NaN without convergence.
 
     Steps longer than a quarter of the least distance between impacts are shortened. It has converged where steps grow
-    no smaller; steps up to 1e-8, as slow impacts leave them, count if the equations hold to rounding.
+    no smaller; steps up to 1e-7, as slow impacts leave them, count if the equations hold to rounding. Near a fold each
+    step is half of the one before: that is no end yet.
     """
     K = len(contacts)
     before, gap = np.inf, math.hypot(q.real, q.imag)
@@ -226,7 +275,7 @@ def newton(train, q, contacts, u, size, F, J, Fp, motion, scratch, rows):
         left = 0.0
         for i in range(K):
             left = max(left, abs(F[i]), abs(F[K + i]) / q.omega)
-        most = 1e-8 if left <= ROUNDING * gap else 1e-9
+        most = 1e-7 if left <= ROUNDING * gap else 1e-9
         if not solve(J, F, size, rows):
             return np.nan
         longest, reach = 0.0, train.P
@@ -248,7 +297,9 @@ def newton(train, q, contacts, u, size, F, J, Fp, motion, scratch, rows):
             following = u[i + 1] if i + 1 < K else u[0] + train.P
             if not following > u[i]:
                 return np.nan
-        if damping == 1.0 and (change <= 4e-16 or (change < most and change >= 0.5 * before)):
+        if damping == 1.0 and (
+            change <= 4e-16 or (change < most and change >= (0.5 if change < 1e-12 else 0.8) * before)
+        ):
             return change
         before = change if damping == 1.0 else np.inf
     return np.nan

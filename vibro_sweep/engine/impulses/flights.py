@@ -93,9 +93,10 @@ def _flow(q: Linear, B: np.ndarray, row: np.ndarray) -> Flow:
     width = REAL(forcing_period(q)) / cells
     step = exponential(B.astype(REAL), width)
     powers = []
-    for _ in range(DOUBLINGS):
-        powers.append(step.astype(float))
-        step = step @ step
+    with np.errstate(over="ignore", invalid="ignore"):  # beyond a bound of the parameter flights may grow
+        for _ in range(DOUBLINGS):
+            powers.append(step.astype(float))
+            step = step @ step
     rows = taylor_rows(B.astype(REAL), row.astype(REAL)).astype(float)
     decays = np.linalg.eigvals(B[:n, :n]).real
     return Flow(B, float(width), np.array(powers), rows, q.omega, float(q.tau), float(np.ptp(decays)))

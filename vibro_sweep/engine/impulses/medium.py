@@ -1,7 +1,7 @@
 """The oscillator along one parameter: the free flight and the stops at any value of it, with exact derivatives.
 
-All numbers are polynomials of the parameter on an interval (analysis/track.py fits them), so that kernels may go to
-any value of it. Where the flight changes with the parameter, its tables are built anew at each value.
+All numbers are polynomials of the parameter on an interval (analysis/branches/track.py fits them), so that kernels
+may go to any value of it. Where the flight changes with the parameter, its tables are built anew at each value.
 """
 
 import math

@@ -118,7 +118,10 @@ def put_carefully(e, waiting):
 
 @aside
 def coast(e, o, f, readings):
-    """Go on to the last section before the end, if the orbit can strike no more; at once if nobody looks on the way."""
+    """Go on to the last section before the end, if the orbit can strike no more; at once if nobody looks on the way.
+
+    No samples are taken on the way.
+    """
     q, t = f.oscillator[0], e.tangent[0]
     periods = o.periods - o.done - 1
     if periods == 0 or not is_clear(q, o):
@@ -180,7 +183,7 @@ def seek(e, readings):
                 if k == o.ends:
                     end_period(e, o, q, f.nodes, X, readings)
                     if o.done < o.periods:
-                        if q.middle + q.swing < o.stops[1]:
+                        if q.middle + q.swing < o.stops[1] and not sampled:
                             coast(e, o, f, readings)
                         continue
                 else:

@@ -19,6 +19,7 @@ from vibro_sweep.engine.tables.flight import inputs_of, width_of
 TAIL = 8  # terms from here on are bounded together
 ROUGH = 10  # terms that bring the search so near to the contact that one look with all of them suffices, as a rule
 SIXTH = 1.0 / 6.0  # for a product: a division takes as long as all else in a bound
+MARGIN = 2.0**-45  # of x1 and its terms: an extremum this near to a stop is left to a closer look
 LOOKS = 4  # at the gap, each followed by a step towards the contact
 
 
@@ -99,6 +100,20 @@ def stays_clear(gap, rate, curve, width):
     """Whether gap + rate d + curve d^2/2 > 0 for all d up to `width`, where gap > 0."""
     falls_short = (rate >= 0.0) | (curve <= 0.0) | (rate + curve * width <= 0.0) | (rate * rate < 2.0 * curve * gap)
     return falls_short & (gap + width * (rate + 0.5 * width * curve) > 0.0)
+
+
+@inline
+def turns_clear(c, x1, gap, rate, curve, side, third, width):
+    """Whether x1 turns back within the cell without touching the stop, where its least gap seems to be.
+
+    There gap + rate d + curve d^2/2 - third |d|^3/6 > 0 for all d of the cell.
+    """
+    u = select(curve > 0.0, -rate / curve, width)
+    u = select(u <= width, u, width)
+    x, v, a, _ = derivatives(c, u, TERMS)
+    least = gap - side * x - MARGIN * (abs(x1) + gap + u * (abs(rate) + abs(curve) * u))
+    bend = -2.0 * side * a - third * width * (1.0 / 3.0)
+    return (bend > 0.0) & (2.0 * least * bend > v * v)
 
 
 @inline
@@ -242,6 +257,10 @@ def strike(strikes, waiting):
     safe = waiting & stays_clear(behind, -rate, -curve - bend, width)
     clear = stays_clear(gap, rate, curve - bend, width)
     free, wanted = safe & clear, safe & ~clear & (rate < 0.0)
+    turning = wanted & (rate * rate < 2.0 * curve * gap)
+    if bits(turning) != 0:
+        turning = turning & turns_clear(c, z[0], gap, rate, curve, side, third, width)
+        free, wanted = free | turning, wanted & ~turning
     if bits(wanted) == 0:
         return bits(free), 0
     u = approach(c, u, gap, side, width)

@@ -15,16 +15,27 @@ from pathlib import Path
 
 import llvmlite
 import numba
-from numba.core import config
+from numba.core import config, types
 from numba.core.caching import FunctionCache
 from numba.core.cpu import CPUTargetOptions
-from numba.core.types import unliteral
 
 try:
     from vibro_sweep.engine.simd.compiler import AsideCompiler, PartCompiler, WholeCompiler
 except Exception:  # another numba: kernels compile as it does by itself, in twice the time
     AsideCompiler = PartCompiler = WholeCompiler = None
 
+
+@property
+def _mangling(record: types.Record) -> tuple[str, tuple[int]]:
+    """What stands for a record in the names of kernels in machine code.
+
+    numba takes a number that records get as they come up in a process. So two processes can give kernels of different
+    records one name, and where a third one loads both from the cache, one of them is called in place of the other.
+    """
+    return type(record).__name__, (int.from_bytes(hashlib.blake2b(record.name.encode(), digest_size=8).digest()),)
+
+
+types.Record.mangling_args = _mangling
 
 ENGINE, MODEL = Path(__file__).parents[1], Path(__file__).parents[2] / "model"
 SHARED = ("exponents.py", "status.py")  # of the model: constants and formulas that are compiled into kernels
@@ -156,7 +167,7 @@ def _compiled(function, compiler, forceinline=False, **options):
     kernel = numba.njit(forceinline=forceinline, **options)(function)  # said, or a kernel would have it from its caller
     template = kernel.get_call_template
     # one kernel for all numbers that stand in calls of it, where numba compiles one for each
-    kernel.get_call_template = lambda args, kws: template(tuple(map(unliteral, args)), kws)
+    kernel.get_call_template = lambda args, kws: template(tuple(map(types.unliteral, args)), kws)
     return kernel
 
 

@@ -1,7 +1,5 @@
 """Control points of the gap over the cells, for any number of masses; what they are for stands in control_points.py."""
 
-import numpy as np
-
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import LANES, number
 from vibro_sweep.engine.simd.memory import eight
@@ -36,7 +34,7 @@ def put_points(q, row, k, x, v):
 
 @jit
 def fill_exclusion(q, nodes, scan):
-    """`scan` and `remainder`; of a stiff system no cell can be excluded."""
+    """`scan` and `remainder` where the cells resolve every rate (else fast_roots.py)."""
     states, inputs = 2 * len(q.series), len(q.force)
     for i in range(states + 1):
         for p in range(2 * q.cells + 1, 2 * q.cells + CHUNK):
@@ -46,13 +44,13 @@ def fill_exclusion(q, nodes, scan):
             if i < states:
                 E = nodes[k].E[i]
                 largest = max(largest, put_points(q, scan[i], k, E[0], E[1]))
-                fourth = max(fourth, 0.0 if q.stiff else bound_fourth(q, E, states))
+                fourth = max(fourth, bound_fourth(q, E, states))
             else:
                 z = nodes[k].z
                 largest = max(largest, put_points(q, scan[i], k, z[0], z[1]))
-                fourth = max(fourth, 0.0 if q.stiff else bound_fourth(q, z, inputs))
+                fourth = max(fourth, bound_fourth(q, z, inputs))
         # a point is a sum of states + 1 terms, and so is its rounding
         margin = ROUNDING * max(1.0, 0.5 * len(q.series)) * largest
-        q.remainder[i] = np.inf if q.stiff else fourth * q.width**4 / 144.0 + margin
+        q.remainder[i] = fourth * q.width**4 / 144.0 + margin
         if i < states:
             q.slow[i] = 0.0

@@ -7,6 +7,7 @@ import numpy as np
 
 from vibro_sweep.engine.simd.jit import entry, jit
 from vibro_sweep.engine.tables.exclusion import fill_exclusion
+from vibro_sweep.engine.tables.fast_roots import fill_stiff_exclusion
 from vibro_sweep.engine.tables.flight import ORDER, WIDTH, decaying, inputs_of
 from vibro_sweep.engine.tables.frame import LOST, MOST_STRETCH, STRETCH, VANISHED
 from vibro_sweep.engine.tables.products import fill_forced_motion, fill_products
@@ -18,11 +19,12 @@ class Scratch(NamedTuple):
 
     A: np.ndarray  # (inputs, inputs)
     row: np.ndarray  # (inputs,)
+    turned: np.ndarray  # (2, 2 N + 3)
 
 
 def new_scratch(masses: int, constant: bool) -> Scratch:
     inputs = inputs_of(masses, constant)
-    return Scratch(np.empty((inputs, inputs)), np.empty(inputs))
+    return Scratch(np.empty((inputs, inputs)), np.empty(inputs), np.empty((2, 2 * masses + 3)))
 
 
 @entry
@@ -40,8 +42,11 @@ def build_any(f, w, point):
     for n in range(ORDER):
         q.impulse_third += q.third[n] * abs(q.series[0, 1, n])
     fill_products(q, f.nodes)
-    fill_forced_motion(q, f.nodes, point.tau)
-    fill_exclusion(q, f.nodes, f.scan)
+    fill_forced_motion(q, f.nodes, point.tau, point.begin)
+    if q.stiff:
+        fill_stiff_exclusion(q, f.nodes, f.scan, point, w.turned)
+    else:
+        fill_exclusion(q, f.nodes, f.scan)
     fill_any_frame(q, f.nodes, point)
     q.middle, q.swing = point.middle, point.swing
     for i in range(len(q.steady)):

@@ -87,8 +87,11 @@ def fill_products(q, nodes):
 
 
 @jit
-def fill_forced_motion(q, nodes, tau):
-    """The motion r under the force from rest at node 0, where its phase is tau; and the other inputs at the nodes."""
+def fill_forced_motion(q, nodes, tau, begin):
+    """The motion r under the force, and the other inputs at the nodes. At node 0 the phase is tau.
+
+    There r is at rest; where the system is stiff, in the state `begin`.
+    """
     states, inputs = 2 * len(q.series), len(q.force)
     first, second = math.sin(tau), math.cos(tau)
     q.largest = 0.0
@@ -100,6 +103,9 @@ def fill_forced_motion(q, nodes, tau):
             z[i] = E[states, i] * first + E[states + 1, i] * second
             if inputs > states + 2:
                 z[i] += E[states + 2, i]
+            if q.stiff:
+                for j in range(states):
+                    z[i] += E[j, i] * begin[j]
         z[states], z[states + 1] = math.sin(phase), math.cos(phase)
         if inputs > states + 2:
             z[states + 2] = 1.0

@@ -1,11 +1,12 @@
 """The discontinuity mapping with its derivatives by the state and by every parameter, one half period at a time.
 
 motion/discontinuity.py iterates the same map in sweeps, on tables of flights. Both take the impact from
-engine/graze.py; here each line is followed by its derivative. Seen from the side's stop, D = X - X* is the displacement
-from the grazing point, and
+engine/graze.py; here each line is followed by its derivative. For any oscillator that is symmetric but for its stops,
+with the gap n.x and p = M^-1 n/(n.M^-1 n): seen from the side's stop, D = X - X* is the displacement from the grazing
+point, and
 
-    a = -omega^2 x1* [+ (row of A) D],    psi = x1 - b
-    C1: X -> X - (1 + R) w e^{-A late} e_v  where there is an impact,    then    D -> L D
+    a = -omega^2 n.x* [+ n.(rows of A) D],    psi = n.x - b
+    C1: X -> X - (1 + R) w e^{-A late} (0, p)  where there is an impact,    then    D -> L D
 
 with the term in brackets at order 2 alone (eqs. 38, 39, 41).
 """
@@ -17,9 +18,7 @@ import numpy as np
 from vibro_sweep.engine.graze import impact_near_graze, impact_slopes
 from vibro_sweep.engine.simd.jit import entry, jit
 from vibro_sweep.engine.variational.propagator import propagate
-from vibro_sweep.engine.variational.sensitivity import place_of
-
-OMEGA_COLUMN = 8  # the five parameters of flight stand in columns 4 .. 8
+from vibro_sweep.engine.variational.sensitivity import gap_of, place_of
 
 
 class Expansion(NamedTuple):
@@ -28,89 +27,92 @@ class Expansion(NamedTuple):
     order: int
     right: bool  # which stops there are
     left: bool
-    graze: np.ndarray  # X* (4,)
-    d_graze: np.ndarray  # (4, 4 or 12): its derivative in each column
-
-
-@jit
-def of_rate(e, j):
-    """Derivative of omega in column j."""
-    return 1.0 if j == OMEGA_COLUMN else 0.0
-
-
-@jit
-def acceleration_row(e, j, k):
-    """Derivative, in column j, of the acceleration of M1 by X_k."""
-    change = of_rate(e, j) * e.A[1, k]
-    return change + (e.omega * e.A_p[j - 4, 1, k] if 4 <= j < 4 + len(e.A_p) else 0.0)
+    graze: np.ndarray  # X* (2 N,)
+    d_graze: np.ndarray  # (2 N, columns): its derivative in each column
+    pull: np.ndarray  # (2 N,): acceleration of the gap as a function of the state
+    d_pull: np.ndarray  # (2 N, columns)
+    parameter: np.ndarray  # (columns,): which of A_p belongs to a column; -1: none
 
 
 @jit
 def jump(e, x, side, X, dX, w, row):
-    """C1 (side 1) or C2 (side -1). row (7,) receives the impact as in `Records`. Returns whether there was one."""
-    second = x.order == 2
-    n = place_of(side)
-    R, psi, v = e.restitution[n], side * (X[0] - e.walls[n]), side * X[1]
-    a = -e.omega * e.omega * x.graze[0]
+    """C1 (side 1) or C2 (side -1). row (5 + 2 N,) receives the impact: place, side, speed, X. Returns whether there is
+    one.
+    """
+    second, states, n = x.order == 2, len(x.graze), place_of(side)
+    R, psi, v = e.restitution[n], side * (gap_of(e, X, 0) - e.walls[n]), side * gap_of(e, X, 1)
+    top = gap_of(e, x.graze, 0)
+    a = -e.omega * e.omega * top
     if second:
-        for k in range(4):
-            a += e.omega * e.A[1, k] * (side * X[k] - x.graze[k])
+        for k in range(states):
+            a += x.pull[k] * (side * X[k] - x.graze[k])
     speed, late = impact_near_graze(a, psi, v, second)
     if speed == 0.0:
         return False
-    row[3], row[4], row[5], row[6] = side, side * speed, X[2], X[3]
+    row[3], row[4] = side, side * speed
+    for k in range(states):
+        row[5 + k] = X[k]
     propagate(e.A, e.A_p, e.rate, -e.omega * late, w)
+    for i in range(states):  # e^{-A late} (0, p), and what A makes of it
+        w.column[i] = 0.0
+        for m in range(states // 2):
+            w.column[i] += w.E[i, 2 * m + 1] * e.push[m]
     for j in range(dX.shape[1]):
-        d_psi = side * (dX[0, j] - e.wall_slopes[n, j])
-        dv = side * dX[1, j]
-        da = -e.omega * (2.0 * of_rate(e, j) * x.graze[0] + e.omega * x.d_graze[0, j])
+        d_psi = side * (gap_of(e, dX[:, j], 0) - e.wall_slopes[n, j])
+        dv = side * gap_of(e, dX[:, j], 1)
+        da = -e.omega * (2.0 * e.omega_slopes[j] * top + e.omega * gap_of(e, x.d_graze[:, j], 0))
         if second:
-            for k in range(4):
-                da += e.omega * e.A[1, k] * (side * dX[k, j] - x.d_graze[k, j])
-                da += acceleration_row(e, j, k) * (side * X[k] - x.graze[k])
+            for k in range(states):
+                da += x.pull[k] * (side * dX[k, j] - x.d_graze[k, j])
+                da += x.d_pull[k, j] * (side * X[k] - x.graze[k])
         d_speed, d_late = impact_slopes(a, psi, v, speed, late, second, da, d_psi, dv)
-        d_angle = -(e.omega * d_late + of_rate(e, j) * late)
+        d_angle = -(e.omega * d_late + e.omega_slopes[j] * late)
         d_push = (1.0 + R) * d_speed + speed * e.restitution_slopes[n, j]
-        for i in range(4):
-            de = w.E_p[j - 4, i, 1] if 4 <= j < 4 + len(e.A_p) else 0.0
-            for k in range(4):
-                de += e.A[i, k] * w.E[k, 1] * d_angle
-            dX[i, j] -= side * (d_push * w.E[i, 1] + (1.0 + R) * speed * de)
-    for i in range(4):
-        X[i] -= side * (1.0 + R) * speed * w.E[i, 1]
+        for i in range(states):
+            de = 0.0
+            for k in range(states):
+                de += e.A[i, k] * w.column[k] * d_angle
+            for m in range(states // 2):
+                de += w.E[i, 2 * m + 1] * e.push_slopes[m, j]
+                if x.parameter[j] >= 0:
+                    de += w.E_p[x.parameter[j], i, 2 * m + 1] * e.push[m]
+            dX[i, j] -= side * (d_push * w.column[i] + (1.0 + R) * speed * de)
+    for i in range(states):
+        X[i] -= side * (1.0 + R) * speed * w.column[i]
     return True
 
 
 @jit
 def fly_half(e, x, side, X, dX, w):
     """Phi_{T/2} from the side's graze to the other's: X -> -X* + L (X - X*), with X* for the right side."""
-    for i in range(4):
+    states = len(x.graze)
+    for i in range(states):
         w.column[i] = X[i] - side * x.graze[i]
     for j in range(dX.shape[1]):
-        for i in range(4):
+        for i in range(states):
             w.term[i, 0] = -side * x.d_graze[i, j]
-            for k in range(4):
+            for k in range(states):
                 w.term[i, 0] += w.E[i, k] * (dX[k, j] - side * x.d_graze[k, j])
-                if 4 <= j < 4 + len(e.A_p):
-                    w.term[i, 0] += w.E_p[j - 4, i, k] * w.column[k]
-        for i in range(4):
+                if x.parameter[j] >= 0:
+                    w.term[i, 0] += w.E_p[x.parameter[j], i, k] * w.column[k]
+        for i in range(states):
             dX[i, j] = w.term[i, 0]
-    for i in range(4):
+    for i in range(states):
         X[i] = -side * x.graze[i]
-        for k in range(4):
+        for k in range(states):
             X[i] += w.E[i, k] * w.column[k]
 
 
 @entry
 def iterate(e, x, halves, states, ends, derivatives, impacts, counts, w):
-    """So many half periods from each of `states` (n, 4), the first from the phase of the right graze.
+    """So many half periods from each of `states` (n, 2 N), the first from the phase of the right graze.
 
-    ends (n, 4), derivatives (n, 4, 4 or 12), impacts (n, halves, 7) and counts (n,) receive the results.
+    ends (n, 2 N), derivatives (n, 2 N, columns), impacts (n, halves + 1, 5 + 2 N) and counts (n,) receive the results.
     """
     for n in range(len(states)):
         X, dX = ends[n], derivatives[n]
         counts[n] = 0
-        for i in range(4):
+        for i in range(states.shape[1]):
             X[i] = states[n, i]
             for j in range(dX.shape[1]):
                 dX[i, j] = 1.0 if i == j else 0.0

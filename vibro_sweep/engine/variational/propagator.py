@@ -11,7 +11,6 @@ import numpy as np
 
 from vibro_sweep.engine.simd.jit import entry, jit
 
-SIZE = 6  # x1, v1, x2, v2, sin, cos
 TERMS = 24  # of the series: what is left out is below 2^-80 times the condition number of the eigenvectors of A
 SHORT = 0.5  # rate times flight for the series
 
@@ -19,34 +18,34 @@ SHORT = 0.5  # rate times flight for the series
 class Scratch(NamedTuple):
     """The matrices of a flight, and what they are computed in."""
 
-    E: np.ndarray  # (6, 6)
-    E_p: np.ndarray  # (m, 6, 6): by m parameters
+    E: np.ndarray  # (k, k)
+    E_p: np.ndarray  # (m, k, k): by m parameters
     term: np.ndarray
     d_term: np.ndarray
     product: np.ndarray
-    column: np.ndarray  # (6,)
+    column: np.ndarray  # (k,)
 
 
-def new_scratch(parameters: int) -> Scratch:
-    """For derivatives by so many parameters."""
-    one, many = (SIZE, SIZE), (parameters, SIZE, SIZE)
-    return Scratch(np.empty(one), np.empty(many), np.empty(one), np.empty(many), np.empty(one), np.empty(SIZE))
+def new_scratch(size: int, parameters: int) -> Scratch:
+    """For z of so many numbers, and derivatives by so many parameters."""
+    one, many = (size, size), (parameters, size, size)
+    return Scratch(np.empty(one), np.empty(many), np.empty(one), np.empty(many), np.empty(one), np.empty(size))
 
 
 @jit
 def set_identity(a):
-    for i in range(SIZE):
-        for j in range(SIZE):
+    for i in range(len(a)):
+        for j in range(len(a)):
             a[i, j] = 1.0 if i == j else 0.0
 
 
 @jit
 def add_product(a, b, out):
     """out += a b."""
-    for i in range(SIZE):
-        for j in range(SIZE):
+    for i in range(len(a)):
+        for j in range(len(a)):
             total = out[i, j]
-            for k in range(SIZE):
+            for k in range(len(a)):
                 total += a[i, k] * b[k, j]
             out[i, j] = total
 
@@ -54,8 +53,8 @@ def add_product(a, b, out):
 @jit
 def move(a, factor, out):
     """out = factor a, and a = 0."""
-    for i in range(SIZE):
-        for j in range(SIZE):
+    for i in range(len(a)):
+        for j in range(len(a)):
             out[i, j] = factor * a[i, j]
             a[i, j] = 0.0
 
@@ -63,14 +62,14 @@ def move(a, factor, out):
 @jit
 def accumulate(a, out):
     """out += a."""
-    for i in range(SIZE):
-        for j in range(SIZE):
+    for i in range(len(a)):
+        for j in range(len(a)):
             out[i, j] += a[i, j]
 
 
 @entry
 def propagate(A, A_p, rate, u, w):
-    """w.E = exp(A u), and w.E_p its derivatives; A_p (m, 6, 6), rate: the spectral radius of A."""
+    """w.E = exp(A u), and w.E_p its derivatives; A_p (m, k, k), rate: the spectral radius of A."""
     halvings, size = 0, rate * abs(u)
     while size > SHORT:
         size *= 0.5
@@ -103,37 +102,41 @@ def propagate(A, A_p, rate, u, w):
 
 
 @jit
-def advance(A, A_p, rate, u, z, dz, w):
-    """Carry z (6,) over u, and in the columns of dz its derivatives: 4 by the state, m by parameters, and others."""
+def advance(A, A_p, rate, u, z, dz, columns, w):
+    """Carry z (k,) over u, and its derivatives in the columns of dz; A_p[p] belongs to column `columns[p]`."""
+    size = len(z)
     propagate(A, A_p, rate, u, w)
     for j in range(dz.shape[1]):
-        for i in range(SIZE):
+        for i in range(size):
             total = 0.0
-            for k in range(SIZE):
+            for k in range(size):
                 total += w.E[i, k] * dz[k, j]
-            if 4 <= j < 4 + len(A_p):
-                for k in range(SIZE):
-                    total += w.E_p[j - 4, i, k] * z[k]
             w.column[i] = total
-        for i in range(SIZE):
+        for i in range(size):
             dz[i, j] = w.column[i]
-    for i in range(SIZE):
+    for p in range(len(columns)):
+        for i in range(size):
+            for k in range(size):
+                dz[i, columns[p]] += w.E_p[p, i, k] * z[k]
+    for i in range(size):
         total = 0.0
-        for k in range(SIZE):
+        for k in range(size):
             total += w.E[i, k] * z[k]
         w.column[i] = total
-    for i in range(SIZE):
+    for i in range(size):
         z[i] = w.column[i]
 
 
 @entry
-def fly(A, A_p, rate, states, phases, angles, z, dz, w, out):
-    """out (n, m, 4): flights from `states` (n, 4) at the phases omega t + tau (n,) over the angles (n, m) of s."""
+def fly(A, rate, states, phases, angles, w, out):
+    """out (n, m, 2 N): flights from `states` (n, 2 N) at the phases omega t + tau (n,) over the angles (n, m) of s."""
+    count = states.shape[1]
     for i in range(len(states)):
+        sin, cos = np.sin(phases[i]), np.cos(phases[i])
         for j in range(angles.shape[1]):
-            for k in range(4):
-                z[k] = states[i, k]
-            z[4], z[5] = np.sin(phases[i]), np.cos(phases[i])
-            advance(A, A_p, rate, angles[i, j], z, dz, w)
-            for k in range(4):
-                out[i, j, k] = z[k]
+            propagate(A, w.E_p, rate, angles[i, j], w)
+            for k in range(count):
+                total = w.E[k, count] * sin + w.E[k, count + 1] * cos + w.E[k, count + 2]
+                for m in range(count):
+                    total += w.E[k, m] * states[i, m]
+                out[i, j, k] = total

@@ -1,17 +1,18 @@
 """Derivatives of the state at a section by the state and the parameters at the start, along an orbit that is known.
 
 The impacts and rests on the way are given, as the event loop recorded them. With z' = A z between them (z in phase s =
-omega t, see model/sensitivity.py) a derivative dz obeys the same equation with the source (A_p/dp) z. Where dz is kept
-at a fixed phase, an event acts on it through the distance d = dx1 - dw by which it moves M1 towards the stop at w:
+omega t, in the coordinates of the masses: model/sensitivity.py) a derivative dz obeys the same equation with the source
+(A_p/dp) z. Where dz is kept at a fixed phase, an event acts on it through the distance d = n.dx - dw by which it moves
+the gap n.x towards the stop at w, with p = M^-1 n/(n.M^-1 n):
 
-    impact   dx1 -> dx1 - (1 + R) d,     dv1 -> -R dv1 + d (a1+ + R a1-)/v1 - v1 dR,     dv2 -> dv2 - (1 + R) kappa d
-    rest     dx1 -> dw,                  dv1 -> 0,                                       dv2 -> dv2 - kappa d
+    impact   dx -> dx - (1 + R) p d,     dv -> dv + (a+ - a-) d/g' - p ((1 + R) dg' + g' dR) - (1 + R) g' dp
+    rest     dx -> dx - p d,             dv -> dv - p n.dv - g' dp + (1 - p n^T) M^-1 C p d
 
-with kappa = 2 zeta/mu_m, v1 the speed before the impact, and a1-, a1+ the accelerations about it: the saltation matrix,
-with the motion of the stop and of R. At a rest M2 receives through the damper what moves M1 to the stop at once. The
-same holds where a chatter sequence that was summed up ends in a rest, at the last impact that was listed: the sum of
-the terms kappa d of all that follow is what brings d to 0, whenever the rest begins. A release changes nothing, since
-all is continuous there; neither does a graze that is no impact.
+with g' the speed of the gap before, dg' = n.dv - n.a- d/g' its change at the contact, and a-, a+ the accelerations
+about it: the saltation matrix, with the motion of the stop, of R and of p. At a rest the others receive through the
+dampers what moves the gap to the stop at once. The same holds where a chatter sequence that was summed up ends in a
+rest, at the last impact that was listed: the sum of these terms over all that follow is what brings d to 0, whenever
+the rest begins. A release changes nothing, since all is continuous there; neither does a graze that is no impact.
 """
 
 from typing import NamedTuple
@@ -22,23 +23,27 @@ from vibro_sweep.engine.simd.jit import entry, jit
 from vibro_sweep.engine.variational.propagator import advance
 from vibro_sweep.model import status
 
-TAU_COLUMN = 11  # of dz: four of the state, then eight in the order of the parameters
-
 
 class Equations(NamedTuple):
-    """One oscillator, as derivatives need it. The derivatives A_p are empty where none by parameters is wanted."""
+    """One oscillator, as derivatives need it. dz has 2 N columns by the state, and one for each wanted parameter."""
 
-    A: np.ndarray  # (6, 6), in flight
-    A_p: np.ndarray  # (5 or 0, 6, 6)
-    A_held: np.ndarray  # while M1 rests on a stop
-    A_held_p: np.ndarray
-    rate: float  # the fastest of A and A_held
+    A: np.ndarray  # (k, k) with k = 2 N + 3, in flight
+    A_p: np.ndarray  # (m, k, k): derivatives by the parameters that change the motion,
+    held: np.ndarray  # while a stop holds the gap
+    held_p: np.ndarray
+    columns: np.ndarray  # (m,): which stand in these columns of dz
+    rate: float  # the fastest of A and `held`
     omega: float
+    along: np.ndarray  # (N,): n
+    push: np.ndarray  # (N,): p
+    drag: np.ndarray  # (N,): (1 - p n^T) M^-1 C p
     walls: np.ndarray  # (2,): positions of the left stop and of the right one,
-    restitution: np.ndarray  # (2,), and
-    wall_slopes: np.ndarray  # (2, columns of dz) their derivatives
+    restitution: np.ndarray  # (2,)
+    push_slopes: np.ndarray  # (N, columns of dz) derivatives of p,
+    wall_slopes: np.ndarray  # (2, columns)
     restitution_slopes: np.ndarray  # (2, columns)
-    kappa: float
+    omega_slopes: np.ndarray  # (columns,)
+    tau_slopes: np.ndarray  # (columns,)
     tau: float  # phase of the force at node 0 of the grid
     cells: int
     width: float  # of a cell
@@ -46,11 +51,12 @@ class Equations(NamedTuple):
 
 @jit
 def set_phase(e, cell, offset, z, dz):
-    """sin and cos there, and their derivative by tau."""
-    phase = e.tau + 2.0 * np.pi * (cell / e.cells) + e.omega * offset
-    z[4], z[5] = np.sin(phase), np.cos(phase)
-    if dz.shape[1] > TAU_COLUMN:
-        dz[4, TAU_COLUMN], dz[5, TAU_COLUMN] = z[5], -z[4]
+    """sin, cos and 1 there, and their derivatives."""
+    phase, states = e.tau + 2.0 * np.pi * (cell / e.cells) + e.omega * offset, 2 * len(e.along)
+    z[states], z[states + 1], z[states + 2] = np.sin(phase), np.cos(phase), 1.0
+    for j in range(dz.shape[1]):
+        dz[states, j], dz[states + 1, j] = z[states + 1] * e.tau_slopes[j], -z[states] * e.tau_slopes[j]
+        dz[states + 2, j] = 0.0
 
 
 @jit
@@ -60,35 +66,58 @@ def place_of(side):
 
 
 @jit
-def cross_impact(e, side, z, dz):
-    """z and dz across an impact on this side."""
-    n = place_of(side)
-    R, v, before, after = e.restitution[n], z[1], 0.0, 0.0
-    for k in range(6):
-        before += e.omega * e.A[1, k] * z[k]
-    z[1] = -R * v
-    for k in range(6):
-        after += e.omega * e.A[1, k] * z[k]
-    steepness = (after + R * before) / v
+def acceleration_of(e, i, z):
+    """x_i''."""
+    total = 0.0
+    for k in range(len(z)):
+        total += e.omega * e.A[2 * i + 1, k] * z[k]
+    return total
+
+
+@jit
+def gap_of(e, column, first):
+    """n.x (first = 0) or n.v (first = 1) of a column like z."""
+    total = 0.0
+    for i in range(len(e.along)):
+        total += e.along[i] * column[2 * i + first]
+    return total
+
+
+@jit
+def cross_impact(e, side, speed, z, dz, bend):
+    """z and dz across an impact on this side with this speed of the gap. bend (2, N): scratch for a- and a+."""
+    n, masses = place_of(side), len(e.along)
+    R, pull = e.restitution[n], 0.0
+    for i in range(masses):
+        bend[0, i] = acceleration_of(e, i, z)
+        pull += e.along[i] * bend[0, i]
+    for i in range(masses):
+        z[2 * i + 1] -= (1.0 + R) * speed * e.push[i]
+    for i in range(masses):
+        bend[1, i] = acceleration_of(e, i, z)
     for j in range(dz.shape[1]):
-        d = dz[0, j] - e.wall_slopes[n, j]
-        dz[0, j] -= (1.0 + R) * d
-        dz[1, j] = steepness * d - R * dz[1, j]
-        dz[3, j] -= (1.0 + R) * e.kappa * d
-        if e.restitution_slopes[n, j] != 0.0:
-            dz[1, j] -= v * e.restitution_slopes[n, j]
+        late = (e.wall_slopes[n, j] - gap_of(e, dz[:, j], 0)) / speed  # time by which the contact comes later
+        faster = gap_of(e, dz[:, j], 1) + pull * late
+        lost = (1.0 + R) * faster + speed * e.restitution_slopes[n, j]
+        for i in range(masses):
+            dz[2 * i, j] += (1.0 + R) * speed * late * e.push[i]
+            dz[2 * i + 1, j] += (bend[0, i] - bend[1, i]) * late - e.push[i] * lost
+            dz[2 * i + 1, j] -= (1.0 + R) * speed * e.push_slopes[i, j]
 
 
 @jit
 def come_to_rest(e, side, z, dz):
-    """z and dz where M1 comes to rest on the stop."""
-    n = place_of(side)
-    z[0], z[1] = e.walls[n], 0.0
+    """z and dz where the gap comes to rest on the stop."""
+    n, masses = place_of(side), len(e.along)
+    beyond, speed = gap_of(e, z, 0) - e.walls[n], gap_of(e, z, 1)
+    for i in range(masses):
+        z[2 * i] -= e.push[i] * beyond
+        z[2 * i + 1] -= e.push[i] * speed
     for j in range(dz.shape[1]):
-        d = dz[0, j] - e.wall_slopes[n, j]
-        dz[0, j] -= d
-        dz[1, j] = 0.0
-        dz[3, j] -= e.kappa * d
+        d, faster = gap_of(e, dz[:, j], 0) - e.wall_slopes[n, j], gap_of(e, dz[:, j], 1)
+        for i in range(masses):
+            dz[2 * i, j] -= e.push[i] * d
+            dz[2 * i + 1, j] += e.drag[i] * d - e.push[i] * faster - speed * e.push_slopes[i, j]
 
 
 @jit
@@ -106,17 +135,20 @@ def fly_to(e, resting, now, there, z, dz, w):
     cells = (there[0] - now[0]) * e.cells + (there[1] - now[1])
     angle = 2.0 * np.pi * (cells / e.cells) + e.omega * (there[2] - now[2])
     if resting != 0.0:
-        advance(e.A_held, e.A_held_p, e.rate, angle, z, dz, w)
+        advance(e.held, e.held_p, e.rate, angle, z, dz, e.columns, w)
     else:
-        advance(e.A, e.A_p, e.rate, angle, z, dz, w)
+        advance(e.A, e.A_p, e.rate, angle, z, dz, e.columns, w)
     set_phase(e, there[1], there[2], z, dz)
     for n in range(3):
         now[n] = there[n]
 
 
 @jit
-def follow(e, impacts, rests, now, end, z, dz, w):
-    """Carry z and dz from the place `now` to `end`, through these impacts and rests."""
+def follow(e, leaving, impacts, rests, now, end, z, dz, bend, w):
+    """Carry z and dz from the place `now` to `end`, through these impacts and rests.
+
+    leaving: the gap is at a stop and its speed is not zero; then a rest that is next follows a chatter summed up.
+    """
     i, j, resting = 0, 0, 0.0
     while i < len(impacts) or j < len(rests):
         if j == len(rests):
@@ -128,42 +160,47 @@ def follow(e, impacts, rests, now, end, z, dz, w):
         if impact_next:
             row = impacts[i]
             fly_to(e, resting, now, row, z, dz, w)
-            z[0], z[1], z[2], z[3] = e.walls[place_of(row[3])], row[4], row[5], row[6]
-            cross_impact(e, row[3], z, dz)
+            for k in range(2 * len(e.along)):
+                z[k] = row[5 + k]
+            cross_impact(e, row[3], row[4], z, dz, bend)
+            leaving = e.restitution[place_of(row[3])] * row[4] != 0.0
             i += 1
             continue
         row = rests[j]
-        summed_up = row[3] != 0.0 and z[0] == e.walls[place_of(row[3])] and z[1] != 0.0
-        if not summed_up:
+        if not (row[3] != 0.0 and leaving):
             fly_to(e, resting, now, row, z, dz, w)
         if row[3] != 0.0:
             come_to_rest(e, row[3], z, dz)
-        resting = row[3]
+        resting, leaving = row[3], False
         j += 1
     fly_to(e, resting, now, end, z, dz, w)
 
 
 @entry
-def differentiate(e, first_cell, states, statuses, impacts, counts, rests, rest_counts, end, now, z, dz, w, out):
-    """out (n, 4, 4 or 12): derivatives at the place `end` of n orbits that start in `states` (n, 4) at `first_cell`.
+def differentiate(
+    e, first_cell, states, leaving, statuses, impacts, counts, rests, rest_counts, end, now, z, dz, bend, w, out
+):
+    """out (n, 2 N, columns): derivatives at the place `end` of n orbits that start in `states` (n, 2 N).
 
-    impacts (n, m, 7) and rests (n, m, 4) as in `motion.orbits.Records`, of which the first `counts` (n,) and
-    `rest_counts` (n,) are used. A place is (period, cell, offset). now (3,), z (6,), dz (6, 4 or 12) and w: scratch.
-    NaN where a status is not `OK`.
+    They start at `first_cell`; leaving (n,): see `follow`. impacts (n, m, 5 + 2 N): period, cell, offset, side, speed
+    of the gap before it and the state there; rests (n, m, 4) as in `motion.orbits.Records`; of both the first `counts`
+    (n,) and `rest_counts` (n,) are used. A place is (period, cell, offset). now (3,), z (k,), dz (k, columns), bend
+    (2, N) and w: scratch. NaN where a status is not `OK`.
     """
+    count = states.shape[1]
     for n in range(len(states)):
         if statuses[n] != status.OK:
-            for i in range(4):
+            for i in range(count):
                 for j in range(dz.shape[1]):
                     out[n, i, j] = np.nan
             continue
         now[0], now[1], now[2] = 0.0, first_cell, 0.0
-        for i in range(6):
-            z[i] = states[n, i] if i < 4 else 0.0
+        for i in range(count):
+            z[i] = states[n, i]
             for j in range(dz.shape[1]):
-                dz[i, j] = 1.0 if i == j and i < 4 else 0.0
+                dz[i, j] = 1.0 if i == j else 0.0
         set_phase(e, now[1], 0.0, z, dz)
-        follow(e, impacts[n, : counts[n]], rests[n, : rest_counts[n]], now, end, z, dz, w)
-        for i in range(4):
+        follow(e, leaving[n], impacts[n, : counts[n]], rests[n, : rest_counts[n]], now, end, z, dz, bend, w)
+        for i in range(count):
             for j in range(dz.shape[1]):
                 out[n, i, j] = dz[i, j]

@@ -17,6 +17,8 @@ from vibro_sweep.engine.simd.memory import put, record, row
 from vibro_sweep.engine.tables.flight import ORDER, decaying
 from vibro_sweep.engine.variational.orthonormal import orthonormalise, watch
 
+FEW = 8  # periods
+
 
 def tangents_of(masses: int) -> np.dtype:
     """The record of the tangent vectors of eight orbits, one column each; n vectors of n numbers, n = 2 N."""
@@ -130,8 +132,24 @@ def leap_over(t, i, q, nodes, cells):
         frame = nodes[cells].frame
         for j in range(len(frame)):
             t.leap[j, i] = frame[j]
+    elif cells <= FEW * q.cells:
+        leap_over_periods(t, i, q, nodes, cells)
     else:
         decay_over(t, i, q, cells * q.width)
+
+
+@jit
+def leap_over_periods(t, i, q, nodes, cells):
+    """The factors of a flight over some periods and cells: as products, which takes less time than sines do."""
+    frame, period = nodes[cells % q.cells].frame, nodes[q.cells].frame
+    for j in range(len(t.scale)):
+        c, s = frame[2 * j], frame[2 * j + 1]
+        for _ in range(cells // q.cells):
+            c, s = (
+                c * period[2 * j] - q.frame_square[j] * (s * period[2 * j + 1]),
+                c * period[2 * j + 1] + s * period[2 * j],
+            )
+        t.leap[2 * j, i], t.leap[2 * j + 1, i] = c, s
 
 
 @jit

@@ -7,6 +7,7 @@ from vibro_sweep.model.models.declaration import CONTACT, WHICH_STOPS, Model, Op
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter, ParameterError
 
 ROUNDING = 1e-12  # of a matrix, relative to its largest entry or eigenvalue
+SMALLEST = 1e-100  # of n of the gap n.x, and one over its largest
 DAMPING = ("C", "modal_damping", "rayleigh")  # ways to give it
 
 
@@ -65,6 +66,8 @@ def _check(given) -> None:
                 )
     if not np.any(given["along"]):
         raise ParameterError("along", _plain(given["along"]), "other than zero: it is n of the gap n . x")
+    if not SMALLEST < np.abs(given["along"]).max() < 1 / SMALLEST:  # its square counts
+        raise ParameterError("along", _plain(given["along"]), f"of a size from {SMALLEST:g} to {1 / SMALLEST:g}")
     several = [name for name in DAMPING if given[name] is not None]
     if len(several) > 1:
         raise ParameterError(several[1], _plain(given[several[1]]), f"left out where {several[0]} is given")

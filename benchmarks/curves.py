@@ -1,0 +1,79 @@
+"""Bifurcation curves: points per second on one core, with all tests and the certificate.
+
+    python benchmarks/curves.py
+
+A curve is followed in steps so short that a run has enough points to be timed; the least processor time of some
+rounds.
+"""
+
+import time
+
+import numpy as np
+import shared  # noqa: F401
+from support.branches import branch_of
+from support.oscillators import PAPER
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.curves.start import Start, start_at
+from vibro_sweep.analysis.curves.tracer import LONGEST_STEP, Tracer, copy
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses import curve_tests, locus
+
+ROUNDS = 5
+PIECES = 40  # a step is so much shorter than usual
+
+
+def speed(start: Start, names, box) -> tuple[float, float]:
+    """Points per second, and corrections for each."""
+    tracer = Tracer(start, names, box)
+    first = tracer.first()
+    tracer.path = tracer.path._replace(longest=LONGEST_STEP / PIECES)
+    place, best, corrections = locus.new_place(tracer.K, tracer.n), 0.0, 0.0
+    for _ in range(ROUNDS):
+        for aim in (tracer.path.first, tracer.path.a):
+            copy(first, aim)
+        tracer.path.a.tests[curve_tests.LENGTH] = LONGEST_STEP / PIECES
+        began = time.process_time()
+        tracer.walk(place)
+        spent = time.process_time() - began
+        points, made = map(int, tracer.path.counts[1:])
+        best, corrections = max(best, points / spent), made / max(points, 1)
+    return best, corrections
+
+
+def longer(start: Start, times: int) -> Start:
+    """The same bifurcation of the orbit taken `times` times, with so many times the impacts. Odd where mu = -1."""
+    s = start.solution
+    shifts = np.repeat(np.arange(times), s.K)
+    signs = np.repeat(float(s.sigma) ** np.arange(times), s.K)
+    u = np.concatenate([np.tile(s.times, times) + shifts * s.equations.P, np.tile(s.jumps, times) * signs])
+    sides = tuple(int(side * sign) for side, sign in zip(s.sides * times, signs, strict=True))
+    theta = abs(float(np.angle(np.exp(1j * times * start.theta))))
+    solution = Solution(s.family, s.sigma**times, s.halves * times, sides, u)
+    return Start(start.type, solution, start.index, theta)
+
+
+def starts() -> list[Start]:
+    """Of each type, with 1 to 4 impacts."""
+    symmetric = vs.continue_orbit(vs.periodic_orbit(PAPER, itinerary="LR"), "b", (0.3, 6.8))
+    one_sided = vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R"), "b", (0.3, 6.8))
+    window = branch_of(6.6, 13)
+    pitchfork, torus = start_at(symmetric.special[1]), start_at(one_sided.special[1])
+    fold = start_at(next(special for special in window.special if special.type == "fold"))
+    grazes = [start_at(branch.begins) for branch in (symmetric, one_sided, window)]
+    return [pitchfork, longer(pitchfork, 3), torus, longer(torus, 4), fold, start_at(symmetric.ends), *grazes]
+
+
+def main() -> None:
+    for start in starts():
+        s = start.solution
+        numbers = s.family.numbers
+        print(f"{start.type}, {s.K} impacts, P = {s.halves / 2:g} T:")
+        for names in (("b", "omega"), ("b", "R"), ("mu_m", "zeta")):
+            box = [(0.97 * numbers[name], 1.03 * numbers[name]) for name in names]
+            rate, made = speed(start, names, box)
+            print(f"    in {', '.join(names)}: {rate:7.0f} points per second, {made:.1f} corrections each")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,167 @@
+"""Periodic orbits of any oscillator with one contact in many digits, by shooting in the coordinates of the masses.
+
+z = (x, x', sin(omega t + tau), cos(omega t + tau), 1) flies by exp(A t). Unknowns are the times of the impacts and the
+state before the first one. No Green function, no modes, no contact coordinates.
+"""
+
+from mpmath import cos, det, eye, mp, mpf, pi, sin, zeros
+
+from reference.gmp import expm
+
+
+class AnyShooting:
+    """Orbits of an `Oscillator` with a number for tau, with z(t + halves T/2) = sigma z(t) and impacts on `sides`."""
+
+    def __init__(self, oscillator, sigma: int, halves: int, sides):
+        self.q, self.sigma, self.halves, self.sides = oscillator.linear, sigma, halves, tuple(sides)
+        self.numbers = {name: mpf(getattr(oscillator, name)) for name in ("omega", "b", "offset", "R")}
+        self.numbers["R_left"] = self.numbers["R"] if oscillator.R_left is None else mpf(oscillator.R_left)
+        self.follows = oscillator.R_left is None
+        self.N = len(self.q.along)
+
+    def system(self, name=None, value=None):
+        """A of z' = A z, and the numbers, with one of them replaced."""
+        n, N, q = dict(self.numbers), self.N, self.q
+        if name:
+            n[name] = value
+        if self.follows:
+            n["R_left"] = n["R"]
+        inverse = mp.inverse(mp.matrix(q.M.tolist()))
+        A = zeros(2 * N + 3)
+        blocks = [(0, q.K, -1), (N, q.C, -1)]
+        for column, matrix, sign in blocks:
+            product = inverse * mp.matrix(matrix.tolist())
+            for i in range(N):
+                for j in range(N):
+                    A[N + i, column + j] = sign * product[i, j]
+        for column, force in ((2 * N, q.sine), (2 * N + 1, q.cosine), (2 * N + 2, q.constant)):
+            product = inverse * mp.matrix(force.tolist())
+            for i in range(N):
+                A[N + i, column] = product[i]
+        for i in range(N):
+            A[i, N + i] = 1
+        A[2 * N, 2 * N + 1], A[2 * N + 1, 2 * N] = n["omega"], -n["omega"]
+        push = inverse * mp.matrix(q.along.tolist())
+        n["push"] = [value / sum(mpf(a) * p for a, p in zip(q.along.tolist(), push, strict=True)) for value in push]
+        return A, n
+
+    def stop(self, n, side):
+        return n["offset"] + side * n["b"]
+
+    def full(self, n, t, z):
+        phase = n["omega"] * t + mpf(self.q.tau)
+        return mp.matrix([*z, sin(phase), cos(phase), 1])
+
+    def fly(self, A, n, t, z, length):
+        return list((expm(A * length) * self.full(n, t, z))[: 2 * self.N])
+
+    def rate(self, A, n, t, z):
+        return list((A * self.full(n, t, z))[: 2 * self.N])
+
+    def gap(self, z):
+        return sum(mpf(a) * x for a, x in zip(self.q.along.tolist(), z[: self.N], strict=True))
+
+    def speed(self, z):
+        return self.gap(z[self.N :])
+
+    def struck(self, n, z, side):
+        """After the impact: x' - (1 + R) (n.x') M^-1 n/(n M^-1 n)."""
+        jump = -(1 + n["R" if side > 0 else "R_left"]) * self.speed(z)
+        return [*z[: self.N], *(v + jump * p for v, p in zip(z[self.N :], n["push"], strict=True))]
+
+    def passed(self, A, n, u):
+        """(time, state before) of each impact, and the state at the end of the period."""
+        K, t = len(self.sides), u[: len(self.sides)]
+        z, before = list(u[K:]), []
+        for k, side in enumerate(self.sides):
+            before.append((t[k], z))
+            following = t[k + 1] if k + 1 < K else t[0] + pi / n["omega"] * self.halves
+            z = self.fly(A, n, t[k], self.struck(n, z, side), following - t[k])
+        return before, z
+
+    def residual(self, A, n, u):
+        before, end = self.passed(A, n, u)
+        gaps = [self.gap(z) - self.stop(n, side) for (_, z), side in zip(before, self.sides, strict=True)]
+        return gaps + [a - self.sigma * b for a, b in zip(end, before[0][1], strict=True)]
+
+    def monodromy(self, A, n, u):
+        """(2N, 2N): sigma times the derivative of the map over P."""
+        N, K = self.N, len(self.sides)
+        before, _ = self.passed(A, n, u)
+        product = eye(2 * N)
+        for k, side in enumerate(self.sides):
+            t, z = before[k]
+            S = eye(2 * N)
+            gain = 1 + n["R" if side > 0 else "R_left"]
+            for i in range(N):
+                for j in range(N):
+                    S[N + i, N + j] -= gain * n["push"][i] * mpf(float(self.q.along[j]))
+            ahead, behind = self.rate(A, n, t, z), self.rate(A, n, t, self.struck(n, z, side))
+            kept = S * mp.matrix(ahead)
+            for i in range(2 * N):
+                for j in range(N):
+                    S[i, j] += (behind[i] - kept[i]) * mpf(float(self.q.along[j])) / self.speed(z)
+            following = u[k + 1] if k + 1 < K else u[0] + pi / n["omega"] * self.halves
+            product = expm(A * (following - t))[: 2 * N, : 2 * N] * S * product
+        return self.sigma * product
+
+    def unknowns(self, times, state):
+        """From double precision; state (2N,): x, then x'."""
+        return [mpf(float(value)) for value in [*times, *state]]
+
+    def solve(self, u, name=None, value=None, test=None, extra=()):
+        """Newton's method with differences; with `test`(A, n, u, extra) -> list also for the parameter and `extra`."""
+        size = len(u)
+        x = [*u, *([mpf(value)] if name else []), *map(mpf, extra)]
+
+        def F(x):
+            A, n = self.system(name, x[size]) if name else self.system()
+            return self.residual(A, n, x[:size]) + (test(A, n, x[:size], x[size + 1 :]) if test else [])
+
+        h = mpf(10) ** (-mp.dps // 2)
+        for _ in range(4):
+            f, J = F(x), zeros(len(x))
+            for j in range(len(x)):
+                moved = F([value + h if i == j else value for i, value in enumerate(x)])
+                for i, (a, b) in enumerate(zip(moved, f, strict=True)):
+                    J[i, j] = (a - b) / h
+            step = mp.lu_solve(J, mp.matrix(f))
+            x = [a - b for a, b in zip(x, step, strict=True)]
+            if max(abs(s) for s in step) < mpf(10) ** (-mp.dps + 10):
+                break
+        return x
+
+    def multipliers(self, u):
+        A, n = self.system()
+        return mp.eig(self.monodromy(A, n, self.solve(u)), left=False, right=False)
+
+    def where_multiplier(self, mu, u, name, value):
+        """The parameter at which the orbit has the multiplier +1 or -1 (of the half map, if sigma = -1)."""
+        test = lambda A, n, u, _: [det(self.monodromy(A, n, u) - mu * eye(2 * self.N))]  # noqa: E731
+        return self.solve(u, name, value, test)[len(u)]
+
+    def where_torus(self, u, name, value):
+        """The parameter at which a complex pair of multipliers has modulus 1."""
+
+        def test(A, n, u, _):
+            mu = mp.eig(self.monodromy(A, n, u), left=False, right=False)
+            return [abs(min((m for m in mu if m.imag > 0), key=lambda m: abs(abs(m) - 1))) ** 2 - 1]
+
+        return self.solve(u, name, value, test)[len(u)]
+
+    def where_touching(self, time, side, u, name, value):
+        """The parameter at which the orbit touches a stop near `time`, later than the first impact."""
+
+        def test(A, n, u, extra):
+            before, _ = self.passed(A, n, u)
+            k = max(k for k, (t, _) in enumerate(before) if t <= extra[0])
+            t, z = before[k]
+            z = self.fly(A, n, t, self.struck(n, z, self.sides[k]), extra[0] - t)
+            return [self.gap(z) - self.stop(n, side), self.speed(z)]
+
+        return self.solve(u, name, value, test, [time])[len(u)]
+
+    def where_vanishing(self, index, u, name, value):
+        """The parameter at which impact `index` has no speed."""
+        test = lambda A, n, u, _: [self.speed(self.passed(A, n, u)[0][index][1])]  # noqa: E731
+        return self.solve(u, name, value, test)[len(u)]

@@ -1,0 +1,193 @@
+"""Scenes with `continue`: their messages, the files that they make, and the pictures of these."""
+
+import h5py
+import jsonschema
+import numpy as np
+import pytest
+import xarray as xr
+from support import ROOT
+from support.windows import SYSTEM
+
+import vibro_sweep as vs
+from vibro_sweep.cli import main
+from vibro_sweep.driver.branches import run_branches
+from vibro_sweep.model.bifurcations import TYPES
+from vibro_sweep.scene import SceneError, json_schema, load_continuation, parse_continuation, parse_scene
+from vibro_sweep.scene.yaml_text import read_yaml
+
+NUMBERS = "{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 2}"
+LR = "{itinerary: LR, periods: 1}"
+RANGE = "{b: {start: 0.3, stop: 6.8}}"
+
+
+def text(begin=LR, along=RANGE, more="depth: 1", numbers=NUMBERS):
+    return f"system: {numbers}\ncontinue:\n  from: {begin}\n  along: {along}\n  {more}\n"
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("branches") / "lr.h5"
+    run_branches(parse_continuation(text(), "lr.yaml"), path)
+    return path
+
+
+def numbers(path) -> dict[str, bytes]:
+    with h5py.File(path) as data:
+        return {name: data[name][()].tobytes() for name in data}
+
+
+def test_it_holds_what_follow_branches_finds(file):
+    orbit = vs.periodic_orbit(SYSTEM.replace(b=2), itinerary="LR")
+    found = vs.follow_branches(orbit, "b", (0.3, 6.8), depth=1)
+    with xr.open_dataset(file, engine="h5netcdf") as data:
+        assert data.attrs["kind"] == "branches" and data.attrs["mu_m"] == 10
+        assert data.sizes["branch"] == len(found)
+        np.testing.assert_array_equal(data["branch_generation"], [item.generation for item in found])
+        np.testing.assert_array_equal(data["branch_parent"], [-1 if i.parent is None else i.parent for i in found])
+        begin = 0
+        for i, item in enumerate(found):
+            points, size = item.branch.points, int(data["branch_row_size"][i])
+            along = slice(begin, begin + size)
+            np.testing.assert_array_equal(data["b"][along], points["b"])
+            np.testing.assert_array_equal(data["x2"][along], points["x2"])
+            np.testing.assert_array_equal(data["unstable"][along], points["unstable"])
+            special = data["special_type"].values[data["special_branch"].values == i]
+            assert [TYPES[code].name for code in special] == [one.type for one in item.branch.special]
+            begin += size
+        assert begin == data.sizes["point"]
+        assert int((data["branch_row_size"] * data["branch_impacts"]).sum()) == data.sizes["impact"]
+
+
+def test_a_point_of_the_file_is_where_a_scene_goes_on(file, tmp_path):
+    """Over the pitchfork of the symmetric orbit, and along another number from it."""
+    with vs.open(file) as data:
+        types = [TYPES[code].name for code in data["special_type"].values]
+        at = types.index("pitchfork")
+        value = float(data["special_value"][at, 0])
+    scene = parse_continuation(text(f"{{branches: {file}, special: {at}}}", more="depth: 0"))
+    run_branches(scene, tmp_path / "beyond.h5")
+    with vs.open(tmp_path / "beyond.h5") as data:
+        assert data["branch_symmetric"].values.tolist() == [0]  # the two mirror images are one branch
+        assert float(data["b"].max()) == pytest.approx(value, abs=1e-9)
+    along = "{omega: {start: 0.6, stop: 0.66}}"
+    run_branches(parse_continuation(text(f"{{branches: {file}, special: {at}}}", along, "depth: 0")), tmp_path / "o.h5")
+    with vs.open(tmp_path / "o.h5") as data:
+        assert data["branch_symmetric"].values[0] == 1 and data["omega"].values[0] == 0.6
+
+
+def test_it_does_not_depend_on_interruptions(file, tmp_path):
+    def stop(done, total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    scene = parse_continuation(text(), "lr.yaml")
+    with pytest.raises(KeyboardInterrupt):
+        run_branches(scene, tmp_path / "lr.h5", progress=stop)
+    run_branches(scene, tmp_path / "lr.h5", mode="resume")
+    assert numbers(tmp_path / "lr.h5") == numbers(file)
+
+
+@pytest.mark.slow
+def test_two_workers_make_the_same_file(file, tmp_path):
+    run_branches(parse_continuation(text(), "lr.yaml"), tmp_path / "lr.h5", workers=2)
+    assert numbers(tmp_path / "lr.h5") == numbers(file)
+
+
+@pytest.mark.parametrize(
+    "begin, along, number",
+    [
+        ("free", RANGE.replace("0.3", "1.5"), 1),
+        ("{grazing: 1}", "{b: {start: 6, stop: 7}}", 2),  # RL, and of the mirror images R and L one
+        ("{state: {x1: 3.0, v1: 0.3, x2: 1, v2: 0}, periods: 1}", "{b: {start: 1.5, stop: 2.5}}", 1),
+    ],
+)
+def test_other_beginnings(begin, along, number, tmp_path):
+    numbers = NUMBERS.replace("b: 2", "b: 6.75") if begin == "free" or "grazing" in begin else NUMBERS
+    if "state" in begin:
+        orbit = vs.periodic_orbit(SYSTEM.replace(b=2), itinerary="LR")
+        begin = "{state: {" + ", ".join(f"{k}: {v}" for k, v in zip(("x1", "v1", "x2", "v2"), orbit.state)) + "}}"  # noqa: B905
+    run_branches(parse_continuation(text(begin, along, "depth: 0", numbers)), tmp_path / "x.h5")
+    with vs.open(tmp_path / "x.h5") as data:
+        assert data.sizes["branch"] == number
+
+
+@pytest.mark.parametrize(
+    "changes, words",
+    [
+        (dict(begin="{}"), "continue.from: says nothing; it must have one of state, itinerary, sweep"),
+        (dict(begin="{grazing: 2, sweep: a.h5}"), "continue.from: has sweep, grazing"),
+        (dict(begin="{itinerary: LX}"), 'continue.from.itinerary = "LX": must be a word of R and L'),
+        (dict(begin="{branches: a.h5}"), "continue.from.special: missing"),
+        (dict(begin="{itinerary: LR, special: 1}"), "continue.from.special: belongs to branches"),
+        (dict(along="{b: {start: 3, stop: 1}}"), "continue.along.b.stop = 1: must be a number > 3"),
+        (dict(along="{b: {start: -3, stop: 3}}"), "continue.along.b = -3: must be a"),
+        (dict(along="{b: {start: 3, stop: 4}}"), "system.b = 2: must be in continue.along: 3 .. 4"),
+        (dict(along="{b: {start: 1, stop: 4}, omega: {start: 0.5, stop: 0.7}}"), "two keys would be curves"),
+        (dict(more="follow: [fold]"), 'continue.follow[0] = "fold": allowed: graze, pitchfork, flip'),
+        (dict(more="deep: 1"), "continue.deep = 1: unknown key; did you mean `depth`?"),
+    ],
+)
+def test_what_is_wrong_is_said(changes, words):
+    with pytest.raises(SceneError) as found:
+        parse_continuation(text(**changes))
+    assert words in str(found.value)
+
+
+def test_scenes_of_sweeps_and_of_branches_are_told_apart():
+    with pytest.raises(SceneError, match="this is a scene of branches"):
+        parse_scene(text())
+    with pytest.raises(SceneError, match="continue: missing"):
+        parse_continuation(f"system: {NUMBERS}\norbit: {{transient: 1, record: 1}}\n")
+
+
+def test_commands(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "lr.yaml").write_text(text(more="depth: 0"))
+    assert main(["check", "lr.yaml"]) == 0
+    assert "branches in b = 0.3 .. 6.8" in capsys.readouterr().out
+    assert main(["run", "lr.yaml", "--plot"]) == 0
+    told = capsys.readouterr().out
+    assert "pitchfork (sub)" in told and "3.8928194355634" in told
+    assert main(["info", "lr.h5"]) == 0
+    assert "branches: 1, special points: 3" in capsys.readouterr().out
+    for variable in ("x1", "impact_speed", "multiplier", "margin"):
+        assert main(["plot", "lr.h5", "--variable", variable, "-o", f"{variable}.svg"]) == 0
+    drawn = (tmp_path / "x1.svg").read_text()
+    assert "BP pitchfork" in drawn and 'id="stable"' in drawn and 'id="unstable"' in drawn
+    assert main(["plot", "lr.h5", "--variable", "x9"]) == 2
+    assert "variable 'x9' is not allowed; there are x1, v1" in capsys.readouterr().err
+    sweep = vs.sweep(SYSTEM, {"b": np.linspace(1, 3, 9)}, transient=50, record=10, output="s.h5", workers=1)
+    sweep.close()
+    assert main(["plot", "lr.h5", "--over", "s.h5", "-o", "over.svg"]) == 0
+    (tmp_path / "none.yaml").write_text(text("{itinerary: LLLLLLLL}"))
+    assert main(["run", "none.yaml"]) == 2
+    assert "continue.from.itinerary: no orbit was found" in capsys.readouterr().err
+
+
+def test_the_scene_that_comes_with_the_package(tmp_path):
+    scene = load_continuation(ROOT / "configs" / "branches" / "symmetric.yaml")
+    schema = jsonschema.Draft7Validator(json_schema())
+    schema.validate(read_yaml(scene.text))
+    assert not schema.is_valid(read_yaml(scene.text + "\norbit: {transient: 1, record: 1}\n"))
+    run_branches(scene, tmp_path / "symmetric.h5")
+    with vs.open(tmp_path / "symmetric.h5") as data:
+        names = [TYPES[code].name for code in data["special_type"].values]
+        found = dict(zip(names, data["special_value"].values[:, 0].tolist(), strict=True))
+        assert found["neimark_sacker"] == pytest.approx(4.347417989446, abs=1e-11)
+        assert data["branch_generation"].values.tolist() == [0, 1, 1, 1, 2, 2]
+
+
+@pytest.mark.slow
+def test_the_cascade_towards_sticking(tmp_path):
+    """Impacts added one by one, at grazes that accumulate at the onset of sticking (60 impacts written out)."""
+    run_branches(load_continuation(ROOT / "configs" / "branches" / "sticking.yaml"), tmp_path / "sticking.h5")
+    with vs.open(tmp_path / "sticking.h5") as data:
+        assert data["branch_impacts"].values.tolist() == [4 + 2 * i for i in range(13)]
+        assert data["branch_parent"].values.tolist() == list(range(-1, 12))
+        types = np.array([TYPES[code].name for code in data["special_type"].values])
+        values = data["special_value"].values[:, 0]
+        onsets = values[types == "sticking"]
+        assert len(onsets) >= 3 and (data["special_point"].values[types == "sticking"] == -1).all()
+        assert np.abs(onsets - 0.064639143358).max() < 1e-12
+        lowest = [values[data["special_branch"].values == i].max() for i in range(13)]
+        assert (np.diff(lowest) < 0).all()

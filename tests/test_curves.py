@@ -1,0 +1,317 @@
+"""Bifurcation curves in two parameters: closed forms, 30 digits, published values, differences."""
+
+import math
+
+import numpy as np
+import pytest
+from support.branches import branch_of
+from support.curves import chosen, error_at, exact_codimension_two, exact_resonance, solution_at
+from support.oscillators import PAPER
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.branches import births, torus
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.periodic.orbit import orbit_of
+
+BOXES = {("b", "omega"): ((0.3, 9), (0.5, 0.8)), ("b", "R"): ((0.3, 9), (0.3, 0.99))}
+
+
+def types(curve):
+    return [special.type for special in curve.special]
+
+
+def first(branch, kind):
+    return next(special for special in branch.special if special.type == kind)
+
+
+def ball(n=1, F=0.9, R=0.8):
+    system = vs.Oscillator.named(
+        "one_mass", k=0, zeta=0, constant=-1, base=True, F=F, omega=1, R=R, b=0, stops="left", tau=0.0
+    )
+    return vs.continue_orbit(vs.periodic_orbit(system, itinerary="L", periods=n), "F", (0.2, 4))
+
+
+@pytest.mark.slow
+def test_bouncing_ball():
+    """Fold and flip in (Gamma, R): physics of P. J. Holmes, J. Sound Vib. 84 (1982) 173; a free mode, N = 1."""
+    branch = ball()
+    for kind in ("fold", "flip"):
+        curve = vs.bifurcation_curve(first(branch, kind), ("F", "R"), ((0.05, 4), (0.2, 0.95)))
+        R = curve.points.R.values
+        least = math.pi * (1 - R) / (1 + R)
+        expected = least if kind == "fold" else np.hypot(least, 2 * (1 + R**2) / (1 + R) ** 2)
+        np.testing.assert_allclose(curve.points.F.values, expected, rtol=1e-13)
+        assert curve.type == kind and not curve.points.virtual.any() and np.ptp(R) == pytest.approx(0.75)
+        assert curve.begins.parameters["F"] < curve.ends.parameters["F"] and types(curve) == ["limit", "limit"]
+
+
+@pytest.mark.slow
+def test_free_motion_touches_the_stops_as_theorem_1_says(symmetric_branch):
+    curve = vs.bifurcation_curve(symmetric_branch.ends, ("b", "omega"), BOXES["b", "omega"])
+    omega = curve.points.omega.values
+    expected = [vs.grazing(PAPER.replace(omega=float(value))).b for value in omega]
+    np.testing.assert_allclose(curve.points.b.values, expected, rtol=1e-13)
+    found = [special for special in curve.special if special.type == "resonant_graze"]
+    assert [special.parameters["omega"] for special in found] == pytest.approx(
+        [0.5401411189888746, 0.6534837093382131], abs=1e-12
+    )
+
+
+def test_refusals(symmetric_branch):
+    pitchfork, limit = symmetric_branch.special[1], first(
+        vs.continue_orbit(symmetric_branch.special[1].orbit, "b", (3, 4)), "limit"
+    )  # fmt: skip
+    box = BOXES["b", "omega"]
+    with pytest.raises(ValueError, match=r"special\.type: 'limit' is not allowed; it must be one of fold, flip"):
+        vs.bifurcation_curve(limit, ("b", "omega"), box)
+    with pytest.raises(ValueError, match=r"parameters: \('b', 'b'\) is not allowed; it must be two of mu_m"):
+        vs.bifurcation_curve(pitchfork, ("b", "b"), box)
+    with pytest.raises(ValueError, match=r"box: \(5.0, 9.0\) of b is not allowed; it must be \(lo, hi\), lo < hi"):
+        vs.bifurcation_curve(pitchfork, ("b", "omega"), ((5, 9), (0.5, 0.8)))
+    for wrong in (None, (1, 9), ((1, 9),), ((1, 2, 3), (4, 5))):
+        with pytest.raises(ValueError, match=r"box: .* is not allowed; it must be \(\(lo, hi\), \(lo, hi\)\) of b and"):
+            vs.bifurcation_curve(pitchfork, ("b", "omega"), wrong)
+    with pytest.raises(ValueError, match="parameters: None is not allowed"):
+        vs.bifurcation_curve(pitchfork, None, box)
+    with pytest.raises(TypeError, match="special"):
+        vs.bifurcation_curve(pitchfork.orbit, ("b", "omega"), box)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("names", BOXES)
+@pytest.mark.parametrize("kind", ["pitchfork", "neimark_sacker"])
+def test_curves_in_30_digits(names, kind, symmetric_branch, one_sided_branch):
+    branch = symmetric_branch if kind == "pitchfork" else one_sided_branch
+    curve = vs.bifurcation_curve(first(branch, kind), names, BOXES[names])
+    for k in chosen(curve, 20):
+        assert error_at(curve, k) < 1e-12, k
+
+
+@pytest.mark.parametrize("count", [pytest.param(4, marks=pytest.mark.slow), pytest.param(20, marks=pytest.mark.soak)])
+@pytest.mark.parametrize(("b", "periods"), [(6.6, 13), (6.7125, 15)])
+def test_windows_in_30_digits(b, periods, count):
+    branch = branch_of(b, periods)
+    for special in branch.special:
+        if special.type in ("fold", "graze"):
+            curve = vs.bifurcation_curve(special, ("b", "omega"), ((6, 7.5), (0.61, 0.65)))
+            for k in chosen(curve, count):
+                assert error_at(curve, k) < 1e-12, (special.type, k)
+
+
+def wall(omega, F):
+    return vs.Oscillator.named("one_mass", zeta=0.02, F=F, omega=omega, R=0.9, b=1, stops="right")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kind", "begin", "ranges", "omega", "F"),
+    [
+        ("flip", (0.9, 0.25), ((0.01, 0.5), (0.81, 1.0)), 0.81, 0.347533397),
+        ("fold", (0.79, 0.37), ((0.01, 0.5), (0.78, 0.799)), 0.799, 0.362836202),
+    ],
+)
+def test_one_impact_in_two_periods(kind, begin, ranges, omega, F):
+    """arXiv 2510.16218, worked out anew in 30 digits: reached from far away."""
+    branch = vs.continue_orbit(vs.periodic_orbit(wall(*begin), itinerary="R", periods=2), "F", (0.01, 0.5))
+    curve = vs.bifurcation_curve(first(branch, kind), ("F", "omega"), ranges)
+    (end,) = [one for one in curve.special if one.parameters["omega"] == omega]
+    assert end.type == "limit" and end.parameters["F"] == pytest.approx(F, abs=6e-10)
+
+
+@pytest.mark.slow
+def test_fold_and_flip_begin_at_the_resonant_graze():
+    """arXiv 2510.16218: from (0.36, 0.8) the fold goes down to omega = 0.788, the flip up to 0.9998; both are tangent
+    to the graze curve there, with a distance that grows like the square."""
+    box = ((0.01, 0.5), (0.78, 1.05))
+    branch = vs.continue_orbit(vs.periodic_orbit(wall(0.81, 0.4), itinerary="R", periods=2), "F", (0.01, 0.6))
+    flip = vs.bifurcation_curve(first(branch, "flip"), ("F", "omega"), box)
+    graze = vs.bifurcation_curve(branch.begins, ("F", "omega"), box)
+    branch = vs.continue_orbit(vs.periodic_orbit(wall(0.799, 0.364), itinerary="R", periods=2), "F", (0.01, 0.6))
+    fold = vs.bifurcation_curve(first(branch, "fold"), ("F", "omega"), box)
+    places = {}
+    for curve in (flip, fold, graze):
+        for special in curve.special:
+            if special.type == "resonant_graze":
+                places.setdefault(curve.type, []).append(special.parameters["omega"])
+    (begin,) = places["fold"]
+    rate = math.sqrt(1 - 0.02**2)  # of the free decay: gamma = 0 at zero delay where it swings a whole number of times
+    assert begin == pytest.approx(4 / 5 * rate, abs=1e-12)
+    assert sorted(places["flip"]) == pytest.approx([begin, rate], abs=1e-12)
+    assert sorted(places["graze"]) == pytest.approx(sorted(places["flip"]), abs=1e-12)
+    assert [special.parameters["omega"] for special in fold.special if special.type == "fold_graze"] == pytest.approx(
+        [0.7881222563629103], abs=1e-12
+    )
+    special = next(one for one in fold.special if one.type == "resonant_graze")
+    near_box = ((special.parameters["F"] - 0.004, special.parameters["F"] + 0.004), (begin - 0.002, begin + 0.002))
+    starts = [start for start in vs.switch(special) if start.type in ("fold", "flip")]
+    assert len(starts) == 2
+    for curve in (vs.bifurcation_curve(start, ("F", "omega"), near_box) for start in starts):
+        real = curve.points.isel(point=~curve.points.virtual.values)
+        omega, F = real.omega.values, real.F.values
+        near = np.abs(omega - begin) > 1e-5
+        gain = np.hypot(1 - omega**2, 0.04 * omega)  # the free motion touches the stop at this F
+        distance = np.abs(F - gain)[near]
+        power = np.polyfit(np.log(np.abs(omega - begin)[near]), np.log(distance), 1)[0]
+        assert near.sum() >= 4 and power == pytest.approx(2, abs=0.05)
+
+
+@pytest.mark.slow
+def test_criticality_changes_at_the_degenerate_points(symmetric_branch, one_sided_branch):
+    """By other methods: amplitudes of the born branch, and differences of the map (branches/births.py, torus.py)."""
+    for branch, kind, most in ((symmetric_branch, "pitchfork", 2), (one_sided_branch, "neimark_sacker", 3)):
+        special = first(branch, kind)
+        curve = vs.bifurcation_curve(special, ("b", "omega"), BOXES["b", "omega"])
+        degenerate = [one for one in curve.special if one.type.startswith("degenerate")]
+        assert len(degenerate) == most
+        for one in degenerate:
+            b, omega = one.parameters["b"], one.parameters["omega"]
+            points = curve.points
+            k = int(np.argmin(np.hypot(points.b.values - b, points.omega.values - omega)))
+            found = [criticality_at(curve, j) for j in (k - 1, k + 1)]
+            assert sorted(found) == ["sub", "super"], one.parameters
+
+
+def criticality_at(curve, k):
+    solution = solution_at(curve, k)
+    if curve.type == "neimark_sacker":
+        return torus.criticality(solution)
+    system = PAPER.replace(**{name: float(curve.points[name][k]) for name in curve.parameters})
+    value = system.b
+    special = SpecialPoint("pitchfork", {"b": value}, orbit_of(system, solution), solution.multipliers)
+    return births.criticality(special)
+
+
+REGULAR = ("fold_flip", "resonance_1_1", "resonance_1_2", "resonance_1_3", "resonance_1_4", "fold_neimark_sacker")
+
+
+@pytest.mark.slow
+def test_codimension_two_in_40_digits(symmetric_branch, one_sided_branch):
+    found = set()
+    for special in (first(symmetric_branch, "pitchfork"), first(one_sided_branch, "neimark_sacker")):
+        curve = vs.bifurcation_curve(special, ("b", "omega"), BOXES["b", "omega"])
+        for one in curve.special:
+            if one.type in (*REGULAR, "flip_neimark_sacker"):
+                assert max(exact_codimension_two(one).values()) < max(one.error, 1e-13) < 1e-12, one.type
+                found.add(one.type)
+    assert found == {*REGULAR, "flip_neimark_sacker"}
+
+
+@pytest.mark.slow
+def test_resonances_of_the_free_motion_in_40_digits(symmetric_branch, one_sided_branch):
+    """orbits.md, pitfall 4: gamma = 0 at zero delay; for one impact in T or T/2, followed from impact to graze."""
+    published = {
+        1: (0.3283, 0.4333, 0.5489, 0.5881, 0.6499, 0.8263, 1.0803, 1.8636),
+        -1: (0.3615, 0.4564, 0.6535, 0.8060, 1.0785),
+    }
+    for branch, sigma in ((one_sided_branch, 1), (symmetric_branch, -1)):
+        curve = vs.bifurcation_curve(branch.ends, ("b", "omega"), ((0.001, 60), (0.3, 2.0)))
+        resonances = [one for one in curve.special if one.type == "resonant_graze"]
+        assert len(resonances) == len(curve.special) - 2
+        omegas = {1: [], -1: []}
+        for one in resonances:
+            omega = one.parameters["omega"]
+            errors = {mu: abs(exact_resonance(sigma, sigma * mu, omega) - omega) for mu in (1, -1)}
+            mu = min(errors, key=errors.get)
+            assert errors[mu] < 1e-12
+            assert one.parameters["b"] == pytest.approx(vs.grazing(PAPER.replace(omega=omega)).b, rel=1e-12)
+            omegas[mu].append(omega)
+        assert sorted(omegas[1]) == pytest.approx(published[sigma], abs=6e-5)
+        if sigma == -1:  # pitchfork of RL
+            assert min(abs(omega - 0.931808938984019) for omega in omegas[-1]) < 1e-13
+
+
+@pytest.mark.slow
+def test_every_way_into_the_net_of_curves_gives_the_same_points(symmetric_branch):
+    """From each point of codimension two on a curve, its curves are followed anew."""
+    box = BOXES["b", "omega"]
+    curve = vs.bifurcation_curve(first(symmetric_branch, "pitchfork"), ("b", "omega"), box)
+    expected = places(curve)
+    folds, followed = [], 0
+    for special in curve.special[1:-1]:
+        for start in vs.switch(special):
+            if start.type in ("pitchfork", "fold"):
+                other = vs.bifurcation_curve(start, ("b", "omega"), box)
+                if start.type == "pitchfork":
+                    assert places(other) == [(kind, pytest.approx(where, abs=1e-12)) for kind, where in expected]
+                    followed += 1
+                else:
+                    folds.append(places(other))
+    assert followed == len(curve.special) - 2 and len(folds) == 2
+    assert folds[0] == [(kind, pytest.approx(where, abs=1e-12)) for kind, where in folds[1]]
+
+
+def places(curve):
+    found = [(special.type, list(special.parameters.values())) for special in curve.special]
+    return found if found[0][1] < found[-1][1] else found[::-1]
+
+
+@pytest.mark.slow
+def test_the_fold_of_asymmetric_orbits_begins_where_the_pitchfork_turns_from_super_to_sub(
+    symmetric_branch, one_sided_branch
+):
+    """Its curve, found over a resonant graze of other orbits, ends at the zero of the normal form's coefficient."""
+    box = BOXES["b", "omega"]
+    pitchfork = vs.bifurcation_curve(first(symmetric_branch, "pitchfork"), ("b", "omega"), box)
+    graze = vs.bifurcation_curve(one_sided_branch.begins, ("b", "omega"), box)
+    starts = [start for one in graze.special if one.type == "resonant_graze" for start in vs.switch(one)]
+    fold = vs.bifurcation_curve(next(start for start in starts if start.type == "fold"), ("b", "omega"), box)
+    end = next(end for end in (fold.begins, fold.ends) if end.type != "limit")
+    assert end.type == "degenerate_flip" and end.orbit.symmetric
+    nearest = min(
+        (one for one in pitchfork.special if one.type == "degenerate_flip"),
+        key=lambda one: abs(one.parameters["b"] - end.parameters["b"]),
+    )
+    assert end.parameters == pytest.approx(nearest.parameters, abs=1e-12)
+    assert "cusp" in types(fold)
+
+
+@pytest.mark.slow
+def test_double_graze_unfolds_where_the_stops_are_unequal():
+    """In (b, offset) four graze curves cross at b*: of orbits that hit one stop, where they touch it, b = b* +- offset,
+    and of the orbit that hits both, where it loses one impact."""
+    box, star = ((3, 9), (-1, 1)), vs.grazing(PAPER).b
+    orbit = vs.periodic_orbit(PAPER.replace(offset=0.05, b=4.0), itinerary="R")
+    curve = vs.bifurcation_curve(vs.continue_orbit(orbit, "b", (0.3, 6.9)).ends, ("b", "offset"), box)
+    (double,) = (special for special in curve.special if special.type == "double_graze")
+    assert double.parameters == {"b": pytest.approx(star, abs=1e-12), "offset": pytest.approx(0, abs=1e-12)}
+    starts = vs.switch(double)
+    assert sorted((start.type, start.orbit.itinerary, start.stop) for start in starts) == [
+        ("graze", "L", -1), ("graze", "LR", -1), ("graze", "LR", 1), ("graze", "R", 1),
+    ]  # fmt: skip
+    both = []
+    for start in starts:
+        other = vs.bifurcation_curve(start, ("b", "offset"), box)
+        assert types(other).count("double_graze") == 1
+        if start.orbit.itinerary != "LR":
+            np.testing.assert_allclose(other.points.b, star - start.stop * other.points.offset, rtol=1e-13)
+        else:
+            both.append([special.parameters for special in other.special if special.type == "neimark_sacker_graze"])
+    (one,), (mirror,) = both
+    assert one["b"] == pytest.approx(mirror["b"], abs=1e-12)
+    assert one["offset"] == pytest.approx(-mirror["offset"], abs=1e-12)
+
+
+@pytest.mark.slow
+def test_pitchfork_is_a_cusp_of_folds_where_the_symmetry_is_broken(symmetric_branch):
+    pitchfork = first(symmetric_branch, "pitchfork")
+    curve = vs.bifurcation_curve(pitchfork, ("b", "offset"), ((3, 5), (-0.2, 0.2)))
+    points = curve.points
+    assert curve.type == "fold" and types(curve) == ["limit", "cusp", "limit"]
+    cusp = curve.special[1].parameters
+    assert cusp == {"b": pytest.approx(pitchfork.parameters["b"], abs=1e-12), "offset": pytest.approx(0, abs=1e-12)}
+    b, offset = points.b.values, points.offset.values
+    near = (np.abs(offset) > 1e-6) & (np.abs(offset) < 1e-2)  # |b - b_0| like offset^(2/3)
+    power = np.polyfit(np.log(np.abs(offset[near])), np.log(np.abs(b[near] - pitchfork.parameters["b"])), 1)[0]
+    assert near.sum() > 6 and power == pytest.approx(2 / 3, abs=0.03)
+
+
+@pytest.mark.slow
+def test_picture(symmetric_branch):
+    pitchfork = first(symmetric_branch, "pitchfork")
+    curves = [vs.bifurcation_curve(pitchfork, names, BOXES[names]) for names in BOXES]
+    fig = curves[0].plot()
+    (panel,) = fig.axes
+    assert {text.get_text() for text in panel.texts} >= {"RG", "GPD", "LPPD"}
+    assert [text.get_text() for text in fig.legends[0].get_texts()] == ["pitchfork", "virtual"]
+    with pytest.raises(ValueError, match=r"others: a curve in .* is not allowed"):
+        curves[0].plot(curves[1])

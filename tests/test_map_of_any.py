@@ -1,0 +1,69 @@
+"""`model: map` for any symmetric oscillator, against PeriodMap, which has the same map in other formulas."""
+
+import numpy as np
+import pytest
+
+import vibro_sweep as vs
+from vibro_sweep.engine.period_map import PeriodMap
+from vibro_sweep.scene import SceneError, parse_scene
+
+SYSTEMS = {
+    "one mass": "{type: one_mass, k: 1, zeta: 0.05, F: 1, omega: 0.8, R: 0.7, b: %s}",
+    "two masses by matrices": (
+        "{type: linear, M: [[1, 0], [0, 2]], K: [[2, -1], [-1, 3]], C: [[0.3, -0.1], [-0.1, 0.05]], force: [1, 0.2], "
+        "along: [1, -1], omega: 0.7, R: 0.6, b: %s}"
+    ),
+    "a chain of three": (
+        "{type: chain, m: [1, 2, 1], k: [1, 1, 1, 1], c: [0.3, 0.05, 0.1, 0.3], force: [1, 0, 0], stop_at: 1, "
+        "omega: 0.6, R: 0.6, b: %s}"
+    ),
+}
+REST = "model: map\norder: %d\norbit: {transient: %d, record: %d}\nobserve: [section, lyapunov]\n"
+
+
+def dataset(system, order, transient, record, tmp_path):
+    scene = parse_scene(f"system: {system}\n" + REST % (order, transient, record))
+    vs.run(scene, tmp_path / "map.h5")
+    with vs.open(tmp_path / "map.h5") as found:
+        return scene.system, found.load()
+
+
+def states_of(data, masses):
+    names = [f"{what}{m}" for m in range(1, masses + 1) for what in "xv"]
+    return np.stack([data[name].values for name in names], -1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_sections_and_exponents(name, order, tmp_path):
+    """Iterations with impacts one by one; at a fixed point the exponents are those of the Jacobian's eigenvalues."""
+    top = vs.grazing(
+        parse_scene(f"system: {SYSTEMS[name] % 1}\nobserve: [section]\norbit: {{transient: 0, record: 1}}\n").system
+    ).b
+    system, data = dataset(SYSTEMS[name] % (0.97 * top), order, 400, 60, tmp_path)
+    X, P = states_of(data, system.linear.M.shape[0]), PeriodMap(system, order)
+    found = P(X[:-1])
+    assert sum(map(len, found.impacts)) > 0
+    np.testing.assert_allclose(found.states, X[1:], rtol=0, atol=1e-12 * abs(X).max())
+    assert data.status == 0
+    if (name, order) == ("a chain of three", 1):  # does not repeat itself
+        return
+    assert data.period > 0
+    J = np.eye(X.shape[1])
+    for x in X[: int(data.period)]:
+        J = P([x], jacobian=True).jacobian[0] @ J
+    exact = np.sort(np.log(abs(np.linalg.eigvals(J))))[::-1] / (int(data.period) * system.period)
+    np.testing.assert_allclose(data.lyapunov.values, exact, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("key", ["offset: 0.1", "R_left: 0.5", "constant: 0.2"])
+def test_without_symmetry_there_is_no_map(key):
+    with pytest.raises(SceneError, match=f"system.{key.split(':')[0]}.*mirror images"):
+        parse_scene(f"system: {SYSTEMS['one mass'] % 1}".replace("type", f"{key}, type") + "\n" + REST % (1, 1, 1))
+
+
+def test_no_map_while_a_constant_force_is_swept():
+    system = SYSTEMS["a chain of three"] % 1
+    with pytest.raises(SceneError, match=r"sweep\.constant2.*mirror images"):
+        parse_scene(f"system: {system}\nsweep: {{constant2: {{values: [0, 1]}}}}\n" + REST % (1, 1, 1))

@@ -1,0 +1,118 @@
+"""The file of a sweep's windows: what is in it, that it does not depend on how it was made, and the commands."""
+
+import h5py
+import numpy as np
+import pytest
+import xarray as xr
+from support.windows import few  # noqa: F401
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.periodic.itinerary import word
+from vibro_sweep.cli import main
+from vibro_sweep.driver.windows import run_windows
+from vibro_sweep.model.bifurcations import TYPES
+
+
+@pytest.fixture(scope="module")
+def file(few, tmp_path_factory):  # noqa: F811
+    path = tmp_path_factory.mktemp("file") / "few.windows.h5"
+    run_windows(few, path)
+    return path
+
+
+def numbers(path) -> dict[str, bytes]:
+    """All numbers of a file, bit for bit."""
+    with h5py.File(path) as data:
+        return {name: data[name][()].tobytes() for name in data}
+
+
+def test_it_holds_the_windows(few, file):  # noqa: F811
+    with xr.open_dataset(file, engine="h5netcdf") as data, vs.open(file) as own, vs.open(few) as sweep:
+        windows = vs.windows(few)
+        assert data.attrs["kind"] == "windows" and data.attrs["sweep"] == sweep.attrs["identity"]
+        np.testing.assert_array_equal(data["window_lo"], [window.lo for window in windows])
+        np.testing.assert_array_equal(data["window_hi"], [window.hi for window in windows])
+        np.testing.assert_array_equal(data["window_period"], [window.period for window in windows])
+        np.testing.assert_array_equal(data["window_symmetric"], [window.symmetric for window in windows])
+        first = np.append(0, np.cumsum(data["branch_row_size"].values * data["branch_impacts"].values))
+        for w, window in enumerate(windows):
+            branch = int(data["window_branch"][w])
+            sides = data["impact_side"].values[first[branch] :][: int(data["branch_impacts"][branch])]
+            assert word(sides) == window.itinerary
+            for name, special in (("window_lower", window.lower), ("window_upper", window.upper)):
+                at = int(data[name][w])
+                assert TYPES[int(data["special_type"][at])].name == special.type
+                assert float(data["special_value"][at, 0]) == special.parameters["b"]
+                assert float(data["b"][int(data["special_point"][at])]) == special.parameters["b"]
+        flags = data["special_type"].attrs
+        assert flags["flag_meanings"].split()[:2] == ["fold", "flip"] and flags["flag_values"][1] == 1
+        for name in data.variables:
+            np.testing.assert_array_equal(own[name], data[name])
+
+
+def test_a_run_that_is_interrupted_goes_on(few, file, tmp_path):  # noqa: F811
+    calls = []
+
+    def stop(done, total):
+        calls.append(done)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_windows(few, tmp_path / "w.h5", progress=stop)
+    assert not (tmp_path / "w.h5").exists()
+    with pytest.raises(vs.StoreError, match="is an interrupted run of windows"):
+        vs.open(tmp_path / "w.h5.part")
+    with pytest.raises(vs.StoreError, match="interrupted run; `resume` continues it"):
+        run_windows(few, tmp_path / "w.h5")
+    run_windows(few, tmp_path / "w.h5", mode="resume")
+    first, second = numbers(file), numbers(tmp_path / "w.h5")
+    assert first == second
+    assert not (tmp_path / "w.h5.part").exists()
+
+
+@pytest.mark.slow
+def test_two_workers_make_the_same_file(few, file, tmp_path):  # noqa: F811
+    run_windows(few, tmp_path / "w.h5", workers=2)
+    assert numbers(tmp_path / "w.h5") == numbers(file)
+
+
+@pytest.mark.slow
+def test_dask_makes_the_same_file(few, file, tmp_path):  # noqa: F811
+    distributed = pytest.importorskip("distributed")
+    from vibro_sweep.driver.cluster import ClusterExecutor
+
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+        ClusterExecutor(client) as executor,
+    ):
+        run_windows(few, tmp_path / "w.h5", executor=executor)
+    assert numbers(tmp_path / "w.h5") == numbers(file)
+
+
+def test_commands(few, tmp_path, monkeypatch, capsys):  # noqa: F811
+    monkeypatch.chdir(tmp_path)
+    before = few.read_bytes()
+    assert main(["windows", str(few), "--plot"]) == 0
+    told = capsys.readouterr().out
+    assert "graze (nonsmooth fold, right)" in told and "6.70571674097" in told
+    assert "of 13 in windows" in told
+    assert few.read_bytes() == before
+    assert (tmp_path / "few.windows.h5").exists() and (tmp_path / "few.windows.png").exists()
+    assert main(["info", "few.windows.h5"]) == 0
+    assert told.splitlines()[1:4] == capsys.readouterr().out.splitlines()[1:4]
+    assert main(["plot", str(few), "--windows", "few.windows.h5", "-o", "strip.svg"]) == 0
+    assert "GR graze, persistence" in (tmp_path / "strip.svg").read_text()
+    part = ["--xlim", "5", "6.5", "-o", "part.svg"]
+    assert main(["plot", str(few), "--windows", "few.windows.h5", *part]) == 0
+    assert main(["windows", str(few)]) == 0  # complete already
+    assert main(["run", "few.windows.h5"]) == 2
+    other = vs.sweep(vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6), {"b": [6.9, 7.0]},
+                     transient=5, record=5, output="other.h5", workers=1)  # fmt: skip
+    other.close()
+    capsys.readouterr()
+    assert main(["plot", "other.h5", "--windows", "few.windows.h5"]) == 2
+    assert "has the windows of another sweep" in capsys.readouterr().err
+    assert main(["windows", "other.h5", "-o", "few.windows.h5"]) == 2
+    assert "overwrite" in capsys.readouterr().err

@@ -1,0 +1,143 @@
+"""Windows of a sweep: each periodic orbit in one, each end what it says it is."""
+
+import numpy as np
+import pytest
+from support import ROOT
+from support.windows import SYSTEM, check_end, few  # noqa: F401
+
+import vibro_sweep as vs
+from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.window_families import families
+
+
+@pytest.fixture(scope="module")
+def windows(few):  # noqa: F811
+    return vs.windows(few)
+
+
+def test_each_orbit_has_a_window_or_a_reason(few, windows):  # noqa: F811
+    data = vs.open(few)
+    names = [list(REASONS)[code] for code in windows.reason.ravel()]
+    assert ((windows.window >= 0) == (windows.reason == 0)).all()
+    assert set(names) <= {"in_a_window", "chaos"}
+    assert (windows.window.ravel()[data["period"].values > 0] >= 0).all()
+    for b, w in zip(data["b"].values, windows.window.ravel(), strict=True):
+        if w >= 0:
+            assert windows[w].lo <= b <= windows[w].hi
+    assert sum(window.points for window in windows) == names.count("in_a_window")
+
+
+def test_windows_are_counted_once_and_in_order(windows):
+    keys = [(window.itinerary, window.period, window.lo) for window in windows]
+    assert len(set(keys)) == len(keys)
+    assert [window.lo for window in windows] == sorted(window.lo for window in windows)
+    thirteen = [window for window in windows if window.lo < 6.6 < window.hi]
+    assert [(window.period, window.itinerary, window.points) for window in thirteen] == [(13, "RRRR", 3)]
+
+
+def test_each_end_is_what_it_says(windows):
+    """Newton's method and simulations 1e-9 inside and outside."""
+    for window in windows:
+        assert window.orbit.stable and window.orbit.itinerary == window.itinerary
+        assert window.lower.parameters["b"] == window.lo and window.upper.parameters["b"] == window.hi
+        for special, outwards in ((window.lower, -1), (window.upper, 1)):
+            assert check_end(window, special, outwards) is None, (window, special)
+            assert special.error < 1e-11 or special.type == "limit"
+
+
+def test_free_motion(windows):
+    """Its window begins where it touches the stops (Theorem 1)."""
+    free = windows[-1]
+    assert (free.itinerary, free.period, free.symmetric, free.upper.type) == ("", 1, True, "limit")
+    assert free.lower.type == "graze" and free.lo == pytest.approx(vs.grazing(SYSTEM).b, rel=1e-15)
+
+
+def test_mirror_images_are_one_window(tmp_path):
+    """Starts that end on the one and on the other; the name has more impacts on the right."""
+    start = {"random": 6, "seed": 3}
+    vs.sweep(SYSTEM, {"b": [6.598, 6.602]}, start=start, transient=1500, record=60, output=tmp_path / "m.h5", workers=1)
+    windows = vs.windows(tmp_path / "m.h5")
+    right, left = (
+        vs.sweep(SYSTEM, {"b": [6.598, 6.602]}, start=start, transient=1500, record=60, observe=["impacts"], workers=1)[
+            f"impacts_{side}"
+        ].values
+        for side in ("right", "left")
+    )
+    assert (right > left).any() and (left > right).any()
+    thirteen = [window for window in windows if window.period == 13]
+    assert [window.itinerary for window in thirteen] == ["RRRR"]
+    assert thirteen[0].points == np.count_nonzero(right != left)
+
+
+def test_a_plane_row_by_row(tmp_path):
+    axes = {"omega": [0.62, 0.63], "b": [6.8, 7.8, 8.8]}
+    vs.sweep(SYSTEM, axes, transient=300, record=20, output=tmp_path / "plane.h5", workers=1)
+    windows = vs.windows(tmp_path / "plane.h5", "b")
+    free = [window for window in windows if window.itinerary == ""]
+    assert [window.held for window in free] == [{"omega": 0.62}, {"omega": 0.63}]
+    for window in free:
+        assert window.lo == pytest.approx(vs.grazing(SYSTEM.replace(**window.held)).b, rel=1e-14)
+    assert windows.window.shape == (2, 3, 1)
+    along = vs.windows(tmp_path / "plane.h5")
+    assert along.parameter == "omega" and along.window.shape == (2, 3, 1)
+
+
+def test_what_has_no_windows_is_refused(tmp_path):
+    vs.sweep(
+        SYSTEM, {"b": [6.9, 7.0]}, observe=["impacts"], transient=5, record=5, output=tmp_path / "no.h5", workers=1
+    )
+    with pytest.raises(ValueError, match="observe: has no 'section'"):
+        vs.windows(tmp_path / "no.h5")
+    vs.sweep(SYSTEM, {"x1": [0.0, 0.1]}, transient=5, record=5, output=tmp_path / "start.h5", workers=1)
+    with pytest.raises(ValueError, match="windows need a number of the system"):
+        vs.windows(tmp_path / "start.h5")
+    vs.sweep(SYSTEM, {"b": [6.9, 7.0]}, transient=5, record=5, output=tmp_path / "b.h5", workers=1)
+    with pytest.raises(ValueError, match="key: 'omega' is not allowed; it must be b"):
+        vs.windows(tmp_path / "b.h5", "omega")
+
+
+@pytest.mark.slow
+def test_the_quickstart(tmp_path):
+    """Every orbit has its window or its reason, every end is what it says, and the families are those of the paper."""
+    scene = vs.load_scene(ROOT / "configs" / "quickstart.yaml")
+    vs.run(scene, tmp_path / "q.h5")
+    windows = vs.windows(tmp_path / "q.h5")
+    with vs.open(tmp_path / "q.h5") as data:
+        periodic = data["period"].values > 0
+    assert (windows.window[:, 0][periodic] >= 0).all()
+    assert len(windows) > 110 and np.isin(windows.reason, [0, 1, 2]).all()
+    for window in windows:
+        for special, outwards in ((window.lower, -1), (window.upper, 1)):
+            assert check_end(window, special, outwards) is None, (window, special)
+            assert special.error < 1e-12 or special.type == "limit", (window, special)
+    known = {(family.itinerary, family.step): family for family in windows.families}
+    one_sided, symmetric = known["RRRR", 1], known["LLLLRRRR", 2]
+    assert {11, 12, 13, 14, 15} <= {windows[w].period for w in one_sided.windows}
+    assert {23, 25, 27, 29} <= {windows[w].period for w in symmetric.windows}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["one_mass", "ball_in_cavity", "chain"])
+def test_other_oscillators(name, tmp_path):
+    """A part of the scenes that come with the package."""
+    scene = vs.load_scene(ROOT / "configs" / "models" / f"{name}.yaml")
+    ((key, values),) = scene.sweep.items()
+    scene = scene.replace(sweep={key: values[::7].tolist()}, observe=["section"], picture=None)
+    vs.run(scene, tmp_path / "m.h5")
+    windows = vs.windows(tmp_path / "m.h5")
+    assert len(windows) >= 4
+    for window in windows:
+        for special, outwards in ((window.lower, -1), (window.upper, 1)):
+            assert check_end(window, special, outwards) is None, (window, special)
+
+
+def test_families():
+    """By the itinerary, one step of the period and one direction."""
+    words = ["RR", "RR", "RL", "RR", "RR", "RR", "", "", "", "RL", "RL"]
+    periods = [3, 4, 2, 5, 9, 5, 1, 2, 3, 5, 8]
+    lo = [3.0, 4.0, 1.0, 5.0, 6.0, 5.5, 1.0, 2.0, 3.0, 0.5, 0.2]
+    found = families(words, [False] * len(words), periods, lo)
+    assert [(one.itinerary, one.windows, one.period, one.step) for one in found] == [
+        ("RL", (2, 9, 10), 2, 3),
+        ("RR", (0, 1, 3), 3, 1),
+    ]

@@ -1,0 +1,1 @@
+"""Attractors: which orbits of a sweep belong together."""

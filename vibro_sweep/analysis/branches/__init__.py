@@ -1,0 +1,1 @@
+"""Branches of periodic orbits in one number: steps, special points, switching."""

@@ -1,0 +1,68 @@
+"""Where a walk along a branch begins: beside a special point, so that it is met like any other one."""
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.model.linear import Family
+
+BESIDE = (1e-4, 1e-6, 1e-8)  # in units of a walk; near the onset of sticking branches are short
+NEAR = 1e-6  # of a test, relative to its own size, within which an orbit may be the special point itself
+TOUCHES = 1e-12  # distance from a stop, relative to the gap, and the like of a speed, within which it may be zero
+NARROW = 1e-6  # of the parameter's size: the least range that is a unit of a walk
+
+
+def start_of_walk(solution: Solution, name: str, lo: float, hi: float) -> Walk:
+    """From this orbit, or from its neighbour within the bounds where it is a special point itself.
+
+    Raises ValueError where no orbit beside a special point is real and within the bounds.
+    """
+    if solution.sigma == -1 and not keeps_symmetry(solution.family, name):
+        solution = solution.whole()
+    walk = Walk(solution, name, max(hi - lo, NARROW * max(abs(lo), abs(hi))))
+    first = walk.first(1.0)
+    if first is not None and not is_special(first):
+        return walk
+    for length in BESIDE:
+        for sign in (1, -1):
+            beside = _neighbour(walk, sign * length)
+            if beside is not None and lo <= beside.p <= hi and is_real(beside):
+                return Walk(beside.solution, name, float(walk.scale[-1]))
+    if first is None or not is_real(first, TOUCHES):
+        raise ValueError(f"orbit: it is a special point, and no orbit beside it in {name} is real and in bounds")
+    return walk
+
+
+def keeps_symmetry(family: Family, name: str) -> bool:
+    """Whether orbits with x(t + P) = -x(t) remain so along this parameter."""
+    slope = family.derivative(name)
+    return slope.low == -slope.high and slope.R_low == slope.R_high and not np.any(slope.constant)
+
+
+def is_special(point: Point) -> bool:
+    """Whether a test of this point is zero, to rounding or nearly so."""
+    s = point.solution
+    mu = s.multipliers
+    i, j = np.triu_indices(len(mu), 1)
+    zeros = [abs(point.tangent[-1]), np.abs(mu + 1).min()]
+    if len(mu) > 2 and point.torus != 1.0:
+        zeros.append(np.abs(1 - mu[i] * mu[j]).min())
+    return min(zeros) < NEAR or not is_real(point, TOUCHES)
+
+
+def is_real(point: Point, least: float = 0.0) -> bool:
+    """Whether all impulses push and all flights stay inside, by more than the share `least`."""
+    s = point.solution
+    length = least * s.size_of_gap
+    rests = bool(np.all(point.releases > 0)) and point.stays > 0
+    return bool(np.all(s.pushes > s.family.linear.omega * length)) and s.margin > length and rests
+
+
+def _neighbour(walk: Walk, length: float) -> Point | None:
+    """The point of the branch at a distance from the start, also where that is a fold."""
+    start = walk.start
+    e = walk.equations(walk.family.numbers[walk.name])
+    _, J, Fp, _ = e.evaluate(start.sides, start.u)
+    tangent = np.linalg.svd(np.hstack([J, Fp[:, None]]) * walk.scale)[2][-1]
+    x = np.append(start.u, walk.family.numbers[walk.name]) / walk.scale
+    return walk.correct(x + length * tangent, tangent, tangent)

@@ -1,0 +1,71 @@
+"""The branch that is born at a pitchfork or flip: its orbits at a small amplitude, and on which side they exist."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.special import SpecialPoint, slopes
+from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+
+AMPLITUDE = 1e-3  # of a branch that is born, in the units of a walk
+
+
+def born(special: SpecialPoint, amplitude: float) -> Solution | None:
+    """The solution at this amplitude on the branch that is born at a pitchfork or flip.
+
+    The critical direction (dt, dD) has J(-1) (dt, dD) = 0; in the second half of the born orbit it has the sign -1
+    for the times, and -sigma for the impulses. The parameter is found with the solution.
+    """
+    parent = special.orbit._solution
+    name, value = next(iter(special.parameters.items()))
+    K, rests = parent.K, len(parent.rests)
+    size = 2 * K + rests
+    J = parent.equations.linearised(-1, parent.sides, parent.u, parent.motion)[:size, :size]
+    twice = doubled(parent)
+    walk = Walk(twice, name, max(abs(value), 1e-3))
+    scale = np.concatenate([walk.scale[:K], walk.scale[2 * K : 3 * K], walk.scale[4 * K : 4 * K + rests]])
+    critical = np.linalg.svd(J * scale)[2][-1]
+    dt, dD, de = critical[:K], critical[K : 2 * K], critical[2 * K :]
+    normal = np.zeros(len(walk.scale))
+    normal[: 2 * size] = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])
+    normal /= np.linalg.norm(normal)
+    guess = np.append(twice.u, value) / walk.scale + amplitude * normal
+    point = walk.correct(guess, normal, normal)
+    return point and point.solution
+
+
+def doubled(parent: Solution) -> Solution:
+    """The same orbit over the period of the branch that is born."""
+    if parent.sigma == -1:
+        return parent.whole()
+    t, D, P, K = parent.times, parent.jumps, parent.equations.P, parent.K
+    tail = [parent.ends, parent.ends + P] if parent.rests else [parent.u[2 * K :]]
+    u = np.concatenate([t, t + P, D, D, *tail])
+    rests = (*parent.rests, *(k + K for k in parent.rests))
+    return Solution(parent.family, 1, 2 * parent.halves, parent.sides * 2, u, 0.0, rests)
+
+
+def criticality(special: SpecialPoint) -> str | None:
+    """ "super" or "sub" of a flip or pitchfork, from the side on which its branch leaves, at two amplitudes.
+
+    The parameter moves by the square of the amplitude; where it does not, the point is (nearly) degenerate: None.
+    """
+    name, value = next(iter(special.parameters.items()))
+    found = [born(special, amplitude) for amplitude in (AMPLITUDE, AMPLITUDE / 2)]
+    if None in found:
+        return None
+    moved = [solution.family.numbers[name] - value for solution in found]
+    if not moved[0] * moved[1] > 0 or not 3 < moved[0] / moved[1] < 5:
+        return None
+    step = math.copysign(max(abs(moved[0]), 1e-6 * abs(value)), moved[0])
+    parent = special.orbit._solution
+    slope = parent.family.derivative(name)
+    du = slopes(equations_for(parent, parent.family.linear, slope), parent)
+    family = parent.family.replace(**{name: value + step})
+    beside = replace(parent, family=family, u=parent.u + step * du).corrected()
+    if beside is None:
+        return None
+    critical = beside.multipliers[np.argmin(np.abs(beside.multipliers + 1))]
+    return "super" if abs(critical) > 1 else "sub"

@@ -1,0 +1,62 @@
+"""The points of a branch as a Dataset."""
+
+import numpy as np
+import xarray as xr
+
+from vibro_sweep.analysis.branches.track import Rows
+from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.periodic.impulse_equations import multipliers_of
+from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.model.linear import Linear, forcing_period
+
+
+def dataset(walk: Walk, frame: tuple[int, int], rows: Rows) -> xr.Dataset:
+    """Over `point`, in order: the parameter; `multiplier_re`, `multiplier_im` (multiplier) of the whole period;
+    `unstable`, the number of multipliers outside the unit circle; the state x1 v1 .. at t = 0; `margin`;
+    `min_impact_speed`; `residual`, the largest jump of the gap between two flights, relative to its size; `impact_t`,
+    `impact_side` and `impact_v` (impact) as `orbit.impacts` of the first point, from there on continuous: times are not
+    wrapped.
+    """
+    start = walk.start
+    oscillators = [walk.family.replace(**{walk.name: p}).linear for p in rows.p.tolist()]
+    T = np.array([[forcing_period(q)] for q in oscillators])
+    multipliers = _multipliers(walk.start, oscillators, rows)
+    states, t, v, sides = rows.state, rows.t, rows.motion[:, :, 0], np.array(start.sides, int)
+    half = T / 2 * start.halves
+    if start.sigma == -1:
+        t, v, sides = np.hstack([t, t + half]), np.hstack([v, -v]), np.append(sides, -sides)
+    first, shift = frame
+    length = half * (2 if start.sigma == -1 else 1)
+    t = np.hstack([t[:, first:], t[:, :first] + length]) - shift * T
+    v, sides = np.roll(v, -first, axis=1), np.roll(sides, -first)
+    names = [f"{kind}{i + 1}" for i in range(states.shape[1] // 2) for kind in "xv"]
+    variables = {
+        walk.name: ("point", rows.p),
+        "multiplier_re": (("point", "multiplier"), multipliers.real),
+        "multiplier_im": (("point", "multiplier"), multipliers.imag),
+        "unstable": ("point", np.count_nonzero(np.abs(multipliers) > 1, axis=1)),
+        **{name: ("point", states[:, i]) for i, name in enumerate(names)},
+        "margin": ("point", rows.margin),
+        "min_impact_speed": ("point", np.abs(v).min(axis=1, initial=np.inf)),
+        "residual": ("point", rows.residual),
+        "impact_t": (("point", "impact"), t),
+        "impact_side": (("point", "impact"), np.tile(sides, (len(rows.p), 1))),
+        "impact_v": (("point", "impact"), v),
+    }
+    return xr.Dataset(variables)
+
+
+def _multipliers(start: Solution, oscillators: list[Linear], rows: Rows) -> np.ndarray:
+    """(points, 2N) of the whole period, by falling modulus, of a pair +im first."""
+    result = []
+    for q, t, D, ends, motion in zip(oscillators, rows.t, rows.D, rows.ends, rows.motion, strict=True):
+        if start.rests:
+            u = np.concatenate([t, D, ends])
+            result.append(equations_for(start, q).multipliers(start.sides, u, motion))
+            continue
+        contacts = np.column_stack([q.stop(start.sides), 1 + q.restitution(start.sides)])
+        P, u = forcing_period(q) / 2 * start.halves, np.concatenate([t, D])
+        result.append(multipliers_of(q, start.sigma, P, contacts, u, motion))
+    values = np.array(result) if start.sigma == 1 else np.array(result) ** 2
+    order = np.lexsort((-values.imag, -np.abs(values)), axis=-1)
+    return np.take_along_axis(values, order, axis=-1)

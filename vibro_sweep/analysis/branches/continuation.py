@@ -1,0 +1,132 @@
+"""`continue_orbit`: a branch of periodic orbits in one parameter, with its bifurcations, to where it ends.
+
+A branch has one itinerary. It ends where an impact appears or vanishes (graze), where a doubled or asymmetric orbit is
+born (flip, pitchfork), or at the end of the range. Of several events within a step the earliest counts: what follows
+the end of a branch is no motion any more.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+
+from vibro_sweep.analysis.branches.beginning import start_of_walk
+from vibro_sweep.analysis.branches.branch_points import dataset
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.branches.sticking import sticking_onset
+from vibro_sweep.analysis.branches.track import Rows, join
+from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.branches.way import Way
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.linear import family_of
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A branch, from the end that is reached towards smaller parameters first to the other one.
+
+    special : all special points in order, `begins` and `ends` among them. Beyond an end at which a chatter sequence
+        gains an impact follows the onset of sticking, where such grazes accumulate; it is the end itself where rounding
+        does not tell the two apart
+    closed : whether it comes back to itself; then both ends are the orbit it started from, of type "closed"
+    """
+
+    parameter: str
+    special: list[SpecialPoint]
+    begins: SpecialPoint
+    ends: SpecialPoint
+    closed: bool
+    _walk: Walk
+    _frame: tuple[int, int]
+    _rows: Rows
+
+    @cached_property
+    def points(self) -> xr.Dataset:
+        """Dataset over `point`: the parameter, state at t = 0, multipliers, margin, impacts (docs of `dataset`)."""
+        return dataset(self._walk, self._frame, self._rows)
+
+
+def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], progress=None) -> Branch:
+    """Follow a periodic orbit both ways in `parameter`, a number of its system, within bounds = (lo, hi).
+
+    `progress(points, value)` is called now and then with the points so far, of this way, and where they are.
+
+    A branch that comes to where the number is not allowed any more ends there, with the type "limit".
+
+    Raises ValueError for an orbit that is not ok, a name that is no number of the system, bounds that do not hold its
+    value, or the restitution of a stop on which the mass rests.
+    """
+    check_type("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit, as `periodic_orbit` returns it")
+    if not orbit.ok:
+        raise ValueError(f"orbit: its status is {orbit.status!r}; only an orbit that is ok can be followed")
+    family = family_of(orbit.system)
+    names = [name for name, value in family.numbers.items() if isinstance(value, (int, float))]
+    if parameter not in names:
+        raise ValueError(f"parameter: {parameter!r} is not allowed; it must be one of {', '.join(names)}")
+    solution = orbit._solution
+    resting = np.array(solution.sides)[list(solution.rests)]
+    if solution.rests and np.any(family.derivative(parameter).restitution(resting)):
+        raise ValueError(
+            f"parameter: {parameter!r} is not allowed: an orbit that rests after one impact does so at R = 0"
+        )
+    lo, hi = _checked(bounds, family.numbers[parameter])
+    lo, hi = (_allowed(orbit.system, parameter, bound) for bound in (lo, hi))
+    walk = start_of_walk(solution, parameter, lo, hi)
+    down = Way(walk, -1.0, lo, hi, orbit.system, progress)
+    down.go()
+    if down.closed:
+        closed = down.special
+        return Branch(parameter, closed, closed[-1], closed[-1], True, walk, down.frame, down.points)
+    up = Way(walk, 1.0, lo, hi, orbit.system, progress)
+    up.go()
+    (begins, before), (ends, after) = (_accumulation(way.special[-1], lo, hi) for way in (down, up))
+    special = [*before, begins, *reversed(down.special[:-1]), *up.special[:-1], ends, *after]
+    backwards = Rows(*(values[:0:-1] for values in down.points))
+    rows = join([backwards, up.points])
+    return Branch(parameter, special, begins, ends, False, walk, down.frame, rows)
+
+
+def _checked(bounds, value: float) -> tuple[float, float]:
+    try:
+        lo, hi = map(float, bounds)
+    except (TypeError, ValueError):
+        lo = hi = math.nan
+    if not (math.isfinite(lo) and math.isfinite(hi) and lo < hi and lo <= value <= hi):
+        raise ValueError(f"bounds: {bounds!r} is not allowed; it must be (lo, hi), lo < hi, around {value!r}")
+    return lo, hi
+
+
+def _allowed(system, name: str, bound: float) -> float:
+    """`bound`, or the last value before it that the system accepts."""
+
+    def accepted(value: float) -> bool:
+        try:
+            system.replace(**{name: value})
+        except ValueError:
+            return False
+        return True
+
+    if accepted(bound):
+        return bound
+    inside = family_of(system).numbers[name]
+    if bound < 0 < inside and accepted(0.0):
+        return 0.0
+    outside = bound
+    while (middle := (inside + outside) / 2) not in (inside, outside):
+        inside, outside = (middle, outside) if accepted(middle) else (inside, middle)
+    return inside
+
+
+def _accumulation(end: SpecialPoint, lo: float, hi: float) -> tuple[SpecialPoint, list[SpecialPoint]]:
+    """The end of a way, and the onset of sticking beyond it, if there is one within the bounds."""
+    onset = sticking_onset(end)
+    if onset is None:
+        return end, []
+    ((name, value),) = onset.parameters.items()
+    if not lo <= value <= hi:
+        return end, []
+    apart = abs(value - end.parameters[name]) > end.error + onset.error
+    return (end, [onset]) if apart else (onset, [])

@@ -1,0 +1,144 @@
+"""A branch as plain arrays, with which it travels between processes and lies in files; and its orbits from these.
+
+Arrays of a branch with n points, K impacts, s special points and N masses, by the names that they have in files:
+
+    branch_period, branch_symmetric, branch_closed, branch_origin (the point that it was followed from), branch_begins,
+    branch_ends (indices among the special points)    ()
+    value, margin, min_impact_speed, residual, unstable, status    (n,), value: of the parameter
+    state, multiplier_re, multiplier_im    (n, 2N)
+    impact_t, impact_v, impact_t_off    (n, K): as `orbit.impacts`; t_off is the end of the rest after an impact, or NaN
+    impact_side    (K,)
+    special_type, special_value, special_point, special_stop, special_kind, special_impact, special_direction,
+    special_criticality, special_error    (s,), in order along the branch; a sticking onset lies beyond an end
+
+Words are codes of model/bifurcations.py. An index that does not exist is -1.
+"""
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.continuation import Branch
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.model.bifurcations import CODES, CRITICALITIES, KINDS, TYPES
+from vibro_sweep.model.linear import family_of, forcing_period
+from vibro_sweep.model.state import state
+
+Flat = dict[str, np.ndarray]
+
+
+def flatten(branch: Branch, origin: float) -> Flat:
+    """The arrays of a branch; origin: the parameter of the orbit that it was followed from."""
+    data, start = branch.points, branch._walk.start
+    p = data[branch.parameter].values
+    t = data.impact_t.values
+    words = state(data.sizes["multiplier"] // 2)
+    result = {
+        "branch_period": np.int32(start.halves if start.sigma == -1 else start.halves // 2),
+        "branch_symmetric": np.int8(start.sigma == -1),
+        "branch_closed": np.int8(branch.closed),
+        "branch_origin": np.int32(np.argmin(np.abs(p - origin))),
+        "branch_begins": np.int32(branch.special.index(branch.begins)),
+        "branch_ends": np.int32(len(branch.special) - 1 - branch.special[::-1].index(branch.ends)),
+        "value": p,
+        "state": np.stack([data[name].values for name in words], axis=-1),
+        **{name: data[name].values for name in ("multiplier_re", "multiplier_im", "margin", "min_impact_speed")},
+        "residual": data.residual.values,
+        "unstable": data.unstable.values.astype(np.int32),
+        "status": np.zeros(len(p), np.int8),
+        "impact_t": t,
+        "impact_v": data.impact_v.values,
+        "impact_t_off": _rest_ends(branch, t),
+        "impact_side": data.impact_side.values[0].astype(np.int8),
+    }
+    return {name: np.asarray(values) for name, values in (result | _special_points(branch, p)).items()}
+
+
+def _rest_ends(branch: Branch, t: np.ndarray) -> np.ndarray:
+    """(n, K) ends of rests beside the impacts `t` in their canonical order, from those of the branch's own frame."""
+    start, rows = branch._walk.start, branch._rows
+    ends = np.full(t.shape, np.nan)
+    K, (first, _) = start.K, branch._frame
+    for j, k in enumerate(start.rests):
+        lengths = rows.ends[:, j] - rows.t[:, k]
+        for place in range(k, t.shape[1], K):
+            at = (place - first) % t.shape[1]
+            ends[:, at] = t[:, at] + lengths
+    return ends
+
+
+def _special_points(branch: Branch, p: np.ndarray) -> Flat:
+    values = np.array([special.parameters[branch.parameter] for special in branch.special])
+    points, least = [], 0
+    for value in values:  # special points are among the points, in the same order; a sticking onset is no orbit of it
+        there = np.flatnonzero(p[least:] == value)
+        least += int(there[0]) if len(there) else 0
+        points.append(least if len(there) else -1)
+    codes = {
+        "special_type": [CODES[one.type] for one in branch.special],
+        "special_stop": [one.stop or 0 for one in branch.special],
+        "special_kind": [KINDS.index((one.kind or "none").replace(" ", "_")) for one in branch.special],
+        "special_direction": [one.direction or 0 for one in branch.special],
+        "special_criticality": [CRITICALITIES.index(one.criticality or "none") for one in branch.special],
+    }
+    return {
+        **{name: np.array(values, np.int8) for name, values in codes.items()},
+        "special_value": values,
+        "special_point": np.array(points, np.int32),
+        "special_impact": np.array([-1 if one.impact is None else one.impact for one in branch.special], np.int32),
+        "special_error": np.array([one.error for one in branch.special]),
+    }
+
+
+def solution_of(flat: Flat, system, t, v, t_off) -> Solution:
+    """The solution with these impacts (K,) of a branch, for the oscillator `system`; not corrected."""
+    family, symmetric = family_of(system), bool(flat["branch_symmetric"])
+    period, sides = int(flat["branch_period"]), flat["impact_side"]
+    K = len(sides) // 2 if symmetric else len(sides)
+    sides = tuple(map(int, sides[:K]))
+    rests = tuple(np.flatnonzero(np.isfinite(t_off[:K])).tolist())
+    D = -(1 + family.linear.restitution(sides)) * v[:K]
+    u = np.concatenate([t[:K], D, t_off[list(rests)]])
+    sigma, halves = (-1, period) if symmetric else (1, 2 * period)
+    found = Solution(family, sigma, halves, sides, u, 0.0, rests)
+    if K and not rests and found.equations.free:
+        u = np.append(u, 0.0)
+        u[-1] = -np.mean(found.equations.evaluate(sides, u)[0][:K])
+        found = Solution(family, sigma, halves, sides, u, 0.0, rests)
+    return found
+
+
+def orbit_at(flat: Flat, point: int, system) -> PeriodicOrbit:
+    """The orbit at a point of a branch; `system` has the parameter's value there."""
+    solution = solution_of(flat, system, *(flat[name][point] for name in ("impact_t", "impact_v", "impact_t_off")))
+    return orbit_of(system, solution)
+
+
+def special_point(flat: Flat, index: int, parameter: str, system) -> SpecialPoint:
+    """A special point of a branch; `system` is one of its oscillators."""
+    kind, value = TYPES[flat["special_type"][index]].name, float(flat["special_value"][index])
+    there, point = system.replace(**{parameter: value}), int(flat["special_point"][index])
+    orbit = PeriodicOrbit(there, "sticking") if point < 0 else orbit_at(flat, point, there)
+    if kind in ("flip", "pitchfork") and index in (flat["branch_begins"], flat["branch_ends"]):  # a birth
+        orbit = orbit_of(orbit.system, orbit._solution.reduced())
+    impact, graze = int(flat["special_impact"][index]), kind == "graze"
+    multipliers = orbit.multipliers if point < 0 else orbit._solution.multipliers
+    return SpecialPoint(
+        kind, {parameter: value}, orbit, multipliers, float(flat["special_error"][index]),
+        stop=int(flat["special_stop"][index]) if graze else None,
+        kind=KINDS[flat["special_kind"][index]].replace("_", " ") if graze else None,
+        impact=impact if impact >= 0 else None,
+        direction=int(flat["special_direction"][index]) if graze else None,
+        criticality=CRITICALITIES[c] if (c := int(flat["special_criticality"][index])) else None,
+    )  # fmt: skip
+
+
+def section_states(orbit: PeriodicOrbit) -> np.ndarray:
+    """(m, 2N) at t = 0 mod T, of an orbit and, behind these, of its mirror image where that is another one."""
+    T = forcing_period(orbit._solution.family.linear)
+    times, mirrored = T * np.arange(orbit.period), np.zeros(0)
+    if orbit._solution.family.linear.symmetric and not orbit.symmetric:  # x(t) -> -x(t + T/2)
+        mirrored = times + T / 2
+    states = orbit.sample(np.append(times, mirrored))
+    states[orbit.period :] *= -1
+    return states

@@ -1,0 +1,109 @@
+"""Special points of a branch: what they are, and what happens at a graze."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.impulse_equations import Equations
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+
+
+@dataclass(frozen=True, eq=False)
+class SpecialPoint:
+    """A bifurcation on a branch, or the branch's end.
+
+    type : fold, flip, pitchfork, neimark_sacker, graze, sticking, closed, limit or failed
+    parameters : the number that was followed, by its name
+    multipliers : of the map that the type belongs to: the half map with the mirror where the orbit is symmetric
+    error : own estimate of the parameter's error: two locations from the two sides differ by less
+    stop : of a graze the stop, +1 or -1
+    kind : of a graze "persistence" or "nonsmooth fold"
+    impact : of a graze the index, in `orbit.impacts`, of the impact that vanishes (of a symmetric orbit the one in its
+        first half), or None: one appears
+    direction : of a graze +1 where the orbit without that impact exists at a larger parameter, -1 at a smaller one
+    criticality : of a flip or pitchfork "super": the born orbit exists where its parent has the multiplier outside the
+        unit circle; "sub": where it is inside. Of a neimark_sacker point "super": the circle that is born attracts the
+        orbits near it in its plane. None where it cannot be told, and for other types
+    """
+
+    type: str
+    parameters: dict[str, float]
+    orbit: PeriodicOrbit
+    multipliers: np.ndarray
+    error: float = np.nan
+    stop: int | None = None
+    kind: str | None = None
+    impact: int | None = None
+    direction: int | None = None
+    criticality: str | None = None
+
+
+@dataclass(frozen=True)
+class Graze:
+    """The same motion as an orbit without and with the impact that has zero speed."""
+
+    without: Solution
+    touching: Solution
+    index: int  # of that impact in `touching`
+    distance_slope: float  # d(distance from the stop)/dp along the orbits without it
+    speed_slope: float  # d(impact speed)/dp along the orbits with it
+
+    @property
+    def kind(self) -> str:
+        """Whether the orbits with the impact go on where those without it end (orbits.md)."""
+        return "persistence" if self.distance_slope * self.speed_slope < 0 else "nonsmooth fold"
+
+
+def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
+    """Unfold a graze: `impact` vanishes, or (None) the turning point nearest to its stop becomes an impact."""
+    rests = np.array(solution.rests, int)
+    if impact is None:
+        without, (touching, index) = solution, inserted(solution)
+        side = touching.sides[index]
+    else:
+        index, side = impact, solution.sides[impact]
+        sides = solution.sides[:impact] + solution.sides[impact + 1 :]
+        u = np.delete(solution.u, [impact, solution.K + impact])
+        without, touching = _with(solution, sides, u, rests - (rests > impact)), solution
+    q, slope = solution.family.linear, solution.family.derivative(name)
+    e = equations_for(touching, q, slope)
+    du = slopes(e, touching)
+    speed_slope = -side * du[touching.K + index] / (1 + q.restitution([side])[0])
+    # At D = 0 the first equation of that impact is the gap less the stop, as the others leave it: take its change
+    # along the orbits without the impact, whose own times and impulses move by their own slopes.
+    held = np.zeros(touching.size)
+    keep = np.delete(np.arange(touching.size), [index, touching.K + index])
+    if without.K or e.free:
+        held[keep] = slopes(equations_for(without, q, slope), without)
+    _, J, Fp, _ = e.evaluate(touching.sides, touching.u)
+    distance_slope = -side * float((J[index] @ held) + Fp[index])
+    return Graze(without, touching, index, float(distance_slope), float(speed_slope))
+
+
+def inserted(solution: Solution) -> tuple[Solution, int]:
+    """The same motion with the turning point nearest to its stop as an impact without speed, and its index."""
+    K, rests = solution.K, np.array(solution.rests, int)
+    _, time, side = solution.nearest
+    period = solution.equations.P
+    index = int(np.searchsorted(solution.times, time))
+    if K == 0 and time >= period:  # found where the period begins again, with the mirror for sigma = -1
+        time, side = time - period, solution.sigma * side
+    u = np.insert(solution.u, [index, K + index], [time, 0.0])
+    sides = (*solution.sides[:index], side, *solution.sides[index:])
+    if K == 0 and solution.family.linear.symmetric is False and solution.equations.free:
+        u = np.append(u, 0.0)
+    return _with(solution, sides, u, rests + (rests >= index)), index
+
+
+def _with(solution: Solution, sides, u, rests) -> Solution:
+    rests = tuple(map(int, rests))
+    return Solution(solution.family, solution.sigma, solution.halves, tuple(sides), u, 0.0, rests)
+
+
+def slopes(e: Equations, solution: Solution) -> np.ndarray:
+    """du/dp of an orbit that is not at a fold."""
+    if solution.size == 0:
+        return np.zeros(0)
+    _, J, Fp, _ = e.evaluate(solution.sides, solution.u)
+    return -np.linalg.solve(J, Fp)

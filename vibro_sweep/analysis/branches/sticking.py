@@ -1,0 +1,278 @@
+"""The sticking onset: where impacts accumulate, and the orbits beyond it rest on a stop.
+
+Towards the onset impacts appear at the end of a chatter sequence, one at a time, at grazes that accumulate like R^K.
+At the onset itself the sequence is infinite, the acceleration vanishes at its end, and its flights shrink by
+phi = 1 - f, (1 - f)^2 (3 - f) = R (3 - 2f), its impulses by phi^2 (orbits.md). So the first K impacts are written out,
+the rest is one impulse of their sum at their centre, and the parameter is found from
+
+    g''(t_inf) = 0,   t_inf = t_K + (t_K - t_{K-1}) phi/(1 - phi)
+
+with an error that falls geometrically in K, and so is extrapolated.
+"""
+
+import math
+
+import numpy as np
+from scipy.optimize import brentq
+
+from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at
+from vibro_sweep.analysis.periodic.impulse_equations import Equations
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses.green import cells_needed, space
+from vibro_sweep.engine.impulses.tables import ORDER, REAL, exponential, nodes, power, solve_refined, taylor_rows
+from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.linear import Linear, forcing_period
+
+SHORTEST_CHATTER = 7  # impacts on one stop, the one that appears among them
+FIRST_IMPACTS = 24  # of the sequence, from which on it is closed by its own shape
+ENOUGH = 40  # of the sequence, at most, to begin with
+UNLIKE = 8  # impacts at the end of a sequence that grazes, which are unlike those of the onset
+MOST_IMPACTS = 400
+GROWTH = 4  # impacts added between two closed sequences
+STEPS = 25
+
+
+def shrinking(R: float) -> float:
+    """phi = 1 - f: by what the flights of a chatter sequence shrink at its onset, for 0 < R < 1."""
+    return 1 - brentq(lambda f: (1 - f) ** 2 * (3 - f) - R * (3 - 2 * f), 0.0, 1.0, xtol=1e-16)
+
+
+def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
+    """The sticking onset beyond a graze at which an impact appears at the end of a chatter sequence.
+
+    A special point of type "sticking"; its orbit has no finite list of impacts, and the status "sticking". None where
+    there is no such sequence, or the grazes do not accumulate.
+    """
+    check_type("special", special, SpecialPoint, "a special point of a branch")
+    if special.type != "graze" or special.impact is not None:
+        return None
+    name, value = next(iter(special.parameters.items()))
+    graze = graze_at(special.orbit._solution, name, None)
+    solution = rotated(graze.touching, graze.index + 1)  # the sequence is the end of the list now
+    R = float(solution.family.linear.restitution(solution.sides[-1:])[0])
+    if not 0 < R < 1 or not _chatters(solution) or solution.equations.free:
+        return None
+    phi = shrinking(R)
+    least = max(FIRST_IMPACTS, _length(solution) + 2)
+    onset = value
+    while _length(solution) < least:
+        found = _next_graze(solution, name, value, phi)
+        if found is None:
+            return None
+        (solution, value), moved = found, found[1] - value
+        onset = value + moved * R / (1 - R)
+    value = onset
+    surplus = max(UNLIKE, _length(solution) - ENOUGH)
+    u, sides = _drop(solution, surplus), solution.sides[:-surplus]
+    solution = Solution(solution.family, solution.sigma, solution.halves, sides, u)
+    values, limits, moved = [], [], math.inf
+    while solution.K < MOST_IMPACTS:
+        found = _closed(solution, name, value, phi)
+        if found is None:
+            return None
+        solution, value = found
+        values.append(value)
+        if len(values) >= 3:
+            limits.append(_limit(*values[-3:]))
+        if len(limits) >= 2:
+            before, moved = moved, abs(limits[-1] - limits[-2])
+            if before < 1e-8 * abs(value) and moved >= before:  # rounding: the one before was the best
+                onset, error = limits[-2], 4 * before + 16 * np.finfo(float).eps * abs(value)
+                orbit = PeriodicOrbit(special.orbit.system.replace(**{name: onset}), "sticking")
+                none = np.empty(0, complex)
+                return SpecialPoint("sticking", {name: onset}, orbit, none, float(error), special.stop)
+        solution = _longer(solution, phi, GROWTH)
+    return None
+
+
+def _limit(a: float, b: float, c: float) -> float:
+    """Of a sequence that converges geometrically (Aitken)."""
+    ratio = (c - b) / (b - a) if b != a else 0.0
+    return c + (c - b) * ratio / (1 - ratio) if abs(ratio) < 0.9 else c
+
+
+def rotated(solution: Solution, count: int) -> Solution:
+    """The same orbit, counted from `count` impacts later."""
+    K, P, sigma = solution.K, solution.equations.P, solution.sigma
+    t = np.concatenate([solution.times[count:], solution.times[:count] + P])
+    D = np.concatenate([solution.jumps[count:], sigma * solution.jumps[:count]])
+    sides = (*solution.sides[count:], *(sigma * side for side in solution.sides[:count]))
+    return Solution(solution.family, sigma, solution.halves, sides, np.concatenate([t, D, solution.u[2 * K :]]))
+
+
+def _length(solution: Solution) -> int:
+    """Impacts of the sequence at the end: on one stop."""
+    sides = solution.sides
+    other = [i for i, side in enumerate(sides) if side != sides[-1]]
+    return len(sides) - (other[-1] + 1 if other else 0)
+
+
+def _chatters(solution: Solution) -> bool:
+    """Whether the last impacts are on one stop, with falling flights but for the last three."""
+    times = solution.times[-SHORTEST_CHATTER:]
+    return _length(solution) >= SHORTEST_CHATTER and bool(np.all(np.diff(times[:-3], 2) < 0))
+
+
+def _drop(solution: Solution, count: int) -> np.ndarray:
+    """Its unknowns without the last impacts."""
+    K = solution.K
+    return np.concatenate([solution.times[: K - count], solution.jumps[: K - count], solution.u[2 * K :]])
+
+
+def _longer(solution: Solution, phi: float, count: int) -> Solution:
+    """With impacts more at the end, each smaller by the shape of the sequence."""
+    t, D, K = solution.times, solution.jumps, solution.K
+    powers = phi ** np.arange(1, count + 1)
+    times = np.append(t, t[-1] + (t[-1] - t[-2]) * np.cumsum(powers))
+    u = np.concatenate([times, D, D[-1] * powers**2, solution.u[2 * K :]])
+    sides = solution.sides + solution.sides[-1:] * count
+    return Solution(solution.family, solution.sigma, solution.halves, sides, u)
+
+
+def _next_graze(solution: Solution, name: str, value: float, phi: float):
+    """(solution, parameter) with one impact more at the end, whose impulse is the one that vanishes now."""
+    K, t, D = solution.K, solution.times, solution.jumps
+    # the end of the sequence repeats itself on the next smaller scale
+    n = SHORTEST_CHATTER - 2
+    times = np.append(t[:-n], t[-n - 1] + phi * np.cumsum(np.diff(t[-n - 2 :])))
+    u = np.concatenate([times, D[:-n], phi**2 * D[-n - 1 : -1], [0.0], solution.u[2 * K :]])
+    sides = (*solution.sides, solution.sides[-1])
+    held = 2 * K + 1  # the impulse that stays 0: its place among the unknowns is the parameter's
+
+    def system(u, value):
+        e = _equations(solution, name, value)
+        F, J, Fp, _ = e.evaluate(sides, u)
+        J[:, held] = Fp
+        step = np.linalg.solve(J, F)
+        moved, step[held] = step[held], 0.0
+        return step, moved
+
+    found = _newton(system, u, value, K + 1)
+    return found and (_at(solution, name, found[1], sides, found[0]), found[1])
+
+
+def _closed(solution: Solution, name: str, value: float, phi: float):
+    """(solution, parameter) where the sequence goes on for ever in its own shape."""
+    K, sides = solution.K, (*solution.sides, solution.sides[-1], solution.sides[-1])
+    rest = phi / (1 - phi)  # of the sequence's time, in units of the last flight
+    centre = rest * (1 - phi * (1 - phi**2) / (1 - phi**3))
+    weight = phi**2 / (1 - phi**2)  # of its impulses, in units of the last
+
+    def with_rest(u):
+        """The impacts written out, the sum of the rest, and a probe of the acceleration at the end."""
+        t, D = u[:K], u[K : 2 * K]
+        flight = t[-1] - t[-2]
+        times = np.append(t, [t[-1] + centre * flight, t[-1] + rest * flight])
+        return np.concatenate([times, D, [weight * D[-1], 0.0], u[2 * K :]])
+
+    def reduced(matrix):
+        """Columns of all impacts as columns of those written out: chain rule."""
+        n = K + 2
+        t, D = matrix[:, :K].copy(), matrix[:, n : n + K].copy()
+        for column, share in ((matrix[:, K], centre), (matrix[:, K + 1], rest)):
+            t[:, -1] += (1 + share) * column
+            t[:, -2] -= share * column
+        D[:, -1] += weight * matrix[:, n + K]
+        return np.hstack([t, D, matrix[:, 2 * n :]])
+
+    def system(u, value):
+        e = _equations(solution, name, value)
+        full = with_rest(u)
+        F, J, Fp, motion = e.evaluate(sides, full)
+        F[: 2 * K + 4], acceleration = precise(e, sides, full)
+        n, h = K + 2, 1e-6 * max(abs(value), 1e-3)
+        kept = [*range(K), *range(n, n + K), *range(2 * n, len(F))]
+        beside = [_equations(solution, name, value + d).evaluate(sides, full)[3][-1, 1] for d in (h, -h)]
+        row = reduced(_acceleration_slopes(e, full, n, motion[-1, 2])[None])[0]
+        matrix = np.vstack(
+            [np.column_stack([reduced(J[kept]), Fp[kept]]), np.append(row, (beside[0] - beside[1]) / 2 / h)]
+        )
+        step = np.linalg.solve(matrix, np.append(F[kept], acceleration))
+        return step[:-1], step[-1]
+
+    found = _newton(system, solution.u, value, K)
+    return found and (_at(solution, name, found[1], solution.sides, found[0]), found[1])
+
+
+def extended_table(q: Linear, sigma: int, halves: int) -> np.ndarray:
+    """The Taylor coefficients of gamma_sigma, as green.py builds them, in extended precision."""
+    s, cells = space(q), cells_needed(q) * halves
+    E = exponential(s.A.astype(REAL), REAL(forcing_period(q) / 2 * halves) / cells)
+    matrix = np.eye(len(s.e_g), dtype=REAL) - REAL(sigma) * power(E, cells)
+    start = solve_refined(matrix, s.e_v.astype(REAL))
+    return nodes(E, start, cells) @ taylor_rows(s.A.astype(REAL), s.e_g.astype(REAL)).T
+
+
+def precise(e: Equations, sides, u) -> tuple[np.ndarray, float]:
+    """The residual (2K,) of the equations, and g'' before the last impact, summed in extended precision.
+
+    In double precision the times at the end of a sequence, where speeds are small, would be known to rounding over
+    speed only, and the onset to 1e-11.
+    """
+    K = len(sides)
+    t, D = u[:K].astype(REAL), u[K : 2 * K].astype(REAL)
+    table = extended_table(e.q, e.sigma, e.halves)
+    width = REAL(e.P) / len(table)
+    delay = t[:, None] - t
+    before = np.arange(K)[:, None] < np.arange(K)
+    s = delay + np.where(before, width * len(table), REAL(0))
+    cell = np.clip((s / width).astype(int), 0, len(table) - 1)
+    at, c = s - cell * width, table[cell]
+    sums = []
+    for order in range(3):
+        value = np.zeros_like(at)
+        for n in range(ORDER, order - 1, -1):
+            value = value * at + math.perm(n, order) * c[..., n]
+        value = value - np.diag(np.full(K, REAL(e.train.jumps[order])))
+        sums.append((value * np.where(before, REAL(e.sigma), REAL(1))) @ D)
+    q, angle = e.steady, REAL(e.steady.omega) * t
+    cos, sin = np.cos(angle), np.sin(angle)
+    sums[0] += q.mean + q.real * cos - q.imag * sin
+    sums[1] -= q.omega * (q.real * sin + q.imag * cos)
+    sums[2] -= REAL(q.omega) ** 2 * (q.real * cos - q.imag * sin)
+    contacts = e.contacts(sides)
+    F = np.concatenate([sums[0] - contacts[:, 0], D + contacts[:, 1] * sums[1]])
+    return F.astype(float), float(sums[2][-1])
+
+
+def _acceleration_slopes(e: Equations, u, n: int, jerk: float) -> np.ndarray:
+    """Derivatives of g'' before the last of n impacts, whose own impulse is 0, by all unknowns."""
+    result = np.zeros(len(u))
+    t, D, train = u[:n], u[n : 2 * n], e.train
+    for k in range(n - 1):
+        s = t[-1] - t[k]
+        cell = min(int(s / train.width), len(train.coefficients) - 1)
+        second = np.polynomial.polynomial.polyder(train.coefficients[cell], 2)
+        at = s - cell * train.width
+        result[n + k] = np.polynomial.polynomial.polyval(at, second)
+        result[k] = -D[k] * np.polynomial.polynomial.polyval(at, np.polynomial.polynomial.polyder(second))
+    result[n - 1] = jerk
+    return result
+
+
+def _equations(solution: Solution, name: str, value: float) -> Equations:
+    family = solution.family.replace(**{name: value})
+    return Equations(family.linear, solution.sigma, solution.halves, family.derivative(name))
+
+
+def _at(solution: Solution, name: str, value: float, sides, u) -> Solution:
+    return Solution(solution.family.replace(**{name: value}), solution.sigma, solution.halves, tuple(sides), u)
+
+
+def _newton(system, u, value: float, count: int):
+    """(u, value) by Newton's method until the parameter stands still; flights may shrink to a third in a step."""
+    change = math.inf
+    for _ in range(STEPS):
+        try:
+            step, moved = system(u, value)
+        except (np.linalg.LinAlgError, ValueError):
+            return None
+        longest = np.abs(np.diff(step[:count])).max()
+        reach = 0.6 * np.min(np.diff(u[:count]) / np.maximum(np.abs(np.diff(step[:count])), 1e-300)) if longest else 1.0
+        share = min(1.0, reach)
+        u, value = u - share * step, value - share * moved
+        before, change = change, abs(moved)
+        if share == 1.0 and (change <= 1e-16 * abs(value) or (change < 1e-10 * abs(value) and change > 0.3 * before)):
+            return u, float(value)
+    return None

@@ -1,0 +1,85 @@
+"""`switch`: from a pitchfork, a flip or a graze to the orbits that branch off there."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.births import AMPLITUDE, born
+from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, slopes
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.model.arguments import check_type
+
+BESIDE = 1e-4  # relative distance of the parameter from a graze
+
+
+def switch(special: SpecialPoint) -> list[PeriodicOrbit]:
+    """Orbits just beyond a pitchfork (two mirror images), a flip (the doubled one) or a graze (with, or without, the
+    impact that has no speed there; at the graze of the free motion those that hit one stop or both).
+
+    Orbits that pass a stop are left out. Raises ValueError for a special point of another type.
+    """
+    check_type("special", special, SpecialPoint, "a special point of a branch")
+    if special.type in ("pitchfork", "flip"):
+        found = [born(special, sign * AMPLITUDE) for sign in ((1, -1) if special.type == "pitchfork" else (1,))]
+    elif special.type == "graze":
+        found = _beyond_graze(special)
+    else:
+        raise ValueError(f"type: {special.type!r} is not allowed; it must be pitchfork, flip or graze")
+    system = special.orbit.system
+    name = next(iter(special.parameters))
+    orbits = [
+        orbit_of(system.replace(**{name: solution.family.numbers[name]}), solution)
+        for solution in found
+        if solution is not None
+    ]
+    return [orbit for orbit in orbits if orbit.ok]
+
+
+def _beyond_graze(special: SpecialPoint) -> list[Solution | None]:
+    parent = special.orbit._solution
+    name = next(iter(special.parameters))
+    if parent.K:
+        index = None if special.impact is None else index_in(special)
+        return [_beside(parent, name, index)]
+    family = parent.family
+    result = [_beside(parent, name, None)]
+    if parent.sigma == -1:  # the motion touches both stops at once: orbits that hit one of them
+        one = _beside(Solution(family, 1, 2, (), np.empty(0)), name, None)
+        result += [one, one and mirrored(one)]
+    return result
+
+
+def index_in(special: SpecialPoint) -> int:
+    """Index in the solution of the impact of a graze, which `special` counts as `orbit.impacts` does."""
+    first, _ = special.orbit._canonical_frame
+    return (special.impact + first) % special.orbit._solution.K
+
+
+def _beside(solution: Solution, name: str, impact: int | None) -> Solution | None:
+    """The orbit with (without) the grazing impact, a little beside the graze on the side where it exists."""
+    graze = graze_at(solution, name, impact)
+    target = graze.touching if impact is None else graze.without
+    slope = graze.speed_slope if impact is None else graze.distance_slope
+    value = solution.family.numbers[name]
+    e = equations_for(target, solution.family.linear, solution.family.derivative(name))
+    du = slopes(e, target)
+    step = math.copysign(BESIDE * max(abs(value), 1e-3), slope)
+    for _ in range(20):
+        family = solution.family.replace(**{name: value + step})
+        guess = replace(target, family=family, u=target.u + step * du)
+        found = guess.corrected()
+        if found is not None and found.real and np.abs(found.u - guess.u).max(initial=0.0) < 0.1:
+            return found
+        step /= 2
+    return None
+
+
+def mirrored(solution: Solution) -> Solution:
+    """x -> -x, t -> t + T/2."""
+    shift = math.pi / solution.family.linear.omega
+    K = solution.K
+    u = np.concatenate([solution.times + shift, -solution.jumps, -solution.u[2 * K :]])
+    sides = tuple(-side for side in solution.sides)
+    return Solution(solution.family, solution.sigma, solution.halves, sides, u, solution.change)

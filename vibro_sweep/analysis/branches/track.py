@@ -1,0 +1,135 @@
+"""Compiled steps along a branch (engine/impulses/branch.py), from one place where something happens to the next."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.periodic.media import medium_of
+from vibro_sweep.engine.impulses import branch, places
+from vibro_sweep.engine.impulses.flights import contact_coordinates
+from vibro_sweep.engine.impulses.places import Place, Steps, new_place, new_record, new_work
+
+AT_ONCE = 1024  # points of one call
+
+
+class Rows(NamedTuple):
+    """Points of a branch."""
+
+    p: np.ndarray  # (points,)
+    t: np.ndarray  # (points, K)
+    D: np.ndarray  # (points, K)
+    ends: np.ndarray  # (points, rests)
+    motion: np.ndarray  # (points, K, 2): gap velocity and acceleration before each impact
+    margin: np.ndarray  # (points,)
+    residual: np.ndarray  # (points,)
+    state: np.ndarray  # (points, 2N): x1 v1 .. xN vN at t = 0
+
+
+def join(parts: list[Rows]) -> Rows:
+    return Rows(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+
+
+class Track:
+    """Steps one way along a branch from its first point."""
+
+    def __init__(self, first: Point, walk: Walk, bounds, origin: int, longest: float, shortest: float, straight: float):
+        self.walk, self.bounds, self.origin = walk, bounds, origin
+        K, n = walk.start.K, first.solution.states.shape[1] - 3
+        scale = walk.scale
+        self.steps = Steps(
+            float(scale[0]), float(scale[K]), float(scale[-1]), longest, shortest, straight, *map(float, bounds)
+        )
+        self.sides, self.sigma = np.array(walk.start.sides, float), float(walk.start.sigma)
+        self.a, self.b, self.first = (new_place(K, n) for _ in range(3))
+        self.work, self.record = new_work(K, n), new_record(AT_ONCE, K, n)
+        self.size = float(first.solution.size_of_gap)
+        self.medium = self._medium(first.p)
+
+    def _medium(self, p: float) -> np.ndarray | None:
+        known = self.walk.media  # both ways begin at the same place
+        if p not in known:
+            walk = self.walk
+            known[p] = medium_of(walk.family, walk.start.halves, walk.name, p, float(walk.scale[-1]))
+        return known[p]
+
+    def begin(self, first: Point, length: float) -> bool:
+        """Stand at the first point. False where compiled steps cannot start."""
+        if self.medium is None:
+            return False
+        K, a, scale = len(self.sides), self.a, self.walk.scale
+        u = first.x[:-1] * scale[:-1]
+        a.t[:], a.D[:], a.z[:] = u[:K], u[K : 2 * K], first.solution.states[:, :-3]
+        tangent = first.tangent * scale
+        a.tangent_t[:], a.tangent_jump[:] = tangent[:K], tangent[K : 2 * K]
+        a.numbers[places.P], a.numbers[places.TANGENT] = first.p, tangent[-1]
+        nothing = new_record(0, K, a.z.shape[1])  # no step is made
+        if self._walk(1, nothing, True)[0] == branch.NO_START:
+            return False
+        a.numbers[places.LENGTH] = length
+        for here, there in zip(a, self.first, strict=True):
+            there[...] = here
+        return True
+
+    def _walk(self, passed: int, record, begins: bool) -> tuple[int, int, int]:
+        """Reason, points recorded, corrections made."""
+        return branch.walk(
+            self.medium, self.sides, self.sigma, self.steps, self.size, float(self.origin), passed, self.first, self.a,
+            self.b, record, self.work, begins,
+        )  # fmt: skip
+
+    def record_steps(self, passed: int) -> tuple[int, int, int]:
+        """The compiled part of `run`: reason, points, corrections."""
+        return self._walk(passed, self.record, False)
+
+    def run(self, passed: int) -> tuple[int, Rows]:
+        """Steps until something happens, or `AT_ONCE` points: the reason and the points before the step.
+
+        NO_START: around the last point the oscillator is not to be had as polynomials of the parameter.
+        """
+        reason, count, _ = self.record_steps(passed)
+        if reason == branch.FAR:
+            self.medium = self._medium(float(self.a.numbers[places.P]))
+            if self.medium is None:
+                reason = branch.NO_START
+        r = self.record
+        numbers = r.numbers[:count].copy()
+        p = numbers[:, places.P]
+        state = self._masses(p, r.state[:count])
+        t, D, motion = (values[:count].copy() for values in (r.t, r.D, r.motion))
+        margin, residual = numbers[:, places.MARGIN], numbers[:, places.DEFECT_HERE] / self.size
+        rows = Rows(p, t, D, np.zeros((count, 0)), motion, margin, residual, state)
+        return reason, rows
+
+    def _masses(self, p: np.ndarray, states: np.ndarray) -> np.ndarray:
+        """x1 v1 .. xN vN from contact coordinates."""
+        N = states.shape[1] // 2
+        slope = self.walk.family.derivative(self.walk.name)
+        if np.any(slope.M) or np.any(slope.along):
+            values = [self.walk.family.replace(**{self.walk.name: value}).linear for value in p.tolist()]
+            inverse = np.array([contact_coordinates(q).inverse for q in values]).reshape(-1, N, N)
+        else:
+            inverse = contact_coordinates(self.walk.family.linear).inverse[None]
+        result = np.empty_like(states)
+        result[:, ::2] = np.einsum("pij,pj->pi", np.broadcast_to(inverse, (len(p), N, N)), states[:, :N])
+        result[:, 1::2] = np.einsum("pij,pj->pi", np.broadcast_to(inverse, (len(p), N, N)), states[:, N:])
+        return result
+
+    def accept(self) -> None:
+        """Go on from b."""
+        for here, there in zip(self.b, self.a, strict=True):
+            there[...] = here
+
+    def point(self, place: Place) -> Point | None:
+        """The same point, corrected with the walk's own equations."""
+        w, K = self.walk, len(self.sides)
+        u = np.concatenate([place.t, place.D])
+        tangent = np.concatenate([place.tangent_t, place.tangent_jump])
+        p = float(place.numbers[places.P])
+        if w.start.equations.free:
+            e = w.equations(p)
+            u, tangent = np.append(u, 0.0), np.append(tangent, 0.0)
+            u[-1] = -np.mean(e.evaluate(w.start.sides, u)[0][:K])
+        x = np.append(u, p) / w.scale
+        direction = np.append(tangent, place.numbers[places.TANGENT]) / w.scale
+        return w.correct(x, direction, direction)

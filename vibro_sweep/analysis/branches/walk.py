@@ -1,0 +1,179 @@
+"""Pseudo-arclength steps along a branch of periodic orbits, with exact derivatives by the unknowns and the parameter.
+
+A point of the branch is x = (t_1 .. t_K, D_1 .. D_K, (c), p). Distances are measured in units of 1/omega for times, of
+the fastest impulse for impulses, and of the parameter's range.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.impulse_equations import Equations, moves_stops_only
+from vibro_sweep.analysis.periodic.long_orbits import is_long, sign_and_log_det, solve_bordered
+from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.engine.impulses.equations import ROUNDING
+from vibro_sweep.engine.impulses.green import space
+
+MOST_CORRECTIONS = 12
+
+
+@dataclass(eq=False)
+class Point:
+    """A point of a branch; `x` in scaled units."""
+
+    walk: "Walk"
+    x: np.ndarray
+    equations: Equations
+    J: np.ndarray  # (n, n + 1), by scaled unknowns and parameter
+    motion: np.ndarray
+    change: float
+    corrections: int
+    direction: np.ndarray  # roughly forwards
+    held: float | None = None  # the parameter, where it is given
+
+    @property
+    def p(self) -> float:
+        return self.held if self.held is not None else float(self.x[-1] * self.walk.scale[-1])
+
+    def hold(self, value: float) -> None:
+        """The parameter is `value`, to the last bit: rounding may put it beyond what is allowed."""
+        self.held = value
+        self.__dict__.pop("solution", None)
+
+    @cached_property
+    def tangent(self) -> np.ndarray:
+        """Unit tangent of the branch, scaled units."""
+        n = len(self.x)
+        t = self.walk.solve(self.equations, self.x, self.J, self.motion, self.direction, np.zeros(n - 1), 1.0)
+        return t / np.linalg.norm(t)
+
+    @cached_property
+    def solution(self) -> Solution:
+        w = self.walk
+        u = self.x[:-1] * w.scale[:-1]
+        family = w.family.replace(**{w.name: self.p})
+        s = w.start
+        solution = Solution(family, s.sigma, s.halves, s.sides, u, self.change, s.rests)
+        solution.__dict__["equations"] = self.equations  # they are known
+        return solution
+
+    @property
+    def sensitivity(self) -> float:
+        """By how much the parameter moves, on the plane across the tangent, where all gaps at impacts are off by their
+        size."""
+        K = self.walk.start.K
+        axis = np.zeros(len(self.x))
+        axis[-1] = self.walk.scale[-1]
+        weights = np.linalg.solve(np.vstack([self.J, self.tangent]).T, axis)
+        return float(np.abs(weights[:K]).sum() * self.solution.size_of_gap)
+
+    @cached_property
+    def reflection(self) -> tuple[float, float]:
+        """Sign and logarithm of |det J(-1)|, zero at a flip (pitchfork)."""
+        w = self.walk
+        u, sides = self.x[:-1] * w.scale[:-1], w.start.sides
+        if is_long(self.equations, sides):
+            return sign_and_log_det(self.equations, sides, u, self.motion, -1)
+        sign, size = np.linalg.slogdet(self.equations.linearised(-1, sides, u, self.motion))
+        return float(sign), float(size)
+
+    @cached_property
+    def torus(self) -> float:
+        """prod_{i<j} (1 - mu_i mu_j): zero at a Neimark-Sacker point, and at a neutral saddle. 1 without losses."""
+        mu = self.solution.multipliers
+        if abs(abs(np.prod(mu)) - 1) < 1e-9:
+            return 1.0
+        i, j = np.triu_indices(len(mu), 1)
+        return float(np.prod(1 - mu[i] * mu[j]).real)
+
+    @cached_property
+    def releases(self) -> np.ndarray:
+        """(K,) acceleration away from the stop just after an impact with R = 0; infinite for other impacts."""
+        e, sides = self.equations, np.array(self.walk.start.sides, float)
+        s = space(e.q)
+        after = self.motion[:, 1] + self.solution.jumps * (s.e_g @ s.A @ (s.A @ s.e_v))
+        leaves = np.where(e.q.restitution(sides) == 0, -sides * after, np.inf)
+        leaves[list(self.walk.start.rests)] = np.inf
+        return leaves
+
+    @cached_property
+    def stays(self) -> float:
+        """The least of what makes a rest: its length, in 1/omega, and the acceleration into the stop; inf without."""
+        s, omega = self.solution, self.solution.family.linear.omega
+        if not s.rests:
+            return np.inf
+        lengths = (s.ends - s.times[list(s.rests)]) * omega
+        return float(min(lengths.min(), s.hold / (omega**2 * s.size_of_gap)))
+
+
+class Walk:
+    """A branch through `start` in the parameter `name`."""
+
+    def __init__(self, start: Solution, name: str, span: float):
+        self.start, self.name, self.family = start, name, start.family
+        self.media: dict[float, np.ndarray | None] = {}  # of compiled steps, by where they are centred
+        K, q = start.K, start.family.linear
+        speed = q.omega * start.size_of_gap
+        self.scale = np.ones(start.size + 1)
+        self.scale[:K], self.scale[K : 2 * K], self.scale[-1] = 1 / q.omega, speed, span
+        self.scale[2 * K : -1] = 1 / q.omega if start.rests else speed / q.omega
+        self._contact_only = not start.rests and moves_stops_only(self.family.derivative(name))
+
+    def equations(self, p: float) -> Equations:
+        """Raises ParameterError where the parameter leaves what is allowed."""
+        family = self.family.replace(**{self.name: p})
+        if self._contact_only:
+            return self.start.equations.with_stops(*family.stops(self.name, self.start.equations.q))
+        q = family.linear
+        return equations_for(self.start, q, family.derivative(self.name, q))
+
+    def correct(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
+        """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""
+        x, before = guess.copy(), np.inf
+        for corrections in range(1, MOST_CORRECTIONS + 1):
+            try:
+                e = self.equations(float(x[-1] * self.scale[-1]))
+                F, J, Fp, motion = e.evaluate(self.start.sides, x[:-1] * self.scale[:-1])
+                rows = np.hstack([J, Fp[:, None]]) * self.scale
+                step = self.solve(e, x, rows, motion, normal, F, normal @ (x - guess))
+            except (np.linalg.LinAlgError, ValueError):  # also a parameter beyond its range
+                return None
+            change = float(np.abs(step).max())
+            if not change <= 1:
+                return None
+            x = x - step
+            t = x[: self.start.K] * self.scale[0]
+            if len(t) and not (np.all(np.diff(t) > 0) and t[-1] - t[0] < e.P):
+                return None
+            held = np.abs(F[: self.start.K]).max(initial=0.0) <= ROUNDING * self.start.size_of_gap
+            if change <= 1e-15 or (change < (1e-7 if held else 1e-9) and change >= 0.3 * before):
+                return Point(self, x, e, rows, motion, change, corrections, forwards)
+            before = change
+        return None
+
+    def solve(self, e: Equations, x, J, motion, row, F, last: float) -> np.ndarray:
+        """The solution of [J; row] step = [F; last] in scaled units; J (n, n + 1) belongs to x. LinAlgError."""
+        if not is_long(e, self.start.sides):
+            return np.linalg.solve(np.vstack([J, row]), np.append(F, last))
+        u, scale = x[:-1] * self.scale[:-1], self.scale
+        return solve_bordered(e, self.start.sides, u, motion, J[:, -1] / scale[-1], row / scale, F, last) / scale
+
+    def first(self, forwards: float) -> Point | None:
+        """`start` itself; `forwards`: sign of the parameter's change."""
+        value = self.family.numbers[self.name]
+        x = np.append(self.start.u, value) / self.scale
+        axis = np.zeros(len(x))
+        axis[-1] = 1.0
+        point = self.correct(x, axis, forwards * axis)
+        if point is not None:
+            point.hold(value)
+        return point
+
+    def step(self, point: Point, length: float, secant: np.ndarray | None = None) -> Point | None:
+        """The point of the branch whose projection on the tangent at `point` is `length`."""
+        tangent = point.tangent
+        guess = point.x + length * tangent
+        if secant is not None:
+            guess = secant + (length - tangent @ (secant - point.x)) * tangent
+        return self.correct(guess, tangent, tangent)

@@ -1,0 +1,1 @@
+"""Bifurcation curves in two parameters and their points of codimension two."""

@@ -1,0 +1,109 @@
+"""`bifurcation_curve`: where a bifurcation happens in the plane of two parameters, from one point of it.
+
+The curve goes on where an impact of its orbit grazes: behind that point the orbit is no motion any more, and the points
+say so (`virtual`).
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import xarray as xr
+
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.curves.curve_points import dataset
+from vibro_sweep.analysis.curves.start import start_at
+from vibro_sweep.analysis.curves.tracer import Tracer
+from vibro_sweep.analysis.curves.way import CurvePoint, Rows, Way, join
+from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.linear import family_of
+
+
+@dataclass(frozen=True, eq=False)
+class BifurcationCurve:
+    """A bifurcation curve, from the end that is reached towards a smaller first parameter to the other one.
+
+    type : fold, flip, pitchfork, neimark_sacker or graze; a pitchfork is a fold where a parameter breaks the symmetry
+    parameters : names of both
+    special : its points of codimension two in order, `begins` and `ends` among them
+    closed : whether it comes back to itself; then both ends are the point it started from, of type "closed"
+    """
+
+    type: str
+    parameters: tuple[str, str]
+    special: list[CurvePoint]
+    begins: CurvePoint
+    ends: CurvePoint
+    closed: bool
+    _tracer: Tracer
+    _rows: Rows
+
+    @cached_property
+    def points(self) -> xr.Dataset:
+        """Dataset over `point`: parameters, multipliers, whether it is real, impacts (docs of `dataset`)."""
+        return dataset(self._tracer, self._rows)
+
+    def plot(self, *others: "BifurcationCurve"):
+        """This curve and `others` in the same parameters, with their points of codimension two: a matplotlib Figure.
+
+        Raises ValueError for curves in other parameters.
+        """
+        from vibro_sweep.plotting.curves import Drawn, plot_curves
+
+        names, drawn = self.parameters, []
+        for curve in (self, *others):
+            if curve.parameters != names:
+                raise ValueError(
+                    f"others: a curve in {', '.join(curve.parameters)} is not allowed; it must be in {names}"
+                )
+            special = [(one.type, *(one.parameters[name] for name in names)) for one in curve.special]
+            values = (curve.points[name].values for name in (*names, "virtual"))
+            drawn.append(Drawn(curve.type, *values, special))
+        return plot_curves(drawn, names)
+
+
+def bifurcation_curve(special: SpecialPoint, parameters: tuple[str, str], box, progress=None) -> BifurcationCurve:
+    """Follow a bifurcation both ways in two parameters, numbers of its system.
+
+    special : a fold, flip, pitchfork, neimark_sacker or graze of a branch or of another curve
+    box : ((lo, hi), (lo, hi)) of both parameters, around the point
+    progress(points, (p, q)) is called now and then.
+
+    Raises ValueError for a special point of another type, names that are no numbers of the system, a box that does not
+    hold the point, and where the point does not belong to a single curve.
+    """
+    check_type("special", special, SpecialPoint, "a special point of a branch or of a curve")
+    family = family_of(special.orbit.system)
+    allowed = [name for name, value in family.numbers.items() if isinstance(value, (int, float))]
+    names = tuple(parameters) if isinstance(parameters, (tuple, list)) else ()
+    if len(names) != 2 or names[0] == names[1] or any(name not in allowed for name in names):
+        raise ValueError(f"parameters: {parameters!r} is not allowed; it must be two of {', '.join(allowed)}")
+    try:
+        limits = [(float(lo), float(hi)) for lo, hi in box]
+    except (TypeError, ValueError):
+        limits = []
+    if len(limits) != 2:
+        raise ValueError(f"box: {box!r} is not allowed; it must be ((lo, hi), (lo, hi)) of {names[0]} and {names[1]}")
+    values = [family.numbers[name] for name in names]
+    for name, value, ends in zip(names, values, limits, strict=True):
+        if not (all(map(math.isfinite, ends)) and ends[0] < ends[1] and ends[0] <= value <= ends[1]):
+            raise ValueError(f"box: {ends!r} of {name} is not allowed; it must be (lo, hi), lo < hi, around {value!r}")
+    start = start_at(special, names)
+    tracer = Tracer(start, names, limits)
+    first = tracer.first()
+    if first is None:
+        raise ValueError(f"special: this {special.type} cannot be followed; it may belong to several curves at once")
+    if len(special.parameters) > 1 or special.type != start.type:  # perhaps of codimension two: begin beside it
+        first = tracer.beside(first) or first
+    sign = -1 if first.tangent[tracer.S] > 0 else 1
+    down = Way(tracer, first, sign, special.orbit.system, progress)
+    down.go()
+    if down.closed:
+        ends = down.special
+        return BifurcationCurve(start.type, names, ends, ends[-1], ends[-1], True, tracer, down.points)
+    up = Way(tracer, first, -sign, special.orbit.system, progress)
+    up.go()
+    ends = [*reversed(down.special), *up.special]
+    backwards = Rows(*(values[:0:-1] for values in down.points))
+    rows = join([backwards, up.points])
+    return BifurcationCurve(start.type, names, ends, down.special[-1], up.special[-1], False, tracer, rows)

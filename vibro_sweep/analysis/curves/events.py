@@ -1,0 +1,183 @@
+"""Points of codimension two between two points of a bifurcation curve: their names, and where they are."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.analysis.curves.tracer import Tracer
+from vibro_sweep.engine.impulses import curve_tests, locus
+from vibro_sweep.engine.impulses.curve_tests import RESIDUAL
+from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, THETA, TORUS, Place
+
+# what a test is zero at, on each kind of curve
+NAMES = {
+    (FOLD, curve_tests.MINUS): "fold_flip",
+    (FOLD, curve_tests.DOUBLE): "resonance_1_1",
+    (FOLD, curve_tests.CUSP): "cusp",
+    (FOLD, curve_tests.PAIR): "fold_neimark_sacker",
+    (FLIP, curve_tests.PLUS): "fold_flip",
+    (FLIP, curve_tests.DOUBLE): "resonance_1_2",
+    (FLIP, curve_tests.PAIR): "flip_neimark_sacker",
+    (FLIP, curve_tests.NORMAL): "degenerate_flip",
+    (TORUS, curve_tests.NORMAL): "degenerate_neimark_sacker",
+    (TORUS, curve_tests.PLUS): "fold_neimark_sacker",
+    (TORUS, curve_tests.MINUS): "flip_neimark_sacker",
+    (GRAZE, curve_tests.PLUS): "resonant_graze",
+    (GRAZE, curve_tests.MINUS): "resonant_graze",
+    (GRAZE, curve_tests.BARE_PLUS): "fold_graze",
+    (GRAZE, curve_tests.BARE_MINUS): "flip_graze",
+    (GRAZE, curve_tests.PAIR): "neimark_sacker_graze",
+}
+VANISHES = {FOLD: "resonant_graze", FLIP: "resonant_graze", TORUS: "neimark_sacker_graze", GRAZE: "double_graze"}
+TOUCHES = {FOLD: "fold_graze", FLIP: "flip_graze", TORUS: "neimark_sacker_graze", GRAZE: "double_graze"}
+ANGLES = {"resonance_1_3": 2 * math.pi / 3, "resonance_1_4": math.pi / 2}
+ROUNDING = 1e-10  # of the box: points nearer to each other are one
+PIECE = 0.02  # of the distance between two events
+SETTLED = 1e-10  # Newton's last change
+REACH = (0.25, 0.5, 1.0, 2.0, 4.0)
+SAME = 1e-3  # of a step: a margin that vanishes with an impact does so like the square of its speed
+
+
+@dataclass(frozen=True)
+class Event:
+    """A type of codimension two, and a test that changes its sign there.
+
+    test : index of the test where it is one of `curve_tests`, else None
+    impact : index of the impact that vanishes, else None
+    touches : whether a flight touches a stop
+    """
+
+    type: str
+    value: Callable[[Place], float]
+    test: int | None = None
+    impact: int | None = None
+    touches: bool = False
+
+
+def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
+    """What changes its sign from a to b."""
+    kind, events, speed = tracer.curve.kind, [], float(tracer.curve.unit[tracer.K])
+    for i in range(curve_tests.SIGNED):
+        if np.sign(a.tests[i]) * np.sign(b.tests[i]) < 0:
+            size = max(abs(a.tests[i]), abs(b.tests[i]))
+            name = NAMES[kind, i]
+            events.append(Event(name, lambda place, i=i, size=size: place.tests[i] / size, test=i))
+    for i in range(tracer.K):
+        if a.D[i] * b.D[i] < 0 and not (kind == GRAZE and i == tracer.curve.index):
+            events.append(Event(VANISHES[kind], lambda place, i=i: place.D[i] / speed, impact=i))
+    least, most = sorted(place.tests[curve_tests.MARGIN] / tracer.size_of_gap for place in (a, b))
+    if least < -curve_tests.TOUCHING and most > curve_tests.TOUCHING:
+        size = tracer.size_of_gap
+        events.append(
+            Event(TOUCHES[kind], lambda place: min(place.tests[curve_tests.MARGIN] / size, 1.0), touches=True)
+        )
+    if kind == TORUS:
+        for name, angle in ANGLES.items():
+            if (a.p[THETA] - angle) * (b.p[THETA] - angle) < 0:
+                events.append(Event(name, lambda place, angle=angle: place.p[THETA] - angle))
+    return [named(tracer, event) for event in events]
+
+
+class Found(NamedTuple):
+    """An event, located."""
+
+    event: Event
+    share: float  # of the step
+    place: Place
+    error: float  # of the parameters
+
+
+def found_between(tracer: Tracer, a: Place, b: Place) -> list[Found]:
+    """All events from a to b, located.
+
+    Of several in one step two may hide each other: a test has a pole where an impact vanishes, or passes zero twice. So
+    the pieces of the step beside each event are looked at as well.
+    """
+    found = _located(tracer, a, b)
+    if len(found) < 2 and not any(one.event.impact is not None for one in found):
+        return found
+    shares = np.unique([0.0, *(one.share for one in found), 1.0])
+    aside = PIECE * np.diff(shares).min()
+    cuts = [0.0, *np.sort([share + sign * aside for share in shares[1:-1] for sign in (-1, 1)]).tolist(), 1.0]
+    row = tracer.row_of(tracer.difference(a, b))
+    places = [tracer.correct(tracer.between(a, b, cut), row) if 0 < cut < 1 else (b if cut else a) for cut in cuts]
+    if any(place is None for place in places):
+        return found
+    result = []
+    for i in range(len(cuts) - 1):
+        for one in _located(tracer, places[i], places[i + 1]):
+            result.append(one._replace(share=cuts[i] + one.share * (cuts[i + 1] - cuts[i])))
+    return result
+
+
+def _located(tracer: Tracer, a: Place, b: Place) -> list[Found]:
+    return [found for event in events_between(tracer, a, b) if (found := locate(tracer, event, a, b)) is not None]
+
+
+def without_echoes(tracer: Tracer, found: list[Found]) -> list[Found]:
+    """In order, each place once.
+
+    Where an impact vanishes, the motion behind passes the stop, which looks like another graze there; and with one mass
+    M(mu) is singular for all mu at a resonant graze.
+    """
+    gone = [one for one in found if one.event.impact is not None]
+    kept: list[Found] = []
+    for one in sorted(found, key=lambda one: (one.event.impact is None, one.share)):
+        echo = one.event.impact is None and any(echoes(tracer, one, other) for other in gone)
+        if not echo and not any(one.event.type == other.event.type and same(tracer, one, other) for other in kept):
+            kept.append(one)
+    return sorted(kept, key=lambda one: one.share)
+
+
+def echoes(tracer: Tracer, one: Found, other: Found) -> bool:
+    return same(tracer, one, other) or (one.event.test is None and abs(one.share - other.share) < SAME)
+
+
+def same(tracer: Tracer, one: Found, other: Found) -> bool:
+    """Whether two points are one, to rounding."""
+    return bool(np.all(np.abs(one.place.p - other.place.p)[:2] <= ROUNDING * np.ptp(tracer.box, axis=1)))
+
+
+def named(tracer: Tracer, event: Event) -> Event:
+    """A flip of a symmetric orbit's half map is a pitchfork."""
+    if event.type == "flip_graze" and tracer.curve.sigma < 0:
+        return replace(event, type="pitchfork_graze")
+    return event
+
+
+def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
+    """None where the test does not vanish between a and b, or at a place that is singular for Newton's method.
+
+    The error: what two locations from both ends differ by, and rounding.
+    """
+    there, back = tracer.root(a, b, event.value), tracer.root(b, a, event.value)
+    if there is None or back is None or max(there[1].tests[RESIDUAL], back[1].tests[RESIDUAL]) > SETTLED:
+        return None
+    share, place = there
+    error = np.abs(place.p[:2] - back[1].p[:2]).max()
+    rounding = 64 * np.finfo(float).eps * np.abs(place.p[:2]).max()
+    return Found(event, share, place, float(4 * error + rounding))
+
+
+def is_real(tracer: Tracer, place: Place) -> bool:
+    """Whether all impulses but the grazing one push, and every flight stays inside."""
+    pushes = -tracer.curve.sides * place.D
+    if tracer.curve.kind == locus.GRAZE:
+        pushes = np.delete(pushes, tracer.curve.index)
+    return bool(np.all(pushes > 0) and place.tests[curve_tests.MARGIN] > -curve_tests.TOUCHING * tracer.size_of_gap)
+
+
+def event_near(tracer: Tracer, place: Place, length: float, types) -> Found | None:
+    """The first event of these types on the curve on either side of `place`, a few times `length` away at most."""
+    for factor in REACH:
+        ends = [tracer.along(place, sign * factor * length) for sign in (-1, 1)]
+        if ends[0] is None or ends[1] is None:
+            continue
+        for event in events_between(tracer, ends[0], ends[1]):
+            found = locate(tracer, event, *ends) if event.type in types else None
+            if found is not None:
+                return found
+    return None

@@ -1,0 +1,152 @@
+"""The oscillator as polynomials of two parameters (engine/impulses/plane.py)."""
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from vibro_sweep.analysis.periodic.impulse_equations import flow
+from vibro_sweep.engine.impulses import plane
+from vibro_sweep.engine.impulses.flights import rates
+from vibro_sweep.engine.impulses.plane import NUMBERS
+from vibro_sweep.engine.impulses.tables import ORDER, REAL
+from vibro_sweep.model.linear import Family, Linear
+
+DECAYED = 4e-15  # relative size of the last coefficients
+NARROWEST = 1e-7  # of what is asked for
+BEYOND = 1.2  # times the reach, up to where the polynomials hold
+ASIDE = 0.37  # of the reach: where degrees are read off, so that products of both parameters are seen
+
+
+def sampled(q: Linear) -> np.ndarray:
+    """The numbers of `plane_of`.values."""
+    B = rates(q)
+    n = len(B) - 3
+    N = n // 2
+    A = np.column_stack([B[:n, :n], B[:n, n + 2]])
+    numbers = [q.low, q.high, 1 + q.R_low, 1 + q.R_high, q.omega]
+    return np.concatenate([A.ravel(), B[N:n, n], B[N:n, n + 1], numbers])
+
+
+class Oscillators:
+    """Of a family, along two of its parameters, with its phase at `tau`."""
+
+    def __init__(self, family: Family, names: tuple[str, str], halves: int, tau: float):
+        self.family, self.names, self.halves, self.tau = family, names, halves, tau
+
+    def linear(self, p) -> Linear:
+        """The oscillator at the parameters p, its phase kept."""
+        return self.at(p).linear._replace(tau=self.tau)
+
+    def at(self, p) -> Family:
+        return self.family.replace(**dict(zip(self.names, map(float, p[:2]), strict=True)))
+
+    def _sample(self, p) -> np.ndarray:
+        try:
+            with np.errstate(all="ignore"):
+                values = sampled(self.at(p).linear)
+                return np.where(np.isinf(values), 0.0, values)  # a stop that is not there
+        except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
+            return np.full(plane.count_of(len(self.family.linear.along)), np.nan)
+
+    def around(self, centre, reach) -> np.ndarray | None:
+        """(1,) `plane_of` around the parameters `centre`, to `reach` or as far as polynomials hold; None: nowhere."""
+        centre, reach = np.array(centre[:2], float), np.array(reach, float)
+        least = NARROWEST * reach
+        while np.all(reach > least):
+            degrees = [self._degree(centre, reach, j) for j in range(2)]
+            if None not in degrees:
+                found = self._fitted(centre, reach, degrees)
+                if found is not None:
+                    return self._built(centre, reach, degrees, *found)
+            reach = reach / np.where([degree is None for degree in degrees] if None in degrees else True, 2, 1)
+        return None
+
+    def _degree(self, centre, reach, j: int) -> int | None:
+        """The least degree in parameter j; None where the highest allowed is not enough."""
+        most = plane.DEGREE
+        nodes = _nodes(most)
+        start = centre + ASIDE * reach
+        values = []
+        for x in nodes:
+            start[j] = centre[j] + BEYOND * reach[j] * x
+            values.append(self._sample(start))
+        values = np.array(values)
+        if not np.all(np.isfinite(values)):
+            return None
+        c, size = chebyshev.chebfit(nodes, values, most), _sizes(values)
+        seen = np.flatnonzero((np.abs(c) > DECAYED * size).any(axis=1))
+        degree = int(seen[-1]) if len(seen) else 0
+        return degree if degree <= most - 2 else None
+
+    def _fitted(self, centre, reach, degrees):
+        nodes = [_nodes(degree) for degree in degrees]
+        values = np.array(
+            [[self._sample(centre + BEYOND * reach * [x, y]) for y in nodes[1]] for x in nodes[0]]
+        )  # (d1 + 1, d2 + 1, count)
+        if not np.all(np.isfinite(values)):
+            return None
+        c = values
+        for axis, degree in enumerate(degrees):
+            c = np.moveaxis(c, axis, 0)
+            shape = c.shape
+            c = chebyshev.chebfit(nodes[axis], c.reshape(shape[0], -1), degree).reshape(shape)
+            powers = np.zeros_like(c)
+            for k in range(degree + 1):
+                unit = chebyshev.cheb2poly(np.eye(degree + 1)[k])
+                powers[: len(unit)] += np.multiply.outer(unit, c[k])
+            scale = BEYOND ** -np.arange(degree + 1.0)
+            c = np.moveaxis(powers * scale.reshape(-1, *[1] * (powers.ndim - 1)), 0, axis)
+        return c, values
+
+    def _built(self, centre, reach, degrees, c, values) -> np.ndarray:
+        q = self.linear(centre)
+        f = flow(q)
+        n = f.B.shape[0] - 3
+        result = np.zeros(1, plane.plane_of(n // 2))
+        r = result[0]
+        r["n"] = n
+        flat = values[..., : n * (n + 1)]
+        for j in range(2):
+            r["moves"][j] = bool(np.any(np.ptp(flat, axis=j) > 1e-15 * np.abs(flat).max()))
+        if not r["moves"].any():
+            exact = sampled(q)
+            c[..., : n * (n + 1)] = 0.0
+            c[0, 0, : n * (n + 1)] = exact[: n * (n + 1)]
+        r["centre"], r["reach"], r["degree"], r["tau"] = centre, reach, degrees, self.tau
+        r["width"] = f.width
+        r["fit"][: c.shape[0], : c.shape[1]] = c
+        at_centre = sampled(q)
+        r["fit"][0, 0][np.isinf(at_centre)] = at_centre[np.isinf(at_centre)]
+        r["half_turns"] = self.halves
+        longest = np.pi * self.halves / values[..., -1].min()
+        r["bits"] = min(max(int(np.ceil(np.log2(2 * longest / f.width))), 1), plane.BITS)
+        exact_tables(r, np.delete(f.B, [n, n + 1], 1)[:n])
+        return result
+
+
+def exact_tables(r, A) -> None:
+    """The flight's tables of A (n, n + 1), in extended precision."""
+    n = len(A)
+    B = np.vstack([A, np.zeros(n + 1)]).astype(REAL)
+    series = [np.eye(n + 1).astype(REAL)]
+    for k in range(1, ORDER + 1):
+        series.append(series[-1] @ B / k)
+    power = np.zeros_like(B)
+    term = np.eye(n + 1).astype(REAL)
+    for k in range(1, 24):
+        power += term
+        term = term @ B * REAL(r["width"]) / k
+    r["series"] = np.array(series)[:, :n]
+    for bit in range(int(r["bits"])):
+        r["powers"][bit] = power[:n]
+        power = power @ power
+
+
+def _nodes(degree: int) -> np.ndarray:
+    return np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
+
+
+def _sizes(values: np.ndarray) -> np.ndarray:
+    """What is small beside what: matrices and forces as a whole, numbers one by one."""
+    size = np.abs(values).max(axis=0)
+    size[:-NUMBERS] = size[:-NUMBERS].max()
+    return np.maximum(size, 1e-300)

@@ -1,0 +1,133 @@
+"""`switch`: also from a point of codimension two to the bifurcation curves that pass through it or begin there."""
+
+import math
+from itertools import combinations
+from typing import overload
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.special import SpecialPoint, inserted
+from vibro_sweep.analysis.branches.switching import switch as switch_branches
+from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.curves.start import Start
+from vibro_sweep.analysis.curves.tracer import Tracer
+from vibro_sweep.analysis.curves.way import CurvePoint, bare
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses import locus
+from vibro_sweep.model.arguments import check_type
+
+SINGULAR = 1e-8  # least singular value of M(mu), of its largest, below which mu is a multiplier
+SLOW = 1e-9  # impulse, in parts of the gap's size times omega, below which an impact is a graze
+ON_CIRCLE = 1e-8  # | |mu| - 1 | of a Neimark-Sacker pair
+BESIDE = 0.2  # theta at which the Neimark-Sacker curve of a double multiplier 1 (-1) is entered
+ENDS = ("closed", "limit", "failed")
+
+
+@overload
+def switch(special: CurvePoint) -> list[SpecialPoint]: ...  # type: ignore[overload-overlap]
+
+
+@overload
+def switch(special: SpecialPoint) -> list[PeriodicOrbit]: ...
+
+
+def switch(special):
+    """What begins at a special point.
+
+    Of a branch: the orbits just beyond a pitchfork (two mirror images), a flip (the doubled one) or a graze (with, or
+    without, the impact that has no speed there; at the graze of the free motion those that hit one stop or both).
+    Orbits that pass a stop are left out. Of a curve, at a point of codimension two: fold, flip (pitchfork),
+    Neimark-Sacker and graze curves through it, as special points from which `bifurcation_curve` can start.
+
+    Raises ValueError for a special point of another type.
+    """
+    check_type("special", special, SpecialPoint, "a special point of a branch or of a curve")
+    if not isinstance(special, CurvePoint):
+        return switch_branches(special)
+    if special.type in ENDS:
+        raise ValueError(f"type: {special.type!r} is not allowed; it must be a point of codimension two")
+    found = [_special(special, start) for start in _starts(special)]
+    if special.type in ("resonance_1_1", "resonance_1_2"):
+        beside = _beside_strong(special)
+        found += [beside] if beside is not None else []
+    return found
+
+
+def _starts(special: CurvePoint) -> list[Start]:
+    """Each bifurcation of each orbit that has this motion: with and without the impacts that have no speed."""
+    whole = special.orbit._solution
+    if special.touches:
+        whole = inserted(whole)[0]
+    omega = whole.family.linear.omega
+    slow = [k for k in range(whole.K) if abs(whole.jumps[k]) < SLOW * omega * whole.size_of_gap]
+    starts = []
+    for count in range(len(slow) + 1):
+        for dropped in combinations(slow, count):
+            solution = whole
+            for k in reversed(dropped):
+                solution = bare(solution, k)
+            kept = [k - sum(other < k for other in dropped) for k in slow if k not in dropped]
+            starts += [Start("graze", solution, k) for k in kept]
+            if solution.K:
+                starts += _smooth(solution, bool(kept))
+    return starts
+
+
+def _smooth(solution: Solution, grazes: bool) -> list[Start]:
+    """Fold, flip and Neimark-Sacker of an orbit."""
+    found = []
+    for mu, name in ((1, "fold"), (-1, "pitchfork" if solution.sigma == -1 else "flip")):
+        if is_singular(solution, mu):
+            found.append(Start(name, solution))
+    if not grazes:
+        values = solution.multipliers
+        pair = values[(values.imag > 1e-6) & (np.abs(np.abs(values) - 1) < ON_CIRCLE)]
+        found += [Start("neimark_sacker", solution, theta=float(np.angle(mu))) for mu in pair]
+    return found
+
+
+def is_singular(solution: Solution, mu: int) -> bool:
+    """Whether mu is a multiplier, also where an impact has no speed."""
+    q, K = solution.family.linear, solution.K
+    J = solution.equations.linearised(mu, solution.sides, solution.u, solution.motion)
+    scale = np.ones(len(J))
+    scale[:K] = 1 / q.omega
+    scale[K : 2 * K] = q.omega * solution.size_of_gap
+    rows = np.ones(len(J))
+    rows[K : 2 * K] = q.omega
+    values = np.linalg.svd(J * scale / rows[:, None], compute_uv=False)
+    return bool(values[-1] < SINGULAR * values[0])
+
+
+def _special(special: CurvePoint, start: Start) -> SpecialPoint:
+    s = start.solution
+    orbit = orbit_of(special.orbit.system, s)
+    if start.type != "graze":
+        slow = np.abs(s.motion[:, 0]).min() < SLOW * s.family.linear.omega * s.size_of_gap
+        values = np.full(2 * len(s.family.linear.along), np.nan, complex) if slow else s.multipliers
+        return SpecialPoint(start.type, special.parameters, orbit, values, special.error)
+    stop, impact = stop_and_impact(s, start.index)
+    values = bare(s, start.index).multipliers
+    return SpecialPoint("graze", special.parameters, orbit, values, special.error, stop=stop, impact=impact)
+
+
+def _beside_strong(special: CurvePoint) -> SpecialPoint | None:
+    """A point near the end of the Neimark-Sacker curve that leaves a double multiplier."""
+    solution = special.orbit._solution
+    names = tuple(special.parameters)
+    theta = BESIDE if special.type == "resonance_1_1" else math.pi - BESIDE
+    values = np.array(list(special.parameters.values()))
+    reach = np.maximum(np.abs(values), 1e-3) * 0.2
+    tracer = Tracer(
+        Start("neimark_sacker", solution, theta=theta), names, np.column_stack([values - reach, values + reach])
+    )
+    axis = np.zeros(tracer.size)
+    axis[tracer.S + locus.THETA] = 1.0
+    place = tracer.first(axis)
+    if place is None:
+        return None
+    found = tracer.solution(place)
+    parameters = dict(zip(names, map(float, place.p[:2]), strict=True))
+    orbit = orbit_of(special.orbit.system.replace(**parameters), found)
+    return SpecialPoint("neimark_sacker", parameters, orbit, found.multipliers, float(special.error))

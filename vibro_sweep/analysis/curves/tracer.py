@@ -1,0 +1,242 @@
+"""Points of a bifurcation curve with the exact oscillator: the first one, corrections, zeros of tests."""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import brentq
+
+from vibro_sweep.analysis.branches.beginning import keeps_symmetry
+from vibro_sweep.analysis.curves.oscillators import Oscillators, sampled
+from vibro_sweep.analysis.curves.start import Start
+from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.engine.impulses import curve, locus
+from vibro_sweep.engine.impulses.curve_tests import RESIDUAL
+from vibro_sweep.engine.impulses.locus import Curve, Place
+from vibro_sweep.model.linear import Family, forcing_period
+
+MOST_CORRECTIONS = 12
+LONGEST_STEP, SHORTEST_STEP = 0.05, 1e-10
+STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
+BESIDE = 2e-3
+ROUNDING = 1e-15  # of tests, in their units
+AT_ONCE = 1024  # points of one call
+
+
+class NoPlaneError(ValueError):
+    """The oscillator has no polynomials around a point of the plane."""
+
+
+class Tracer:
+    """A curve of one kind through `start`, in the parameters `names`, with distances in units of the box."""
+
+    def __init__(self, start: Start, names: tuple[str, str], box):
+        self.start, self.names = start, names
+        self.box = np.array(box, float)
+        s = start.solution
+        q = s.family.linear
+        self.oscillators = Oscillators(s.family, names, s.halves, float(q.tau))
+        K, n = s.K, 2 * len(q.along)
+        self.K, self.n, self.S = K, n, 2 * K + n
+        speed = q.omega * s.size_of_gap
+        states = np.repeat([speed / q.omega, speed], n // 2)
+        unit = np.concatenate([np.full(K, 1 / q.omega), np.full(K, speed), states, np.ptp(self.box, axis=1), [1.0]])
+        row_unit = np.concatenate([np.full(K, speed / q.omega), np.full(K, speed), states])
+        sides = np.array(s.sides, float)
+        half, whole = K // 2, s.sigma == 1 and K > 0 and K % 2 == 0
+        repeats = whole and s.halves % 4 == 0 and s.sides[:half] == s.sides[half:]
+        symmetric = q.symmetric and all(keeps_symmetry(s.family, name) for name in names)
+        mirrors = (
+            whole and symmetric and s.halves % 4 == 2 and s.sides[:half] == tuple(-side for side in s.sides[half:])
+        )
+        self.curve = Curve(start.kind, start.index, sides, float(s.sigma), unit, row_unit, repeats, mirrors)
+        self.size_of_gap, self._bench = s.size_of_gap, locus.new_bench(K, n)
+        self.path = curve.new_path(AT_ONCE, K, n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
+        middle, reach = self.box.mean(axis=1), np.ptp(self.box, axis=1) / 2
+        self.planes = self._around(middle, reach)
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return self.S + (3 if self.curve.kind == locus.TORUS else 2)
+
+    def _around(self, centre, reach) -> np.ndarray:
+        found = self.oscillators.around(centre, reach)
+        if found is None:
+            raise NoPlaneError(f"box: around {tuple(map(float, centre))} the oscillator is no smooth function of it")
+        return found
+
+    def recentre(self, place: Place) -> None:
+        """Polynomials around this place."""
+        self.planes = self._around(place.p, np.ptp(self.box, axis=1) / 2)
+
+    def _do(self, task: int, place: Place, row: np.ndarray | None = None) -> float:
+        row = place.tangent if row is None else row
+        return curve.at(task, self.planes, self.curve, self.path, place, row, self._bench)
+
+    def go_to(self, place: Place) -> bool:
+        """Move the oscillator exactly to the parameters of `place`. False where it has no forced motion."""
+        try:
+            values = sampled(self.oscillators.at(place.p).linear)
+        except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
+            return False
+        self._do(curve.FIT, place)  # slopes
+        self.planes[0]["values"] = values
+        return bool(np.all(np.isfinite(place.p)) and self._do(curve.SPREAD, place))
+
+    def walk(self, place: Place) -> int:
+        """Compiled steps from `path.a` until something happens, and why they end (engine/impulses/curve.py)."""
+        return int(self._do(curve.WALK, place, np.zeros(self.S + 3)))
+
+    def motion(self, place: Place) -> np.ndarray:
+        """(K, 2) gap velocity and acceleration before each impact."""
+        self.go_to(place)
+        self._do(curve.ASSEMBLE, place)
+        return self._bench.room.motion.copy()
+
+    def first(self, row: np.ndarray | None = None) -> Place | None:
+        """The point of the curve at `start`, or near it on the plane across `row`; None where it is not isolated."""
+        s, place = self.start.solution, locus.new_place(self.K, self.n)
+        place.t[:], place.D[:] = s.times, s.jumps
+        place.p[:2] = [s.family.numbers[name] for name in self.names]
+        place.p[locus.THETA] = self.start.theta
+        if not self.go_to(place):
+            return None
+        f = self.planes[0]
+        phase = s.family.linear.omega * place.t[0] + f["tau"]
+        place.h[:] = s.states[0, : self.n] - (f["Z"] * np.exp(1j * phase)).real
+        if self.curve.kind != locus.GRAZE:
+            self._take_null_vectors(place)
+        if not self._do(curve.ASSEMBLE, place):
+            return None
+        return self.correct(place, self._direction() if row is None else row)
+
+    def beside(self, place: Place) -> Place | None:
+        """A point of the curve within the box, a little beside `place`."""
+        for length in (BESIDE, -BESIDE):
+            found = self.along(place, length)
+            if found is not None and np.all((self.box[:, 0] <= found.p[:2]) & (found.p[:2] <= self.box[:, 1])):
+                return found
+        return None
+
+    def along(self, place: Place, length: float) -> Place | None:
+        """The point of the curve whose projection on the tangent at `place` is `length`."""
+        guess, unit, step = copied(place), self.curve.unit, length * place.tangent
+        K, S = self.K, self.S
+        guess.t[:] += unit[:K] * step[:K]
+        guess.D[:] += unit[K : 2 * K] * step[K : 2 * K]
+        guess.p[: self.size - S] += (unit * step)[S : self.size]
+        return self.correct(guess, self.row_of(place.tangent))
+
+    def _take_null_vectors(self, place: Place) -> None:
+        """w and psi, the singular vectors of M(mu)."""
+        place.w[:], place.psi[:] = 1.0, 1.0  # any border
+        self._do(curve.ASSEMBLE, place)
+        unit, row_unit = self.curve.unit[: self.S], self.curve.row_unit
+        M = (self._bench.room.M * unit / row_unit[:, None]).astype(complex)
+        mu = {locus.FOLD: 1.0, locus.FLIP: -1.0}.get(self.curve.kind, np.exp(1j * place.p[locus.THETA]))
+        closing = np.arange(2 * self.K, self.S)
+        M[closing, closing] += self.curve.sigma * mu
+        if self.curve.kind != locus.TORUS:
+            M = M.real
+        left, _, right = np.linalg.svd(M)
+        place.w[:], place.psi[:] = right[-1].conj(), left[:, -1].conj()
+
+    def _direction(self) -> np.ndarray:
+        """The tangent of the curve at the point that was assembled last."""
+        J = self._bench.J[: self.size - 1, : self.size]
+        return self.row_of(np.linalg.svd(J)[2][-1])
+
+    def row_of(self, tangent) -> np.ndarray:
+        """The plane across a tangent: distances are not measured over h."""
+        row = self._measured(tangent)
+        return row / np.linalg.norm(row)
+
+    def _measured(self, tangent) -> np.ndarray:
+        row = np.array(tangent[: self.size])
+        row[2 * self.K : self.S] = 0.0
+        return row
+
+    def correct(self, guess: Place, row: np.ndarray) -> Place | None:
+        """The point of the curve on the plane through `guess` across `row`, examined; None: none was found."""
+        place = copied(guess)
+        before = np.inf
+        for _ in range(MOST_CORRECTIONS):
+            if not self.go_to(place):
+                return None
+            change = self._do(curve.CORRECT, place, row)
+            if not change <= 1.0:
+                return None
+            if change <= 1e-15 or (change < 1e-8 and change >= 0.3 * before):
+                place.tests[RESIDUAL] = change
+                place.tangent[: self.size] /= np.linalg.norm(self._measured(place.tangent))
+                return place if self.go_to(place) and self._do(curve.EXAMINE, place) else None
+            before = change
+        return None
+
+    def between(self, a: Place, b: Place, share: float) -> Place:
+        """On the chord."""
+        return self.shifted(a, a, b, share)
+
+    def shifted(self, place: Place, a: Place, b: Place, share: float) -> Place:
+        """`place` moved by a share of the chord from a to b."""
+        result = copied(place)
+        for name in ("t", "D", "h", "p"):
+            getattr(result, name)[:] += share * (getattr(b, name) - getattr(a, name))
+        return result
+
+    def root(self, a: Place, b: Place, test: Callable[[Place], float]) -> tuple[float, Place] | None:
+        """(share of the chord from a to b, point) where the test, of size 1, vanishes, on planes across the chord."""
+        row = self.row_of(self.difference(a, b))
+        seen = {0.0: a, 1.0: b}
+
+        def value(share: float) -> float:
+            if share not in seen:
+                near = min(seen, key=lambda other: abs(other - share))
+                point = self.correct(self.shifted(seen[near], a, b, share - near), row)
+                if point is None:
+                    raise ArithmeticError
+                seen[share] = point
+            found = test(seen[share])
+            return found if abs(found) > ROUNDING else 0.0  # or the search may creep where rounding has one sign
+
+        try:
+            if value(0.0) * value(1.0) > 0:
+                return None
+            share = brentq(value, 0.0, 1.0, xtol=1e-16, rtol=1e-15, maxiter=100)
+            value(share)
+        except (ArithmeticError, RuntimeError):
+            return None
+        return share, seen[share]
+
+    def difference(self, a: Place, b: Place) -> np.ndarray:
+        """From a to b, scaled."""
+        change = np.zeros(self.size)
+        change[: self.K], change[self.K : 2 * self.K] = b.t - a.t, b.D - a.D
+        change[self.S :] = (b.p - a.p)[: self.size - self.S]
+        return change / self.curve.unit[: self.size]
+
+    def family(self, place: Place) -> Family:
+        return self.oscillators.at(place.p)
+
+    def solution(self, place: Place) -> Solution:
+        """The orbit of a point; its times are those of the oscillator with its own phase."""
+        s, family = self.start.solution, self.family(place)
+        q = family.linear
+        t = place.t + (self.oscillators.tau - q.tau) / q.omega
+        t -= forcing_period(q) * np.round((t[0] - s.times[0]) / forcing_period(q)) if self.K else 0.0
+        found = Solution(family, s.sigma, s.halves, s.sides, np.concatenate([t, place.D]), float(place.tests[RESIDUAL]))
+        e = equations_for(found, q)
+        if e.free:
+            u = np.append(found.u, 0.0)
+            u[-1] = -np.mean(e.evaluate(s.sides, u)[0][: self.K])
+            found = Solution(family, s.sigma, s.halves, s.sides, u, found.change)
+        return found
+
+
+def copied(place: Place) -> Place:
+    return Place(*(values.copy() for values in place))
+
+
+def copy(source: Place, target: Place) -> None:
+    for here, there in zip(source, target, strict=True):
+        there[...] = here

@@ -1,0 +1,218 @@
+"""One way along a bifurcation curve: compiled steps, what they pass, and where the curve ends."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.births import doubled
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.curves.ends import birth, strong_resonance
+from vibro_sweep.analysis.curves.events import Event, Found, found_between, is_real, without_echoes
+from vibro_sweep.analysis.curves.tracer import Tracer, copied, copy
+from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses import curve, curve_tests, locus
+from vibro_sweep.engine.impulses.locus import GRAZE, Place
+
+FIRST_STEP = 1e-3
+MOST_POINTS = 50_000
+
+
+@dataclass(frozen=True, eq=False)
+class CurvePoint(SpecialPoint):
+    """A point of codimension two on a bifurcation curve, or the end of one.
+
+    type : two bifurcations at once: cusp, fold_flip, ... (docs/curves.md); closed, limit or failed
+    parameters : both, by their names
+    multipliers : of the half map where the orbit is symmetric; of a graze, of the orbit without the grazing impact
+    impact : index in `orbit.impacts` of one that has no speed there, or None
+    error : own estimate of the error of the parameters
+    curve : type of the curve that was followed
+    touches : whether a flight of `orbit` touches a stop
+    """
+
+    curve: str = ""
+    touches: bool = False
+
+
+class Rows(NamedTuple):
+    """Points of a curve."""
+
+    p: np.ndarray  # (points, 3)
+    t: np.ndarray  # (points, K)
+    D: np.ndarray  # (points, K)
+    motion: np.ndarray  # (points, K, 2)
+    margin: np.ndarray  # (points,)
+    residual: np.ndarray  # (points,)
+
+
+def join(parts: list[Rows]) -> Rows:
+    return Rows(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+
+
+class Way:
+    """From the first point, forwards along its tangent or (sign = -1) backwards."""
+
+    def __init__(self, tracer: Tracer, first: Place, sign: int, system, progress=None):
+        self.tracer, self.system, self.progress = tracer, system, progress
+        self.first = copied(first)
+        self.first.tangent[:] *= sign
+        self.special: list[CurvePoint] = []
+        self.rows: list[Rows] = []
+        self.closed = False
+        self._add(self.first)
+
+    @property
+    def points(self) -> Rows:
+        return join(self.rows)
+
+    def go(self) -> None:
+        """To the curve's end."""
+        w, passed = self.tracer, 1
+        path, b = w.path, locus.new_place(w.K, w.n)
+        a = path.a
+        copy(self.first, path.first)
+        copy(self.first, a)
+        a.tests[curve_tests.LENGTH] = FIRST_STEP
+        while passed < MOST_POINTS:
+            path.counts[0] = passed
+            reason, count = w.walk(b), int(path.counts[1])
+            passed += count
+            self._keep(path.record, count)
+            if self.progress is not None:
+                self.progress(passed, tuple(map(float, a.p[:2])))
+            if reason == curve.FAR:
+                w.recentre(a)
+            elif reason == curve.CLOSED:
+                self.closed = True
+                self.special.append(self._at("closed", self.first, np.nan))
+                return
+            elif reason == curve.LEFT:
+                self._leave(a, b)
+                return
+            elif reason == curve.STRONG and self._ends_strongly(a, b):
+                return
+            elif reason in (curve.EVENT, curve.STRONG):
+                if self._is_born(a, b):
+                    return
+                self._pass(a, b)
+                passed += 1
+                copy(b, a)
+                if not passable(w, a):
+                    break
+            elif reason == curve.FAILED:
+                break
+        self.special.append(self._at("failed", a, np.nan))
+
+    def _keep(self, record: curve.Record, count: int) -> None:
+        r = record
+        values = r.p, r.t, r.D, r.motion, r.tests[:, curve_tests.MARGIN], r.tests[:, curve_tests.RESIDUAL]
+        self.rows.append(Rows(*(value[:count].copy() for value in values)))
+
+    def _add(self, place: Place) -> None:
+        margin, residual = place.tests[curve_tests.MARGIN], place.tests[curve_tests.RESIDUAL]
+        values = place.p, place.t, place.D, self.tracer.motion(place), margin, residual
+        self.rows.append(Rows(*(np.array(value)[None].copy() for value in values)))
+
+    def _pass(self, a: Place, b: Place) -> None:
+        """Record what lies between a and b where the orbit is real, then b."""
+        w = self.tracer
+        for one in without_echoes(w, found_between(w, a, b)):
+            self._add(one.place)
+            if self._holds(one.event, one.place, a, b):
+                self.special.append(self._at(one.event.type, one.place, one.error, one.event))
+        self._add(b)
+
+    def _holds(self, event: Event, place: Place, a: Place, b: Place) -> bool:
+        """Whether this is a bifurcation of a motion, real there or at the edge of what is real; no neutral saddle."""
+        w = self.tracer
+        if event.test is None and not event.type.startswith("resonance"):
+            return is_real(w, a) or is_real(w, b)
+        if not is_real(w, place):
+            return False
+        if event.test == curve_tests.PAIR:
+            solution = w.solution(place)
+            mu = (bare(solution, w.curve.index) if w.curve.kind == GRAZE else solution).multipliers
+            i, j = np.triu_indices(len(mu), 1)
+            k = np.argmin(np.abs(1 - mu[i] * mu[j]))
+            return bool(abs(mu[i[k]].imag) > 1e-9)
+        return True
+
+    def _leave(self, a: Place, b: Place) -> None:
+        """The point where the curve leaves the box."""
+        w, ends = self.tracer, []
+        for j in range(2):
+            for limit, side in zip(w.box[j], (-1, 1), strict=True):
+                if (b.p[j] - limit) * side > 0:
+                    ends.append(((limit - a.p[j]) / (b.p[j] - a.p[j]), j, limit))
+        share, j, limit = min(ends)
+        guess = w.between(a, b, share)
+        guess.p[j] = limit
+        row = np.zeros(w.size)
+        row[w.S + j] = 1.0
+        place = w.correct(guess, row) or a
+        place.p[j] = limit if place is not a else place.p[j]
+        if place is not a:
+            place.tangent[:] *= np.sign(w.row_of(a.tangent) @ place.tangent[: w.size]) or 1.0
+            self._pass(a, place)
+        self.special.append(self._at("limit", place, 0.0))
+
+    def _ends_strongly(self, a: Place, b: Place) -> bool:
+        """Whether the pair meets at 1 or -1 ahead: there the Neimark-Sacker curve ends."""
+        end = strong_resonance(self.tracer, a, b)
+        if end is not None:
+            self._pass(a, b)
+            self._end(*end)
+        return end is not None
+
+    def _is_born(self, a: Place, b: Place) -> bool:
+        """Whether the asymmetric or doubled orbit is born between a and b: there its curve ends."""
+        c = self.tracer.curve
+        end = birth(self.tracer, a, b) if c.repeats or c.mirrors else None
+        if end is not None:
+            self._end(*end)
+        return end is not None
+
+    def _end(self, other: Tracer, found: Found) -> None:
+        """The end, on the curve of the parent."""
+        w, solution, p = self.tracer, other.solution(found.place), found.place.p.copy()
+        self.special.append(self._at(found.event.type, found.place, found.error, found.event, other))
+        if solution.K < w.K:
+            solution = doubled(solution)
+        q = solution.family.linear
+        if w.curve.kind == locus.TORUS:
+            p[locus.THETA] = round(self.points.p[-1, locus.THETA] / np.pi) * np.pi
+        t = solution.times + (q.tau - w.oscillators.tau) / q.omega
+        motion = solution.motion[:, :2]
+        values = p, t, solution.jumps, motion, np.array(solution.margin), np.array(solution.change)
+        self.rows.append(Rows(*(value[None].copy() for value in values)))
+
+    def _at(self, of_type, place: Place, error: float, event: Event | None = None, tracer=None) -> CurvePoint:
+        w = tracer or self.tracer
+        solution = w.solution(place)
+        parameters = dict(zip(w.names, map(float, place.p[:2]), strict=True))
+        orbit = orbit_of(self.system.replace(**parameters), solution)
+        grazes = w.curve.kind == GRAZE
+        index = w.curve.index if grazes else event.impact if event is not None else None
+        stop, impact = (None, None) if index is None else stop_and_impact(solution, index)
+        multipliers = bare(solution, w.curve.index).multipliers if grazes else solution.multipliers
+        return CurvePoint(
+            of_type, parameters, orbit, multipliers, error, impact=impact, stop=stop, curve=w.start.type,
+            touches=event is not None and event.touches,
+        )  # fmt: skip
+
+
+def passable(tracer: Tracer, place: Place) -> bool:
+    """False where a Neimark-Sacker curve has passed the end that was not found."""
+    return tracer.curve.kind != locus.TORUS or 0 < place.p[locus.THETA] < math.pi
+
+
+def bare(solution: Solution, index: int) -> Solution:
+    """The same motion as an orbit without the impact that has no speed."""
+    K = solution.K
+    sides = solution.sides[:index] + solution.sides[index + 1 :]
+    u = np.delete(solution.u, [index, K + index])
+    return Solution(solution.family, solution.sigma, solution.halves, sides, u, solution.change)

@@ -1,0 +1,1 @@
+"""Periodic orbits as sequences of impacts: found, certified, kept."""

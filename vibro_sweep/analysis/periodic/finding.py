@@ -1,0 +1,180 @@
+"""`periodic_orbit`: finds an orbit by Newton's method, whether it attracts or repels.
+
+The unknowns are the times and impulses of the impacts (engine/impulses), so that nothing is singular at a graze.
+"""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.itinerary import SIDES, is_mirrored, repetitions, word
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.seeds_of_rests import evenly, with_rests
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.analysis.single.orbit import simulate
+from vibro_sweep.engine.impulses.green import ResonanceError, TooStiffError
+from vibro_sweep.model.arguments import checked_count
+from vibro_sweep.model.linear import Family, family_of, forcing_period
+
+SEEDS = 4000
+
+
+def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None = None, guess=None) -> PeriodicOrbit:
+    """Find a periodic orbit by Newton's method on its impact times and impulses.
+
+    Parameters
+    ----------
+    state : near the orbit at t = 0 mod T: the orbit simulated from here over `periods` gives the impacts to start from
+    periods : its period in forcing periods, or a multiple of it
+    itinerary : the stops it hits, such as "LR", instead of a state; "" for the orbit without impacts
+    guess : [(t, side, v), ...] with it or without: impacts of the whole orbit in order, from any one of them, v the gap
+        velocity before.
+        Without a guess fixed seeds are tried; the first real orbit with this itinerary counts.
+
+    Raises ValueError for arguments that say nothing or contradict each other. What fails is told by `.status`.
+    """
+    family = family_of(system)
+    periods = checked_count("periods", periods, 1)
+    if (state is None) == (itinerary is None and guess is None):
+        raise ValueError("give either state, or itinerary or guess")
+    try:
+        if state is not None:
+            return _from_state(system, family, state, periods)
+        if guess is not None:
+            return _from_guess(system, family, _checked_guess(family.linear, guess, itinerary), periods)
+        return _from_itinerary(system, family, _checked_sides(family.linear, itinerary), periods)
+    except ResonanceError:
+        return PeriodicOrbit(system, "resonance")
+    except TooStiffError:
+        return PeriodicOrbit(system, "too_stiff")
+
+
+def _checked_sides(q, itinerary) -> tuple[int, ...]:
+    if not isinstance(itinerary, str) or set(itinerary) - set(SIDES):
+        raise ValueError(f"itinerary: {itinerary!r} is not allowed; it must be a word of R and L")
+    sides = tuple(SIDES[letter] for letter in itinerary)
+    if not np.all(np.isfinite(q.stop(sides))):
+        raise ValueError(f"itinerary: {itinerary!r} hits a stop that the system does not have")
+    return sides
+
+
+def _checked_guess(q, guess, itinerary):
+    try:
+        rows = [(float(t), float(side), float(v)) for t, side, v in guess]
+    except (TypeError, ValueError):
+        rows = [(math.nan, 0.0, math.nan)]
+    if not np.all(np.isfinite(rows)) or any(side not in (1, -1) for _, side, _ in rows):
+        raise ValueError("guess: must be (t, side, v) for each impact, finite, with side 1 or -1")
+    if any(b[0] <= a[0] for a, b in pairwise(rows)):
+        raise ValueError("guess: the times of the impacts must rise")
+    sides = word([side for _, side, _ in rows])
+    _checked_sides(q, sides)
+    if itinerary is not None:  # any rotation of it
+        _checked_sides(q, itinerary)
+        if len(itinerary) != len(sides) or itinerary not in 2 * sides:
+            raise ValueError(f"itinerary: {itinerary!r} differs from the sides of the guess, {sides!r}")
+    return rows
+
+
+def _from_state(system, family, state, periods) -> PeriodicOrbit:
+    if isinstance(system, Family):
+        raise ValueError("state: a Family cannot be simulated; give an itinerary or a guess")
+    simulated = simulate(system, state, periods)
+    if str(simulated.status) != "ok":
+        return PeriodicOrbit(system, "not_converged")
+    if len(simulated.sticking):
+        return _from_rests(system, family, simulate(system, state, 2 * periods), periods)
+    impacts = simulated.impacts
+    if len(impacts):  # an impact at t = 0 comes again at the end
+        impacts = impacts[impacts["t"] < impacts["t"][0] + periods * system.period * (1 - 1e-9)]
+    return _from_guess(system, family, [(i["t"], i["side"], i["v1"]) for i in impacts], periods)
+
+
+def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
+    """From a simulation over two periods, in which the mass rests after impacts with R = 0."""
+    impacts, P, R = simulated.impacts, periods * system.period, family.linear.restitution
+    if np.any(R(simulated.sticking["side"]) != 0) or str(simulated.status) != "ok" or not len(impacts):
+        return PeriodicOrbit(system, "sticking")
+    begin = impacts["t"][0]
+    impacts = impacts[impacts["t"] < begin + P * (1 - 1e-9)]
+    resting = simulated.sticking
+    resting = resting[(resting["t_on"] > begin - 1e-9 * P) & (resting["t_on"] < begin + P * (1 - 1e-9))]
+    rests = tuple(int(np.argmin(np.abs(impacts["t"] - t))) for t in resting["t_on"])
+    if not rests or np.abs(impacts["t"][list(rests)] - resting["t_on"]).max() > 1e-9 * P:
+        return PeriodicOrbit(system, "sticking")
+    u = np.concatenate([impacts["t"], -(1 + R(impacts["side"])) * impacts["v1"], resting["t_off"]])
+    found = Solution(family, 1, 2 * periods, tuple(map(int, impacts["side"])), u, 0.0, rests).corrected()
+    return orbit_of(system, found and found.reduced())
+
+
+def _from_guess(system, family, rows, periods) -> PeriodicOrbit:
+    sides = tuple(int(side) for _, side, _ in rows)
+    R = family.linear.restitution(sides)
+    t, v = np.array([row[0] for row in rows]), np.array([row[2] for row in rows])
+    u = np.concatenate([t, -(1 + R) * v])
+    start = Solution(family, 1, 2 * periods, sides, u)
+    if start.equations.free:
+        if not sides:
+            return PeriodicOrbit(system, "resonance")
+        u = np.append(u, 0.0)
+        u[-1] = -np.mean(start.equations.evaluate(sides, u)[0][: len(sides)])
+        start = Solution(family, 1, 2 * periods, sides, u)
+    if sides and t[-1] >= t[0] + start.equations.P:
+        raise ValueError("guess: the impacts do not fit into one period")
+    found = start.corrected()
+    if (found is None or not found.real) and np.any(R == 0):
+        found = with_rests(found or start) or found
+    return orbit_of(system, found and found.reduced())
+
+
+def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
+    if not sides:
+        return _from_guess(system, family, [], periods)
+    symmetric = family.linear.symmetric and periods % 2 == 1 and is_mirrored(sides)
+    kinds = [(-1, periods, sides[: len(sides) // 2])] if symmetric else []
+    least = [d for d in repetitions(sides) if periods % d == 0]
+    virtual = None
+    kinds = [Solution(family, *kind, np.empty(0)) for kind in [*kinds, (1, 2 * periods, sides)]]
+    for start in kinds:
+        for found in _seeded(start):
+            found = found.reduced()
+            if least and len(found.whole().sides) != len(sides):
+                continue
+            if found.real:
+                return orbit_of(system, found)
+            virtual = virtual or found
+    if np.any(family.linear.restitution(sides) == 0):
+        for start in kinds:
+            for guess in evenly(start):
+                found = with_rests(guess)
+                if found is not None and len(found.reduced().whole().sides) == len(sides):
+                    return orbit_of(system, found.reduced())
+    return orbit_of(system, virtual)
+
+
+def _seeded(start: Solution):
+    """Solutions from fixed seeds, different ones, those whose impulses push first."""
+    e, K = start.equations, start.K
+    rng = np.random.default_rng(0)
+    q = e.q
+    steady_speed = q.omega * math.hypot(e.steady.real, e.steady.imag)
+    size = max(steady_speed, abs(e.steady.momentum) / K, *(q.omega * abs(x) for x in q.stop(start.sides)))
+    t = np.sort(rng.uniform(0, e.P, (SEEDS, K)), axis=1)
+    t += rng.uniform(0, e.P, (SEEDS, 1)) - t[:, :1]
+    D = -np.array(start.sides) * size * 10 ** rng.uniform(-2, 0.5, (SEEDS, K))
+    guesses = np.concatenate([t, D], axis=1)
+    if e.free:
+        guesses = np.column_stack([guesses, q.stop(start.sides).mean() * np.ones(SEEDS)])
+    ends, change = e.newton(start.sides, guesses)
+    ends, change = ends[np.isfinite(change)], change[np.isfinite(change)]
+    T = forcing_period(q)
+    shift = np.zeros(ends.shape[1])
+    shift[:K] = T
+    ends = ends - np.floor(ends[:, :1] / T) * shift if start.sigma == 1 else ends
+    pushing = np.all(-np.array(start.sides) * ends[:, K : 2 * K] > 0, axis=1)
+    known = []
+    for i in np.argsort(~pushing, kind="stable"):
+        if not any(np.allclose(ends[i], other, rtol=1e-7, atol=1e-7) for other in known):
+            known.append(ends[i])
+            yield Solution(start.family, start.sigma, start.halves, start.sides, ends[i], float(change[i]))

@@ -1,0 +1,191 @@
+"""Which orbits are born where the steady motion grazes: a linear complementarity problem (orbits.md).
+
+To lowest order in the distance b - b* the impacts happen where the steady motion touches the stops, at t_j = j T/2
+(both stops) or j T (one stop), with impulses d_j >= 0, and the gaps there are w_j >= 0:
+
+    w = (b - b*) 1 + M d,   w.d = 0,   M_jk = s_j s_k gamma_nT(t_j - t_k)
+
+Each solution with w + d > 0 is an orbit of period n T that exists on one side of b*, with speeds proportional to the
+distance.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.impulse_equations import Equations
+from vibro_sweep.analysis.periodic.itinerary import canonical_start
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses.green import has_free_gap
+from vibro_sweep.model.arguments import checked_count
+from vibro_sweep.model.linear import family_of, forcing_period
+
+BESIDE = (1e-4, 1e-5, 1e-6, 1e-7)  # distances from b*, over the amplitude of the gap, at which an orbit is confirmed
+NEAR = 0.1  # relative difference of the impulses there from those of lowest order
+MOST_PLACES = 20  # for impacts: all 2^20 subsets of them are gone through
+CHUNK = 1 << 14
+
+
+@dataclass(frozen=True, eq=False)
+class Born:
+    """An orbit born at the graze of the steady motion.
+
+    orbit : at a small distance from b*, confirmed by Newton's method
+    born : "below" or "above" b*
+    speed_per_distance : (impacts,) impact speeds over |b - b*|, in the order of `orbit.impacts`
+    """
+
+    orbit: PeriodicOrbit
+    born: str
+    speed_per_distance: np.ndarray
+
+    @property
+    def period(self) -> int:
+        return self.orbit.period
+
+    @property
+    def itinerary(self) -> str:
+        return self.orbit.itinerary
+
+
+@dataclass(frozen=True)
+class _Graze:
+    """The steady motion touches the stops `sides` at `times` within the period n T."""
+
+    b: float
+    amplitude: float  # of the gap
+    times: np.ndarray
+    sides: np.ndarray
+    per_period: int  # touches in a forcing period
+    mirrors: bool  # whether mirror images of orbits are orbits
+
+
+def born_at_grazing(system, periods: int = 6) -> list[Born]:
+    """All orbits of least period 1 .. `periods` that are born where the steady motion grazes, mirror images once.
+
+    `system` gives the oscillator; its clearance plays no part. Where the motion touches the two stops at different
+    clearances, the graze at the larger one is meant. Sorted by period, number of impacts and itinerary.
+
+    Raises ValueError where no steady motion exists or the gap is at rest in it, and for more periods than 2^20 sets
+    of impacts allow.
+    """
+    family = family_of(system)
+    periods = checked_count("periods", periods, 1)
+    if "b" not in family.numbers:
+        raise ValueError("system: it must have a clearance b")
+    if has_free_gap(family.linear):
+        raise ValueError("system: a free mode has no steady motion that could graze")
+    graze = _graze(family, Equations(family.linear, 1, 2), 1)
+    if graze.amplitude == 0:
+        raise ValueError("system: no force moves its gap, so that nothing grazes")
+    most = MOST_PLACES // graze.per_period
+    if periods > most:
+        raise ValueError(f"periods: {periods} is not allowed; it must be at most {most}")
+    result = []
+    for n in range(1, periods + 1):
+        result += _of_period(system, family, n)
+    return result
+
+
+def _graze(family, e: Equations, n: int) -> _Graze:
+    q, s, b = e.q, e.steady, family.numbers["b"]
+    amplitude = float(np.hypot(s.real, s.imag))
+    right = b + s.mean + amplitude - q.high  # -inf without that stop
+    left = b + q.low - s.mean + amplitude
+    double = abs(right - left) <= 1e-12 * amplitude
+    first = -np.arctan2(s.imag, s.real) / q.omega
+    side = 1 if right >= left or double else -1
+    T = forcing_period(q)
+    count = 2 * n if double else n
+    step = T / 2 if double else T
+    times = first + (0 if side > 0 else T / 2) + step * np.arange(count)
+    sides = side * (-1) ** np.arange(count) if double else np.full(count, side)
+    return _Graze(max(right, left), amplitude, times, sides, count // n, double and q.R_low == q.R_high)
+
+
+def _of_period(system, family, n: int) -> list[Born]:
+    e = Equations(family.linear, 1, 2 * n)
+    graze = _graze(family, e, n)
+    count = len(graze.times)
+    j = np.arange(count)
+    gamma = np.array([_gamma(e, i * e.P / count) for i in range(count)])
+    M = graze.sides[:, None] * graze.sides * gamma[(j[:, None] - j) % count]
+    result = [
+        _confirmed(system, family, graze, n, np.flatnonzero(hit), d, side)
+        for hit, d, side in complementary(M, representatives(count, graze.per_period, graze.mirrors))
+    ]
+    return sorted(result, key=lambda item: (len(item.speed_per_distance), item.itinerary, item.born))
+
+
+def _gamma(e: Equations, s: float) -> float:
+    table, width = e.train.coefficients, e.train.width
+    k = min(int(s / width), len(table) - 1)
+    return float(np.polynomial.polynomial.polyval(s - k * width, table[k]))
+
+
+def representatives(count: int, per_period: int, mirrors: bool) -> np.ndarray:
+    """Sets of places, (m, count) bool: one of all its rotations by forcing periods, and by halves where mirror images
+    count once (then the one with most impacts on the first stop); none that repeats itself earlier."""
+    masks = np.arange(1, 1 << count, dtype=np.int64)
+    full = (1 << count) - 1
+    keep = np.ones(len(masks), bool)
+
+    def rank(mask):
+        first = np.zeros(len(mask), np.int64)
+        for i in range(0, count, per_period):
+            first += mask >> i & 1
+        return first * (1 << count) + (full - mask)
+
+    own = rank(masks)
+    for places in range(1, count):
+        rotated = (masks << places | masks >> (count - places)) & full
+        if places % per_period == 0:
+            keep &= rotated != masks
+        if places % per_period == 0 or mirrors:
+            keep &= rank(rotated) <= own
+    chosen = masks[keep]
+    return (chosen[:, None] >> np.arange(count) & 1).astype(bool)
+
+
+def complementary(M: np.ndarray, sets: np.ndarray):
+    """Solutions of w = side 1 + M d, w >= 0, d >= 0, w.d = 0, w + d > 0 with d > 0 just on one of `sets`.
+
+    Yields (set, d on it, side), side = +1 or -1.
+    """
+    sizes = sets.sum(1)
+    for size in np.unique(sizes):
+        group = sets[sizes == size]
+        for begin in range(0, len(group), CHUNK):
+            chosen = group[begin : begin + CHUNK]
+            inside = np.nonzero(chosen)[1].reshape(-1, size)
+            blocks = M[inside[:, :, None], inside[:, None, :]]
+            regular = np.linalg.cond(blocks) < 1e12
+            chosen, inside = chosen[regular], inside[regular]
+            y = np.linalg.solve(blocks[regular], np.ones((len(chosen), size, 1)))[..., 0]
+            gaps = np.einsum("mjk,mk->mj", M[:, inside].transpose(1, 0, 2), y)
+            for side in (-1, 1):
+                pushes = np.all(-side * y > 0, axis=1)
+                opens = np.all((side * (1 - gaps) > 0) | chosen, axis=1)
+                for i in np.flatnonzero(pushes & opens):
+                    yield chosen[i], -side * y[i], side
+
+
+def _confirmed(system, family, graze: _Graze, n: int, hit, d, side: int) -> Born:
+    """The orbit at a small distance on its side, by Newton's method from what lowest order says."""
+    t, sides, P = graze.times[hit], graze.sides[hit], n * forcing_period(family.linear)
+    R = family.linear.restitution(sides)
+    orbit = PeriodicOrbit(system, "not_converged")
+    for share in BESIDE:
+        distance = share * graze.amplitude
+        changed = family.replace(b=graze.b + side * distance)
+        u = np.concatenate([t, -sides * d * distance])
+        found = Solution(changed, 1, 2 * n, tuple(map(int, sides)), u).corrected()
+        if found is None or np.abs(found.jumps / u[len(t) :] - 1).max() > NEAR:
+            continue
+        orbit = orbit_of(system.replace(b=changed.numbers["b"]), found.reduced())
+        if orbit.ok:
+            break
+    first = canonical_start(sides, t if found is None else found.times, P / n)
+    speeds = np.roll(d / (1 + R), -first)
+    return Born(orbit, "above" if side > 0 else "below", speeds)

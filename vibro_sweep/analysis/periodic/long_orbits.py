@@ -1,0 +1,126 @@
+"""Linear algebra for orbits with many impacts, at a cost that grows like their number K.
+
+The dense Jacobian (2K, 2K) couples all impacts. With the perturbed state xi_i before each impact as further unknowns,
+only neighbours are coupled, and J(mu) is what is left when the states are eliminated:
+
+    v_i dt_i + e_g.xi_i                            and    dD_i + (1 + R_i) (a_i dt_i + e_g.A xi_i)
+    xi_{i+1} = E(t_{i+1} - t_i) (xi_i + e_v dD_i - A e_v D_i dt_i),        xi_{K+1} = sigma mu xi_1
+
+Eliminating the states multiplies the determinant by det(1 - (sigma/mu) E(P)) at most, whose sign does not change along
+a branch.
+"""
+
+import numpy as np
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+from vibro_sweep.analysis.periodic.impulse_equations import Equations, flow
+from vibro_sweep.analysis.periodic.media import still_medium
+from vibro_sweep.engine.impulses import branch, flights
+from vibro_sweep.engine.impulses.places import Steps, new_place, new_work
+
+MANY = 60  # impacts from which on the sparse system is the faster one
+
+
+def is_long(e: Equations, sides) -> bool:
+    """Whether to use this module; a free mode that the contact sees has its equations in the dense form only."""
+    return len(sides) >= MANY and not e.free
+
+
+def newton(e: Equations, sides, u, states) -> tuple[np.ndarray, float] | None:
+    """Newton's method at a cost that grows like K: (solution, change of the last step); None without convergence.
+
+    states : (K, m) before the impacts of the guess u, in contact coordinates; further unknowns (engine/impulses/blocks)
+    """
+    K, n = len(sides), states.shape[1] - 3
+    speed = max(e.q.omega * np.hypot(e.steady.real, e.steady.imag), np.abs(u[K:]).max())
+    steps = Steps(e.P, speed, 1.0, 0.0, 0.0, 0.0, -np.inf, np.inf)
+    place, work = new_place(K, n), new_work(K, n)
+    place.t[:], place.D[:], place.z[:] = u[:K], u[K:], states[:, :n]
+    if not branch.settle(still_medium(e.q, e.halves), np.array(sides, float), float(e.sigma), steps, place, work):
+        return None
+    change = max(np.abs(work.change_t[0]).max() / e.P, np.abs(work.change_jump[0]).max() / speed)
+    return np.concatenate([place.t, place.D]), float(change)
+
+
+def extended(e: Equations, sides, u, motion, mu: int, column=None, row=None) -> csc_array:
+    """The system above, unknowns (dt_i, dD_i, xi_i) by impacts. With a border: `column` (2K,) by the parameter, `row`
+    (2K + 1,), both in the order of the dense system."""
+    f = flow(e.q)
+    K, n = len(sides), f.B.shape[0] - 3
+    N, m = n // 2, n + 2
+    contacts = e.contacts(sides)
+    t, D = u[:K], u[K : 2 * K]
+    E = np.empty((K, n, n))
+    flights.flight_matrices(f, np.diff(np.append(t, t[0] + e.P)), E, np.empty((3, n + 3)))
+    first = m * np.arange(K)
+    following = np.roll(first, -1)
+    gain, v, a = contacts[:, 1], motion[:, 0], motion[:, 1]
+    one = np.ones(K)
+    closing = np.where(np.arange(K) == K - 1, float(e.sigma * mu), 1.0)
+    rows, columns, values = [], [], []
+
+    def put(i, j, value):
+        i, j, value = np.broadcast_arrays(i, j, value)
+        rows.append(i.ravel())
+        columns.append(j.ravel())
+        values.append(value.ravel())
+
+    put(first, first, v)
+    put(first, first + 2, one)
+    put(first + 1, first, gain * a)
+    put(first + 1, first + 1, one)
+    put(first + 1, first + 2 + N, gain)
+    state = np.arange(n)
+    after = first[:, None] + 2 + state
+    put(after, following[:, None] + 2 + state, closing[:, None])
+    put(after[:, :, None], (first[:, None] + 2 + state)[:, None, :], -E)
+    put(after, (first + 1)[:, None], -E[:, :, N])
+    put(after, first[:, None], (E @ f.B[:n, N]) * D[:, None])
+    size = m * K
+    if column is not None:
+        places = np.concatenate([first, first + 1])
+        put(places, size, column)
+        put(size, np.append(places, size), row)
+        size += 1
+    indices = np.concatenate(rows), np.concatenate(columns)
+    return csc_array((np.concatenate(values), indices), shape=(size, size))
+
+
+def solve_bordered(e: Equations, sides, u, motion, column, row, F, last: float) -> np.ndarray:
+    """Solution (2K + 1,) of [J column; row] x = [F; last], with J = J(1)."""
+    K = len(sides)
+    matrix = extended(e, sides, u, motion, 1, column, row)
+    m = (matrix.shape[0] - 1) // K
+    places = np.concatenate([m * np.arange(K), m * np.arange(K) + 1])
+    right = np.zeros(matrix.shape[0])
+    right[places], right[-1] = F, last
+    try:
+        solution = splu(matrix).solve(right)
+    except RuntimeError:
+        raise np.linalg.LinAlgError("the bordered system is singular") from None
+    return np.append(solution[places], solution[-1])
+
+
+def sign_and_log_det(e: Equations, sides, u, motion, mu: int) -> tuple[float, float]:
+    """Of det J(mu) up to a factor that has one sign along a branch."""
+    try:
+        lu = splu(extended(e, sides, u, motion, mu))
+    except RuntimeError:
+        return 0.0, -np.inf
+    diagonal = lu.U.diagonal()
+    sign = np.prod(np.sign(diagonal)) * _parity(lu.perm_r) * _parity(lu.perm_c)
+    return float(sign), float(np.log(np.abs(diagonal)).sum())
+
+
+def _parity(permutation) -> int:
+    """+1 for an even permutation."""
+    seen, cycles = np.zeros(len(permutation), bool), 0
+    for start in range(len(permutation)):
+        if not seen[start]:
+            cycles += 1
+            place = start
+            while not seen[place]:
+                seen[place] = True
+                place = permutation[place]
+    return 1 if (len(permutation) - cycles) % 2 == 0 else -1

@@ -1,0 +1,83 @@
+"""The tables with which compiled steps work (engine/impulses/medium.py), along a parameter or for one oscillator."""
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from vibro_sweep.analysis.periodic.impulse_equations import flow
+from vibro_sweep.engine.impulses import branch, medium
+from vibro_sweep.engine.impulses.flights import rates
+from vibro_sweep.engine.impulses.medium import NUMBERS, TAU
+from vibro_sweep.engine.impulses.tables import ORDER, REAL
+from vibro_sweep.model.linear import Family, Linear, forcing_period
+
+DECAYED = 1e-14  # relative size of their last coefficients; or
+NOISE = 1e-11  # where half the interval makes them no smaller, which is what rounding leaves
+NARROWEST = 1e-6  # of the branch's range
+
+
+def _numbers(q: Linear, halves: int) -> np.ndarray:
+    """B and the numbers, in the order of `values` of a medium."""
+    numbers = [q.low, q.high, 1 + q.R_low, 1 + q.R_high, q.omega, q.tau, forcing_period(q) / 2 * halves]
+    return np.append(rates(q).ravel(), [value if np.isfinite(value) else 0.0 for value in numbers])
+
+
+def medium_of(family: Family, halves: int, name: str, centre: float, reach: float) -> np.ndarray | None:
+    """The oscillator around a value of the parameter, to `reach` or as far as polynomials hold; None: they do not."""
+    nodes = np.cos(np.pi * (np.arange(medium.DEGREE + 1) + 0.5) / (medium.DEGREE + 1))
+    least, before = NARROWEST * reach, np.inf
+
+    def sampled(p: float) -> np.ndarray:
+        return _numbers(family.replace(**{name: p}).linear, halves)
+
+    while reach > least:
+        try:
+            values = np.array([sampled(centre + branch.BEYOND * reach * x) for x in nodes])
+        except (ValueError, np.linalg.LinAlgError):
+            values = np.full((medium.DEGREE + 1, NUMBERS + 1), np.nan)
+        if np.all(np.isfinite(values)):
+            values[:, TAU - NUMBERS] = np.unwrap(values[:, TAU - NUMBERS])
+            c, size = chebyshev.chebfit(nodes, values, medium.DEGREE), np.abs(values).max(axis=0)
+            size[:-NUMBERS] = size[:-NUMBERS].max()
+            size[TAU - NUMBERS] = max(size[TAU - NUMBERS], 1.0)
+            left = float(np.max(np.abs(c[-2:]) / np.maximum(size, 1e-300)))
+            if left <= DECAYED or (left <= NOISE and left > 0.3 * before):
+                c[np.abs(c) < 2e-16 * size] = 0.0
+                return _built(family.replace(**{name: centre}).linear, c, values, centre, reach)
+            before = left
+        reach /= 2
+    return None
+
+
+def still_medium(q: Linear, halves: int) -> np.ndarray:
+    """One oscillator, for steps in which no parameter changes; its parameter is 0."""
+    values = _numbers(q, halves)[None]
+    return _built(q, values, values, 0.0, 1.0)
+
+
+def _built(q: Linear, c, values, centre: float, reach: float) -> np.ndarray:
+    f = flow(q)
+    m = len(f.B)
+    n = m - 3
+    degree = int(np.flatnonzero(np.abs(c).max(axis=1))[-1])
+    powers_of = np.zeros((max(degree, 1) + 1, c.shape[1]))
+    for j in range(c.shape[1]):
+        column = chebyshev.cheb2poly(c[: degree + 1, j])
+        powers_of[: len(column), j] = column
+    powers_of /= branch.BEYOND ** np.arange(len(powers_of))[:, None]
+    result = np.zeros(1, medium.medium_of(n // 2))
+    r = result[0]
+    r["moves"] = bool(np.any(np.ptp(values[:, : m * m], axis=0) > 0))
+    if not r["moves"]:  # to the last digit
+        powers_of[:, : m * m] = 0.0
+        powers_of[0, : m * m] = f.B.ravel()
+    open_stops = ~np.isfinite([q.low, q.high])
+    powers_of[0, m * m : m * m + 2][open_stops] = np.array([-np.inf, np.inf])[open_stops]
+    r["centre"], r["reach"], r["degree"], r["width"] = centre, reach, len(powers_of) - 1, f.width
+    r["fit"][: len(powers_of)] = powers_of
+    r["bits"] = min(max(int(np.ceil(np.log2(2 * values[:, -1].max() / f.width))), 1), medium.BITS)
+    series = [np.eye(n, m).astype(REAL)]
+    for k in range(1, ORDER + 1):
+        series.append(series[-1] @ f.B.astype(REAL) / k)
+    r["series"], r["powers"][:], r["step"] = np.array(series), f.powers, f.powers[0].T
+    r["gap_rows"] = r["series"][:, 0].T
+    return result

@@ -1,0 +1,237 @@
+"""What is known of a periodic orbit: impacts, itinerary, multipliers, stability, certified distance from the stops."""
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.impulse_equations import flow, held_flow
+from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses import flights
+from vibro_sweep.engine.one_system import IMPACT, STICKING
+from vibro_sweep.model.general import Oscillator
+from vibro_sweep.model.linear import Family, forcing_period
+from vibro_sweep.model.oscillator import System
+
+STATUS = {
+    "ok": "a periodic orbit, certified",
+    "not_converged": "Newton's method found no orbit near the guess",
+    "not_real": "a solution of the equations that passes a stop, or whose impulse pulls",
+    "sticking": "the orbit rests on a stop after infinitely many impacts: they are no finite list",
+    "resonance": "an undamped mode repeats itself after the period: such orbits do not exist, or are not isolated",
+    "too_stiff": "the rates of the oscillator are too far apart",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicOrbit:
+    """A periodic orbit of a linear oscillator between stops. Times are absolute and nondimensional.
+
+    status : "ok", or a key of `STATUS`; numbers of an orbit that is not ok are of the solution found, or empty
+    period : least period, in forcing periods
+    itinerary : sides of `impacts` in order, "R" and "L"; the least rotation with L < R
+    symmetric : x(t + period T/2) = -x(t)
+    """
+
+    system: System | Oscillator | Family
+    status: str
+    _solution: Solution | None = field(repr=False, default=None)
+    _frame: tuple[int, int] | None = field(repr=False, default=None)  # (first impact, periods to shift by)
+
+    @property
+    def ok(self) -> bool:
+        return self.status == "ok"
+
+    @property
+    def period(self) -> int:
+        if self._solution is None:
+            return 0
+        return self._solution.halves if self.symmetric else self._solution.halves // 2
+
+    @property
+    def symmetric(self) -> bool:
+        return self._solution is not None and self._solution.sigma == -1
+
+    @cached_property
+    def _canonical_frame(self) -> tuple[int, int]:
+        """Index of the impact that begins, and periods T before the one that it lies in."""
+        s = self._solution.whole()
+        if not s.K:
+            return 0, 0
+        T = forcing_period(s.family.linear)
+        first = canonical_start(s.sides, s.times, T)
+        return first, math.floor(s.times[first] / T)
+
+    @cached_property
+    def _whole(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Times, sides, impulses and states before the impacts of the whole orbit, canonically rotated."""
+        s = self._solution
+        T = forcing_period(s.family.linear)
+        t, sides, D, states = s.times, np.array(s.sides, int), s.jumps, s.states[:, :-3]
+        if self.symmetric:
+            t, sides, D = np.append(t, t + s.equations.P), np.append(sides, -sides), np.append(D, -D)
+            states = np.concatenate([states, -states])
+        if s.K:
+            first, shift = self._frame or self._canonical_frame
+            t = np.concatenate([t[first:], t[:first] + self.period * T]) - shift * T
+            sides, D, states = (np.roll(values, -first, 0) for values in (sides, D, states))
+        return t, sides, D, states
+
+    @cached_property
+    def sticking(self) -> np.ndarray:
+        """Structured, fields t_on, t_off, side: the rests, with R = 0, of a period that begins with `impacts`."""
+        result = np.empty(0, STICKING)
+        if self._solution is not None and self._solution.rests:
+            s = self._solution.whole()
+            rests, T = list(s.rests), forcing_period(s.family.linear)
+            first, shift = self._frame or self._canonical_frame
+            later = np.where(np.array(rests) < first, self.period * T, 0.0) - shift * T
+            result = np.empty(len(rests), STICKING)
+            result["t_on"], result["t_off"] = s.times[rests] + later, s.ends + later
+            result["side"] = np.array(s.sides)[rests]
+            result = result[np.argsort(result["t_on"])]
+        return result
+
+    @property
+    def itinerary(self) -> str:
+        return "" if self._solution is None else word(self._whole[1])
+
+    @property
+    def half(self) -> int | None:
+        """Index of the impact that begins the second half; None unless symmetric."""
+        return len(self._whole[0]) // 2 if self.symmetric else None
+
+    @cached_property
+    def impacts(self) -> np.ndarray:
+        """Structured, fields t, side, v1 (before), x2, v2; x and xdot (N,) of all masses where there is no System."""
+        N = 2 if self._solution is None else len(self._solution.family.linear.along)
+        general = np.dtype([*IMPACT.descr[:3], ("x", float, N), ("xdot", float, N)])
+        kind = IMPACT if isinstance(self.system, System) else general
+        if self._solution is None or not self._solution.K:
+            return np.empty(0, kind)
+        t, sides, _, states = self._whole
+        x = self._masses(states)
+        result = np.empty(len(t), kind)
+        result["t"], result["side"], result["v1"] = t, sides, states[:, N]
+        if kind is IMPACT:
+            result["x2"], result["v2"] = x[:, 2], x[:, 3]
+        else:
+            result["x"], result["xdot"] = x[:, ::2], x[:, 1::2]
+        return result
+
+    def _masses(self, states) -> np.ndarray:
+        """States (m, 2N) as x1 v1 .. xN vN from contact coordinates."""
+        q = self._solution.family.linear
+        inverse, N = flights.contact_coordinates(q).inverse, len(q.along)
+        result = np.empty_like(states)
+        result[:, ::2], result[:, 1::2] = states[:, :N] @ inverse.T, states[:, N : 2 * N] @ inverse.T
+        return result
+
+    @property
+    def half_multipliers(self) -> np.ndarray | None:
+        """(2N,) complex multipliers of the half map with the mirror, by falling modulus; None unless symmetric."""
+        return self._solution.multipliers if self.symmetric else None
+
+    @cached_property
+    def multipliers(self) -> np.ndarray:
+        """(2N,) complex Floquet multipliers over `period`, by falling modulus, of a pair +im first."""
+        if self._solution is None:
+            return np.empty(0, complex)
+        values = self._solution.multipliers
+        if self.symmetric:
+            values = values**2
+            values = values[np.lexsort((-values.imag, -np.abs(values)))]
+        return values
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+        return self._solution is not None and bool(np.all(np.abs(self.multipliers) < 1))
+
+    @property
+    def margin(self) -> float:
+        """Least distance of a turning point of the gap from its stop; negative: not real; inf: there is none."""
+        return math.nan if self._solution is None else self._solution.margin
+
+    @property
+    def residual(self) -> float:
+        """Largest relative change of the last Newton step."""
+        return math.nan if self._solution is None else self._solution.change
+
+    def sample(self, times) -> np.ndarray:
+        """States x1 v1 .. xN vN at any times, (len(times), 2N); at an impact the state before it."""
+        if self._solution is None:
+            raise ValueError(f"this orbit has no motion: {STATUS[self.status]}")
+        times = np.atleast_1d(np.asarray(times, float))
+        q = self._solution.family.linear
+        length = self.period * forcing_period(q)
+        begins, starts, held = self._pieces
+        wrapped = times - length * np.ceil((times - begins[0]) / length - 1)  # in (begins[0], begins[0] + length]
+        wrapped = np.where(wrapped <= begins[0], wrapped + length, wrapped)
+        wrapped = np.where(wrapped > begins[0] + length, wrapped - length, wrapped)
+        which = np.searchsorted(begins, wrapped, side="left") - 1
+        out = np.empty((len(times), starts.shape[1]))
+        work = np.empty((2, starts.shape[1]))
+        for rests in (False, True):
+            chosen = np.flatnonzero(held[which] == rests)
+            if len(chosen):
+                part = np.empty((len(chosen), starts.shape[1]))
+                f = held_flow(q) if rests else flow(q)
+                flights.sample_flights(f, starts, begins, which[chosen], wrapped[chosen], part, work)
+                out[chosen] = part
+        return self._masses(out[:, : 2 * len(q.along)])
+
+    @cached_property
+    def _pieces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Begins of flights and rests in order, the states there in contact coordinates, and which are rests."""
+        s = self._solution
+        N, m = len(s.family.linear.along), flow(s.family.linear).B.shape[0]
+        if s.rests:
+            whole = s.whole()
+            pieces = whole.equations.starts(whole.sides, whole.u)
+            _, shift = self._frame or self._canonical_frame
+            begins = np.array([begin for _, _, begin, _, _ in pieces]) - shift * forcing_period(s.family.linear)
+            return begins, np.array([zeta for *_, zeta in pieces]), np.array([kind == "rest" for kind, *_ in pieces])
+        t, _, D, states = self._whole
+        starts = np.zeros((max(len(t), 1), m))
+        starts[:, : 2 * N] = states[: len(starts)]
+        if len(t):
+            starts[:, N] += D
+        return t if len(t) else np.zeros(1), starts, np.zeros(len(starts), bool)
+
+    @cached_property
+    def state(self) -> np.ndarray:
+        """(2N,) state x1 v1 .. xN vN at t = 0, before an impact there."""
+        return self.sample([0.0])[0]
+
+    def plot(self):
+        """Phase portrait of the gap and its time history, impacts marked. Returns a matplotlib Figure."""
+        from vibro_sweep.plotting.periodic import plot_periodic
+
+        q = self._solution.family.linear if self._solution is not None else None
+        if q is None:
+            raise ValueError(f"this orbit has no motion: {STATUS[self.status]}")
+        length = self.period * forcing_period(q)
+        times = np.unique(np.concatenate([np.linspace(0, length, 400 * self.period + 1), self._whole[0] % length]))
+        states = self.sample(times)
+        gap, rate = states[:, ::2] @ q.along, states[:, 1::2] @ q.along
+        R = q.restitution(self._whole[1])
+        t, v = self._whole[0] % length, self._whole[3][:, len(q.along)]
+        title = f"{self.itinerary or 'free'}, period {self.period}, {'stable' if self.stable else 'unstable'}"
+        return plot_periodic(times, gap, rate, t, self._whole[1], v, -R * v, (q.low, q.high), title)
+
+    def save(self, path) -> Path:
+        """Write the orbit as JSON, for `load_orbit`; nothing is overwritten."""
+        from vibro_sweep.analysis.periodic.file import save_orbit
+
+        return save_orbit(self, path)
+
+
+def orbit_of(system, solution: Solution | None, status: str | None = None) -> PeriodicOrbit:
+    """The orbit of a solution, certified."""
+    if solution is None:
+        return PeriodicOrbit(system, status or "not_converged")
+    return PeriodicOrbit(system, status or ("ok" if solution.real else "not_real"), solution)

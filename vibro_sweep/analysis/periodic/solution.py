@@ -1,0 +1,187 @@
+"""A solution of the equations of periodic orbits, and what follows from it."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic import long_orbits
+from vibro_sweep.analysis.periodic.impulse_equations import Equations
+from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
+from vibro_sweep.analysis.periodic.resting import RestEquations
+from vibro_sweep.model.linear import Family, Linear
+
+# Relative difference below which two halves (periods) of an orbit are the same. An orbit that is born at a pitchfork or
+# flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not tell the two orbits apart.
+ALIKE = 1e-6
+SLOW = 1e-5  # impulse, relative to the largest, below which impacts follow each other so closely that rounding counts
+
+
+@dataclass(frozen=True)
+class Solution:
+    """z(t + P) = sigma z(t), P = halves T/2, with impacts u = (t_1 .. t_K, D_1 .. D_K) on `sides`.
+
+    With R = 0 the mass may rest after the impacts `rests`; u then goes on with the ends of the rests.
+    """
+
+    family: Family
+    sigma: int
+    halves: int
+    sides: tuple[int, ...]
+    u: np.ndarray
+    change: float = 0.0  # of the last Newton step
+    rests: tuple[int, ...] = ()
+
+    @cached_property
+    def equations(self) -> Equations | RestEquations:
+        return equations_for(self, self.family.linear)
+
+    @property
+    def K(self) -> int:
+        return len(self.sides)
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return len(self.u)
+
+    @property
+    def times(self) -> np.ndarray:
+        return self.u[: self.K]
+
+    @property
+    def jumps(self) -> np.ndarray:
+        return self.u[self.K : 2 * self.K]
+
+    @property
+    def ends(self) -> np.ndarray:
+        """Of the rests."""
+        return self.u[2 * self.K : 2 * self.K + len(self.rests)]
+
+    @cached_property
+    def hold(self) -> float:
+        """The least free acceleration into the stop during the rests; inf without a rest."""
+        return self.equations.hold(self.sides, self.u) if self.rests else np.inf
+
+    @cached_property
+    def motion(self) -> np.ndarray:
+        """(K, 3) gap velocity, acceleration and jerk before each impact."""
+        return self.equations.evaluate(self.sides, self.u)[3]
+
+    @cached_property
+    def _flights(self):
+        return self.equations.fly(self.sides, self.u)
+
+    @property
+    def states(self) -> np.ndarray:
+        """Before each impact, in contact coordinates."""
+        return self._flights[0]
+
+    @property
+    def nearest(self) -> tuple[float, float, int]:
+        """Distance, time and side of the turning point nearest to its stop."""
+        distance, time, side = self._flights[1]
+        return float(distance), float(time), int(side)
+
+    @property
+    def margin(self) -> float:
+        return self.nearest[0]
+
+    @cached_property
+    def multipliers(self) -> np.ndarray:
+        """Of the map over P, with the mirror for sigma = -1."""
+        return self.equations.multipliers(self.sides, self.u, self.motion)
+
+    @property
+    def pushes(self) -> np.ndarray:
+        """(K,) sizes of the impulses; negative for one that pulls."""
+        return -np.asarray(self.sides, float) * self.jumps
+
+    @property
+    def real(self) -> bool:
+        """Whether every impulse pushes and every flight stays inside, to rounding."""
+        rounding = 1e-13 * self.size_of_gap
+        speed = self.family.linear.omega * rounding
+        held = self.hold > -self.family.linear.omega * speed and np.all(self.ends >= self.times[list(self.rests)])
+        held = held and not np.any(self.family.linear.restitution(np.array(self.sides)[list(self.rests)]))
+        return bool(np.all(self.pushes > -speed) and self.margin > -rounding and held)
+
+    @cached_property
+    def size_of_gap(self) -> float:
+        """A scale of the gap: of the stops that are hit, the steady motion, and what impulses do in 1/omega."""
+        q, steady = self.family.linear, self.equations.steady
+        moved = np.abs(self.jumps).max(initial=0.0) / q.omega
+        return max(np.abs(self.states[:, 0]).max(), float(np.hypot(steady.real, steady.imag)), moved)
+
+    def corrected(self) -> "Solution | None":
+        """By Newton's method from here; None without convergence."""
+        if self.K == 0:
+            return self
+        if not self.rests and long_orbits.is_long(self.equations, self.sides):
+            found = long_orbits.newton(self.equations, self.sides, self.u, self.states)
+            if found is not None and np.abs(found[0][self.K :]).min() > SLOW * np.abs(found[0][self.K :]).max():
+                return replace(self, u=found[0], change=found[1])
+        ends, change = self.equations.newton(self.sides, self.u[None])
+        if not np.isfinite(change[0]):
+            return None
+        return replace(self, u=ends[0], change=float(change[0]))
+
+    def whole(self) -> "Solution":
+        """The same orbit over its whole period, sigma = +1."""
+        if self.sigma == 1:
+            return self
+        t, D, P = self.times, self.jumps, self.equations.P
+        u = np.concatenate([t, t + P, D, -D, self.ends, self.ends + P])
+        sides = (*self.sides, *(-side for side in self.sides))
+        rests = (*self.rests, *(k + self.K for k in self.rests))
+        whole = Solution(self.family, 1, 2 * self.halves, sides, u, self.change, rests)
+        if whole.equations.free:
+            whole = Solution(self.family, 1, 2 * self.halves, sides, np.append(u, 0.0), self.change)
+            whole = whole.corrected() or whole
+        return whole
+
+    def part(self, count: int, sigma: int, alike: float = ALIKE) -> "Solution | None":
+        """The first of `count` equal parts (mirrored ones for sigma = -1), if they are equal to the share `alike`."""
+        K, P, rests = self.K // count, self.equations.P / count, self.rests[: len(self.rests) // count]
+        if self.rests != tuple(k + K * i for i in range(count) for k in rests):
+            return None
+        t, D = self.times.reshape(count, K), self.jumps.reshape(count, K)
+        signs = float(sigma) ** np.arange(count)[:, None]
+        shifted, aligned = t - P * np.arange(count)[:, None], D * signs
+        scale = np.abs(D).max(initial=1e-300)
+        if np.ptp(shifted, 0).max() > alike * P or np.ptp(aligned, 0).max() > alike * scale:
+            return None
+        u = np.concatenate([shifted.mean(0), aligned.mean(0), self.ends[: len(rests)]])
+        found = Solution(self.family, sigma, self.halves // count, tuple(self.sides[:K]), u, 0.0, rests)
+        if found.equations.free:
+            found = Solution(self.family, sigma, found.halves, found.sides, np.append(u, self.u[-1]))
+        found = found.corrected()
+        if found is None or np.abs(found.times - shifted[0]).max() > 10 * alike * P:
+            return None
+        return found
+
+    def reduced(self) -> "Solution":
+        """With its least period, and as half an orbit where it is symmetric."""
+        family = self.family
+        if self.K == 0:
+            symmetric = family.linear.symmetric
+            return Solution(family, -1 if symmetric else 1, 1 if symmetric else 2, (), self.u, 0.0)
+        whole = self.whole()
+        for count in repetitions(whole.sides):
+            if whole.halves // 2 % count == 0:
+                found = whole.part(count, 1)
+                if found is not None:
+                    whole = found
+                    break
+        if self.family.linear.symmetric and whole.halves % 4 == 2 and is_mirrored(whole.sides):
+            half = whole.part(2, -1)
+            if half is not None:
+                return half
+        return whole
+
+
+def equations_for(s: Solution, q: Linear, slope: Linear | None = None) -> Equations | RestEquations:
+    """Of orbits like `s`, for the oscillator q; derivatives where it changes by `slope`."""
+    if s.rests:
+        return RestEquations(q, s.sigma, s.halves, slope, s.rests)
+    return Equations(q, s.sigma, s.halves, slope)

@@ -1,0 +1,1 @@
+"""Single orbits: simulated, their exponents, the discontinuity map."""

@@ -1,0 +1,58 @@
+"""A simulated orbit as an `xarray.Dataset`, and as a picture."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vibro_sweep.model.state import state
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+    from vibro_sweep.analysis.single.orbit import Orbit
+
+SAMPLES = 400  # of a picture, in a forcing period
+
+
+def dataset_of(orbit: "Orbit") -> "xarray.Dataset":
+    """States x1 .. vN over `section`, whose coordinate is t; impacts over `impact`, rests over `rest`.
+
+    These are named as the fields of `Orbit`: `impact_t`, .., `rest_t_on`, ..; where the oscillator is no System also of
+    all masses, `impact_x1`, `impact_xdot1`, .. Attributes: numbers, options, `start_time`, `status` and its note.
+    """
+    import xarray
+
+    system = orbit.system
+    variables = {name: ("section", orbit.section[:, i]) for i, name in enumerate(state(system.masses))}
+    for name in orbit.impacts.dtype.names:
+        values = orbit.impacts[name]
+        columns = {name: values} if values.ndim == 1 else {f"{name}{i}": one for i, one in enumerate(values.T, 1)}
+        variables |= {f"impact_{key}": ("impact", one) for key, one in columns.items()}
+    variables |= {f"rest_{name}": ("rest", orbit.sticking[name]) for name in orbit.sticking.dtype.names}
+    options = {name: value for name, value in system.options.items() if value is not None}
+    attributes = system.parameters() | options | {"start_time": orbit.start_time}
+    attributes |= {"status": str(orbit.status), "status_note": orbit.status.note}
+    return xarray.Dataset(variables, {"t": ("section", orbit.section_times)}, attributes)
+
+
+def figure_of(orbit: "Orbit", periods: int) -> "Figure":
+    """Phase portrait and time history of the gap over the last forcing periods that were simulated."""
+    from vibro_sweep.plotting.periodic import plot_periodic
+
+    reached = orbit.section_times[np.isfinite(orbit.section[:, 0])]
+    if not len(reached) or reached[-1] <= orbit.start_time:
+        raise ValueError(f"this orbit has no motion to draw: its status is {orbit.status!r}, its periods are too few")
+    end, system, q = reached[-1], orbit.system, orbit.system.linear
+    begin = max(orbit.start_time, end - periods * system.period)
+    impacts = orbit.impacts[(orbit.impacts["t"] >= begin) & (orbit.impacts["t"] <= end)]
+    count = max(2, round((end - begin) / system.period * SAMPLES))
+    times = np.unique(np.concatenate([np.linspace(begin, end, count), impacts["t"]]))
+    states = orbit.sample(times)
+    gap, rate = states[:, 0::2] @ q.along, states[:, 1::2] @ q.along
+    at = np.searchsorted(times, impacts["t"])
+    gap[at], rate[at] = q.stop(impacts["side"]), impacts["v1"]  # before the impact
+    title = f"{begin:.6g} < t < {end:.6g}, b = {system.b:.6g}"
+    jumps = (impacts["t"], impacts["side"], impacts["v1"], -q.restitution(impacts["side"]) * impacts["v1"])
+    names = ("$x_1$", "$v_1$") if system.gap_is_x1 else ("$g$", r"$\dot g$")
+    return plot_periodic(times, gap, rate, *jumps, [one for one in (q.high, q.low) if np.isfinite(one)], title, names)

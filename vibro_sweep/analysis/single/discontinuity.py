@@ -1,0 +1,47 @@
+"""The discontinuity mapping of the double grazing orbit, for a person at a prompt; its formulas are in the engine."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from vibro_sweep.engine.period_map import PeriodMap
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.arguments import checked_state, is_number
+from vibro_sweep.model.oscillator import checked_system
+
+
+class DiscontinuityMap:
+    """P = Phi_{T/2} o C2 o Phi_{T/2} o C1 (eqs. 41, 48): call it with a state (2 N,) at the right graze's phase."""
+
+    def __init__(self, system: AnyOscillator, order: int = 1, expand_at: float | None = None):
+        checked_system(system)
+        if isinstance(order, bool) or order not in (1, 2):
+            raise ValueError(f"order: {order!r} is not allowed; it must be 1 or 2")
+        if expand_at is not None and not (is_number(expand_at) and 0 < expand_at < np.inf):
+            raise ValueError(f"expand_at: {expand_at!r} is not allowed; it must be a finite number > 0")
+        self._map = PeriodMap(system, order, expand_at)
+        self.graze, self._masses = self._map.graze, len(system.linear.along)
+        self._at = float(system.linear.along @ self.graze[0::2])
+
+    def __repr__(self) -> str:
+        return f"<DiscontinuityMap of order {self._map.order}, expanded at b = {self._at:.10g}; {self._map.system}>"
+
+    def __call__(self, state: ArrayLike) -> np.ndarray:
+        """The state (2 N,) one period later."""
+        return self._map([checked_state(state, self._masses)]).states[0]
+
+    def jacobian(self, state: ArrayLike) -> np.ndarray:
+        """(2 N, 2 N) derivative of the map, singular like 1/sqrt(psi) at a graze."""
+        return self._map([checked_state(state, self._masses)], jacobian=True).jacobian[0]
+
+
+def discontinuity_map(system: AnyOscillator, order: int = 1, expand_at: float | None = None) -> DiscontinuityMap:
+    """The discontinuity mapping of `system` at its clearance.
+
+    system : a System, or an Oscillator; with equal stops about 0 (or one of them) and no constant force
+    order : 1, the paper's; 2, with the next term (engine/motion/discontinuity.py)
+    expand_at : clearance at which it is expanded, by default the exact b*
+
+    Raises ValueError for a system that is not symmetric so, or whose gap has no steady motion, for another order, or a
+    clearance that is no number > 0. The map itself raises it for a state that is not 2 N finite numbers.
+    """
+    return DiscontinuityMap(system, order, expand_at)

@@ -1,0 +1,201 @@
+"""One orbit, for a person at a prompt: `simulate` and `lyapunov`."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from vibro_sweep.analysis.single.exponents import Exponents
+from vibro_sweep.engine import points
+from vibro_sweep.engine.motion import orbits
+from vibro_sweep.engine.one_system import Engine, plan_of
+from vibro_sweep.engine.records import new_results
+from vibro_sweep.model import status
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.arguments import checked_count, is_number
+from vibro_sweep.model.oscillator import checked_system
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+CHUNK = 256  # periods computed before a look at how many impacts there were
+ROOM = 4096  # impacts there is room for at first
+MAX_RECORD = 10**7 * 5 // 4  # of these with all section points in memory: 400 MB
+LATEST = 10**9  # periods; a time then resolves a millionth of one
+
+
+class Status(str):
+    """The name of an outcome ("ok", ...), with its `code` and a `note`."""
+
+    code: int
+    note: str
+
+    def __new__(cls, code: int, chatters: int) -> "Status":
+        status_name = super().__new__(cls, status.meaning(code))
+        status_name.code = code
+        status_name.note = (
+            f"{chatters} chatter sequences end in a closed-form sum of impacts that are not listed" if chatters else ""
+        )
+        return status_name
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Orbit:
+    """What `simulate` returns. Times are absolute and nondimensional, sides +1 (right, A) and -1 (left, C).
+
+    impacts : structured, fields t, side, v1 (before), x2, v2; in order. Of chatter, those computed one by one.
+    sticking : structured, fields t_on, t_off, side; t_off is the end of the simulation for a rest that outlasts it.
+    section : (periods + 1, 4) states (x1, v1, x2, v2) at t = 0 mod T, NaN after a failure
+    status : "ok", or what went wrong; `status.note` counts the chatter sequences whose end was summed up
+    """
+
+    system: AnyOscillator
+    start_time: float
+    impacts: np.ndarray
+    sticking: np.ndarray
+    section: np.ndarray
+    status: "Status"
+    _start: np.ndarray  # in contact coordinates, as
+    _states: np.ndarray  # `section`
+    _engine: Engine
+
+    def __repr__(self) -> str:
+        what = f"{len(self.section) - 1:,} forcing periods, {len(self.impacts):,} impacts, {len(self.sticking):,} rests"
+        return f"<Orbit from t = {self.start_time:g}: {what}, status '{self.status}'; {self.system}>"
+
+    @property
+    def section_times(self) -> np.ndarray:
+        """(periods + 1,) times of `section`."""
+        first = math.ceil(self.start_time / self._engine.period)
+        return (first + np.arange(len(self.section))) * self._engine.period
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """The orbit as a Dataset: states over `section`, impacts over `impact`, rests over `rest`."""
+        from vibro_sweep.analysis.single.dataset import dataset_of
+
+        return dataset_of(self)
+
+    def plot(self, periods: int = 4) -> "Figure":
+        """Phase portrait and time history of the last forcing periods, impacts marked.
+
+        Raises ValueError where that is no whole number >= 1, or nothing is simulated.
+        """
+        from vibro_sweep.analysis.single.dataset import figure_of
+
+        return figure_of(self, checked_count("periods", periods, 1))
+
+    def sample(self, times: ArrayLike) -> np.ndarray:
+        """States (x1, v1, x2, v2) at `times`, (len(times), 4). ValueError outside the simulated time.
+
+        |x1| may pass b by the rounding of an evaluation, some units in the last place.
+        """
+        times = np.atleast_1d(np.asarray(times, float))
+        end = self.section_times[-1]
+        outside = ~((times >= self.start_time) & (times <= end))
+        if outside.any():
+            raise ValueError(
+                f"times: {times[outside][0]!r} is outside the simulated time {self.start_time!r} .. {end!r}"
+            )
+        engine = self._engine
+        period, cell, offset = engine.locate(times)
+        order = np.lexsort((offset, cell, period))
+        result = np.empty((len(times), engine.states))
+        first = math.ceil(self.start_time / engine.period)
+        _, start_cell, start_offset = (value[()] for value in engine.locate(self.start_time))
+        for n in np.unique(period):
+            chosen = order[period[order] == n]
+            if n - first == len(self.section) - 1:  # the very end
+                result[chosen] = self._states[-1]
+                continue
+            records = orbits.new_records(1, samples=len(chosen), masses=engine.kind.masses)
+            records.times[:, 0], records.times[:, 1] = cell[chosen], offset[chosen]
+            if n < first:
+                engine.put(self._start, start_cell, start_offset)
+            else:
+                engine.put(self._states[n - first])
+            engine.carry(records, np.empty((1, engine.states)))
+            result[chosen] = records.samples
+        return engine.to_masses(result)
+
+
+def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: float = 0.0) -> Orbit:
+    """Simulate one orbit of the impact oscillator (3), (4).
+
+    Parameters
+    ----------
+    state : (x1, v1, x2, v2) at `start_time`
+    periods : forcing periods, counted from the first section t = 0 mod T at or after `start_time`
+
+    Raises TypeError where `system` is no System; ValueError for a state that is no state or is behind a stop, for fewer
+    than 0 periods, or for a start beyond 10^9 of them. What goes wrong on the way is told by `Orbit.status`.
+    """
+    checked_system(system)
+    periods = checked_count("periods", periods, 0)
+    if not (is_number(start_time) and abs(start_time) <= LATEST * system.period):
+        allowed = f"a number of at most {LATEST} forcing periods: beyond, times resolve no motion"
+        raise ValueError(f"start_time: {start_time!r} is not allowed; it must be {allowed}")
+    engine = Engine(system)
+    begin = engine.checked(state)
+    first, cell, offset = (value[()] for value in engine.locate(start_time))
+    engine.put(begin, cell, offset)
+    engine.orbit["period"] = first
+    section = np.full((periods + 1, engine.states), np.nan)  # in contact coordinates
+    inside = cell > 0 or offset > 0  # the period in which the orbit starts is not recorded, but its impacts are
+    if not inside:
+        section[0] = begin
+    hits, rests, chatters, room, outcome = [], [], 0, ROOM, status.OK
+    done = 0 if inside else 1
+    while done <= periods and outcome == status.OK:
+        before = engine.orbit.copy()
+        records = orbits.new_records(1, impacts=room, rests=room, masses=engine.kind.masses)
+        count = min(CHUNK, len(section) - done)
+        outcome = engine.carry(records, section[done : done + count])
+        logged = max(engine.orbit["impacts_logged"][0], engine.orbit["rests_logged"][0])
+        if logged > room:
+            engine.orbit[:] = before
+            room, outcome = 2 * int(logged), status.OK
+            continue
+        hits.append(records.impacts[0, : engine.orbit["impacts_logged"][0]])
+        rests.append(records.rests[0, : engine.orbit["rests_logged"][0]])
+        chatters += int(engine.orbit["chatters"][0])
+        engine.orbit["impacts_logged"] = engine.orbit["rests_logged"] = engine.orbit["chatters"] = 0
+        done += count
+    if outcome != status.OK:
+        reached = int(engine.orbit["period"][0]) - math.ceil(start_time / engine.period)
+        section[max(reached + 1, 0) :] = np.nan
+    end = (math.ceil(start_time / engine.period) + periods) * engine.period
+    return Orbit(
+        system,
+        float(start_time),
+        engine.impacts(np.concatenate(hits) if hits else np.empty((0, 3 + engine.states)), float(start_time)),
+        engine.sticking(np.concatenate(rests) if rests else np.empty((0, 4)), end),
+        engine.to_masses(section),
+        Status(outcome, chatters),
+        begin,
+        section,
+        engine,
+    )
+
+
+def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, periods: int = 10_000) -> Exponents:
+    """Lyapunov spectrum (4,) of the orbit from `state` at t = 0: descending, natural logarithm, per unit time.
+
+    An array that has `.error`, the standard errors (4,), and `.residual`, the sum minus its exact value, too.
+    -inf for dimensions lost by sticking, NaN where the orbit fails. A periodic orbit (period at most periods/2) gives
+    its Floquet exponents. Raises ValueError as `simulate` does, and for more periods than memory is to be taken for.
+    """
+    checked_system(system)
+    transient, periods = checked_count("transient", transient, 0), checked_count("periods", periods, 1, MAX_RECORD)
+    engine = Engine(system)
+    engine.checked(state)
+    plan = plan_of(transient, periods, lyapunov=True)
+    results, nothing = new_results((1, 1), engine.kind.masses), np.empty((1, 1, 0))
+    starts = np.tile(np.asarray(state, float), (2, 1, 1))
+    workspace = points.new_workspace(plan, engine.cells, 0, orbits=1, kind=engine.kind)
+    steps = engine.point.reshape(1, 1)
+    points.run_points(steps, starts, results, nothing[..., None], nothing, nothing[..., None], workspace, plan, None)
+    point = results[0, 0]
+    return Exponents(point["lyapunov"], point["lyapunov_error"], point["lyapunov_residual"])

@@ -1,0 +1,75 @@
+"""Orbits that the record of a sweep left undecided, computed further: periodic, chaotic or quasi-periodic."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.analysis.single.tables import table_of
+from vibro_sweep.analysis.windows.rows import Row
+from vibro_sweep.engine import points
+from vibro_sweep.engine.one_system import plan_of
+from vibro_sweep.engine.records import new_results
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.exponents import CERTAIN
+from vibro_sweep.model.status import NOT_SETTLED, stands
+
+MORE = 4000  # forcing periods: the exponents' errors are then some 5 times smaller than in a record of 200
+MUCH_MORE = 40_000  # for those that are still on their way: the last ones of a window take longest
+LONGEST = 300  # period that is looked at; a longer one counts as not settled
+AT_ONCE = 256  # orbits
+_CODES = {name: code for code, name in enumerate(REASONS)}
+
+
+class Continued(NamedTuple):
+    """Of n orbits: period (0: none), state at the end, code of the reason where there is no period."""
+
+    period: np.ndarray  # (n,)
+    state: np.ndarray  # (n, 2N)
+    reason: np.ndarray  # (n,)
+
+
+def continued(row: Row, i: np.ndarray, j: np.ndarray) -> Continued:
+    """The orbits of a row at the values i of the starts j, `MORE` periods on, and where they need it `MUCH_MORE`."""
+    found = _continued(row, i, row.states[i, j], 0)
+    slow = np.flatnonzero(found.reason == _CODES["not_settled"])
+    if len(slow):
+        later = _continued(row, i[slow], found.state[slow], MUCH_MORE)
+        for values, new in zip(found, later, strict=True):
+            values[slow] = new
+    return found
+
+
+def _continued(row: Row, i: np.ndarray, states: np.ndarray, transient: int) -> Continued:
+    blocks = [slice(at, at + AT_ONCE) for at in range(0, len(i), AT_ONCE)]
+    parts = [_computed(row, i[block], states[block], transient) for block in blocks]
+    return Continued(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Continued:
+    table, kind = table_of(row.system, {row.parameter: row.values[i]}, frames=True)
+    n, states = len(i), 2 * kind.masses
+    plan = plan_of(transient, MORE, lyapunov=True)._replace(impacts=True)
+    results, nothing = new_results((1, n), kind.masses), np.empty((1, n, 0))
+    starts = np.stack([begin, begin])
+    workspace = points.new_workspace(plan, int(table["cells"].max()), 0, min(n, LANES), kind)
+    unused = np.empty((1, n, 0, states))
+    points.run_points(table.reshape(1, n), starts, results, unused, nothing, unused, workspace, plan, None)
+    found = results[0]
+    period = np.where(stands(found["status"]) & (found["period"] <= LONGEST), found["period"], 0)
+    return Continued(period, found["end"].copy(), _reasons(found))
+
+
+def _reasons(found: np.ndarray) -> np.ndarray:
+    """Codes of `REASONS`: 0 for periodic orbits."""
+    largest, error = found["lyapunov"][:, 0], CERTAIN * found["lyapunov_error"][:, 0]
+    chosen = [
+        (~stands(found["status"]), "failed"),
+        ((found["period"] > 0) & (found["period"] <= LONGEST), "in_a_window"),
+        (largest - error > 0, "chaos"),
+        (found["sticking_time"] > 0, "sticking"),
+        ((found["status"] == NOT_SETTLED) | (largest + error < 0), "not_settled"),
+        (np.abs(largest) <= error, "quasi_periodic"),
+    ]
+    conditions, names = zip(*chosen, strict=True)
+    return np.select(conditions, [_CODES[name] for name in names], _CODES["not_settled"]).astype(np.int8)

@@ -1,0 +1,51 @@
+"""The unit of work: from one recorded orbit of a sweep to its window."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.flat import Flat, flatten, section_states
+from vibro_sweep.analysis.periodic.finding import periodic_orbit
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.windows.stretch import representative, stable_stretch
+
+NEAR = 1e-3  # of the size of the state: a recorded orbit that is farther from the periodic one has not settled
+
+
+class Job(NamedTuple):
+    """A recorded orbit: its oscillator, its state at t = 0 mod T, its period, the swept number and its range."""
+
+    system: Any
+    state: np.ndarray  # (2N,)
+    period: int
+    parameter: str
+    bounds: tuple[float, float]
+
+
+class Result(NamedTuple):
+    """A window as a branch between its two ends; or, where `flat` is None, the reason why there is none."""
+
+    flat: Flat | None
+    reason: str
+
+
+def window_of(job: Job) -> Result:
+    """The window of a recorded orbit."""
+    try:
+        orbit = periodic_orbit(job.system, job.state, job.period)
+    except ValueError:  # impacts of the recorded orbit that are none of a period
+        return Result(None, "failed")
+    if not orbit.ok:
+        return Result(None, "sticking" if orbit.status == "sticking" else "failed")
+    if not orbit.stable or not lies_on(orbit, job.state):
+        return Result(None, "not_settled")
+    chosen = representative(orbit, job.parameter)
+    branch = stable_stretch(chosen, job.parameter, job.bounds)
+    value = chosen._solution.family.numbers[job.parameter]
+    return Result(flatten(branch, value), "in_a_window")
+
+
+def lies_on(orbit: PeriodicOrbit, state: np.ndarray) -> bool:
+    """Whether a section state is one of an orbit, or of its mirror image where the oscillator has one."""
+    distance = np.abs(section_states(orbit) - state).max(axis=1).min()
+    return bool(distance <= NEAR * max(np.abs(state).max(), 1e-300))

@@ -1,0 +1,106 @@
+"""The orbits of a sweep, row by row: a row is all points along the number that is followed, other keys held."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.state import state
+from vibro_sweep.model.status import NOT_COMPUTED, stands
+
+BEYOND = 1.0  # of the sweep's length: so far beyond its ends windows are followed
+BEFORE = 0.25  # of the way from where a number must not be: there a frequency's period is infinite
+_CODES = {name: code for code, name in enumerate(REASONS)}
+
+
+@dataclass(frozen=True)
+class Row:
+    """Points (values, starts) of a row, by rising values of the parameter.
+
+    held : the other keys of the sweep and their values
+    axis : of the parameter among the keys of the sweep
+    places : of the values in the file
+    states : (values, starts, 2N), the last recorded section state
+    period : (values, starts), 0 where the orbit is not periodic
+    reason : (values, starts), codes of `REASONS`, 0 for periodic orbits
+    """
+
+    system: Any
+    parameter: str
+    held: dict[str, float]
+    axis: int
+    values: np.ndarray
+    places: np.ndarray
+    states: np.ndarray
+    period: np.ndarray
+    reason: np.ndarray
+
+    def system_at(self, value: float):
+        """The oscillator at a value of the parameter."""
+        return self.system.replace(**{self.parameter: float(value)})
+
+    @cached_property
+    def bounds(self) -> tuple[float, float]:
+        """The range within which windows are followed."""
+        lo, hi = float(self.values[0]), float(self.values[-1])
+        more = BEYOND * (hi - lo)
+        lo, hi = lo - more, hi + more
+        allowed = self.system.described[self.parameter].range.bounds
+        if "minimum" in allowed:
+            lo = max(lo, allowed["minimum"])
+        if "exclusiveMinimum" in allowed:
+            least = allowed["exclusiveMinimum"]
+            lo = max(lo, least + BEFORE * (float(self.values[0]) - least))
+        return lo, min(hi, allowed.get("maximum", np.inf))
+
+
+def chosen_key(data: xr.Dataset, system, key: str | None) -> str:
+    """The swept number along which windows are followed, by default the first. Raises ValueError."""
+    swept = [str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"])]
+    able = [name for name in swept if name in system.described and data.sizes[name] > 1]
+    if not able:
+        raise ValueError(f"sweep: {', '.join(swept) or 'nothing'} is swept; windows need a number of the system")
+    if key is not None and key not in able:
+        raise ValueError(f"key: {key!r} is not allowed; it must be {' or '.join(able)}")
+    return key or able[0]
+
+
+def check_data(data: xr.Dataset) -> None:
+    """Raise ValueError where a Dataset has no section states at t = 0 mod T, or not of the oscillator itself."""
+    if data.attrs.get("model", "flow") != "flow":
+        raise ValueError("model: 'map' is not allowed; windows are those of the oscillator itself, model: flow")
+    if data.attrs.get("section", "phase") != "phase":
+        raise ValueError("section: 'impact' is not allowed; windows start from states at t = 0 mod T, kind: phase")
+    if "period" not in data or "x1" not in data:
+        raise ValueError("observe: has no 'section'; windows start from the section states of a sweep")
+
+
+def rows_of(data: xr.Dataset, system, key: str) -> Iterator[Row]:
+    """The rows of a sweep of `system` along `key`, in the order of the file."""
+    others = [name for name in np.atleast_1d(data.attrs["sweep_dimensions"]) if name != key]
+    names = state(system.masses)
+    fields = {"states": xr.concat([data[name].isel(sample=-1) for name in names], "coordinate", coords="minimal")}
+    fields |= {"period": data["period"], "reason": reasons(data)}
+    lead = [*others, key, *(["start"] if "start" in data["period"].dims else [])]
+    arrays = {name: one.transpose(*lead, ...).values for name, one in fields.items()}
+    if "start" not in lead:
+        arrays = {name: np.expand_dims(values, len(lead)) for name, values in arrays.items()}
+    order = np.argsort(data[key].values, kind="stable")
+    axis = list(np.atleast_1d(data.attrs["sweep_dimensions"])).index(key)
+    for place in np.ndindex(*(data.sizes[name] for name in others)):
+        held = {str(name): float(data[name].values[i]) for name, i in zip(others, place, strict=True)}
+        own = system.replace(**{name: value for name, value in held.items() if name in system.described})
+        parts = {name: values[place][order] for name, values in arrays.items()}
+        yield Row(own, key, held, axis, data[key].values[order].astype(float), order, **parts)
+
+
+def reasons(data: xr.Dataset) -> xr.DataArray:
+    """Codes of `REASONS`: 0 for periodic orbits, `not_settled` for others until they have been computed further."""
+    status, periodic = data["status"], data["period"] > 0
+    result = xr.full_like(status, _CODES["not_settled"], dtype=np.int8)
+    result = result.where(~periodic, _CODES["in_a_window"]).where(stands(status), _CODES["failed"])
+    return result.where(status != NOT_COMPUTED, _CODES["not_computed"]).astype(np.int8)

@@ -1,0 +1,47 @@
+"""The stretch of a branch on which its orbit is stable: to the first special point either way."""
+
+from vibro_sweep.analysis.branches.beginning import keeps_symmetry, start_of_walk
+from vibro_sweep.analysis.branches.continuation import Branch
+from vibro_sweep.analysis.branches.switching import mirrored
+from vibro_sweep.analysis.branches.track import Rows, join
+from vibro_sweep.analysis.branches.way import Way
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+
+
+class StableWay(Way):
+    """One way along a branch, as far as the orbit is stable."""
+
+    through = False
+
+
+def stable_stretch(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float]) -> Branch:
+    """From a stable orbit both ways in `parameter`, to the first bifurcation or end of the branch, or to a bound.
+
+    Raises ValueError for an orbit that cannot be corrected.
+    """
+    lo, hi = bounds
+    walk = start_of_walk(orbit._solution, parameter, lo, hi)
+    down, up = (StableWay(walk, forwards, lo, hi, orbit.system) for forwards in (-1.0, 1.0))
+    down.go()
+    up.go()
+    rows = join([Rows(*(values[:0:-1] for values in down.points)), up.points])
+    special = [down.special[0], up.special[0]]
+    return Branch(parameter, special, *special, down.closed, walk, down.frame, rows)
+
+
+def representative(orbit: PeriodicOrbit, parameter: str) -> PeriodicOrbit:
+    """Of an orbit and its mirror image the one that gives a window its name: with more impacts on the right.
+
+    Where both have as many, the one whose itinerary comes first; of the same itinerary, whose first impact does. Where
+    the parameter breaks the symmetry of the oscillator, the orbit itself.
+    """
+    solution = orbit._solution
+    if orbit.symmetric or not solution.K or not solution.family.linear.symmetric:
+        return orbit
+    if not keeps_symmetry(solution.family, parameter):
+        return orbit
+    return min(orbit, orbit_of(orbit.system, mirrored(solution)), key=_order)
+
+
+def _order(orbit: PeriodicOrbit) -> tuple:
+    return -orbit.itinerary.count("R"), orbit.itinerary, float(orbit.impacts["t"][0])

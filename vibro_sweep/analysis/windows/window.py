@@ -1,0 +1,104 @@
+"""`Window`, and the list of all windows of a sweep."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.flat import Flat, orbit_at, special_point
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.periodic.itinerary import word
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.windows.cover import Cover
+from vibro_sweep.model.window_families import Family, families
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """A maximal interval of the swept number on which one periodic orbit, with one itinerary, is stable.
+
+    parameter : the number's name
+    lo, hi : its values at the ends
+    held : the other swept numbers, of a plane
+    points : how many orbits of the sweep lie in it, mirror images among them
+    missed : how many orbits at values within lo .. hi went to another attractor
+    """
+
+    parameter: str
+    lo: float
+    hi: float
+    held: dict[str, float]
+    points: int
+    missed: int
+    _flat: Flat = field(repr=False)
+    _system: object = field(repr=False)
+
+    @property
+    def period(self) -> int:
+        """In forcing periods."""
+        return int(self._flat["branch_period"])
+
+    @property
+    def symmetric(self) -> bool:
+        return bool(self._flat["branch_symmetric"])
+
+    @property
+    def itinerary(self) -> str:
+        """Of the orbit with more impacts on the right, of two mirror images."""
+        return word(self._flat["impact_side"])
+
+    @cached_property
+    def orbit(self) -> PeriodicOrbit:
+        """At a point of the sweep."""
+        return orbit_at(self._flat, int(self._flat["branch_origin"]), self._system)
+
+    @cached_property
+    def lower(self) -> SpecialPoint:
+        """What ends the window at `lo`."""
+        return special_point(self._flat, 0, self.parameter, self._system)
+
+    @cached_property
+    def upper(self) -> SpecialPoint:
+        """What ends the window at `hi`."""
+        return special_point(self._flat, 1, self.parameter, self._system)
+
+
+class Windows(list[Window]):
+    """The windows of a sweep, a list by rising `lo` (of a plane row by row).
+
+    parameter : the number along which they were followed
+    window : index of the window of each orbit of the sweep, (*sweep, starts), -1 where there is none
+    reason : codes of `model.bifurcations.REASONS`, of the same shape; 0 in a window
+    """
+
+    parameter: str
+    window: np.ndarray
+    reason: np.ndarray
+
+    @property
+    def families(self) -> list[Family]:
+        """Windows of one itinerary whose period grows by the same step: .windows are indices of this list."""
+        rows = [(one.itinerary, one.symmetric, one.period, one.lo) for one in self]
+        return families(*map(list, zip(*rows, strict=True))) if rows else []
+
+
+def windows_of(cover: Cover) -> Windows:
+    """The windows of a search that is done."""
+    result = Windows()
+    for found, points, within in zip(cover.found, cover.counts.tolist(), cover.within.tolist(), strict=True):
+        row, more = cover.rows[found.row], within - points
+        result.append(Window(row.parameter, *found.ends, row.held, points, more, found.flat, found.system))
+    result.parameter = cover.rows[0].parameter
+    result.window, result.reason = in_file_order(cover)
+    return result
+
+
+def in_file_order(cover: Cover) -> tuple[np.ndarray, np.ndarray]:
+    """Windows and reasons of all orbits, (*sweep, starts)."""
+    row = cover.rows[0]
+    found = []
+    for parts in (cover.window, cover.reason):
+        values = np.empty((len(cover.rows), *row.period.shape), parts[0].dtype)
+        values[:, row.places] = np.stack(parts)
+        found.append(np.moveaxis(values, 0, 1 - row.axis) if row.held else values[0])
+    return found[0], found[1]

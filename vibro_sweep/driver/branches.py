@@ -1,0 +1,80 @@
+"""From a scene of branches to its file."""
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from pathlib import Path
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.forest import Seed, Tree, forest, grow
+from vibro_sweep.driver.jobs import results, workers_of
+from vibro_sweep.driver.origins import seeds_of
+from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.model.branch_file import BRANCHES, columns
+from vibro_sweep.model.state import state
+from vibro_sweep.scene import Continuation
+from vibro_sweep.store.flat_files import Subject
+from vibro_sweep.store.joining import joined
+from vibro_sweep.store.pieces import Pieces, pieces
+
+
+def run_branches(
+    scene: Continuation,
+    output: str | Path,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    mode: str = "new",
+) -> None:
+    """Follow the branches of a scene and write their file; arguments as of `run`, `workers` are processes.
+
+    progress : called as progress(done, total) in branches
+    The file does not depend on workers, executor or interruptions. Raises StoreError as `run` does, ValueError where
+    the scene's first orbit does not exist, RunError where workers fail.
+    """
+    numbers = {name: value for name, value in scene.system.parameters().items() if name not in scene.along}
+    subject = Subject(BRANCHES, scene.name, scene.text, {"parameters": list(scene.along)} | numbers)
+    with pieces(subject, Path(output), mode) as file:
+        if file.complete:
+            return
+        with workers_of(workers, executor) as pool:
+            found = _followed(scene, seeds_of(scene), file, pool, progress)
+        file.finish(provenance(), *_contents(scene, found))
+
+
+def _followed(scene: Continuation, seeds: list[Seed], file: Pieces, pool, progress) -> list[Tree]:
+    done = 0
+
+    def evaluate(names, tasks):
+        nonlocal done
+        missing = [(name, task) for name, task in zip(names, tasks, strict=True) if file.get(name) is None]
+        total = done + len(tasks)
+        done += len(tasks) - len(missing)
+        for name, flat in results(pool, grow, missing):
+            file.write(name, flat)
+            done += 1
+            if progress:
+                progress(done, total)
+        return [file.get(name) for name in names]
+
+    ((key, bounds),) = scene.along.items()
+    return forest(seeds, key, bounds, scene.follow, scene.depth, evaluate)
+
+
+def _contents(scene: Continuation, found: list[Tree]) -> tuple:
+    """Columns and arrays of the file."""
+    names, masses = list(scene.along), scene.system.masses
+    arrays = joined([tree.flat for tree in found], names, [()] * len(found), masses)
+    parents = np.array([tree.seed.parent for tree in found], int)
+    own = np.array([tree.seed.special for tree in found], int)
+    first = np.append(0, np.cumsum(arrays["branch_special"]))
+    sections = [tree.flat["section"].reshape(-1, 2 * masses) for tree in found]
+    together = np.concatenate(sections) if sections else np.zeros((0, 2 * masses))
+    arrays |= {f"section_{name}": together[:, i] for i, name in enumerate(state(masses))}
+    arrays |= {
+        "branch_sections": np.array([tree.flat["section"].shape[1] for tree in found], int),
+        "branch_parent": parents,
+        "branch_parent_special": np.where(parents >= 0, first[parents] + own, -1) if len(found) else own,
+        "branch_generation": np.array([tree.generation for tree in found], int),
+    }
+    return columns(BRANCHES, names, list(state(masses))), arrays

@@ -1,0 +1,61 @@
+"""Many small jobs through an executor: in any order, a bounded number at a time, each result kept as it comes."""
+
+import signal
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, ProcessPoolExecutor, wait
+from contextlib import contextmanager
+from itertools import islice
+from multiprocessing import get_context
+from typing import Any
+
+from vibro_sweep.driver.compute import RunError
+
+AT_ONCE = 4  # jobs that are sent together
+AHEAD = 2  # times as many as there are workers
+
+
+@contextmanager
+def workers_of(workers: int | None, executor: Executor | None) -> Iterator[Executor | None]:
+    """The executor that computes: the caller's, processes of our own for several workers, or None: this process."""
+    if executor is not None or workers in (None, 1):
+        yield executor
+        return
+    pool = ProcessPoolExecutor(workers, get_context("spawn"), _deaf)
+    try:
+        yield pool
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _deaf() -> None:
+    """Ctrl-C is answered by the parent."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def results(pool: Executor | None, function: Callable, jobs: Iterable[tuple[Any, Any]]) -> Iterator[tuple[Any, Any]]:
+    """(key, function(job)) of jobs (key, job), as they come. Raises RunError where workers die."""
+    if pool is None:
+        for key, job in jobs:
+            yield key, function(job)
+        return
+    todo, under_way = iter(jobs), {}
+    count = getattr(pool, "num_workers", None) or getattr(pool, "_max_workers", None) or 1
+    try:
+        while True:
+            while len(under_way) < AHEAD * count and (batch := list(islice(todo, AT_ONCE))):
+                future = pool.submit(_all, function, [job for _, job in batch])
+                under_way[future] = [key for key, _ in batch]
+            if not under_way:
+                return
+            done, _ = wait(under_way, return_when=FIRST_COMPLETED)
+            for future in done:
+                yield from zip(under_way.pop(future), future.result(), strict=True)
+    except BrokenExecutor as error:
+        raise RunError(f"a worker process died, killed or out of memory ({error})") from error
+    finally:
+        for future in under_way:
+            future.cancel()
+
+
+def _all(function: Callable, jobs: list) -> list:
+    return [function(job) for job in jobs]

@@ -1,0 +1,139 @@
+"""From the file of a sweep to its windows: `vibro_sweep.windows`, and the file of windows."""
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from vibro_sweep import store
+from vibro_sweep.analysis.windows.cover import Cover
+from vibro_sweep.analysis.windows.job import Result, window_of
+from vibro_sweep.analysis.windows.rows import Row, check_data, chosen_key, rows_of
+from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
+from vibro_sweep.driver.jobs import results, workers_of
+from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.branch_file import WINDOWS, columns
+from vibro_sweep.model.built import BUILD
+from vibro_sweep.model.state import state
+from vibro_sweep.scene import parse_scene
+from vibro_sweep.store.flat_files import Subject
+from vibro_sweep.store.joining import joined
+from vibro_sweep.store.pieces import pieces
+
+_CODES = {name: code for code, name in enumerate(REASONS)}
+
+
+def windows(path: str | Path, key: str | None = None) -> Windows:
+    """The windows of a sweep: where each of its periodic orbits is stable, and what ends it there.
+
+    Parameters
+    ----------
+    path : the HDF5 file of a sweep that observes `section`
+    key : the swept number along which windows are followed, by default the first that is one of the system's; of a
+        plane each row by itself
+
+    Returns a list of windows with .lo, .hi, .lower, .upper (special points), .period, .itinerary, .symmetric and
+    .orbit. Mirror images are one window, and so is an orbit that several points of the sweep found. Ends may lie
+    beyond the sweep, by its length at most. `.reason` of the list says of orbits in no window why.
+
+    Raises StoreError for a file that cannot be read, ValueError for one that has no windows to look for.
+    """
+    with store.open(path) as data:
+        cover = Cover(rows_in(data, key))
+    cover.search(lambda _, jobs: [window_of(job) for job in jobs])
+    return windows_of(cover)
+
+
+def run_windows(
+    path: str | Path,
+    output: str | Path,
+    key: str | None = None,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    mode: str = "new",
+) -> None:
+    """Write the file of a sweep's windows; arguments as of `windows` and `run`.
+
+    progress : called as progress(done, total) in orbits of the sweep
+    The file does not depend on workers, executor or interruptions. Raises what `windows` and `run` raise.
+    """
+    with store.open(path) as data:
+        rows = rows_in(data, key)
+        subject = _subject(data, rows[0].parameter)
+    with pieces(subject, Path(output), mode) as file:
+        if file.complete:
+            return
+        cover = Cover(rows)
+        with workers_of(workers, executor) as pool:
+
+            def evaluate(points, jobs) -> list[Result]:
+                named = {":".join(map(str, point)): job for point, job in zip(points, jobs, strict=True)}
+                missing = [(name, job) for name, job in named.items() if file.get(name) is None]
+                for name, result in results(pool, window_of, missing):
+                    file.write(name, _arrays(result))
+                    if progress:
+                        progress(cover.done, cover.total)
+                return [_result(file.get(name)) for name in named]
+
+            cover.search(evaluate)
+        if progress:
+            progress(cover.total, cover.total)
+        file.finish(provenance(), *_contents(cover))
+
+
+def rows_in(data: xr.Dataset, key: str | None) -> list[Row]:
+    """The rows of a file along a swept number. Raises ValueError where there can be no windows."""
+    if data.attrs.get("type") == BUILD:
+        raise ValueError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
+    check_data(data)
+    system = parse_scene(data.attrs["scene"]).system
+    return list(rows_of(data, system, chosen_key(data, system, key)))
+
+
+def _subject(data: xr.Dataset, key: str) -> Subject:
+    title = str(data.attrs["title"]).removeprefix("vibro_sweep: ")
+    names = [key, *(str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"]) if name != key)]
+    attributes = {"sweep": data.attrs.get("identity", ""), "key": key, "parameters": names}
+    return Subject(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)
+
+
+def _arrays(result: Result) -> dict[str, np.ndarray]:
+    return result.flat if result.flat is not None else {"reason": np.int8(_CODES[result.reason])}
+
+
+def _result(arrays: dict[str, np.ndarray]) -> Result:
+    if "reason" in arrays:
+        return Result(None, list(REASONS)[int(arrays["reason"])])
+    return Result(arrays, "in_a_window")
+
+
+def _contents(cover: Cover) -> tuple:
+    """Columns and arrays of the file."""
+    first, found = cover.rows[0], cover.found
+    names = [first.parameter, *first.held]
+    masses = first.system.masses
+    flats = [one.flat for one in found]
+    arrays = joined(flats, names, [tuple(cover.rows[one.row].held.values()) for one in found], masses)
+    none = np.full(len(found), -1, np.int32)
+    arrays |= {"branch_parent": none, "branch_parent_special": none, "branch_generation": 0 * none}
+    ends = np.array([one.ends for one in found]).reshape(len(found), 2)
+    window, reason = in_file_order(cover)
+    arrays |= {
+        "window_lo": ends[:, 0],
+        "window_hi": ends[:, 1],
+        "window_lower": arrays["branch_begins"],
+        "window_upper": arrays["branch_ends"],
+        "window_period": arrays["branch_period"],
+        "window_symmetric": arrays["branch_symmetric"],
+        "window_branch": np.arange(len(found)),
+        "window_row": np.array([one.row for one in found], int),
+        "window_orbits": cover.counts,
+        "window_missed": cover.within - cover.counts,
+        "orbit_window": window.ravel(),
+        "orbit_reason": reason.ravel(),
+    }
+    return columns(WINDOWS, names, list(state(masses))), arrays

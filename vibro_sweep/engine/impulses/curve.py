@@ -1,0 +1,270 @@
+"""Many steps along a bifurcation curve: predictor, corrector, tests and certificate of every point.
+
+Distances are measured in the units of the curve, over times, impulses, parameters and theta. A call ends where
+something happens between two points, so that the caller can locate it; both points are kept.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.engine.impulses.curve_tests import LENGTH, RESIDUAL, examine, happens
+from vibro_sweep.engine.impulses.locus import (
+    FIRST,
+    SECOND,
+    TESTS,
+    THETA,
+    TORUS,
+    Place,
+    assemble,
+    in_order,
+    move,
+    new_place,
+    newton_step,
+    size_of,
+)
+from vibro_sweep.engine.impulses.plane import fit_at, move_to, spread
+from vibro_sweep.engine.simd.jit import entry, jit
+
+FULL, EVENT, CLOSED, FAILED, FAR, LEFT, STRONG = range(7)
+# why a call ends; FAR: beyond the reach of the plane, LEFT: out of the box, STRONG: near the resonance 1:1 or 1:2
+MOST_CORRECTIONS = 6
+CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
+BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
+EARLY = 10  # points before which a curve is not yet taken to be closed
+NEAR_STRONG = 0.05  # theta from 0 or pi
+
+
+class Record(NamedTuple):
+    """Points, in order."""
+
+    t: np.ndarray  # (most, K)
+    D: np.ndarray  # (most, K)
+    motion: np.ndarray  # (most, K, 2)
+    p: np.ndarray  # (most, 3)
+    tests: np.ndarray  # (most, TESTS)
+    h: np.ndarray  # (most, n)
+
+
+class Path(NamedTuple):
+    """How to step, in the units of the curve, and what is passed."""
+
+    longest: float
+    shortest: float
+    straight: float  # radians between neighbouring tangents
+    box: np.ndarray  # (2, 2): ends of both parameters
+    counts: np.ndarray  # (3,) integers: points of the curve before this call; points and corrections of this call
+    first: Place  # of the curve
+    a: Place  # where the last step began
+    record: Record
+
+
+def new_path(most: int, K: int, n: int, longest: float, shortest: float, straight: float, box) -> Path:
+    """most: points of one call."""
+    record = Record(*map(np.zeros, [(most, K), (most, K), (most, K, 2), (most, 3), (most, TESTS), (most, n)]))
+    return Path(longest, shortest, straight, box, np.zeros(3, np.int64), new_place(K, n), new_place(K, n), record)
+
+
+@jit
+def copy_place(a, b):
+    """b <- a."""
+    for i in range(len(a.t)):
+        b.t[i], b.D[i] = a.t[i], a.D[i]
+    for i in range(len(a.h)):
+        b.h[i] = a.h[i]
+    for i in range(3):
+        b.p[i] = a.p[i]
+    for i in range(len(a.w)):
+        b.w[i], b.psi[i] = a.w[i], a.psi[i]
+    for i in range(len(a.tangent)):
+        b.tangent[i] = a.tangent[i]
+    for i in range(len(a.tests)):
+        b.tests[i] = a.tests[i]
+
+
+@jit
+def counts(place, j):
+    """Whether distances are measured over unknown j: not over the state h."""
+    return j < 2 * len(place.t) or j >= len(place.w)
+
+
+@jit
+def take_row(c, place, row):
+    """The plane across the tangent."""
+    for j in range(size_of(c, place)):
+        row[j] = place.tangent[j] if counts(place, j) else 0.0
+
+
+@jit
+def normalise(c, place):
+    size = 0.0
+    for j in range(size_of(c, place)):
+        if counts(place, j):
+            size += place.tangent[j] ** 2
+    size = math.sqrt(size)
+    for j in range(size_of(c, place)):
+        place.tangent[j] /= size
+
+
+@jit
+def cosine(c, a, b):
+    total = 0.0
+    for j in range(size_of(c, a)):
+        if counts(a, j):
+            total += a.tangent[j] * b.tangent[j]
+    return total
+
+
+@jit
+def correct(f, c, place, row, b):
+    """Newton's method from `place` on the plane through it across `row`. Corrections made; 0: none found."""
+    before = np.inf
+    for count in range(1, MOST_CORRECTIONS + 1):
+        for j in range(2):
+            if not abs(place.p[j] - f.centre[j]) <= BEYOND * f.reach[j]:
+                return 0
+        if not move_to(f, place.p[FIRST], place.p[SECOND]):
+            return 0
+        change = newton_step(f, c, place, row, b, place.tangent)
+        if not change <= 1.0 or not in_order(f.P, place):
+            return 0
+        if change < CONVERGED or (change < 1e-7 and change > 0.3 * before):
+            place.tests[RESIDUAL] = change
+            normalise(c, place)
+            return count
+        before = change
+    return 0
+
+
+@jit
+def outside(path, place):
+    for j in range(2):
+        if not path.box[j, 0] <= place.p[j] <= path.box[j, 1]:
+            return True
+    return False
+
+
+@jit
+def comes_back(c, a, first, length):
+    """Whether the step from a passes the first point; times count modulo the forcing period."""
+    K, S = len(a.t), len(a.w)
+    shift = 0.0
+    for i in range(K):
+        shift += (first.t[i] - a.t[i]) / c.unit[i] / K
+    shift = 2.0 * math.pi * math.floor(shift / (2.0 * math.pi) + 0.5)
+    along, size = 0.0, 0.0
+    for j in range(size_of(c, a)):
+        if j < K:
+            offset = (first.t[j] - a.t[j]) / c.unit[j] - shift
+        elif j < 2 * K:
+            offset = (first.D[j - K] - a.D[j - K]) / c.unit[j]
+        elif j < S:
+            continue
+        else:
+            offset = (first.p[j - S] - a.p[j - S]) / c.unit[j]
+        along += offset * a.tangent[j]
+        size += offset * offset
+    return 0.0 <= along <= length and size - along * along < 0.01 * length * length
+
+
+@jit
+def keep(place, b, record, count):
+    for i in range(len(place.t)):
+        record.t[count, i], record.D[count, i] = place.t[i], place.D[i]
+        for j in range(2):
+            record.motion[count, i, j] = b.room.motion[i, j]
+    for j in range(3):
+        record.p[count, j] = place.p[j]
+    for j in range(len(place.tests)):
+        record.tests[count, j] = place.tests[j]
+    for j in range(len(place.h)):
+        record.h[count, j] = place.h[j]
+
+
+@jit
+def rate_again(f, a, b):
+    """h' before the first impact of a, where b was used for another point since."""
+    if move_to(f, a.p[FIRST], a.p[SECOND]):
+        for r in range(len(a.h)):
+            b.room.rate[0, r] = f.A[r, len(a.h)]
+            for k in range(len(a.h)):
+                b.room.rate[0, r] += f.A[r, k] * a.h[k]
+
+
+@jit
+def walk(f, c, path, place, row, b):
+    """Steps from `path.a` until something happens, and why the call ends.
+
+    Recorded are the points before the step in which it happens; path.a and place are the two points of this step.
+    """
+    a, record, counts = path.a, path.record, path.counts
+    counts[1] = counts[2] = 0
+    length = a.tests[LENGTH]
+    rate_again(f, a, b)
+    while counts[1] < len(record.p):
+        for j in range(2):
+            if not abs(a.p[j] - f.centre[j]) <= f.reach[j]:
+                a.tests[LENGTH] = length
+                return FAR
+        copy_place(a, place)
+        take_row(c, a, row)
+        move(c, place, a.tangent, length, b.room.rate)
+        made = correct(f, c, place, row, b)
+        turn = np.inf
+        if made > 0:
+            turn = math.acos(min(1.0, max(-1.0, cosine(c, a, place))))
+        counts[2] += made
+        if not turn <= path.straight:
+            length *= 0.5
+            if length < path.shortest:
+                return FAILED
+            rate_again(f, a, b)
+            continue
+        place.tests[LENGTH] = length
+        if outside(path, place):
+            return LEFT
+        if not (move_to(f, place.p[FIRST], place.p[SECOND]) and assemble(f, c, place, b)):
+            return FAILED
+        examine(f, c, place, b)
+        if c.kind == TORUS and not NEAR_STRONG < place.p[THETA] < math.pi - NEAR_STRONG:
+            return STRONG
+        if happens(c, a, place):
+            return EVENT
+        if counts[0] + counts[1] >= EARLY and comes_back(c, a, path.first, length):
+            return CLOSED
+        keep(place, b, record, counts[1])
+        counts[1] += 1
+        if turn < path.straight / 3 and made <= 3:
+            length = min(1.5 * length, path.longest)
+        copy_place(place, a)
+        a.tests[LENGTH] = length
+    return FULL
+
+
+FIT, SPREAD, ASSEMBLE, CORRECT, EXAMINE, WALK = range(6)  # what `at` is to do
+
+
+@entry
+def at(task, planes, c, path, place, row, b):
+    """One kernel for Python, since each is compiled with all that it calls; 0 or NaN where something is singular.
+
+    FIT: the polynomials of the plane at the parameters of `place`; SPREAD: its tables from these values. ASSEMBLE,
+    CORRECT, EXAMINE: equations, one step of Newton's method (its size is returned), tests. WALK: why it ends.
+    """
+    f = planes[0]
+    if task == FIT:
+        fit_at(f, place.p[FIRST], place.p[SECOND])
+        return 1.0
+    if task == SPREAD:
+        return 1.0 if spread(f) else 0.0
+    if task == CORRECT:
+        change = newton_step(f, c, place, row, b, place.tangent)
+        return change if in_order(f.P, place) else np.nan
+    if task == WALK:
+        return float(walk(f, c, path, place, row, b))
+    if not assemble(f, c, place, b):
+        return 0.0
+    if task == EXAMINE:
+        examine(f, c, place, b)
+    return 1.0

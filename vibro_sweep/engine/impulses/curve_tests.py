@@ -1,0 +1,234 @@
+"""Tests along a bifurcation curve: zero at its points of codimension two; and the certificate of its orbit."""
+
+import cmath
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.impulses.extremes import extremes_of_cell
+from vibro_sweep.engine.impulses.factors import factorise, square, substitute
+from vibro_sweep.engine.impulses.flights import OVERLAP
+from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, THETA, TORUS
+from vibro_sweep.engine.impulses.normal_form import coefficient
+from vibro_sweep.engine.impulses.plane import HIGH, LOW, OMEGA, polynomial
+from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.variational.eigenvalues import eigenvalues
+
+# of `Place.tests`; those that do not belong to a kind of curve are 1
+PLUS, MINUS, DOUBLE, CUSP, PAIR, BARE_PLUS, BARE_MINUS, NORMAL, MARGIN, LENGTH, RESIDUAL = range(11)
+SIGNED = 8  # so many of them are zero at points of codimension two
+TOUCHING = 1e-12  # margin, in parts of the size of the gap, that counts as zero
+ASIDE = 1e-3  # of 1/omega beside a graze in which its own turning point lies
+
+
+@jit
+def reduced(c, place, b, mu, without):
+    """M(mu), scaled, in b.matrix, without the rows and columns of the grazing impact if `without`; its size."""
+    K, S = len(place.t), len(place.w)
+    M, row = b.room.M, 0
+    for i in range(S):
+        if without and (i == c.index or i == K + c.index):
+            continue
+        column = 0
+        for j in range(S):
+            if without and (j == c.index or j == K + c.index):
+                continue
+            b.matrix[row, column] = M[i, j] * c.unit[j] / c.row_unit[i]
+            if i == j and i >= 2 * K:
+                b.matrix[row, column] += c.sigma * mu
+            column += 1
+        row += 1
+    return row
+
+
+@jit
+def determinant(c, place, b, mu, without):
+    size = reduced(c, place, b, mu, without)
+    return factorise(b.matrix, size, b.order)
+
+
+@jit
+def pair_test(c, place, b):
+    """prod_{i<j} (1 - mu_i mu_j) of the multipliers but the critical one; of the orbit without the grazing impact.
+
+    Zero where a pair passes the unit circle, and at a neutral saddle. 1 without losses.
+    """
+    S = len(place.w)
+    n = S - 2 * len(place.t)
+    size = reduced(c, place, b, 0.0, c.kind == GRAZE)
+    inner = size - n
+    a, image = b.matrix, b.pair
+    if inner > 0:  # -sigma (Y - W U^-1 V) of ((U, V), (W, Y))
+        for r in range(n):
+            for j in range(n):
+                image[r, j] = a[inner + r, inner + j]
+        if factorise(a, inner, b.order) == 0.0:
+            return 1.0
+        for j in range(n):
+            column = b.step
+            for i in range(inner):
+                column[i] = a[i, inner + j]
+            substitute(a, inner, b.order, column)
+            for r in range(n):
+                for i in range(inner):
+                    image[r, j] -= a[inner + r, i] * column[i]
+    else:
+        for r in range(n):
+            for j in range(n):
+                image[r, j] = a[r, j]
+    for r in range(n):
+        for j in range(n):
+            image[r, j] *= -c.sigma
+    re, im = b.re, b.im
+    if not eigenvalues(image, n, re, im):
+        return 1.0
+    left = -1
+    if c.kind == FOLD or c.kind == FLIP:
+        mu, least = 1.0 if c.kind == FOLD else -1.0, np.inf
+        for i in range(n):
+            distance = math.hypot(re[i] - mu, im[i])
+            if distance < least and im[i] == 0.0:
+                left, least = i, distance
+    x, y, u, v = 1.0, 0.0, 1.0, 0.0
+    for i in range(n):
+        u, v = u * re[i] - v * im[i], u * im[i] + v * re[i]
+        for j in range(i):
+            if i != left and j != left:
+                p, q = 1.0 - re[i] * re[j] + im[i] * im[j], -re[i] * im[j] - im[i] * re[j]
+                x, y = x * p - y * q, x * q + y * p
+    return x if abs(math.hypot(u, v) - 1.0) > 1e-9 else 1.0
+
+
+@jit
+def certify(f, c, place, b):
+    """The least distance of a turning point of the gap from its stop; that of the graze itself is left out.
+
+    b.nearest: the distance, its time and the side.
+    """
+    K, n = len(place.t), f.n
+    N, omega = n // 2, f.numbers[OMEGA]
+    cell, nearest, h, after = b.cell, b.nearest, b.after[0], b.after[1]
+    nearest[0] = np.inf
+    aside = ASIDE / omega
+    for i in range(K):
+        end = place.t[i + 1] if i + 1 < K else place.t[0] + f.P
+        begin = place.t[i]
+        for r in range(n):
+            h[r] = b.room.h[i, r]
+        h[N] += place.D[i]
+        if c.kind == GRAZE:
+            if i == c.index:
+                polynomial(n, f.series, aside, b.room.other[0])
+                for r in range(n):
+                    after[r] = b.room.other[0, r, n]
+                    for k in range(n):
+                        after[r] += b.room.other[0, r, k] * h[k]
+                for r in range(n):
+                    h[r] = after[r]
+                begin += aside
+            if (i + 1) % K == c.index:
+                end -= aside
+        length = end - begin
+        e, turn = cmath.exp(1j * (omega * begin + f.tau)), cmath.exp(1j * omega * f.width)
+        cells = int(length / f.width)
+        for k in range(cells + 1):
+            swing = f.Z[0] * e
+            for q in range(ORDER + 1):
+                total = f.series[q, 0, n]
+                for r in range(n):
+                    total += f.series[q, 0, r] * h[r]
+                cell[q] = total + swing.real
+                swing *= 1j * omega / (q + 1)
+            width = min(f.width * OVERLAP, length - k * f.width)
+            if width > 0.0 and extremes_of_cell(cell, width, f.numbers[LOW], f.numbers[HIGH], nearest, b.waiting):
+                nearest[1] += begin + k * f.width
+            if k < cells:
+                for r in range(n):
+                    after[r] = f.powers[0, r, n]
+                    for q in range(n):
+                        after[r] += f.powers[0, r, q] * h[q]
+                for r in range(n):
+                    h[r] = after[r]
+                e *= turn
+    return nearest[0]
+
+
+@jit
+def examine(f, c, place, b):
+    """Tests and certificate of a corrected point, for which `locus.assemble` has filled b; its new w and psi."""
+    K, S = len(place.t), len(place.w)
+    tests = place.tests
+    for i in range(SIGNED):
+        tests[i] = 1.0
+    if c.kind != GRAZE:
+        size_w, size_psi, double, cusp = 0.0, 0.0, 0j, 0j
+        for i in range(S):
+            size_w += square(b.w[i])
+            size_psi += square(b.psi[i])
+        size_w, size_psi = math.sqrt(size_w), math.sqrt(size_psi)
+        for i in range(S):
+            place.w[i], place.psi[i] = b.w[i] / size_w, b.psi[i] / size_psi
+            cusp += b.slope[i] * place.w[i] / (size_w * size_psi)
+            if i >= 2 * K:
+                double += place.w[i] * place.psi[i]
+        if c.kind != TORUS:
+            tests[DOUBLE] = double.real
+        if c.kind == FOLD:
+            tests[CUSP] = cusp.real
+    if c.kind != FOLD:
+        tests[PLUS] = determinant(c, place, b, 1.0, False)
+    if c.kind != FLIP:
+        tests[MINUS] = determinant(c, place, b, -1.0, False)
+    if c.kind == GRAZE:
+        tests[BARE_PLUS] = determinant(c, place, b, 1.0, True)
+        tests[BARE_MINUS] = determinant(c, place, b, -1.0, True)
+    if c.kind != TORUS and S - 2 * K > 2:
+        tests[PAIR] = pair_test(c, place, b)
+    if c.kind == FLIP or c.kind == TORUS:  # det M(1) takes away the pole where the orbit has the multiplier 1 as well
+        tests[NORMAL] = coefficient(f, c, place, b) * tests[PLUS]
+    tests[MARGIN] = certify(f, c, place, b)
+
+
+@jit
+def passes(c, a, b):
+    """Whether a margin changes its sign by more than rounding: where both stops are touched at once, it is zero."""
+    touching = TOUCHING * c.row_unit[0]
+    return (a > touching and b < -touching) or (a < -touching and b > touching)
+
+
+@jit
+def is_born(c, sign, a, b):
+    """Whether what tells the two halves of the orbit apart (sign -1: a half from the other's mirror) changes its sign.
+
+    A necessary condition, from the impulses alone; analysis/curves/ends.py looks closer.
+    """
+    half = len(a.t) // 2
+    product, size_a, size_b = 0.0, 0.0, 0.0
+    for i in range(half):
+        x, y = a.D[i + half] - sign * a.D[i], b.D[i + half] - sign * b.D[i]
+        product += x * y
+        size_a += x * x
+        size_b += y * y
+    least = (1e-9 * c.unit[len(a.t)]) ** 2  # an orbit taken twice has rounding there
+    return min(size_a, size_b) > least and product < -0.5 * math.sqrt(size_a * size_b)
+
+
+@jit
+def happens(c, a, b):
+    """Whether a test changes its sign between two points."""
+    if (c.repeats and is_born(c, 1.0, a, b)) or (c.mirrors and is_born(c, -1.0, a, b)):
+        return True
+    for i in range(SIGNED):
+        if (a.tests[i] > 0.0 > b.tests[i]) or (a.tests[i] < 0.0 < b.tests[i]):  # their product may underflow
+            return True
+    for i in range(len(a.t)):
+        if a.D[i] * b.D[i] < 0.0 and not (c.kind == GRAZE and i == c.index):
+            return True
+    if passes(c, a.tests[MARGIN], b.tests[MARGIN]):
+        return True
+    if c.kind == TORUS:
+        for angle in (math.pi / 2, 2 * math.pi / 3):
+            if (a.p[THETA] - angle) * (b.p[THETA] - angle) <= 0.0:
+                return True
+    return False

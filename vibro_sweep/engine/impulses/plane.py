@@ -1,0 +1,233 @@
+"""The oscillator over a plane of two parameters: its free flight, forced motion and stops, with exact derivatives.
+
+In contact coordinates z = (y, y') the motion is z = h + Re(Z e^{i(omega t + tau)}), where the flight h' = A (h, 1)
+knows the constant force alone. tau is kept while the parameters move: a change of it shifts the times and nothing else.
+
+All numbers are polynomials of the two parameters (analysis/curves/oscillators.py fits them), so that kernels may go to
+any point of the plane. Where A changes there, the tables of the flight are built anew at each point.
+"""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.impulses.factors import factorise, square, substitute
+from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.memory import record
+
+LOW, HIGH, GAIN_LOW, GAIN_HIGH, OMEGA = range(5)  # of `numbers`; gain: 1 + R
+NUMBERS = 5
+DEGREE = 12  # of the polynomials in each parameter, at most
+BITS = 18
+
+
+def count_of(masses: int) -> int:
+    """Numbers that are polynomials: A, both forces, `numbers`."""
+    n = 2 * masses
+    return n * (n + 1) + n + NUMBERS
+
+
+def plane_of(masses: int) -> np.dtype:
+    """N masses, n = 2N. Slopes: derivatives by the first and the second parameter."""
+    n, count = 2 * masses, count_of(masses)
+    return record([
+        ("n", np.int64),  # read where loops run, so that they are not written out at length: it is compiled much faster
+        ("centre", float, 2),
+        ("reach", float, 2),
+        ("degree", np.int64, 2),
+        ("moves", np.int64, 2),  # 1 where A depends on that parameter
+        ("width", float),  # of a cell
+        ("bits", np.int64),  # of the number of cells of the longest flight
+        ("tau", float),
+        ("half_turns", float),  # of the force in P
+        ("P", float),
+        ("P_slopes", float, 2),
+        ("fit", float, (DEGREE + 1, DEGREE + 1, count)),  # coefficients of the powers of (p - centre)/reach
+        ("values", float, count),
+        ("slopes", float, (2, count)),
+        ("A", float, (n, n + 1)),
+        ("A_slopes", float, (2, n, n + 1)),
+        ("numbers", float, NUMBERS),
+        ("number_slopes", float, (2, NUMBERS)),
+        ("Z", complex, n),
+        ("Z_slopes", complex, (2, n)),
+        ("series", float, (ORDER + 1, n, n + 1)),  # first rows of B^k/k!, B = (A; 0)
+        ("series_slopes", float, (2, ORDER + 1, n, n + 1)),
+        ("powers", float, (BITS, n, n + 1)),  # exp(B width 2^j)
+        ("power_slopes", float, (2, BITS, n, n + 1)),
+        ("stiffness", complex, (masses, masses)),  # factors of what Z is solved from
+        ("order", np.int64, masses),
+    ])  # fmt: skip
+
+
+@jit
+def fit_at(f, p, q):
+    """Values and slopes of the polynomials at the parameters (p, q)."""
+    s, u = (p - f.centre[0]) / f.reach[0], (q - f.centre[1]) / f.reach[1]
+    for i in range(len(f.values)):
+        value, by_s, by_u = 0.0, 0.0, 0.0
+        for k in range(f.degree[0], -1, -1):
+            row, slope = 0.0, 0.0
+            for l in range(f.degree[1], -1, -1):  # noqa: E741
+                slope = slope * u + row
+                row = row * u + f.fit[k, l, i]
+            by_s = by_s * s + value
+            value = value * s + row
+            by_u = by_u * s + slope
+        f.values[i], f.slopes[0, i], f.slopes[1, i] = value, by_s / f.reach[0], by_u / f.reach[1]
+
+
+@jit
+def spread(f):
+    """Matrices, forced motion and tables from `values` and `slopes`. False in the resonance of an undamped mode."""
+    n = f.n
+    N = n // 2
+    size = n * (n + 1)
+    for r in range(n):
+        for c in range(n + 1):
+            f.A[r, c] = f.values[r * (n + 1) + c]
+            for j in range(2):
+                f.A_slopes[j, r, c] = f.slopes[j, r * (n + 1) + c]
+    for i in range(NUMBERS):
+        f.numbers[i] = f.values[size + n + i]
+        for j in range(2):
+            f.number_slopes[j, i] = f.slopes[j, size + n + i]
+    f.P = math.pi * f.half_turns / f.numbers[OMEGA]
+    for j in range(2):
+        f.P_slopes[j] = -f.P * f.number_slopes[j, OMEGA] / f.numbers[OMEGA]
+    if f.moves[0] > 0 or f.moves[1] > 0:
+        build_series(f)
+        build_powers(f)
+    # (-omega^2 - i omega A_vv - A_vy) Z_y = cosine - i sine, Z_v = i omega Z_y
+    omega, S = f.numbers[OMEGA], f.stiffness
+    for r in range(N):
+        for c in range(N):
+            S[r, c] = -f.A[N + r, c] - 1j * omega * f.A[N + r, N + c]
+        S[r, r] -= omega * omega
+        f.Z[r] = f.values[size + r] - 1j * f.values[size + N + r]
+    if square(factorise(S, N, f.order)) == 0.0:
+        return False
+    substitute(S, N, f.order, f.Z)
+    for r in range(N):
+        f.Z[N + r] = 1j * omega * f.Z[r]
+    for j in range(2):
+        turn = f.number_slopes[j, OMEGA]
+        for r in range(N):
+            change = f.slopes[j, size + r] - 1j * f.slopes[j, size + N + r] + 2.0 * omega * turn * f.Z[r]
+            for k in range(N):
+                change += f.A_slopes[j, N + r, k] * f.Z[k]
+                change += 1j * (turn * f.A[N + r, N + k] + omega * f.A_slopes[j, N + r, N + k]) * f.Z[k]
+            f.Z_slopes[j, r] = change
+        substitute(S, N, f.order, f.Z_slopes[j])
+        for r in range(N):
+            f.Z_slopes[j, N + r] = 1j * (turn * f.Z[r] + omega * f.Z_slopes[j, r])
+    return True
+
+
+@jit
+def move_to(f, p, q):
+    """Numbers and tables at the parameters (p, q)."""
+    fit_at(f, p, q)
+    return spread(f)
+
+
+@jit
+def product(n, a, b, out):
+    """out = a b for affine maps (n, n + 1): the last column is the shift."""
+    for r in range(n):
+        for c in range(n + 1):
+            out[r, c] = 0.0
+        out[r, n] = a[r, n]
+        for k in range(n):
+            for c in range(n + 1):
+                out[r, c] += a[r, k] * b[k, c]
+
+
+@jit
+def add_slope(n, a, da, b, db, out):
+    """out = d(a b)."""
+    for r in range(n):
+        for c in range(n + 1):
+            out[r, c] = 0.0
+        out[r, n] = da[r, n]
+        for k in range(n):
+            for c in range(n + 1):
+                out[r, c] += a[r, k] * db[k, c] + da[r, k] * b[k, c]
+
+
+@jit
+def build_series(f):
+    n = f.n
+    for r in range(n):
+        for c in range(n + 1):
+            f.series[0, r, c] = 1.0 if r == c else 0.0
+            for j in range(2):
+                f.series_slopes[j, 0, r, c] = 0.0
+    for k in range(1, ORDER + 1):
+        for r in range(n):
+            for c in range(n + 1):
+                total = 0.0
+                for l in range(n):  # noqa: E741
+                    total += f.series[k - 1, r, l] * f.A[l, c]
+                f.series[k, r, c] = total / k
+        for j in range(2):
+            if f.moves[j] > 0:
+                for r in range(n):
+                    for c in range(n + 1):
+                        total = 0.0
+                        for l in range(n):  # noqa: E741
+                            total += f.series_slopes[j, k - 1, r, l] * f.A[l, c]
+                            total += f.series[k - 1, r, l] * f.A_slopes[j, l, c]
+                        f.series_slopes[j, k, r, c] = total / k
+
+
+@jit
+def polynomial(n, series, u, out):
+    """out = sum_k series_k u^k, (n, n + 1)."""
+    for r in range(n):
+        for c in range(n + 1):
+            out[r, c] = series[ORDER, r, c]
+    for k in range(ORDER - 1, -1, -1):
+        for r in range(n):
+            for c in range(n + 1):
+                out[r, c] = out[r, c] * u + series[k, r, c]
+
+
+@jit
+def build_powers(f):
+    n = f.n
+    polynomial(n, f.series, f.width, f.powers[0])
+    for k in range(1, f.bits):
+        product(n, f.powers[k - 1], f.powers[k - 1], f.powers[k])
+    for j in range(2):
+        if f.moves[j] > 0:
+            polynomial(n, f.series_slopes[j], f.width, f.power_slopes[j, 0])
+            for k in range(1, f.bits):
+                before, slope = f.powers[k - 1], f.power_slopes[j, k - 1]
+                add_slope(n, before, slope, before, slope, f.power_slopes[j, k])
+
+
+@jit
+def flight(f, length, out, other):
+    """The affine map (n, n + 1) of a flight, and its derivatives where A moves: out (3, n, n + 1). other: as out."""
+    n = f.n
+    cells = int(length / f.width)
+    u = length - cells * f.width
+    polynomial(n, f.series, u, out[0])
+    for j in range(2):
+        if f.moves[j] > 0:
+            polynomial(n, f.series_slopes[j], u, out[1 + j])
+    bit = 0
+    while cells > 0:
+        if cells & 1:
+            product(n, out[0], f.powers[bit], other[0])
+            for j in range(2):
+                if f.moves[j] > 0:
+                    add_slope(n, out[0], out[1 + j], f.powers[bit], f.power_slopes[j, bit], other[1 + j])
+            for i in range(3):
+                for r in range(n):
+                    for c in range(n + 1):
+                        out[i, r, c] = other[i, r, c]
+        cells >>= 1
+        bit += 1

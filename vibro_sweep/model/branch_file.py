@@ -1,0 +1,151 @@
+"""What files of branches and windows hold, declared once: name, dimensions, type, units, texts, words of codes."""
+
+from typing import NamedTuple
+
+from vibro_sweep.model.bifurcations import CRITICALITIES, KINDS, REASONS, STATUSES, TYPES
+
+BRANCHES, WINDOWS = "branches", "windows"  # the kinds of such files
+
+
+class Column(NamedTuple):
+    """A variable. An index counts from 0; -1: there is none."""
+
+    name: str
+    dimensions: tuple[str, ...]
+    dtype: str
+    label: str  # `long_name`
+    text: str  # `description`
+    units: str = "1"
+    flags: tuple[str, ...] = ()  # words of the codes 0, 1, ...
+
+
+_TIME = "nondimensional"
+_TYPES = tuple(one.name for one in TYPES)
+
+OF_BRANCHES = (
+    Column("branch_period", ("branch",), "i4", "period in T", "period of the orbits in forcing periods"),
+    Column("branch_symmetric", ("branch",), "i1", "symmetric", "whether x(t + period T/2) = -x(t)", "1", ("no", "yes")),
+    Column("branch_closed", ("branch",), "i1", "closed", "whether it comes back to itself", "1", ("no", "yes")),
+    Column(
+        "branch_row_size", ("branch",), "i4", "points", "number of points of the branch, which lie one after another"
+    ),
+    Column("branch_impacts", ("branch",), "i4", "impacts", "impacts of the orbit at each point of the branch"),
+    Column("branch_special", ("branch",), "i4", "special points", "number of its special points, one after another"),
+    Column("branch_begins", ("branch",), "i4", "begin", "index of the special point that it begins at"),
+    Column("branch_ends", ("branch",), "i4", "end", "index of the special point that it ends at"),
+    Column("branch_origin", ("branch",), "i4", "origin", "index of the point that it was followed from"),
+    Column("branch_parent", ("branch",), "i4", "parent", "index of the branch from which it was reached"),
+    Column(
+        "branch_parent_special", ("branch",), "i4", "parent's point", "index of the special point it was reached at"
+    ),
+    Column("branch_generation", ("branch",), "i4", "generation", "special points between it and the first branches"),
+    Column(
+        "multiplier_re",
+        ("point", "multiplier"),
+        "f8",
+        "multiplier, real part",
+        "of Floquet multipliers over the whole period",
+    ),
+    Column(
+        "multiplier_im",
+        ("point", "multiplier"),
+        "f8",
+        "multiplier, imaginary part",
+        "of Floquet multipliers; of a pair the positive one first",
+    ),
+    Column("unstable", ("point",), "i4", "unstable multipliers", "number of multipliers outside the unit circle"),
+    Column("margin", ("point",), "f8", "margin", "least distance of a turning point of the gap from its stop"),
+    Column(
+        "min_impact_speed",
+        ("point",),
+        "f8",
+        "smallest impact speed",
+        "smallest speed of the gap before an impact; infinite without impacts",
+    ),
+    Column(
+        "residual", ("point",), "f8", "residual", "largest jump of the gap between two flights, relative to its size"
+    ),
+    Column("status", ("point",), "i1", "status", "whether the point is a motion", "1", STATUSES),
+    Column(
+        "impact_t", ("impact",), "f8", "impact time", "of each impact of each point, continuous along a branch", _TIME
+    ),
+    Column("impact_side", ("impact",), "i1", "stop", "+1: right, R of the itinerary; -1: left, L"),
+    Column("impact_v", ("impact",), "f8", "impact velocity", "of the gap before the impact"),
+    Column(
+        "impact_t_off",
+        ("impact",),
+        "f8",
+        "end of the rest",
+        "after an impact at which the mass rests; NaN where it does not",
+        _TIME,
+    ),
+    Column("special_type", ("special",), "i1", "type", "of a special point", "1", _TYPES),
+    Column(
+        "special_value", ("special", "parameter"), "f8", "parameters", "the numbers `parameters` at the special point"
+    ),
+    Column("special_branch", ("special",), "i4", "branch", "index of the branch that it lies on"),
+    Column("special_point", ("special",), "i4", "point", "index of the point that it is"),
+    Column("special_stop", ("special",), "i1", "stop", "of a graze: +1 right, -1 left; 0: no graze"),
+    Column("special_kind", ("special",), "i1", "kind", "of a graze", "1", KINDS),
+    Column(
+        "special_impact", ("special",), "i4", "impact", "of a graze: index of the impact that vanishes; -1: one appears"
+    ),
+    Column(
+        "special_direction",
+        ("special",),
+        "i1",
+        "direction",
+        "of a graze: +1 where the orbit without the impact exists at larger values, -1 at smaller ones",
+    ),
+    Column(
+        "special_criticality",
+        ("special",),
+        "i1",
+        "criticality",
+        "of a flip, pitchfork or Neimark-Sacker point",
+        "1",
+        CRITICALITIES,
+    ),
+    Column("special_error", ("special",), "f8", "error", "own estimate of the parameter's error"),
+)
+
+BRANCH_SECTIONS = Column(
+    "branch_sections",
+    ("branch",),
+    "i4",
+    "section states",
+    "section states of each point: those of the orbit, then those of its mirror image",
+)
+
+OF_WINDOWS = (
+    Column("window_lo", ("window",), "f8", "lower end", "the parameter at the lower end"),
+    Column("window_hi", ("window",), "f8", "upper end", "the parameter at the upper end"),
+    Column("window_lower", ("window",), "i4", "what ends it below", "index of the special point"),
+    Column("window_upper", ("window",), "i4", "what ends it above", "index of the special point"),
+    Column("window_period", ("window",), "i4", "period in T", "in forcing periods"),
+    Column("window_symmetric", ("window",), "i1", "symmetric", "whether the orbit is", "1", ("no", "yes")),
+    Column("window_branch", ("window",), "i4", "branch", "index of the branch between the two ends"),
+    Column("window_row", ("window",), "i4", "row", "of a plane: index of the row along the parameter"),
+    Column("window_orbits", ("window",), "i4", "orbits", "orbits of the sweep that lie in it"),
+    Column("window_missed", ("window",), "i4", "missed", "orbits at its values that went to another attractor"),
+    Column(
+        "orbit_window",
+        ("orbit",),
+        "i4",
+        "window",
+        "of each orbit of the sweep in the order of its file: index of its window",
+    ),
+    Column(
+        "orbit_reason", ("orbit",), "i1", "reason", "why an orbit of the sweep lies in no window", "1", tuple(REASONS)
+    ),
+)
+
+
+def columns(kind: str, parameters: list[str], states: list[str]) -> list[Column]:
+    """All variables of a file; parameters : the names of numbers along which branches lead, states : x1, v1, ..."""
+    own = [Column(name, ("point",), "f8", name, f"the parameter {name}") for name in parameters]
+    own += [Column(name, ("point",), "f8", name, f"{name} at t = 0, before an impact there") for name in states]
+    if kind == WINDOWS:
+        return [*own, *OF_BRANCHES, *OF_WINDOWS]
+    sections = [Column(f"section_{name}", ("section",), "f8", name, f"{name} at t = 0 mod T") for name in states]
+    return [*own, *OF_BRANCHES, BRANCH_SECTIONS, *sections]

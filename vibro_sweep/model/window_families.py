@@ -1,0 +1,46 @@
+"""Families of windows: one itinerary, and a period that grows by the same step from window to window."""
+
+from collections import defaultdict
+from itertools import pairwise
+from typing import NamedTuple
+
+LEAST = 3  # windows of a family
+
+
+class Family(NamedTuple):
+    """itinerary and symmetry that its windows share; their indices by rising period, the least period, the step."""
+
+    itinerary: str
+    symmetric: bool
+    windows: tuple[int, ...]
+    period: int
+    step: int
+
+
+def families(itineraries: list[str], symmetric: list[bool], periods: list[int], lo: list[float]) -> list[Family]:
+    """The families among windows, by falling size: runs of one step in the period, along which `lo` rises or falls.
+
+    Of windows with the same itinerary and period the first counts.
+    """
+    groups: dict[tuple[str, bool], dict[int, int]] = defaultdict(dict)
+    for w, (word, kind, period) in enumerate(zip(itineraries, symmetric, periods, strict=True)):
+        if word:
+            groups[word, bool(kind)].setdefault(int(period), w)
+    found = []
+    for (word, kind), by_period in groups.items():
+        for run in _runs([(period, lo[w], w) for period, w in sorted(by_period.items())]):
+            if len(run) >= LEAST:
+                step = run[1][0] - run[0][0]
+                found.append(Family(word, kind, tuple(w for _, _, w in run), run[0][0], step))
+    return sorted(found, key=lambda family: (-len(family.windows), family.period))
+
+
+def _runs(rows: list[tuple[int, float, int]]) -> list[list[tuple[int, float, int]]]:
+    """Longest stretches of neighbours with one step of the period and one direction of `lo`."""
+    runs, steps = [], [(b[0] - a[0], b[1] > a[1]) for a, b in pairwise(rows)]
+    begin = 0
+    for i in range(1, len(rows)):
+        if i == len(rows) - 1 or steps[i] != steps[begin]:
+            runs.append(rows[begin : i + 1])
+            begin = i
+    return runs

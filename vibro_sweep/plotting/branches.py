@@ -1,0 +1,147 @@
+"""Branches of periodic orbits as the field draws them: stable solid, unstable dashed, special points labelled."""
+
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from vibro_sweep.model.branch_file import BRANCHES
+from vibro_sweep.model.state import MOST_MASSES, state
+from vibro_sweep.plotting import sweeps
+from vibro_sweep.plotting.flat import FlatFile
+from vibro_sweep.plotting.look import Look
+from vibro_sweep.plotting.result import PlotError, Result
+from vibro_sweep.plotting.style import DASHES, INK, LEFT, SPECIAL, axis_name, limits, page, special_mark, symbol
+
+LINES = (LEFT, "#c26a00", "#446644", "#7b3294", "#77541f", "#1a1a2e")  # of branches, in turn
+MOST = 3.0  # modulus of a multiplier that is shown: at a graze it is infinite
+NEAR = 0.012  # of the axis: special points nearer than that have one label
+
+
+def variables(file: FlatFile) -> tuple[str, ...]:
+    """What may be drawn over the parameter."""
+    return (*(name for name in state(MOST_MASSES) if name in file.arrays), "impact_speed", "multiplier", "margin")
+
+
+def branches(path, look: Look, ax=None):
+    """The diagram of a file of branches; over a sweep where the look names one. Raises PlotError."""
+    file = FlatFile(path, BRANCHES)
+    if len(file.parameters) != 1:
+        raise PlotError(f"{file.name}: its curves lie in {' and '.join(file.parameters)}")
+    name = look.variable or "x1"
+    if name not in variables(file):
+        raise PlotError(f"variable {name!r} is not allowed; there are {', '.join(variables(file))}")
+    if not len(file["branch_period"]):
+        raise PlotError(f"{file.name}: nothing to show, it has no branches")
+    fig = None
+    if ax is None:
+        fig = page(5.0, f"Branches of periodic orbits: {file.title}")
+        ax = fig.subplots()
+    if look.over is not None:
+        _sweep(ax, look, file, name)
+    values = values_of(file, name)
+    _lines(ax, file, _drawn(file, name, values, look.over is not None))
+    _marks(ax, file, values)
+    ax.set_xlabel(axis_name(file.parameters[0]))
+    if look.over is None:
+        finite = values[np.isfinite(values)]
+        ax.set_ylim(limits(finite) if finite.size else None)
+        ax.set_ylabel(_label(name))
+    if name == "multiplier":
+        ax.axhline(1, color=INK, lw=0.5)
+        ax.set_ylim(0, min(1.05 * np.nanmax(values), MOST))
+    _legend(fig or ax, ax, file)
+    return fig or ax.figure
+
+
+def values_of(file: FlatFile, name: str) -> np.ndarray:
+    """What is drawn, of each point; NaN where it is not there."""
+    if name == "multiplier":
+        return np.hypot(file["multiplier_re"], file["multiplier_im"]).max(axis=1)
+    if name in ("impact_speed", "margin"):
+        found = file["min_impact_speed" if name == "impact_speed" else name].astype(float)
+        return np.where(np.isfinite(found), found, np.nan)
+    return file[name]
+
+
+def _label(name: str) -> str:
+    labels = {
+        "impact_speed": "smallest impact speed",
+        "multiplier": "largest $|\\mu|$ of the multipliers",
+        "margin": "distance of the nearest turning point from its stop",
+    }
+    return labels.get(name) or f"{symbol(name)} at $t = 0$"
+
+
+def _lines(ax, file: FlatFile, values: list[np.ndarray]) -> None:
+    """Each branch between its special points, where alone its stability changes."""
+    p, special, begin = file[file.parameters[0]], file["special_point"], 0
+    for number, size in enumerate(file["branch_row_size"].tolist()):
+        inner = special[(special > begin) & (special < begin + size - 1)]
+        for one, other in pairwise([begin, *np.unique(inner).tolist(), begin + size - 1]):
+            line = slice(one, other + 1)
+            stable = file["unstable"][(one + other) // 2] == 0
+            style = {"ls": "-", "lw": 1.2} if stable else {"ls": DASHES, "lw": 0.7}
+            style["color"], style["gid"] = LINES[number % len(LINES)], "stable" if stable else "unstable"
+            for y in values[number]:
+                ax.plot(p[line], y[one - begin : other + 1 - begin], **style)
+        begin += size
+
+
+def _drawn(file: FlatFile, name: str, values: np.ndarray, all_sections: bool) -> list[np.ndarray]:
+    """Of each branch what is drawn, (lines, its points): over a sweep all section states, mirror images among them."""
+    ends = np.cumsum(file["branch_row_size"])[:-1]
+    if not all_sections:
+        return [part[None] for part in np.split(values, ends)]
+    sizes, counts = file["branch_row_size"], file["branch_sections"]
+    parts = np.split(file[f"section_{name}"], np.cumsum(sizes * counts)[:-1])
+    return [part.reshape(-1, count).T for part, count in zip(parts, counts, strict=True)]
+
+
+def _marks(ax, file: FlatFile, values: np.ndarray) -> None:
+    """Special points, with the labels of those that stand alone."""
+    x = file["special_value"][:, 0]
+    y = values[_places(file)]
+    width, height = (np.ptp(one[np.isfinite(one)]) or 1.0 for one in (file[file.parameters[0]], values))
+    labelled = []
+    for kind, at_x, at_y in zip(file.types(), x, y, strict=True):
+        if kind not in SPECIAL or not np.isfinite(at_y):
+            continue
+        ax.plot(at_x, at_y, zorder=4, gid="special", **special_mark(kind, 4.0))
+        place = np.array([at_x / width, at_y / height])
+        if all(np.abs(place - other).max() > NEAR for other in labelled):
+            labelled.append(place)
+            ax.annotate(SPECIAL[kind][0], (at_x, at_y), (3, 3), textcoords="offset points", fontsize=6, zorder=5)
+
+
+def _places(file: FlatFile) -> np.ndarray:
+    """Points of the special points; of a sticking onset, which is none, the end of the branch before it."""
+    point, branch = file["special_point"].copy(), file["special_branch"]
+    for at in np.flatnonzero(point < 0):
+        begins, ends = (int(file[name][branch[at]]) for name in ("branch_begins", "branch_ends"))
+        point[at] = point[begins if at < begins else ends]
+    return point
+
+
+def _legend(where, ax, file: FlatFile) -> None:
+    there = set(file.types())
+    handles = [Line2D([], [], color=INK, lw=1.2, label="stable")]
+    handles.append(Line2D([], [], color=INK, lw=0.7, ls=DASHES, label="unstable"))
+    handles += [
+        Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in there
+    ]
+    if where is ax:
+        ax.legend(handles=handles, loc="best", frameon=True)
+    else:
+        where.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 5))
+
+
+def _sweep(ax, look: Look, file: FlatFile, name: str) -> None:
+    """The section points of a sweep, below everything."""
+    with Result(look.over, Look(variable=name)) as result:
+        if list(result.sweep) != file.parameters or name not in sweeps.section_variables(result):
+            raise PlotError(f"over: {result.path} is no sweep over {file.parameters[0]} with section points {name}")
+        ((_, values),) = result.sweep.items()
+        order = np.argsort(values)
+        sweeps.section(ax, result, values[order], order)
+        ax.set_xlim(values.min(), values.max())

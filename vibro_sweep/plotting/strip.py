@@ -1,0 +1,105 @@
+"""The windows of a sweep as a strip below its diagram: a bar for each, with what ends it, and reasons in between."""
+
+import numpy as np
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.branch_file import WINDOWS
+from vibro_sweep.plotting.flat import FlatFile
+from vibro_sweep.plotting.result import PlotError, Result
+from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark
+
+HEIGHT = 1.5  # inches
+LANES = 6  # bars of windows that overlap lie above each other
+APART = 0.012  # of the axis: bars in one lane are so far apart at least
+BAR, SYMMETRIC = "#9fd0ea", "#dcc9a0"
+REASON_COLOURS = {
+    "chaos": "#b2182b",
+    "quasi_periodic": "#7b3294",
+    "sticking": "#446644",
+    "not_settled": "#8a8a96",
+    "failed": "#000000",
+    "not_computed": "#f2f2f5",
+}
+
+
+def windows(ax, result: Result, values, order):
+    """The strip of the windows file that the look names."""
+    file = FlatFile(result.look.windows, WINDOWS)
+    if file.sweep != str(result.settings.get("identity", "")) or file.parameters != list(result.sweep):
+        raise PlotError(f"windows: {file.name} has the windows of another sweep than {result.path}")
+    left, right = values[0], values[-1]
+    lo, hi = np.maximum(file["window_lo"], left), np.minimum(file["window_hi"], right)
+    shown = np.flatnonzero(hi >= lo)
+    lanes = lanes_of(lo[shown], hi[shown], APART * (right - left))
+    for chosen, colour, name in ((0, BAR, "not symmetric"), (1, SYMMETRIC, "symmetric")):
+        bars = [
+            [(lo[w], lane - 0.32), (hi[w], lane - 0.32), (hi[w], lane + 0.32), (lo[w], lane + 0.32)]
+            for w, lane in zip(shown, lanes, strict=True)
+            if file["window_symmetric"][w] == chosen
+        ]
+        ax.add_collection(PolyCollection(bars, facecolor=colour, edgecolor=FAINT, linewidth=0.4, label=name))
+    _ends(ax, file, shown, lanes, (left, right))
+    _periods(ax, file, shown, lanes, lo, hi, 0.03 * (right - left))
+    _reasons(ax, result, file, values, order)
+    ax.set_ylim(max(lanes, default=0) + 0.7, -1.6)
+    ax.set_yticks([])
+    ax.set_ylabel("windows")
+    _legend(ax, file, shown)
+
+
+def lanes_of(lo: np.ndarray, hi: np.ndarray, apart: float) -> list[int]:
+    """For each interval the first lane in which the one before it has ended; the last lane takes what is left."""
+    ends, result = [-np.inf] * LANES, [0] * len(lo)
+    for i in np.argsort(lo, kind="stable"):
+        lane = next((n for n, end in enumerate(ends) if end + apart <= lo[i]), LANES - 1)
+        ends[lane] = max(ends[lane], hi[i])
+        result[i] = lane
+    return result
+
+
+def _ends(ax, file, shown, lanes, limits):
+    types, found = file.types(), {}
+    for w, lane in zip(shown, lanes, strict=True):
+        for end, at in (("window_lower", "window_lo"), ("window_upper", "window_hi")):
+            kind, value = types[file[end][w]], file[at][w]
+            if kind in SPECIAL and limits[0] <= value <= limits[1]:
+                found.setdefault(kind, []).append((value, lane))
+    for kind, places in found.items():
+        x, y = np.transpose(places)
+        ax.plot(x, y, **special_mark(kind, 2.6))
+
+
+def _periods(ax, file, shown, lanes, lo, hi, least):
+    for w, lane in zip(shown, lanes, strict=True):
+        if hi[w] - lo[w] >= least:
+            text = str(file["window_period"][w])
+            ax.text((lo[w] + hi[w]) / 2, lane, text, ha="center", va="center", fontsize=6, clip_on=True)
+
+
+def _reasons(ax, result, file, values, order):
+    """A band of the orbits that lie in no window."""
+    (swept,) = result.sweep.values()  # of which the picture may show a part
+    reasons = file["orbit_reason"].reshape(len(swept), -1)[order]
+    borders = edges(values)
+    for code, name in enumerate(REASONS):
+        there = np.flatnonzero((reasons == code).any(axis=1))
+        if code and len(there):
+            spans = [(borders[i], borders[i + 1] - borders[i]) for i in there]
+            ax.broken_barh(spans, (-1.4, 0.6), facecolor=REASON_COLOURS[name], linewidth=0)
+
+
+def _legend(ax, file, shown):
+    types = file.types()
+    there = {types[file[end][w]] for w in shown for end in ("window_lower", "window_upper")}
+    handles = [
+        Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in there
+    ]
+    handles += [Patch(facecolor=BAR, label="window"), Patch(facecolor=SYMMETRIC, label="symmetric orbit")]
+    named = [name for code, name in enumerate(REASONS) if code and (file["orbit_reason"] == code).any()]
+    handles += [Patch(facecolor=REASON_COLOURS[name], label=name.replace("_", " ")) for name in named]
+    ax.legend(
+        handles=handles, loc="upper left", bbox_to_anchor=(1.005, 1.05), fontsize=6, handlelength=1.2, labelspacing=0.25
+    )

@@ -1,0 +1,153 @@
+"""From a YAML text with `continue` to a `Continuation`: branches to be followed."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.parameters import ParameterError
+
+from .continue_form import ORIGINS
+from .fields import Form
+from .form import continuation_form
+from .problems import SceneError, form_problems, located, problem
+from .reading import text_of
+from .system import kind_of, system_of
+from .yaml_text import YAMLTextError, lines_of, read_yaml
+
+_AT_SYSTEM = ("state", "itinerary", "free")  # orbits of `system` itself
+_WITH = {"periods": ("state", "itinerary"), "special": ("branches",)}  # keys of `from` that belong to others
+
+
+@dataclass(frozen=True, eq=False)
+class Continuation:
+    """Branches to be followed.
+
+    origin : one of `ORIGINS`, and `begin` what is given with it: a state (2N,), an itinerary, a path, a period, None
+    periods, special : what belongs to it
+    along : name -> (lo, hi) of the number that changes
+    follow, depth : special points from which other branches are followed, and how far
+    """
+
+    name: str
+    text: str
+    system: AnyOscillator
+    origin: str
+    begin: Any
+    periods: int
+    special: int | None
+    along: dict[str, tuple[float, float]]
+    follow: tuple[str, ...]
+    depth: int
+
+    def __str__(self) -> str:
+        """What is followed, in a few lines."""
+        numbers = {name: value for name, value in self.system.numbers.items() if value is not None}
+        system = ", ".join(f"{name} = {value}" for name, value in numbers.items() if name not in self.along)
+        ((key, (lo, hi)),) = self.along.items()
+        begin = "the free motion" if self.origin == "free" else f"{self.origin} {self.begin}"
+        others = f"over {', '.join(self.follow)}, {self.depth} away at most" if self.depth else "no others"
+        return f"branches in {key} = {lo:g} .. {hi:g}\n  system    {system}\n  from      {begin}\n  follow    {others}"
+
+
+def is_continuation(data: object) -> bool:
+    """Whether the data of a scene ask for branches."""
+    return isinstance(data, dict) and "continue" in data
+
+
+def parse_continuation(text: str, name: str = "scene") -> Continuation:
+    """A Continuation from YAML text. Raises SceneError."""
+    try:
+        return _continuation_of(read_yaml(text), name, text)
+    except YAMLTextError as error:
+        raise SceneError(name, [str(error)]) from None
+    except SceneError as error:
+        raise SceneError(name, located(error.problems, lines_of(text))) from None
+
+
+def _continuation_of(data: Any, name: str, text: str) -> Continuation:
+    if not is_continuation(data):
+        raise SceneError(name, ["continue: missing; a scene of branches has it, `load_scene` reads one of a sweep"])
+    kind, masses = kind_of(data, name)
+    scheme = continuation_form(kind, masses)
+    try:
+        form = scheme.model_validate(data)
+    except ValidationError as error:
+        raise SceneError(name, form_problems(error, scheme, data)) from None
+    body = getattr(form, "continue")
+    given, problems = _origin(getattr(body, "from"))
+    along, more = _along(body.along)
+    problems += more
+    system, more = system_of(form, {}, kind, masses)
+    problems += more
+    for key, limits in along.items() if system is not None else ():
+        problems += [line for value in limits for line in _outside(system, key, value)]
+        value = system.numbers[key]
+        if given[0] in _AT_SYSTEM and not limits[0] <= value <= limits[1]:
+            problems.append(
+                problem(f"system.{key}", value, f"must be in continue.along: {limits[0]:g} .. {limits[1]:g}")
+            )
+    if problems:
+        raise SceneError(name, problems)
+    begin = given[1]
+    if given[0] == "state":
+        begin = tuple(begin.model_dump().values())
+    origin = getattr(body, "from")
+    return Continuation(
+        Path(name).stem, text, system, given[0], begin, origin.periods, origin.special, along, body.follow, body.depth
+    )
+
+
+def _origin(origin: Form) -> tuple[tuple[str, Any], list[str]]:
+    """The key of `from` that is given and its value, and what is wrong."""
+    found = [key for key in ORIGINS if key in origin.model_fields_set]
+    if len(found) != 1:
+        told = f"has {', '.join(found)}" if found else "says nothing"
+        return ("free", None), [f"continue.from: {told}; it must have one of {', '.join(ORIGINS)}"]
+    problems = [
+        f"continue.from.{key}: belongs to {' or '.join(others)}; leave it out"
+        for key, others in _WITH.items()
+        if key in origin.model_fields_set and found[0] not in others
+    ]
+    if found[0] == "branches" and origin.special is None:
+        problems.append("continue.from.special: missing; it must be given with branches")
+    if found[0] == "itinerary" and set(origin.itinerary) - {"R", "L"}:
+        problems.append(problem("continue.from.itinerary", origin.itinerary, "must be a word of R and L"))
+    if found[0] == "free" and origin.free is not True:
+        problems.append("continue.from.free: must be true, or write `from: free`")
+    return (found[0], getattr(origin, found[0])), problems
+
+
+def _along(along: Form) -> tuple[dict[str, tuple[float, float]], list[str]]:
+    keys = [key for key in type(along).model_fields if key in along.model_fields_set]
+    if len(keys) == 2:
+        return {}, [f"continue.along: {' and '.join(keys)}; two keys would be curves, which need one"]
+    if len(keys) != 1:
+        return {}, [problem("continue.along", keys, "must have one key")]
+    limits = getattr(along, keys[0])
+    if not limits.start < limits.stop:
+        return {}, [problem(f"continue.along.{keys[0]}.stop", limits.stop, f"must be a number > {limits.start:g}")]
+    return {keys[0]: (limits.start, limits.stop)}, []
+
+
+def _outside(system: AnyOscillator, key: str, value: float) -> list[str]:
+    try:
+        system.replace(**{key: value})
+    except ParameterError as error:
+        return [problem(f"continue.along.{key}", value, f"must be {error.allowed}")]
+    return []
+
+
+def load_continuation(path: str | Path) -> Continuation:
+    """Read a scene of branches from a YAML file. Raises SceneError, OSError where the file cannot be read."""
+    return parse_continuation(*text_of(path))
+
+
+def is_continuation_file(path: str | Path) -> bool:
+    """Whether a YAML file asks for branches; what is wrong with it is said by whoever reads it as a scene."""
+    try:
+        return is_continuation(read_yaml(text_of(path)[0]))
+    except (SceneError, YAMLTextError):
+        return False

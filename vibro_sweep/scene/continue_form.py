@@ -1,0 +1,68 @@
+"""The form of a scene with `continue`: which branches are followed, from where, along which number."""
+
+from collections.abc import Iterable
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field, Strict, create_model
+
+from vibro_sweep.model.parameters import Parameter
+from vibro_sweep.model.state import coordinates
+
+from .fields import Form, Whole, given
+
+WAYS = ("graze", "pitchfork", "flip")
+ORIGINS = ("state", "itinerary", "sweep", "grazing", "free", "branches")  # keys of `from`, one of which is given
+
+
+class RangeForm(Form):
+    """From start to stop."""
+
+    start: float = given("lower end of the range")
+    stop: float = given("upper end of the range")
+
+
+def _free(value):
+    return {"free": True} if value == "free" else value
+
+
+Words = Annotated[tuple[Literal[WAYS], ...], Strict(False)]
+
+
+def continue_form(numbers: Iterable[Parameter], masses: int) -> type[Form]:
+    """What `continue` holds, for oscillators with these numbers and so many masses."""
+    state = create_model(
+        "OrbitState",
+        __base__=Form,
+        __doc__="A state at t = 0 near the orbit.",
+        **{one.name: (float, Field(default=0.0, description=one.text)) for one in coordinates(masses)},
+    )
+    origin = create_model(
+        "FromForm",
+        __base__=Form,
+        __doc__="Where branches begin; `free` alone is the motion without impacts.",
+        state=(state, Field(default=None, description="a periodic orbit near this state at t = 0")),
+        itinerary=(str, Field(default=None, description="a periodic orbit with these impacts, such as LR")),
+        periods=(Whole, Field(default=1, ge=1, description="of `state` or `itinerary`: period in forcing periods")),
+        sweep=(str, Field(default=None, description="the periodic orbits of the file of a sweep")),
+        grazing=(Whole, Field(default=None, ge=1, description="orbits born at grazing, up to this period")),
+        free=(bool, Field(default=None, description="the motion without impacts")),
+        branches=(str, Field(default=None, description="a special point of a file of branches or windows")),
+        special=(Whole, Field(default=None, ge=0, description="of `branches`: the point's number in `info`")),
+    )
+    along = create_model(
+        "AlongForm",
+        __base__=Form,
+        __doc__="The number along which branches lead, and its range.",
+        **{one.name: (RangeForm, Field(default=None, description=one.text)) for one in numbers},
+    )
+    return create_model(
+        "ContinueForm",
+        __base__=Form,
+        __doc__="Branches of periodic orbits, in place of a sweep.",
+        **{
+            "from": (Annotated[origin, BeforeValidator(_free)], Field(description="the orbits to begin with")),
+            "along": (along, Field(description="the number that changes")),
+            "follow": (Words, Field(default=WAYS, description="special points from which other branches are followed")),
+            "depth": (Whole, Field(default=1, ge=0, le=100, description="how many special points away from the first")),
+        },
+    )

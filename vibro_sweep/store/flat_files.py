@@ -1,0 +1,89 @@
+"""Files of branches and of windows: flat arrays over dimensions that are nothing but lengths."""
+
+import io
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+
+from vibro_sweep import __version__
+from vibro_sweep.model.branch_file import Column
+from vibro_sweep.store import heap, parts
+from vibro_sweep.store.attributes import set_text, set_texts
+from vibro_sweep.store.creating import now
+from vibro_sweep.store.datasets import CHECKSUMS
+from vibro_sweep.store.sink import LIBVER
+
+CHUNK = 2**14  # numbers
+_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"  # how netCDF names a mere length
+
+
+class Subject(NamedTuple):
+    """What a file is about. Runs of equal subjects make equal files.
+
+    kind : "branches" or "windows"
+    scene : the YAML text that was computed; of windows that of the sweep
+    attributes : numbers and texts of the file, those that tell its run from others among them
+    """
+
+    kind: str
+    title: str
+    scene: str
+    attributes: dict[str, Any]
+
+
+def image_of(
+    subject: Subject, identity: bytes, provenance: str, columns: list[Column], arrays: dict[str, np.ndarray]
+) -> memoryview:
+    """The bytes of an HDF5 file; without columns and arrays the skeleton of a run."""
+    image = io.BytesIO()
+    with h5py.File(image, "w", libver=LIBVER) as file:
+        file.attrs["format"] = parts.FORMAT
+        set_text(file, "identity", identity.hex())
+        set_text(file, "Conventions", "CF-1.11")
+        set_text(file, "kind", subject.kind)
+        set_text(file, "title", f"vibro_sweep: {subject.title}")
+        set_text(file, "history", f"{now()} {'made' if columns else 'begun'} by vibro_sweep {__version__}")
+        set_text(file, "scene", subject.scene)
+        set_text(file, "provenance", provenance)
+        set_texts(file, "sweep_dimensions", [])
+        set_texts(file, "quantities", [column.name for column in columns if column.name != "status"])
+        for name, value in subject.attributes.items():
+            _set(file, name, value)
+        lengths = {}
+        for column in columns:
+            lengths |= dict(zip(column.dimensions, arrays[column.name].shape, strict=True))
+        for name, length in lengths.items():
+            file.create_dataset(name, (length,), ">f4").make_scale(_NO_VARIABLE.format(length))
+        for column in columns:
+            _create(file, column, arrays[column.name])
+    found = [(at, *heap.measured(image, at)) for at in heap.collections(image)]
+    with h5py.File(image, "r+", libver=LIBVER) as file:
+        file.attrs["heap"] = np.array(found, np.uint64).reshape(-1)
+    return image.getbuffer()
+
+
+def _create(file: h5py.File, column: Column, values: np.ndarray) -> None:
+    values = np.asarray(values, column.dtype)
+    how: dict[str, Any] = {}
+    if values.size:
+        rows = max(1, min(len(values), CHUNK // max(1, values[0].size)))
+        how = {"chunks": (rows, *values.shape[1:]), **CHECKSUMS}
+    dataset = file.create_dataset(column.name, data=values, **how)
+    set_text(dataset, "units", column.units)
+    set_text(dataset, "long_name", column.label)
+    set_text(dataset, "description", column.text)
+    if column.flags:
+        dataset.attrs["flag_values"] = np.arange(len(column.flags), dtype=column.dtype)
+        set_text(dataset, "flag_meanings", " ".join(column.flags))
+    for i, name in enumerate(column.dimensions):
+        dataset.dims[i].attach_scale(file[name])
+
+
+def _set(file: h5py.File, name: str, value) -> None:
+    if isinstance(value, str):
+        set_text(file, name, value)
+    elif isinstance(value, list):
+        set_texts(file, name, value)
+    else:
+        file.attrs[name] = value

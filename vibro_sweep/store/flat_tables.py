@@ -1,0 +1,103 @@
+"""What a file of branches or windows says in words: the tables that `info` and the commands print."""
+
+from collections import Counter
+from collections.abc import Mapping
+
+import numpy as np
+
+from vibro_sweep.model.bifurcations import CRITICALITIES, KINDS, REASONS, TYPES
+from vibro_sweep.model.window_families import families
+
+LONGEST_WORD = 12  # letters of an itinerary that is printed as it is
+
+
+def windows_table(arrays: Mapping, parameter: str) -> list[str]:
+    """A line for each window, then what its ends are and what no window covers."""
+    lower, upper = np.asarray(arrays["window_lower"]), np.asarray(arrays["window_upper"])
+    words = [_short(word) for word in _words(arrays)]
+    rows = [("from", "ends with", "to", "ends with", "period", "impacts", "symmetric", "orbits", "elsewhere")]
+    for w, branch in enumerate(np.asarray(arrays["window_branch"]).tolist()):
+        ends = [ending(arrays, int(end[w])) for end in (lower, upper)]
+        numbers = [_number(arrays, int(end[w])) for end in (lower, upper)]
+        kind = [str(arrays["window_period"][w]), words[branch], "yes" if arrays["window_symmetric"][w] else "no"]
+        orbits = [str(arrays[name][w]) for name in ("window_orbits", "window_missed")]
+        rows.append((numbers[0], ends[0], numbers[1], ends[1], *kind, *orbits))
+    lines = [f"windows in {parameter}: {len(rows) - 1}", *_aligned(rows)]
+    named = Counter(TYPES[code].name for code in np.asarray(arrays["special_type"])[np.append(lower, upper)].tolist())
+    lines.append("ends         " + _counted(named))
+    reasons = np.asarray(arrays["orbit_reason"])
+    codes, numbers = np.unique(reasons, return_counts=True)
+    names = list(REASONS)
+    found = {names[code]: int(count) for code, count in zip(codes.tolist(), numbers.tolist(), strict=True)}
+    covered = found.pop("in_a_window", 0)
+    lines.append(f"orbits       {covered:,} of {reasons.size:,} in windows" + (f"; {_counted(found)}" if found else ""))
+    return [*lines, *_families(arrays)]
+
+
+def _families(arrays: Mapping) -> list[str]:
+    """A line for each family of windows."""
+    branches, words = np.asarray(arrays["window_branch"]), _words(arrays)
+    own, symmetric = [words[branch] for branch in branches.tolist()], np.asarray(arrays["window_symmetric"])
+    lo, periods = np.asarray(arrays["window_lo"]), np.asarray(arrays["window_period"])
+    lines = []
+    for family in families(own, symmetric.tolist(), periods.tolist(), lo.tolist()):
+        first, last = lo[family.windows[0]], lo[family.windows[-1]]
+        kind = "symmetric, " if family.symmetric else ""
+        told = ", ".join(str(periods[w]) for w in family.windows)
+        lines.append(f"family       {kind}{_short(family.itinerary)}: periods {told}; from {first:.6g} to {last:.6g}")
+    return lines
+
+
+def special_table(arrays: Mapping, parameters: list[str]) -> list[str]:
+    """A line for each special point of each branch."""
+    words = [_short(word) for word in _words(arrays)]
+    rows = [("point", "branch", *parameters, "type", "period", "impacts", "error")]
+    values = np.asarray(arrays["special_value"])
+    for s, branch in enumerate(np.asarray(arrays["special_branch"]).tolist()):
+        numbers = [repr(float(value)) for value in values[s]]
+        kind = [str(arrays["branch_period"][branch]), words[branch]]
+        rows.append((str(s), str(branch), *numbers, ending(arrays, s), *kind, f"{arrays['special_error'][s]:.1e}"))
+    count = len(np.asarray(arrays["branch_period"]))
+    return [f"branches: {count}, special points: {len(rows) - 1}", *_aligned(rows)]
+
+
+def ending(arrays: Mapping, special: int) -> str:
+    """A special point in words."""
+    kind = TYPES[int(arrays["special_type"][special])].name
+    more = []
+    if kind == "graze":
+        more.append(KINDS[int(arrays["special_kind"][special])].replace("_", " "))
+        more.append("right" if arrays["special_stop"][special] > 0 else "left")
+    elif arrays["special_criticality"][special]:
+        more.append(CRITICALITIES[int(arrays["special_criticality"][special])])
+    return kind.replace("_", "-") + (f" ({', '.join(more)})" if more else "")
+
+
+def _number(arrays: Mapping, special: int) -> str:
+    """The parameter at a special point, with the digits that are known."""
+    value, error = float(np.asarray(arrays["special_value"])[special, 0]), float(arrays["special_error"][special])
+    if not 0 < error < 1e-3:
+        return f"{value:.6g}"
+    return f"{value:.{min(15, max(3, int(-np.log10(error))))}f}"
+
+
+def _words(arrays: Mapping) -> list[str]:
+    """The itinerary of each branch."""
+    sizes, impacts = (np.asarray(arrays[name]).astype(int) for name in ("branch_row_size", "branch_impacts"))
+    first, sides = np.append(0, np.cumsum(sizes * impacts)), np.asarray(arrays["impact_side"])
+    own = (sides[begin : begin + count] for begin, count in zip(first[:-1], impacts, strict=True))
+    return ["".join("R" if side > 0 else "L" for side in one) for one in own]
+
+
+def _short(word: str) -> str:
+    """An itinerary in full where it is short."""
+    return f"{word.count('R')} R {word.count('L')} L" if len(word) > LONGEST_WORD else word or "none"
+
+
+def _counted(found: Mapping[str, int]) -> str:
+    return ", ".join(f"{count:,} {name.replace('_', '-')}" for name, count in found.items())
+
+
+def _aligned(rows: list[tuple[str, ...]]) -> list[str]:
+    wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  " + "  ".join(word.ljust(width) for word, width in zip(row, wide, strict=True)).rstrip() for row in rows]

@@ -1,0 +1,148 @@
+"""Runs whose results are of sizes that nobody knows before: windows and branches. Pieces are kept in FILE.h5.part.
+
+A piece is what one worker returns: arrays by name, kept under a key. The file is made of all pieces at the end.
+"""
+
+import contextlib
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from vibro_sweep.model.branch_file import Column
+from vibro_sweep.store import appending, names, parts
+from vibro_sweep.store.appending import HeldPart
+from vibro_sweep.store.attributes import text
+from vibro_sweep.store.beginning import check_places
+from vibro_sweep.store.flat_files import Subject, image_of
+from vibro_sweep.store.opening import StoreError, check_version, made_by, opened, skeleton
+from vibro_sweep.store.parts import PartError, Scan
+from vibro_sweep.store.writing import said, unfinished
+
+Arrays = dict[str, np.ndarray]
+
+
+class Pieces:
+    """A run of branches or windows. Methods raise StoreError where the disk does not let them."""
+
+    complete = False
+
+    def __init__(self, part: HeldPart, path: Path, subject: Subject, known: dict[str, Arrays]):
+        self._part, self._path, self._subject, self._known = part, path, subject, known
+
+    def get(self, key: str) -> Arrays | None:
+        """A piece that is known already."""
+        return self._known.get(key)
+
+    def write(self, key: str, arrays: Arrays) -> None:
+        """Keep a piece: once this returns, a kill does not lose it."""
+        told = [[name, values.dtype.str, list(values.shape)] for name, values in arrays.items()]
+        data = [memoryview(np.ascontiguousarray(values).reshape(-1).view(np.uint8)) for values in arrays.values()]
+        with said(self._part):
+            self._part.append({"piece": key, "arrays": told}, data)
+        self._known[key] = arrays
+
+    def finish(self, provenance: dict, columns: list[Column], arrays: Arrays) -> None:
+        """Give the file its name, and remove the part."""
+        head = self._part.head
+        image = image_of(self._subject, head.identity, json.dumps(made_by() | provenance), columns, arrays)
+        new = unfinished(self._path, head.identity)
+        with said(self._part):
+            new.unlink(missing_ok=True)  # of a run that was killed here
+            try:
+                with open(new, "xb") as file:
+                    file.write(image)
+                    file.flush()
+                    os.fsync(file.fileno())
+                names.publish(new, self._path, head.replaces)
+            except FileExistsError:
+                raise StoreError(
+                    f"{self._path} has appeared during the run and is left alone; move it away, then `resume` gives "
+                    f"the result in {self._part.path} its name"
+                ) from None
+            finally:
+                new.unlink(missing_ok=True)
+            self._part.remove()
+
+
+class Made:
+    """A file that exists already, of the same subject and code."""
+
+    complete = True
+
+
+@contextlib.contextmanager
+def pieces(subject: Subject, path: Path, mode: str) -> Iterator[Pieces | Made]:
+    """A run of a subject into `path`; `mode` is "new", "resume" or "overwrite". Raises StoreError."""
+    part = check_places(path, mode)
+    if mode != "overwrite" and names.stamp(path) and not names.stamp(part):
+        _check_made(subject, path)
+        yield Made()
+        return
+    try:
+        held = appending.hold(part) if names.stamp(part) else appending.make(part)
+    except (BlockingIOError, FileExistsError):
+        raise StoreError(f"{part} is being written by another run") from None
+    with contextlib.closing(held):
+        try:
+            if mode == "resume" and parts.is_begun(held.file):
+                known = _continued(held, subject, path)
+            else:
+                known = {}
+                _begin(held, subject, names.stamp(path) if mode == "overwrite" else None)
+        except PartError as error:
+            raise StoreError(f"{part} {error}") from None
+        yield Pieces(held, path, subject, known)
+
+
+def _begin(held: HeldPart, subject: Subject, replaces: names.Stamp | None) -> None:
+    identity = parts.new_identity()
+    content = image_of(subject, identity, json.dumps(made_by()), [], {})
+    with said(held):
+        held.begin(parts.new_head(content, replaces, identity), content)
+
+
+def _continued(held: HeldPart, subject: Subject, path: Path) -> dict[str, Arrays]:
+    """The pieces of an interrupted run."""
+    head = parts.read_head(held.file)
+    with skeleton(held.file, held.path) as file:
+        _check_subject(file, subject, held.path)
+        check_version(file, held.path)
+    if (found := names.stamp(path)) and found != head.replaces:
+        raise StoreError(f"{path} stands beside the interrupted run {held.path}; move one of them away")
+    scan, known = Scan(held.file, head), {}
+    for record in scan:
+        known[record.text["piece"]] = _arrays(held.file, record)
+    held.go_on(head, scan.end)
+    return known
+
+
+def _arrays(file, record: parts.Record) -> Arrays:
+    file.seek(record.at)
+    raw, at, result = file.read(record.length), 0, {}
+    for name, dtype, shape in record.text["arrays"]:
+        count = int(np.prod(shape, dtype=int))
+        result[name] = np.frombuffer(raw, dtype, count, at).reshape(shape)
+        at += result[name].nbytes
+    return result
+
+
+def _check_made(subject: Subject, path: Path) -> None:
+    try:
+        with opened(path) as (file, _):
+            _check_subject(file, subject, path)
+            check_version(file, path)
+    except StoreError as error:
+        raise StoreError(f"{path} exists, and is not what this makes; `overwrite` replaces it\n{error}") from None
+
+
+def _check_subject(file, subject: Subject, path: Path) -> None:
+    """Raise StoreError where a file or part is about something else."""
+    same = "kind" in file.attrs and text(file, "kind") == subject.kind and text(file, "scene") == subject.scene
+    for name, value in subject.attributes.items():
+        if isinstance(value, str):
+            same = same and name in file.attrs and text(file, name) == value
+    if not same:
+        raise StoreError(f"{path} was made from something else; name another file, or overwrite it")
