@@ -8,10 +8,13 @@ Everything is in zeta = (x, x', cos(omega t + tau), sin(omega t + tau), 1). A pe
 as if the motion before and after an event went on beyond it.
 """
 
+import functools
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import expm
+from threadpoolctl import ThreadpoolController
 
 from vibro_sweep.analysis.periodic.held_motion import motion_of, motion_slopes
 from vibro_sweep.analysis.periodic.impulse_equations import contacts_of, flow, held_flow, steady
@@ -71,7 +74,15 @@ class RestEquations:
             result.append(("flight", k, begin, following))
         return result
 
-    def _pass(self, sides, u, start) -> Pass:
+    def _transition(self, held: bool, length: float) -> np.ndarray:
+        """exp(A length) (m, m) of a piece; (2m, 2m) with the derivative by the parameter, where that changes A."""
+        A, dA = (self.f.H, self.df and self.df.H) if held else (self.f.B, self.df and self.df.B)
+        if dA is not None and np.any(dA):
+            A = np.block([[A, np.zeros_like(A)], [dA, A]])
+        with _libraries().limit(limits=1, user_api="blas"):  # threads take a hundred times longer beside other work
+            return expm(A * length)
+
+    def _pass(self, sides, u, start, transition: Callable[[bool, float], np.ndarray]) -> Pass:
         """Once through the period, from the state `start` (n,) before the first impact."""
         f, df, n, K = self.f, self.df, len(start), len(sides)
         contacts, size = self.contacts(sides), self.size(sides)
@@ -122,18 +133,20 @@ class RestEquations:
                 if df is not None:
                     rows[r, -1] += df.pull @ zeta
             after.append(zeta)
-            A, dA = (f.H, df and df.H) if held else (f.B, df and df.B)
-            zeta, delta = _carry(A, dA, end - begin, zeta, delta)
+            E = transition(held, end - begin)
+            delta = E[:m, :m] @ delta
+            delta[:, -1] += E[m:, :m] @ zeta if len(E) > m else 0.0
+            zeta = E[:m, :m] @ zeta
         if df is not None:  # the last flight ends at t_1 + P
             delta[:n, -1] -= (f.B @ zeta)[:n] * self.P * self.slope.omega / self.q.omega
         return Pass(zeta[:n], F, rows, delta[:n], motion, before, after)
 
     def _repeated(self, sides, u) -> Pass:
         """The pass that repeats itself, with the sign sigma."""
-        n = 2 * len(self.q.along)
-        first = self._pass(sides, u, np.zeros(n))
+        n, transition = 2 * len(self.q.along), functools.cache(self._transition)
+        first = self._pass(sides, u, np.zeros(n), transition)
         start = np.linalg.solve(self.sigma * np.eye(n) - first.ends[:, :n], first.end)
-        return self._pass(sides, u, start)
+        return self._pass(sides, u, start, transition)
 
     def evaluate(self, sides, u):
         """F, dF/du, dF/dp, and (K, 3) gap velocity, acceleration and jerk before each impact."""
@@ -225,16 +238,9 @@ class RestEquations:
         return least
 
 
-def _carry(A, dA, length: float, zeta, delta):
-    """zeta and its derivatives after `length`; the last column is by the parameter, which changes A by dA."""
-    m = len(zeta)
-    if dA is None or not np.any(dA):
-        E = expm(A * length)
-        return E @ zeta, E @ delta
-    E = expm(np.block([[A, np.zeros((m, m))], [dA, A]]) * length)
-    delta = E[:m, :m] @ delta
-    delta[:, -1] += E[m:, :m] @ zeta
-    return E[:m, :m] @ zeta, delta
+@functools.cache
+def _libraries() -> ThreadpoolController:
+    return ThreadpoolController()
 
 
 def _fly_free(f: flights.Flow, zeta, begin: float, end: float, released: bool, stops, nearest) -> None:
