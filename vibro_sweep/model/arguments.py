@@ -6,6 +6,7 @@ from vibro_sweep.model.state import state as names
 
 _COUNTS = {2: "two", 4: "four", 6: "six"}
 MAX_COUNT = 10**12  # periods
+LATEST = 10**9  # forcing periods from t = 0; a time then resolves a millionth of one
 
 
 def checked_state(state, masses: int = 2, name: str = "state") -> np.ndarray:
@@ -26,6 +27,21 @@ def checked_state(state, masses: int = 2, name: str = "state") -> np.ndarray:
 def is_number(value) -> bool:
     """Whether this is one real number, of Python's or NumPy's."""
     return np.ndim(value) == 0 and np.asarray(value).dtype.kind in "fiu"
+
+
+def checked_times(times, first: float, last: float, allowed: str) -> np.ndarray:
+    """Times (m,) from first to last, of one number or of a sequence of them. ValueError; `allowed` says so in words."""
+    try:
+        values = np.atleast_1d(np.asarray(times))
+    except ValueError:  # rows of different lengths
+        values = np.asarray(None)
+    if values.ndim != 1 or not (values.dtype.kind in "fiu" or values.size == 0):
+        raise ValueError(f"times: {times!r} is not allowed; it must be a number or a sequence of numbers")
+    values = values.astype(float)
+    outside = ~((values >= first) & (values <= last))
+    if outside.any():
+        raise ValueError(f"times: {float(values[outside][0])!r} is not allowed; it must be {allowed}")
+    return values
 
 
 def checked_count(name: str, value, least: int, most: int = MAX_COUNT) -> int:

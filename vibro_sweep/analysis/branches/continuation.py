@@ -20,7 +20,7 @@ from vibro_sweep.analysis.branches.track import Rows, join
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.branches.way import Way
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
-from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.arguments import check_type, is_number
 from vibro_sweep.model.linear import family_of
 
 
@@ -90,10 +90,8 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
 
 
 def _checked(bounds, value: float) -> tuple[float, float]:
-    try:
-        lo, hi = map(float, bounds)
-    except (TypeError, ValueError):
-        lo = hi = math.nan
+    numbers = list(bounds) if isinstance(bounds, (tuple, list, np.ndarray)) else []
+    lo, hi = map(float, numbers) if len(numbers) == 2 and all(map(is_number, numbers)) else (math.nan, math.nan)
     if not (math.isfinite(lo) and math.isfinite(hi) and lo < hi and lo <= value <= hi):
         raise ValueError(f"bounds: {bounds!r} is not allowed; it must be (lo, hi), lo < hi, around {value!r}")
     return lo, hi

@@ -10,7 +10,7 @@ from vibro_sweep.analysis.branches.switching import switch
 from vibro_sweep.analysis.periodic.itinerary import LETTERS
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.arguments import check_type, checked_count
 
 WAYS = ("graze", "pitchfork", "flip")
 LEAST = 1e-4  # distance of a graze from the onset of sticking, as a part of the range, to which branches are followed
@@ -45,11 +45,9 @@ def follow_branches(
     Raises ValueError for types that no branch leaves from, and as `continue_orbit` does.
     """
     check_type("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit, as `periodic_orbit` returns it")
-    wrong = [kind for kind in follow if kind not in WAYS]
-    if wrong or isinstance(follow, str):
+    if not isinstance(follow, (tuple, list)) or any(kind not in WAYS for kind in follow):
         raise ValueError(f"follow: {follow!r} is not allowed; it must be a list of {', '.join(WAYS)}")
-    if not isinstance(depth, (int, np.integer)) or depth < 0:
-        raise ValueError(f"depth: {depth!r} is not allowed; it must be a whole number >= 0")
+    depth = checked_count("depth", depth, 0)
     found: list[Followed] = []
 
     def add(orbit, generation, parent, special):
@@ -57,7 +55,7 @@ def follow_branches(
         found.append(Followed(continue_orbit(orbit, parameter, bounds, tell), generation, parent, special))
 
     add(orbit, 0, None, None)
-    for generation in range(1, int(depth) + 1):
+    for generation in range(1, depth + 1):
         for parent, item in list(enumerate(found)):
             if item.generation != generation - 1:
                 continue

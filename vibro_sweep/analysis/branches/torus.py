@@ -5,7 +5,8 @@ derivatives B, C (Kuznetsov, Elements of Applied Bifurcation Theory, eq. 5.45 of
 
     a = Re e^{-i theta} [p.C(q, q, q*) + 2 p.B(q, (1 - A)^-1 B(q, q*)) + p.B(q*, (e^{2 i theta} - A)^-1 B(q, q))]/2
 
-a < 0: supercritical. The derivatives are differences of f, in which the impacts keep their order.
+a < 0: supercritical. The derivatives are exact: f is applied to power series in two small numbers r and s, to third
+order. A series is an array (.., 4, 4) of the coefficients of r^j s^k; those with j + k > 3 mean nothing.
 """
 
 import numpy as np
@@ -14,118 +15,108 @@ from vibro_sweep.analysis.periodic.impulse_equations import flow
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
 
-STEPS = (3e-3, 1e-3, 3e-4, 1e-4)  # of differences, as a part of the distance over which impact times move by 1/omega
+ORDER = 3
 RESONANT = 1e-3  # |e^{i k theta} - 1| for k = 1 .. 4 below which a does not decide
-AGREED = 0.1  # relative difference of two values
+ROUNDED = 1e-8  # part of its terms below which a is rounding
+ON_CIRCLE = 1e-6  # distance of the computed eigenvalue of A from e^{i theta}, at most
+
+
+def product(a, b) -> np.ndarray:
+    """Of two series."""
+    out = np.zeros(np.broadcast_shapes(a.shape, b.shape), complex)
+    for j in range(ORDER + 1):
+        for k in range(ORDER + 1 - j):
+            out[..., j:, k:] += a[..., j, k, None, None] * b[..., : ORDER + 1 - j, : ORDER + 1 - k]
+    return out
 
 
 class _Map:
-    """The map over P, with the mirror for sigma = -1, from the middle of the longest flight; in contact coordinates."""
+    """The map over P, with the mirror for sigma = -1, from the time of the first impact on, in contact coordinates.
+
+    States at the time of an impact are those of the flight before it, also of motions that have hit already.
+    """
 
     def __init__(self, s: Solution):
-        self.s, self.f = s, flow(s.family.linear)
-        self.n = self.f.B.shape[0] - 3
-        ends = np.append(s.times[1:], s.times[0] + s.equations.P)
-        k = int(np.argmax(ends - s.times))
-        self.begin = (s.times[k] + ends[k]) / 2
-        later = [(s.times[i], s.sides[i]) for i in range(k + 1, s.K)]
-        self.impacts = later + [(s.times[i] + s.equations.P, s.sigma * s.sides[i]) for i in range(k + 1)]
-        after = np.zeros(len(self.f.B))
-        after[: self.n] = s.states[k, : self.n]
-        after[self.n // 2] += s.jumps[k]
-        self.centre = self._fly(after, s.times[k], self.begin)
-
-    def _fly(self, zeta, begin: float, end: float) -> np.ndarray:
-        m = len(zeta)
-        out, which = np.empty((1, m)), np.zeros(1, int)
-        flights.sample_flights(self.f, zeta[None], np.array([begin]), which, np.array([end]), out, np.empty((2, m)))
-        return out[0]
+        self.s, f = s, flow(s.family.linear)
+        self.B, self.n = f.B, f.B.shape[0] - 3
+        self.E = np.empty((s.K, self.n, self.n))
+        lengths = np.diff(np.append(s.times, s.times[0] + s.equations.P))
+        flights.flight_matrices(f, lengths, self.E, np.empty((3, self.n + 3)))
+        self.R = s.family.linear.restitution(s.sides)
 
     def __call__(self, change) -> np.ndarray:
-        """The change of the image. ArithmeticError where an impact is lost."""
-        P, N, q = self.s.equations.P, self.n // 2, self.s.family.linear
-        zeta, t = self.centre.copy(), self.begin
-        zeta[: self.n] += change
-        for aim, side in self.impacts:
-            stop, R = float(q.stop([side])[0]), float(q.restitution([side])[0])
-            for _ in range(20):
-                there = self._fly(zeta, t, aim)
-                step = (there[0] - stop) / there[N]
-                aim -= step
-                if abs(step) <= 1e-15 * P:
-                    break
-            else:
-                raise ArithmeticError("an impact is lost")
-            zeta, t = self._fly(zeta, t, aim), aim
-            zeta[N] *= -R
-        zeta = self._fly(zeta, t, self.begin + P)
-        return self.s.sigma * zeta[: self.n] - self.centre[: self.n]
+        """The change (n, 4, 4) of the image."""
+        for i in range(self.s.K):
+            change = np.tensordot(self.E[i], self._strike(i, change), 1)
+        return self.s.sigma * change
+
+    def _strike(self, i: int, change) -> np.ndarray:
+        """Change of the flight after impact i, both at the time of the impact on the orbit."""
+        N, states = self.n // 2, self.s.states
+        zeta = np.zeros((self.n + 3, ORDER + 1, ORDER + 1), complex)
+        zeta[: self.n] = change
+        zeta[:, 0, 0] = states[i]
+        delay = np.zeros_like(zeta[0])
+        for _ in range(ORDER):  # each is right to one order more
+            gap = self._moved(zeta, delay)[0]
+            gap[0, 0] = 0.0
+            delay -= gap / states[i, N]
+        there = self._moved(zeta, delay)
+        there[N] *= -self.R[i]
+        back = self._moved(there, -delay)[: self.n]
+        back[:, 0, 0] = 0.0
+        return back
+
+    def _moved(self, zeta, delay) -> np.ndarray:
+        """exp(B delay) zeta for a delay without a constant term."""
+        total = term = zeta
+        for k in range(1, ORDER + 1):
+            term = product(np.tensordot(self.B, term, 1), delay) / k
+            total = total + term
+        return total
 
 
 def criticality(solution: Solution) -> str | None:
     """ "super" or "sub" of a Neimark-Sacker point; None where the coefficient does not tell, also at a resonance."""
     if solution.rests:
         return None
-    f = _Map(solution)
     mu = solution.multipliers
     theta = float(np.angle(mu[np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf))]))
     if min(abs(np.exp(1j * k * theta) - 1) for k in range(1, 5)) < RESONANT:
         return None
-    q = solution.family.linear
-    speeds = np.abs(solution.motion[:, 0])
-    reach = float(speeds.min()) / q.omega
-    unit = np.repeat([1.0, q.omega], f.n // 2) * reach
-    before = None
-    for step in STEPS:
-        try:
-            value = _coefficient(f, theta, unit, step)
-        except (ArithmeticError, np.linalg.LinAlgError):
-            continue
-        if before is not None and abs(value - before) < AGREED * abs(value):
-            return "super" if value < 0 else "sub"
-        before = value
-    return None
+    try:
+        terms = coefficient(_Map(solution), theta)
+    except np.linalg.LinAlgError:
+        return None
+    a, size = float(terms.sum().real), float(np.abs(terms).sum())
+    return None if not abs(a) > ROUNDED * size else "super" if a < 0 else "sub"
 
 
-def _coefficient(f: _Map, theta: float, unit, h: float) -> float:
-    """a, with coordinates in `unit` and differences over h."""
-    known: dict = {}
+def coefficient(f, theta: float) -> np.ndarray:
+    """The three terms of a, complex, for |q| = 1; f has `n` and maps series. LinAlgError without such an eigenvalue."""
 
-    def at(direction, times) -> np.ndarray:
-        key = (direction.tobytes(), times)
-        if key not in known:
-            known[key] = f(unit * direction * (times * h)) / unit
-        return known[key]
-
-    def second(x, y) -> np.ndarray:
-        """B(x, y) for complex x and y."""
-        if np.iscomplexobj(x) or np.iscomplexobj(y):
-            a, b, c, d = x.real, x.imag, y.real, y.imag
-            return second(a, c) - second(b, d) + 1j * (second(a, d) + second(b, c))
-        sizes = np.linalg.norm(x), np.linalg.norm(y)
-        if min(sizes) == 0:
-            return np.zeros(len(x))
-        x, y = x / sizes[0], y / sizes[1]
-        both = [at(x + sign * y, 1) + at(x + sign * y, -1) for sign in (1, -1)]
-        return (both[0] - both[1]) / (4 * h**2) * sizes[0] * sizes[1]
-
-    def third(x) -> np.ndarray:
-        """C(x, x, x) for a real x."""
-        return (at(x, 2) - 2 * at(x, 1) + 2 * at(x, -1) - at(x, -2)) / (2 * h**3)
+    def image(x, y) -> np.ndarray:
+        """f(r x + s y)."""
+        series = np.zeros((f.n, ORDER + 1, ORDER + 1), complex)
+        series[:, 1, 0], series[:, 0, 1] = x, y
+        return f(series)
 
     eye = np.eye(f.n)
-    A = np.array([(8 * (at(e, 1) - at(e, -1)) - at(e, 2) + at(e, -2)) / (12 * h) for e in eye]).T
+    A = np.array([image(e, 0 * e)[:, 1, 0] for e in eye]).T.real
     turn = np.exp(1j * theta)
-    values, vectors = np.linalg.eig(A)
-    q = vectors[:, np.argmin(np.abs(values - turn))]
-    values, vectors = np.linalg.eig(A.T)
-    p = vectors[:, np.argmin(np.abs(values - turn))]
+    q, p = (_vector(matrix, turn) for matrix in (A, A.T))
     p = p / (p @ q)
-    u, v = q.real, q.imag
-    plus, minus, cu, cv = third(u + v), third(u - v), third(u), third(v)
-    uuv, uvv = (plus - minus) / 6 - cv / 3, (plus + minus) / 6 - cu / 3
-    cubic = cu + uvv + 1j * (uuv + cv)
-    mean = np.linalg.solve(eye - A, second(q, q.conj()).real.astype(complex))
-    double = np.linalg.solve(turn**2 * eye - A, second(q, q))
-    total = p @ cubic + 2 * p @ second(q, mean) + p @ second(q.conj(), double)
-    return float((total / turn).real) / 2
+    both = image(q, q.conj())
+    mean = np.linalg.lstsq(eye - A, both[:, 1, 1])[0]
+    double = np.linalg.lstsq(turn**2 * eye - A, 2 * both[:, 2, 0])[0]
+    cubic, by_mean, by_double = 2 * both[:, 2, 1], image(q, mean)[:, 1, 1], image(q.conj(), double)[:, 1, 1]
+    return np.array([p @ cubic, 2 * p @ by_mean, p @ by_double]) / turn / 2
+
+
+def _vector(matrix, value) -> np.ndarray:
+    """The unit eigenvector of an eigenvalue."""
+    values, vectors = np.linalg.eig(matrix)
+    k = np.argmin(np.abs(values - value))
+    if not abs(values[k] - value) < ON_CIRCLE:
+        raise np.linalg.LinAlgError("no such eigenvalue")
+    return vectors[:, k]

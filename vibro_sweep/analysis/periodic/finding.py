@@ -14,10 +14,12 @@ from vibro_sweep.analysis.periodic.seeds_of_rests import evenly, with_rests
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.orbit import simulate
 from vibro_sweep.engine.impulses.green import ResonanceError, TooStiffError
-from vibro_sweep.model.arguments import checked_count
+from vibro_sweep.model.arguments import checked_count, is_number
 from vibro_sweep.model.linear import Family, family_of, forcing_period
 
 SEEDS = 4000
+MOMENTS = 24
+NO_ROW = (math.nan, 0.0, math.nan)
 
 
 def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None = None, guess=None) -> PeriodicOrbit:
@@ -61,9 +63,11 @@ def _checked_sides(q, itinerary) -> tuple[int, ...]:
 
 def _checked_guess(q, guess, itinerary):
     try:
-        rows = [(float(t), float(side), float(v)) for t, side, v in guess]
+        rows = [
+            (float(t), float(side), float(v)) if all(map(is_number, (t, side, v))) else NO_ROW for t, side, v in guess
+        ]
     except (TypeError, ValueError):
-        rows = [(math.nan, 0.0, math.nan)]
+        rows = [NO_ROW]
     if not np.all(np.isfinite(rows)) or any(side not in (1, -1) for _, side, _ in rows):
         raise ValueError("guess: must be (t, side, v) for each impact, finite, with side 1 or -1")
     if any(b[0] <= a[0] for a, b in pairwise(rows)):
@@ -138,6 +142,8 @@ def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
     kinds = [Solution(family, *kind, np.empty(0)) for kind in [*kinds, (1, 2 * periods, sides)]]
     for start in kinds:
         for found in _seeded(start):
+            if virtual is not None and (_passes_a_stop(found) or not found.real):
+                continue
             found = found.reduced()
             if least and len(found.whole().sides) != len(sides):
                 continue
@@ -151,6 +157,29 @@ def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
                 if found is not None and len(found.reduced().whole().sides) == len(sides):
                     return orbit_of(system, found.reduced())
     return orbit_of(system, virtual)
+
+
+def _passes_a_stop(s: Solution) -> bool:
+    """Whether it does so at moments of one forcing period in its longest flight: seen soon, also of a long period.
+
+    The moments are added as impacts without impulse: their equations say how far the gap is from the stop.
+    """
+    e, K, T = s.equations, s.K, forcing_period(s.family.linear)
+    lengths = np.diff(np.append(s.times, s.times[0] + e.P))
+    k = int(np.argmax(lengths))
+    if lengths[k] < 2 * T:
+        return False
+    moments = s.times[k] + lengths[k] / 2 + T * np.arange(MOMENTS) / MOMENTS
+    u = np.insert(s.u, [k + 1] * MOMENTS + [K + k + 1] * MOMENTS, [*moments, *np.zeros(MOMENTS)])
+    beyond = []
+    for side, stop in ((1, e.q.high), (-1, e.q.low)):
+        if math.isfinite(stop):
+            sides = (*s.sides[: k + 1], *[side] * MOMENTS, *s.sides[k + 1 :])
+            beyond.append(side * e.evaluate(sides, u)[0][k + 1 : k + 1 + MOMENTS])
+    size = (
+        math.hypot(e.steady.real, e.steady.imag) + np.abs(e.q.stop(s.sides)).max() + np.abs(s.jumps).max() / e.q.omega
+    )
+    return bool(np.max(beyond) > 1e-9 * size)
 
 
 def _seeded(start: Solution):
@@ -171,10 +200,12 @@ def _seeded(start: Solution):
     T = forcing_period(q)
     shift = np.zeros(ends.shape[1])
     shift[:K] = T
-    ends = ends - np.floor(ends[:, :1] / T) * shift if start.sigma == 1 else ends
+    ends = ends - np.floor(ends[:, :1] / T) * shift
     pushing = np.all(-np.array(start.sides) * ends[:, K : 2 * K] > 0, axis=1)
-    known = []
+    known, count = np.empty_like(ends), 0
     for i in np.argsort(~pushing, kind="stable"):
-        if not any(np.allclose(ends[i], other, rtol=1e-7, atol=1e-7) for other in known):
-            known.append(ends[i])
+        apart = np.abs(known[:count] - ends[i]) > 1e-7 + 1e-7 * np.abs(known[:count])
+        if np.all(apart.any(axis=1)):
+            known[count] = ends[i]
+            count += 1
             yield Solution(start.family, start.sigma, start.halves, start.sides, ends[i], float(change[i]))

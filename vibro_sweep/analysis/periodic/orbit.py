@@ -12,6 +12,7 @@ from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.one_system import IMPACT, STICKING
+from vibro_sweep.model.arguments import LATEST, checked_times
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import Family, forcing_period
 from vibro_sweep.model.oscillator import System
@@ -162,12 +163,16 @@ class PeriodicOrbit:
         return math.nan if self._solution is None else self._solution.change
 
     def sample(self, times) -> np.ndarray:
-        """States x1 v1 .. xN vN at any times, (len(times), 2N); at an impact the state before it."""
+        """States x1 v1 .. xN vN at `times`, (len(times), 2N); at an impact the state before it.
+
+        Raises ValueError for no times, or for times beyond 10^9 forcing periods.
+        """
         if self._solution is None:
             raise ValueError(f"this orbit has no motion: {STATUS[self.status]}")
-        times = np.atleast_1d(np.asarray(times, float))
         q = self._solution.family.linear
-        length = self.period * forcing_period(q)
+        length, latest = self.period * forcing_period(q), LATEST * forcing_period(q)
+        allowed = f"within {LATEST} forcing periods of 0: beyond, times resolve no motion"
+        times = checked_times(times, -latest, latest, allowed)
         begins, starts, held = self._pieces
         wrapped = times - length * np.ceil((times - begins[0]) / length - 1)  # in (begins[0], begins[0] + length]
         wrapped = np.where(wrapped <= begins[0], wrapped + length, wrapped)

@@ -14,7 +14,7 @@ from vibro_sweep.engine.one_system import Engine, plan_of
 from vibro_sweep.engine.records import new_results
 from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import checked_count, is_number
+from vibro_sweep.model.arguments import LATEST, checked_count, checked_times, is_number
 from vibro_sweep.model.oscillator import checked_system
 
 if TYPE_CHECKING:
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 CHUNK = 256  # periods computed before a look at how many impacts there were
 ROOM = 4096  # impacts there is room for at first
 MAX_RECORD = 10**7 * 5 // 4  # of these with all section points in memory: 400 MB
-LATEST = 10**9  # periods; a time then resolves a millionth of one
 
 
 class Status(str):
@@ -88,17 +87,12 @@ class Orbit:
         return figure_of(self, checked_count("periods", periods, 1))
 
     def sample(self, times: ArrayLike) -> np.ndarray:
-        """States (x1, v1, x2, v2) at `times`, (len(times), 4). ValueError outside the simulated time.
+        """States (x1, v1, x2, v2) at `times`, (len(times), 4). ValueError for no times, or beyond the simulated ones.
 
         |x1| may pass b by the rounding of an evaluation, some units in the last place.
         """
-        times = np.atleast_1d(np.asarray(times, float))
-        end = self.section_times[-1]
-        outside = ~((times >= self.start_time) & (times <= end))
-        if outside.any():
-            raise ValueError(
-                f"times: {times[outside][0]!r} is outside the simulated time {self.start_time!r} .. {end!r}"
-            )
+        end = float(self.section_times[-1])
+        times = checked_times(times, self.start_time, end, f"within the simulated time {self.start_time!r} .. {end!r}")
         engine = self._engine
         period, cell, offset = engine.locate(times)
         order = np.lexsort((offset, cell, period))
