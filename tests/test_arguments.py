@@ -94,3 +94,36 @@ def test_workers(tmp_path, workers):
     with pytest.raises(ValueError, match=r"workers: .* is not allowed; it must be a whole number from 1 to 1024"):
         vs.run(parse_scene(text), tmp_path / "out.h5", workers=workers)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.fixture(scope="module")
+def orbit():
+    return vs.periodic_orbit(SYSTEM.replace(b=3.0), itinerary="LR")
+
+
+@pytest.mark.parametrize(
+    "times", [None, "0", [None], [True], [[0.0]], [[0.0], [1.0, 2.0]], {}, 1j, math.nan, [math.inf], 1e300, -(10**400)]
+)
+def test_sampled_times(orbit, times):
+    for one in (orbit, vs.simulate(SYSTEM, REST, periods=1)):
+        with pytest.raises(ValueError, match=r"times: .* is not allowed; it must be"):
+            one.sample(times)
+        assert one.sample([]).shape == (0, 4) and one.sample(0).shape == (1, 4)
+
+
+def test_branches(orbit):
+    for bounds in (("1", "4"), (True, 4), (1,), 4, None, (1, math.nan), {1: 2, 4: 5}):
+        with pytest.raises(ValueError, match=r"bounds: .* is not allowed; it must be \(lo, hi\)"):
+            vs.continue_orbit(orbit, "b", bounds)
+    for depth in (True, -1, 1.5, "1", None):
+        with pytest.raises(ValueError, match=r"depth: .* is not allowed; it must be a whole number"):
+            vs.follow_branches(orbit, "b", (1, 4), depth=depth)
+    for follow in ("flip", 5, None, ["fold"], [5]):
+        with pytest.raises(ValueError, match=r"follow: .* is not allowed; it must be a list of"):
+            vs.follow_branches(orbit, "b", (1, 4), follow=follow)
+
+
+@pytest.mark.parametrize("guess", [5, "abc", [(0, 1)], [("0", 1, 1)], [(0, True, 1)], [(0, 1, None)], [(0, 1, 1j)]])
+def test_guesses(guess):
+    with pytest.raises(ValueError, match=r"guess: must be \(t, side, v\)"):
+        vs.periodic_orbit(SYSTEM, guess=guess)

@@ -166,3 +166,28 @@ def test_millions_of_periods(R, b, periods, tmp_path):
             points.append(np.stack([data[name].values.ravel() for name in ("x1", "v1", "x2", "v2")], -1))
     shifts = [np.abs(points[0][-30:] - points[1][n : n + 30]).max() for n in range(30)]
     assert min(shifts) < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("omega", "along", "force", "size"),
+    [
+        (1.0, (1, -1), (1, -1), 1.0),  # the mode in resonance is neither driven nor seen by the contact,
+        (1.0, (1, 0), (1, -1), 0.5),  # not driven
+        (np.sqrt(3.0), (1, 0), (1, 1), 0.5),
+        (1.0, (1, 0), (1, 0), np.nan),  # driven
+    ],
+)
+def test_an_undamped_mode_in_resonance_that_is_not_driven(omega, along, force, size):
+    """Masses 1 with modes (1, 1), (1, -1) of omega^2 = 1, 3: the other one alone answers, with 1/(3 - 1)."""
+    system = vs.Oscillator(np.eye(2), [[2, -1], [-1, 2]], along=along, force=force, omega=omega, b=0.5, R=0.7)
+    touch = vs.grazing(system)
+    assert touch.b == pytest.approx(size, rel=1e-14, nan_ok=True) and not touch.satisfied
+    paper = vs.grazing(vs.System(mu_m=1, mu_k=0, zeta=0, f2=0.5, omega=np.sqrt(2.0), R=0.8, b=0.3))
+    assert paper.b == pytest.approx(0.25, rel=1e-14) and not paper.satisfied
+
+
+def test_an_undamped_mode_that_repeats_itself_leaves_no_single_motion():
+    """(15) vanishes where the frequency of a mode is a multiple of omega, exactly so only without rounding."""
+    system = vs.System(mu_m=1, mu_k=1, zeta=0, f2=0, omega=1.0, R=0.8, b=1)
+    omega = float(np.sqrt(system.modes.omega_squared[0])) / 2
+    assert not vs.grazing(system.replace(omega=omega)).satisfied and vs.grazing(system).satisfied

@@ -2,6 +2,7 @@
 
 import json
 import math
+import time
 
 import numpy as np
 import pytest
@@ -299,3 +300,10 @@ def test_shooting_of_the_reference_finds_the_same_orbit():
         x = shooting.solve(shooting.unknowns([i["t"]], [orbit.system.b, i["v1"], i["x2"], i["v2"]]))
         for mine, exact in zip((i["t"], i["x2"], i["v1"], i["v2"]), (x[0], x[2], x[3], x[4]), strict=True):
             assert abs(mpf(float(mine)) - exact) < 2e-14
+
+
+def test_an_itinerary_over_a_long_period_is_answered_soon():
+    """Two impacts in 501 periods: thousands of solutions pass the stops, which a look at one period shows."""
+    begun = time.process_time()
+    assert vs.periodic_orbit(PAPER.replace(b=3.0), itinerary="LR", periods=501).status == "not_real"
+    assert time.process_time() - begun < 30  # it was 150

@@ -13,6 +13,8 @@ from vibro_sweep.model.linear import Linear, amplitudes, grazing_phase, static_s
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.parameters import FREE_MOTION, PARAMETERS
 
+ROUNDED = 4 * np.finfo(float).eps  # of a force on a mode, relative to its parts
+
 
 @np.errstate(all="ignore")
 def steady_response(mu_m, mu_k, zeta, f2, omega, mu_c=None) -> tuple[np.ndarray, np.ndarray]:
@@ -24,10 +26,12 @@ def steady_response(mu_m, mu_k, zeta, f2, omega, mu_c=None) -> tuple[np.ndarray,
     psi, omega_squared = modes(mu_m, mu_k)
     given = mu_m, mu_k, zeta, f2, omega, mu_c
     zeta, f2, omega = (np.asarray(value, float)[..., None] for value in (zeta, f2, omega))
-    force = psi[..., 0, :] * (1 - f2) + psi[..., 1, :] * f2
+    parts = psi[..., 0, :] * (1 - f2), psi[..., 1, :] * f2
+    force = parts[0] + parts[1]
+    undriven = np.abs(force) <= ROUNDED * (np.abs(parts[0]) + np.abs(parts[1]))  # also where that mode is in resonance
     detuning = (np.sqrt(omega_squared) - omega) * (np.sqrt(omega_squared) + omega)
     damping = 2 * zeta * omega_squared * omega
-    size = force / (detuning**2 + damping**2)
+    size = np.where(undriven, 0.0, force / (detuning**2 + damping**2))
     a, b = size * detuning, -size * damping  # (7): A_j and B_j
     d, e = np.einsum("...ij,...j->...i", psi, a), np.einsum("...ij,...j->...i", psi, b)
     if mu_c is None:
@@ -156,7 +160,8 @@ def _of_the_paper(system) -> Grazing:
         root = np.sqrt(complex(eta**2 - square))
         # 1 - multiplier over T, for both multipliers of the mode; the paper's 1 - e_j c_j is their mean
         left_over = -np.expm1(np.array([-eta + root, -eta - root]) * system.period)
-        determinant *= (left_over.prod() / left_over.mean()).real if square else 0.0  # of a free mode both are 1
+        repeats = not square or np.abs(left_over).min() <= ROUNDING  # of a free mode both multipliers are 1
+        determinant *= 0.0 if repeats else (left_over.prod() / left_over.mean()).real
     return Grazing(b, tau, state, float(determinant), bool(np.isfinite(b) and determinant != 0), b, b)
 
 

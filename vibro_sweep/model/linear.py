@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 
 
@@ -93,8 +94,26 @@ def dynamic_stiffness(q: Linear) -> np.ndarray:
 
 
 def amplitudes(q: Linear) -> np.ndarray:
-    """Complex amplitudes X (N,) of the steady motion Re(X e^{i(omega t + tau)}). LinAlgError in undamped resonance."""
-    return np.linalg.solve(dynamic_stiffness(q), q.cosine - 1j * q.sine)
+    """Complex amplitudes X (N,) of the steady motion Re(X e^{i(omega t + tau)}). LinAlgError in undamped resonance.
+
+    Where the force does not drive the mode in resonance, the steady motion without that mode.
+    """
+    return _response(q, q.cosine - 1j * q.sine)
+
+
+def _response(q: Linear, force: np.ndarray) -> np.ndarray:
+    """X of (K - omega^2 M + i omega C) X = force. LinAlgError where it drives an undamped mode at its own frequency."""
+    Z, scale = dynamic_stiffness(q), 1 / np.sqrt(np.diag(q.M))
+    if not np.all(np.isfinite(Z)):
+        return np.linalg.solve(Z, force)
+    left, sizes, right = np.linalg.svd(Z * np.outer(scale, scale))
+    regular = sizes > len(sizes) * np.finfo(float).eps * sizes[0]
+    if regular.all():
+        return np.linalg.solve(Z, force)
+    parts = left.conj().T @ (force * scale)
+    if np.any(np.abs(parts[~regular]) > DRIVEN * np.abs(force * scale).max()):
+        raise np.linalg.LinAlgError("the force drives an undamped mode at its own frequency")
+    return scale * (right[regular].conj().T @ (parts[regular] / sizes[regular]))
 
 
 def amplitude_slopes(q: Linear, slope: Linear) -> np.ndarray:
@@ -105,7 +124,7 @@ def amplitude_slopes(q: Linear, slope: Linear) -> np.ndarray:
         - q.omega * q.omega * slope.M
         + 1j * (slope.omega * q.C + q.omega * slope.C)
     )
-    return np.linalg.solve(dynamic_stiffness(q), slope.cosine - 1j * slope.sine - dz @ amplitudes(q))
+    return _response(q, slope.cosine - 1j * slope.sine - dz @ amplitudes(q))
 
 
 def grazing_phase(q: Linear) -> float:
