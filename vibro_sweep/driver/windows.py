@@ -11,11 +11,12 @@ from vibro_sweep import store
 from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.job import Result, window_of
 from vibro_sweep.analysis.windows.rows import Row, check_data, chosen_key, rows_of
+from vibro_sweep.analysis.windows.unseen import unseen_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.driver.jobs import results, workers_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.model.bifurcations import REASONS
-from vibro_sweep.model.branch_file import WINDOWS, columns
+from vibro_sweep.model.branch_file import UNSEEN, WINDOWS, columns
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import parse_scene
@@ -37,7 +38,8 @@ def windows(path: str | Path, key: str | None = None) -> Windows:
 
     Returns a list of windows with .lo, .hi, .lower, .upper (special points), .period, .itinerary, .symmetric and
     .orbit. Mirror images are one window, and so is an orbit that several points of the sweep found. Ends may lie
-    beyond the sweep, by its length at most. `.reason` of the list says of orbits in no window why.
+    beyond the sweep, by its length at most. `.reason` of the list says of orbits in no window why; `.unseen` lists the
+    stretches of windows on which the sweep shows other attractors only, each with a start.
 
     Raises StoreError for a file that cannot be read, ValueError for one that has no windows to look for.
     """
@@ -132,8 +134,17 @@ def _contents(cover: Cover) -> tuple:
         "window_branch": np.arange(len(found)),
         "window_row": np.array([one.row for one in found], int),
         "window_orbits": cover.counts,
-        "window_missed": cover.within - cover.counts,
+        "window_missed": cover.missed,
         "orbit_window": window.ravel(),
         "orbit_reason": reason.ravel(),
     }
+    arrays |= _unseen(cover, masses)
     return columns(WINDOWS, names, list(state(masses))), arrays
+
+
+def _unseen(cover: Cover, masses: int) -> dict[str, np.ndarray]:
+    """The columns over `unseen`."""
+    found, names = unseen_in(cover), state(masses)
+    states = np.array([one.state for one in found]).reshape(len(found), len(names))
+    numbers = {f"unseen_{key}": np.array([getattr(one, key) for one in found]) for key in UNSEEN}
+    return numbers | {f"unseen_{name}": states[:, i] for i, name in enumerate(names)}

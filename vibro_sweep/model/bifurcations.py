@@ -35,3 +35,4 @@ REASONS = {  # why a point of a sweep lies in no window; 0: it lies in one
     "failed": "the orbit, or the equations of its impacts, could not be computed",
     "not_computed": "the file has no orbit there",
 }
+ATTRACTORS = ("chaos", "quasi_periodic", "sticking")  # reasons that say where an orbit went to

@@ -140,12 +140,22 @@ OF_WINDOWS = (
     ),
 )
 
+UNSEEN = {  # of a stretch of a window on which the sweep shows other attractors only
+    "window": Column("unseen_window", ("unseen",), "i4", "window", "whose orbit is stable there: its index"),
+    "lo": Column("unseen_lo", ("unseen",), "f8", "from", "the parameter where the sweep begins to miss the orbit"),
+    "hi": Column("unseen_hi", ("unseen",), "f8", "to", "the parameter up to which the sweep misses the orbit"),
+    "values": Column("unseen_values", ("unseen",), "i4", "values", "values of the sweep that show other attractors"),
+    "at": Column("unseen_at", ("unseen",), "f8", "at", "one of these values, of which `unseen_x1` .. is a start"),
+}
+
 
 def columns(kind: str, parameters: list[str], states: list[str]) -> list[Column]:
     """All variables of a file; parameters : the names of numbers along which branches lead, states : x1, v1, ..."""
     own = [Column(name, ("point",), "f8", name, f"the parameter {name}") for name in parameters]
     own += [Column(name, ("point",), "f8", name, f"{name} at t = 0, before an impact there") for name in states]
     if kind == WINDOWS:
-        return [*own, *OF_BRANCHES, *OF_WINDOWS]
+        text = "at t = 0 mod T, of a start that stays on the window's orbit at `unseen_at`; NaN where none is known"
+        starts = [Column(f"unseen_{name}", ("unseen",), "f8", name, f"{name} {text}") for name in states]
+        return [*own, *OF_BRANCHES, *OF_WINDOWS, *UNSEEN.values(), *starts]
     sections = [Column(f"section_{name}", ("section",), "f8", name, f"{name} at t = 0 mod T") for name in states]
     return [*own, *OF_BRANCHES, BRANCH_SECTIONS, *sections]

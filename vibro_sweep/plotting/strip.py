@@ -14,6 +14,7 @@ from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark
 HEIGHT = 1.5  # inches
 LANES = 6  # bars of windows that overlap lie above each other
 APART = 0.012  # of the axis: bars in one lane are so far apart at least
+HATCH, HATCHES = "/////", "#33475b"
 BAR, SYMMETRIC = "#9fd0ea", "#dcc9a0"
 REASON_COLOURS = {
     "chaos": "#b2182b",
@@ -41,13 +42,14 @@ def windows(ax, result: Result, values, order):
             if file["window_symmetric"][w] == chosen
         ]
         ax.add_collection(PolyCollection(bars, facecolor=colour, edgecolor=FAINT, linewidth=0.4, label=name))
+    unseen = _unseen(ax, file, shown, lanes, (left, right))
     _ends(ax, file, shown, lanes, (left, right))
     _periods(ax, file, shown, lanes, lo, hi, 0.03 * (right - left))
     _reasons(ax, result, file, values, order)
     ax.set_ylim(max(lanes, default=0) + 0.7, -1.6)
     ax.set_yticks([])
     ax.set_ylabel("windows")
-    _legend(ax, file, shown)
+    _legend(ax, file, shown, unseen)
 
 
 def lanes_of(lo: np.ndarray, hi: np.ndarray, apart: float) -> list[int]:
@@ -58,6 +60,20 @@ def lanes_of(lo: np.ndarray, hi: np.ndarray, apart: float) -> list[int]:
         ends[lane] = max(ends[lane], hi[i])
         result[i] = lane
     return result
+
+
+def _unseen(ax, file, shown, lanes, limits) -> bool:
+    """Hatch the bars where the sweep shows other attractors only. Whether there are such stretches."""
+    if "unseen_window" not in file.arrays:  # of an earlier version
+        return False
+    lane_of, hatched = dict(zip(shown.tolist(), lanes, strict=True)), []
+    lows, highs = np.maximum(file["unseen_lo"], limits[0]), np.minimum(file["unseen_hi"], limits[1])
+    for w, lo, hi in zip(file["unseen_window"].tolist(), lows, highs, strict=True):
+        if w in lane_of and lo <= hi:
+            hatched.append([(x, lane_of[w] + y) for x, y in ((lo, -0.32), (hi, -0.32), (hi, 0.32), (lo, 0.32))])
+    style = {"facecolor": "none", "edgecolor": HATCHES, "linewidth": 0, "hatch": HATCH, "gid": "unseen"}
+    ax.add_collection(PolyCollection(hatched, **style))
+    return bool(hatched)
 
 
 def _ends(ax, file, shown, lanes, limits):
@@ -91,13 +107,15 @@ def _reasons(ax, result, file, values, order):
             ax.broken_barh(spans, (-1.4, 0.6), facecolor=REASON_COLOURS[name], linewidth=0)
 
 
-def _legend(ax, file, shown):
+def _legend(ax, file, shown, unseen):
     types = file.types()
     there = {types[file[end][w]] for w in shown for end in ("window_lower", "window_upper")}
     handles = [
         Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in there
     ]
     handles += [Patch(facecolor=BAR, label="window"), Patch(facecolor=SYMMETRIC, label="symmetric orbit")]
+    if unseen:
+        handles.append(Patch(facecolor=BAR, edgecolor=HATCHES, linewidth=0, hatch=HATCH, label="missed by all starts"))
     named = [name for code, name in enumerate(REASONS) if code and (file["orbit_reason"] == code).any()]
     handles += [Patch(facecolor=REASON_COLOURS[name], label=name.replace("_", " ")) for name in named]
     ax.legend(

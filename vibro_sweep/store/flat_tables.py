@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from vibro_sweep.model.bifurcations import CRITICALITIES, KINDS, REASONS, TYPES
+from vibro_sweep.model.branch_file import UNSEEN
 from vibro_sweep.model.window_families import families
 
 LONGEST_WORD = 12  # letters of an itinerary that is printed as it is
@@ -31,7 +32,7 @@ def windows_table(arrays: Mapping, parameter: str) -> list[str]:
     found = {names[code]: int(count) for code, count in zip(codes.tolist(), numbers.tolist(), strict=True)}
     covered = found.pop("in_a_window", 0)
     lines.append(f"orbits       {covered:,} of {reasons.size:,} in windows" + (f"; {_counted(found)}" if found else ""))
-    return [*lines, *_families(arrays)]
+    return [*lines, *_families(arrays), *_unseen(arrays, parameter)]
 
 
 def _families(arrays: Mapping) -> list[str]:
@@ -46,6 +47,23 @@ def _families(arrays: Mapping) -> list[str]:
         told = ", ".join(str(periods[w]) for w in family.windows)
         lines.append(f"family       {kind}{_short(family.itinerary)}: periods {told}; from {first:.6g} to {last:.6g}")
     return lines
+
+
+def _unseen(arrays: Mapping, parameter: str) -> list[str]:
+    """A line for each stretch of a window on which the sweep shows other attractors only, with a start."""
+    if "unseen_window" not in arrays:  # a file of an earlier version
+        return []
+    words, branches = _words(arrays), np.asarray(arrays["window_branch"])
+    names = [name for name in arrays if name.startswith("unseen_") and name.removeprefix("unseen_") not in UNSEEN]
+    rows = [("from", "to", "period", "impacts", "values", parameter, "start")]
+    for u, w in enumerate(np.asarray(arrays["unseen_window"]).tolist()):
+        lo, hi, at = (f"{arrays[f'unseen_{name}'][u]:.10g}" for name in ("lo", "hi", "at"))
+        start = ", ".join(f"{name.removeprefix('unseen_')}: {float(arrays[name][u])!r}" for name in names)
+        kind = str(arrays["window_period"][w]), _short(words[branches[w]])
+        rows.append((lo, hi, *kind, str(arrays["unseen_values"][u]), at, start))
+    count = len(rows) - 1
+    told = "1 stretch of a window" if count == 1 else f"{count} stretches of windows"
+    return [f"coexistence  {told} on which the sweep shows other attractors only", *_aligned(rows)] if count else []
 
 
 def special_table(arrays: Mapping, parameters: list[str]) -> list[str]:

@@ -13,10 +13,11 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.flat import Flat, solution_of
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.windows.continued import continued
 from vibro_sweep.analysis.windows.job import Job, Result, lies_on
 from vibro_sweep.analysis.windows.rows import Row
-from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.bifurcations import ATTRACTORS, REASONS
 
 FAR = 8  # values without a point of the same period end a group
 SAME = 1e-9  # of the range: ends that differ by less, of windows of the same itinerary and period, are one
@@ -85,15 +86,18 @@ class Cover:
         windows = np.concatenate([window.ravel() for window in self.window])
         return np.bincount(windows + 1, minlength=len(self.found) + 1)[1:]
 
+    def elsewhere(self, w: int) -> np.ndarray:
+        """(values, starts) which orbits of a window's row lie at its values and went to another attractor."""
+        found = self.found[w]
+        row, window, (lo, hi) = self.rows[found.row], self.window[found.row], found.ends
+        inside = (lo <= row.values) & (row.values <= hi)
+        known = (window >= 0) | np.isin(self.reason[found.row], [_CODES[name] for name in ATTRACTORS])
+        return inside[:, None] & known & (window != w)
+
     @property
-    def within(self) -> np.ndarray:
-        """Orbits of the sweep at values within each window, whatever they are."""
-        counts = []
-        for found in self.found:
-            row, (lo, hi) = self.rows[found.row], found.ends
-            inside = (lo <= row.values) & (row.values <= hi)
-            counts.append(int(inside.sum()) * row.period.shape[1])
-        return np.array(counts, int)
+    def missed(self) -> np.ndarray:
+        """Orbits of the sweep at values within each window that went to another attractor."""
+        return np.array([self.elsewhere(w).sum() for w in range(len(self.found))], int)
 
     def _middles(self, r: int) -> Iterator[tuple[int, int]]:
         """The middle point of each group of a row."""
@@ -134,7 +138,9 @@ class Cover:
         inside = (lo <= row.values) & (row.values <= hi)
         wanted = still & inside[:, None] & (row.period % int(found.flat["branch_period"]) == 0)
         for i in np.flatnonzero(wanted.any(axis=1)):
-            orbit = orbit_in(found.flat, float(row.values[i]), row.system_at(row.values[i]))
+            system = row.system_at(row.values[i])
+            solution = solution_in(found.flat, float(row.values[i]), system)
+            orbit = None if solution is None else PeriodicOrbit(system, "ok", solution)
             for j in np.flatnonzero(wanted[i]):
                 if orbit is not None and lies_on(orbit, row.states[i, j]):
                     still[i, j] = False
@@ -168,7 +174,7 @@ def _same(one: Flat, other: Flat) -> bool:
     )
 
 
-def orbit_in(flat: Flat, value: float, system):
+def solution_in(flat: Flat, value: float, system) -> Solution | None:
     """The orbit of a window at a value within it, where it is known to be real; None where Newton's method fails."""
     p = flat["value"]
     i = int(np.clip(np.searchsorted(p, value) - 1, 0, len(p) - 2))
@@ -176,5 +182,4 @@ def orbit_in(flat: Flat, value: float, system):
     parts = [
         (1 - share) * flat[name][i] + share * flat[name][i + 1] for name in ("impact_t", "impact_v", "impact_t_off")
     ]
-    found = solution_of(flat, system, *parts).corrected()
-    return None if found is None else PeriodicOrbit(system, "ok", found)
+    return solution_of(flat, system, *parts).corrected()

@@ -10,6 +10,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows.cover import Cover
+from vibro_sweep.analysis.windows.unseen import Unseen, unseen_in
 from vibro_sweep.model.window_families import Family, families
 
 
@@ -69,9 +70,12 @@ class Windows(list[Window]):
     parameter : the number along which they were followed
     window : index of the window of each orbit of the sweep, (*sweep, starts), -1 where there is none
     reason : codes of `model.bifurcations.REASONS`, of the same shape; 0 in a window
+    unseen : stretches of windows on which the sweep shows other attractors only, each with a start for the window's
+        orbit: .window (index), .lo, .hi, .values, .at, .orbit, .state
     """
 
     parameter: str
+    unseen: list[Unseen]
     window: np.ndarray
     reason: np.ndarray
 
@@ -85,11 +89,12 @@ class Windows(list[Window]):
 def windows_of(cover: Cover) -> Windows:
     """The windows of a search that is done."""
     result = Windows()
-    for found, points, within in zip(cover.found, cover.counts.tolist(), cover.within.tolist(), strict=True):
-        row, more = cover.rows[found.row], within - points
-        result.append(Window(row.parameter, *found.ends, row.held, points, more, found.flat, found.system))
+    for found, points, missed in zip(cover.found, cover.counts.tolist(), cover.missed.tolist(), strict=True):
+        row = cover.rows[found.row]
+        result.append(Window(row.parameter, *found.ends, row.held, points, missed, found.flat, found.system))
     result.parameter = cover.rows[0].parameter
     result.window, result.reason = in_file_order(cover)
+    result.unseen = unseen_in(cover)
     return result
 
 

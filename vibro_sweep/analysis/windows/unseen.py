@@ -1,0 +1,75 @@
+"""Where a window's orbit attracts, and no orbit of the sweep went there: coexistence that its starts missed."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.windows.cover import Cover, solution_in
+
+
+@dataclass(frozen=True, eq=False)
+class Unseen:
+    """A stretch of a window on which orbits of the sweep show other attractors, and none shows the window's.
+
+    window : index of the window
+    lo, hi : the first and the last value of the sweep that shows another attractor; the window's own end where no
+        value of the sweep lies between
+    values : how many values of the sweep lie within
+    at : one of them, the farthest from the window's ends at which the orbit could be computed
+    orbit : the window's orbit at `at`; `orbit.status` says where it could not be computed
+    """
+
+    window: int
+    lo: float
+    hi: float
+    values: int
+    at: float
+    orbit: PeriodicOrbit = field(repr=False)
+
+    @property
+    def state(self) -> np.ndarray:
+        """(2N,) a start at t = 0 mod T that stays on the window's orbit; NaN where none is known."""
+        return self.orbit.state if self.orbit.ok else np.full(2 * self.orbit.system.masses, np.nan)
+
+
+def unseen_in(cover: Cover) -> list[Unseen]:
+    """All such stretches of the windows of a search that is done, by window and rising value."""
+    return [found for w in range(len(cover.found)) for found in _of_window(cover, w)]
+
+
+def _of_window(cover: Cover, w: int) -> list[Unseen]:
+    found, values = cover.found[w], cover.rows[cover.found[w].row].values
+    ends = found.ends
+    inside = np.flatnonzero((ends[0] <= values) & (values <= ends[1]))
+    if not len(inside):
+        return []
+    seen = (cover.window[found.row][inside] == w).any(axis=1)
+    others = cover.elsewhere(w)[inside].any(axis=1)
+    result = []
+    for run in np.split(np.arange(len(inside)), np.flatnonzero(np.diff(seen)) + 1):
+        missed = run[others[run]]
+        if seen[run[0]] or not len(missed):
+            continue
+        lo, hi = values[inside[missed[0]]], values[inside[missed[-1]]]
+        if missed[0] == 0 and inside[0] > 0:
+            lo = ends[0]
+        if missed[-1] == len(inside) - 1 and inside[-1] < len(values) - 1:
+            hi = ends[1]
+        at, orbit = _start(cover, w, values[inside[missed]])
+        result.append(Unseen(w, float(lo), float(hi), len(missed), at, orbit))
+    return result
+
+
+def _start(cover: Cover, w: int, values: np.ndarray) -> tuple[float, PeriodicOrbit]:
+    """The value farthest from the window's ends at which its orbit is known, and the orbit there."""
+    found = cover.found[w]
+    row, (lo, hi) = cover.rows[found.row], found.ends
+    order = np.argsort(-np.minimum(values - lo, hi - values), kind="stable")
+    for value in values[order].tolist():
+        system = row.system_at(value)
+        orbit = orbit_of(system, solution_in(found.flat, value, system))
+        if orbit.ok and orbit.stable:
+            return value, orbit
+    first = float(values[order[0]])
+    return first, PeriodicOrbit(row.system_at(first), "not_converged")
