@@ -8,7 +8,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.forest import Seed, Tree, forest, grow
 from vibro_sweep.driver.jobs import results, workers_of
-from vibro_sweep.driver.origins import seeds_of
+from vibro_sweep.driver.origins import NoOrbitError, seeds_of, source_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.model.branch_file import BRANCHES, columns
 from vibro_sweep.model.state import state
@@ -32,13 +32,20 @@ def run_branches(
     The file does not depend on workers, executor or interruptions. Raises StoreError as `run` does, ValueError where
     the scene's first orbit does not exist, RunError where workers fail.
     """
-    numbers = {name: value for name, value in scene.system.parameters().items() if name not in scene.along}
+    source = source_of(scene)
+    numbers = {name: value for name, value in source.system.parameters().items() if name not in scene.along}
+    numbers |= {"source": source.identity} if source.identity else {}
     subject = Subject(BRANCHES, scene.name, scene.text, {"parameters": list(scene.along)} | numbers)
     with pieces(subject, Path(output), mode) as file:
         if file.complete:
             return
         with workers_of(workers, executor) as pool:
-            found = _followed(scene, seeds_of(scene), file, pool, progress)
+            try:
+                seeds = seeds_of(scene, file, pool)
+            except NoOrbitError:
+                file.drop()
+                raise
+            found = _followed(scene, seeds, file, pool, progress)
         file.finish(provenance(), *_contents(scene, found))
 
 

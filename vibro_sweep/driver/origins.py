@@ -1,8 +1,11 @@
 """The orbits with which a scene of branches begins: `continue: from`."""
 
+from concurrent.futures import Executor
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from vibro_sweep import store
 from vibro_sweep.analysis.branches.flat import special_point
@@ -11,19 +14,60 @@ from vibro_sweep.analysis.branches.generations import WAYS
 from vibro_sweep.analysis.branches.switching import switch
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.lcp import born_at_grazing
-from vibro_sweep.analysis.periodic.orbit import STATUS, PeriodicOrbit
-from vibro_sweep.driver.windows import windows
+from vibro_sweep.analysis.periodic.orbit import STATUS, PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.windows.cover import solution_in
+from vibro_sweep.analysis.windows.rows import Row
+from vibro_sweep.driver.windows import cover_of, rows_in
+from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.branch_file import WINDOWS
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.store.joining import branch_of
+from vibro_sweep.store.pieces import Pieces
 
 
-def seeds_of(scene: Continuation) -> list[Seed]:
-    """The first orbits of a scene, those within its range. Raises ValueError where there is none."""
+class NoOrbitError(ValueError):
+    """There is no orbit to begin with."""
+
+
+class Source(NamedTuple):
+    """The oscillator of a scene's branches, and the identity of the file that they begin from; empty without one."""
+
+    system: AnyOscillator
+    identity: str
+
+
+def source_of(scene: Continuation) -> Source:
+    """Raises ValueError where the file that branches begin from is of another oscillator than the scene."""
+    ((key, (value, _)),) = scene.along.items()
+    if scene.origin == "sweep":
+        with store.open(Path(scene.begin)) as data:
+            if "kind" in data.attrs:
+                raise ValueError(f"continue.from.sweep: {scene.begin} holds {data.attrs['kind']}, no sweep")
+            own, free = _rows(scene, data, key)[0].system, {key: value}
+            identity = data.attrs.get("identity", "")
+    elif scene.origin == "branches":
+        with store.open(Path(scene.begin)) as data:
+            own, parameter = _at_special(scene, data)
+            identity = data.attrs["identity"]
+        free = {key: value, parameter: own.numbers[parameter]}
+    else:
+        return Source(scene.system, "")
+    _check_same(scene, own.replace(**free), scene.system.replace(**free))
+    return Source(own, identity)
+
+
+def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[Seed]:
+    """The first orbits of a scene, those within its range; `file` keeps what it takes to find them.
+
+    Raises NoOrbitError where there is none.
+    """
     ((key, (lo, hi)),) = scene.along.items()
-    orbits = [orbit for orbit in _orbits(scene, key) if lo <= orbit._solution.family.numbers[key] <= hi]
+    if scene.origin == "sweep":
+        orbits = _from_sweep(scene, key, file, pool)
+    else:
+        orbits = [orbit for orbit in _orbits(scene, key) if lo <= orbit._solution.family.numbers[key] <= hi]
     if not orbits:
-        raise ValueError(f"continue.from.{scene.origin}: no orbit with {key} in {lo:g} .. {hi:g}")
+        raise NoOrbitError(f"continue.from.{scene.origin}: no orbit with {key} in {lo:g} .. {hi:g}")
     return [seed_of(orbit) for orbit in orbits]
 
 
@@ -36,33 +80,78 @@ def _orbits(scene: Continuation, key: str) -> list[PeriodicOrbit]:
         return [_one(periodic_orbit(scene.system, itinerary=""), scene)]
     if scene.origin == "grazing":
         return [born.orbit for born in born_at_grazing(scene.system, periods=scene.begin)]
-    if scene.origin == "sweep":
-        return [window.orbit for window in windows(scene.begin, key)]
     return _from_branches(scene, key)
+
+
+def _check_same(scene: Continuation, own: AnyOscillator, asked: AnyOscillator) -> None:
+    """Raise ValueError where a file's oscillator is not that of the scene."""
+    if own == asked:
+        return
+    ours, theirs = ({"type": one.model.name, **one.numbers, **one.options} for one in (asked, own))
+    for name in [*ours, *theirs]:
+        if ours.get(name) != theirs.get(name):
+            told = f"{name} = {ours.get(name)!r} in system, and {theirs.get(name)!r} in {scene.begin}"
+            raise ValueError(f"continue.from.{scene.origin}: {told}; branches belong to one oscillator")
+
+
+def _rows(scene: Continuation, data: xr.Dataset, key: str) -> list[Row]:
+    """The row of a sweep along `key`; of a plane that at the scene's value of the other key. Raises ValueError."""
+    try:
+        rows = rows_in(data, key)
+    except ValueError as error:
+        raise ValueError(f"continue.from.sweep: {scene.begin}, {error}") from None
+    numbers = scene.system.parameters()
+    found = [row for row in rows if all(numbers.get(name, value) == value for name, value in row.held.items())]
+    if not found:
+        held = ", ".join(f"{name} = {numbers[name]!r}" for name in rows[0].held)
+        raise ValueError(f"continue.from.sweep: {scene.begin} has no row with {held}")
+    return found
+
+
+def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | None) -> list[PeriodicOrbit]:
+    """An orbit of each window of a sweep that reaches into the scene's range, near where it was found."""
+    with store.open(Path(scene.begin)) as data:
+        rows = _rows(scene, data, key)
+    orbits = []
+    for found in cover_of(rows, file, pool).found:
+        lo, hi = np.clip(found.ends, *scene.along[key])
+        value = float(np.clip(found.flat["value"][found.flat["branch_origin"]], lo, hi))
+        system = found.system.replace(**{key: value})
+        orbit = orbit_of(system, solution_in(found.flat, value, system))
+        if found.ends[0] <= value <= found.ends[1] and orbit.ok:
+            orbits.append(orbit)
+    return orbits
 
 
 def _one(orbit: PeriodicOrbit, scene: Continuation) -> PeriodicOrbit:
     if not orbit.ok:
-        raise ValueError(f"continue.from.{scene.origin}: no orbit was found; {STATUS[orbit.status]}")
+        raise NoOrbitError(f"continue.from.{scene.origin}: no orbit was found; {STATUS[orbit.status]}")
     return orbit
 
 
 def _from_branches(scene: Continuation, key: str) -> list[PeriodicOrbit]:
     """Beyond a special point in a file of branches or windows; along another number also from its own orbit."""
     with store.open(Path(scene.begin)) as data:
-        if "kind" not in data.attrs:
-            raise ValueError(f"continue.from.branches: {scene.begin} holds no branches")
-        count = data.sizes["special"]
-        if scene.special >= count:
-            raise ValueError(f"continue.from.special: {scene.special} is not allowed; it must be < {count}")
-        parse = parse_scene if data.attrs["kind"] == WINDOWS else parse_continuation
-        parameter, *others = np.atleast_1d(data.attrs["parameters"]).tolist()
-        system = parse(data.attrs["scene"]).system
-        values = dict(zip(others, data["special_value"].values[scene.special, 1:].tolist(), strict=True))
-        index = int(data["special_branch"][scene.special])
+        system, parameter = _at_special(scene, data)
         arrays = {name: data[name].values for name in data.data_vars}
-        flat = branch_of(arrays, parameter, index)
-        place = scene.special - int(arrays["branch_special"][:index].sum())
-    special = special_point(flat, place, parameter, system.replace(**values))
+    index = int(arrays["special_branch"][scene.special])
+    flat = branch_of(arrays, parameter, index)
+    place = scene.special - int(arrays["branch_special"][:index].sum())
+    special = special_point(flat, place, parameter, system)
     found = switch(special) if special.type in WAYS else []
     return found if key == parameter else [special.orbit, *found]
+
+
+def _at_special(scene: Continuation, data: xr.Dataset) -> tuple[AnyOscillator, str]:
+    """The oscillator at the scene's special point, and along which number its branch leads. Raises ValueError."""
+    if "kind" not in data.attrs:
+        raise ValueError(f"continue.from.branches: {scene.begin} holds no branches")
+    count = data.sizes["special"]
+    if scene.special >= count:
+        raise ValueError(f"continue.from.special: {scene.special} is not allowed; it must be < {count}")
+    parse = parse_scene if data.attrs["kind"] == WINDOWS else parse_continuation
+    names = np.atleast_1d(data.attrs["parameters"]).tolist()
+    values = data["special_value"].values[scene.special].tolist()
+    system = parse(data.attrs["scene"]).system
+    numbers = {name: data.attrs.get(name, value) for name, value in system.numbers.items() if isinstance(value, float)}
+    return system.replace(**numbers | dict(zip(names, values, strict=True))), names[0]

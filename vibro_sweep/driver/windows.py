@@ -22,7 +22,7 @@ from vibro_sweep.model.state import state
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.flat_files import Subject
 from vibro_sweep.store.joining import joined
-from vibro_sweep.store.pieces import pieces
+from vibro_sweep.store.pieces import Pieces, pieces
 
 _CODES = {name: code for code, name in enumerate(REASONS)}
 
@@ -69,22 +69,30 @@ def run_windows(
     with pieces(subject, Path(output), mode) as file:
         if file.complete:
             return
-        cover = Cover(rows)
         with workers_of(workers, executor) as pool:
-
-            def evaluate(points, jobs) -> list[Result]:
-                named = {":".join(map(str, point)): job for point, job in zip(points, jobs, strict=True)}
-                missing = [(name, job) for name, job in named.items() if file.get(name) is None]
-                for name, result in results(pool, window_of, missing):
-                    file.write(name, _arrays(result))
-                    if progress:
-                        progress(cover.done, cover.total)
-                return [_result(file.get(name)) for name in named]
-
-            cover.search(evaluate)
+            cover = cover_of(rows, file, pool, progress)
         if progress:
             progress(cover.total, cover.total)
         file.finish(provenance(), *_contents(cover))
+
+
+def cover_of(
+    rows: list[Row], file: Pieces, pool: Executor | None, progress: Callable[[int, int], None] | None = None
+) -> Cover:
+    """The windows of rows; those that `file` has pieces of are not followed again."""
+    cover = Cover(rows)
+
+    def evaluate(points, jobs) -> list[Result]:
+        named = {":".join(map(str, point)): job for point, job in zip(points, jobs, strict=True)}
+        missing = [(name, job) for name, job in named.items() if file.get(name) is None]
+        for name, result in results(pool, window_of, missing):
+            file.write(name, _arrays(result))
+            if progress:
+                progress(cover.done, cover.total)
+        return [_result(file.get(name)) for name in named]
+
+    cover.search(evaluate)
+    return cover
 
 
 def rows_in(data: xr.Dataset, key: str | None) -> list[Row]:

@@ -44,6 +44,11 @@ class Pieces:
             self._part.append({"piece": key, "arrays": told}, data)
         self._known[key] = arrays
 
+    def drop(self) -> None:
+        """Remove the part of a run that cannot have a result."""
+        with said(self._part):
+            self._part.remove()
+
     def finish(self, provenance: dict, columns: list[Column], arrays: Arrays) -> None:
         """Give the file its name, and remove the part."""
         head = self._part.head
