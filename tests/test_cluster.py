@@ -171,6 +171,7 @@ def test_a_worker_with_other_code_joins_later(tmp_path, cluster, scene, unfit):
     assert "has vibro_sweep" in error and "install the same on both" in error and "--resume" in error
 
 
+@pytest.mark.slow  # three workers
 def test_unfit_workers_are_named(tmp_path, cluster, scene, capsys, unfit):
     cluster.worker()
     cluster.worker(PYTHONPATH=unfit["lacking"])

@@ -31,11 +31,11 @@ CASES = [
     (PAPER.replace(b=1.0), "LLRR", "R", (0.7, 0.9)),
     (ONE_MASS.replace(F=0.37), "R", "omega", (0.7, 0.9)),
     (ONE_MASS.replace(F=0.37), "R", "F", (0.35, 0.5)),
-    (CHAIN, "LR", "c", (0.05, 0.3)),
-    (CHAIN, "LR", "k", (0.5, 1.0)),
     (CAVITY, "LR", "b", (0.3, 0.8)),
     (CAVITY, "LR", "ratio", (0.1, 0.3)),
     (BALL.replace(A=0.5), "L", "G", (0.8, 1.2)),
+    pytest.param(CHAIN, "LR", "c", (0.05, 0.3), marks=pytest.mark.slow),  # three masses compile kernels of their own
+    pytest.param(CHAIN, "LR", "k", (0.5, 1.0), marks=pytest.mark.slow),
     pytest.param(LONG_CHAIN, "born", "b", (0.01, 60.0), marks=pytest.mark.slow),
     pytest.param(LONG_CHAIN, "born", "omega", (0.45, 0.55), marks=pytest.mark.slow),
 ]
