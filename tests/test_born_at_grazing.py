@@ -91,3 +91,18 @@ def test_representatives_are_the_necklaces():
         assert len(found) == len(set(found)) and set(found) == prime
         mirrored = {least(m.astype(int), 1) for m in representatives(count, shift, mirrors=True)}
         assert mirrored == {least(np.array(m), 1) for m in prime}
+
+
+@pytest.mark.parametrize("omega", [0.53, 0.44])
+def test_branches_lead_back_to_the_graze_where_all_their_impacts_vanish_together(omega):
+    """Born below, they go on as the free motion above; born above, they exist beside it."""
+    system = PAPER.replace(omega=omega)
+    b = vs.grazing(system).b
+    for item in vs.born_at_grazing(system, periods=2):
+        branch = vs.continue_orbit(item.orbit, "b", (0.99 * b, 1.01 * b))
+        (end,) = (s for s in branch.special if abs(s.parameters["b"] - b) < 1e-9)
+        assert end.type == "graze" and abs(end.parameters["b"] - b) < 1e-14
+        assert end.kind == ("persistence" if item.born == "below" else "nonsmooth fold")
+        assert (end.impact, end.direction) == (0, 1)
+        (free,) = vs.switch(end)
+        assert free.itinerary == "" and free.system.b > b

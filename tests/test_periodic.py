@@ -76,8 +76,10 @@ def test_canonical_itinerary_does_not_depend_on_where_the_orbit_is_met(thirteen)
     a, b = (vs.periodic_orbit(system, state=x, periods=13) for x in (state, later))
     assert a.itinerary == b.itinerary
     assert a.impacts["t"] == pytest.approx(b.impacts["t"], abs=1e-10)
-    assert canonical_start([1, -1, 1, -1, -1], [0, 1, 2, 3, 4], 10) == 3
-    assert canonical_start([1, 1], [3.5, 5.2], 1.0) == 1
+    assert canonical_start([1, -1, 1, -1, -1], [0, 1, 2, 3, 4], 10, 10) == 3
+    assert canonical_start([1, 1], [3.5, 5.2], 1.0, 3.0) == 1
+    for rounding in (-1e-13, 0.0, 1e-13):  # equal phases: the shorter flight first
+        assert canonical_start([1, 1, 1], [0.5, 1.5 + rounding, 1.8], 1.0, 2.0) == 1
 
 
 def test_multipliers_over_ten_decades_against_40_digits():

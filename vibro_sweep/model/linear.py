@@ -103,10 +103,13 @@ def amplitudes(q: Linear) -> np.ndarray:
 
 def _response(q: Linear, force: np.ndarray) -> np.ndarray:
     """X of (K - omega^2 M + i omega C) X = force. LinAlgError where it drives an undamped mode at its own frequency."""
-    Z, scale = dynamic_stiffness(q), 1 / np.sqrt(np.diag(q.M))
-    if not np.all(np.isfinite(Z)):
+    Z = dynamic_stiffness(q)
+    with np.errstate(all="ignore"):  # beyond a bound of a parameter masses may vanish
+        scale = 1 / np.sqrt(np.abs(np.diag(q.M)))
+        scaled = Z * np.outer(scale, scale)
+    if not np.all(np.isfinite(scaled)):
         return np.linalg.solve(Z, force)
-    left, sizes, right = np.linalg.svd(Z * np.outer(scale, scale))
+    left, sizes, right = np.linalg.svd(scaled)
     regular = sizes > len(sizes) * np.finfo(float).eps * sizes[0]
     if regular.all():
         return np.linalg.solve(Z, force)

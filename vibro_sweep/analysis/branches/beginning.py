@@ -6,7 +6,7 @@ from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import Family
 
-BESIDE = (1e-4, 1e-6, 1e-8)  # in units of a walk; near the onset of sticking branches are short
+BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # in units of a walk; near the onset of sticking branches are short
 NEAR = 1e-6  # of a test, relative to its own size, within which an orbit may be the special point itself
 TOUCHES = 1e-12  # distance from a stop, relative to the gap, and the like of a speed, within which it may be zero
 NARROW = 1e-6  # of the parameter's size: the least range that is a unit of a walk

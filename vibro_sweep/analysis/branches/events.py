@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from vibro_sweep.analysis.branches.special import NO_SPEED
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.engine.impulses import branch
 
-GRAZES = 1e-9  # impulse, relative to omega times the gap, of an impact that is none
 ON_CIRCLE = 1e-6  # distance from the unit circle within which a multiplier is on neither side
 ROUNDED = np.finfo(float).eps  # relative to the coordinates of a point: nearer ones are the same
 
@@ -97,7 +97,7 @@ def is_torus(point: Point) -> bool:
     """
     s = point.solution
     mu = s.multipliers
-    if np.any(s.pushes < GRAZES * s.family.linear.omega * s.size_of_gap):
+    if np.any(s.pushes < NO_SPEED * s.family.linear.omega * s.size_of_gap):
         return False
     i, j = np.triu_indices(len(mu), 1)
     k = np.argmin(np.abs(1 - mu[i] * mu[j]))

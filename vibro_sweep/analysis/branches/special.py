@@ -55,16 +55,28 @@ class Graze:
         return "persistence" if self.distance_slope * self.speed_slope < 0 else "nonsmooth fold"
 
 
+NO_SPEED = 1e-9  # impulse, relative to omega times the gap, of an impact that is none
+
+
+def is_free(solution: Solution) -> bool:
+    """Whether no impact has a speed: the free motion, which grazes."""
+    return bool(np.all(solution.pushes < NO_SPEED * solution.family.linear.omega * solution.size_of_gap))
+
+
 def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
-    """Unfold a graze: `impact` vanishes, or (None) the turning point nearest to its stop becomes an impact."""
+    """Unfold a graze: `impact` vanishes, or (None) the turning point nearest to its stop becomes an impact.
+
+    Where the free motion grazes, no impact has a speed, and all vanish together.
+    """
     rests = np.array(solution.rests, int)
     if impact is None:
         without, (touching, index) = solution, inserted(solution)
-        side = touching.sides[index]
+        side, gone = touching.sides[index], np.array([index])
     else:
         index, side = impact, solution.sides[impact]
-        sides = solution.sides[:impact] + solution.sides[impact + 1 :]
-        u = np.delete(solution.u, [impact, solution.K + impact])
+        gone = np.arange(solution.K) if is_free(solution) else np.array([impact])
+        sides = tuple(np.delete(solution.sides, gone).tolist())
+        u = np.delete(solution.u, [*gone, *(solution.K + gone)])
         without, touching = _with(solution, sides, u, rests - (rests > impact)), solution
     q, slope = solution.family.linear, solution.family.derivative(name)
     e = equations_for(touching, q, slope)
@@ -73,7 +85,7 @@ def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
     # At D = 0 the first equation of that impact is the gap less the stop, as the others leave it: take its change
     # along the orbits without the impact, whose own times and impulses move by their own slopes.
     held = np.zeros(touching.size)
-    keep = np.delete(np.arange(touching.size), [index, touching.K + index])
+    keep = np.delete(np.arange(touching.size), [*gone, *(touching.K + gone)])
     if without.K or e.free:
         held[keep] = slopes(equations_for(without, q, slope), without)
     _, J, Fp, _ = e.evaluate(touching.sides, touching.u)

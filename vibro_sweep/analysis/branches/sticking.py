@@ -54,7 +54,7 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
     if not 0 < R < 1 or not _chatters(solution) or solution.equations.free:
         return None
     phi = shrinking(R)
-    least = max(FIRST_IMPACTS, _length(solution) + 2)
+    least = FIRST_IMPACTS
     onset = value
     while _length(solution) < least:
         found = _next_graze(solution, name, value, phi)
@@ -78,7 +78,7 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
         if len(limits) >= 2:
             before, moved = moved, abs(limits[-1] - limits[-2])
             if before < 1e-8 * abs(value) and moved >= before:  # rounding: the one before was the best
-                onset, error = limits[-2], 4 * before + 16 * np.finfo(float).eps * abs(value)
+                onset, error = limits[-2], 4 * moved + 16 * np.finfo(float).eps * abs(value)
                 orbit = PeriodicOrbit(special.orbit.system.replace(**{name: onset}), "sticking")
                 none = np.empty(0, complex)
                 return SpecialPoint("sticking", {name: onset}, orbit, none, float(error), special.stop)

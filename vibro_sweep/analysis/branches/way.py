@@ -18,7 +18,7 @@ from vibro_sweep.analysis.branches.events import (
     reflection_test,
     unexplained,
 )
-from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at
+from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, is_free
 from vibro_sweep.analysis.branches.track import Rows, Track, join
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
@@ -199,14 +199,17 @@ class Way:
     def _end(self, event: Event, point: Point, error: float) -> SpecialPoint:
         if event.type != "graze":
             return self._at(event.type, point, error)
-        graze = graze_at(point.solution, self.walk.name, event.index)
+        index = event.index
+        if index is not None and is_free(point.solution):
+            index = orbit_of(None, point.solution)._canonical_frame[0] % point.solution.K
+        graze = graze_at(point.solution, self.walk.name, index)
         side = graze.touching.sides[graze.index]
         slope = abs(graze.distance_slope)
         if slope > 0:
             error += float(16 * np.finfo(float).eps * point.solution.size_of_gap / slope)
         impact = None
-        if event.index is not None:
-            side, impact = stop_and_impact(point.solution, event.index)
+        if index is not None:
+            side, impact = stop_and_impact(point.solution, index)
         return self._at(
             "graze", point, error, stop=side, kind=graze.kind, impact=impact,
             direction=1 if graze.distance_slope > 0 else -1,

@@ -186,6 +186,6 @@ def _confirmed(system, family, graze: _Graze, n: int, hit, d, side: int) -> Born
         orbit = orbit_of(system.replace(b=changed.numbers["b"]), found.reduced())
         if orbit.ok:
             break
-    first = canonical_start(sides, t if found is None else found.times, P / n)
+    first = canonical_start(sides, t if found is None else found.times, P / n, P)
     speeds = np.roll(d / (1 + R), -first)
     return Born(orbit, "above" if side > 0 else "below", speeds)

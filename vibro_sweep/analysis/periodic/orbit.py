@@ -63,7 +63,7 @@ class PeriodicOrbit:
         if not s.K:
             return 0, 0
         T = forcing_period(s.family.linear)
-        first = canonical_start(s.sides, s.times, T)
+        first = canonical_start(s.sides, s.times, T, s.equations.P)
         return first, math.floor(s.times[first] / T)
 
     @cached_property
