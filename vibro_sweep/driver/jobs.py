@@ -1,11 +1,13 @@
 """Many small jobs through an executor: in any order, a bounded number at a time, each result kept as it comes."""
 
+import os
 import signal
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from itertools import islice
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from typing import Any
 
 from vibro_sweep.driver.compute import RunError
@@ -20,16 +22,25 @@ def workers_of(workers: int | None, executor: Executor | None) -> Iterator[Execu
     if executor is not None or workers in (None, 1):
         yield executor
         return
-    pool = ProcessPoolExecutor(workers, get_context("spawn"), _deaf)
+    pool = ProcessPoolExecutor(workers, get_context("spawn"), _begin)
     try:
         yield pool
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _deaf() -> None:
-    """Ctrl-C is answered by the parent."""
+def _begin() -> None:
+    """Of a worker: Ctrl-C is answered by the parent; where the parent is killed, the worker ends as well."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """Without this a worker would wait for ever for jobs: it holds both ends of the queue itself."""
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
 
 
 def results(pool: Executor | None, function: Callable, jobs: Iterable[tuple[Any, Any]]) -> Iterator[tuple[Any, Any]]:
