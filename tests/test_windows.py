@@ -82,6 +82,26 @@ def test_a_plane_row_by_row(tmp_path):
     assert along.parameter == "omega" and along.window.shape == (2, 3, 1)
 
 
+def test_a_rest_after_one_impact_is_no_window_in_the_restitution(tmp_path):
+    """At R = 0 the mass rests at once, at any other R after infinitely many impacts: the branch in R is no motion."""
+    axes = {"R": [0.0, 0.02, 0.2, 0.4]}
+    vs.sweep(SYSTEM.replace(b=1.2), axes, transient=600, record=60, output=tmp_path / "R.h5", workers=1)
+    windows = vs.windows(tmp_path / "R.h5")
+    assert [list(REASONS)[code] for code in windows.reason.ravel()] == ["sticking", "sticking", *2 * ["in_a_window"]]
+    assert [(window.itinerary, window.orbit.sticking.size) for window in windows] == [("LLRR", 0), ("LR", 0)]
+    assert min(window.lo for window in windows) > 0.1
+
+
+def test_values_at_the_very_end_of_a_window_are_within_none(tmp_path):
+    """Without the outer spring the free motion drifts: there its window ends, and no other orbit is missed."""
+    axes = {"mu_k": [0.0, 2.0, 2.1]}
+    vs.sweep(SYSTEM.replace(b=5.2), axes, transient=800, record=60, output=tmp_path / "k.h5", workers=1)
+    windows = vs.windows(tmp_path / "k.h5")
+    (window,) = [one for one in windows if one.lo == 0]
+    assert windows.window.ravel().tolist()[1:] == [0, 0] and windows.window[0, 0] == -1
+    assert window.missed == 0 and windows.unseen == []
+
+
 def test_what_has_no_windows_is_refused(tmp_path):
     vs.sweep(
         SYSTEM, {"b": [6.9, 7.0]}, observe=["impacts"], transient=5, record=5, output=tmp_path / "no.h5", workers=1

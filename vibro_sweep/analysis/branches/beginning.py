@@ -39,6 +39,12 @@ def keeps_symmetry(family: Family, name: str) -> bool:
     return slope.low == -slope.high and slope.R_low == slope.R_high and not np.any(slope.constant)
 
 
+def changes_rests(solution: Solution, name: str) -> bool:
+    """Whether this parameter is the restitution of a stop on which the mass rests after one impact, as at R = 0."""
+    resting = np.array(solution.sides)[list(solution.rests)]
+    return bool(solution.rests) and bool(np.any(solution.family.derivative(name).restitution(resting)))
+
+
 def is_special(point: Point) -> bool:
     """Whether a test of this point is zero, to rounding or nearly so."""
     s = point.solution

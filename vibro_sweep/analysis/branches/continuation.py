@@ -9,10 +9,9 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
 import xarray as xr
 
-from vibro_sweep.analysis.branches.beginning import start_of_walk
+from vibro_sweep.analysis.branches.beginning import changes_rests, start_of_walk
 from vibro_sweep.analysis.branches.branch_points import dataset
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.sticking import sticking_onset
@@ -67,8 +66,7 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     if parameter not in names:
         raise ValueError(f"parameter: {parameter!r} is not allowed; it must be one of {', '.join(names)}")
     solution = orbit._solution
-    resting = np.array(solution.sides)[list(solution.rests)]
-    if solution.rests and np.any(family.derivative(parameter).restitution(resting)):
+    if changes_rests(solution, parameter):
         raise ValueError(
             f"parameter: {parameter!r} is not allowed: an orbit that rests after one impact does so at R = 0"
         )

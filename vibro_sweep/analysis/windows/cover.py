@@ -90,7 +90,7 @@ class Cover:
         """(values, starts) which orbits of a window's row lie at its values and went to another attractor."""
         found = self.found[w]
         row, window, (lo, hi) = self.rows[found.row], self.window[found.row], found.ends
-        inside = (lo <= row.values) & (row.values <= hi)
+        inside = (lo < row.values) & (row.values < hi)  # at an end the orbit attracts no more
         known = (window >= 0) | np.isin(self.reason[found.row], [_CODES[name] for name in ATTRACTORS])
         return inside[:, None] & known & (window != w)
 

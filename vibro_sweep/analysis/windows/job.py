@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.beginning import changes_rests
 from vibro_sweep.analysis.branches.flat import Flat, flatten, section_states
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
@@ -39,6 +40,8 @@ def window_of(job: Job) -> Result:
         return Result(None, "sticking" if orbit.status == "sticking" else "failed")
     if not orbit.stable or not lies_on(orbit, job.state):
         return Result(None, "not_settled")
+    if changes_rests(orbit._solution, job.parameter):  # at any other R the rest begins after infinitely many impacts
+        return Result(None, "sticking")
     chosen = representative(orbit, job.parameter)
     branch = stable_stretch(chosen, job.parameter, job.bounds)
     value = chosen._solution.family.numbers[job.parameter]

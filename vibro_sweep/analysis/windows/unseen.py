@@ -41,7 +41,7 @@ def unseen_in(cover: Cover) -> list[Unseen]:
 def _of_window(cover: Cover, w: int) -> list[Unseen]:
     found, values = cover.found[w], cover.rows[cover.found[w].row].values
     ends = found.ends
-    inside = np.flatnonzero((ends[0] <= values) & (values <= ends[1]))
+    inside = np.flatnonzero((ends[0] < values) & (values < ends[1]))
     if not len(inside):
         return []
     seen = (cover.window[found.row][inside] == w).any(axis=1)

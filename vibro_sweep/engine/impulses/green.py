@@ -109,7 +109,12 @@ def space_slopes(q: Linear, slope: Linear) -> Space:
 
 @by_matrices
 def free_modes(q: Linear) -> tuple[np.ndarray, np.ndarray]:
-    """Shapes of the free modes (N, count), the one that the contact sees first, and what the contact sees of each."""
+    """Shapes of the free modes (N, count), the one that the contact sees first, and what the contact sees of each.
+
+    Raises LinAlgError where a mass is not positive, which a step along a branch may try.
+    """
+    if not np.all(np.diag(q.M) > 0):
+        raise np.linalg.LinAlgError("M is not positive definite")
     scale = np.sqrt(np.diag(q.M))
     _, sizes, rows = np.linalg.svd(q.K / np.outer(scale, scale))
     shapes = (rows[sizes <= 1e-13 * max(sizes[0], q.omega**2)] / scale).T
