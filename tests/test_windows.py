@@ -6,6 +6,7 @@ from support import ROOT
 from support.windows import SYSTEM, check_end, few  # noqa: F401
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.window_families import families
 
@@ -43,6 +44,20 @@ def test_each_end_is_what_it_says(windows):
         for special, outwards in ((window.lower, -1), (window.upper, 1)):
             assert check_end(window, special, outwards) is None, (window, special)
             assert special.error < 1e-11 or special.type == "limit"
+
+
+def test_errors_of_ends_do_not_depend_on_the_last_digits_of_a_start():
+    """Rounding moves an end by less than its error; the error itself is the same, from whichever start."""
+    system = SYSTEM.replace(b=5.2)
+    orbit = vs.periodic_orbit(system, state=vs.simulate(system, (0, 0, 0, 0), 1000).section[-1], periods=29)
+    rng, values, errors = np.random.default_rng(5), [], []
+    for _ in range(6):
+        start = orbit.state * (1 + 1e-9 * rng.standard_normal(4))
+        found = window_of(Job(system, start, 29, "b", (4.2, 6.2))).flat
+        values.append(found["special_value"])
+        errors.append(found["special_error"])
+    assert (np.ptp(values, axis=0) < np.max(errors, axis=0)).all()
+    assert (np.ptp(errors, axis=0) < 1e-3 * np.max(errors, axis=0)).all()
 
 
 def test_free_motion(windows):

@@ -122,17 +122,18 @@ def _beyond(limit: float, side: int, inside: Point):
 def locate(walk: Walk, event: Event, a: Point, b: Point, length: float):
     """(event, distance from a, point, error): where the test vanishes between a and b; None if it cannot be found.
 
-    Located twice, on planes across the tangent at a and across the one at b; what the two differ by, and what
-    rounding of the gap does to the parameter, is the error.
+    Located twice, on planes across the tangent at a and across the one at b. The error is what rounding of the gap does
+    to the parameter, and what the two differ by beyond that.
     """
     there = _root(walk, event, a, b, length)
     if there is None:
         return None
     distance, point = there
     back = _root(walk, event, b, a, (a.x - b.x) @ b.tangent)
-    error = abs(back[1].p - point.p) if back is not None else math.nan
     rounding = 16 * np.finfo(float).eps * (abs(point.p) + point.sensitivity)
-    return event, distance, point, float(4 * error + rounding)
+    apart = abs(back[1].p - point.p) if back is not None else math.nan
+    error = rounding if apart <= rounding else rounding + 4 * (apart - rounding)
+    return event, distance, point, float(error)
 
 
 def _root(walk: Walk, event: Event, a: Point, b: Point, length: float):
