@@ -14,6 +14,7 @@ COLOURS = {
     "pitchfork": "#b2182b",
     "neimark_sacker": "#1a1a5e",
     "graze": FAINT,
+    "sticking": "#9600fa",
 }
 LABELS = {"neimark_sacker": "Neimark-Sacker"}
 APART = (0.045, 0.03)  # of the axes: room for a name
@@ -35,6 +36,7 @@ SHORT = {  # beside the points; the labels of MatCont where it has one
     "neimark_sacker_graze": "NSGR",
     "resonant_graze": "RG",
     "double_graze": "GRGR",
+    "sticking_graze": "STGR",
 }
 
 

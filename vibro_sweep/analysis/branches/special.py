@@ -1,12 +1,25 @@
 """Special points of a branch: what they are, and what happens at a graze."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from vibro_sweep.analysis.periodic.impulse_equations import Equations
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+
+
+@dataclass(frozen=True, eq=False)
+class Chatter:
+    """The orbit at an onset of sticking: what infinitely many impacts leave out.
+
+    solution : impacts from the end of the chatter sequence, as one without impulse, to the last written out before the
+        same end, one period (sigma = -1: half a period, mirrored) later
+    state : (2N,) at that end, in contact coordinates
+    """
+
+    solution: Solution
+    state: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +50,7 @@ class SpecialPoint:
     impact: int | None = None
     direction: int | None = None
     criticality: str | None = None
+    _chatter: Chatter | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True)
@@ -106,6 +120,14 @@ def inserted(solution: Solution) -> tuple[Solution, int]:
     if K == 0 and solution.family.linear.symmetric is False and solution.equations.free:
         u = np.append(u, 0.0)
     return _with(solution, sides, u, rests + (rests >= index)), index
+
+
+def bare(solution: Solution, index: int) -> Solution:
+    """The same motion as an orbit without the impact that has no speed."""
+    K = solution.K
+    sides = solution.sides[:index] + solution.sides[index + 1 :]
+    u = np.delete(solution.u, [index, K + index])
+    return Solution(solution.family, solution.sigma, solution.halves, sides, u, solution.change)
 
 
 def _with(solution: Solution, sides, u, rests) -> Solution:

@@ -15,14 +15,12 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at
+from vibro_sweep.analysis.branches.precise import precise
+from vibro_sweep.analysis.branches.special import Chatter, SpecialPoint, graze_at
 from vibro_sweep.analysis.periodic.impulse_equations import Equations
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.green import cells_needed, space
-from vibro_sweep.engine.impulses.tables import ORDER, REAL, exponential, nodes, power, solve_refined, taylor_rows
 from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.linear import Linear, forcing_period
 
 SHORTEST_CHATTER = 7  # impacts on one stop, the one that appears among them
 FIRST_IMPACTS = 24  # of the sequence, from which on it is closed by its own shape
@@ -81,7 +79,10 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
                 onset, error = limits[-2], 4 * moved + 16 * np.finfo(float).eps * abs(value)
                 orbit = PeriodicOrbit(special.orbit.system.replace(**{name: onset}), "sticking")
                 none = np.empty(0, complex)
-                return SpecialPoint("sticking", {name: onset}, orbit, none, float(error), special.stop)
+                chatter = _chatter(solution, phi)
+                return SpecialPoint(
+                    "sticking", {name: onset}, orbit, none, float(error), special.stop, _chatter=chatter
+                )
         solution = _longer(solution, phi, GROWTH)
     return None
 
@@ -154,17 +155,8 @@ def _next_graze(solution: Solution, name: str, value: float, phi: float):
 
 def _closed(solution: Solution, name: str, value: float, phi: float):
     """(solution, parameter) where the sequence goes on for ever in its own shape."""
-    K, sides = solution.K, (*solution.sides, solution.sides[-1], solution.sides[-1])
-    rest = phi / (1 - phi)  # of the sequence's time, in units of the last flight
-    centre = rest * (1 - phi * (1 - phi**2) / (1 - phi**3))
-    weight = phi**2 / (1 - phi**2)  # of its impulses, in units of the last
-
-    def with_rest(u):
-        """The impacts written out, the sum of the rest, and a probe of the acceleration at the end."""
-        t, D = u[:K], u[K : 2 * K]
-        flight = t[-1] - t[-2]
-        times = np.append(t, [t[-1] + centre * flight, t[-1] + rest * flight])
-        return np.concatenate([times, D, [weight * D[-1], 0.0], u[2 * K :]])
+    K, sides = solution.K, _with_rest(solution.sides)
+    centre, rest, weight = _rest(phi)
 
     def reduced(matrix):
         """Columns of all impacts as columns of those written out: chain rule."""
@@ -178,7 +170,7 @@ def _closed(solution: Solution, name: str, value: float, phi: float):
 
     def system(u, value):
         e = _equations(solution, name, value)
-        full = with_rest(u)
+        full = _and_rest(u, K, phi)
         F, J, Fp, motion = e.evaluate(sides, full)
         F[: 2 * K + 4], acceleration = precise(e, sides, full)
         n, h = K + 2, 1e-6 * max(abs(value), 1e-3)
@@ -195,45 +187,31 @@ def _closed(solution: Solution, name: str, value: float, phi: float):
     return found and (_at(solution, name, found[1], solution.sides, found[0]), found[1])
 
 
-def extended_table(q: Linear, sigma: int, halves: int) -> np.ndarray:
-    """The Taylor coefficients of gamma_sigma, as green.py builds them, in extended precision."""
-    s, cells = space(q), cells_needed(q) * halves
-    E = exponential(s.A.astype(REAL), REAL(forcing_period(q) / 2 * halves) / cells)
-    matrix = np.eye(len(s.e_g), dtype=REAL) - REAL(sigma) * power(E, cells)
-    start = solve_refined(matrix, s.e_v.astype(REAL))
-    return nodes(E, start, cells) @ taylor_rows(s.A.astype(REAL), s.e_g.astype(REAL)).T
+def _rest(phi: float) -> tuple[float, float, float]:
+    """Of what follows the last impact: centre and length in units of the last flight, sum in units of its impulse."""
+    rest = phi / (1 - phi)
+    return rest * (1 - phi * (1 - phi**2) / (1 - phi**3)), rest, phi**2 / (1 - phi**2)
 
 
-def precise(e: Equations, sides, u) -> tuple[np.ndarray, float]:
-    """The residual (2K,) of the equations, and g'' before the last impact, summed in extended precision.
+def _with_rest(sides) -> tuple[int, ...]:
+    return (*sides, sides[-1], sides[-1])
 
-    In double precision the times at the end of a sequence, where speeds are small, would be known to rounding over
-    speed only, and the onset to 1e-11.
-    """
-    K = len(sides)
-    t, D = u[:K].astype(REAL), u[K : 2 * K].astype(REAL)
-    table = extended_table(e.q, e.sigma, e.halves)
-    width = REAL(e.P) / len(table)
-    delay = t[:, None] - t
-    before = np.arange(K)[:, None] < np.arange(K)
-    s = delay + np.where(before, width * len(table), REAL(0))
-    cell = np.clip((s / width).astype(int), 0, len(table) - 1)
-    at, c = s - cell * width, table[cell]
-    sums = []
-    for order in range(3):
-        value = np.zeros_like(at)
-        for n in range(ORDER, order - 1, -1):
-            value = value * at + math.perm(n, order) * c[..., n]
-        value = value - np.diag(np.full(K, REAL(e.train.jumps[order])))
-        sums.append((value * np.where(before, REAL(e.sigma), REAL(1))) @ D)
-    q, angle = e.steady, REAL(e.steady.omega) * t
-    cos, sin = np.cos(angle), np.sin(angle)
-    sums[0] += q.mean + q.real * cos - q.imag * sin
-    sums[1] -= q.omega * (q.real * sin + q.imag * cos)
-    sums[2] -= REAL(q.omega) ** 2 * (q.real * cos - q.imag * sin)
-    contacts = e.contacts(sides)
-    F = np.concatenate([sums[0] - contacts[:, 0], D + contacts[:, 1] * sums[1]])
-    return F.astype(float), float(sums[2][-1])
+
+def _and_rest(u, K: int, phi: float) -> np.ndarray:
+    """The K impacts written out, the sum of the rest, and a probe of the acceleration at the end."""
+    centre, rest, weight = _rest(phi)
+    t, D = u[:K], u[K : 2 * K]
+    times = t[-1] + np.array([centre, rest]) * (t[-1] - t[-2])
+    return np.concatenate([t, times, D, [weight * D[-1], 0.0], u[2 * K :]])
+
+
+def _chatter(s: Solution, phi: float) -> Chatter:
+    """Of a sequence that is closed by its own shape."""
+    all_of_it = Solution(s.family, s.sigma, s.halves, _with_rest(s.sides), _and_rest(s.u, s.K, phi))
+    end, sides = all_of_it.times[-1] - s.equations.P, (s.sigma * s.sides[-1], *s.sides)
+    u = np.concatenate([[end], s.times, [0.0], s.jumps])
+    state = s.sigma * all_of_it.states[-1][: 2 * len(s.family.linear.along)]
+    return Chatter(Solution(s.family, s.sigma, s.halves, sides, u), state)
 
 
 def _acceleration_slopes(e: Equations, u, n: int, jerk: float) -> np.ndarray:

@@ -11,10 +11,12 @@ from functools import cached_property
 import xarray as xr
 
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.curves.chatter import written_out
 from vibro_sweep.analysis.curves.curve_points import dataset
 from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint, Rows, Way, join
+from vibro_sweep.engine.impulses.locus import Place
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.linear import family_of
 
@@ -23,7 +25,8 @@ from vibro_sweep.model.linear import family_of
 class BifurcationCurve:
     """A bifurcation curve, from the end that is reached towards a smaller first parameter to the other one.
 
-    type : fold, flip, pitchfork, neimark_sacker or graze; a pitchfork is a fold where a parameter breaks the symmetry
+    type : fold, flip, pitchfork, neimark_sacker, graze or sticking; a pitchfork is a fold where a parameter breaks the
+        symmetry
     parameters : names of both
     special : its points of codimension two in order, `begins` and `ends` among them
     closed : whether it comes back to itself; then both ends are the point it started from, of type "closed"
@@ -65,7 +68,7 @@ class BifurcationCurve:
 def bifurcation_curve(special: SpecialPoint, parameters: tuple[str, str], box, progress=None) -> BifurcationCurve:
     """Follow a bifurcation both ways in two parameters, numbers of its system.
 
-    special : a fold, flip, pitchfork, neimark_sacker or graze of a branch or of another curve
+    special : a fold, flip, pitchfork, neimark_sacker, graze or sticking onset of a branch or of another curve
     box : ((lo, hi), (lo, hi)) of both parameters, around the point
     progress(points, (p, q)) is called now and then.
 
@@ -90,7 +93,7 @@ def bifurcation_curve(special: SpecialPoint, parameters: tuple[str, str], box, p
             raise ValueError(f"box: {ends!r} of {name} is not allowed; it must be (lo, hi), lo < hi, around {value!r}")
     start = start_at(special, names)
     tracer = Tracer(start, names, limits)
-    first = tracer.first()
+    tracer, first = _first(tracer)
     if first is None:
         raise ValueError(f"special: this {special.type} cannot be followed; it may belong to several curves at once")
     if len(special.parameters) > 1 or special.type != start.type:  # perhaps of codimension two: begin beside it
@@ -107,3 +110,12 @@ def bifurcation_curve(special: SpecialPoint, parameters: tuple[str, str], box, p
     backwards = Rows(*(values[:0:-1] for values in down.points))
     rows = join([backwards, up.points])
     return BifurcationCurve(start.type, names, ends, down.special[-1], up.special[-1], False, tracer, rows)
+
+
+def _first(tracer: Tracer) -> tuple[Tracer, Place | None]:
+    """The first point, if there is one; of an onset of sticking with as many impacts as are needed."""
+    if tracer.start.state is None:
+        return tracer, tracer.first()
+    guess = tracer.guess()
+    found = guess and written_out(tracer, guess)
+    return (found[0], found[0].settle(found[1])) if found else (tracer, None)

@@ -7,7 +7,7 @@ from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import Rows
 from vibro_sweep.analysis.periodic.impulse_equations import multipliers_of
 from vibro_sweep.engine.impulses.curve_tests import TOUCHING
-from vibro_sweep.engine.impulses.locus import GRAZE
+from vibro_sweep.engine.impulses.locus import GRAZE, STICK
 from vibro_sweep.model.linear import forcing_period
 
 
@@ -16,21 +16,27 @@ def dataset(tracer: Tracer, rows: Rows) -> xr.Dataset:
     graze of the orbit without the grazing impact; `virtual`, whether the orbit is no motion: an impulse pulls or a
     flight passes a stop; `margin`, the least distance of its other turning points from their stop; `residual`;
     `impact_t`, `impact_side` and `impact_v` (impact): of the half orbit where it is symmetric, times not wrapped.
+
+    At an onset of sticking there are no multipliers (NaN). The impacts are the end of the chatter, with no speed, and
+    those before the next end that are written out (NaN: fewer than elsewhere on the curve).
     """
-    s, kind, names = tracer.start.solution, tracer.curve.kind, tracer.names
-    sides = np.array(s.sides, int)
-    others = np.delete(np.arange(tracer.K), tracer.curve.index) if kind == GRAZE else np.arange(tracer.K)
+    s, kind, names, K = tracer.start.solution, tracer.curve.kind, tracer.names, rows.t.shape[1]
+    sides = tracer.resized(K).curve.sides.astype(int)
+    others = np.delete(np.arange(K), tracer.curve.index) if kind >= GRAZE else np.arange(K)
     multipliers, shifts = [], []
     for p, t, D, motion in zip(rows.p, rows.t, rows.D, rows.motion, strict=True):
         q = tracer.oscillators.at(p).linear
         contacts = np.column_stack([q.stop(sides), 1 + q.restitution(sides)])[others]
         P, u = forcing_period(q) / 2 * s.halves, np.concatenate([t[others], D[others]])
-        multipliers.append(multipliers_of(q, s.sigma, P, contacts, u, motion[others]))
         shifts.append((tracer.oscillators.tau - q.tau) / q.omega)
+        if kind == STICK:
+            multipliers.append(np.full(2 * len(q.along), np.nan, complex))
+            continue
+        multipliers.append(multipliers_of(q, s.sigma, P, contacts, u, motion[others]))
     values = np.array(multipliers) ** (1 if s.sigma == 1 else 2)
     order = np.lexsort((-values.imag, -np.abs(values)), axis=-1)
     values = np.take_along_axis(values, order, axis=-1)
-    pushes = np.all(-sides[others] * rows.D[:, others] > 0, axis=1)
+    pushes = ~np.any(-sides[others] * rows.D[:, others] <= 0, axis=1)  # NaN: not written out
     variables = {
         names[0]: ("point", rows.p[:, 0]),
         names[1]: ("point", rows.p[:, 1]),

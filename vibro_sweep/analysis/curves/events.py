@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.curves.tracer import Tracer
-from vibro_sweep.engine.impulses import curve_tests, locus
+from vibro_sweep.engine.impulses import curve_tests
 from vibro_sweep.engine.impulses.curve_tests import RESIDUAL
-from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, THETA, TORUS, Place
+from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, STICK, THETA, TORUS, Place
 
 # what a test is zero at, on each kind of curve
 NAMES = {
@@ -31,8 +31,14 @@ NAMES = {
     (GRAZE, curve_tests.BARE_MINUS): "flip_graze",
     (GRAZE, curve_tests.PAIR): "neimark_sacker_graze",
 }
-VANISHES = {FOLD: "resonant_graze", FLIP: "resonant_graze", TORUS: "neimark_sacker_graze", GRAZE: "double_graze"}
-TOUCHES = {FOLD: "fold_graze", FLIP: "flip_graze", TORUS: "neimark_sacker_graze", GRAZE: "double_graze"}
+VANISHES = {
+    FOLD: "resonant_graze",
+    FLIP: "resonant_graze",
+    TORUS: "neimark_sacker_graze",
+    GRAZE: "double_graze",
+    STICK: "sticking_graze",
+}
+TOUCHES = VANISHES | {FOLD: "fold_graze", FLIP: "flip_graze"}
 ANGLES = {"resonance_1_3": 2 * math.pi / 3, "resonance_1_4": math.pi / 2}
 ROUNDING = 1e-10  # of the box: points nearer to each other are one
 PIECE = 0.02  # of the distance between two events
@@ -66,7 +72,7 @@ def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
             name = NAMES[kind, i]
             events.append(Event(name, lambda place, i=i, size=size: place.tests[i] / size, test=i))
     for i in range(tracer.K):
-        if a.D[i] * b.D[i] < 0 and not (kind == GRAZE and i == tracer.curve.index):
+        if a.D[i] * b.D[i] < 0 and not (kind >= GRAZE and i == tracer.curve.index):
             events.append(Event(VANISHES[kind], lambda place, i=i: place.D[i] / speed, impact=i))
     least, most = sorted(place.tests[curve_tests.MARGIN] / tracer.size_of_gap for place in (a, b))
     if least < -curve_tests.TOUCHING and most > curve_tests.TOUCHING:
@@ -165,7 +171,7 @@ def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
 def is_real(tracer: Tracer, place: Place) -> bool:
     """Whether all impulses but the grazing one push, and every flight stays inside."""
     pushes = -tracer.curve.sides * place.D
-    if tracer.curve.kind == locus.GRAZE:
+    if tracer.curve.kind >= GRAZE:
         pushes = np.delete(pushes, tracer.curve.index)
     return bool(np.all(pushes > 0) and place.tests[curve_tests.MARGIN] > -curve_tests.TOUCHING * tracer.size_of_gap)
 

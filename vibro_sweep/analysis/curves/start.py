@@ -16,17 +16,19 @@ KINDS = {
     "pitchfork": locus.FLIP,
     "neimark_sacker": locus.TORUS,
     "graze": locus.GRAZE,
+    "sticking": locus.STICK,
 }
 
 
 @dataclass(frozen=True)
 class Start:
-    """The orbit at a bifurcation; index: of the impact that grazes."""
+    """The orbit at a bifurcation; index: of the impact that grazes; state: of an onset of sticking (`Chatter`)."""
 
     type: str
     solution: Solution
     index: int = 0
     theta: float = 0.0
+    state: np.ndarray | None = None
 
     @property
     def kind(self) -> int:
@@ -42,6 +44,11 @@ def start_at(special: SpecialPoint, names: tuple[str, ...] = ()) -> Start:
     start = _start(special)
     if start.solution.sigma == 1 or all(keeps_symmetry(start.solution.family, name) for name in names):
         return start
+    if start.type == "sticking":
+        raise ValueError(
+            f"parameters: {names!r} is not allowed: where the symmetry is broken, both chatter sequences of this "
+            "orbit have an onset of their own"
+        )
     return Start("fold" if start.type == "pitchfork" else start.type, start.solution.whole(), start.index, start.theta)
 
 
@@ -49,6 +56,10 @@ def _start(special: SpecialPoint) -> Start:
     if special.type not in KINDS:
         allowed = ", ".join(KINDS)
         raise ValueError(f"special.type: {special.type!r} is not allowed; it must be one of {allowed}")
+    if special.type == "sticking":
+        if special._chatter is None:
+            raise ValueError("special: this sticking is not the onset at which impacts accumulate; it has no curve")
+        return Start("sticking", special._chatter.solution, 0, 0.0, special._chatter.state)
     solution = special.orbit._solution
     if solution.rests:
         raise ValueError("special: the mass rests on a stop; curves of such orbits cannot be followed")

@@ -6,12 +6,12 @@ from typing import overload
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.special import SpecialPoint, inserted
+from vibro_sweep.analysis.branches.special import Chatter, SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.switching import switch as switch_branches
 from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.curves.tracer import Tracer
-from vibro_sweep.analysis.curves.way import CurvePoint, bare
+from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import locus
@@ -38,7 +38,7 @@ def switch(special):
     Of a branch: the orbits just beyond a pitchfork (two mirror images), a flip (the doubled one) or a graze (with, or
     without, the impact that has no speed there; at the graze of the free motion those that hit one stop or both).
     Orbits that pass a stop are left out. Of a curve, at a point of codimension two: fold, flip (pitchfork),
-    Neimark-Sacker and graze curves through it, as special points from which `bifurcation_curve` can start.
+    Neimark-Sacker, graze and sticking curves through it, as special points from which `bifurcation_curve` can start.
 
     Raises ValueError for a special point of another type.
     """
@@ -56,6 +56,8 @@ def switch(special):
 
 def _starts(special: CurvePoint) -> list[Start]:
     """Each bifurcation of each orbit that has this motion: with and without the impacts that have no speed."""
+    if special._chatter is not None:
+        return _sticking(special._chatter)
     whole = special.orbit._solution
     if special.touches:
         whole = inserted(whole)[0]
@@ -72,6 +74,14 @@ def _starts(special: CurvePoint) -> list[Start]:
             if solution.K:
                 starts += _smooth(solution, bool(kept))
     return starts
+
+
+def _sticking(chatter: Chatter) -> list[Start]:
+    """The onset of the orbits with and without the impact that has no speed."""
+    s = chatter.solution
+    slow = np.abs(s.jumps) < SLOW * s.family.linear.omega * s.size_of_gap
+    (k,) = np.flatnonzero(slow[1:]) + 1  # the first is the end of the chatter
+    return [Start("sticking", solution, state=chatter.state) for solution in (s, bare(s, int(k)))]
 
 
 def _smooth(solution: Solution, grazes: bool) -> list[Start]:
@@ -102,6 +112,10 @@ def is_singular(solution: Solution, mu: int) -> bool:
 
 def _special(special: CurvePoint, start: Start) -> SpecialPoint:
     s = start.solution
+    if start.state is not None:
+        chatter, none = Chatter(s, start.state), np.empty(0, complex)
+        orbit = special.orbit
+        return SpecialPoint("sticking", special.parameters, orbit, none, special.error, special.stop, _chatter=chatter)
     orbit = orbit_of(special.orbit.system, s)
     if start.type != "graze":
         slow = np.abs(s.motion[:, 0]).min() < SLOW * s.family.linear.omega * s.size_of_gap

@@ -1,6 +1,7 @@
 """Points of a bifurcation curve with the exact oscillator: the first one, corrections, zeros of tests."""
 
 from collections.abc import Callable
+from copy import copy as copy_object
 
 import numpy as np
 from scipy.optimize import brentq
@@ -35,24 +36,34 @@ class Tracer:
         s = start.solution
         q = s.family.linear
         self.oscillators = Oscillators(s.family, names, s.halves, float(q.tau))
-        K, n = s.K, 2 * len(q.along)
-        self.K, self.n, self.S = K, n, 2 * K + n
-        speed = q.omega * s.size_of_gap
+        self.n, self.size_of_gap = 2 * len(q.along), s.size_of_gap
+        self._take_sides(s.sides)
+        middle, reach = self.box.mean(axis=1), np.ptp(self.box, axis=1) / 2
+        self.planes = self._around(middle, reach)
+
+    def _take_sides(self, which: tuple[int, ...]) -> None:
+        """Of the impacts."""
+        start, s = self.start, self.start.solution
+        q, K, n = s.family.linear, len(which), self.n
+        self.K, self.S = K, 2 * K + n
+        speed = q.omega * self.size_of_gap
         states = np.repeat([speed / q.omega, speed], n // 2)
         unit = np.concatenate([np.full(K, 1 / q.omega), np.full(K, speed), states, np.ptp(self.box, axis=1), [1.0]])
         row_unit = np.concatenate([np.full(K, speed / q.omega), np.full(K, speed), states])
-        sides = np.array(s.sides, float)
-        half, whole = K // 2, s.sigma == 1 and K > 0 and K % 2 == 0
-        repeats = whole and s.halves % 4 == 0 and s.sides[:half] == s.sides[half:]
-        symmetric = q.symmetric and all(keeps_symmetry(s.family, name) for name in names)
-        mirrors = (
-            whole and symmetric and s.halves % 4 == 2 and s.sides[:half] == tuple(-side for side in s.sides[half:])
-        )
+        sides = np.array(which, float)
+        half, whole = K // 2, s.sigma == 1 and K > 0 and K % 2 == 0 and start.kind != locus.STICK
+        repeats = whole and s.halves % 4 == 0 and which[:half] == which[half:]
+        symmetric = q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
+        mirrors = whole and symmetric and s.halves % 4 == 2 and which[:half] == tuple(-side for side in which[half:])
         self.curve = Curve(start.kind, start.index, sides, float(s.sigma), unit, row_unit, repeats, mirrors)
-        self.size_of_gap, self._bench = s.size_of_gap, locus.new_bench(K, n)
+        self._bench = locus.new_bench(K, n)
         self.path = curve.new_path(AT_ONCE, K, n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
-        middle, reach = self.box.mean(axis=1), np.ptp(self.box, axis=1) / 2
-        self.planes = self._around(middle, reach)
+
+    def resized(self, K: int) -> "Tracer":
+        """For the same curve with K impacts: without the last, or with more on the same stop."""
+        other, sides = copy_object(self), tuple(map(int, self.curve.sides))
+        other._take_sides(sides[:K] + sides[-1:] * (K - len(sides)))
+        return other
 
     @property
     def size(self) -> int:
@@ -93,8 +104,25 @@ class Tracer:
         self._do(curve.ASSEMBLE, place)
         return self._bench.room.motion.copy()
 
+    def tail(self, place: Place) -> np.ndarray:
+        """`numbers` of what follows the last impact written out, of an onset of sticking."""
+        self.go_to(place)
+        self._do(curve.ASSEMBLE, place)
+        return self._bench.tail.numbers.copy()
+
+    def nearest(self, place: Place) -> tuple[float, int]:
+        """Time and side of the turning point nearest to its stop."""
+        self.go_to(place)
+        self._do(curve.EXAMINE, place)
+        return float(self._bench.nearest[1]), int(self._bench.nearest[2])
+
     def first(self, row: np.ndarray | None = None) -> Place | None:
         """The point of the curve at `start`, or near it on the plane across `row`; None where it is not isolated."""
+        place = self.guess()
+        return place and self.settle(place, row)
+
+    def guess(self) -> Place | None:
+        """`start`, as it is; None where the oscillator has no forced motion."""
         s, place = self.start.solution, locus.new_place(self.K, self.n)
         place.t[:], place.D[:] = s.times, s.jumps
         place.p[:2] = [s.family.numbers[name] for name in self.names]
@@ -103,8 +131,15 @@ class Tracer:
             return None
         f = self.planes[0]
         phase = s.family.linear.omega * place.t[0] + f["tau"]
-        place.h[:] = s.states[0, : self.n] - (f["Z"] * np.exp(1j * phase)).real
-        if self.curve.kind != locus.GRAZE:
+        state = s.states[0, : self.n] if self.start.state is None else self.start.state
+        place.h[:] = state - (f["Z"] * np.exp(1j * phase)).real
+        return place
+
+    def settle(self, place: Place, row: np.ndarray | None = None) -> Place | None:
+        """The point of the curve near a guess without a tangent."""
+        if not self.go_to(place):
+            return None
+        if self.curve.kind < locus.GRAZE:
             self._take_null_vectors(place)
         if not self._do(curve.ASSEMBLE, place):
             return None
@@ -222,9 +257,10 @@ class Tracer:
         """The orbit of a point; its times are those of the oscillator with its own phase."""
         s, family = self.start.solution, self.family(place)
         q = family.linear
+        sides = tuple(map(int, self.curve.sides))
         t = place.t + (self.oscillators.tau - q.tau) / q.omega
         t -= forcing_period(q) * np.round((t[0] - s.times[0]) / forcing_period(q)) if self.K else 0.0
-        found = Solution(family, s.sigma, s.halves, s.sides, np.concatenate([t, place.D]), float(place.tests[RESIDUAL]))
+        found = Solution(family, s.sigma, s.halves, sides, np.concatenate([t, place.D]), float(place.tests[RESIDUAL]))
         e = equations_for(found, q)
         if e.free:
             u = np.append(found.u, 0.0)

@@ -7,15 +7,15 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches.births import doubled
-from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.curves.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.curves.ends import birth, strong_resonance
 from vibro_sweep.analysis.curves.events import Event, Found, found_between, is_real, without_echoes
 from vibro_sweep.analysis.curves.tracer import Tracer, copied, copy
-from vibro_sweep.analysis.periodic.orbit import orbit_of
-from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.impulses import curve, curve_tests, locus
-from vibro_sweep.engine.impulses.locus import GRAZE, Place
+from vibro_sweep.engine.impulses.locus import GRAZE, STICK, Place
 
 FIRST_STEP = 1e-3
 MOST_POINTS = 50_000
@@ -50,7 +50,16 @@ class Rows(NamedTuple):
 
 
 def join(parts: list[Rows]) -> Rows:
-    return Rows(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+    """One after the other; NaN where a part has fewer impacts than another."""
+    K = max(part.t.shape[1] for part in parts)
+
+    def filled(values):
+        missing = [(0, 0)] * values.ndim
+        missing[1] = (0, K - values.shape[1])
+        return np.pad(values, missing, constant_values=np.nan)
+
+    full = [part._replace(t=filled(part.t), D=filled(part.D), motion=filled(part.motion)) for part in parts]
+    return Rows(*(np.concatenate(values) for values in zip(*full, strict=True)))
 
 
 class Way:
@@ -86,6 +95,11 @@ class Way:
                 self.progress(passed, tuple(map(float, a.p[:2])))
             if reason == curve.FAR:
                 w.recentre(a)
+            elif reason == curve.CHATTER:
+                if not self._write_out(a):
+                    break
+                w, path = self.tracer, self.tracer.path
+                a, b = path.a, locus.new_place(w.K, w.n)
             elif reason == curve.CLOSED:
                 self.closed = True
                 self.special.append(self._at("closed", self.first, np.nan))
@@ -106,6 +120,20 @@ class Way:
             elif reason == curve.FAILED:
                 break
         self.special.append(self._at("failed", a, np.nan))
+
+    def _write_out(self, a: Place) -> bool:
+        """Go on with as many impacts of the chatter sequence as are needed at a."""
+        found = written_out(self.tracer, a)
+        if found is None:
+            return False
+        w, place = found
+        place = w.correct(place, w.row_of(place.tangent))
+        if place is None:
+            return False
+        copy(with_impacts(self.tracer, self.tracer.path.first, w.K)[1], w.path.first)
+        copy(place, w.path.a)
+        self.tracer = w
+        return True
 
     def _keep(self, record: curve.Record, count: int) -> None:
         r = record
@@ -194,6 +222,12 @@ class Way:
         w = tracer or self.tracer
         solution = w.solution(place)
         parameters = dict(zip(w.names, map(float, place.p[:2]), strict=True))
+        if w.curve.kind == STICK:
+            orbit, stop = PeriodicOrbit(self.system.replace(**parameters), "sticking"), w.start.solution.sides[-1]
+            return CurvePoint(
+                of_type, parameters, orbit, np.empty(0, complex), error, stop=stop, curve=w.start.type,
+                _chatter=chatter_at(w, place, event is not None and event.touches),
+            )  # fmt: skip
         orbit = orbit_of(self.system.replace(**parameters), solution)
         grazes = w.curve.kind == GRAZE
         index = w.curve.index if grazes else event.impact if event is not None else None
@@ -208,11 +242,3 @@ class Way:
 def passable(tracer: Tracer, place: Place) -> bool:
     """False where a Neimark-Sacker curve has passed the end that was not found."""
     return tracer.curve.kind != locus.TORUS or 0 < place.p[locus.THETA] < math.pi
-
-
-def bare(solution: Solution, index: int) -> Solution:
-    """The same motion as an orbit without the impact that has no speed."""
-    K = solution.K
-    sides = solution.sides[:index] + solution.sides[index + 1 :]
-    u = np.delete(solution.u, [index, K + index])
-    return Solution(solution.family, solution.sigma, solution.halves, sides, u, solution.change)

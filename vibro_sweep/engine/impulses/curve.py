@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.curve_tests import LENGTH, RESIDUAL, examine, happens
+from vibro_sweep.engine.impulses.curve_tests import BEFORE, LAST, LENGTH, RESIDUAL, examine, happens
 from vibro_sweep.engine.impulses.locus import (
     FIRST,
     SECOND,
+    STICK,
     TESTS,
     THETA,
     TORUS,
@@ -27,13 +28,15 @@ from vibro_sweep.engine.impulses.locus import (
 from vibro_sweep.engine.impulses.plane import fit_at, move_to, spread
 from vibro_sweep.engine.simd.jit import entry, jit
 
-FULL, EVENT, CLOSED, FAILED, FAR, LEFT, STRONG = range(7)
-# why a call ends; FAR: beyond the reach of the plane, LEFT: out of the box, STRONG: near the resonance 1:1 or 1:2
+FULL, EVENT, CLOSED, FAILED, FAR, LEFT, STRONG, CHATTER = range(8)
+# why a call ends; FAR: beyond the reach of the plane, LEFT: out of the box, STRONG: near the resonance 1:1 or 1:2,
+# CHATTER: more or fewer impacts of a chatter sequence are to be written out
 MOST_CORRECTIONS = 6
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
 BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
 EARLY = 10  # points before which a curve is not yet taken to be closed
 NEAR_STRONG = 0.05  # theta from 0 or pi
+LATEST, EARLIEST = 0.9, 0.4  # values of LAST and BEFORE at which another number of impacts is to be written out
 
 
 class Record(NamedTuple):
@@ -207,6 +210,9 @@ def walk(f, c, path, place, row, b):
             if not abs(a.p[j] - f.centre[j]) <= f.reach[j]:
                 a.tests[LENGTH] = length
                 return FAR
+        if c.kind == STICK and (a.tests[LAST] > LATEST or a.tests[BEFORE] < EARLIEST):
+            a.tests[LENGTH] = length
+            return CHATTER
         copy_place(a, place)
         take_row(c, a, row)
         move(c, place, a.tangent, length, b.room.rate)

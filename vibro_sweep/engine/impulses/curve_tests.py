@@ -5,10 +5,11 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.impulses.chatter import NEXT, REACH
 from vibro_sweep.engine.impulses.extremes import extremes_of_cell
 from vibro_sweep.engine.impulses.factors import factorise, square, substitute
 from vibro_sweep.engine.impulses.flights import OVERLAP
-from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, THETA, TORUS
+from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, STICK, THETA, TORUS
 from vibro_sweep.engine.impulses.normal_form import coefficient
 from vibro_sweep.engine.impulses.plane import HIGH, LOW, OMEGA, polynomial
 from vibro_sweep.engine.impulses.tables import ORDER
@@ -16,7 +17,9 @@ from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
 # of `Place.tests`; those that do not belong to a kind of curve are 1
-PLUS, MINUS, DOUBLE, CUSP, PAIR, BARE_PLUS, BARE_MINUS, NORMAL, MARGIN, LENGTH, RESIDUAL = range(11)
+PLUS, MINUS, DOUBLE, CUSP, PAIR, BARE_PLUS, BARE_MINUS, NORMAL, MARGIN, LENGTH, RESIDUAL, LAST, BEFORE = range(13)
+# LAST, BEFORE: time from the last impact written out, and from the one before, to the end of the chatter, in units of
+# the reach of its series
 SIGNED = 8  # so many of them are zero at points of codimension two
 TOUCHING = 1e-12  # margin, in parts of the size of the gap, that counts as zero
 ASIDE = 1e-3  # of 1/omega beside a graze in which its own turning point lies
@@ -117,7 +120,7 @@ def certify(f, c, place, b):
         for r in range(n):
             h[r] = b.room.h[i, r]
         h[N] += place.D[i]
-        if c.kind == GRAZE:
+        if c.kind >= GRAZE:
             if i == c.index:
                 polynomial(n, f.series, aside, b.room.other[0])
                 for r in range(n):
@@ -128,7 +131,7 @@ def certify(f, c, place, b):
                     h[r] = after[r]
                 begin += aside
             if (i + 1) % K == c.index:
-                end -= aside
+                end -= b.tail.numbers[NEXT] if c.kind == STICK else aside
         length = end - begin
         e, turn = cmath.exp(1j * (omega * begin + f.tau)), cmath.exp(1j * omega * f.width)
         cells = int(length / f.width)
@@ -161,6 +164,11 @@ def examine(f, c, place, b):
     tests = place.tests
     for i in range(SIGNED):
         tests[i] = 1.0
+    tests[MARGIN] = certify(f, c, place, b)
+    if c.kind == STICK:
+        end, reach = place.t[0] + f.P, b.tail.numbers[REACH]
+        tests[LAST], tests[BEFORE] = (end - place.t[K - 1]) / reach, (end - place.t[K - 2]) / reach
+        return
     if c.kind != GRAZE:
         size_w, size_psi, double, cusp = 0.0, 0.0, 0j, 0j
         for i in range(S):
@@ -187,7 +195,6 @@ def examine(f, c, place, b):
         tests[PAIR] = pair_test(c, place, b)
     if c.kind == FLIP or c.kind == TORUS:  # det M(1) takes away the pole where the orbit has the multiplier 1 as well
         tests[NORMAL] = coefficient(f, c, place, b) * tests[PLUS]
-    tests[MARGIN] = certify(f, c, place, b)
 
 
 @jit
@@ -223,7 +230,7 @@ def happens(c, a, b):
         if (a.tests[i] > 0.0 > b.tests[i]) or (a.tests[i] < 0.0 < b.tests[i]):  # their product may underflow
             return True
     for i in range(len(a.t)):
-        if a.D[i] * b.D[i] < 0.0 and not (c.kind == GRAZE and i == c.index):
+        if a.D[i] * b.D[i] < 0.0 and not (c.kind >= GRAZE and i == c.index):
             return True
     if passes(c, a.tests[MARGIN], b.tests[MARGIN]):
         return True

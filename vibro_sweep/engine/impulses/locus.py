@@ -3,6 +3,7 @@
 Besides the equations of the orbit (condensed.py) it satisfies
 
     fold, flip (pitchfork), Neimark-Sacker: g = 0      graze: D_i = 0
+    sticking onset: D_1 = 0, the end of a chatter sequence (chatter.py)
 
 with mu = 1, -1, e^{i theta}, and g of the bordered matrix, which is zero where M(mu) is singular:
 
@@ -16,13 +17,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.impulses.chatter import add_chatter
+from vibro_sweep.engine.impulses.chatter_series import Tail, new_tail
 from vibro_sweep.engine.impulses.condensed import Room, equations, gradient, new_room
 from vibro_sweep.engine.impulses.extremes import PIECES
 from vibro_sweep.engine.impulses.factors import factorise, square, substitute, substitute_transposed
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
 
-FOLD, FLIP, TORUS, GRAZE = range(4)  # kinds of curves; FLIP is the pitchfork where sigma = -1
+FOLD, FLIP, TORUS, GRAZE, STICK = range(5)
+# kinds of curves; FLIP is the pitchfork where sigma = -1; from GRAZE on an impact has no impulse
 FIRST, SECOND, THETA = range(3)  # of `Place.p`: both parameters, and theta of Neimark-Sacker
 
 
@@ -30,7 +34,7 @@ class Curve(NamedTuple):
     """What all points of a curve share."""
 
     kind: int
-    index: int  # of the impact that grazes
+    index: int  # of the impact that grazes; 0 of an onset of sticking
     sides: np.ndarray  # (K,)
     sigma: float
     unit: np.ndarray  # (S + 3,): units of dt, dD, xi_1, the parameters and theta; S = 2K + n
@@ -75,9 +79,10 @@ class Bench(NamedTuple):
     left: np.ndarray  # (S, TERMS) complex
     states: np.ndarray  # (3, n, TERMS) complex
     jets: np.ndarray  # (3, TERMS) complex
+    tail: Tail
 
 
-TESTS = 11
+TESTS = 13
 TERMS = 10  # of a power series in z and z*, to third order
 
 
@@ -94,7 +99,8 @@ def new_bench(K: int, n: int) -> Bench:
     order = np.zeros(S + 3, np.int64)
     rest = [np.zeros(shape) for shape in ((S, S), (n, n), n, n, ORDER + 1, 3, (PIECES, 2), (2, n))]
     series = [np.zeros(shape, complex) for shape in ((S, TERMS), (S, TERMS), (3, n, TERMS), (3, TERMS))]
-    return Bench(new_room(K, n), np.zeros((S + 3, S + 3)), np.zeros(S + 3), border, *vectors, order, *rest, *series)
+    first = new_room(K, n), np.zeros((S + 3, S + 3)), np.zeros(S + 3), border
+    return Bench(*first, *vectors, order, *rest, *series, new_tail(n))
 
 
 @jit
@@ -162,6 +168,8 @@ def assemble(f, c, place, b):
     for r in range(n):
         room.h[0, r] = place.h[r]
     equations(f, c.sides, c.sigma, place.t, place.D, room)
+    if c.kind == STICK:
+        add_chatter(f, c.sides[0], c.sigma, c.unit[0], place.t, room, b.tail)
     for i in range(S):
         b.step[i] = room.F[i] / c.row_unit[i]
         for j in range(S):
@@ -171,7 +179,7 @@ def assemble(f, c, place, b):
         J[i, S + 2] = 0.0
     for i in range(2 * K, S):
         J[i, i] += c.sigma * c.unit[i] / c.row_unit[i]
-    if c.kind == GRAZE:
+    if c.kind >= GRAZE:
         for j in range(size):
             J[S, j] = 1.0 if j == K + c.index else 0.0
         b.step[S] = place.D[c.index] / c.unit[K + c.index]

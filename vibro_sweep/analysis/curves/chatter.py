@@ -1,0 +1,78 @@
+"""How many impacts of a chatter sequence are written out along a curve of sticking onsets (engine/impulses/chatter.py).
+
+The last of them must lie within the reach of the series, and not far below it: slow impacts add nothing but rounding.
+"""
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.special import Chatter, bare
+from vibro_sweep.analysis.curves.tracer import Tracer, copied
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses import locus
+from vibro_sweep.engine.impulses.chatter import NEXT, REACH
+from vibro_sweep.engine.impulses.curve import LATEST
+from vibro_sweep.engine.impulses.locus import Place
+from vibro_sweep.model.linear import forcing_period
+
+NEAR_END = 0.45  # of the reach: all earlier impacts are written out
+MOST_IMPACTS = 120
+
+
+def written_out(tracer: Tracer, place: Place) -> tuple[Tracer, Place] | None:
+    """The same point, not corrected, with as many impacts as are needed; None where these are too many."""
+    while tracer.K <= MOST_IMPACTS:
+        reach = tracer.tail(place)[REACH]
+        before_end = place.t[0] + _period(tracer, place) - place.t[1:]
+        if before_end[-1] > LATEST * reach:
+            tracer, place = with_impacts(tracer, place, tracer.K + 1)
+            continue
+        needed = max(int(np.sum(before_end > NEAR_END * reach)), 1)
+        if before_end[needed - 1] > LATEST * reach:
+            needed += 1
+        return with_impacts(tracer, place, 1 + needed)
+    return None
+
+
+def with_impacts(tracer: Tracer, place: Place, K: int) -> tuple[Tracer, Place]:
+    """The point with the first K impacts, or with more of the chatter sequence."""
+    while tracer.K < K:
+        time = place.t[0] + _period(tracer, place) - tracer.tail(place)[NEXT]
+        tracer, place = _resized(tracer, place, tracer.K + 1)
+        place.t[-1] = time
+        gain = 1 + tracer.family(place).linear.restitution(tracer.curve.sides[-1:])[0]
+        place.D[-1] = -gain * tracer.motion(place)[-1, 0]
+    return (tracer, copied(place)) if tracer.K == K else _resized(tracer, place, K)
+
+
+def _resized(tracer: Tracer, place: Place, K: int) -> tuple[Tracer, Place]:
+    """Numbers of impacts that are new are 0."""
+    w, old = tracer.resized(K), tracer.K
+    result, kept = locus.new_place(K, w.n), min(K, old)
+    result.t[:kept], result.D[:kept] = place.t[:kept], place.D[:kept]
+    result.h[:], result.p[:], result.tests[:] = place.h, place.p, place.tests
+    result.tangent[:kept], result.tangent[K : K + kept] = place.tangent[:kept], place.tangent[old : old + kept]
+    result.tangent[2 * K :] = place.tangent[2 * old :]
+    return w, result
+
+
+def chatter_at(tracer: Tracer, place: Place, touches: bool) -> Chatter:
+    """To start from, at a point of a curve; touches: with the nearest turning point as an impact without speed."""
+    solution = tracer.solution(place)
+    phase = solution.family.linear.omega * place.t[0] + tracer.oscillators.tau
+    state = place.h + (tracer.planes[0]["Z"] * np.exp(1j * phase)).real
+    if not touches:
+        return Chatter(solution, state)
+    time, side = tracer.nearest(place)
+    time += solution.times[0] - place.t[0]
+    k = int(np.searchsorted(solution.times, time))
+    u = np.insert(solution.u, [k, solution.K + k], [time, 0.0])
+    sides = (*solution.sides[:k], side, *solution.sides[k:])
+    return Chatter(Solution(solution.family, solution.sigma, solution.halves, sides, u), state)
+
+
+def without_impact(chatter: Chatter, k: int) -> Chatter:
+    return Chatter(bare(chatter.solution, k), chatter.state)
+
+
+def _period(tracer: Tracer, place: Place) -> float:
+    return forcing_period(tracer.family(place).linear) / 2 * tracer.start.solution.halves
