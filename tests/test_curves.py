@@ -11,6 +11,8 @@ from support.oscillators import PAPER
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import births, torus
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.curves import born
+from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 
 BOXES = {("b", "omega"): ((0.3, 9), (0.5, 0.8)), ("b", "R"): ((0.3, 9), (0.3, 0.99))}
@@ -229,7 +231,7 @@ def test_every_way_into_the_net_of_curves_gives_the_same_points(symmetric_branch
     folds, followed = [], 0
     for special in curve.special[1:-1]:
         for start in vs.switch(special):
-            if start.type in ("pitchfork", "fold"):
+            if start.type in ("pitchfork", "fold") and start.orbit.symmetric:
                 other = vs.bifurcation_curve(start, ("b", "omega"), box)
                 if start.type == "pitchfork":
                     assert places(other) == [(kind, pytest.approx(where, abs=1e-12)) for kind, where in expected]
@@ -238,6 +240,48 @@ def test_every_way_into_the_net_of_curves_gives_the_same_points(symmetric_branch
                     folds.append(places(other))
     assert followed == len(curve.special) - 2 and len(folds) == 2
     assert folds[0] == [(kind, pytest.approx(where, abs=1e-12)) for kind, where in folds[1]]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["degenerate_flip", "flip_neimark_sacker", "resonance_1_4"])
+def test_curves_of_longer_orbits_end_where_switch_says_that_they_begin(kind, symmetric_branch, one_sided_branch):
+    branch, of_type = (
+        (one_sided_branch, "neimark_sacker") if kind == "resonance_1_4" else (symmetric_branch, "pitchfork")
+    )
+    names = ("b", "omega")
+    curve = vs.bifurcation_curve(first(branch, of_type), names, BOXES[names])
+    found = 0
+    for special in curve.special:
+        if special.type != kind:
+            continue
+        size = len(special.orbit.impacts) * (4 if kind == "resonance_1_4" else 1)
+        half = special.orbit._solution.K
+        starts = [start for start in vs.switch(special) if start.orbit._solution.K > half]
+        assert all(start.orbit.ok and len(start.orbit.impacts) == size for start in starts)
+        assert len(starts) == (2 if kind == "resonance_1_4" else 1)
+        ends = []
+        for start in starts:
+            near = [(0.9 * value, 1.1 * value) for value in special.parameters.values()]
+            other = vs.bifurcation_curve(start, names, near)
+            (end,) = (one for one in (other.begins, other.ends) if one.type == kind)
+            assert end.parameters == pytest.approx(special.parameters, abs=1e-11)
+            ends.append((other.begins if end is other.ends else other.ends).parameters)
+            found += 1
+        assert len(ends) == 1 or ends[0] != pytest.approx(ends[1], rel=1e-3)  # two curves, not one twice
+    assert found == {"degenerate_flip": 2, "flip_neimark_sacker": 1, "resonance_1_4": 2}[kind]
+
+
+@pytest.mark.slow
+def test_normal_form_of_the_resonance_1_4_says_where_the_folds_are(one_sided_branch):
+    """At the amplitude 0.005, which is that of the third order and no more."""
+    curve = vs.bifurcation_curve(first(one_sided_branch, "neimark_sacker"), ("b", "omega"), BOXES["b", "omega"])
+    special = first(curve, "resonance_1_4")
+    values = np.array(list(special.parameters.values()))
+    parent = Start("neimark_sacker", special.orbit._solution, theta=math.pi / 2)
+    for sign in (1, -1):
+        entry = born.entry(special, "fold", parent, 4, 0.005, sign)
+        found = np.array(list(born.entered(special, entry).parameters.values()))
+        assert np.abs(found - values - entry.moved).max() < 0.01 * np.abs(entry.moved).max()
 
 
 def places(curve):

@@ -30,7 +30,7 @@ def product(a, b) -> np.ndarray:
     return out
 
 
-class _Map:
+class Map:
     """The map over P, with the mirror for sigma = -1, from the time of the first impact on, in contact coordinates.
 
     States at the time of an impact are those of the flight before it, also of motions that have hit already.
@@ -85,32 +85,47 @@ def criticality(solution: Solution) -> str | None:
     if min(abs(np.exp(1j * k * theta) - 1) for k in range(1, 5)) < RESONANT:
         return None
     try:
-        terms = coefficient(_Map(solution), theta)
+        terms = coefficient(Map(solution), theta)
     except np.linalg.LinAlgError:
         return None
     a, size = float(terms.sum().real), float(np.abs(terms).sum())
     return None if not abs(a) > ROUNDED * size else "super" if a < 0 else "sub"
 
 
+def quarter(f) -> tuple[complex, complex, np.ndarray]:
+    """c and d of z -> i (z + c |z|^2 z + d conj(z)^3) at the resonance 1:4, and q, for the state z q + conj(z q).
+
+    Kuznetsov, 3rd edition, 9.5.4: c is the sum of `coefficient`.
+    """
+    image, A, q, p = _critical(f, 1j)
+    both = image(q, q.conj())
+    double = np.linalg.solve(-np.eye(f.n) - A, both[:, 0, 2])
+    d = p @ (both[:, 0, 3] + image(q.conj(), double)[:, 1, 1]) / 1j
+    return complex(coefficient(f, np.pi / 2).sum()), complex(d), q
+
+
 def coefficient(f, theta: float) -> np.ndarray:
     """The three terms of a, complex, for |q| = 1; f has `n` and maps series. LinAlgError without such an eigenvalue."""
-
-    def image(x, y) -> np.ndarray:
-        """f(r x + s y)."""
-        series = np.zeros((f.n, ORDER + 1, ORDER + 1), complex)
-        series[:, 1, 0], series[:, 0, 1] = x, y
-        return f(series)
-
-    eye = np.eye(f.n)
-    A = np.array([image(e, 0 * e)[:, 1, 0] for e in eye]).T.real
-    turn = np.exp(1j * theta)
-    q, p = (_vector(matrix, turn) for matrix in (A, A.T))
-    p = p / (p @ q)
+    turn, eye = np.exp(1j * theta), np.eye(f.n)
+    image, A, q, p = _critical(f, turn)
     both = image(q, q.conj())
     mean = np.linalg.lstsq(eye - A, both[:, 1, 1])[0]
     double = np.linalg.lstsq(turn**2 * eye - A, 2 * both[:, 2, 0])[0]
     cubic, by_mean, by_double = 2 * both[:, 2, 1], image(q, mean)[:, 1, 1], image(q.conj(), double)[:, 1, 1]
     return np.array([p @ cubic, 2 * p @ by_mean, p @ by_double]) / turn / 2
+
+
+def _critical(f, turn: complex):
+    """image(x, y), the series of f(r x + s y); f' and its critical vectors q and p, p.q = 1."""
+
+    def image(x, y) -> np.ndarray:
+        series = np.zeros((f.n, ORDER + 1, ORDER + 1), complex)
+        series[:, 1, 0], series[:, 0, 1] = x, y
+        return f(series)
+
+    A = np.array([image(e, 0 * e)[:, 1, 0] for e in np.eye(f.n)]).T.real
+    q, p = (_vector(matrix, turn) for matrix in (A, A.T))
+    return image, A, q, p / (p @ q)
 
 
 def _vector(matrix, value) -> np.ndarray:

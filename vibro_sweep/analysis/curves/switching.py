@@ -9,6 +9,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.special import Chatter, SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.switching import switch as switch_branches
 from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.curves.born import born
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint
@@ -38,7 +39,8 @@ def switch(special):
     Of a branch: the orbits just beyond a pitchfork (two mirror images), a flip (the doubled one) or a graze (with, or
     without, the impact that has no speed there; at the graze of the free motion those that hit one stop or both).
     Orbits that pass a stop are left out. Of a curve, at a point of codimension two: fold, flip (pitchfork),
-    Neimark-Sacker, graze and sticking curves through it, as special points from which `bifurcation_curve` can start.
+    Neimark-Sacker, graze and sticking curves through it, and those of orbits with two or four times the period that
+    begin there (born.py), as special points from which `bifurcation_curve` can start.
 
     Raises ValueError for a special point of another type.
     """
@@ -51,7 +53,7 @@ def switch(special):
     if special.type in ("resonance_1_1", "resonance_1_2"):
         beside = _beside_strong(special)
         found += [beside] if beside is not None else []
-    return found
+    return found + born(special)
 
 
 def _starts(special: CurvePoint) -> list[Start]:

@@ -104,6 +104,15 @@ class Tracer:
         self._do(curve.ASSEMBLE, place)
         return self._bench.room.motion.copy()
 
+    def rates_of_pair(self, place: Place) -> np.ndarray:
+        """(2,) complex: derivatives of log mu of a Neimark-Sacker pair by the parameters, along the orbits."""
+        self.go_to(place)
+        self._do(curve.ASSEMBLE, place)
+        J, S = self._bench.J, self.S
+        along = -np.linalg.solve(J[:S, :S], J[:S, S : S + 2])
+        slopes = J[S, : S + 3] + 1j * J[S + 1, : S + 3]
+        return -1j * (slopes[:S] @ along + slopes[S : S + 2]) / slopes[S + 2] / self.curve.unit[S : S + 2]
+
     def tail(self, place: Place) -> np.ndarray:
         """`numbers` of what follows the last impact written out, of an onset of sticking."""
         self.go_to(place)

@@ -10,7 +10,7 @@ from vibro_sweep.analysis.branches.births import doubled
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.curves.chatter import chatter_at, with_impacts, written_out
-from vibro_sweep.analysis.curves.ends import birth, strong_resonance
+from vibro_sweep.analysis.curves.ends import birth, birth_near, strong_resonance
 from vibro_sweep.analysis.curves.events import Event, Found, found_between, is_real, without_echoes
 from vibro_sweep.analysis.curves.tracer import Tracer, copied, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
@@ -118,7 +118,11 @@ class Way:
                 if not passable(w, a):
                     break
             elif reason == curve.FAILED:
-                break
+                end = birth_near(w, a) if w.curve.repeats or w.curve.mirrors else None
+                if end is None:
+                    break
+                self._end(*end)
+                return
         self.special.append(self._at("failed", a, np.nan))
 
     def _write_out(self, a: Place) -> bool:
@@ -208,7 +212,7 @@ class Way:
         """The end, on the curve of the parent."""
         w, solution, p = self.tracer, other.solution(found.place), found.place.p.copy()
         self.special.append(self._at(found.event.type, found.place, found.error, found.event, other))
-        if solution.K < w.K:
+        while solution.K < w.K:
             solution = doubled(solution)
         q = solution.family.linear
         if w.curve.kind == locus.TORUS:
