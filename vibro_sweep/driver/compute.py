@@ -1,6 +1,5 @@
 """What a worker does with a block: from its numbers to the arrays of the file's datasets."""
 
-import contextlib
 import os
 import platform
 import threading
@@ -16,14 +15,12 @@ from vibro_sweep.driver.trajectories import trajectories_of
 from vibro_sweep.engine import points
 from vibro_sweep.engine.any_points import grazing_points
 from vibro_sweep.engine.motion.ensemble import Mapping
-from vibro_sweep.engine.one_system import Engine
-from vibro_sweep.engine.records import PAPER, Kind, new_results
+from vibro_sweep.engine.records import Kind, new_results
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 from vibro_sweep.model.grazing import expansion_point
 from vibro_sweep.model.grid import linears
 from vibro_sweep.model.observables import GAP
-from vibro_sweep.model.parameters import ParameterError
 from vibro_sweep.model.state import state
 
 
@@ -90,11 +87,8 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     first = anew if block.begun is None else block.begun
     workspace = _workspace(block, kind, int(table["cells"].max()), min(steps.shape[1], LANES))
     mapping = Mapping(plan.order) if plan.order else None
-    compiled, begins = points.run_points.compiled, np.stack([first, anew])
+    begins = np.stack([first, anew])
     points.run_points(steps, begins, *arrays.values(), workspace, plan, mapping)
-    if points.run_points.compiled > compiled and kind == PAPER and not plan.order:
-        with contextlib.suppress(ParameterError):  # of a point that is none of the sweep's
-            Engine(block.system)  # compiles what single orbits take, too
     energies = energies_of(block, steps, kind, arrays["results"], begins) if "impact_power" in block.wanted else {}
     last = arrays["results"][-1]
     ends = np.where(status.stands(last["status"])[:, None], last["end"], anew)

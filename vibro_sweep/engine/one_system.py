@@ -4,7 +4,7 @@ import numpy as np
 
 from vibro_sweep.engine import points
 from vibro_sweep.engine.any_points import any_points, kind_of
-from vibro_sweep.engine.motion import ensemble, orbits, together
+from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.point_tables import ON_STOP
 from vibro_sweep.engine.records import PAPER, POINT, Kind, new_results
 from vibro_sweep.engine.simd.lanes import LANES
@@ -101,27 +101,23 @@ class Engine:
             raise ParameterError("omega", system.omega, allowed)
         self.period = system.period
         self.width = self.period / self.cells
-        plan = plan_of()
-        workspace = points.new_workspace(plan, self.cells, 0, kind=self.kind)
-        compiled = points.prepare.compiled
-        for lane in range(LANES):
-            self.stops = points.prepare(self.point.repeat(LANES), lane, workspace, plan)
-        self.ensemble = workspace.ensemble
+        self._workspace = points.new_workspace(plan_of(), self.cells, 0, kind=self.kind)
+        self._run(points.TABLES, LANES)
+        self.stops = orbits.Stops(*self.point["stops"][0].tolist())
+        self.ensemble = self._workspace.ensemble
         self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
         self.orbit = self.ensemble.orbits[:1]
         self.flight = Flight(*(table[0] for table in self.ensemble.flights))
-        if points.prepare.compiled > compiled and self.kind == PAPER:
-            self._compile_others(workspace, plan)
 
-    def _compile_others(self, workspace: points.Workspace, plan: points.Plan) -> None:
-        """Sweeps and single orbits are compiled from nearly the same: together they take half the time."""
-        masses = self.kind.masses
-        self.put(np.zeros(self.states))
-        self.carry(orbits.new_records(1, masses=masses), np.empty((0, self.states)))
-        nothing = np.empty((1, 0, 0, self.states))
+    def _run(self, step: int, count: int, section: np.ndarray | None = None, **kept) -> None:
+        """One step of `run_points` for so many orbits. section: (orbits, periods, 2 N), if states are kept there."""
+        nothing = np.empty((1, count, 0, self.states))
+        workspace = self._workspace._replace(section=nothing[0] if section is None else section)
         points.run_points(
-            self.point[:0].reshape(1, 0), np.empty((2, 0, self.states)), new_results((1, 0), masses),
-            nothing, np.empty((1, 0, 0)), nothing, workspace, plan, None,
+            self.point.repeat(count).reshape(1, count), np.zeros((2, count, self.states)),
+            new_results((1, count), self.kind.masses), nothing, np.empty((1, count, 0)), nothing,
+            workspace._replace(ensemble=workspace.ensemble._replace(**kept)),
+            plan_of()._replace(step=step, states=section is not None), None,
         )  # fmt: skip
 
     def checked(self, state) -> np.ndarray:
@@ -167,8 +163,7 @@ class Engine:
         """Carry the orbit over as many periods as `section` (n, 2 N) has rows. Returns a status."""
         self.orbit["periods"] = len(section)
         self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
-        readings = together.Readings(section[None], True, np.empty((1, 0, self.states)), 0)
-        ensemble.carry(self.ensemble._replace(records=records), None, readings)
+        self._run(points.WAY, 1, section[None], records=records)
         return int(self.orbit["status"][0])
 
     def carry_eight(self, states: np.ndarray, cell: int, periods: int) -> tuple[np.ndarray, orbits.Records]:
@@ -181,8 +176,7 @@ class Engine:
                 self.put(state, cell, lane=lane)
             eight["periods"] = periods
             records = orbits.new_records(LANES, impacts=room, rests=room, masses=self.kind.masses)
-            nothing = np.empty((1, 0, self.states))
-            ensemble.carry(self.ensemble._replace(records=records), None, together.Readings(nothing, False, nothing, 0))
+            self._run(points.WAY, 1, records=records)
             here = eight[: len(states)]
             logged = max(here["impacts_logged"].max(), here["rests_logged"].max())
             if logged <= room:

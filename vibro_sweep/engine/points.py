@@ -19,6 +19,7 @@ from vibro_sweep.model import status
 
 LARGE = 8.0  # clearances that the motion r may measure before flights from a later node are formed without it
 WARM_UP = 200  # periods for the tangent vectors to find their directions
+ALL, TABLES, WAY = range(3)  # what `run_points` does: all, the tables alone, or the way alone of orbits that have them
 
 
 class Plan(NamedTuple):
@@ -35,6 +36,7 @@ class Plan(NamedTuple):
     periods: int  # of the trajectory
     parts: int  # of the record, at which the growth of tangent vectors is read
     order: int  # of the discontinuity mapping; 0: the flow itself
+    step: int = ALL  # else what is done of it
 
 
 class Workspace(NamedTuple):
@@ -76,7 +78,7 @@ def clearance(stops):
     return abs(stops.right if stops.right < np.inf else stops.left)
 
 
-@entry
+@jit
 def prepare(points, i, w, plan):
     """Orbit i gets the tables of its point, those of the orbit before it if they are the same; and its stops."""
     e, point, o, table = w.ensemble, points[i], w.ensemble.orbits[i], i
@@ -97,6 +99,29 @@ def prepare(points, i, w, plan):
     return stops
 
 
+@jit
+def set_orbits(points, starts, results, n, first, w, plan):
+    """Give eight orbits, from `first` on, the tables of their points of step n, and put them where they start."""
+    e, state, last = w.ensemble, w.state, min(first + LANES, points.shape[1])
+    for i in range(LANES):
+        o = e.orbits[i]
+        o.status = status.NOT_COMPUTED
+        if first + i >= last:
+            continue
+        point, result = points[n, first + i], results[n, first + i]
+        if point.cells == 0:
+            result.status = status.TOO_STIFF
+            continue
+        stops = prepare(points[n, first:last], i, w, plan)
+        goes_on = n > 0 and results[n - 1, first + i].status in status.STANDING
+        for j in range(len(state)):
+            state[j] = results[n - 1, first + i].end[j] if goes_on else starts[min(n, 1), first + i, j]
+        to_contact(point, state, stops, w.other)
+        if plan.order == 0:  # points of the map may lie beyond the stops
+            state[0] = min(max(state[0], stops.left), stops.right)
+        place(o, e.flights.nodes[o.table], stops, 0, 0.0, state)
+
+
 @entry
 def run_points(points, starts, results, sections, phases, running, w, plan, mapping):
     """Compute a block. n = steps, m = orbits; observations that nobody wants have no samples.
@@ -105,33 +130,25 @@ def run_points(points, starts, results, sections, phases, running, w, plan, mapp
     others an orbit goes on from where it ended, with the next point's numbers. results: (n, m) of `result_of`.
     sections: (n, m, record, 2 N). phases: (n, m, record), for an impact section. running: (n, m, parts, 2 N), the
     exponents as they converge. mapping: as of `carry`.
+
+    For single orbits it does one step of this at a time (`plan.step`, one block): so nothing else need be compiled.
     """
-    e, state = w.ensemble, w.state
+    e = w.ensemble
     for first in range(0, points.shape[1], LANES):
         last = min(first + LANES, points.shape[1])
         for n in range(len(points)):
-            for i in range(LANES):
-                o = e.orbits[i]
-                o.status = status.NOT_COMPUTED
-                if first + i >= last:
-                    continue
-                point, result = points[n, first + i], results[n, first + i]
-                if point.cells == 0:
-                    result.status = status.TOO_STIFF
-                    continue
-                stops = prepare(points[n, first:last], i, w, plan)
-                goes_on = n > 0 and results[n - 1, first + i].status in status.STANDING
-                for j in range(len(state)):
-                    state[j] = results[n - 1, first + i].end[j] if goes_on else starts[min(n, 1), first + i, j]
-                to_contact(point, state, stops, w.other)
-                if plan.order == 0:  # points of the map may lie beyond the stops
-                    state[0] = min(max(state[0], stops.left), stops.right)
-                place(o, e.flights.nodes[o.table], stops, 0, 0.0, state)
+            if plan.step != WAY:
+                set_orbits(points, starts, results, n, first, w, plan)
+            if plan.step == TABLES:
+                continue
             rows, row = points[n, first:last], results[n, first:last]
             for phase in range(PHASES):
-                parts = begin_phase(e, w, plan, phase, row)
+                parts = 0 if plan.step == WAY else begin_phase(e, w, plan, phase, row)
                 if parts >= 0:
-                    carry(e, mapping, Readings(w.section, phase == RECORD and plan.states, w.growth, parts))
+                    keep = plan.states and (phase == RECORD or plan.step == WAY)
+                    carry(e, mapping, Readings(w.section, keep, w.growth, parts))
+                    if plan.step == WAY:
+                        return
                     end_phase(
                         e, w, plan, phase, rows, row,
                         sections[n, first:last], phases[n, first:last], running[n, first:last],

@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
 import xarray as xr
 
 from vibro_sweep.analysis.branches.beginning import changes_rests, start_of_walk

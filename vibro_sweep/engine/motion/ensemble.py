@@ -20,7 +20,7 @@ from vibro_sweep.engine.motion.orbits import (
 from vibro_sweep.engine.motion.scan import careful_state, first_suspect, open_cell, state_at, suspect_state
 from vibro_sweep.engine.motion.strike import clear_counts, strike
 from vibro_sweep.engine.motion.together import flight_of, records_of, stops_of
-from vibro_sweep.engine.simd.jit import aside, entry, inline
+from vibro_sweep.engine.simd.jit import aside, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES, lanes_of, number, select
 from vibro_sweep.engine.simd.memory import put, put_state, row
 from vibro_sweep.engine.tables.flight import load
@@ -222,7 +222,7 @@ def settle(e, o, free, struck, readings):
         take_off(o, f.nodes, row(strikes.X, i))
 
 
-@entry
+@jit
 def carry(e, mapping, readings):
     """Carry each orbit over its `periods`, of forcing or iterations of the discontinuity mapping; see its `status`.
 

@@ -15,6 +15,8 @@ from numba.core.codegen import CPUCodegen, JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
 from numba.core.typing import Context
 
+from vibro_sweep.engine.simd.lean import lean, remember_sizes
+
 NEEDED = {JITCodeLibrary: "_optimize_functions", CPUCodegen: "_pass_builder", Flags(): "_values"}
 if not all(hasattr(where, name) for where, name in NEEDED.items()):
     raise ImportError("this numba is another inside")
@@ -134,6 +136,7 @@ class WholeCompiler(Compiler):
         context = self.state.targetctx
         ask = context.get_function
         context.get_function = lambda fn, sig, _firstcall=True: ask(fn, sig, _firstcall and not isinstance(fn, str))
+        remember_sizes(context)
 
     def define_pipelines(self):
         [pipeline] = super().define_pipelines()
@@ -147,7 +150,8 @@ class WholeCompiler(Compiler):
         collecting = gc.isenabled()
         gc.disable()  # a tenth of the time, and there is little to collect
         try:
-            return super().compile_extra(func)
+            with lean():
+                return super().compile_extra(func)
         finally:
             if collecting:
                 gc.freeze()  # or to look through what is left takes as long again
