@@ -7,6 +7,7 @@ from support.windows import SYSTEM, check_end, few  # noqa: F401
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.windows.job import Job, window_of
+from vibro_sweep.driver.windows import rows_in
 from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.window_families import families
 
@@ -105,6 +106,16 @@ def test_a_rest_after_one_impact_is_no_window_in_the_restitution(tmp_path):
     assert [list(REASONS)[code] for code in windows.reason.ravel()] == ["sticking", "sticking", *2 * ["in_a_window"]]
     assert [(window.itinerary, window.orbit.sticking.size) for window in windows] == [("LLRR", 0), ("LR", 0)]
     assert min(window.lo for window in windows) > 0.1
+
+
+@pytest.mark.parametrize("stops, bounds", [("both", (0.1 / 4, 0.5)), ("right", (0.1 - 0.2, 0.5))])
+def test_a_clearance_between_two_stops_stays_above_zero(stops, bounds, tmp_path):
+    """Orbits that rest on both stops are stable down to b = 0: they were followed beyond, to a traceback."""
+    system = SYSTEM.replace(stops=stops)
+    vs.sweep(system, {"b": [0.1, 0.3]}, transient=5, record=5, output=tmp_path / "b.h5", workers=1).close()
+    with vs.open(tmp_path / "b.h5") as data:
+        (row,) = rows_in(data, None)
+    assert row.bounds == pytest.approx(bounds, rel=1e-12)
 
 
 def test_values_at_the_very_end_of_a_window_are_within_none(tmp_path):

@@ -16,7 +16,7 @@ from vibro_sweep.model.status import NOT_SETTLED, stands
 
 MORE = 4000  # forcing periods: the exponents' errors are then some 5 times smaller than in a record of 200
 MUCH_MORE = 40_000  # for those that are still on their way: the last ones of a window take longest
-LONGEST = 300  # period that is looked at; a longer one counts as not settled
+LONGEST = 1000  # period that is looked at; a longer one counts as not settled
 AT_ONCE = 256  # orbits
 _CODES = {name: code for code, name in enumerate(REASONS)}
 

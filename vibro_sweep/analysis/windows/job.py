@@ -43,7 +43,10 @@ def window_of(job: Job) -> Result:
     if changes_rests(orbit._solution, job.parameter):  # at any other R the rest begins after infinitely many impacts
         return Result(None, "sticking")
     chosen = representative(orbit, job.parameter)
-    branch = stable_stretch(chosen, job.parameter, job.bounds)
+    try:
+        branch = stable_stretch(chosen, job.parameter, job.bounds)
+    except ValueError:  # an orbit of hundreds of impacts, which rounding does not let Newton's method correct
+        return Result(None, "failed")
     value = chosen._solution.family.numbers[job.parameter]
     return Result(flatten(branch, value), "in_a_window")
 

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.parameters import range_of
 from vibro_sweep.model.state import state
 from vibro_sweep.model.status import NOT_COMPUTED, stands
 
@@ -49,7 +50,7 @@ class Row:
         lo, hi = float(self.values[0]), float(self.values[-1])
         more = BEYOND * (hi - lo)
         lo, hi = lo - more, hi + more
-        allowed = self.system.described[self.parameter].range.bounds
+        allowed = range_of(self.system.described[self.parameter], self.system.options.get("stops", "both")).bounds
         if "minimum" in allowed:
             lo = max(lo, allowed["minimum"])
         if "exclusiveMinimum" in allowed:
