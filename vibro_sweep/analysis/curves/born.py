@@ -24,7 +24,7 @@ from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.locus import Place
 
-AMPLITUDES = (0.01, 0.02, 0.005, 0.04)  # in the units of a curve, in the order in which they are tried
+AMPLITUDES = (0.01, 0.02, 0.005, 0.0025, 0.04)  # in the units of a curve, in the order in which they are tried
 REACH = 0.2  # of the parameters around the point, relative
 FARTHEST = 0.02  # relative distance of the point that is found, in both parameters
 ALIKE = 0.3  # relative difference from what the third order says
@@ -85,6 +85,8 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
         theta = abs(float(np.angle(pair**count)))
     mu = -1.0 if count == 2 else 1j
     child, change = repeated(parent.solution, count, factor * w[:K], factor * w[K : 2 * K], mu)
+    if moved is not None:
+        child = _bent(child, tracer, place, factor, moved)
     return Entry(Start(name, replace(child, family=family), theta=theta), change, moved)
 
 
@@ -125,6 +127,16 @@ def repeated(parent: Solution, count: int, dt, dD, mu: complex) -> tuple[Solutio
     return Solution(parent.family, parent.sigma**count, parent.halves * count, sides, u), change
 
 
+def _bent(child: Solution, tracer: Tracer, place: Place, z: complex, moved) -> Solution:
+    """To second order in z: the multipliers of the child, near 1, differ from 1 by as much as this changes them."""
+    bend, mean = tracer.second_order(place)
+    K, s, count = tracer.K, float(tracer.start.solution.sigma), child.K // tracer.K
+    turns, signs = (-1.0) ** np.arange(count)[:, None], s ** np.arange(count)[:, None]
+    _, along = tracer.rates_of_pair(place)
+    each = 2 * turns * (z * z * bend).real + abs(z) ** 2 * mean + along @ moved  # (count, 2K)
+    return replace(child, u=child.u + np.concatenate([each[:, :K].ravel(), (signs * each[:, K:]).ravel()]))
+
+
 def _quarter(tracer: Tracer, place: Place, size: float, sign: int) -> tuple[complex, np.ndarray] | None:
     """z, in units of w with |z| = size, and the parameters' change, at one of two folds; None: there are none."""
     c, d, q = torus.quarter(torus.Map(tracer.solution(place)))
@@ -137,6 +149,6 @@ def _quarter(tracer: Tracer, place: Place, size: float, sign: int) -> tuple[comp
     u = A / abs(A) * np.exp(1j * sign * np.arccos(-1 / abs(A)))
     z = size * abs(scale) * np.exp(1j * (np.angle(d) - np.angle(u)) / 4)
     eps = -abs(d) * abs(z) ** 2 * (A + u)
-    rates = tracer.rates_of_pair(place)  # of log mu by the parameters
+    rates, _ = tracer.rates_of_pair(place)
     moved = np.linalg.solve(np.array([rates.real, rates.imag]), [eps.real, eps.imag])
     return z / scale, moved

@@ -13,6 +13,7 @@ from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.engine.impulses import curve, locus
 from vibro_sweep.engine.impulses.curve_tests import RESIDUAL
 from vibro_sweep.engine.impulses.locus import Curve, Place
+from vibro_sweep.engine.impulses.normal_form import MIXED, SQUARE
 from vibro_sweep.model.linear import Family, forcing_period
 
 MOST_CORRECTIONS = 12
@@ -104,14 +105,23 @@ class Tracer:
         self._do(curve.ASSEMBLE, place)
         return self._bench.room.motion.copy()
 
-    def rates_of_pair(self, place: Place) -> np.ndarray:
-        """(2,) complex: derivatives of log mu of a Neimark-Sacker pair by the parameters, along the orbits."""
+    def second_order(self, place: Place) -> tuple[np.ndarray, np.ndarray]:
+        """Of the times and impulses (2K,) on the plane z w + conj(z w) of a Neimark-Sacker point: of z^2 and |z|^2."""
+        self.go_to(place)
+        self._do(curve.EXAMINE, place)
+        series = self._bench.series[: 2 * self.K]
+        return series[:, SQUARE].copy(), series[:, MIXED].real.copy()
+
+    def rates_of_pair(self, place: Place) -> tuple[np.ndarray, np.ndarray]:
+        """Slopes along the orbits: of log mu of a Neimark-Sacker pair (2,), of times and impulses (2K, 2)."""
         self.go_to(place)
         self._do(curve.ASSEMBLE, place)
         J, S = self._bench.J, self.S
         along = -np.linalg.solve(J[:S, :S], J[:S, S : S + 2])
         slopes = J[S, : S + 3] + 1j * J[S + 1, : S + 3]
-        return -1j * (slopes[:S] @ along + slopes[S : S + 2]) / slopes[S + 2] / self.curve.unit[S : S + 2]
+        unit = self.curve.unit
+        rates = -1j * (slopes[:S] @ along + slopes[S : S + 2]) / slopes[S + 2] / unit[S : S + 2]
+        return rates, (along * unit[:S, None] / unit[S : S + 2])[: 2 * self.K]
 
     def tail(self, place: Place) -> np.ndarray:
         """`numbers` of what follows the last impact written out, of an onset of sticking."""
