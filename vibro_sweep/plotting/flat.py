@@ -38,15 +38,15 @@ class FlatFile:
         return [kind if kind == "nonsmooth_fold" else name for name, kind in zip(names, kinds, strict=True)]
 
 
-def is_branches(data) -> bool:
-    """Whether `data` is the path of a file of branches; of windows PlotError says what to draw them with."""
+def flat_kind(data) -> str | None:
+    """The kind, branches or curves, of the path of such a file; else None. PlotError for windows says what shows them."""
     if not isinstance(data, (str, Path)):
-        return False
+        return None
     try:
         with opened(Path(data), ()) as (file, _):
             kind = text(file, "kind") if is_flat(file) else None
     except StoreError:  # whoever draws it as a sweep says what is wrong
-        return False
+        return None
     if kind == WINDOWS:
         raise PlotError(f"{data} holds the windows of a sweep; `plot SWEEP.h5 --windows {data}` shows them")
-    return kind is not None
+    return kind
