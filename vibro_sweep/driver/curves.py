@@ -10,10 +10,12 @@ from vibro_sweep.analysis.branches.flat import special_point
 from vibro_sweep.analysis.branches.forest import forest, grow
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.network import CurveSeed, Traced, network, seed_at, trace
+from vibro_sweep.analysis.windows.explained import explain, probe
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import numbers_of, seeds_of, specials_of
+from vibro_sweep.driver.planes import edges_in_file, identity_of, plane_of
 from vibro_sweep.driver.provenance import provenance
-from vibro_sweep.model.branch_file import CHART, columns
+from vibro_sweep.model.branch_file import CHART, OF_EDGES, columns
 from vibro_sweep.scene import Continuation
 from vibro_sweep.scene.continuation import BY_BRANCHES
 from vibro_sweep.store.flat_files import Subject
@@ -34,19 +36,34 @@ def run_curves(
     progress : called as progress(done, total) in branches, then in curves
     The file does not depend on workers, executor or interruptions. Raises what `run_branches` raises.
     """
-    subject = Subject(CHART, scene.name, scene.text, {"parameters": list(scene.along)} | numbers_of(scene))
+    attributes = {"parameters": list(scene.along)} | identity_of(scene) | numbers_of(scene)
+    subject = Subject(CHART, scene.name, scene.text, attributes)
     names, box = tuple(scene.along), tuple(scene.along.values())
     with pieces(subject, Path(output), mode) as file:
         if file.complete:
             return
+        of_plane, more = plane_of(scene), {}
         with workers_of(workers, executor) as pool:
-            specials = _on_branches(scene, pool, file, progress) if scene.origin in BY_BRANCHES else specials_of(scene)
-            found = [seed_at(special, names) for special in specials if special.type in scene.of]
-            seeds = _within([seed for seed in found if seed is not None], names, box)
             evaluate = computed(trace, pool, file, progress)
-            curves = network(seeds, names, box, scene.of, scene.depth, evaluate)
+            if of_plane is not None:
+                probed = computed(probe, pool, file, progress)
+                found = explain(*of_plane, names, box, scene.of, scene.depth, probed, evaluate)
+                curves, more = found.curves, edges_in_file(of_plane[0], found)
+            else:
+                curves = network(
+                    _starts(scene, names, box, pool, file, progress), names, box, scene.of, scene.depth, evaluate
+                )
         arrays = joined_curves([one.flat for one in curves], list(names), scene.system.masses)
-        file.finish(provenance(), columns(CHART, list(names), []), arrays | _origins(curves, arrays))
+        held = [*columns(CHART, list(names), []), *(OF_EDGES if more else ())]
+        file.finish(provenance(), held, arrays | _origins(curves, arrays) | more)
+
+
+def _starts(scene: Continuation, names, box, pool, file, progress) -> list[CurveSeed]:
+    """Where curves begin, within the box."""
+    specials = _on_branches(scene, pool, file, progress) if scene.origin in BY_BRANCHES else specials_of(scene)
+    found = [seed_at(special, names) for special in specials if special.type in scene.of]
+    lo, hi = np.transpose(box)
+    return [one for one in found if one is not None and np.all((lo <= (at := one.place(names))) & (at <= hi))]
 
 
 def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint]:
@@ -63,11 +80,6 @@ def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint
         for tree in trees
         for i in range(len(tree.flat["special_type"]))
     ]
-
-
-def _within(seeds: list[CurveSeed], names, box) -> list[CurveSeed]:
-    lo, hi = np.transpose(box)
-    return [seed for seed in seeds if np.all((lo <= (place := seed.place(names))) & (place <= hi))]
 
 
 def _origins(curves: list[Traced], arrays) -> dict[str, np.ndarray]:

@@ -76,17 +76,20 @@ def specials_of(scene: Continuation) -> list[SpecialPoint]:
         return [special]
     found = [end for one in windows(scene.begin, next(iter(scene.along))) for end in (one.lower, one.upper)]
     for special in found:
-        _check_numbers(scene, special.orbit.system, ())
+        check_numbers(scene, special.orbit.system, ())
     return found
 
 
 def numbers_of(scene: Continuation) -> dict[str, Any]:
     """What the file says of the oscillator: all its numbers but those along which it is followed.
 
-    They are those of the scene's `system`; from a special point of a file, those of that point.
+    They are those of the scene's `system`; from a special point of a file, those of that point. A phase `grazing` that
+    changes with what is followed is none of them.
     """
     system = _special(scene)[0].orbit.system if scene.origin == "branches" else scene.system
-    return {name: value for name, value in system.parameters().items() if name not in scene.along}
+    found = {name: value for name, value in system.parameters().items() if name not in scene.along}
+    ends = [system.replace(**{name: end}) for name, limits in scene.along.items() for end in limits]
+    return {k: v for k, v in found.items() if k != "tau" or all(end.parameters()["tau"] == v for end in ends)}
 
 
 def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:
@@ -100,23 +103,24 @@ def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:
         parse = parse_scene if kind == WINDOWS else parse_continuation
         names = np.atleast_1d(data.attrs["parameters"]).tolist()
         system = parse(data.attrs["scene"]).system
-        numbers = {name: data.attrs[name] for name in system.numbers if name in data.attrs}
+        known = {name: value for name, value in system.parameters().items() if name in data.attrs and name != "tau"}
+        changed = {name: float(data.attrs[name]) for name, value in known.items() if value != data.attrs[name]}
         index = int(data["special_branch"][scene.special])
         values = dict(zip(names, data["special_value"].values[scene.special].tolist(), strict=True))
         arrays = {name: data[name].values for name in data.data_vars}
     place = scene.special - int(arrays["branch_special"][:index].sum())
-    system = system.replace(**{name: float(value) for name, value in numbers.items() if np.isreal(value)} | values)
+    system = system.replace(**changed | values)
     if kind == CHART:
         found: SpecialPoint = point_of_codimension_two(curve_of(arrays, names, index), place, names, system)
     else:
         found = special_point(branch_of(arrays, names[0], index), place, names[0], system)
-    _check_numbers(scene, found.orbit.system, names)
+    check_numbers(scene, found.orbit.system, names)
     return found, names
 
 
-def _check_numbers(scene: Continuation, system, free) -> None:
-    """Raise ValueError where `system` of a file has another number than the scene's, of those not followed and not `free`."""
-    ours = scene.system.parameters()
-    for name, value in system.parameters().items():
+def check_numbers(scene: Continuation, system, free) -> None:
+    """Raise ValueError where `system` of a file differs from the scene's in a number that is not followed, nor free."""
+    ours = scene.system.numbers
+    for name, value in system.numbers.items():
         if name not in scene.along and name not in free and ours.get(name) != value:
             raise ValueError(f"system.{name}: {ours.get(name)!r} is not allowed; it is {value!r} in {scene.begin}")

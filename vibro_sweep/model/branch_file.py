@@ -2,7 +2,16 @@
 
 from typing import NamedTuple
 
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVES, KINDS, REASONS, STATUSES, TYPES
+from vibro_sweep.model.bifurcations import (
+    CODIMENSION_TWO,
+    CRITICALITIES,
+    CURVES,
+    EDGES,
+    KINDS,
+    REASONS,
+    STATUSES,
+    TYPES,
+)
 
 BRANCHES, WINDOWS, CHART = "branches", "windows", "curves"  # the kinds of such files
 
@@ -180,6 +189,14 @@ OF_CURVES = (  # branches are curves here, along which an orbit bifurcates
     Column(
         "special_touches", ("special",), "i1", "touches", "whether a flight touches a stop there", "1", ("no", "yes")
     ),
+)
+
+
+OF_EDGES = (  # of curves that begin at the edges of a plane
+    Column("edge_from", ("edge", "parameter"), "f8", "from", "the numbers `parameters` at one point of the sweep"),
+    Column("edge_to", ("edge", "parameter"), "f8", "to", "at its neighbour, whose orbit has another period"),
+    Column("edge_reason", ("edge",), "i1", "reason", "why the two differ", "1", tuple(EDGES)),
+    Column("edge_curve", ("edge",), "i4", "curve", "index of the curve that passes between them"),
 )
 
 

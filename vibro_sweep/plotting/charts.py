@@ -8,7 +8,7 @@ from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
 from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.plotting import planes
 from vibro_sweep.plotting.curves import Drawn, draw, handles, name_points
-from vibro_sweep.plotting.flat import FlatFile
+from vibro_sweep.plotting.flat import FlatFile, check_over
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import axis_name, page, symbol
@@ -69,6 +69,7 @@ def _over(file: FlatFile, look: Look, ax):
     """Over the plane of a sweep in the same two numbers."""
     if look.relative:
         raise PlotError("relative: a chart over a plane has the axes of the plane")
+    check_over(look.over)
     with Result(look.over, Look(variable=look.variable, size=look.size), ax) as result:
         if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
             raise PlotError(f"over: {result.path} is no plane over {' and '.join(file.parameters)}")

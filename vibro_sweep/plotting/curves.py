@@ -70,7 +70,7 @@ def _joined(shown: np.ndarray) -> np.ndarray:
 
 
 def name_points(ax, curves: list[Drawn], most: int | None = None) -> None:
-    """Points of codimension two, and the names of those that stand alone; of at most so many."""
+    """Points of codimension two, and names of those that stand alone. most : over a picture, where few have room."""
     places = {(kind, f"{p:.9g}", f"{q:.9g}"): (p, q) for curve in curves for kind, p, q in curve.special}
     points = [(SHORT[kind], place) for (kind, _, _), place in places.items() if kind in SHORT]
     for _, place in points:
@@ -80,7 +80,7 @@ def name_points(ax, curves: list[Drawn], most: int | None = None) -> None:
     for name, place in points:
         where = np.array(place) / scale
         if all(np.any(np.abs(where - other) > APART) for other in taken) and len(taken) < (most or len(points)):
-            halo = [patheffects.withStroke(linewidth=1.8, foreground="white")]
+            halo = [patheffects.withStroke(linewidth=1.8, foreground="white")] if most is not None else None
             ax.annotate(
                 name, place, (3, 3), textcoords="offset points", size=6, path_effects=halo, zorder=5, clip_on=True,
                 annotation_clip=True,

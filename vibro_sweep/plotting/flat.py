@@ -38,8 +38,19 @@ class FlatFile:
         return [kind if kind == "nonsmooth_fold" else name for name, kind in zip(names, kinds, strict=True)]
 
 
+def check_over(path: str | Path) -> None:
+    """Raise PlotError for a file of branches, curves or windows, over which nothing can be drawn."""
+    try:
+        with opened(Path(path), ()) as (file, _):
+            kind = text(file, "kind") if is_flat(file) else None
+    except StoreError as error:
+        raise PlotError(str(error)) from error
+    if kind is not None:
+        raise PlotError(f"over: {path} holds {kind}, and no sweep")
+
+
 def flat_kind(data) -> str | None:
-    """The kind, branches or curves, of the path of such a file; else None. PlotError for windows says what shows them."""
+    """Of a file of branches or curves its kind, else None; PlotError for one of windows says what shows them."""
     if not isinstance(data, (str, Path)):
         return None
     try:

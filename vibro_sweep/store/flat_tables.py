@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVES, KINDS, REASONS, TYPES
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVES, EDGES, KINDS, REASONS, TYPES
 from vibro_sweep.model.window_families import families
 
 LONGEST_WORD = 12  # letters of an itinerary that is printed as it is
@@ -74,7 +74,12 @@ def curves_table(arrays: Mapping, parameters: list[str]) -> list[str]:
         error = f"{arrays['special_error'][s]:.1e}"
         rows.append((str(s), str(branch), kinds[branch].replace("_", "-"), *numbers, kind, *orbit, error))
     told = [f"curves: {len(kinds)}, special points: {len(rows) - 1}", *_aligned(rows)]
-    return [*told, "curves       " + _counted(Counter(kinds))] if kinds else told
+    told += ["curves       " + _counted(Counter(kinds))] if kinds else []
+    if "edge_reason" not in arrays:
+        return told
+    codes = Counter(np.asarray(arrays["edge_reason"]).tolist())
+    found = {list(EDGES)[code]: count for code, count in sorted(codes.items())}
+    return [*told, f"edges        {sum(found.values()):,} between points of different periods: {_counted(found)}"]
 
 
 def ending(arrays: Mapping, special: int) -> str:

@@ -15,7 +15,7 @@ from vibro_sweep.analysis.branches.flat import Flat
 from vibro_sweep.analysis.branches.forest import Seed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.continuation import bifurcation_curve
-from vibro_sweep.analysis.curves.flat import as_special, flatten, solution_at, start_from, type_of
+from vibro_sweep.analysis.curves.flat import as_special, flatten, solution_at, start_from
 from vibro_sweep.analysis.curves.start import Start, start_at
 from vibro_sweep.analysis.curves.switching import ENDS, switch
 from vibro_sweep.analysis.curves.tracer import Tracer
@@ -23,7 +23,7 @@ from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 
 AT_ONCE = 8  # curves that are followed before it is asked again which starts lie on known ones
-NEAR = 0.01  # of the box: farther than that from the chord of two neighbouring points their curve does not lead
+NEAR = 0.003  # of the box: farther than that from the chord of two neighbouring points their curve does not lead
 SAME = 1e-8  # of the box; of impulses a hundred times as much
 
 Box = tuple[tuple[float, float], tuple[float, float]]
@@ -40,7 +40,7 @@ class CurveSeed(NamedTuple):
 
     @property
     def start(self) -> Start:
-        return Start(self.type, self.orbit.orbit()._solution, self.index, self.theta)
+        return Start(self.type, self.orbit.solution, self.index, self.theta)
 
     def place(self, names: tuple[str, str]) -> np.ndarray:
         numbers = self.orbit.system.family.numbers
@@ -86,30 +86,37 @@ def trace(task: CurveTask) -> Flat:
 
 
 class Traced(NamedTuple):
-    """A curve that is known, and how many points of codimension two away from the first ones it is."""
+    """A curve that is known, and how many points of codimension two away from the first ones it is.
+
+    word : equal for bifurcations that may be those of one orbit, rotated or mirrored
+    """
 
     flat: Flat
     seed: CurveSeed
     generation: int
+    word: tuple
 
 
 Evaluate = Callable[[list[str], list[CurveTask]], list[Flat]]
 
 
-def network(seeds: list[CurveSeed], names, box: Box, of: tuple[str, ...], depth: int, evaluate: Evaluate):
-    """All curves, list of Traced, generation by generation. evaluate : gives `trace` of tasks by their names."""
-    known: list[Traced] = []
+def network(seeds: list[CurveSeed], names, box: Box, of: tuple[str, ...], depth: int, evaluate: Evaluate, known=()):
+    """All curves, list of Traced, generation by generation, behind those that are `known`.
+
+    evaluate : gives `trace` of tasks by their names
+    """
+    known = list(known)
     for generation in range(depth + 1):
         looked = of if generation < depth else ()
         first = len(known)
         for at in range(0, len(seeds), AT_ONCE):
             jobs = {}
             for i, seed in enumerate(seeds[at : at + AT_ONCE]):
-                if not any(lies_on(one.flat, seed, names, box) for one in known):
+                if not is_known(known, seed, names, box):
                     jobs[f"{generation}:{at + i}"] = CurveTask(seed, names, box, looked)
             for task, flat in zip(jobs.values(), evaluate(list(jobs), list(jobs.values())), strict=True):
-                if "value" in flat and not any(lies_on(one.flat, task.seed, names, box) for one in known):
-                    known.append(Traced(flat, task.seed, generation))
+                if "value" in flat and not is_known(known, task.seed, names, box):
+                    known.append(Traced(flat, task.seed, generation, _word(task.seed, names)))
         seeds = [seed for i in range(first, len(known)) for seed in _beyond(known[i], i, names)]
     return known
 
@@ -125,12 +132,15 @@ def _beyond(one: Traced, parent: int, names) -> list[CurveSeed]:
     return result
 
 
+def is_known(known: list[Traced], seed: CurveSeed, names, box: Box) -> bool:
+    """Whether a bifurcation, or its mirror image, lies on one of these curves."""
+    word = _word(seed, names)
+    return any(one.word == word and lies_on(one.flat, seed, names, box) for one in known)
+
+
 def lies_on(flat: Flat, seed: CurveSeed, names, box: Box) -> bool:
-    """Whether a bifurcation, or its mirror image, lies on a curve: by Newton's method from the points beside it."""
-    solution, place, size = seed.orbit.orbit()._solution, seed.place(names), np.ptp(box, axis=1)
-    mirrors = all(keeps_symmetry(solution.family, name) for name in names)
-    if type_of(flat) != seed.type or _word_of(flat, mirrors) != _word(seed.type, solution, seed.index, mirrors):
-        return False
+    """Whether a bifurcation lies on a curve of orbits like its own: by Newton's method from the points beside it."""
+    solution, place, size = seed.orbit.solution, seed.place(names), np.ptp(box, axis=1)
     speeds, scale = _speeds(solution), solution.family.linear.omega * solution.size_of_gap
 
     def alike(other: Solution) -> bool:
@@ -168,17 +178,13 @@ def _speeds(solution: Solution) -> np.ndarray:
     return np.sort(np.abs(solution.whole().jumps))
 
 
-def _word_of(flat: Flat, mirrors: bool) -> tuple:
-    grazing = {int(flat["branch_grazing"])} if type_of(flat) == "graze" else set()
-    letters = _letters(flat["impact_side"].tolist(), grazing, bool(flat["branch_symmetric"]))
-    return _least(letters, mirrors), int(flat["branch_period"])
-
-
-def _word(kind: str, solution: Solution, index: int, mirrors: bool) -> tuple:
-    symmetric = solution.sigma == -1
-    sides = list(map(int, solution.whole().sides))
-    letters = _letters(sides, {index} if kind == "graze" else set(), symmetric)
-    return _least(letters, mirrors), solution.halves if symmetric else solution.halves // 2
+def _word(seed: CurveSeed, names) -> tuple:
+    """Type, period and impacts of a bifurcation, equal for all rotations and mirror images."""
+    solution = seed.orbit.solution
+    mirrors = solution.family.linear.symmetric and all(keeps_symmetry(solution.family, name) for name in names)
+    sides, symmetric = list(map(int, solution.whole().sides)), solution.sigma == -1
+    letters = _letters(sides, {seed.index} if seed.type == "graze" else set(), symmetric)
+    return seed.type, solution.halves * (2 if symmetric else 1), _least(letters, mirrors)
 
 
 def _letters(sides: list[int], grazing: set[int], symmetric: bool) -> list[int]:
