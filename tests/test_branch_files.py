@@ -73,6 +73,7 @@ def test_a_point_of_the_file_is_where_a_scene_goes_on(file, tmp_path):
     run_branches(parse_continuation(text(f"{{branches: {file}, special: {at}}}", along, "depth: 0")), tmp_path / "o.h5")
     with vs.open(tmp_path / "o.h5") as data:
         assert data["branch_symmetric"].values[0] == 1 and data["omega"].values[0] == 0.6
+        assert data.attrs["b"] == value and "tau" not in data.attrs  # of that point; grazing changes with omega
 
 
 def test_it_does_not_depend_on_interruptions(file, tmp_path):
