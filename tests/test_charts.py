@@ -203,7 +203,7 @@ def test_it_depends_neither_on_interruptions_nor_on_workers(tmp_path):
 def test_edges_of_a_plane_are_explained_as_simulation_says(tmp_path):
     """Of each edge: the periodic orbits of its points, flown with the numbers of the other one."""
     plane = tmp_path / "plane.h5"
-    keys = {"omega": np.linspace(0.64, 0.664, 9), "b": np.linspace(5.0, 7.2, 12)}
+    keys = {"omega": np.linspace(0.64, 0.664, 7), "b": np.linspace(5.0, 7.2, 10)}
     with vs.sweep(SYSTEM, keys, transient=1500, record=64, output=plane, workers=1) as data:
         period = data["period"].values
         states = np.stack([data[name].isel(sample=-1).values for name in ("x1", "v1", "x2", "v2")], -1)
@@ -211,23 +211,25 @@ def test_edges_of_a_plane_are_explained_as_simulation_says(tmp_path):
     run_curves(parse_continuation(text(f"{{sweep: {plane}}}", along, "depth: 0")), tmp_path / "edges.h5")
     with vs.open(tmp_path / "edges.h5") as data:
         one, other, reason = (data[name].values for name in ("edge_from", "edge_to", "edge_reason"))
-        assert (data["edge_curve"].values[reason == 0] >= 0).all() and data.sizes["edge"] > 40
+        assert (data["edge_curve"].values[reason == 0] >= 0).all() and data.sizes["edge"] > 25
         assert (reason == 0).mean() > 0.7
 
     def stays(here, there) -> bool:
-        i, j = (int(np.abs(values - value).argmin()) for values, value in zip(keys.values(), here, strict=True))
-        if not period[i, j]:
-            return False
-        system = SYSTEM.replace(omega=float(there[0]), b=float(there[1]))
-        flown = vs.simulate(system, states[i, j], 3000).section
-        return bool(np.abs(flown[-1] - flown[-1 - period[i, j]]).max() < 1e-6 * np.abs(flown[-1]).max())
+        """Whether an orbit keeps its period on its way, in small steps, to the numbers of its neighbour."""
+        place = index(keys, here)
+        state = states[place]
+        for share in np.linspace(0, 1, 41):
+            omega, b = map(float, (1 - share) * here + share * there)
+            state = np.append(np.clip(state[0], -b, b), state[1:])
+            flown = vs.simulate(SYSTEM.replace(omega=omega, b=b), state, 1500 if share == 1 else 50).section
+            state = flown[-1]
+        return bool(np.abs(state - flown[-1 - period[place]]).max() < 1e-6 * np.abs(state).max())
 
-    names = list(EDGES)
-    disagree = 0
+    names, disagree = list(EDGES), 0
     for a, b, code in zip(one, other, reason, strict=True):
-        both = all(stays(*ends) or not period[index(keys, ends[0])] for ends in ((a, b), (b, a)))
-        disagree += both != (names[code] == "another_attractor")
-    assert disagree <= 0.1 * len(reason)  # orbits that leave a window may go to another of the same period
+        kept = [stays(*ends) for ends in ((a, b), (b, a)) if period[index(keys, ends[0])]]
+        disagree += all(kept) != (names[code] == "another_attractor")
+    assert disagree <= 0.05 * len(reason)  # an orbit that ends may be followed by another of the same period
 
 
 def index(keys, place) -> tuple[int, int]:
