@@ -228,7 +228,7 @@ def test_edges_of_a_plane_are_explained_as_simulation_says(tmp_path):
     names, disagree = list(EDGES), 0
     for a, b, code in zip(one, other, reason, strict=True):
         kept = [stays(*ends) for ends in ((a, b), (b, a)) if period[index(keys, ends[0])]]
-        disagree += all(kept) != (names[code] == "another_attractor")
+        disagree += all(kept) != (names[code] == "stable_at_both")
     assert disagree <= 0.05 * len(reason)  # an orbit that ends may be followed by another of the same period
 
 

@@ -53,7 +53,7 @@ STATUSES = ("ok", "not_real")  # of points of a branch
 EDGES = {  # of a plane between points of different periods: why; what says most comes first
     "curve": "a curve passes between the two points on which one of their orbits ends or loses its stability",
     "alone": "an orbit ends or loses its stability between the points, but no curve was followed from there",
-    "another_attractor": "the periodic orbits of the points are stable at both; the starts go to different attractors",
+    "stable_at_both": "the periodic orbits are stable at both points; other starts, or a record that has not settled",
     "not_settled": "the recorded orbit is not yet the periodic one that it approaches",
     "failed": "the orbit could not be followed",
     "open": "not looked at",

@@ -20,6 +20,7 @@ COLOURS = {
 LABELS = {"neimark_sacker": "Neimark-Sacker"}
 APART = (0.045, 0.03)  # of the axes: room for a name
 VIRTUAL = (0, (1, 1.5))  # dots of what is no motion
+MANY = 100  # curves
 SHORT = {one.name: one.label for one in CODIMENSION_TWO if one.label}
 
 
@@ -48,14 +49,18 @@ def plot_curves(curves: list[Drawn], names: tuple[str, str]):
 
 
 def draw(ax, curves: list[Drawn], halo: bool = False) -> None:
-    """The lines: virtual parts dotted, parts that bound no attractor thin. halo: with a white rim, over a picture."""
-    rim = [patheffects.withStroke(linewidth=2.4, foreground="white")] if halo else []
+    """The lines: virtual parts dotted, parts that bound no attractor thin. halo: with a white rim, over a picture.
+
+    Many curves have thin lines and no rims.
+    """
+    many = len(curves) > MANY
+    rim = [patheffects.withStroke(linewidth=2.4, foreground="white")] if halo and not many else []
     for curve in curves:
         strong = np.ones(len(curve.p), bool) if curve.bounds is None else curve.bounds
         for shown, style in (
             (curve.virtual, {"ls": VIRTUAL, "lw": 0.8}),
-            (~curve.virtual & ~strong, {"ls": "-", "lw": 0.5, "gid": "weak"}),
-            (~curve.virtual & strong, {"ls": "-", "lw": 1.2, "path_effects": rim, "gid": "curve"}),
+            (~curve.virtual & ~strong, {"ls": "-", "lw": 0.2 if many else 0.5, "gid": "weak"}),
+            (~curve.virtual & strong, {"ls": "-", "lw": 0.6 if many else 1.2, "path_effects": rim, "gid": "curve"}),
         ):
             p, q = (np.where(_joined(shown), values, np.nan) for values in (curve.p, curve.q))
             if shown.any():
@@ -73,8 +78,12 @@ def name_points(ax, curves: list[Drawn], most: int | None = None) -> None:
     """Points of codimension two, and names of those that stand alone. most : over a picture, where few have room."""
     places = {(kind, f"{p:.9g}", f"{q:.9g}"): (p, q) for curve in curves for kind, p, q in curve.special}
     points = [(SHORT[kind], place) for (kind, _, _), place in places.items() if kind in SHORT]
+    many = len(curves) > MANY
+    size = {"ms": 0.7, "mew": 0} if many else {"ms": 3.5 if most is None else 2.2, "mew": 0.6, "mfc": "white"}
     for _, place in points:
-        ax.plot(*place, "o", ms=3.5 if most is None else 2.2, color=INK, mfc="white", mew=0.6, zorder=4, gid="special")
+        ax.plot(*place, "o", color=INK, zorder=4, gid="special", **size)
+    if many:  # no room for names
+        return
     scale = np.array([np.diff(ax.get_xlim())[0], np.diff(ax.get_ylim())[0]])
     taken: list[np.ndarray] = []
     for name, place in points:

@@ -56,7 +56,7 @@ def _probed(task: Probe) -> tuple[str, CurveSeed | None]:
     except ValueError:
         return "failed", None
     if end.type == "limit":
-        return "another_attractor", None
+        return "stable_at_both", None
     seed = seed_at(end, task.names)
     return ("alone", seed) if seed is not None else ("failed", None)
 
