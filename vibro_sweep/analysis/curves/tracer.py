@@ -269,7 +269,8 @@ class Chord:
 
         try:
             zero = brentq(rough, 0.0, 1.0, xtol=ASIDE / 100, maxiter=100)
-            self.seen[zero] = self._point(zero, seen, exact=True)
+            if zero not in self.seen:
+                self.seen[zero] = self._point(zero, seen, exact=True)
             lo, hi = max(zero - ASIDE, 0.0), min(zero + ASIDE, 1.0)
             if self.value(lo) * self.value(hi) <= 0:
                 return lo, hi
