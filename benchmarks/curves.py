@@ -1,11 +1,12 @@
 """Bifurcation curves: points per second on one core, with all tests and the certificate.
 
-    python benchmarks/curves.py
+    python benchmarks/curves.py [QUICKSTART.h5]
 
 A curve is followed in steps so short that a run has enough points to be timed; the least processor time of some
-rounds.
+rounds. With the file of the scene `quickstart` also the time of the chart of its ten largest windows in (b, omega).
 """
 
+import sys
 import time
 
 import numpy as np
@@ -21,6 +22,7 @@ from vibro_sweep.engine.impulses import curve_tests, locus
 
 ROUNDS = 5
 PIECES = 40  # a step is so much shorter than usual
+BOX = ((3, 9), (0.58, 0.68))  # b, omega
 
 
 def speed(start: Start, names, box) -> tuple[float, float]:
@@ -64,7 +66,26 @@ def starts() -> list[Start]:
     return [pitchfork, longer(pitchfork, 3), torus, longer(torus, 4), fold, start_at(symmetric.ends), *grazes]
 
 
+def chart(path: str) -> tuple[float, int, int]:
+    """Curves through the ends of a sweep's ten largest windows with impacts, as far as their orbits are motions.
+
+    Processor seconds for these and the multipliers at their points; how many curves, and points.
+    """
+    windows = [window for window in vs.windows(path) if window.itinerary]
+    largest = sorted(windows, key=lambda window: window.lo - window.hi)[:10]
+    ends = [end for window in largest for end in (window.lower, window.upper) if end.type != "limit"]
+    times = []
+    for _ in range(2):  # the first one loads kernels
+        began = time.process_time()
+        curves = [vs.bifurcation_curve(end, ("b", "omega"), BOX, virtual=False) for end in ends]
+        points = sum(curve.points.sizes["point"] for curve in curves)
+        times.append(time.process_time() - began)
+    return min(times), len(curves), points
+
+
 def main() -> None:
+    if len(sys.argv) > 1:
+        print("ten largest windows: {:.2f} s, {} curves, {} points".format(*chart(sys.argv[1])))
     for start in starts():
         s = start.solution
         numbers = s.family.numbers

@@ -73,6 +73,7 @@ def test_a_point_of_the_file_is_where_a_scene_goes_on(file, tmp_path):
     run_branches(parse_continuation(text(f"{{branches: {file}, special: {at}}}", along, "depth: 0")), tmp_path / "o.h5")
     with vs.open(tmp_path / "o.h5") as data:
         assert data["branch_symmetric"].values[0] == 1 and data["omega"].values[0] == 0.6
+        assert data.attrs["b"] == value and "tau" not in data.attrs  # of that point; grazing changes with omega
 
 
 def test_it_does_not_depend_on_interruptions(file, tmp_path):
@@ -122,7 +123,10 @@ def test_other_beginnings(begin, along, number, tmp_path):
         (dict(along="{b: {start: 3, stop: 1}}"), "continue.along.b.stop = 1: must be a number > 3"),
         (dict(along="{b: {start: -3, stop: 3}}"), "continue.along.b = -3: must be a"),
         (dict(along="{b: {start: 3, stop: 4}}"), "system.b = 2: must be in continue.along: 3 .. 4"),
-        (dict(along="{b: {start: 1, stop: 4}, omega: {start: 0.5, stop: 0.7}}"), "two keys would be curves"),
+        (dict(along="{b: {start: 1, stop: 4}, omega: {start: 0.7, stop: 0.5}}"), "continue.along.omega.stop = 0.5"),
+        (dict(along="{b: {start: 1, stop: 4}, omega: {start: 0.7, stop: 0.8}}"), "system.omega = 0.63: must be in"),
+        (dict(along="{}"), "continue.along = []: must have one key, or two for curves"),
+        (dict(more="of: [fold]"), "continue.of: belongs to two keys of `along`"),
         (dict(more="follow: [fold]"), 'continue.follow[0] = "fold": allowed: graze, pitchfork, flip'),
         (dict(more="deep: 1"), "continue.deep = 1: unknown key; did you mean `depth`?"),
     ],

@@ -180,8 +180,10 @@ def windows_command(
 
 def _follow(scene, output: Path, *how):
     from .driver.branches import run_branches
+    from .driver.curves import run_curves
 
-    _in_pieces(partial(run_branches, scene, output), output, *how)
+    compute = run_branches if len(scene.along) == 1 else run_curves
+    _in_pieces(partial(compute, scene, output), output, *how)
 
 
 def _in_pieces(compute, output: Path, workers, scheduler, mode: str, quiet: bool, to_continue: str):
@@ -241,8 +243,11 @@ def plot_command(
     ] = None,
     over: Annotated[
         Path | None,
-        typer.Option(metavar="SWEEP.h5", exists=True, dir_okay=False, help="Draw branches over a sweep."),
+        typer.Option(metavar="SWEEP.h5", exists=True, dir_okay=False, help="Draw branches or curves over a sweep."),
     ] = None,
+    relative: Annotated[
+        bool, typer.Option("--relative", help="Of curves: b in parts of the grazing clearance b*.")
+    ] = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an existing file, also one that is no picture of this program.")
     ] = False,
@@ -254,7 +259,7 @@ def plot_command(
         for name, pair in (("xlim", xlim), ("ylim", ylim), ("size", size))
     ]
     look = (values, variable, *pairs, dpi and number_in("--dpi", dpi))
-    _draw(file, output, kind, overwrite, False, *look, windows=windows, over=over)
+    _draw(file, output, kind, overwrite, False, *look, windows=windows, over=over, relative=relative)
 
 
 @app.command()

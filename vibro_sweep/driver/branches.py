@@ -6,16 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.forest import Seed, Tree, forest, grow
-from vibro_sweep.driver.jobs import results, workers_of
-from vibro_sweep.driver.origins import NoOrbitError, seeds_of, source_of
+from vibro_sweep.analysis.branches.forest import Tree, forest, grow
+from vibro_sweep.driver.jobs import computed, workers_of
+from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.model.branch_file import BRANCHES, columns
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
 from vibro_sweep.store.flat_files import Subject
 from vibro_sweep.store.joining import joined
-from vibro_sweep.store.pieces import Pieces, pieces
+from vibro_sweep.store.pieces import pieces
 
 
 def run_branches(
@@ -32,10 +32,8 @@ def run_branches(
     The file does not depend on workers, executor or interruptions. Raises StoreError as `run` does, ValueError where
     the scene's first orbit does not exist, RunError where workers fail.
     """
-    source = source_of(scene)
-    numbers = {name: value for name, value in source.system.parameters().items() if name not in scene.along}
-    numbers |= {"source": source.identity} if source.identity else {}
-    subject = Subject(BRANCHES, scene.name, scene.text, {"parameters": list(scene.along)} | numbers)
+    subject = Subject(BRANCHES, scene.name, scene.text, attributes_of(scene, source_of(scene)))
+    ((key, bounds),) = scene.along.items()
     with pieces(subject, Path(output), mode) as file:
         if file.complete:
             return
@@ -45,27 +43,8 @@ def run_branches(
             except NoOrbitError:
                 file.drop()
                 raise
-            found = _followed(scene, seeds, file, pool, progress)
+            found = forest(seeds, key, bounds, scene.follow, scene.depth, computed(grow, pool, file, progress))
         file.finish(provenance(), *_contents(scene, found))
-
-
-def _followed(scene: Continuation, seeds: list[Seed], file: Pieces, pool, progress) -> list[Tree]:
-    done = 0
-
-    def evaluate(names, tasks):
-        nonlocal done
-        missing = [(name, task) for name, task in zip(names, tasks, strict=True) if file.get(name) is None]
-        total = done + len(tasks)
-        done += len(tasks) - len(missing)
-        for name, flat in results(pool, grow, missing):
-            file.write(name, flat)
-            done += 1
-            if progress:
-                progress(done, total)
-        return [file.get(name) for name in names]
-
-    ((key, bounds),) = scene.along.items()
-    return forest(seeds, key, bounds, scene.follow, scene.depth, evaluate)
 
 
 def _contents(scene: Continuation, found: list[Tree]) -> tuple:

@@ -68,5 +68,27 @@ def results(pool: Executor | None, function: Callable, jobs: Iterable[tuple[Any,
             future.cancel()
 
 
+def computed(function: Callable, pool: Executor | None, file, progress=None) -> Callable[[list[str], list], list]:
+    """evaluate(names, jobs): the results of `function`, which the run `file` (store/pieces.py) keeps by these names.
+
+    progress : called as progress(done, total) in jobs
+    """
+    done = 0
+
+    def evaluate(names: list[str], jobs: list) -> list:
+        nonlocal done
+        missing = [(name, job) for name, job in zip(names, jobs, strict=True) if file.get(name) is None]
+        total = done + len(jobs)
+        done += len(jobs) - len(missing)
+        for name, result in results(pool, function, missing):
+            file.write(name, result)
+            done += 1
+            if progress:
+                progress(done, total)
+        return [file.get(name) for name in names]
+
+    return evaluate
+
+
 def _all(function: Callable, jobs: list) -> list:
     return [function(job) for job in jobs]

@@ -1,8 +1,8 @@
-"""The orbits with which a scene of branches begins: `continue: from`."""
+"""The orbits and special points with which a scene of branches or curves begins: `continue: from`."""
 
 from concurrent.futures import Executor
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -11,17 +11,23 @@ from vibro_sweep import store
 from vibro_sweep.analysis.branches.flat import special_point
 from vibro_sweep.analysis.branches.forest import Seed, seed_of
 from vibro_sweep.analysis.branches.generations import WAYS
+from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import switch
+from vibro_sweep.analysis.curves.flat import point_of_codimension_two
+from vibro_sweep.analysis.curves.switching import switch as curves_through
+from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.lcp import born_at_grazing
 from vibro_sweep.analysis.periodic.orbit import STATUS, PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.windows.cover import solution_in
 from vibro_sweep.analysis.windows.rows import Row
+from vibro_sweep.analysis.windows.window import windows_of
 from vibro_sweep.driver.windows import cover_of, rows_in
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.branch_file import WINDOWS
+from vibro_sweep.model.bifurcations import CURVES
+from vibro_sweep.model.branch_file import CHART, WINDOWS
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
-from vibro_sweep.store.joining import branch_of
+from vibro_sweep.store.joining import branch_of, curve_of
 from vibro_sweep.store.pieces import Pieces
 
 
@@ -30,30 +36,41 @@ class NoOrbitError(ValueError):
 
 
 class Source(NamedTuple):
-    """The oscillator of a scene's branches, and the identity of the file that they begin from; empty without one."""
+    """The oscillator of a scene's branches or curves, and the identity of the file that they begin from, if any."""
 
     system: AnyOscillator
     identity: str
 
 
 def source_of(scene: Continuation) -> Source:
-    """Raises ValueError where the file that branches begin from is of another oscillator than the scene."""
-    ((key, (value, _)),) = scene.along.items()
+    """Raises ValueError where the file that a scene begins from is of another oscillator than the scene."""
+    free = {name: lo for name, (lo, _) in scene.along.items()}
     if scene.origin == "sweep":
         with store.open(Path(scene.begin)) as data:
             if "kind" in data.attrs:
                 raise ValueError(f"continue.from.sweep: {scene.begin} holds {data.attrs['kind']}, no sweep")
-            own, free = _rows(scene, data, key)[0].system, {key: value}
+            own = _rows(scene, data)[0].system
             identity = data.attrs.get("identity", "")
     elif scene.origin == "branches":
         with store.open(Path(scene.begin)) as data:
-            own, parameter = _at_special(scene, data)
+            own, names = _at_special(scene, data)
             identity = data.attrs["identity"]
-        free = {key: value, parameter: own.numbers[parameter]}
+        free |= {name: own.numbers[name] for name in names}
     else:
         return Source(scene.system, "")
     _check_same(scene, own.replace(**free), scene.system.replace(**free))
     return Source(own, identity)
+
+
+def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
+    """What the file says of the oscillator: all its numbers but those along which it is followed.
+
+    A phase `grazing` that changes with what is followed is none of them.
+    """
+    found = {name: value for name, value in source.system.parameters().items() if name not in scene.along}
+    ends = [source.system.replace(**{name: end}) for name, limits in scene.along.items() for end in limits]
+    held = {k: v for k, v in found.items() if k != "tau" or all(end.parameters()["tau"] == v for end in ends)}
+    return {"parameters": list(scene.along)} | held | ({"source": source.identity} if source.identity else {})
 
 
 def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[Seed]:
@@ -61,7 +78,7 @@ def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[S
 
     Raises NoOrbitError where there is none.
     """
-    ((key, (lo, hi)),) = scene.along.items()
+    key, (lo, hi) = next(iter(scene.along.items()))
     if scene.origin == "sweep":
         orbits = _from_sweep(scene, key, file, pool)
     else:
@@ -94,13 +111,16 @@ def _check_same(scene: Continuation, own: AnyOscillator, asked: AnyOscillator) -
             raise ValueError(f"continue.from.{scene.origin}: {told}; branches belong to one oscillator")
 
 
-def _rows(scene: Continuation, data: xr.Dataset, key: str) -> list[Row]:
-    """The row of a sweep along `key`; of a plane that at the scene's value of the other key. Raises ValueError."""
+def _rows(scene: Continuation, data: xr.Dataset) -> list[Row]:
+    """The row of a sweep along the first number; of a plane that at the scene's value of the other key.
+
+    All rows of a plane whose keys are both followed. Raises ValueError.
+    """
     try:
-        rows = rows_in(data, key)
+        rows = rows_in(data, next(iter(scene.along)))
     except ValueError as error:
         raise ValueError(f"continue.from.sweep: {scene.begin}, {error}") from None
-    numbers = scene.system.parameters()
+    numbers = {name: value for name, value in scene.system.parameters().items() if name not in scene.along}
     found = [row for row in rows if all(numbers.get(name, value) == value for name, value in row.held.items())]
     if not found:
         held = ", ".join(f"{name} = {numbers[name]!r}" for name in rows[0].held)
@@ -111,7 +131,7 @@ def _rows(scene: Continuation, data: xr.Dataset, key: str) -> list[Row]:
 def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | None) -> list[PeriodicOrbit]:
     """An orbit of each window of a sweep that reaches into the scene's range, near where it was found."""
     with store.open(Path(scene.begin)) as data:
-        rows = _rows(scene, data, key)
+        rows = _rows(scene, data)
     orbits = []
     for found in cover_of(rows, file, pool).found:
         lo, hi = np.clip(found.ends, *scene.along[key])
@@ -131,19 +151,45 @@ def _one(orbit: PeriodicOrbit, scene: Continuation) -> PeriodicOrbit:
 
 def _from_branches(scene: Continuation, key: str) -> list[PeriodicOrbit]:
     """Beyond a special point in a file of branches or windows; along another number also from its own orbit."""
-    with store.open(Path(scene.begin)) as data:
-        system, parameter = _at_special(scene, data)
-        arrays = {name: data[name].values for name in data.data_vars}
-    index = int(arrays["special_branch"][scene.special])
-    flat = branch_of(arrays, parameter, index)
-    place = scene.special - int(arrays["branch_special"][:index].sum())
-    special = special_point(flat, place, parameter, system)
+    special, (parameter, *_) = _special(scene)
+    if isinstance(special, CurvePoint):
+        return [special.orbit]
     found = switch(special) if special.type in WAYS else []
     return found if key == parameter else [special.orbit, *found]
 
 
-def _at_special(scene: Continuation, data: xr.Dataset) -> tuple[AnyOscillator, str]:
-    """The oscillator at the scene's special point, and along which number its branch leads. Raises ValueError."""
+def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[SpecialPoint]:
+    """Where curves begin: at the ends of a sweep's windows, or at a special point of a file.
+
+    `file` keeps what it takes to find them. Raises ValueError where the point is of a type that has no curve.
+    """
+    if scene.origin == "branches":
+        special, _ = _special(scene)
+        if isinstance(special, CurvePoint):
+            return curves_through(special)
+        if special.type not in CURVES:
+            raise ValueError(f"continue.from.special: {special.type!r} is not allowed; it must be {', '.join(CURVES)}")
+        return [special]
+    with store.open(Path(scene.begin)) as data:
+        rows = _rows(scene, data)
+    return [end for window in windows_of(cover_of(rows, file, pool)) for end in (window.lower, window.upper)]
+
+
+def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:
+    """The special point of `{branches: FILE, special: n}`, and the numbers that vary in that file."""
+    with store.open(Path(scene.begin)) as data:
+        system, names = _at_special(scene, data)
+        kind = data.attrs["kind"]
+        arrays = {name: data[name].values for name in data.data_vars}
+    index = int(arrays["special_branch"][scene.special])
+    place = scene.special - int(arrays["branch_special"][:index].sum())
+    if kind == CHART:
+        return point_of_codimension_two(curve_of(arrays, names, index), place, names, system), names
+    return special_point(branch_of(arrays, names[0], index), place, names[0], system), names
+
+
+def _at_special(scene: Continuation, data: xr.Dataset) -> tuple[AnyOscillator, list[str]]:
+    """The oscillator at the scene's special point, and the numbers that vary in the file. Raises ValueError."""
     if "kind" not in data.attrs:
         raise ValueError(f"continue.from.branches: {scene.begin} holds no branches")
     count = data.sizes["special"]
@@ -154,4 +200,4 @@ def _at_special(scene: Continuation, data: xr.Dataset) -> tuple[AnyOscillator, s
     values = data["special_value"].values[scene.special].tolist()
     system = parse(data.attrs["scene"]).system
     numbers = {name: data.attrs.get(name, value) for name, value in system.numbers.items() if isinstance(value, float)}
-    return system.replace(**numbers | dict(zip(names, values, strict=True))), names[0]
+    return system.replace(**numbers | dict(zip(names, values, strict=True))), names

@@ -1,10 +1,19 @@
-"""What files of branches and windows hold, declared once: name, dimensions, type, units, texts, words of codes."""
+"""What files of branches, windows and curves hold, declared once: names, dimensions, types, units, texts, words."""
 
 from typing import NamedTuple
 
-from vibro_sweep.model.bifurcations import CRITICALITIES, KINDS, REASONS, STATUSES, TYPES
+from vibro_sweep.model.bifurcations import (
+    CODIMENSION_TWO,
+    CRITICALITIES,
+    CURVES,
+    EDGES,
+    KINDS,
+    REASONS,
+    STATUSES,
+    TYPES,
+)
 
-BRANCHES, WINDOWS = "branches", "windows"  # the kinds of such files
+BRANCHES, WINDOWS, CHART = "branches", "windows", "curves"  # the kinds of such files
 
 
 class Column(NamedTuple):
@@ -149,9 +158,61 @@ UNSEEN = {  # of a stretch of a window on which the sweep shows other attractors
 }
 
 
+_SHARED = {
+    *("branch_period", "branch_symmetric", "branch_closed", "branch_row_size", "branch_impacts", "branch_special"),
+    *("branch_begins", "branch_ends", "branch_parent", "branch_parent_special", "branch_generation"),
+    *("multiplier_re", "multiplier_im", "margin", "min_impact_speed", "residual", "status"),
+    *("impact_t", "impact_side", "impact_v", "special_value", "special_branch", "special_point", "special_error"),
+}
+
+OF_CURVES = (  # branches are curves here, along which an orbit bifurcates
+    Column("branch_type", ("branch",), "i1", "type", "what happens along the curve", "1", CURVES),
+    Column(
+        "branch_grazing",
+        ("branch",),
+        "i4",
+        "grazing impact",
+        "index of the impact without speed along a graze curve; of a symmetric orbit, of its first half",
+    ),
+    *(column for column in OF_BRANCHES if column.name in _SHARED),
+    Column(
+        "unstable",
+        ("point",),
+        "i4",
+        "unstable multipliers",
+        "number of multipliers outside the unit circle, beside those that the curve is about; 0: it bounds attractors",
+    ),
+    Column(
+        "b_star", ("point",), "f8", "grazing clearance", "b at which the free motion grazes both stops; NaN: no such"
+    ),
+    Column(
+        "special_type",
+        ("special",),
+        "i1",
+        "type",
+        "of codimension two",
+        "1",
+        tuple(one.name for one in CODIMENSION_TWO),
+    ),
+    Column(
+        "special_touches", ("special",), "i1", "touches", "whether a flight touches a stop there", "1", ("no", "yes")
+    ),
+)
+
+
+OF_EDGES = (  # of curves that begin at the edges of a plane
+    Column("edge_from", ("edge", "parameter"), "f8", "from", "the numbers `parameters` at one point of the sweep"),
+    Column("edge_to", ("edge", "parameter"), "f8", "to", "at its neighbour, whose orbit has another period"),
+    Column("edge_reason", ("edge",), "i1", "reason", "why the two differ", "1", tuple(EDGES)),
+    Column("edge_curve", ("edge",), "i4", "curve", "index of the curve that passes between them"),
+)
+
+
 def columns(kind: str, parameters: list[str], states: list[str]) -> list[Column]:
     """All variables of a file; parameters : the names of numbers along which branches lead, states : x1, v1, ..."""
     own = [Column(name, ("point",), "f8", name, f"the parameter {name}") for name in parameters]
+    if kind == CHART:
+        return [*own, *OF_CURVES]
     own += [Column(name, ("point",), "f8", name, f"{name} at t = 0, before an impact there") for name in states]
     if kind == WINDOWS:
         text = "at t = 0 mod T, of a start that stays on the window's orbit at `unseen_at`; NaN where none is known"

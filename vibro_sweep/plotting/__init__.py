@@ -12,9 +12,10 @@ import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.model.pictures import PICTURES
-from vibro_sweep.plotting import basins, branches, coexistence, convergence, energy, orbits, planes, sweeps
-from vibro_sweep.plotting.flat import is_branches
+from vibro_sweep.plotting import basins, branches, charts, coexistence, convergence, energy, orbits, planes, sweeps
+from vibro_sweep.plotting.flat import flat_kind
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.pictures import check_output, save
@@ -70,16 +71,16 @@ def figure(
 ) -> Figure:
     """One picture of a file or a Dataset (default: the first of `kinds`), 7 inches wide unless `look` says otherwise.
 
-    Of a file of branches their diagram.
+    Of a file of branches their diagram, of curves their chart.
 
     ax : where its first or only panel is drawn, by default a new Figure; `look` has no size or resolution then
     Raises `PlotError` where the data cannot be read or cannot show that kind.
     """
     if ax is not None and not isinstance(ax, Axes):
         raise TypeError(f"ax: {ax!r} is not allowed; it must be matplotlib axes")
-    if is_branches(data):
+    if (of := flat_kind(data)) is not None:
         with matplotlib.rc_context(STYLE):
-            drawn = branches.branches(data, look or Look(), ax)
+            drawn = (charts.chart if of == CHART else branches.branches)(data, look or Look(), ax)
             if ax is None and look is not None:
                 look.applied(drawn)
             return drawn
@@ -102,7 +103,7 @@ def plot(path, output=None, kind: str | None = None, overwrite: bool = False, lo
         raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
     if output.resolve() == path.resolve():
         raise PlotError(f"output {output}: that is the result file itself")
-    if is_branches(path):
+    if flat_kind(path) is not None:
         check_output(output, overwrite)
         return [save(figure(path, kind, look), output, overwrite)]
     with Result(path, look) as result:

@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from vibro_sweep.model.branch_file import BRANCHES
 from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import sweeps
-from vibro_sweep.plotting.flat import FlatFile
+from vibro_sweep.plotting.flat import FlatFile, check_over
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import DASHES, INK, LEFT, SPECIAL, axis_name, limits, page, special_mark, symbol
@@ -138,6 +138,7 @@ def _legend(where, ax, file: FlatFile) -> None:
 
 def _sweep(ax, look: Look, file: FlatFile, name: str) -> None:
     """The section points of a sweep, below everything."""
+    check_over(look.over)
     with Result(look.over, Look(variable=name)) as result:
         if list(result.sweep) != file.parameters or name not in sweeps.section_variables(result):
             raise PlotError(f"over: {result.path} is no sweep over {file.parameters[0]} with section points {name}")

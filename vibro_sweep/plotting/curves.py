@@ -1,11 +1,13 @@
-"""Picture of bifurcation curves in the plane of two parameters, with their points of codimension two."""
+"""Charts: bifurcation curves in the plane of two parameters, with their points of codimension two."""
 
 from typing import NamedTuple
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib import patheffects
+from matplotlib.lines import Line2D
 
-from vibro_sweep.plotting.orbits import legend
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO
 from vibro_sweep.plotting.style import FAINT, INK, STYLE, axis_name, page
 
 COLOURS = {
@@ -19,35 +21,20 @@ COLOURS = {
 LABELS = {"neimark_sacker": "Neimark-Sacker"}
 APART = (0.045, 0.03)  # of the axes: room for a name
 VIRTUAL = (0, (1, 1.5))  # dots of what is no motion
-SHORT = {  # beside the points; the labels of MatCont where it has one
-    "cusp": "CP",
-    "fold_flip": "LPPD",
-    "fold_neimark_sacker": "LPNS",
-    "flip_neimark_sacker": "PDNS",
-    "resonance_1_1": "R1",
-    "resonance_1_2": "R2",
-    "resonance_1_3": "R3",
-    "resonance_1_4": "R4",
-    "degenerate_flip": "GPD",
-    "degenerate_neimark_sacker": "CH",
-    "fold_graze": "LPGR",
-    "flip_graze": "PDGR",
-    "pitchfork_graze": "PFGR",
-    "neimark_sacker_graze": "NSGR",
-    "resonant_graze": "RG",
-    "double_graze": "GRGR",
-    "sticking_graze": "STGR",
-}
+MANY = 100  # curves
+SHORT = {one.name: one.label for one in CODIMENSION_TWO if one.label}
 
 
 class Drawn(NamedTuple):
-    """A curve: its type, both parameters and `virtual` (points,), points of codimension two as (type, p, q)."""
+    """A curve: its type, both parameters and `virtual` (points,), points of codimension two as (type, p, q); whether it
+    bounds attractors (points,), or None where that is not shown."""
 
     type: str
     p: np.ndarray
     q: np.ndarray
     virtual: np.ndarray
     special: list[tuple[str, float, float]]
+    bounds: np.ndarray | None = None
 
 
 def plot_curves(curves: list[Drawn], names: tuple[str, str]):
@@ -55,33 +42,68 @@ def plot_curves(curves: list[Drawn], names: tuple[str, str]):
     with mpl.rc_context(STYLE):
         fig = page(4.2, "bifurcation curves")
         ax = fig.subplots()
-        for curve in curves:
-            for virtual in (False, True):
-                hidden = curve.virtual != virtual
-                inside = ~hidden
-                inside[1:] |= ~hidden[:-1] & virtual  # the virtual part begins where the real one ends
-                p, q = (np.where(inside, values, np.nan) for values in (curve.p, curve.q))
-                style = {"ls": VIRTUAL, "lw": 0.8} if virtual else {"ls": "-", "lw": 1.2}
-                label = None if virtual or hidden.all() else LABELS.get(curve.type, curve.type)
-                ax.plot(p, q, color=COLOURS[curve.type], label=label, **style)
-        if any(curve.virtual.any() for curve in curves):
-            ax.plot([], [], color=INK, ls=VIRTUAL, lw=0.8, label="virtual")
-        places = {(kind, f"{p:.9g}", f"{q:.9g}"): (p, q) for curve in curves for kind, p, q in curve.special}
-        for (kind, _, _), place in places.items():
-            if kind in SHORT:
-                ax.plot(*place, "o", ms=3.5, color=INK, mfc="white", mew=0.7, zorder=4)
+        draw(ax, curves)
         ax.set(xlabel=axis_name(names[0]), ylabel=axis_name(names[1]))
-        _label(ax, [(SHORT[kind], place) for (kind, _, _), place in places.items() if kind in SHORT])
-        legend(fig)
+        name_points(ax, curves)
+        fig.legend(handles=handles(curves), loc="outside lower center", ncols=6)
         return fig
 
 
-def _label(ax, points) -> None:
-    """Names beside the points; of points close to each other, beside the first."""
+def draw(ax, curves: list[Drawn], halo: bool = False) -> None:
+    """The lines: virtual parts dotted, parts that bound no attractor thin. halo: with a white rim, over a picture.
+
+    Many curves have thin lines and no rims.
+    """
+    many = len(curves) > MANY
+    rim = [patheffects.withStroke(linewidth=2.4, foreground="white")] if halo and not many else []
+    for curve in curves:
+        strong = np.ones(len(curve.p), bool) if curve.bounds is None else curve.bounds
+        for shown, style in (
+            (curve.virtual, {"ls": VIRTUAL, "lw": 0.8}),
+            (~curve.virtual & ~strong, {"ls": "-", "lw": 0.2 if many else 0.5, "gid": "weak"}),
+            (~curve.virtual & strong, {"ls": "-", "lw": 0.6 if many else 1.2, "path_effects": rim, "gid": "curve"}),
+        ):
+            p, q = (np.where(_joined(shown), values, np.nan) for values in (curve.p, curve.q))
+            if shown.any():
+                ax.plot(p, q, color=COLOURS[curve.type], **style)
+
+
+def _joined(shown: np.ndarray) -> np.ndarray:
+    """With the points beside, so that parts of a line touch."""
+    result = shown.copy()
+    result[1:] |= shown[:-1]
+    return result
+
+
+def name_points(ax, curves: list[Drawn], most: int | None = None) -> None:
+    """Points of codimension two, and names of those that stand alone. most : over a picture, where few have room."""
+    places = {(kind, f"{p:.9g}", f"{q:.9g}"): (p, q) for curve in curves for kind, p, q in curve.special}
+    points = [(SHORT[kind], place) for (kind, _, _), place in places.items() if kind in SHORT]
+    many = len(curves) > MANY
+    size = {"ms": 0.7, "mew": 0} if many else {"ms": 3.5 if most is None else 2.2, "mew": 0.6, "mfc": "white"}
+    for _, place in points:
+        ax.plot(*place, "o", color=INK, zorder=4, gid="special", **size)
+    if many:  # no room for names
+        return
     scale = np.array([np.diff(ax.get_xlim())[0], np.diff(ax.get_ylim())[0]])
     taken: list[np.ndarray] = []
     for name, place in points:
         where = np.array(place) / scale
-        if all(np.any(np.abs(where - other) > APART) for other in taken):
-            ax.annotate(name, place, (3, 3), textcoords="offset points", size=6)
+        if all(np.any(np.abs(where - other) > APART) for other in taken) and len(taken) < (most or len(points)):
+            halo = [patheffects.withStroke(linewidth=1.8, foreground="white")] if most is not None else None
+            ax.annotate(
+                name, place, (3, 3), textcoords="offset points", size=6, path_effects=halo, zorder=5, clip_on=True,
+                annotation_clip=True,
+            )  # fmt: skip
             taken.append(where)
+
+
+def handles(curves: list[Drawn]) -> list[Line2D]:
+    """Of a legend: the types, and what thin and dotted lines mean where there are any."""
+    there = [kind for kind in COLOURS if any(curve.type == kind for curve in curves)]
+    found = [Line2D([], [], color=COLOURS[kind], lw=1.2, label=LABELS.get(kind, kind)) for kind in there]
+    if any(curve.bounds is not None and not curve.bounds.all() for curve in curves):
+        found.append(Line2D([], [], color=INK, lw=0.5, label="of unstable orbits"))
+    if any(curve.virtual.any() for curve in curves):
+        found.append(Line2D([], [], color=INK, ls=VIRTUAL, lw=0.8, label="virtual"))
+    return found

@@ -38,15 +38,26 @@ class FlatFile:
         return [kind if kind == "nonsmooth_fold" else name for name, kind in zip(names, kinds, strict=True)]
 
 
-def is_branches(data) -> bool:
-    """Whether `data` is the path of a file of branches; of windows PlotError says what to draw them with."""
+def check_over(path: str | Path) -> None:
+    """Raise PlotError for a file of branches, curves or windows, over which nothing can be drawn."""
+    try:
+        with opened(Path(path), ()) as (file, _):
+            kind = text(file, "kind") if is_flat(file) else None
+    except StoreError as error:
+        raise PlotError(str(error)) from error
+    if kind is not None:
+        raise PlotError(f"over: {path} holds {kind}, and no sweep")
+
+
+def flat_kind(data) -> str | None:
+    """Of a file of branches or curves its kind, else None; PlotError for one of windows says what shows them."""
     if not isinstance(data, (str, Path)):
-        return False
+        return None
     try:
         with opened(Path(data), ()) as (file, _):
             kind = text(file, "kind") if is_flat(file) else None
     except StoreError:  # whoever draws it as a sweep says what is wrong
-        return False
+        return None
     if kind == WINDOWS:
         raise PlotError(f"{data} holds the windows of a sweep; `plot SWEEP.h5 --windows {data}` shows them")
-    return kind is not None
+    return kind

@@ -42,11 +42,13 @@ def variables(result: Result) -> tuple[str, ...]:
     return tuple(name for name in ("lyapunov", *_OF_A_POINT) if name in result)
 
 
-def plane(result: Result):
+def plane(result: Result, overlay=None, more=()):
     """lambda_1 and the period over the two parameters, side by side; the impacts where neither is stored.
 
     Of several starts the one with the largest lambda_1 is shown, point by point; beside it how many attractors they
     reach, where that is stored. A variable that is chosen is shown alone.
+
+    overlay(ax) draws on each panel, `more` are its handles for the legend.
     """
     maps, note = _maps(result)
     maps = maps if result.ax is None else maps[:1]
@@ -61,8 +63,10 @@ def plane(result: Result):
         ax.set_xlabel(axis_name(x_key))
         ax.patch.set(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="///")
         _grazing_curve(ax, result)
+        if overlay is not None:
+            overlay(ax)
     grid[0].set_ylabel(axis_name(y_key))
-    _legend(fig, grid, any(np.isnan(values).any() for _, values in maps))
+    _legend(fig, grid, any(np.isnan(values).any() for _, values in maps), more)
     return fig
 
 
@@ -81,14 +85,14 @@ def _grazing_curve(ax, result):
     ax.set(xlim=frame[0], ylim=frame[1])
 
 
-def _legend(fig, grid, gaps):
-    handles = []
+def _legend(fig, grid, gaps, more):
+    handles = list(more)
     curves = {line.get_label(): line.get_linestyle() for line in grid[0].lines if line.get_gid() == "grazing"}
     handles += [Line2D([], [], color=INK, lw=1.0, ls=style, label=label) for label, style in curves.items()]
     if gaps:
         handles.append(Patch(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="////", label="no number"))
     if handles:
-        fig.legend(handles=handles, loc="outside lower center", ncols=min(3, len(handles)))
+        fig.legend(handles=handles, loc="outside lower center", ncols=min(4 if more else 3, len(handles)))
 
 
 def _maps(result):

@@ -1,4 +1,4 @@
-"""From a YAML text with `continue` to a `Continuation`: branches to be followed."""
+"""From a YAML text with `continue` to a `Continuation`: branches or curves to be followed."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,16 +18,18 @@ from .system import kind_of, system_of
 from .yaml_text import YAMLTextError, lines_of, read_yaml
 
 _AT_SYSTEM = ("state", "itinerary", "free")  # orbits of `system` itself
+BY_BRANCHES = (*_AT_SYSTEM, "grazing")  # origins of curves that are orbits; their branches have the special points
 _WITH = {"periods": ("state", "itinerary"), "special": ("branches",)}  # keys of `from` that belong to others
 
 
 @dataclass(frozen=True, eq=False)
 class Continuation:
-    """Branches to be followed.
+    """Branches to be followed, or with two numbers bifurcation curves.
 
     origin : one of `ORIGINS`, and `begin` what is given with it: a state (2N,), an itinerary, a path, a period, None
     periods, special : what belongs to it
-    along : name -> (lo, hi) of the number that changes
+    along : name -> (lo, hi) of the number that changes, or of two in the order of the text
+    of : types of the curves in two numbers
     follow, depth : special points from which other branches are followed, and how far
     """
 
@@ -39,6 +41,7 @@ class Continuation:
     periods: int
     special: int | None
     along: dict[str, tuple[float, float]]
+    of: tuple[str, ...]
     follow: tuple[str, ...]
     depth: int
 
@@ -46,10 +49,19 @@ class Continuation:
         """What is followed, in a few lines."""
         numbers = {name: value for name, value in self.system.numbers.items() if value is not None}
         system = ", ".join(f"{name} = {value}" for name, value in numbers.items() if name not in self.along)
-        ((key, (lo, hi)),) = self.along.items()
+        ranges = ", ".join(f"{key} = {lo:g} .. {hi:g}" for key, (lo, hi) in self.along.items())
         begin = "the free motion" if self.origin == "free" else f"{self.origin} {self.begin}"
-        others = f"over {', '.join(self.follow)}, {self.depth} away at most" if self.depth else "no others"
-        return f"branches in {key} = {lo:g} .. {hi:g}\n  system    {system}\n  from      {begin}\n  follow    {others}"
+        begin += f", special point {self.special}" if self.special is not None else ""
+        if len(self.along) == 1:
+            others = f"over {', '.join(self.follow)}, {self.depth} away at most" if self.depth else "no others"
+            return f"branches in {ranges}\n  system    {system}\n  from      {begin}\n  follow    {others}"
+        lines = [f"curves in {ranges}", f"  system    {system}", f"  from      {begin}"]
+        lines.append(f"  of        {', '.join(self.of)}")
+        if self.origin in BY_BRANCHES:
+            over = f", over {', '.join(self.follow)}, {self.depth} away at most" if self.depth and self.follow else ""
+            lines.append(f"  branches  in {next(iter(self.along))}{over}, on which curves start")
+        away = f"at points of codimension two, {self.depth} away at most" if self.depth else "none"
+        return "\n".join([*lines, f"  others    {away}"])
 
 
 def is_continuation(data: object) -> bool:
@@ -78,8 +90,10 @@ def _continuation_of(data: Any, name: str, text: str) -> Continuation:
         raise SceneError(name, form_problems(error, scheme, data)) from None
     body = getattr(form, "continue")
     given, problems = _origin(getattr(body, "from"))
-    along, more = _along(body.along)
+    along, more = _along(body.along, list(data["continue"]["along"]))
     problems += more
+    if len(along) == 1 and "of" in body.model_fields_set:
+        problems.append("continue.of: belongs to two keys of `along`; leave it out")
     system, more = system_of(form, {}, kind, masses)
     problems += more
     for key, limits in along.items() if system is not None else ():
@@ -96,8 +110,9 @@ def _continuation_of(data: Any, name: str, text: str) -> Continuation:
         begin = tuple(begin.model_dump().values())
     origin = getattr(body, "from")
     return Continuation(
-        Path(name).stem, text, system, given[0], begin, origin.periods, origin.special, along, body.follow, body.depth
-    )
+        Path(name).stem, text, system, given[0], begin, origin.periods, origin.special,
+        along, body.of, body.follow, body.depth,
+    )  # fmt: skip
 
 
 def _origin(origin: Form) -> tuple[tuple[str, Any], list[str]]:
@@ -120,16 +135,17 @@ def _origin(origin: Form) -> tuple[tuple[str, Any], list[str]]:
     return (found[0], getattr(origin, found[0])), problems
 
 
-def _along(along: Form) -> tuple[dict[str, tuple[float, float]], list[str]]:
-    keys = [key for key in type(along).model_fields if key in along.model_fields_set]
-    if len(keys) == 2:
-        return {}, [f"continue.along: {' and '.join(keys)}; two keys would be curves, which need one"]
-    if len(keys) != 1:
-        return {}, [problem("continue.along", keys, "must have one key")]
-    limits = getattr(along, keys[0])
-    if not limits.start < limits.stop:
-        return {}, [problem(f"continue.along.{keys[0]}.stop", limits.stop, f"must be a number > {limits.start:g}")]
-    return {keys[0]: (limits.start, limits.stop)}, []
+def _along(along: Form, keys: list[str]) -> tuple[dict[str, tuple[float, float]], list[str]]:
+    """The ranges in the order of the text, and what is wrong."""
+    if not 1 <= len(keys) <= 2:
+        return {}, [problem("continue.along", keys, "must have one key, or two for curves")]
+    ranges = {key: getattr(along, key) for key in keys}
+    wrong = [
+        problem(f"continue.along.{key}.stop", limits.stop, f"must be a number > {limits.start:g}")
+        for key, limits in ranges.items()
+        if not limits.start < limits.stop
+    ]
+    return {} if wrong else {key: (limits.start, limits.stop) for key, limits in ranges.items()}, wrong
 
 
 def _outside(system: AnyOscillator, key: str, value: float) -> list[str]:

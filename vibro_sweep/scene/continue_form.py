@@ -1,10 +1,11 @@
-"""The form of a scene with `continue`: which branches are followed, from where, along which number."""
+"""The form of a scene with `continue`: which branches or curves are followed, from where, along which numbers."""
 
 from collections.abc import Iterable
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, Strict, create_model
 
+from vibro_sweep.model.bifurcations import CURVES
 from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.model.state import coordinates
 
@@ -26,6 +27,7 @@ def _free(value):
 
 
 Words = Annotated[tuple[Literal[WAYS], ...], Strict(False)]
+CurveWords = Annotated[tuple[Literal[CURVES], ...], Strict(False)]
 
 
 def continue_form(numbers: Iterable[Parameter], masses: int) -> type[Form]:
@@ -43,25 +45,26 @@ def continue_form(numbers: Iterable[Parameter], masses: int) -> type[Form]:
         state=(state, Field(default=None, description="a periodic orbit near this state at t = 0")),
         itinerary=(str, Field(default=None, description="a periodic orbit with these impacts, such as LR")),
         periods=(Whole, Field(default=1, ge=1, description="of `state` or `itinerary`: period in forcing periods")),
-        sweep=(str, Field(default=None, description="the periodic orbits of the file of a sweep")),
+        sweep=(str, Field(default=None, description="the windows of the file of a sweep")),
         grazing=(Whole, Field(default=None, ge=1, description="orbits born at grazing, up to this period")),
         free=(bool, Field(default=None, description="the motion without impacts")),
-        branches=(str, Field(default=None, description="a special point of a file of branches or windows")),
+        branches=(str, Field(default=None, description="a special point of a file of branches, curves or windows")),
         special=(Whole, Field(default=None, ge=0, description="of `branches`: the point's number in `info`")),
     )
     along = create_model(
         "AlongForm",
         __base__=Form,
-        __doc__="The number along which branches lead, and its range.",
+        __doc__="The number along which branches lead, and its range; of two, curves, and branches along the first.",
         **{one.name: (RangeForm, Field(default=None, description=one.text)) for one in numbers},
     )
     return create_model(
         "ContinueForm",
         __base__=Form,
-        __doc__="Branches of periodic orbits, in place of a sweep.",
+        __doc__="Branches of periodic orbits, or curves on which they bifurcate, in place of a sweep.",
         **{
             "from": (Annotated[origin, BeforeValidator(_free)], Field(description="the orbits to begin with")),
-            "along": (along, Field(description="the number that changes")),
+            "along": (along, Field(description="the number that changes; two: bifurcation curves")),
+            "of": (CurveWords, Field(default=CURVES, description="of two numbers: the bifurcations that are followed")),
             "follow": (Words, Field(default=WAYS, description="special points from which other branches are followed")),
             "depth": (Whole, Field(default=1, ge=0, le=100, description="how many special points away from the first")),
         },

@@ -1,11 +1,11 @@
-"""What a file of branches or windows says in words: the tables that `info` and the commands print."""
+"""What a file of branches, windows or curves says in words: the tables that `info` and the commands print."""
 
 from collections import Counter
 from collections.abc import Mapping
 
 import numpy as np
 
-from vibro_sweep.model.bifurcations import CRITICALITIES, KINDS, REASONS, TYPES
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVES, EDGES, KINDS, REASONS, TYPES
 from vibro_sweep.model.branch_file import UNSEEN
 from vibro_sweep.model.window_families import families
 
@@ -77,6 +77,27 @@ def special_table(arrays: Mapping, parameters: list[str]) -> list[str]:
         rows.append((str(s), str(branch), *numbers, ending(arrays, s), *kind, f"{arrays['special_error'][s]:.1e}"))
     count = len(np.asarray(arrays["branch_period"]))
     return [f"branches: {count}, special points: {len(rows) - 1}", *_aligned(rows)]
+
+
+def curves_table(arrays: Mapping, parameters: list[str]) -> list[str]:
+    """A line for each special point of each curve; then how many curves of which type."""
+    words = [_short(word) for word in _words(arrays)]
+    kinds = [CURVES[code] for code in np.asarray(arrays["branch_type"]).tolist()]
+    rows = [("point", "curve", "of", *parameters, "type", "period", "impacts", "error")]
+    values = np.asarray(arrays["special_value"])
+    for s, branch in enumerate(np.asarray(arrays["special_branch"]).tolist()):
+        kind = CODIMENSION_TWO[int(arrays["special_type"][s])].name.replace("_", "-")
+        numbers = [repr(float(value)) for value in values[s]]
+        orbit = [str(arrays["branch_period"][branch]), words[branch]]
+        error = f"{arrays['special_error'][s]:.1e}"
+        rows.append((str(s), str(branch), kinds[branch].replace("_", "-"), *numbers, kind, *orbit, error))
+    told = [f"curves: {len(kinds)}, special points: {len(rows) - 1}", *_aligned(rows)]
+    told += ["curves       " + _counted(Counter(kinds))] if kinds else []
+    if "edge_reason" not in arrays:
+        return told
+    codes = Counter(np.asarray(arrays["edge_reason"]).tolist())
+    found = {list(EDGES)[code]: count for code, count in sorted(codes.items())}
+    return [*told, f"edges        {sum(found.values()):,} between points of different periods: {_counted(found)}"]
 
 
 def ending(arrays: Mapping, special: int) -> str:

@@ -7,6 +7,7 @@ from vibro_sweep.model.state import state
 Arrays = dict[str, np.ndarray]
 _ALONG_POINTS = ("multiplier_re", "multiplier_im", "unstable", "margin", "min_impact_speed", "residual", "status")
 _ALONG_IMPACTS = ("impact_t", "impact_v", "impact_t_off")
+_OF_CURVES = ("branch_type", "branch_period", "branch_symmetric", "branch_closed", "branch_grazing")
 _OF_SPECIAL = ("type", "stop", "kind", "impact", "direction", "criticality", "error")
 
 
@@ -48,6 +49,61 @@ def joined(flats: list[Arrays], parameters: list[str], others: list[tuple[float,
     for name in _OF_SPECIAL:
         result[f"special_{name}"] = _stacked([flat[f"special_{name}"] for flat in flats])
     return result
+
+
+def joined_curves(flats: list[Arrays], parameters: list[str], masses: int) -> Arrays:
+    """The arrays of a file of curves in two parameters, as analysis/curves/flat.py has them."""
+    points = np.array([len(flat["value"]) for flat in flats], np.int32)
+    specials = np.array([len(flat["special_type"]) for flat in flats], np.int32)
+    first_point, first_special = (np.append(0, np.cumsum(counts))[: len(counts)] for counts in (points, specials))
+    result = {
+        "branch_row_size": points,
+        "branch_impacts": np.array([len(flat["impact_side"]) for flat in flats], np.int32),
+        "branch_special": specials,
+        "branch_begins": first_special + np.array([int(flat["branch_begins"]) for flat in flats], int),
+        "branch_ends": first_special + np.array([int(flat["branch_ends"]) for flat in flats], int),
+        "impact_side": _stacked([np.tile(flat["impact_side"], n) for flat, n in zip(flats, points, strict=True)]),
+        "special_branch": np.repeat(np.arange(len(flats)), specials),
+        "special_value": _stacked([flat["special_value"] for flat in flats], 2),
+    }
+    for name in _OF_CURVES:
+        result[name] = np.array([flat[name] for flat in flats])
+    values = _stacked([flat["value"] for flat in flats], 2)
+    result |= {name: values[:, i] for i, name in enumerate(parameters)}
+    columns = {"multiplier_re": 2 * masses, "multiplier_im": 2 * masses}
+    for name in (*_ALONG_POINTS, "b_star"):
+        result[name] = _stacked([flat[name] for flat in flats], columns.get(name))
+    for name in ("impact_t", "impact_v"):
+        result[name] = _stacked([flat[name].ravel() for flat in flats])
+    places = _stacked([flat["special_point"] for flat in flats])
+    result["special_point"] = np.where(places >= 0, places + np.repeat(first_point, specials), -1)
+    for name in ("special_type", "special_touches", "special_error"):
+        result[name] = _stacked([flat[name] for flat in flats])
+    return result
+
+
+def curve_of(arrays, parameters: list[str], index: int) -> Arrays:
+    """The arrays of one curve again, from a mapping with those of a file. Raises IndexError."""
+    sizes, impacts = (np.asarray(arrays[name]).astype(int) for name in ("branch_row_size", "branch_impacts"))
+    if not 0 <= index < len(sizes):
+        raise IndexError(index)
+    K, n, begin = impacts[index], sizes[index], sizes[:index].sum()
+    along, first = slice(begin, begin + n), (sizes * impacts)[:index].sum()
+    before = int(np.asarray(arrays["branch_special"])[:index].sum())
+    special = slice(before, before + int(arrays["branch_special"][index]))
+    places = np.asarray(arrays["special_point"][special])
+    result = {name: np.asarray(arrays[name][along]) for name in _ALONG_POINTS}
+    result |= {name: np.asarray(arrays[name][first : first + n * K]).reshape(n, K) for name in ("impact_t", "impact_v")}
+    result |= {name: np.asarray(arrays[name][index]) for name in _OF_CURVES}
+    result |= {name: np.asarray(arrays[name][special]) for name in ("special_type", "special_touches", "special_error")}
+    return result | {
+        "value": np.column_stack([arrays[name][along] for name in parameters]),
+        "impact_side": np.asarray(arrays["impact_side"][first : first + K]),
+        "special_value": np.asarray(arrays["special_value"][special]),
+        "special_point": np.where(places >= 0, places - begin, -1),
+        "branch_begins": np.asarray(arrays["branch_begins"][index] - before),
+        "branch_ends": np.asarray(arrays["branch_ends"][index] - before),
+    }
 
 
 def branch_of(arrays, parameter: str, index: int) -> Arrays:

@@ -8,11 +8,11 @@ import h5py
 import numpy as np
 
 from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.branch_file import WINDOWS
+from vibro_sweep.model.branch_file import CHART, WINDOWS
 from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STANDING, meaning
 from vibro_sweep.store import checks
 from vibro_sweep.store.attributes import text, texts
-from vibro_sweep.store.flat_tables import special_table, windows_table
+from vibro_sweep.store.flat_tables import curves_table, special_table, windows_table
 from vibro_sweep.store.opening import StoreError, blocks_lost, is_flat, open_file, opened, quantities_of
 
 if TYPE_CHECKING:
@@ -108,6 +108,8 @@ def _tables(file: h5py.File) -> list[str]:
     parameters = texts(file, "parameters")
     if text(file, "kind") == WINDOWS:
         return windows_table(arrays, parameters[0])
+    if text(file, "kind") == CHART:
+        return curves_table(arrays, parameters)
     return special_table(arrays, parameters)
 
 

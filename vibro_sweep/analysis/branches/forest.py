@@ -31,9 +31,12 @@ class Seed(NamedTuple):
     parent: int = -1
     special: int = -1
 
+    @property
+    def solution(self) -> Solution:
+        return Solution(family_of(self.system), self.sigma, self.halves, self.sides, np.array(self.u), 0.0, self.rests)
+
     def orbit(self) -> PeriodicOrbit:
-        found = Solution(family_of(self.system), self.sigma, self.halves, self.sides, np.array(self.u), 0.0, self.rests)
-        return orbit_of(self.system, found)
+        return orbit_of(self.system, self.solution)
 
 
 def seed_of(orbit: PeriodicOrbit) -> Seed:

@@ -13,6 +13,7 @@ import xarray as xr
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.chatter import written_out
 from vibro_sweep.analysis.curves.curve_points import dataset
+from vibro_sweep.analysis.curves.events import is_real
 from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint, Rows, Way, join
@@ -65,15 +66,20 @@ class BifurcationCurve:
         return plot_curves(drawn, names)
 
 
-def bifurcation_curve(special: SpecialPoint, parameters: tuple[str, str], box, progress=None) -> BifurcationCurve:
+def bifurcation_curve(
+    special: SpecialPoint, parameters: tuple[str, str], box, progress=None, virtual: bool = True
+) -> BifurcationCurve:
     """Follow a bifurcation both ways in two parameters, numbers of its system.
 
     special : a fold, flip, pitchfork, neimark_sacker, graze or sticking onset of a branch or of another curve
     box : ((lo, hi), (lo, hi)) of both parameters, around the point
     progress(points, (p, q)) is called now and then.
+    virtual : whether the curve goes on where its orbit is no motion any more; otherwise it ends there, at a point of
+        codimension two
 
     Raises ValueError for a special point of another type, names that are no numbers of the system, a box that does not
-    hold the point, and where the point does not belong to a single curve.
+    hold the point, where the point does not belong to a single curve, and without virtual points where there is no
+    motion beside it.
     """
     check_type("special", special, SpecialPoint, "a special point of a branch or of a curve")
     family = family_of(special.orbit.system)
@@ -97,14 +103,17 @@ def bifurcation_curve(special: SpecialPoint, parameters: tuple[str, str], box, p
     if first is None:
         raise ValueError(f"special: this {special.type} cannot be followed; it may belong to several curves at once")
     if len(special.parameters) > 1 or special.type != start.type:  # perhaps of codimension two: begin beside it
-        first = tracer.beside(first) or first
+        places = tracer.beside(first)
+        first = next((place for place in places if is_real(tracer, place)), (places or [first])[0])
+    if not (virtual or is_real(tracer, first)):
+        raise ValueError(f"special: beside this {special.type} there is no motion")
     sign = -1 if first.tangent[tracer.S] > 0 else 1
-    down = Way(tracer, first, sign, special.orbit.system, progress)
+    down = Way(tracer, first, sign, special.orbit.system, progress, virtual)
     down.go()
     if down.closed:
         ends = down.special
         return BifurcationCurve(start.type, names, ends, ends[-1], ends[-1], True, tracer, down.points)
-    up = Way(tracer, first, -sign, special.orbit.system, progress)
+    up = Way(tracer, first, -sign, special.orbit.system, progress, virtual)
     up.go()
     ends = [*reversed(down.special), *up.special]
     backwards = Rows(*(values[:0:-1] for values in down.points))

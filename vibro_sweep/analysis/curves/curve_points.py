@@ -7,13 +7,14 @@ from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import Rows
 from vibro_sweep.analysis.periodic.impulse_equations import multipliers_of
 from vibro_sweep.engine.impulses.curve_tests import TOUCHING
-from vibro_sweep.engine.impulses.locus import GRAZE, STICK
+from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, STICK, THETA, TORUS
 from vibro_sweep.model.linear import forcing_period
 
 
 def dataset(tracer: Tracer, rows: Rows) -> xr.Dataset:
     """Over `point`, in order: both parameters; `multiplier_re`, `multiplier_im` (multiplier) of the whole period, at a
-    graze of the orbit without the grazing impact; `virtual`, whether the orbit is no motion: an impulse pulls or a
+    graze of the orbit without the grazing impact; `unstable`, how many lie outside the unit circle beside those that
+    the curve is about; `virtual`, whether the orbit is no motion: an impulse pulls or a
     flight passes a stop; `margin`, the least distance of its other turning points from their stop; `residual`;
     `impact_t`, `impact_side` and `impact_v` (impact): of the half orbit where it is symmetric, times not wrapped.
 
@@ -33,15 +34,19 @@ def dataset(tracer: Tracer, rows: Rows) -> xr.Dataset:
             multipliers.append(np.full(2 * len(q.along), np.nan, complex))
             continue
         multipliers.append(multipliers_of(q, s.sigma, P, contacts, u, motion[others]))
-    values = np.array(multipliers) ** (1 if s.sigma == 1 else 2)
+    values = np.array(multipliers)
+    unstable = _others_outside(values, kind, rows.p[:, THETA])
+    values **= 1 if s.sigma == 1 else 2
     order = np.lexsort((-values.imag, -np.abs(values)), axis=-1)
     values = np.take_along_axis(values, order, axis=-1)
-    pushes = ~np.any(-sides[others] * rows.D[:, others] <= 0, axis=1)  # NaN: not written out
+    pulls = -sides[others] * rows.D[:, others] <= -TOUCHING * tracer.curve.unit[tracer.K]
+    pushes = ~np.any(pulls, axis=1)  # NaN: not written out
     variables = {
         names[0]: ("point", rows.p[:, 0]),
         names[1]: ("point", rows.p[:, 1]),
         "multiplier_re": (("point", "multiplier"), values.real),
         "multiplier_im": (("point", "multiplier"), values.imag),
+        "unstable": ("point", unstable),
         "virtual": ("point", ~(pushes & (rows.margin > -TOUCHING * tracer.size_of_gap))),
         "margin": ("point", rows.margin),
         "residual": ("point", rows.residual),
@@ -50,3 +55,12 @@ def dataset(tracer: Tracer, rows: Rows) -> xr.Dataset:
         "impact_v": (("point", "impact"), rows.motion[:, :, 0]),
     }
     return xr.Dataset(variables)
+
+
+def _others_outside(values: np.ndarray, kind: int, theta: np.ndarray) -> np.ndarray:
+    """(points,) how many of the multipliers (points, 2N) lie outside the unit circle, without the critical ones."""
+    outside, rows = np.abs(values) > 1, np.arange(len(values))
+    angles = {FOLD: [0 * theta], FLIP: [0 * theta + np.pi], TORUS: [theta, -theta], GRAZE: [], STICK: []}[kind]
+    for angle in angles:
+        outside[rows, np.abs(values - np.exp(1j * angle)[:, None]).argmin(axis=1)] = False
+    return outside.sum(axis=1)

@@ -119,6 +119,25 @@ def found_between(tracer: Tracer, a: Place, b: Place) -> list[Found]:
     return result
 
 
+def found_to_edge(tracer: Tracer, a: Place, b: Place) -> list[Found]:
+    """All events from a, which is real, to the one after which the orbit is no motion any more, which is the last one.
+
+    Where an impact vanishes, other tests have poles and the motion behind passes the stop: so what lies before it is
+    looked at by itself. Empty where the end cannot be located.
+    """
+    events = events_between(tracer, a, b)
+    edges = [one for one in events if one.impact is not None] or [one for one in events if one.touches]
+    ends = [found for event in edges if (found := locate(tracer, event, a, b)) is not None]
+    if not ends:
+        return []
+    end = min(ends, key=lambda one: one.share)
+    share = (1 - PIECE) * end.share
+    before = tracer.correct(tracer.between(a, b, share), tracer.row_of(tracer.difference(a, b)))
+    if before is None:
+        return [end]
+    return [*(one._replace(share=one.share * share) for one in found_between(tracer, a, before)), end]
+
+
 def _located(tracer: Tracer, a: Place, b: Place) -> list[Found]:
     return [found for event in events_between(tracer, a, b) if (found := locate(tracer, event, a, b)) is not None]
 

@@ -39,10 +39,15 @@ class Oscillators:
     def at(self, p) -> Family:
         return self.family.replace(**dict(zip(self.names, map(float, p[:2]), strict=True)))
 
+    def values(self, p) -> np.ndarray:
+        """`sampled` at the parameters p; the phase, which that does not need, is not looked for."""
+        family = self.at(p)
+        return sampled(family.build(**family.numbers))
+
     def _sample(self, p) -> np.ndarray:
         try:
             with np.errstate(all="ignore"):
-                values = sampled(self.at(p).linear)
+                values = self.values(p)
                 return np.where(np.isinf(values), 0.0, values)  # a stop that is not there
         except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
             return np.full(plane.count_of(len(self.family.linear.along)), np.nan)

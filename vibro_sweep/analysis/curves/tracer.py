@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from vibro_sweep.analysis.branches.beginning import keeps_symmetry
-from vibro_sweep.analysis.curves.oscillators import Oscillators, sampled
+from vibro_sweep.analysis.curves.oscillators import Oscillators
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.engine.impulses import curve, locus
@@ -21,6 +21,8 @@ LONGEST_STEP, SHORTEST_STEP = 0.05, 1e-10
 STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
 BESIDE = 2e-3
 ROUNDING = 1e-15  # of tests, in their units
+ASIDE = 1e-7  # of a chord: a zero found by polynomials is exact to far less
+LEAST = 1e-14  # of a chord, far below what rounding of tests leaves of a zero
 AT_ONCE = 1024  # points of one call
 
 
@@ -88,7 +90,7 @@ class Tracer:
     def go_to(self, place: Place) -> bool:
         """Move the oscillator exactly to the parameters of `place`. False where it has no forced motion."""
         try:
-            values = sampled(self.oscillators.at(place.p).linear)
+            values = self.oscillators.values(place.p)
         except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
             return False
         self._do(curve.FIT, place)  # slopes
@@ -164,22 +166,35 @@ class Tracer:
             return None
         return self.correct(place, self._direction() if row is None else row)
 
-    def beside(self, place: Place) -> Place | None:
-        """A point of the curve within the box, a little beside `place`."""
-        for length in (BESIDE, -BESIDE):
-            found = self.along(place, length)
-            if found is not None and np.all((self.box[:, 0] <= found.p[:2]) & (found.p[:2] <= self.box[:, 1])):
-                return found
-        return None
+    def beside(self, place: Place) -> list[Place]:
+        """Points of the curve within the box, a little beside `place`."""
+        found = [self.along(place, length) for length in (BESIDE, -BESIDE)]
+        lo, hi = self.box.T
+        return [one for one in found if one is not None and np.all((lo <= one.p[:2]) & (one.p[:2] <= hi))]
 
     def along(self, place: Place, length: float) -> Place | None:
         """The point of the curve whose projection on the tangent at `place` is `length`."""
+        return self.correct(self._moved(place, length), self.row_of(place.tangent))
+
+    def level(self, place: Place, axis: int, value: float) -> Place | None:
+        """The point of the curve near `place` where the parameter `axis` (0, 1) has this value."""
+        slope = self.curve.unit[self.S + axis] * place.tangent[self.S + axis]
+        if abs(value - place.p[axis]) > 2 * LONGEST_STEP * abs(slope):  # it turns back before
+            return None
+        guess = self._moved(place, (value - place.p[axis]) / slope if slope else 0.0)
+        guess.p[axis] = value
+        row = np.zeros(self.size)
+        row[self.S + axis] = 1.0
+        return self.correct(guess, row)
+
+    def _moved(self, place: Place, length: float) -> Place:
+        """A guess on the tangent."""
         guess, unit, step = copied(place), self.curve.unit, length * place.tangent
         K, S = self.K, self.S
         guess.t[:] += unit[:K] * step[:K]
         guess.D[:] += unit[K : 2 * K] * step[K : 2 * K]
         guess.p[: self.size - S] += (unit * step)[S : self.size]
-        return self.correct(guess, self.row_of(place.tangent))
+        return guess
 
     def _take_null_vectors(self, place: Place) -> None:
         """w and psi, the singular vectors of M(mu)."""
@@ -210,9 +225,16 @@ class Tracer:
         row[2 * self.K : self.S] = 0.0
         return row
 
-    def correct(self, guess: Place, row: np.ndarray) -> Place | None:
-        """The point of the curve on the plane through `guess` across `row`, examined; None: none was found."""
+    def correct(self, guess: Place, row: np.ndarray, exact: bool = True) -> Place | None:
+        """The point of the curve on the plane through `guess` across `row`, examined; None: none was found.
+
+        exact : of the oscillator itself, or of its polynomials, which is ten times as fast and nearly the same
+        """
         place = copied(guess)
+        near = self._do(curve.NEAR, place, row)
+        if not exact:
+            return place if near else None
+        place = place if near else copied(guess)
         before = np.inf
         for _ in range(MOST_CORRECTIONS):
             if not self.go_to(place):
@@ -240,27 +262,16 @@ class Tracer:
 
     def root(self, a: Place, b: Place, test: Callable[[Place], float]) -> tuple[float, Place] | None:
         """(share of the chord from a to b, point) where the test, of size 1, vanishes, on planes across the chord."""
-        row = self.row_of(self.difference(a, b))
-        seen = {0.0: a, 1.0: b}
-
-        def value(share: float) -> float:
-            if share not in seen:
-                near = min(seen, key=lambda other: abs(other - share))
-                point = self.correct(self.shifted(seen[near], a, b, share - near), row)
-                if point is None:
-                    raise ArithmeticError
-                seen[share] = point
-            found = test(seen[share])
-            return found if abs(found) > ROUNDING else 0.0  # or the search may creep where rounding has one sign
-
+        chord = Chord(self, a, b, test)
         try:
-            if value(0.0) * value(1.0) > 0:
+            if chord.value(0.0) * chord.value(1.0) > 0:
                 return None
-            share = brentq(value, 0.0, 1.0, xtol=1e-16, rtol=1e-15, maxiter=100)
-            value(share)
+            lo, hi = chord.near_zero()
+            share = brentq(chord.value, lo, hi, xtol=LEAST, rtol=1e-15, maxiter=100)
+            chord.value(share)
         except (ArithmeticError, RuntimeError):
             return None
-        return share, seen[share]
+        return share, chord.seen[share]
 
     def difference(self, a: Place, b: Place) -> np.ndarray:
         """From a to b, scaled."""
@@ -286,6 +297,49 @@ class Tracer:
             u[-1] = -np.mean(e.evaluate(s.sides, u)[0][: self.K])
             found = Solution(family, s.sigma, s.halves, s.sides, u, found.change)
         return found
+
+
+class Chord:
+    """A test along the curve between a and b, over shares of the chord. ArithmeticError where there is no point."""
+
+    def __init__(self, tracer: Tracer, a: Place, b: Place, test: Callable[[Place], float]):
+        self.tracer, self.a, self.b, self.test = tracer, a, b, test
+        self.row = tracer.row_of(tracer.difference(a, b))
+        self.seen = {0.0: a, 1.0: b}
+
+    def value(self, share: float) -> float:
+        if share not in self.seen:
+            self.seen[share] = self._point(share, self.seen, exact=True)
+        found = self.test(self.seen[share])
+        return found if abs(found) > ROUNDING else 0.0  # or the search may creep where rounding has one sign
+
+    def near_zero(self) -> tuple[float, float]:
+        """Two shares between which the test changes its sign, close to the zero that polynomials give."""
+        seen = dict(self.seen)
+
+        def rough(share: float) -> float:
+            if share not in seen:
+                seen[share] = self._point(share, seen, exact=False)
+            return self.test(seen[share])
+
+        try:
+            zero = brentq(rough, 0.0, 1.0, xtol=ASIDE / 100, maxiter=100)
+            if zero not in self.seen:
+                self.seen[zero] = self._point(zero, seen, exact=True)
+            lo, hi = max(zero - ASIDE, 0.0), min(zero + ASIDE, 1.0)
+            if self.value(lo) * self.value(hi) <= 0:
+                return lo, hi
+        except (ArithmeticError, RuntimeError, ValueError):
+            pass
+        return 0.0, 1.0
+
+    def _point(self, share: float, seen: dict[float, Place], exact: bool) -> Place:
+        near = min(seen, key=lambda other: abs(other - share))
+        guess = self.tracer.shifted(seen[near], self.a, self.b, share - near)
+        point = self.tracer.correct(guess, self.row, exact)
+        if point is None:
+            raise ArithmeticError
+        return point
 
 
 def copied(place: Place) -> Place:

@@ -11,7 +11,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.curves.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.curves.ends import birth, birth_near, strong_resonance
-from vibro_sweep.analysis.curves.events import Event, Found, found_between, is_real, without_echoes
+from vibro_sweep.analysis.curves.events import Event, Found, found_between, found_to_edge, is_real, without_echoes
 from vibro_sweep.analysis.curves.tracer import Tracer, copied, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.impulses import curve, curve_tests, locus
@@ -65,8 +65,8 @@ def join(parts: list[Rows]) -> Rows:
 class Way:
     """From the first point, forwards along its tangent or (sign = -1) backwards."""
 
-    def __init__(self, tracer: Tracer, first: Place, sign: int, system, progress=None):
-        self.tracer, self.system, self.progress = tracer, system, progress
+    def __init__(self, tracer: Tracer, first: Place, sign: int, system, progress=None, virtual: bool = True):
+        self.tracer, self.system, self.progress, self.virtual = tracer, system, progress, virtual
         self.first = copied(first)
         self.first.tangent[:] *= sign
         self.special: list[CurvePoint] = []
@@ -112,7 +112,8 @@ class Way:
             elif reason in (curve.EVENT, curve.STRONG):
                 if self._is_born(a, b):
                     return
-                self._pass(a, b)
+                if not self._pass(a, b):
+                    return
                 passed += 1
                 copy(b, a)
                 if not passable(w, a):
@@ -149,14 +150,24 @@ class Way:
         values = place.p, place.t, place.D, self.tracer.motion(place), margin, residual
         self.rows.append(Rows(*(np.array(value)[None].copy() for value in values)))
 
-    def _pass(self, a: Place, b: Place) -> None:
-        """Record what lies between a and b where the orbit is real, then b."""
+    def _pass(self, a: Place, b: Place) -> bool:
+        """Record what lies between a and b where the orbit is real, then b. Whether the curve goes on from there.
+
+        A curve without virtual points ends where its orbit stops being real.
+        """
         w = self.tracer
-        for one in without_echoes(w, found_between(w, a, b)):
+        ends = not (self.virtual or is_real(w, b))
+        for one in without_echoes(w, (found_to_edge if ends else found_between)(w, a, b)):
             self._add(one.place)
             if self._holds(one.event, one.place, a, b):
                 self.special.append(self._at(one.event.type, one.place, one.error, one.event))
+                if ends and (one.event.impact is not None or one.event.touches):
+                    return False
+        if ends:  # at a place that could not be located
+            self.special.append(self._at("failed", a, np.nan))
+            return False
         self._add(b)
+        return True
 
     def _holds(self, event: Event, place: Place, a: Place, b: Place) -> bool:
         """Whether this is a bifurcation of a motion, real there or at the edge of what is real; no neutral saddle."""
@@ -189,7 +200,8 @@ class Way:
         place.p[j] = limit if place is not a else place.p[j]
         if place is not a:
             place.tangent[:] *= np.sign(w.row_of(a.tangent) @ place.tangent[: w.size]) or 1.0
-            self._pass(a, place)
+            if not self._pass(a, place):
+                return
         self.special.append(self._at("limit", place, 0.0))
 
     def _ends_strongly(self, a: Place, b: Place) -> bool:

@@ -2,6 +2,7 @@
 
 from vibro_sweep.analysis.branches.beginning import keeps_symmetry, start_of_walk
 from vibro_sweep.analysis.branches.continuation import Branch
+from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import mirrored
 from vibro_sweep.analysis.branches.track import Rows, join
 from vibro_sweep.analysis.branches.way import Way
@@ -27,6 +28,16 @@ def stable_stretch(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     rows = join([Rows(*(values[:0:-1] for values in down.points)), up.points])
     special = [down.special[0], up.special[0]]
     return Branch(parameter, special, *special, down.closed, walk, down.frame, rows)
+
+
+def stable_end(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], forwards: float) -> SpecialPoint:
+    """What ends the stability of an orbit one way, +1.0 or -1.0; type limit: it is stable up to the bound.
+
+    Raises ValueError for an orbit that cannot be corrected.
+    """
+    way = StableWay(start_of_walk(orbit._solution, parameter, *bounds), forwards, *bounds, orbit.system)
+    way.go()
+    return way.special[0]
 
 
 def representative(orbit: PeriodicOrbit, parameter: str) -> PeriodicOrbit:

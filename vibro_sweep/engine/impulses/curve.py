@@ -248,7 +248,7 @@ def walk(f, c, path, place, row, b):
     return FULL
 
 
-FIT, SPREAD, ASSEMBLE, CORRECT, EXAMINE, WALK = range(6)  # what `at` is to do
+FIT, SPREAD, ASSEMBLE, CORRECT, EXAMINE, NEAR, WALK = range(7)  # what `at` is to do
 
 
 @entry
@@ -256,7 +256,8 @@ def at(task, planes, c, path, place, row, b):
     """One kernel for Python, since each is compiled with all that it calls; 0 or NaN where something is singular.
 
     FIT: the polynomials of the plane at the parameters of `place`; SPREAD: its tables from these values. ASSEMBLE,
-    CORRECT, EXAMINE: equations, one step of Newton's method (its size is returned), tests. WALK: why it ends.
+    CORRECT, EXAMINE: equations, one step of Newton's method (its size is returned), tests. NEAR: all steps of Newton's
+    method, with the polynomials of the plane, and tests. WALK: why it ends.
     """
     f = planes[0]
     if task == FIT:
@@ -269,8 +270,10 @@ def at(task, planes, c, path, place, row, b):
         return change if in_order(f.P, place) else np.nan
     if task == WALK:
         return float(walk(f, c, path, place, row, b))
+    if task == NEAR and not (correct(f, c, place, row, b) > 0 and move_to(f, place.p[FIRST], place.p[SECOND])):
+        return 0.0
     if not assemble(f, c, place, b):
         return 0.0
-    if task == EXAMINE:
+    if task == EXAMINE or task == NEAR:
         examine(f, c, place, b)
     return 1.0

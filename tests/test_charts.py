@@ -1,0 +1,236 @@
+"""Scenes with two numbers in `along`: curves in files, charts, and the edges of a plane."""
+
+import h5py
+import numpy as np
+import pytest
+import xarray as xr
+from support.windows import SYSTEM
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.curves.network import is_known, network, seed_at, trace
+from vibro_sweep.analysis.windows.edges import Plane, edges_of, passing
+from vibro_sweep.cli import main
+from vibro_sweep.driver.curves import run_curves
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES, EDGES
+from vibro_sweep.scene import parse_continuation
+
+NAMES, BOX = ("b", "omega"), ((2.5, 6), (0.58, 0.68))
+NUMBERS = "{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 4}"
+ALONG = "{b: {start: 2.5, stop: 6}, omega: {start: 0.58, stop: 0.68}}"
+
+
+def text(begin="{itinerary: LR}", along=ALONG, more="depth: 0", numbers=NUMBERS):
+    return f"system: {numbers}\ncontinue:\n  from: {begin}\n  along: {along}\n  {more}\n"
+
+
+def pitchfork(omega=0.63) -> SpecialPoint:
+    orbit = vs.periodic_orbit(SYSTEM.replace(b=4, omega=omega), itinerary="LR")
+    branch = vs.continue_orbit(orbit, "b", (2.5, 6))
+    return next(special for special in branch.special if special.type == "pitchfork")
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return vs.bifurcation_curve(pitchfork(), NAMES, BOX, virtual=False)
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("curves") / "lr.h5"
+    run_curves(parse_continuation(text(more="of: [pitchfork]\n  depth: 0"), "lr.yaml"), path)
+    return path
+
+
+def numbers(path) -> dict[str, bytes]:
+    with h5py.File(path) as data:
+        return {name: data[name][()].tobytes() for name in data}
+
+
+def test_the_file_holds_the_curve(file, curve):
+    with xr.open_dataset(file, engine="h5netcdf") as data:
+        assert data.attrs["kind"] == "curves" and data.attrs["mu_m"] == 10 and "tau" not in data.attrs
+        assert [CURVES[code] for code in data["branch_type"].values] == ["pitchfork"]
+        for name in (*NAMES, "multiplier_re", "residual", "unstable"):
+            np.testing.assert_allclose(data[name], curve.points[name], rtol=1e-12, atol=1e-13)
+        assert not data["status"].values.any() and data.sizes["impact"] == 2 * data.sizes["point"]
+        types = [CODIMENSION_TWO[code].name for code in data["special_type"].values]
+        assert types == [special.type for special in curve.special]
+        at = data["special_point"].values
+        for i, name in enumerate(NAMES):
+            np.testing.assert_array_equal(data[name].values[at], data["special_value"].values[:, i])
+        expected = [vs.grazing(SYSTEM.replace(omega=float(omega))).b for omega in data["omega"].values]
+        np.testing.assert_allclose(data["b_star"], expected, rtol=1e-13)
+
+
+def test_a_curve_is_known_from_another_of_its_points():
+    known = network(
+        [seed_at(pitchfork(), NAMES)], NAMES, BOX, CURVES, 0, lambda _, tasks: [trace(task) for task in tasks]
+    )
+    for omega in (0.612, 0.64):
+        assert is_known(known, seed_at(pitchfork(omega), NAMES), NAMES, BOX)
+    beside = pitchfork()
+    moved = beside.orbit.system.replace(b=beside.parameters["b"] + 1e-5)
+    near = SpecialPoint("pitchfork", {"b": moved.b}, vs.periodic_orbit(moved, itinerary="LR"), beside.multipliers)
+    assert not is_known(known, seed_at(near, NAMES), NAMES, BOX)
+
+
+def test_edges_between_which_a_line_passes():
+    """A straight line over a plane of 5 x 4 points, counted by hand: period 1 below it, 3 above it; 2 at one point."""
+    x, y = np.arange(5.0), np.arange(4.0)
+    period = np.where(y > 0.5 * x[:, None] + 0.6, 3, 1)
+    plane = Plane((x, y), period)
+    line = np.column_stack([[-1.0, 2.1, 6.0], [0.1, 1.65, 3.6]])
+    flat = {"branch_type": 0, "branch_period": 3, "value": line, "unstable": np.array([0, 0, 0])}
+    edges = edges_of(plane)
+    assert len(edges.axis) == len(passing(plane, edges, flat)) == 7
+    assert len(passing(plane, edges, flat | {"branch_period": 2})) == 0  # the orbits of other regions
+    assert len(passing(plane, edges, flat | {"unstable": np.array([1, 1, 1])})) == 0  # that bound no attractor
+    period[0, 3] = 2
+    edges = edges_of(plane)
+    found = passing(plane, edges, flat)
+    assert len(edges.axis) == 9 and sorted(map(sorted, edges.periods[found].tolist())) == 7 * [[1, 3]]
+
+
+def test_a_point_of_codimension_two_of_a_file_is_where_a_scene_goes_on(tmp_path):
+    """From the degenerate pitchfork to curves through it; along one number from its orbit."""
+    along = "{b: {start: 3, stop: 3.9}, omega: {start: 0.6, stop: 0.62}}"
+    first = tmp_path / "first.h5"
+    numbers = NUMBERS.replace("b: 4", "b: 3.8").replace("0.63", "0.615")
+    run_curves(parse_continuation(text(along=along, more="of: [pitchfork]\n  depth: 0", numbers=numbers)), first)
+    with vs.open(first) as data:
+        types = [CODIMENSION_TWO[code].name for code in data["special_type"].values]
+        at = types.index("degenerate_flip")
+        place = data["special_value"].values[at].tolist()
+    begin = f"{{branches: {first}, special: {at}}}"
+    second = tmp_path / "second.h5"
+    run_curves(parse_continuation(text(begin, along, "depth: 0", numbers)), second)
+    with vs.open(second) as data:
+        assert "pitchfork" in [CURVES[code] for code in data["branch_type"].values]
+        assert np.abs(data["special_value"].values - place).max(axis=1).min() < 1e-10
+
+
+@pytest.mark.parametrize(
+    "begin, numbers, words",
+    [
+        ("{branches: FILE, special: 99}", NUMBERS, "continue.from.special: 99 is not allowed; it must be < "),
+        ("{branches: FILE, special: 0}", NUMBERS.replace("10", "9"), "system.mu_m: 9.0 is not allowed; it is 10.0 in"),
+    ],
+)
+def test_what_is_wrong_is_said(begin, numbers, words, file, tmp_path, capsys):
+    (tmp_path / "x.yaml").write_text(text(begin.replace("FILE", str(file)), numbers=numbers))
+    assert main(["run", str(tmp_path / "x.yaml"), "-o", str(tmp_path / "x.h5")]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_commands(file, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "lr.yaml").write_text(text())
+    assert main(["check", "lr.yaml"]) == 0
+    told = capsys.readouterr().out
+    assert "curves in b = 2.5 .. 6, omega = 0.58 .. 0.68" in told and "branches  in b" in told
+    assert main(["info", str(file)]) == 0
+    told = capsys.readouterr().out
+    assert "curves: 1, special points:" in told and "degenerate-flip" in told
+    assert main(["plot", str(file), "-o", "chart.svg"]) == 0
+    drawn = (tmp_path / "chart.svg").read_text()
+    assert "pitchfork" in drawn and "GPD" in drawn and "virtual" not in drawn
+    assert main(["plot", str(file), "--relative", "-o", "relative.svg"]) == 0
+    assert main(["plot", str(file), "--variable", "x1"]) == 2
+    assert "variable 'x1' is not allowed; a chart has one where it lies over a plane" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_charts_over_a_plane(file, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    vs.sweep(
+        SYSTEM, {"omega": np.linspace(0.6, 0.66, 4), "b": np.linspace(3, 5, 5)}, transient=30, record=10,
+        observe=("section", "lyapunov"), output="plane.h5", workers=1,
+    ).close()  # fmt: skip
+    assert main(["plot", str(file), "--over", "plane.h5", "-o", "over.svg"]) == 0
+    assert main(["plot", str(file), "--over", "plane.h5", "--variable", "period", "-o", "period.svg"]) == 0
+    assert (tmp_path / "over.svg").read_text().count('id="curve"') >= 2
+    capsys.readouterr()
+    for more, words in (
+        (["--over", "plane.h5", "--relative"], "relative: a chart over a plane"),
+        (["--over", "plane.h5", "--variable", "x9"], "variable 'x9' is not allowed; there are lyapunov"),
+        (["--over", str(file)], "holds curves, and no sweep"),
+    ):
+        assert main(["plot", str(file), *more]) == 2
+        assert words in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_real_parts_are_parts_of_the_whole_curve():
+    """The graze that ends a window of period 8: between the two double grazes where it is a motion."""
+    state = vs.simulate(SYSTEM.replace(b=5.6), (0, 0, 0, 0), 2000).section[-1]
+    orbit = vs.periodic_orbit(SYSTEM.replace(b=5.6), state, 8)
+    graze = next(s for s in vs.continue_orbit(orbit, "b", (5, 6)).special if s.type == "graze")
+    whole = vs.bifurcation_curve(graze, NAMES, ((5, 7), (0.62, 0.65)))
+    real = vs.bifurcation_curve(graze, NAMES, ((5, 7), (0.62, 0.65)), virtual=False)
+    assert whole.points.virtual.any() and not real.points.virtual.any()
+    places = np.array([[special.parameters[name] for name in NAMES] for special in whole.special])
+    for special in real.special:
+        assert special.type == "double_graze"
+        assert np.abs(places - [special.parameters[name] for name in NAMES]).max(axis=1).min() < 1e-11
+
+
+@pytest.mark.slow
+def test_it_depends_neither_on_interruptions_nor_on_workers(tmp_path):
+    def stop(done, total):
+        if done == 3:
+            raise KeyboardInterrupt
+
+    scene = parse_continuation(text(more="depth: 1"), "lr.yaml")
+    run_curves(scene, tmp_path / "one.h5")
+    with pytest.raises(KeyboardInterrupt):
+        run_curves(scene, tmp_path / "two.h5", progress=stop)
+    run_curves(scene, tmp_path / "two.h5", mode="resume", workers=2)
+    assert numbers(tmp_path / "two.h5") == numbers(tmp_path / "one.h5")
+    with vs.open(tmp_path / "one.h5") as data:
+        words = [
+            (int(kind), int(period), int(impacts), value)
+            for kind, period, impacts, value in zip(
+                *(data[f"branch_{name}"].values for name in ("type", "period", "impacts")),
+                [tuple(np.round(v, 6)) for v in data["special_value"].values[data["branch_begins"].values]],
+                strict=True,
+            )
+        ]  # fmt: skip
+        assert len(words) == len(set(words)) == 4  # each curve once
+
+
+@pytest.mark.slow
+def test_edges_of_a_plane_are_explained_as_simulation_says(tmp_path):
+    """Of each edge: the periodic orbits of its points, flown with the numbers of the other one."""
+    plane = tmp_path / "plane.h5"
+    keys = {"omega": np.linspace(0.64, 0.664, 7), "b": np.linspace(5.0, 7.2, 10)}
+    with vs.sweep(SYSTEM, keys, transient=1500, record=64, output=plane, workers=1) as data:
+        period = data["period"].values
+        states = np.stack([data[name].isel(sample=-1).values for name in ("x1", "v1", "x2", "v2")], -1)
+    along = "{omega: {start: 0.63, stop: 0.67}, b: {start: 4, stop: 8}}"
+    run_curves(parse_continuation(text(f"{{sweep: {plane}}}", along, "depth: 0")), tmp_path / "edges.h5")
+    with vs.open(tmp_path / "edges.h5") as data:
+        one, other, reason = (data[name].values for name in ("edge_from", "edge_to", "edge_reason"))
+        assert (data["edge_curve"].values[reason == 0] >= 0).all() and data.sizes["edge"] > 25
+        assert (reason == 0).mean() > 0.7
+
+    def stays(here, there) -> bool:
+        """Whether an orbit keeps its period on its way, in small steps, to the numbers of its neighbour."""
+        place = index(keys, here)
+        state = states[place]
+        for share in np.linspace(0, 1, 41):
+            omega, b = map(float, (1 - share) * here + share * there)
+            state = np.append(np.clip(state[0], -b, b), state[1:])
+            flown = vs.simulate(SYSTEM.replace(omega=omega, b=b), state, 1500 if share == 1 else 50).section
+            state = flown[-1]
+        return bool(np.abs(state - flown[-1 - period[place]]).max() < 1e-6 * np.abs(state).max())
+
+    names, disagree = list(EDGES), 0
+    for a, b, code in zip(one, other, reason, strict=True):
+        kept = [stays(*ends) for ends in ((a, b), (b, a)) if period[index(keys, ends[0])]]
+        disagree += all(kept) != (names[code] == "stable_at_both")
+    assert disagree <= 0.05 * len(reason)  # an orbit that ends may be followed by another of the same period
+
+
+def index(keys, place) -> tuple[int, int]:
+    return tuple(int(np.abs(values - value).argmin()) for values, value in zip(keys.values(), place, strict=True))

@@ -1,0 +1,128 @@
+"""A bifurcation curve as plain arrays, with which it travels between processes and lies in files; and back.
+
+Arrays of a curve with n points, K impacts of the whole orbit, s special points and N masses, by the names that they
+have in files:
+
+    branch_type, branch_period, branch_symmetric, branch_closed, branch_begins, branch_ends (indices among the special
+    points), branch_grazing (of the impact without speed along a graze curve, or -1)    ()
+    value (n, 2): both parameters; b_star, margin, min_impact_speed, residual, unstable, status    (n,)
+    multiplier_re, multiplier_im    (n, 2N)
+    impact_t, impact_v    (n, K): continuous along the curve
+    impact_side    (K,)
+    special_type, special_value (s, 2), special_point, special_touches, special_error    (s,), in order along the curve
+
+Words are codes of model/bifurcations.py.
+"""
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.flat import Flat, solution_of
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.curves.continuation import BifurcationCurve
+from vibro_sweep.analysis.curves.start import Start
+from vibro_sweep.analysis.curves.way import CurvePoint
+from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses.locus import GRAZE
+from vibro_sweep.model.bifurcations import CODES_OF_CURVES, CODIMENSION_TWO, CURVES
+from vibro_sweep.model.linear import Linear, steady_gain
+
+
+def flatten(curve: BifurcationCurve) -> Flat:
+    """The arrays of a curve."""
+    data, tracer, start = curve.points, curve._tracer, curve._tracer.start.solution
+    grazing = tracer.curve.index if tracer.curve.kind == GRAZE else -1
+    value = np.column_stack([data[name].values for name in curve.parameters])
+    t, v, sides = (data[name].values for name in ("impact_t", "impact_v", "impact_side"))
+    speeds = np.abs(np.delete(v, grazing, axis=1) if grazing >= 0 else v)
+    oscillators = [tracer.oscillators.at(p).linear for p in value]
+    if start.sigma == -1:
+        half = np.array([np.pi * start.halves / q.omega for q in oscillators])
+        t, v, sides = np.hstack([t, t + half[:, None]]), np.hstack([v, -v]), np.hstack([sides, -sides])
+    result = {
+        "branch_type": np.int8(CURVES.index(curve.type)),
+        "branch_period": np.int32(start.halves if start.sigma == -1 else start.halves // 2),
+        "branch_symmetric": np.int8(start.sigma == -1),
+        "branch_closed": np.int8(curve.closed),
+        "branch_grazing": np.int32(grazing),
+        "branch_begins": np.int32(curve.special.index(curve.begins)),
+        "branch_ends": np.int32(len(curve.special) - 1 - curve.special[::-1].index(curve.ends)),
+        "value": value,
+        **{name: data[name].values for name in ("multiplier_re", "multiplier_im", "margin", "residual")},
+        "min_impact_speed": speeds.min(axis=1, initial=np.inf),
+        "b_star": np.array([_grazing_clearance(q) for q in oscillators]),
+        "unstable": data.unstable.values.astype(np.int32),
+        "status": data.virtual.values.astype(np.int8),
+        "impact_t": t,
+        "impact_v": v,
+        "impact_side": sides[0].astype(np.int8),
+    }
+    return {name: np.asarray(values) for name, values in (result | _special_points(curve, value)).items()}
+
+
+def _grazing_clearance(q: Linear) -> float:
+    """b at which the free motion touches both stops; NaN where there is none."""
+    gain = steady_gain(q) if q.low == -q.high and not np.any(q.constant) else None
+    return np.nan if gain is None else abs(gain)
+
+
+def _special_points(curve: BifurcationCurve, value: np.ndarray) -> Flat:
+    own = np.array([[one.parameters[name] for name in curve.parameters] for one in curve.special]).reshape(-1, 2)
+    points, least = [], 0
+    for place in own:  # special points are among the points, in the same order
+        there = np.flatnonzero(np.all(value[least:] == place, axis=1))
+        least += int(there[0]) if len(there) else 0
+        points.append(least if len(there) else -1)
+    return {
+        "special_type": np.array([CODES_OF_CURVES[one.type] for one in curve.special], np.int8),
+        "special_value": own,
+        "special_point": np.array(points, np.int32),
+        "special_touches": np.array([one.touches for one in curve.special], np.int8),
+        "special_error": np.array([one.error for one in curve.special], float),
+    }
+
+
+def type_of(flat: Flat) -> str:
+    return CURVES[int(flat["branch_type"])]
+
+
+def solution_at(flat: Flat, point: int, system) -> Solution:
+    """The orbit at a point of a curve; `system` has the parameters of that point."""
+    t = flat["impact_t"][point]
+    return solution_of(flat, system, t, flat["impact_v"][point], np.full(len(t), np.nan))
+
+
+def start_from(flat: Flat, point: int, system) -> Start:
+    """The bifurcation at a point of a curve, to follow it again from there."""
+    solution = solution_at(flat, point, system)
+    theta = 0.0
+    if type_of(flat) == "neimark_sacker":
+        mu = solution.multipliers
+        theta = float(np.angle(mu[np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf))]))
+    return Start(type_of(flat), solution, max(int(flat["branch_grazing"]), 0), theta)
+
+
+def point_of_codimension_two(flat: Flat, index: int, names: list[str], system) -> CurvePoint:
+    """A special point of a curve; `system` is one of its oscillators."""
+    parameters = dict(zip(names, map(float, flat["special_value"][index]), strict=True))
+    there = system.replace(**parameters)
+    solution = solution_at(flat, int(flat["special_point"][index]), there)
+    if index in (flat["branch_begins"], flat["branch_ends"]):  # perhaps the birth of a doubled or asymmetric orbit
+        solution = solution.reduced()
+    kind = CODIMENSION_TWO[int(flat["special_type"][index])].name
+    none = np.full(2 * len(solution.family.linear.along), np.nan, complex)
+    return CurvePoint(
+        kind, parameters, orbit_of(there, solution), none, float(flat["special_error"][index]),
+        curve=type_of(flat), touches=bool(flat["special_touches"][index]),
+    )  # fmt: skip
+
+
+def as_special(start: Start, parameters: dict[str, float], system) -> SpecialPoint:
+    """A start as a special point from which `bifurcation_curve` begins."""
+    orbit = orbit_of(system, start.solution)
+    none = np.full(2 * len(start.solution.family.linear.along), np.nan, complex)
+    if start.type != "graze":
+        return SpecialPoint(start.type, parameters, orbit, none)
+    stop, impact = stop_and_impact(start.solution, start.index)
+    return SpecialPoint("graze", parameters, orbit, none, stop=stop, impact=impact)

@@ -1,0 +1,148 @@
+"""Why the regions of a plane end: curves for its edges, in rounds, until each edge has a curve or a reason.
+
+In a round each connected region of one period sends some of its edges that no curve explains. The orbit there is
+followed across the edge, to what ends its stability; from that a curve is followed, which explains other edges as well.
+"""
+
+import json
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy import ndimage
+
+from vibro_sweep.analysis.branches.flat import Flat
+from vibro_sweep.analysis.branches.forest import Seed
+from vibro_sweep.analysis.curves.network import CurveSeed, Evaluate, Traced, network, seed_at
+from vibro_sweep.analysis.periodic.finding import periodic_orbit
+from vibro_sweep.analysis.windows.edges import Edges, Plane, edges_of, passing
+from vibro_sweep.analysis.windows.job import lies_on
+from vibro_sweep.analysis.windows.stretch import stable_end
+from vibro_sweep.model.bifurcations import EDGES
+
+SHARE = 12  # edges of a region, of which one is sent in a round
+BEYOND = 0.25  # of the way to the neighbour: so far behind it the orbit is followed
+_CODES = {name: code for code, name in enumerate(EDGES)}
+
+
+class Probe(NamedTuple):
+    """An orbit beside an edge: its oscillator, a state at t = 0 mod T, its period; the number that changes towards the
+    neighbour, and how far to follow it."""
+
+    system: Any
+    state: np.ndarray
+    period: int
+    names: tuple[str, str]
+    parameter: str
+    beyond: float
+
+
+def probe(task: Probe) -> Flat:
+    """What ends the stability of an orbit on its way across an edge; as JSON the reason, and a start or null."""
+    reason, seed = _probed(task)
+    place = None if seed is None else seed.place(task.names).tolist()
+    told = [reason, None if seed is None else [place, *seed[:4], *seed.orbit[1:6]]]
+    return {"answer": np.frombuffer(json.dumps(told).encode(), np.uint8)}
+
+
+def _probed(task: Probe) -> tuple[str, CurveSeed | None]:
+    here = float(task.system.family.numbers[task.parameter])
+    bounds = (min(here, task.beyond), max(here, task.beyond))
+    try:
+        orbit = periodic_orbit(task.system, task.state, task.period)
+        if not (orbit.ok and orbit.stable and lies_on(orbit, task.state)):
+            return "not_settled" if orbit.ok else "failed", None
+        end = stable_end(orbit, task.parameter, bounds, float(np.sign(task.beyond - here)))
+    except ValueError:
+        return "failed", None
+    if end.type == "limit":
+        return "stable_at_both", None
+    seed = seed_at(end, task.names)
+    return ("alone", seed) if seed is not None else ("failed", None)
+
+
+class Explained(NamedTuple):
+    """curves : list of Traced; edges; reason : (edges,) codes of EDGES; curve : (edges,) index of the curve or -1."""
+
+    curves: list[Traced]
+    edges: Edges
+    reason: np.ndarray
+    curve: np.ndarray
+
+
+def explain(
+    plane: Plane,
+    states: np.ndarray,
+    system,
+    names: tuple[str, str],
+    box,
+    of: tuple[str, ...],
+    depth: int,
+    probed: Callable[[list[str], list[Probe]], list[Flat]],
+    traced: Evaluate,
+) -> Explained:
+    """Curves for the edges of a plane. states : (n, m, 2N), of the orbits; probed, traced : give `probe` and `trace` of
+    tasks by their names."""
+    edges = edges_of(plane)
+    count = len(edges.axis)
+    reason, curve = np.full(count, _CODES["open"]), np.full(count, -1)
+    tried = edges.periods == 0  # (edges, 2): whether the orbits of both points have been followed
+    known: list[Traced] = []
+    turn = 0
+    while len(picks := _picked(plane, edges, tried)):
+        jobs = {f"edge {edge}:{side}": _task(plane, states, system, names, edges, edge, side) for edge, side in picks}
+        seeds, before = [], len(known)
+        for (edge, side), flat in zip(picks, probed(list(jobs), list(jobs.values())), strict=True):
+            told, start = json.loads(flat["answer"].tobytes().decode())
+            tried[edge, side] = True
+            reason[edge] = min(reason[edge], _CODES[told])  # what says most comes first
+            if start is not None:
+                tried[edge] = True
+                seeds.append(_seed(start, names, system))
+
+        def evaluate(keys, tasks, turn=turn):
+            return traced([f"{turn}:{key}" for key in keys], tasks)
+
+        known = network([seed for seed in seeds if seed.type in of], names, box, of, depth, evaluate, known)
+        for i in range(before, len(known)):
+            passed = passing(plane, edges, known[i].flat)
+            passed = passed[curve[passed] < 0]
+            curve[passed], reason[passed], tried[passed] = i, _CODES["curve"], True
+        turn += 1
+    return Explained(known, edges, reason, curve)
+
+
+def _picked(plane: Plane, edges: Edges, tried: np.ndarray) -> list[tuple[int, int]]:
+    """(edge, side) of some edges of each region, spread over it."""
+    found = []
+    for period in np.unique(plane.period[plane.period > 0]):
+        label, _ = ndimage.label(plane.period == period, np.ones((3, 3)))
+        for side in (0, 1):
+            there = np.flatnonzero(~tried[:, side] & (edges.periods[:, side] == period) & ((side == 0) | tried[:, 0]))
+            at = edges.place[there].copy()
+            at[np.arange(len(at)), edges.axis[there]] += side
+            region = label[at[:, 0], at[:, 1]]
+            for one in np.unique(region):
+                own = there[region == one]
+                found += [(int(own[i]), side) for i in range(len(own) % SHARE // 2, len(own), SHARE)]
+    return sorted(found)
+
+
+def _task(plane: Plane, states, system, names, edges: Edges, edge: int, side: int) -> Probe:
+    axis = int(edges.axis[edge])
+    ends = [edges.place[edge].copy(), edges.place[edge].copy()]
+    ends[1][axis] += 1
+    here, there = ends[side], ends[1 - side]
+    at = {name: float(plane.values[j][here[j]]) for j, name in enumerate(names)}
+    one, other = plane.values[axis][here[axis]], plane.values[axis][there[axis]]
+    beyond = float(other + BEYOND * (other - one))
+    own = system.replace(**at)
+    return Probe(own, states[tuple(here)], int(plane.period[tuple(here)]), names, names[axis], beyond)
+
+
+def _seed(start, names, system) -> CurveSeed:
+    place, kind, index, theta, parameters, sigma, halves, sides, u, rests = start
+    there = system.replace(**dict(zip(names, place, strict=True)))
+    return CurveSeed(
+        kind, index, theta, tuple(parameters), Seed(there, sigma, halves, tuple(sides), tuple(u), tuple(rests))
+    )

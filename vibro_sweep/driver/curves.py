@@ -1,0 +1,97 @@
+"""From a scene with two numbers in `along` to its file: bifurcation curves."""
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from pathlib import Path
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.flat import special_point
+from vibro_sweep.analysis.branches.forest import forest, grow
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.curves.network import CurveSeed, Traced, network, seed_at, trace
+from vibro_sweep.analysis.windows.explained import explain, probe
+from vibro_sweep.driver.jobs import computed, workers_of
+from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of, specials_of
+from vibro_sweep.driver.planes import edges_in_file, plane_of
+from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.model.branch_file import CHART, OF_EDGES, columns
+from vibro_sweep.scene import Continuation
+from vibro_sweep.scene.continuation import BY_BRANCHES
+from vibro_sweep.store.flat_files import Subject
+from vibro_sweep.store.joining import joined_curves
+from vibro_sweep.store.pieces import pieces
+
+
+def run_curves(
+    scene: Continuation,
+    output: str | Path,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    mode: str = "new",
+) -> None:
+    """Follow the bifurcation curves of a scene and write their file; arguments as of `run`, `workers` are processes.
+
+    progress : called as progress(done, total) in branches, then in curves
+    The file does not depend on workers, executor or interruptions. Raises what `run_branches` raises.
+    """
+    of_plane, more = plane_of(scene), {}
+    subject = Subject(CHART, scene.name, scene.text, attributes_of(scene, source_of(scene)))
+    names, box = tuple(scene.along), tuple(scene.along.values())
+    with pieces(subject, Path(output), mode) as file:
+        if file.complete:
+            return
+        with workers_of(workers, executor) as pool:
+            evaluate = computed(trace, pool, file, progress)
+            if of_plane is not None:
+                probed = computed(probe, pool, file, progress)
+                found = explain(*of_plane, names, box, scene.of, scene.depth, probed, evaluate)
+                curves, more = found.curves, edges_in_file(of_plane[0], found)
+            else:
+                try:
+                    starts = _starts(scene, names, box, pool, file, progress)
+                except NoOrbitError:
+                    file.drop()
+                    raise
+                curves = network(starts, names, box, scene.of, scene.depth, evaluate)
+        arrays = joined_curves([one.flat for one in curves], list(names), scene.system.masses)
+        held = [*columns(CHART, list(names), []), *(OF_EDGES if more else ())]
+        file.finish(provenance(), held, arrays | _origins(curves, arrays) | more)
+
+
+def _starts(scene: Continuation, names, box, pool, file, progress) -> list[CurveSeed]:
+    """Where curves begin, within the box."""
+    on_branches = scene.origin in BY_BRANCHES
+    specials = _on_branches(scene, pool, file, progress) if on_branches else specials_of(scene, file, pool)
+    found = [seed_at(special, names) for special in specials if special.type in scene.of]
+    lo, hi = np.transpose(box)
+    return [one for one in found if one is not None and np.all((lo <= (at := one.place(names))) & (at <= hi))]
+
+
+def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint]:
+    """All special points of the branches of the scene's orbits along its first number."""
+    key, bounds = next(iter(scene.along.items()))
+    keep = computed(grow, pool, file, progress)
+
+    def evaluate(names, jobs):
+        return keep([f"branch {name}" for name in names], jobs)
+
+    trees = forest(seeds_of(scene, file, pool), key, bounds, scene.follow, scene.depth, evaluate)
+    return [
+        special_point(tree.flat, i, key, tree.seed.system)
+        for tree in trees
+        for i in range(len(tree.flat["special_type"]))
+    ]
+
+
+def _origins(curves: list[Traced], arrays) -> dict[str, np.ndarray]:
+    """Where each curve was met."""
+    parents = np.array([one.seed.orbit.parent for one in curves], int)
+    own = np.array([one.seed.orbit.special for one in curves], int)
+    first = np.append(0, np.cumsum(arrays["branch_special"]))
+    return {
+        "branch_parent": parents,
+        "branch_parent_special": np.where(parents >= 0, first[parents] + own, -1) if len(curves) else own,
+        "branch_generation": np.array([one.generation for one in curves], int),
+    }

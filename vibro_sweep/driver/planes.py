@@ -1,0 +1,46 @@
+"""The plane of a sweep whose edges a scene of curves explains: `from: {sweep: PLANE.h5}`, `along` its keys."""
+
+from typing import Any
+
+import numpy as np
+
+from vibro_sweep import store
+from vibro_sweep.analysis.windows.edges import Plane, ends_of
+from vibro_sweep.analysis.windows.explained import Explained
+from vibro_sweep.analysis.windows.rows import check_data
+from vibro_sweep.model.built import BUILD
+from vibro_sweep.model.state import state
+from vibro_sweep.scene import Continuation, parse_scene
+
+
+def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
+    """The plane of the scene's sweep, last recorded states (n, m, 2N), an oscillator; None for a sweep of one number.
+
+    Raises ValueError for a plane that cannot be taken, StoreError for a file that cannot be read.
+    """
+    if scene.origin != "sweep":
+        return None
+    names = list(scene.along)
+    with store.open(scene.begin) as data:
+        keys = [str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"])]
+        if len(keys) != 2:
+            return None
+        if data.attrs.get("type") == BUILD:
+            raise ValueError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
+        check_data(data)
+        if sorted(keys) != sorted(names):
+            raise ValueError(f"continue.along: {', '.join(names)} is not allowed; {scene.begin} is a plane of {keys}")
+        if "start" in data["period"].dims:
+            raise ValueError(f"continue.from.sweep: {scene.begin} has several starts; it must be a plane of one")
+        system = parse_scene(data.attrs["scene"]).system
+        data = data.sortby(names).transpose(*names, ...)
+        values = tuple(data[name].values.astype(float) for name in names)
+        period = data["period"].values.astype(int)
+        states = np.stack([data[name].isel(sample=-1).values for name in state(system.masses)], axis=-1)
+    return Plane(values, period), states, system
+
+
+def edges_in_file(plane: Plane, found: Explained) -> dict[str, np.ndarray]:
+    """The columns of `OF_EDGES`."""
+    one, other = ends_of(plane, found.edges)
+    return {"edge_from": one, "edge_to": other, "edge_reason": found.reason, "edge_curve": found.curve}

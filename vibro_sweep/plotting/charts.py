@@ -1,0 +1,87 @@
+"""Files of bifurcation curves as charts in two parameters: alone, or over the plane of a sweep."""
+
+from pathlib import Path
+
+import numpy as np
+
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
+from vibro_sweep.model.branch_file import CHART
+from vibro_sweep.plotting import planes
+from vibro_sweep.plotting.curves import Drawn, draw, handles, name_points
+from vibro_sweep.plotting.flat import FlatFile, check_over
+from vibro_sweep.plotting.look import Look
+from vibro_sweep.plotting.result import PlotError, Result
+from vibro_sweep.plotting.style import axis_name, page, symbol
+
+NAMED = 14  # points of codimension two that are named over a plane
+
+
+def chart(path: str | Path, look: Look, ax=None):
+    """The chart of a file of curves, over a plane where the look names one. Raises PlotError."""
+    file = FlatFile(path, CHART)
+    if not len(file["branch_type"]):
+        raise PlotError(f"{file.name}: nothing to show, it has no curves")
+    if look.over is not None:
+        return _over(file, look, ax)
+    if look.variable is not None:
+        raise PlotError(f"variable {look.variable!r} is not allowed; a chart has one where it lies over a plane")
+    names = file.parameters
+    curves = drawn(file, names, look.relative)
+    fig = None
+    if ax is None:
+        fig = page(5.0, f"Bifurcation curves: {file.title}")
+        ax = fig.subplots()
+    draw(ax, curves)
+    name_points(ax, curves)
+    labels = [f"{symbol('b')}$/${symbol('b_star')}" if look.relative and n == "b" else axis_name(n) for n in names]
+    ax.set(xlabel=labels[0], ylabel=labels[1])
+    if fig is None:
+        ax.legend(handles=handles(curves), loc="best", frameon=True)
+    else:
+        fig.legend(handles=handles(curves), loc="outside lower center", ncols=6)
+    return fig or ax.figure
+
+
+def drawn(file: FlatFile, names: list[str], relative: bool = False) -> list[Drawn]:
+    """The curves of a file with these parameters as axes. relative: b in parts of the grazing clearance b*."""
+    if relative and ("b" not in names or not np.isfinite(file["b_star"]).all()):
+        raise PlotError(f"relative: {file.name} has no {'b' if 'b' not in names else 'grazing clearance'} to divide by")
+    order = [file.parameters.index(name) for name in names]
+    values = np.column_stack([file[name] for name in names])
+    places = file["special_value"][:, order].copy()
+    if relative:
+        axis = names.index("b")
+        values[:, axis] /= file["b_star"]
+        places[:, axis] /= file["b_star"][file["special_point"]]
+    kinds = [CODIMENSION_TWO[code].name for code in file["special_type"].tolist()]
+    ends = np.cumsum(file["branch_row_size"])
+    result = []
+    for i, (code, end) in enumerate(zip(file["branch_type"].tolist(), ends.tolist(), strict=True)):
+        along = slice(end - int(file["branch_row_size"][i]), end)
+        own = np.flatnonzero(file["special_branch"] == i)
+        special = [(kinds[s], *places[s].tolist()) for s in own]
+        virtual, bounds = file["status"][along] != 0, file["unstable"][along] == 0
+        result.append(Drawn(CURVES[code], *values[along].T, virtual, special, bounds))
+    return result
+
+
+def _over(file: FlatFile, look: Look, ax):
+    """Over the plane of a sweep in the same two numbers."""
+    if look.relative:
+        raise PlotError("relative: a chart over a plane has the axes of the plane")
+    check_over(look.over)
+    with Result(look.over, Look(variable=look.variable, size=look.size), ax) as result:
+        if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
+            raise PlotError(f"over: {result.path} is no plane over {' and '.join(file.parameters)}")
+        if look.variable is not None and look.variable not in planes.variables(result):
+            told = ", ".join(planes.variables(result))
+            raise PlotError(f"variable {look.variable!r} is not allowed; there are {told}")
+        curves = drawn(file, list(result.sweep))
+
+        def overlay(panel):
+            frame = panel.get_xlim(), panel.get_ylim()
+            draw(panel, curves, halo=True)
+            panel.set(xlim=frame[0], ylim=frame[1])
+            name_points(panel, curves, NAMED)
+
+        return planes.plane(result, overlay, handles(curves))
