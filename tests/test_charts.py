@@ -200,8 +200,8 @@ def test_it_depends_neither_on_interruptions_nor_on_workers(tmp_path):
 
 
 @pytest.mark.slow
-def test_edges_of_a_plane_are_explained_as_simulation_says(tmp_path):
-    """Of each edge: the periodic orbits of its points, flown with the numbers of the other one."""
+def test_edges_of_a_plane(tmp_path):
+    """Most have a curve; where both orbits are said to be stable at both points, simulation carries them across."""
     plane = tmp_path / "plane.h5"
     keys = {"omega": np.linspace(0.64, 0.664, 7), "b": np.linspace(5.0, 7.2, 10)}
     with vs.sweep(SYSTEM, keys, transient=1500, record=64, output=plane, workers=1) as data:
@@ -221,15 +221,19 @@ def test_edges_of_a_plane_are_explained_as_simulation_says(tmp_path):
         for share in np.linspace(0, 1, 41):
             omega, b = map(float, (1 - share) * here + share * there)
             state = np.append(np.clip(state[0], -b, b), state[1:])
-            flown = vs.simulate(SYSTEM.replace(omega=omega, b=b), state, 1500 if share == 1 else 50).section
+            flown = vs.simulate(SYSTEM.replace(omega=omega, b=b), state, 3000 if share == 1 else 300).section
             state = flown[-1]
         return bool(np.abs(state - flown[-1 - period[place]]).max() < 1e-6 * np.abs(state).max())
 
-    names, disagree = list(EDGES), 0
-    for a, b, code in zip(one, other, reason, strict=True):
-        kept = [stays(*ends) for ends in ((a, b), (b, a)) if period[index(keys, ends[0])]]
-        disagree += all(kept) != (names[code] == "stable_at_both")
-    assert disagree <= 0.05 * len(reason)  # an orbit that ends may be followed by another of the same period
+    both = np.flatnonzero(reason == list(EDGES).index("stable_at_both"))
+    assert len(both)
+    for a, b in zip(one[both], other[both], strict=True):
+        for ends in ((a, b), (b, a)):
+            assert not period[index(keys, ends[0])] or stays(*ends), (
+                *ends,
+                period[index(keys, a)],
+                period[index(keys, b)],
+            )
 
 
 def index(keys, place) -> tuple[int, int]:
