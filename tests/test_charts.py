@@ -114,7 +114,7 @@ def test_a_point_of_codimension_two_of_a_file_is_where_a_scene_goes_on(tmp_path)
     "begin, numbers, words",
     [
         ("{branches: FILE, special: 99}", NUMBERS, "continue.from.special: 99 is not allowed; it must be < "),
-        ("{branches: FILE, special: 0}", NUMBERS.replace("10", "9"), "system.mu_m: 9.0 is not allowed; it is 10.0 in"),
+        ("{branches: FILE, special: 0}", NUMBERS.replace("10", "9"), "mu_m = 9.0 in system, and 10.0 in"),
     ],
 )
 def test_what_is_wrong_is_said(begin, numbers, words, file, tmp_path, capsys):

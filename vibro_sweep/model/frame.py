@@ -18,6 +18,7 @@ import numpy as np
 from vibro_sweep.model.contact import Contact, flight_matrix
 
 CLASSICAL = 1e-13  # of the matrices: what may couple modes and be neglected
+NO_PLANES = 1e10  # condition from which on coordinates that part what is not coupled are tried
 UNSEEN = 1e-10  # share of the gap in a plane, in the metric of the masses, that is none
 LEAST_SCALE = 1e-3  # of the rate of a plane: near critical damping it shears instead of turning, and any scale serves
 
@@ -37,7 +38,7 @@ def frame_of(contact: Contact, omega: float) -> Frame:
     A = flight_matrix(contact.stiffness, contact.damping)
     planes = _modes(contact)
     if planes is None:
-        planes = _planes(A, np.sqrt(np.repeat(contact.masses, 2)))
+        planes = _planes(A, contact)
     eta, square, seconds = planes
     order = np.argsort(np.abs(seconds[1]) * np.sqrt(contact.masses[0]) > UNSEEN, kind="stable")
     eta, square, seconds = eta[order], square[order], seconds[:, order]
@@ -66,37 +67,75 @@ def _modes(contact: Contact):
     return eta, squares - eta**2, seconds
 
 
-def _planes(A: np.ndarray, root: np.ndarray):
-    """Planes of pairs of roots, whatever the damping. root: the metric, square roots of masses, (2 N,)."""
-    roots, vectors = np.linalg.eig(A)
+def _planes(A: np.ndarray, contact: Contact):
+    """Planes of pairs of roots, whatever the damping.
+
+    Modes with neither stiffness nor damping are taken apart first: their two roots 0 have one eigenvector only.
+    """
+    root = np.sqrt(contact.masses)
+    K, C = (root[:, None] * matrix / root for matrix in (contact.stiffness, contact.damping))
+    together = sum((matrix + matrix.T) / (np.abs(matrix).max() or 1.0) for matrix in (K, C))
+    values, vectors = np.linalg.eigh(together)
+    idle = values <= CLASSICAL * len(K) * values[-1]
+    if not idle.any():
+        condition, planes = _pairs(A, np.eye(len(A)), np.eye(len(A)), np.repeat(root, 2))
+        if condition < NO_PLANES:
+            return planes
+    free, others = vectors[:, idle], vectors[:, ~idle]
+    to, back = np.kron(others.T * root, np.eye(2)), np.kron(others / root[:, None], np.eye(2))
+    _, (eta, square, seconds) = _pairs(A, to, back, np.repeat(root, 2))
+    drifting = np.zeros((len(A), free.shape[1]))
+    drifting[1::2] = free / root[:, None]
+    nothing = np.zeros(free.shape[1])
+    return np.append(nothing, eta), np.append(nothing, square), np.hstack([drifting, seconds])
+
+
+def _pairs(A: np.ndarray, to: np.ndarray, back: np.ndarray, root: np.ndarray):
+    """(condition, planes) of pairs of roots in the space of `back`. root: square roots of masses, (2 N,)."""
+    roots, vectors = np.linalg.eig(to @ A @ back)
+    vectors = back @ vectors
     upper, real = np.flatnonzero(roots.imag > 0), np.flatnonzero(roots.imag == 0)
     real = real[np.argsort(roots[real].real)]
-    half = len(real) // 2
+    sizes = np.linalg.norm(vectors * root[:, None], axis=0)
+    seen = np.abs(vectors[0, real]) * root[0] > UNSEEN * sizes[real]
+    groups = [real[seen], real[~seen]] if np.sum(seen) % 2 == 0 else [real]  # one of each kind makes no plane
     best = None
-    for partners in (real.reshape(-1, 2), np.stack([real[:half], real[::-1][:half]], -1)):
+    for outwards in (False, True):
+        partners = np.concatenate([_partners(group, outwards) for group in groups])
         found = [_plane(roots[i], np.stack([vectors[:, i].real, vectors[:, i].imag], -1), root) for i in upper]
         found += [_plane_of_two(roots[pair].real, vectors[:, pair].real, root) for pair in partners]
         eta, square, seconds = (np.stack(part, -1) for part in zip(*found, strict=True))
         firsts = A @ seconds + eta * seconds
-        firsts /= np.linalg.norm(firsts * root[:, None], axis=0)
-        condition = np.linalg.cond(np.hstack([seconds, firsts]) * root[:, None])
+        sizes = np.linalg.norm(firsts * root[:, None], axis=0)
+        # two equal roots, as 0 of two damped free modes, make no plane
+        both = np.hstack([seconds, firsts / np.where(sizes > 0, sizes, 1.0)])
+        condition = np.linalg.cond(both * root[:, None]) if np.all(sizes > 0) else np.inf
         if best is None or condition < best[0]:
             best = condition, (eta, square, seconds)
-    return best[1]
+    return best
+
+
+def _partners(real: np.ndarray, outwards: bool) -> np.ndarray:
+    """(m/2, 2) of m real roots in order: neighbours, or the first with the last."""
+    half = len(real) // 2
+    return np.stack([real[:half], real[::-1][:half]], -1) if outwards else real.reshape(-1, 2)
 
 
 def _plane(one: complex, span: np.ndarray, root: np.ndarray):
-    return -one.real, one.imag**2, _unseen(span, root)
+    return -one.real, one.imag**2, _unseen(span, root, [0.0, 1.0])
 
 
 def _plane_of_two(pair: np.ndarray, span: np.ndarray, root: np.ndarray):
-    return -pair.sum() / 2, -(((pair[0] - pair[1]) / 2) ** 2), _unseen(span, root)
+    return -pair.sum() / 2, -(((pair[0] - pair[1]) / 2) ** 2), _unseen(span, root, [1.0, 1.0])
 
 
-def _unseen(span: np.ndarray, root: np.ndarray) -> np.ndarray:
-    """The vector of a plane without a part in y1, of length one in the metric; span (2 N, 2)."""
+def _unseen(span: np.ndarray, root: np.ndarray, any_of: list[float]) -> np.ndarray:
+    """The vector of a plane without a part in y1, of length one in the metric; span (2 N, 2).
+
+    any_of : its parts in `span` where no vector of the plane has a part in y1
+    """
     first, second = span[0]
-    vector = span @ ([second, -first] if first or second else [0.0, 1.0])
+    vector = span @ ([second, -first] if first or second else any_of)
     vector = vector / np.linalg.norm(vector * root)
     vector[0] = 0.0
     return vector
