@@ -43,6 +43,8 @@ class Entry(NamedTuple):
 def born(special: CurvePoint) -> list[SpecialPoint]:
     """Points of such curves that begin at a point of codimension two of a curve; [] where none does or is found."""
     solution, kind = special.orbit._solution, special.type
+    if solution is None:  # of an onset of sticking
+        return []
     flip = "pitchfork" if solution.sigma == -1 else "flip"
     if kind == "degenerate_flip":
         name, parent, count = "fold", Start(flip, solution), 2
