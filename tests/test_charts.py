@@ -20,6 +20,9 @@ NUMBERS = "{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 4}"
 ALONG = "{b: {start: 2.5, stop: 6}, omega: {start: 0.58, stop: 0.68}}"
 
 
+pytestmark = pytest.mark.slow  # curves compile a kernel of their own, which takes half a minute
+
+
 def text(begin="{itinerary: LR}", along=ALONG, more="depth: 0", numbers=NUMBERS):
     return f"system: {numbers}\ncontinue:\n  from: {begin}\n  along: {along}\n  {more}\n"
 
@@ -140,7 +143,6 @@ def test_commands(file, tmp_path, monkeypatch, capsys):
     assert "variable 'x1' is not allowed; a chart has one where it lies over a plane" in capsys.readouterr().err
 
 
-@pytest.mark.slow
 def test_charts_over_a_plane(file, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     vs.sweep(
@@ -160,7 +162,6 @@ def test_charts_over_a_plane(file, tmp_path, monkeypatch, capsys):
         assert words in capsys.readouterr().err
 
 
-@pytest.mark.slow
 def test_real_parts_are_parts_of_the_whole_curve():
     """The graze that ends a window of period 8: between the two double grazes where it is a motion."""
     state = vs.simulate(SYSTEM.replace(b=5.6), (0, 0, 0, 0), 2000).section[-1]
@@ -175,7 +176,6 @@ def test_real_parts_are_parts_of_the_whole_curve():
         assert np.abs(places - [special.parameters[name] for name in NAMES]).max(axis=1).min() < 1e-11
 
 
-@pytest.mark.slow
 def test_it_depends_neither_on_interruptions_nor_on_workers(tmp_path):
     def stop(done, total):
         if done == 3:
@@ -199,7 +199,6 @@ def test_it_depends_neither_on_interruptions_nor_on_workers(tmp_path):
         assert len(words) == len(set(words)) == 4  # each curve once
 
 
-@pytest.mark.slow
 def test_edges_of_a_plane(tmp_path):
     """Most have a curve; where both orbits are said to be stable at both points, simulation carries them across."""
     plane = tmp_path / "plane.h5"

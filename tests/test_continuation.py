@@ -160,7 +160,7 @@ def test_branch_in_two_ways_is_one_branch(symmetric_branch):
         same_points(vs.continue_orbit(orbit, "b", (0.3, 6.8)), types(symmetric_branch), 5e-14)
 
 
-@pytest.mark.parametrize("family", [CHAIN, CAVITY])
+@pytest.mark.parametrize("family", [CAVITY, pytest.param(CHAIN, marks=pytest.mark.slow)])  # N = 3: more kernels
 def test_other_oscillators(family):
     """Three masses with unequal restitution and any damping; a free ball. Ends are where the orbit touches a stop."""
     orbit = vs.periodic_orbit(family, itinerary="LR")

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.analysis.curves.chord import root
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.engine.impulses import curve_tests
 from vibro_sweep.engine.impulses.curve_tests import RESIDUAL
@@ -178,7 +179,7 @@ def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
 
     The error: what two locations from both ends differ by, and rounding.
     """
-    there, back = tracer.root(a, b, event.value), tracer.root(b, a, event.value)
+    there, back = root(tracer, a, b, event.value), root(tracer, b, a, event.value)
     if there is None or back is None or max(there[1].tests[RESIDUAL], back[1].tests[RESIDUAL]) > SETTLED:
         return None
     share, place = there

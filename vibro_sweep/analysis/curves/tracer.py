@@ -1,10 +1,8 @@
-"""Points of a bifurcation curve with the exact oscillator: the first one, corrections, zeros of tests."""
+"""Points of a bifurcation curve with the exact oscillator: the first one, corrections, what is read there."""
 
-from collections.abc import Callable
 from copy import copy as copy_object
 
 import numpy as np
-from scipy.optimize import brentq
 
 from vibro_sweep.analysis.branches.beginning import keeps_symmetry
 from vibro_sweep.analysis.curves.oscillators import Oscillators
@@ -20,9 +18,6 @@ MOST_CORRECTIONS = 12
 LONGEST_STEP, SHORTEST_STEP = 0.05, 1e-10
 STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
 BESIDE = 2e-3
-ROUNDING = 1e-15  # of tests, in their units
-ASIDE = 1e-7  # of a chord: a zero found by polynomials is exact to far less
-LEAST = 1e-14  # of a chord, far below what rounding of tests leaves of a zero
 AT_ONCE = 1024  # points of one call
 
 
@@ -260,19 +255,6 @@ class Tracer:
             getattr(result, name)[:] += share * (getattr(b, name) - getattr(a, name))
         return result
 
-    def root(self, a: Place, b: Place, test: Callable[[Place], float]) -> tuple[float, Place] | None:
-        """(share of the chord from a to b, point) where the test, of size 1, vanishes, on planes across the chord."""
-        chord = Chord(self, a, b, test)
-        try:
-            if chord.value(0.0) * chord.value(1.0) > 0:
-                return None
-            lo, hi = chord.near_zero()
-            share = brentq(chord.value, lo, hi, xtol=LEAST, rtol=1e-15, maxiter=100)
-            chord.value(share)
-        except (ArithmeticError, RuntimeError):
-            return None
-        return share, chord.seen[share]
-
     def difference(self, a: Place, b: Place) -> np.ndarray:
         """From a to b, scaled."""
         change = np.zeros(self.size)
@@ -297,49 +279,6 @@ class Tracer:
             u[-1] = -np.mean(e.evaluate(s.sides, u)[0][: self.K])
             found = Solution(family, s.sigma, s.halves, s.sides, u, found.change)
         return found
-
-
-class Chord:
-    """A test along the curve between a and b, over shares of the chord. ArithmeticError where there is no point."""
-
-    def __init__(self, tracer: Tracer, a: Place, b: Place, test: Callable[[Place], float]):
-        self.tracer, self.a, self.b, self.test = tracer, a, b, test
-        self.row = tracer.row_of(tracer.difference(a, b))
-        self.seen = {0.0: a, 1.0: b}
-
-    def value(self, share: float) -> float:
-        if share not in self.seen:
-            self.seen[share] = self._point(share, self.seen, exact=True)
-        found = self.test(self.seen[share])
-        return found if abs(found) > ROUNDING else 0.0  # or the search may creep where rounding has one sign
-
-    def near_zero(self) -> tuple[float, float]:
-        """Two shares between which the test changes its sign, close to the zero that polynomials give."""
-        seen = dict(self.seen)
-
-        def rough(share: float) -> float:
-            if share not in seen:
-                seen[share] = self._point(share, seen, exact=False)
-            return self.test(seen[share])
-
-        try:
-            zero = brentq(rough, 0.0, 1.0, xtol=ASIDE / 100, maxiter=100)
-            if zero not in self.seen:
-                self.seen[zero] = self._point(zero, seen, exact=True)
-            lo, hi = max(zero - ASIDE, 0.0), min(zero + ASIDE, 1.0)
-            if self.value(lo) * self.value(hi) <= 0:
-                return lo, hi
-        except (ArithmeticError, RuntimeError, ValueError):
-            pass
-        return 0.0, 1.0
-
-    def _point(self, share: float, seen: dict[float, Place], exact: bool) -> Place:
-        near = min(seen, key=lambda other: abs(other - share))
-        guess = self.tracer.shifted(seen[near], self.a, self.b, share - near)
-        point = self.tracer.correct(guess, self.row, exact)
-        if point is None:
-            raise ArithmeticError
-        return point
 
 
 def copied(place: Place) -> Place:
