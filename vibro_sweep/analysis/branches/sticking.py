@@ -76,7 +76,7 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
         if len(limits) >= 2:
             before, moved = moved, abs(limits[-1] - limits[-2])
             if before < 1e-8 * abs(value) and moved >= before:  # rounding: the one before was the best
-                onset, error = limits[-2], 4 * moved + 16 * np.finfo(float).eps * abs(value)
+                onset, error = limits[-2], 2 * moved + 16 * np.finfo(float).eps * abs(value)
                 orbit = PeriodicOrbit(special.orbit.system.replace(**{name: onset}), "sticking")
                 none = np.empty(0, complex)
                 chatter = _chatter(solution, phi)
