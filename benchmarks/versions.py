@@ -1,9 +1,10 @@
 """Two versions of this package side by side: `python benchmarks/versions.py CHECKOUT` compares another checkout with
 this one and writes versions.md.
 
-Each version computes in a process of its own, with the benchmarks of its own checkout. The two take turns, and the
-median of the ratios counts: what else the machine does meanwhile hits both. Orbits start at eight points of their
-attractor, so that chaotic ones have parted; nothing else should run.
+Each version computes in processes of its own, with the benchmarks of its own checkout. The two take turns, and the
+median of the ratios counts: what else the machine does meanwhile hits both. There are several processes of each, since
+where the memory of one happens to lie makes it some per cent faster or slower for good. Orbits start at eight points
+of their attractor, so that chaotic ones have parted; nothing else should run.
 """
 
 import argparse
@@ -19,6 +20,7 @@ from book import HERE, digits, machine, table
 from problem import CHAOTIC, CLEARANCES
 
 PERIODIC = (6.8, *CLEARANCES)
+PAIRS = 6  # of processes
 SIZES = {"impacts": 40_000, "impacts, lyapunov": 24_000}  # periods of an orbit
 SYSTEM = {"mu_m": 10, "mu_k": 5, "zeta": 0.05, "f2": 0, "omega": 0.63, "R": 0.8, "b": 6.6}
 SCENE = f"""
@@ -84,11 +86,13 @@ class Version:
         return time.perf_counter() - began
 
 
-def compared(old: Version, new: Version, measure, rounds: int) -> tuple[float, float, float]:
-    """Medians of both, and of their ratio."""
-    measure(old), measure(new)
+def compared(versions: list[tuple[Version, Version]], measure, rounds: int) -> tuple[float, float, float]:
+    """Medians of both, and of their ratio; in turns of these pairs, too."""
+    for old, new in versions:
+        measure(old), measure(new)
     pairs = []
     for i in range(rounds):
+        old, new = versions[i // 2 % len(versions)]
         first, second = (old, new) if i % 2 else (new, old)
         one, other = measure(first), measure(second)
         pairs.append((one, other) if first is old else (other, one))
@@ -108,19 +112,19 @@ def first_runs(root: Path) -> float:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("checkout", type=Path)
-    parser.add_argument("--rounds", type=int, default=30)
+    parser.add_argument("--rounds", type=int, default=36)
     chosen = parser.parse_args()
     about, rows = machine(), []
     with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as other:
-        old, new = Version(chosen.checkout.resolve(), one), Version(HERE.parent, other)
+        pairs = [(Version(chosen.checkout.resolve(), one), Version(HERE.parent, other)) for _ in range(PAIRS)]
         for observe, periods in SIZES.items():
             for b in (*PERIODIC, *CHAOTIC):
-                before, after, ratio = compared(old, new, lambda v, b=b, o=observe: v.seconds(b, o), chosen.rounds)
+                before, after, ratio = compared(pairs, lambda v, b=b, o=observe: v.seconds(b, o), chosen.rounds)
                 unit = 1e9 / 8 / periods
                 what = f"{observe}, b = {b:g}{', chaotic' if b in CHAOTIC else ''}: ns a period"
                 rows.append((what, digits(before * unit), digits(after * unit), f"{ratio:.3f}"))
         for name, what in STARTS.items():
-            before, after, ratio = compared(old, new, lambda v, what=what: v.start(what), max(3, chosen.rounds // 3))
+            before, after, ratio = compared(pairs[:1], lambda v, what=what: v.start(what), max(3, chosen.rounds // 3))
             rows.append((name, digits(before), digits(after), f"{ratio:.3f}"))
     before, after = first_runs(chosen.checkout.resolve()), first_runs(HERE.parent)
     rows.append(("a first sweep and a first orbit, s", digits(before), digits(after), f"{before / after:.3f}"))
@@ -129,9 +133,8 @@ def main() -> None:
     ).stdout.strip()
     text = " ".join(__doc__.split("\n\n", 1)[1].split())
     header = ("", commit, "here", "ratio: times faster")
-    (HERE / "versions.md").write_text(
-        f"# Beside version {commit}\n\n{about}- {chosen.rounds} rounds\n\n{text}\n\n{table(header, rows)}"
-    )
+    count = f"- {chosen.rounds} rounds, {PAIRS} processes of each version\n\n"
+    (HERE / "versions.md").write_text(f"# Beside version {commit}\n\n{about}{count}{text}\n\n{table(header, rows)}")
 
 
 if __name__ == "__main__":
