@@ -34,7 +34,7 @@ class Frame(NamedTuple):
 
 
 def frame_of(contact: Contact, omega: float) -> Frame:
-    """omega: a rate for planes that have none."""
+    """omega: a rate for planes that have none. `to` is NaN, and so are exponents, where roots cannot be parted."""
     A = flight_matrix(contact.stiffness, contact.damping)
     planes = _modes(contact)
     if planes is None:
@@ -48,7 +48,11 @@ def frame_of(contact: Contact, omega: float) -> Frame:
     back = np.empty(A.shape)
     back[:, 1::2] = seconds
     back[:, 0::2] = (A @ seconds + eta * seconds) / scale
-    return Frame(eta, square, scale, np.linalg.inv(back), back)
+    try:
+        to = np.linalg.inv(back)
+    except np.linalg.LinAlgError:  # no planes part these roots
+        to = np.full(back.shape, np.nan)
+    return Frame(eta, square, scale, to, back)
 
 
 def _modes(contact: Contact):
