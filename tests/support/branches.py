@@ -57,13 +57,9 @@ def repeated(orbit, times):
     return Solution(s.family, 1, s.halves * times, s.sides * times, u)
 
 
-def exact(special, name):
-    """The parameter of a special point in 40 digits, by shooting."""
-    solution, value = special.orbit._solution, special.parameters[name]
-    numbers = {key: getattr(special.orbit.system, key) for key in NUMBERS}
-    shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
-    x1, x2, v1, v2 = solution.states[0][:4]
-    u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
+def _located(special, name, shooting, u):
+    """By shooting, from what is known of the special point."""
+    value = special.parameters[name]
     if special.type == "fold":
         return shooting.where_multiplier(1, u, name, value)
     if special.type in ("flip", "pitchfork"):
@@ -71,9 +67,19 @@ def exact(special, name):
     if special.type == "neimark_sacker":
         return shooting.where_torus(u, name, value)
     if special.impact is None:
-        _, time, side = solution.nearest
+        _, time, side = special.orbit._solution.nearest
         return shooting.where_touching(time, side, u, name, value)
-    return shooting.where_vanishing(int(np.argmin(solution.pushes)), u, name, value)
+    return shooting.where_vanishing(int(np.argmin(special.orbit._solution.pushes)), u, name, value)
+
+
+def exact(special, name):
+    """The parameter of a special point in 40 digits, by shooting."""
+    solution = special.orbit._solution
+    numbers = {key: getattr(special.orbit.system, key) for key in NUMBERS}
+    shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
+    x1, x2, v1, v2 = solution.states[0][:4]
+    u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
+    return _located(special, name, shooting, u)
 
 
 def shooting_of(orbit):
@@ -88,15 +94,4 @@ def shooting_of(orbit):
 
 def exact_of_any(special, name):
     """The parameter of a special point of an `Oscillator`, in many digits, by shooting."""
-    solution, value = special.orbit._solution, special.parameters[name]
-    shooting, u = shooting_of(special.orbit)
-    if special.type == "fold":
-        return shooting.where_multiplier(1, u, name, value)
-    if special.type in ("flip", "pitchfork"):
-        return shooting.where_multiplier(-1, u, name, value)
-    if special.type == "neimark_sacker":
-        return shooting.where_torus(u, name, value)
-    if special.impact is None:
-        _, time, side = solution.nearest
-        return shooting.where_touching(time, side, u, name, value)
-    return shooting.where_vanishing(int(np.argmin(solution.pushes)), u, name, value)
+    return _located(special, name, *shooting_of(special.orbit))

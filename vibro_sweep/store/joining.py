@@ -17,35 +17,20 @@ def joined(flats: list[Arrays], parameters: list[str], others: list[tuple[float,
     flats : of each branch, as analysis/branches/flat.py has them
     others : of each branch the values of all `parameters` but the first, which do not change along it
     """
-    points = np.array([len(flat["value"]) for flat in flats], np.int32)
-    specials = np.array([len(flat["special_type"]) for flat in flats], np.int32)
-    first_point, first_special = (np.append(0, np.cumsum(counts))[: len(counts)] for counts in (points, specials))
-    result = {
-        "branch_row_size": points,
-        "branch_impacts": np.array([len(flat["impact_side"]) for flat in flats], np.int32),
-        "branch_special": specials,
-        "branch_begins": first_special + np.array([int(flat["branch_begins"]) for flat in flats], int),
-        "branch_ends": first_special + np.array([int(flat["branch_ends"]) for flat in flats], int),
-        "branch_origin": first_point + np.array([int(flat["branch_origin"]) for flat in flats], int),
-    }
+    points, specials, result = _common(flats, masses)
+    first_point = np.append(0, np.cumsum(points))[: len(points)]
+    result["branch_origin"] = first_point + np.array([int(flat["branch_origin"]) for flat in flats], int)
     for name in ("branch_period", "branch_symmetric", "branch_closed"):
         result[name] = np.array([flat[name] for flat in flats])
-    columns = {"multiplier_re": 2 * masses, "multiplier_im": 2 * masses}
-    for name in _ALONG_POINTS:
-        result[name] = _stacked([flat[name] for flat in flats], columns.get(name))
     states = _stacked([flat["state"] for flat in flats], 2 * masses)
     result |= {name: states[:, i] for i, name in enumerate(state(masses))}
     for name in _ALONG_IMPACTS:
         result[name] = _stacked([flat[name].ravel() for flat in flats])
-    result["impact_side"] = _stacked([np.tile(flat["impact_side"], n) for flat, n in zip(flats, points, strict=True)])
     values = np.array(others, float).reshape(len(flats), len(parameters) - 1)
     result[parameters[0]] = _stacked([flat["value"] for flat in flats])
     result |= {name: np.repeat(values[:, i], points) for i, name in enumerate(parameters[1:])}
     own = _stacked([flat["special_value"] for flat in flats])
     result["special_value"] = np.column_stack([own, np.repeat(values, specials, axis=0)])
-    result["special_branch"] = np.repeat(np.arange(len(flats)), specials)
-    places = _stacked([flat["special_point"] for flat in flats])
-    result["special_point"] = np.where(places >= 0, places + np.repeat(first_point, specials), -1)
     for name in _OF_SPECIAL:
         result[f"special_{name}"] = _stacked([flat[f"special_{name}"] for flat in flats])
     return result
@@ -53,9 +38,26 @@ def joined(flats: list[Arrays], parameters: list[str], others: list[tuple[float,
 
 def joined_curves(flats: list[Arrays], parameters: list[str], masses: int) -> Arrays:
     """The arrays of a file of curves in two parameters, as analysis/curves/flat.py has them."""
+    _, _, result = _common(flats, masses)
+    result["special_value"] = _stacked([flat["special_value"] for flat in flats], 2)
+    result["b_star"] = _stacked([flat["b_star"] for flat in flats])
+    for name in _OF_CURVES:
+        result[name] = np.array([flat[name] for flat in flats])
+    values = _stacked([flat["value"] for flat in flats], 2)
+    result |= {name: values[:, i] for i, name in enumerate(parameters)}
+    for name in ("impact_t", "impact_v"):
+        result[name] = _stacked([flat[name].ravel() for flat in flats])
+    for name in ("special_type", "special_touches", "special_error"):
+        result[name] = _stacked([flat[name] for flat in flats])
+    return result
+
+
+def _common(flats: list[Arrays], masses: int) -> tuple[np.ndarray, np.ndarray, Arrays]:
+    """Points and special points of each branch or curve, and the arrays that files of both have."""
     points = np.array([len(flat["value"]) for flat in flats], np.int32)
     specials = np.array([len(flat["special_type"]) for flat in flats], np.int32)
     first_point, first_special = (np.append(0, np.cumsum(counts))[: len(counts)] for counts in (points, specials))
+    places = _stacked([flat["special_point"] for flat in flats])
     result = {
         "branch_row_size": points,
         "branch_impacts": np.array([len(flat["impact_side"]) for flat in flats], np.int32),
@@ -64,22 +66,12 @@ def joined_curves(flats: list[Arrays], parameters: list[str], masses: int) -> Ar
         "branch_ends": first_special + np.array([int(flat["branch_ends"]) for flat in flats], int),
         "impact_side": _stacked([np.tile(flat["impact_side"], n) for flat, n in zip(flats, points, strict=True)]),
         "special_branch": np.repeat(np.arange(len(flats)), specials),
-        "special_value": _stacked([flat["special_value"] for flat in flats], 2),
+        "special_point": np.where(places >= 0, places + np.repeat(first_point, specials), -1),
     }
-    for name in _OF_CURVES:
-        result[name] = np.array([flat[name] for flat in flats])
-    values = _stacked([flat["value"] for flat in flats], 2)
-    result |= {name: values[:, i] for i, name in enumerate(parameters)}
     columns = {"multiplier_re": 2 * masses, "multiplier_im": 2 * masses}
-    for name in (*_ALONG_POINTS, "b_star"):
+    for name in _ALONG_POINTS:
         result[name] = _stacked([flat[name] for flat in flats], columns.get(name))
-    for name in ("impact_t", "impact_v"):
-        result[name] = _stacked([flat[name].ravel() for flat in flats])
-    places = _stacked([flat["special_point"] for flat in flats])
-    result["special_point"] = np.where(places >= 0, places + np.repeat(first_point, specials), -1)
-    for name in ("special_type", "special_touches", "special_error"):
-        result[name] = _stacked([flat[name] for flat in flats])
-    return result
+    return points, specials, result
 
 
 def curve_of(arrays, parameters: list[str], index: int) -> Arrays:
