@@ -113,7 +113,9 @@ def _legend(ax, file, shown, unseen):
     handles = [
         Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in there
     ]
-    handles += [Patch(facecolor=BAR, label="window"), Patch(facecolor=SYMMETRIC, label="symmetric orbit")]
+    symmetric = file["window_symmetric"][shown].astype(bool)
+    colours = {"window": (BAR, ~symmetric), "symmetric orbit": (SYMMETRIC, symmetric)}
+    handles += [Patch(facecolor=colour, label=name) for name, (colour, who) in colours.items() if who.any()]
     if unseen:
         handles.append(Patch(facecolor=BAR, edgecolor=HATCHES, linewidth=0, hatch=HATCH, label="missed by all starts"))
     named = [name for code, name in enumerate(REASONS) if code and (file["orbit_reason"] == code).any()]
