@@ -7,13 +7,10 @@ This leans on the inside of numba, as it is in 0.68; the import fails where what
 """
 
 import gc
-from typing import ClassVar
 
 from llvmlite.binding import Linkage, set_option
-from numba.core import types
 from numba.core.codegen import CPUCodegen, JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
-from numba.core.typing import Context
 
 from vibro_sweep.engine.simd.lean import lean, remember_sizes
 
@@ -107,30 +104,13 @@ class _Flags(Flags):
         return len(self._values)
 
 
-class _TypingContext(Context):
-    """numba's, but the type of an operation is found once: numba looks for it anew wherever it stands."""
-
-    _known: ClassVar[dict] = {}
-
-    def __init__(self, shared):
-        self.__dict__ = shared.__dict__
-
-    def resolve_function_type(self, func, args, kws):
-        if not isinstance(func, types.Function):  # a kernel is compiled by being looked for
-            return super().resolve_function_type(func, args, kws)
-        key = func, tuple(args), tuple(kws.items())
-        if key not in self._known:
-            self._known[key] = super().resolve_function_type(func, args, kws)
-        return self._known[key]
-
-
 class WholeCompiler(Compiler):
     """For an entry."""
 
     library = _Whole
 
     def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
-        super().__init__(_TypingContext(typingctx), targetctx, library, args, return_type, _Flags(flags), locals)
+        super().__init__(typingctx, targetctx, library, args, return_type, _Flags(flags), locals)
         # Wherever an array is used, numba asks for a function "__array__" that there is not, and loads all registries
         # to ask once more.
         context = self.state.targetctx
