@@ -6,9 +6,9 @@ The plane of a pair of roots of A has vectors e1, e2 with
 
 eta half of minus the sum of the roots and eta^2 + square their product: a complex pair turns in it, a real pair shears.
 With classical damping a plane is that of a mode. Otherwise it belongs to a complex pair of roots or to two real ones.
-e2 has no part in y1, so that the gap moves by the first number of each plane alone. Planes that the contact does not
-see come first: tangent vectors begin as the vectors of the planes, in this order, and what a rest takes is taken from
-the last of them.
+e2 has no part in y1, so that the gap moves by the first number of each plane alone; only where such an e2 would be a
+vector of one root, as where a damper alone holds a mass, it has one. Planes that the contact does not see come first:
+tangent vectors begin as the vectors of the planes, in this order, and what a rest takes is taken from the last of them.
 """
 
 from typing import NamedTuple
@@ -20,6 +20,9 @@ from vibro_sweep.model.contact import Contact, flight_matrix
 CLASSICAL = 1e-13  # of the matrices: what may couple modes and be neglected
 NO_PLANES = 1e10  # condition from which on coordinates that part what is not coupled are tried
 UNSEEN = 1e-10  # share of the gap in a plane, in the metric of the masses, that is none
+NO_EASE = 1e6  # condition from which on planes of real roots are tried whose e2 has a part in y1
+NO_ROOT = 1e-12  # of the largest singular value: that of a root 0
+SLOWEST = 1e-5  # of omega: a plane that turns more slowly has the scale of omega
 LEAST_SCALE = 1e-3  # of the rate of a plane: near critical damping it shears instead of turning, and any scale serves
 
 
@@ -44,15 +47,12 @@ def frame_of(contact: Contact, omega: float) -> Frame:
     eta, square, seconds = eta[order], square[order], seconds[:, order]
     product = square + eta**2
     scale = np.maximum(np.sqrt(np.abs(square)), LEAST_SCALE * np.sqrt(np.maximum(product, 0)))
-    scale = np.where(scale > 0, scale, omega)
+    scale = np.where(scale > SLOWEST * omega, scale, omega)
     back = np.empty(A.shape)
     back[:, 1::2] = seconds
     back[:, 0::2] = (A @ seconds + eta * seconds) / scale
-    try:
-        to = np.linalg.inv(back)
-    except np.linalg.LinAlgError:  # no planes part these roots
-        to = np.full(back.shape, np.nan)
-    return Frame(eta, square, scale, to, back)
+    parted = np.linalg.cond(back) < NO_PLANES
+    return Frame(eta, square, scale, np.linalg.inv(back) if parted else np.full(back.shape, np.nan), back)
 
 
 def _modes(contact: Contact):
@@ -96,27 +96,42 @@ def _planes(A: np.ndarray, contact: Contact):
 
 def _pairs(A: np.ndarray, to: np.ndarray, back: np.ndarray, root: np.ndarray):
     """(condition, planes) of pairs of roots in the space of `back`. root: square roots of masses, (2 N,)."""
-    roots, vectors = np.linalg.eig(to @ A @ back)
+    roots, vectors = _roots(to @ A @ back)
     vectors = back @ vectors
     upper, real = np.flatnonzero(roots.imag > 0), np.flatnonzero(roots.imag == 0)
     real = real[np.argsort(roots[real].real)]
     sizes = np.linalg.norm(vectors * root[:, None], axis=0)
     seen = np.abs(vectors[0, real]) * root[0] > UNSEEN * sizes[real]
     groups = [real[seen], real[~seen]] if np.sum(seen) % 2 == 0 else [real]  # one of each kind makes no plane
-    best = None
-    for outwards in (False, True):
-        partners = np.concatenate([_partners(group, outwards) for group in groups])
+
+    def planes(partners, any_of=None):
         found = [_plane(roots[i], np.stack([vectors[:, i].real, vectors[:, i].imag], -1), root) for i in upper]
-        found += [_plane_of_two(roots[pair].real, vectors[:, pair].real, root) for pair in partners]
+        found += [_plane_of_two(roots[pair].real, vectors[:, pair].real, root, any_of) for pair in partners]
         eta, square, seconds = (np.stack(part, -1) for part in zip(*found, strict=True))
         firsts = A @ seconds + eta * seconds
         sizes = np.linalg.norm(firsts * root[:, None], axis=0)
         # two equal roots, as 0 of two damped free modes, make no plane
-        both = np.hstack([seconds, firsts / np.where(sizes > 0, sizes, 1.0)])
-        condition = np.linalg.cond(both * root[:, None]) if np.all(sizes > 0) else np.inf
-        if best is None or condition < best[0]:
-            best = condition, (eta, square, seconds)
+        if np.any(sizes <= NO_ROOT * np.abs(roots).max()):
+            return np.inf, (eta, square, seconds)
+        condition = np.linalg.cond(np.hstack([seconds, firsts / sizes]) * root[:, None])
+        return condition, (eta, square, seconds)
+
+    ways = [np.concatenate([_partners(group, outwards) for group in groups]) for outwards in (False, True)]
+    best = min((planes(partners) for partners in ways), key=lambda found: found[0])
+    if best[0] > NO_EASE:
+        best = min(best, planes(_partners(real, outwards=True), [1.0, 1.0]), key=lambda found: found[0])
     return best
+
+
+def _roots(A: np.ndarray):
+    """Roots and vectors. If the root 0 has several vectors, they are independent: free modes that only dampers hold."""
+    roots, vectors = np.linalg.eig(A)
+    _, sizes, rows = np.linalg.svd(A)
+    free = rows[sizes <= NO_ROOT * sizes[0]].T
+    if free.shape[1] > 1:
+        least = np.argsort(np.abs(roots), kind="stable")[: free.shape[1]]
+        roots[least], vectors[:, least] = 0.0, free
+    return roots, vectors
 
 
 def _partners(real: np.ndarray, outwards: bool) -> np.ndarray:
@@ -129,8 +144,14 @@ def _plane(one: complex, span: np.ndarray, root: np.ndarray):
     return -one.real, one.imag**2, _unseen(span, root, [0.0, 1.0])
 
 
-def _plane_of_two(pair: np.ndarray, span: np.ndarray, root: np.ndarray):
-    return -pair.sum() / 2, -(((pair[0] - pair[1]) / 2) ** 2), _unseen(span, root, [1.0, 1.0])
+def _plane_of_two(pair: np.ndarray, span: np.ndarray, root: np.ndarray, any_of: list[float] | None):
+    """any_of : parts in `span` of e2; None: such that it has no part in y1"""
+    if any_of is None:
+        second = _unseen(span, root, [1.0, 1.0])
+    else:
+        second = span @ any_of
+        second = second / np.linalg.norm(second * root)
+    return -pair.sum() / 2, -(((pair[0] - pair[1]) / 2) ** 2), second
 
 
 def _unseen(span: np.ndarray, root: np.ndarray, any_of: list[float]) -> np.ndarray:

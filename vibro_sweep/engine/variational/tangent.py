@@ -54,6 +54,7 @@ def tangents_of(masses: int) -> np.dtype:
         ("shear", float, (pairs, LANES)),  # the same of the product of all R, where they are `collected`
         ("wanted", np.bool_),  # else nothing is computed
         ("collected", np.bool_),
+        ("both", np.bool_),  # numbers of some mode move the gap, not the first alone
     ]
     return record(fields)
 
@@ -80,6 +81,7 @@ def set_frame(t, i, q):
         t.kick[m, i] = q.to_frame[m, 0]
         for j in range(1, len(t.scale)):
             t.kick[m, i] += q.kappa[j] * q.to_frame[m, 2 * j + 1]
+        t.both = t.both or (m % 2 == 1 and q.from_frame[0, m] != 0.0)
 
 
 @entry
@@ -247,6 +249,29 @@ def motion_of(t, mass, j):
     return dx, dv
 
 
+@inline
+def strike_vector(t, who, j, dx, dv, steepness, R):
+    """Tangent vector j, which moves the mass that hits by dx and dv, across an impact."""
+    Z, to, size = t.Z, t.to_frame, len(t.growth)
+    to_x1 = -(1.0 + R) * dx
+    to_v1 = steepness * dx - (1.0 + R) * dv
+    for m in range(size):
+        z = row(Z, size * m + j)
+        after = z + row(t.kick, m) * to_x1 + row(to, size * m + 1) * to_v1
+        put(Z, size * m + j, select(who, after, z))
+
+
+@aside
+def saltate_by_both(t, who, steepness, R):
+    """What an impact does to the vectors, where both numbers of a mode move the gap."""
+    Z, back, size = t.Z, t.from_frame, len(t.growth)
+    for j in range(size):
+        dx, dv = motion_of(t, 0, j)
+        for m in range(1, size, 2):
+            dx = dx + row(back, m) * row(Z, m * size + j)
+        strike_vector(t, who, j, dx, dv, steepness, R)
+
+
 @jit
 def saltate(t, who, steepness, R):
     """Z across an impact, by the saltation matrix S = DG + (F+ - DG F-) n^T/(n . F-).
@@ -255,15 +280,12 @@ def saltate(t, who, steepness, R):
     -R dx1, dv1 -> steepness dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
     """
     apply_flight(t, who)
-    Z, to, size = t.Z, t.to_frame, len(t.growth)
-    for j in range(size):
-        dx, dv = motion_of(t, 0, j)
-        to_x1 = -(1.0 + R) * dx
-        to_v1 = steepness * dx - (1.0 + R) * dv
-        for m in range(size):
-            z = row(Z, size * m + j)
-            after = z + row(t.kick, m) * to_x1 + row(to, size * m + 1) * to_v1
-            put(Z, size * m + j, select(who, after, z))
+    if t.both:
+        saltate_by_both(t, who, steepness, R)
+    else:
+        for j in range(len(t.growth)):
+            dx, dv = motion_of(t, 0, j)
+            strike_vector(t, who, j, dx, dv, steepness, R)
     put(t.mixed, 0, select(who, 1.0, row(t.mixed, 0)))
     watch(t, who, R * R)
 
