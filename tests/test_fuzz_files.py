@@ -12,7 +12,7 @@ from support.fuzz_files import COMMANDS, OUTCOMES, fuzz
     "few",
     [
         pytest.param(1, id="few"),
-        pytest.param(20, id="sample", marks=pytest.mark.slow),
+        pytest.param(8, id="sample", marks=pytest.mark.slow),
         pytest.param(None, id="all", marks=pytest.mark.soak),
     ],
 )
