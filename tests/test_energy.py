@@ -104,6 +104,15 @@ def test_parts_do_not_matter(tmp_path, start):
         assert (one["peak_x1"] >= np.abs(last) * (1 - 1e-12)).all()
 
 
+def test_sweeps_of_any_kind_are_computed_by_one_kernel():
+    """Of contiguous arrays alone: it was compiled anew where the points come in reverse."""
+    from vibro_sweep.engine.energy import run_energy
+
+    for start in ((0, 0, 0, 0), {"follow": "both"}, {"random": 2, "seed": 1}):
+        swept(PAPER, "b", [4.9, 5.0], start)
+    assert {kind.layout for kinds in run_energy._whole.signatures for kind in kinds if hasattr(kind, "layout")} == {"C"}
+
+
 def test_nothing_is_computed_unasked():
     data = swept(PAPER, "b", [5.0], (0, 0, 0, 0), observe=("impacts",))
     assert "impact_power" not in data and "rms_x1" not in data

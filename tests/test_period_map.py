@@ -10,10 +10,12 @@ import pytest
 from mpmath import mp, mpf
 from reference import monodromy, naive
 from reference.naive_map import NaiveMap
+from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.engine.free_flight import FreeFlight
 from vibro_sweep.engine.period_map import PeriodMap
+from vibro_sweep.engine.variational.sensitivity import differentiate
 from vibro_sweep.model import status
 from vibro_sweep.model.parameters import NAMES
 
@@ -189,7 +191,7 @@ def slow_map(order, expand_at, params, X, periods):
     return list(-slow.middle(X) if periods == 0.5 else slow(X))
 
 
-@pytest.mark.parametrize("expand_at", [None, 6.7107356])
+@pytest.mark.parametrize("expand_at", [None, *slow_cases(6.7107356)])
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("periods", [0.5, 1])
 def test_derivatives_of_the_discontinuity_mapping(order, expand_at, periods):
@@ -268,6 +270,16 @@ def test_many_states_at_once_are_the_orbits_of_simulate():
         np.testing.assert_array_equal(together.sticking[i], orbit.sticking)
         for name in ("states", "jacobian", "parameters"):
             np.testing.assert_array_equal(getattr(alone, name)[0], getattr(together, name)[i])
+
+
+def test_one_state_and_several_are_computed_by_one_kernel():
+    """Of contiguous arrays alone: fields of one record are, those of several are not, and it was compiled for both."""
+    step, X = PeriodMap(vs.System(**dict(PAPER, b=1.0))), np.zeros((3, 4))
+    for states in (X[:1], X):
+        step(states, jacobian=True)
+    assert {kind.layout for kinds in differentiate._whole.signatures for kind in kinds if hasattr(kind, "layout")} == {
+        "C"
+    }
 
 
 def test_more_impacts_than_there_is_room_for():

@@ -2,4 +2,11 @@
 
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]  # the checkout; the package that is tested may be installed elsewhere
+
+
+def slow_cases(*cases):
+    """Cases of a parametrised test that are run with `-m slow` only. A tuple has the values of several arguments."""
+    return [pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.slow) for case in cases]

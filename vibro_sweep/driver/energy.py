@@ -45,11 +45,13 @@ def energies_of(
         "peaks": np.empty((len(flat), states)),
     }
     back = flat["back"] if "back" in flat.dtype.names else np.tile(np.eye(kind.masses), (len(flat), 1, 1))
-    parts = _parts(flat)
-    masses, room = _contact_masses(block, shape).reshape(-1), ROOM
+    # contiguous, whether they are the fields of one record, of several, or in reverse: for each the kernel would be
+    # compiled anew
+    back, masses = np.ascontiguousarray(back), np.ascontiguousarray(_contact_masses(block, shape).reshape(-1))
+    parts, room = _parts(flat), ROOM
     while True:  # once in any case: what a scene needs is compiled with its first point, however that goes
         run_energy(
-            flat, begins, resting, masses, np.ascontiguousarray(back), block.plan.record, workspace, plan,
+            flat, begins, resting, masses, back, block.plan.record, workspace, plan,
             new_scratch(parts, room, kind.masses), *wanted.values(), outcome,
         )  # fmt: skip
         room *= 8

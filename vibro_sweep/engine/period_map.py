@@ -165,9 +165,12 @@ class PeriodMap:
                 on_stop = np.isin(contact[chosen, 0], [engine.stops.left, engine.stops.right])
                 events = np.concatenate([records.impacts[..., :5], engine.impact_states(records.impacts)], -1)
                 found = np.empty((len(chosen), states, columns))
+                # copies: fields of several records are no contiguous arrays, of one they are, and kernels are compiled
+                # for each of the two
+                hits, rests = orbits["impacts_logged"].copy(), orbits["rests_logged"].copy()
                 differentiate(
                     moved, cell, start[chosen], on_stop & (contact[chosen, 1] != 0), codes[chosen],
-                    events, orbits["impacts_logged"], records.rests, orbits["rests_logged"],
+                    events, hits, records.rests, rests,
                     np.array([periods, 0.0, 0.0]), np.empty(3), *_scratch(moved, columns), found,
                 )  # fmt: skip
                 derivatives[chosen] = found
