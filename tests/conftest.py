@@ -2,8 +2,13 @@
 
 import os
 import signal
+from collections import Counter
 
 import pytest
+
+# Each of several workers has a core of its own: threads of numpy's BLAS would take it from the others. It is read when
+# numpy is loaded.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 pytest.register_assert_rewrite("support")
 
@@ -18,6 +23,27 @@ os.environ["PYTHONSAFEPATH"] = "1"
 # A job in the background is born deaf to Ctrl-C, and so would be the programs that tests start and interrupt.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# Two workers begin with these: one compiles the kernels of three masses and of one, the other meanwhile those of the
+# paper's oscillator, of any two masses and of branches. With the same to compile, both would do so at the same moment.
+FIRST = ["test_any_oscillator.py", "test_system.py", "test_models.py", "test_continuation.py"]
+
+
+def pytest_configure(config):
+    """pytest-xdist takes the files in the order below, and not in one of its own."""
+    config.option.loadscopereorder = False
+
+
+@pytest.hookimpl(trylast=True)  # once slow tests are left out
+def pytest_collection_modifyitems(items):
+    """The files that come first; then those with most tests, so that no worker is left with many in the end."""
+    tests = Counter(item.path for item in items)
+
+    def place(item):
+        name = item.path.name
+        return (FIRST.index(name), 0) if name in FIRST else (len(FIRST), -tests[item.path])
+
+    items.sort(key=place)
 
 
 @pytest.fixture
