@@ -122,10 +122,10 @@ def test_chaos():
     system, warm_up, count, gap = PAPER.replace(b=6.68), 100, 2000, 1e-8
     X = settled(system)
     exponent = vs.lyapunov(system, X, warm_up, count)[0]
-    W = metric(system)
+    W, step = metric(system), PeriodMap(system)
     beside, logs = X + gap / 2, []
     for _ in range(warm_up + count):
-        X, beside = (vs.simulate(system, x, 1).section[-1] for x in (X, beside))
+        X, beside = step([X, beside]).states
         distance = np.linalg.norm(W @ (beside - X))
         logs.append(math.log(distance / gap))
         beside = X + (beside - X) * (gap / distance)

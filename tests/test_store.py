@@ -43,11 +43,18 @@ EXTRA = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_xarray_opens_it(path, kind):
+@pytest.fixture(scope="module", params=KINDS)
+def made(request, tmp_path_factory):
+    """A kind, and its file."""
+    path = tmp_path_factory.mktemp("made") / "out.h5"
+    vs.run(scene_of(KINDS[request.param][0]), path)
+    return request.param, path
+
+
+def test_xarray_opens_it(made):
     """The dimensions of the contract, a coordinate for each, and no dataset that nobody asked for."""
+    kind, path = made
     content, lead, names = KINDS[kind]
-    vs.run(scene_of(content), path)
     with xarray.open_dataset(path, engine="h5netcdf") as data, vs.open(path) as own:
         for attributes in (own.attrs, data.attrs):
             if lead.keys() <= {"start"}:  # h5netcdf has its own word for a list of nothing
@@ -72,10 +79,8 @@ def test_xarray_opens_it(path, kind):
             np.testing.assert_allclose(data["time"], np.arange(5) / 2, rtol=1e-15)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_everything_is_described(path, kind):
-    vs.run(scene_of(KINDS[kind][0]), path)
-    with h5py.File(path) as file:
+def test_everything_is_described(made):
+    with h5py.File(made[1]) as file:
         for name, dataset in file.items():
             assert dataset.attrs["units"] and dataset.attrs["long_name"], name
             for dimension in () if dataset.is_scale else dataset.dims:
