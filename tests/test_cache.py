@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from support import slow_cases
 
 PROGRAM = """
 from vibro_sweep.engine.simd import jit
@@ -46,13 +47,7 @@ def entries(folder, ending):
     return found
 
 
-def test_a_second_start_compiles_nothing(program, tmp_path):
-    folder = str(tmp_path / "cache")
-    assert program(NUMBA_CACHE_DIR=folder) == (0, [])
-    assert program(NUMBA_CACHE_DIR=folder) == (1, [])
-
-
-def test_a_second_start_loads_nothing_that_compiling_takes(program, tmp_path):
+def test_a_second_start_compiles_nothing_and_loads_nothing_that_compiling_takes(program, tmp_path):
     """numba's own way to a kernel in the cache loads scipy and all of numba's registries: a quarter of a second."""
     source = tmp_path / "program.py"
     source.write_text("import sys\n" + PROGRAM + "print('numba.np.linalg' in sys.modules, file=sys.stderr)\n")
@@ -61,16 +56,16 @@ def test_a_second_start_loads_nothing_that_compiling_takes(program, tmp_path):
     assert program(NUMBA_CACHE_DIR=folder) == (1, ["False"])
 
 
-def test_a_cut_entry_is_named_and_mended(program, tmp_path):
+@pytest.mark.parametrize("cuts", [[(".nbi", 0), (".nbc", 0.5)], *slow_cases([(".nbi", 0.5), (".nbc", 0)])])
+def test_a_cut_entry_is_named_and_mended(program, tmp_path, cuts):
     """Index or code, empty or halved; what each start has mended the next one finds whole."""
     folder = str(tmp_path / "cache")
     program(NUMBA_CACHE_DIR=folder)
-    for ending in (".nbi", ".nbc"):
-        for keep in (0, 0.5):
-            for path in entries(folder, ending):
-                path.write_bytes(path.read_bytes()[: int(keep * path.stat().st_size)])
-            hits, told = program(NUMBA_CACHE_DIR=folder)
-            assert hits == 0 and len(told) == 1 and folder in told[0] and "compiled anew" in told[0], (ending, keep)
+    for ending, keep in cuts:
+        for path in entries(folder, ending):
+            path.write_bytes(path.read_bytes()[: int(keep * path.stat().st_size)])
+        hits, told = program(NUMBA_CACHE_DIR=folder)
+        assert hits == 0 and len(told) == 1 and folder in told[0] and "compiled anew" in told[0], (ending, keep)
     assert program(NUMBA_CACHE_DIR=folder) == (1, [])
 
 

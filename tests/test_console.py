@@ -8,6 +8,7 @@ import time
 
 import h5py
 import pytest
+from support import slow_cases
 
 from vibro_sweep.cli import main
 
@@ -29,7 +30,7 @@ def shell(command):
     return subprocess.run(["bash", "-c", text], capture_output=True, text=True, timeout=LIMIT, check=False)
 
 
-@pytest.mark.parametrize("closed", ["2>&-", ">&-", "<&-", ">&- 2>&- <&-"])
+@pytest.mark.parametrize("closed", ["2>&-", ">&- 2>&- <&-", *slow_cases(">&-", "<&-")])
 def test_closed_streams(folder, closed):
     """And no message of a library can reach the data file by the number of a closed stream."""
     done = shell(f"vibro-sweep run good.yaml {closed}")
@@ -39,7 +40,7 @@ def test_closed_streams(folder, closed):
 
 
 @pytest.mark.parametrize(
-    "command", ["run good.yaml", "check good.yaml", "grazing good.yaml", "schema", "--version", "--help"]
+    "command", ["run good.yaml", "--help", *slow_cases("check good.yaml", "grazing good.yaml", "schema", "--version")]
 )
 def test_a_full_disk_at_stdout(folder, command):
     done = shell(f"vibro-sweep {command} > /dev/full")
@@ -111,12 +112,9 @@ ADVICE = "; to continue: vibro-sweep run good.yaml -o good.h5 --resume"
     "where, advice",
     [
         ("typer", ""),
-        ("yaml", ADVICE),
         ("numba", ADVICE),
-        ("h5py", ADVICE),
-        ("vibro_sweep.progress", ADVICE),
         ("a destructor", ADVICE),
-        ("a handler", ADVICE),
+        *slow_cases(("yaml", ADVICE), ("h5py", ADVICE), ("vibro_sweep.progress", ADVICE), ("a handler", ADVICE)),
     ],
 )
 def test_ctrl_c_is_never_lost(folder, where, advice):
@@ -127,7 +125,9 @@ def test_ctrl_c_is_never_lost(folder, where, advice):
     assert not (folder / "good.h5").exists()
 
 
-@pytest.mark.parametrize("options, advice", [("--overwrite", "--overwrite"), ("--plot", "--plot --resume")])
+@pytest.mark.parametrize(
+    "options, advice", [("--overwrite", "--overwrite"), *slow_cases(("--plot", "--plot --resume"))]
+)
 def test_after_ctrl_c_the_advice_leads_to_what_was_asked_for(folder, options, advice):
     """Before a run has begun, `--resume` would take the file that is to be overwritten for its result."""
     command = [sys.executable, "-c", INTERRUPTING, "vibro_sweep.progress", "run", "good.yaml", options]

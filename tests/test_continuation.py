@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from support import slow_cases
 from support.branches import branch_of, same_points, types
 from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
 from support.random_branches import random_oscillator, random_system
@@ -117,7 +118,7 @@ def test_bifurcations_in_one_step_do_not_hide_each_other(factor, monkeypatch):
     assert [s.parameters["R_left"] for s in branch.special[1:-1]] == pytest.approx(expected, abs=1e-13)
 
 
-@pytest.mark.parametrize("factor", [1, 2, 4])
+@pytest.mark.parametrize("factor", [1, *slow_cases(2, 4)])
 def test_bifurcation_in_the_step_to_a_graze(factor, monkeypatch):
     """A Neimark-Sacker point 4e-4 beside the graze, where multipliers have a pole."""
     system = random_system(np.random.default_rng(41))

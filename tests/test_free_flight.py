@@ -7,6 +7,7 @@ import pytest
 from mpmath import mp, mpf
 from reference import monodromy, naive
 from reference.gmp import expm
+from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.engine.free_flight import FreeFlight
@@ -19,6 +20,7 @@ SYSTEMS = {
     "undamped": dict(**naive.PAPER | {"zeta": 0.0, "omega": 1.7}, tau=1.0, b=1.0),
     "stiff": dict(**naive.PAPER | {"mu_k": 1e9, "zeta": 0.0}, tau=1.0, b=1.0),
 }
+KINDS = ["paper", "overdamped", *slow_cases("two forces", "undamped", "stiff")]
 
 
 class Exact:
@@ -56,7 +58,7 @@ def states(b, count, seed):
     return X
 
 
-@pytest.mark.parametrize("name", ["paper", "two forces", "overdamped", "undamped"])
+@pytest.mark.parametrize("name", ["paper", "overdamped", *slow_cases("two forces", "undamped")])
 def test_motion(name):
     params = SYSTEMS[name]
     X, elapsed = states(params["b"], 3, 1), np.array([-1.0, 0.0, 1e-6, 4.0, 25.0])
@@ -69,7 +71,7 @@ def test_motion(name):
             np.testing.assert_allclose(found[i, n], [float(x) for x in exact(u)[:4]], rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", KINDS)
 def test_first_contact(name):
     """x1 is on the stop there, and nowhere before by a dense look at the flight."""
     params = SYSTEMS[name]
@@ -89,7 +91,7 @@ def test_first_contact(name):
         assert abs(z[0] - int(side[i]) * mpf(b)) <= 1e-13 * max(1, abs(X[i]).max()) * max(1, abs(z[1]))
 
 
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", KINDS)
 def test_extremes(name):
     """Bounds hold the exact turning point, are narrow, and no other turning point lies outside them."""
     params = SYSTEMS[name]

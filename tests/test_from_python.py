@@ -8,7 +8,7 @@ import pytest
 import xarray
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from support import ROOT
+from support import ROOT, slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
@@ -200,7 +200,9 @@ def drawn(fig):
     return np.array(canvas.buffer_rgba())
 
 
-@pytest.mark.parametrize("kind", ["bifurcation", "lyapunov", "phase-portrait", "history", "configuration", "iteration"])
+@pytest.mark.parametrize(
+    "kind", ["bifurcation", "history", *slow_cases("lyapunov", "phase-portrait", "configuration", "iteration")]
+)
 def test_pictures_of_a_dataset_are_those_of_its_file(tmp_path, kind):
     orders = dict(trajectory={"periods": 2, "samples": 50}, start={"follow": "both"}, observe=["section", "lyapunov"])
     data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7]}, output=tmp_path / "a.h5", **orders, **SHORT)
@@ -232,7 +234,9 @@ def lines_of(ax):
     return [drawn.get_xydata().tobytes() for drawn in ax.lines]
 
 
-@pytest.mark.parametrize("kind", ["bifurcation", "lyapunov", "impacts", "phase-portrait", "configuration", "history"])
+@pytest.mark.parametrize(
+    "kind", ["bifurcation", "phase-portrait", *slow_cases("lyapunov", "impacts", "configuration", "history")]
+)
 def test_a_picture_in_the_axes_of_the_caller(line, kind):
     fig = Figure()
     other, ax = fig.subplots(1, 2)

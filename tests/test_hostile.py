@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from support import slow_cases
 from support.files import OBSTACLES, SCENE, TEXT, refused, seen
 from support.scenes import arrays_of, assert_same_bits
 
@@ -16,6 +17,8 @@ from vibro_sweep.cli import main
 from vibro_sweep.store import StoreError, describe
 
 # Readers write nothing
+
+BESIDE = ("journal", "text", "link", "pipe", "folder", "loop")
 
 
 def old_journal():
@@ -29,8 +32,16 @@ def old_journal():
     return start + struct.pack(">QQI", len(body), 2**40, checksum) + body
 
 
-@pytest.mark.parametrize("beside", ["journal", "text", "link", "pipe", "folder", "loop"])
-@pytest.mark.parametrize("name", ["x.h5", "y.h5.part", "victim.h5"])
+@pytest.mark.parametrize(
+    ("name", "beside"),
+    [
+        ("x.h5", "journal"),
+        ("y.h5.part", "link"),
+        *(("victim.h5", beside) for beside in BESIDE),
+        *slow_cases(*(("x.h5", beside) for beside in BESIDE if beside != "journal")),
+        *slow_cases(*(("y.h5.part", beside) for beside in BESIDE if beside != "link")),
+    ],
+)
 def test_readers_change_nothing(folder, capsys, name, beside):
     (folder / "victim").write_text("years of work")
     (folder / "victim.h5").symlink_to("victim")
@@ -91,7 +102,7 @@ def test_a_device_is_not_replaced(folder, capsys):
     assert stat.S_ISCHR(os.stat("out.h5").st_mode)
 
 
-@pytest.mark.parametrize("suffix", ["journal", "new"])
+@pytest.mark.parametrize("suffix", ["journal", *slow_cases("new")])
 @pytest.mark.parametrize("what", OBSTACLES)
 def test_other_names_are_left_alone(folder, what, suffix):
     """Version 0.1 wrote to them."""
@@ -125,7 +136,7 @@ def test_a_mode_that_is_none(folder, mode, place):
 
 
 @pytest.mark.parametrize("mode", ["new", "overwrite"])
-@pytest.mark.parametrize("what", ["text", "dangling", "link"])
+@pytest.mark.parametrize("what", ["text", *slow_cases("dangling", "link")])
 def test_what_appears_during_a_run_is_left_alone(folder, mode, what):
     """Also in place of the file that the run was to replace; the result is kept, and gets its name later."""
     place = Path("x.h5" if mode == "overwrite" else "out.h5")
@@ -190,7 +201,9 @@ def test_without_fcntl(folder):
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="a device that is always full")
-@pytest.mark.parametrize("arguments", [["run", "scene.yaml", "-o", "out.h5"], ["info", "x.h5"], ["schema"]])
+@pytest.mark.parametrize(
+    "arguments", [["run", "scene.yaml", "-o", "out.h5"], *slow_cases(["info", "x.h5"], ["schema"])]
+)
 def test_standard_output_on_a_full_disk(folder, arguments):
     with open("/dev/full", "w") as full:
         done = subprocess.run(

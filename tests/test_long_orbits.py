@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support import slow_cases
 from support.branches import repeated
 from support.oscillators import CHAIN, PAPER
 
@@ -45,7 +46,7 @@ def test_long_orbit_is_followed_like_the_short_one():
     assert point.reflection[0] == start.reflection[0]
 
 
-@pytest.mark.parametrize("system", [PAPER, CHAIN])
+@pytest.mark.parametrize("system", [PAPER, *slow_cases(CHAIN)])
 def test_newton_with_states_finds_what_the_dense_one_finds(system):
     long = repeated(vs.periodic_orbit(system, itinerary="LR"), 35)
     assert long_orbits.is_long(long.equations, long.sides)

@@ -5,6 +5,7 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
+from support import slow_cases
 from support.files import refused
 
 import vibro_sweep as vs
@@ -57,7 +58,7 @@ def test_a_point_asks_for_a_picture_of_single_orbits(files, tmp_path):
     assert [path.name for path in written] == ["x-iteration.png", "x-poincare.png"]
 
 
-@pytest.mark.parametrize("name", ["x1", "v1", "x2", "v2"])
+@pytest.mark.parametrize("name", ["x1", "v2", *slow_cases("v1", "x2")])
 def test_variable_of_section_points(files, name):
     data = vs.open(files / "sweep.h5")
     ax = vs.plot(files / "sweep.h5", variable=name).axes[0]
@@ -69,7 +70,7 @@ def test_variable_of_section_points(files, name):
     assert np.array_equal(dots(ax)[:, 1], data[name].sel(b=6.6)) and ax.get_ylabel() == f"${name[0]}_{name[1]}$"
 
 
-@pytest.mark.parametrize("name", ["x1", "v1", "x2", "v2"])
+@pytest.mark.parametrize("name", ["x1", "v2", *slow_cases("v1", "x2")])
 def test_variable_over_time(files, name):
     data = vs.open(files / "one.h5")
     (ax,) = vs.plot(data, "history", variable=name).axes
@@ -137,11 +138,13 @@ def test_limits_of_a_plane(files):
 @pytest.mark.parametrize(
     ("file", "arguments", "kind", "look"),
     [
-        ("sweep", ["--at", "b=6.58"], None, Look(at={"b": 6.6})),
-        ("plane", ["--at", "b=6", "--at", "R=0.7"], None, Look(at={"b": 6, "R": 0.7})),
-        ("sweep", ["--variable", "v1", "--kind", "history"], "history", Look(variable="v1")),
-        ("sweep", ["--xlim", "6.45", "6.65", "--ylim", "-2", "7"], None, Look(xlim=(6.45, 6.65), ylim=(-2, 7))),
         ("sweep", ["--size", "4", "3", "--dpi", "50"], None, Look(size=(4, 3), dpi=50)),
+        *slow_cases(
+            ("sweep", ["--at", "b=6.58"], None, Look(at={"b": 6.6})),
+            ("plane", ["--at", "b=6", "--at", "R=0.7"], None, Look(at={"b": 6, "R": 0.7})),
+            ("sweep", ["--variable", "v1", "--kind", "history"], "history", Look(variable="v1")),
+            ("sweep", ["--xlim", "6.45", "6.65", "--ylim", "-2", "7"], None, Look(xlim=(6.45, 6.65), ylim=(-2, 7))),
+        ),
     ],
 )
 def test_commands(here, file, arguments, kind, look):

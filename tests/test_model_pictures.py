@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
@@ -12,7 +13,7 @@ system: {type: ball_in_cavity, mass_ratio: 0.05, zeta: 0.01, F: 0.1, omega: 1, R
 sweep: {b: {values: [0.8, 1.8]}}
 start: {v1: 0.1}
 orbit: {transient: 50, record: 20}
-observe: [section, lyapunov, impacts, convergence, energy]
+observe: [section, lyapunov, impacts, convergence]
 trajectory: {periods: 2, samples: 200}
 """
 PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
@@ -60,9 +61,15 @@ def test_the_file_has_the_gap(cavity):
 
 def test_all_kinds_are_drawn(cavity):
     kinds = plotting.kinds(cavity)
-    assert {"bifurcation", "lyapunov", "impacts", "energy", "phase-portrait", "configuration", "history"} <= set(kinds)
+    assert {"bifurcation", "lyapunov", "impacts", "phase-portrait", "configuration", "history"} <= set(kinds)
     for kind in kinds:
         assert plotting.figure(cavity, kind).axes
+
+
+@pytest.mark.parametrize("scene", [SHIFTED, *slow_cases(CAVITY)], ids=["shifted", "cavity"])
+def test_energies_are_drawn(scene, tmp_path):
+    path = run(tmp_path, scene.replace("impacts", "impacts, energy"))
+    assert "energy" in plotting.kinds(path) and plotting.figure(path, "energy").axes
 
 
 def test_a_portrait_is_that_of_the_gap(cavity):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from reference import monodromy
+from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.engine.period_map import PeriodMap
@@ -35,9 +36,12 @@ def point(tmp_path, values, transient):
     return data.isel(b=0)
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: f"b={case[0]['b']}")
-def test_against_forty_digits(tmp_path, case):
-    values, transient = case
+@pytest.mark.parametrize(
+    ("values", "transient"),
+    [*CASES[:3], *slow_cases(*CASES[3:])],
+    ids=lambda value: f"b={value['b']}" if isinstance(value, dict) else None,
+)
+def test_against_forty_digits(tmp_path, values, transient):
     data = point(tmp_path, values, transient)
     system, period = vs.System(**values), int(data.period)
     assert period > 0 and int(data.status) == status.OK
@@ -141,7 +145,7 @@ def against_quotients(tmp_path, key, count):
     return tried, compared, wrong
 
 
-@pytest.mark.parametrize("key", SWEEPS)
+@pytest.mark.parametrize("key", ["b", "R", *slow_cases("mu_k", "omega")])
 def test_against_difference_quotients(tmp_path, key):
     tried, compared, wrong = against_quotients(tmp_path, key, 25)
     assert compared > 8 and not wrong, (tried, compared, wrong)

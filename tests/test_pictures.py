@@ -9,6 +9,7 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
+from support import slow_cases
 from support.files import OBSTACLES, refused, seen
 
 from vibro_sweep import plotting
@@ -18,7 +19,7 @@ from vibro_sweep.plotting import PlotError
 SUFFIXES = (".png", ".svg", ".pdf")
 
 
-@pytest.mark.parametrize("suffix", [SUFFIXES[0], *(pytest.param(s, marks=pytest.mark.slow) for s in SUFFIXES[1:])])
+@pytest.mark.parametrize("suffix", [SUFFIXES[0], *slow_cases(*SUFFIXES[1:])])
 def test_a_picture_of_ours_is_drawn_anew_until_somebody_changes_it(folder, suffix):
     (path,) = plotting.plot("x.h5", f"a{suffix}")
     first = path.stat().st_ino
@@ -39,7 +40,7 @@ def test_a_picture_of_ours_is_drawn_anew_until_somebody_changes_it(folder, suffi
     assert not [name for name in os.listdir() if name.startswith(".")]
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("suffix", [".png", ".svg", *slow_cases(".pdf")])
 def test_a_seal_makes_no_picture_worse(folder, suffix):
     """It is a chunk of text, or a comment."""
     plotting.plot("x.h5", f"a{suffix}")
@@ -62,7 +63,9 @@ def test_a_seal_makes_no_picture_worse(folder, suffix):
         assert content.rstrip().splitlines()[-2] == b"%%EOF" and len(content.splitlines()[-1]) < 100
 
 
-@pytest.mark.parametrize("what", OBSTACLES)
+@pytest.mark.parametrize(
+    "what", ["text", "link", *slow_cases(*(one for one in OBSTACLES if one not in ("text", "link")))]
+)
 def test_what_is_no_picture_of_ours_is_left_alone(folder, capsys, what):
     OBSTACLES[what](folder / "x.png")
     before = seen(folder)

@@ -6,6 +6,7 @@ import shutil
 import h5py
 import numpy as np
 import pytest
+from support import slow_cases
 from support.old_files import OLD
 from support.pictures import drawn, write
 
@@ -51,7 +52,9 @@ def test_a_history_reaches_the_stops_and_counts_forcing_periods(trajectory):
     assert "forcing periods" in ax.get_xlabel()
 
 
-@pytest.mark.parametrize("scene", ["", "system: [", "[1, 2]", "system: 3", "system: {b: high, omega: 1e-1}"])
+@pytest.mark.parametrize(
+    "scene", ["system: [", "system: {b: high, omega: 1e-1}", *slow_cases("", "[1, 2]", "system: 3")]
+)
 def test_an_illegible_scene_of_version_0_1_costs_only_its_numbers(tmp_path, scene):
     path = shutil.copy(OLD / "orbit.h5", tmp_path)
     with h5py.File(path, "a") as file:

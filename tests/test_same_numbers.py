@@ -10,6 +10,7 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from support import slow_cases
 from support.scenes import ALL, PAPER, SCENES, arrays_of, assert_same_bits, done, run, scene_of
 
 import vibro_sweep as vs
@@ -18,7 +19,7 @@ from vibro_sweep.driver.attractor_ids import number_attractors
 from vibro_sweep.driver.starts import starts_of
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", ["random", "follow", "attractors", *slow_cases("plane", "basins")])
 def test_workers_do_not_matter(tmp_path, name):
     one = run(tmp_path, SCENES[name], workers=1)
     assert np.all(one["status"] == 0)
@@ -76,7 +77,7 @@ def long_scene(tmp_path_factory):
     return path, run(folder, text)
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("how", [signal.SIGINT, *slow_cases(signal.SIGKILL)])
 def test_interrupted_and_resumed(tmp_path, long_scene, how):
     scene, whole = long_scene
     output, part = tmp_path / "out.h5", tmp_path / "out.h5.part"

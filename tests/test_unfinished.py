@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+from support import slow_cases
 from support.stored import ALL, IMPACTS, LYAPUNOV, PLANE, SECTION, SWEEP, broken_off, scene_of
 
 import vibro_sweep as vs
@@ -52,7 +53,7 @@ def in_another_process(code):
     return done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("mode", ["new", "resume", "overwrite"])
+@pytest.mark.parametrize("mode", ["resume", *slow_cases("new", "overwrite")])
 def test_one_writer(path, mode):
     """A second one is refused, and does the first no harm."""
     scene = scene_of(SWEEP)
