@@ -24,9 +24,13 @@ os.environ["PYTHONSAFEPATH"] = "1"
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# Two workers begin with these: one compiles the kernels of three masses and of one, the other meanwhile those of the
-# paper's oscillator, of any two masses and of branches. With the same to compile, both would do so at the same moment.
-FIRST = ["test_any_oscillator.py", "test_system.py", "test_models.py", "test_continuation.py"]
+# Two workers begin with these. One compiles the kernels of three masses and of one; the other those of the paper's
+# oscillator, what is built upon them (in one process this takes half the time), and those of branches. With the same
+# kernels to compile, both would do so at the same moment.
+FIRST = [
+    f"test_{name}.py"
+    for name in ("any_oscillator", "system", "models", "from_python", "discontinuity", "energy", "continuation")
+]
 
 
 def pytest_configure(config):
