@@ -7,7 +7,7 @@ from support.windows import SYSTEM, few  # noqa: F401
 import vibro_sweep as vs
 from vibro_sweep.driver.branches import run_branches
 from vibro_sweep.model.bifurcations import TYPES
-from vibro_sweep.scene import parse_continuation
+from vibro_sweep.scene import SceneError, parse_continuation
 
 NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
 
@@ -37,6 +37,36 @@ def test_branches_of_a_sweep_pass_its_windows(few, tmp_path):  # noqa: F811
                 assert (end.type, window.period, round(end.parameters["b"], 11)) in found, window
     with vs.open(few) as sweep, vs.open(tmp_path / "b.h5") as data:
         assert data.attrs["source"] == sweep.attrs["identity"] and data.attrs["omega"] == 0.63
+
+
+@pytest.mark.slow
+def test_the_largest_windows(few, tmp_path):  # noqa: F811
+    """As wide as they are within the range, in which the free motion's window is a short one."""
+    lo, hi, count = 5.1, 6.71, 3
+    run_branches(scene(f"{{sweep: {few}, largest: {count}}}", lo, hi), tmp_path / "b.h5")
+    windows = sorted(vs.windows(few), key=lambda one: max(min(one.hi, hi), lo) - max(min(one.lo, hi), lo))
+    with vs.open(tmp_path / "b.h5") as data:
+        assert sorted(data["branch_period"].values) == sorted(one.period for one in windows[-count:])
+        assert data["branch_impacts"].values.all()
+
+
+def test_the_number_that_a_file_has_may_be_left_out():
+    given = NUMBERS.replace(", b: 6.6", "")
+    assert scene("{sweep: s.h5}", 5, 7, numbers=given).system.b == 5
+    with pytest.raises(SceneError, match=r"system\.b: missing"):
+        scene("{itinerary: LR}", 5, 7, numbers=given)
+
+
+@pytest.mark.parametrize(
+    "begin, words",
+    [
+        ("{itinerary: LR, largest: 3}", "continue.from.largest: belongs to sweep; leave it out"),
+        ("{sweep: s.h5, largest: 0}", "continue.from.largest = 0: must be a whole number >= 1"),
+    ],
+)
+def test_largest_belongs_to_sweeps(begin, words):
+    with pytest.raises(SceneError, match=words):
+        scene(begin, 5, 7)
 
 
 def test_a_range_beside_the_orbits_of_the_sweep(few, tmp_path):  # noqa: F811

@@ -151,6 +151,9 @@ def test_charts_over_a_plane(file, tmp_path, monkeypatch, capsys):
     ).close()  # fmt: skip
     assert main(["plot", str(file), "--over", "plane.h5", "-o", "over.svg"]) == 0
     assert main(["plot", str(file), "--over", "plane.h5", "--variable", "period", "-o", "period.svg"]) == 0
+    (tmp_path / "largest.yaml").write_text(text("{sweep: plane.h5, largest: 3}"))
+    assert main(["run", "largest.yaml"]) == 2
+    assert "continue.from.largest: belongs to windows along one number; plane.h5 is a plane" in capsys.readouterr().err
     assert (tmp_path / "over.svg").read_text().count('id="curve"') >= 2
     capsys.readouterr()
     for more, words in (

@@ -19,9 +19,8 @@ from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.lcp import born_at_grazing
 from vibro_sweep.analysis.periodic.orbit import STATUS, PeriodicOrbit, orbit_of
-from vibro_sweep.analysis.windows.cover import solution_in
+from vibro_sweep.analysis.windows.cover import Cover, Found, solution_in
 from vibro_sweep.analysis.windows.rows import Row
-from vibro_sweep.analysis.windows.window import windows_of
 from vibro_sweep.driver.windows import cover_of, rows_in
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.bifurcations import CURVES
@@ -133,7 +132,7 @@ def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | No
     with store.open(Path(scene.begin)) as data:
         rows = _rows(scene, data)
     orbits = []
-    for found in cover_of(rows, file, pool).found:
+    for found in _chosen(scene, cover_of(rows, file, pool)):
         lo, hi = np.clip(found.ends, *scene.along[key])
         value = float(np.clip(found.flat["value"][found.flat["branch_origin"]], lo, hi))
         system = found.system.replace(**{key: value})
@@ -141,6 +140,15 @@ def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | No
         if found.ends[0] <= value <= found.ends[1] and orbit.ok:
             orbits.append(orbit)
     return orbits
+
+
+def _chosen(scene: Continuation, cover: Cover) -> list[Found]:
+    """The windows from which a scene begins, in the order of the sweep: all, or the largest within its range."""
+    found, (lo, hi) = cover.found, next(iter(scene.along.values()))
+    if scene.largest is None:
+        return found
+    widths = np.array([np.ptp(np.clip(one.ends, lo, hi)) for one in found])
+    return [found[w] for w in np.sort(np.argsort(-widths, kind="stable")[: scene.largest])]
 
 
 def _one(orbit: PeriodicOrbit, scene: Continuation) -> PeriodicOrbit:
@@ -172,7 +180,9 @@ def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> lis
         return [special]
     with store.open(Path(scene.begin)) as data:
         rows = _rows(scene, data)
-    return [end for window in windows_of(cover_of(rows, file, pool)) for end in (window.lower, window.upper)]
+    key = next(iter(scene.along))
+    chosen = _chosen(scene, cover_of(rows, file, pool))
+    return [special_point(one.flat, end, key, one.system) for one in chosen for end in (0, 1)]
 
 
 def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:

@@ -30,6 +30,11 @@ def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
         check_data(data)
         if sorted(keys) != sorted(names):
             raise ValueError(f"continue.along: {', '.join(names)} is not allowed; {scene.begin} is a plane of {keys}")
+        if scene.largest is not None:
+            raise ValueError(
+                f"continue.from.largest: belongs to windows along one number; {scene.begin} is a plane whose edges are "
+                "explained; leave it out"
+            )
         if "start" in data["period"].dims:
             raise ValueError(f"continue.from.sweep: {scene.begin} has several starts; it must be a plane of one")
         system = parse_scene(data.attrs["scene"]).system

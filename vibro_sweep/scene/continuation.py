@@ -17,9 +17,11 @@ from .reading import text_of
 from .system import kind_of, system_of
 from .yaml_text import YAMLTextError, lines_of, read_yaml
 
+_IN_FILES = ("sweep", "branches")  # orbits of a file, which has the first number of `along`
 _AT_SYSTEM = ("state", "itinerary", "free")  # orbits of `system` itself
 BY_BRANCHES = (*_AT_SYSTEM, "grazing")  # origins of curves that are orbits; their branches have the special points
-_WITH = {"periods": ("state", "itinerary"), "special": ("branches",)}  # keys of `from` that belong to others
+# Keys of `from` that belong to others
+_WITH = {"periods": ("state", "itinerary"), "special": ("branches",), "largest": ("sweep",)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +29,7 @@ class Continuation:
     """Branches to be followed, or with two numbers bifurcation curves.
 
     origin : one of `ORIGINS`, and `begin` what is given with it: a state (2N,), an itinerary, a path, a period, None
-    periods, special : what belongs to it
+    periods, special, largest : what belongs to it
     along : name -> (lo, hi) of the number that changes, or of two in the order of the text
     of : types of the curves in two numbers
     follow, depth : special points from which other branches are followed, and how far
@@ -40,6 +42,7 @@ class Continuation:
     begin: Any
     periods: int
     special: int | None
+    largest: int | None
     along: dict[str, tuple[float, float]]
     of: tuple[str, ...]
     follow: tuple[str, ...]
@@ -52,6 +55,7 @@ class Continuation:
         ranges = ", ".join(f"{key} = {lo:g} .. {hi:g}" for key, (lo, hi) in self.along.items())
         begin = "the free motion" if self.origin == "free" else f"{self.origin} {self.begin}"
         begin += f", special point {self.special}" if self.special is not None else ""
+        begin += f", its {self.largest} largest windows" if self.largest is not None else ""
         if len(self.along) == 1:
             others = f"over {', '.join(self.follow)}, {self.depth} away at most" if self.depth else "no others"
             return f"branches in {ranges}\n  system    {system}\n  from      {begin}\n  follow    {others}"
@@ -94,7 +98,9 @@ def _continuation_of(data: Any, name: str, text: str) -> Continuation:
     problems += more
     if len(along) == 1 and "of" in body.model_fields_set:
         problems.append("continue.of: belongs to two keys of `along`; leave it out")
-    system, more = system_of(form, {}, kind, masses)
+    first = next(iter(along), "")
+    missing = first and given[0] in _IN_FILES and getattr(form.system, first, None) is None
+    system, more = system_of(form, {first: along[first]} if missing else {}, kind, masses)
     problems += more
     for key, limits in along.items() if system is not None else ():
         problems += [line for value in limits for line in _outside(system, key, value)]
@@ -110,7 +116,7 @@ def _continuation_of(data: Any, name: str, text: str) -> Continuation:
         begin = tuple(begin.model_dump().values())
     origin = getattr(body, "from")
     return Continuation(
-        Path(name).stem, text, system, given[0], begin, origin.periods, origin.special,
+        Path(name).stem, text, system, given[0], begin, origin.periods, origin.special, origin.largest,
         along, body.of, body.follow, body.depth,
     )  # fmt: skip
 

@@ -46,6 +46,7 @@ def continue_form(numbers: Iterable[Parameter], masses: int) -> type[Form]:
         itinerary=(str, Field(default=None, description="a periodic orbit with these impacts, such as LR")),
         periods=(Whole, Field(default=1, ge=1, description="of `state` or `itinerary`: period in forcing periods")),
         sweep=(str, Field(default=None, description="the windows of the file of a sweep")),
+        largest=(Whole, Field(default=None, ge=1, description="of `sweep`: so many of its largest windows only")),
         grazing=(Whole, Field(default=None, ge=1, description="orbits born at grazing, up to this period")),
         free=(bool, Field(default=None, description="the motion without impacts")),
         branches=(str, Field(default=None, description="a special point of a file of branches, curves or windows")),

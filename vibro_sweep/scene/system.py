@@ -86,7 +86,7 @@ def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[AnyOscillator 
             problems += _number_problems("system", one, value, stops)
         if value is not None:
             given[one.name] = value
-    if problems or swept != first.keys():
+    if problems or not swept <= first.keys():
         return None, problems
     given |= {name: value for name, value in first.items() if name in (one.name for one in model.numbers)}
     given |= {one.name: getattr(form.system, one.name) for one in model.options}
