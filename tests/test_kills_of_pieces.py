@@ -1,4 +1,4 @@
-"""Runs of windows and of branches killed at random moments and resumed."""
+"""Runs of windows, of branches and of curves killed at random moments and resumed."""
 
 import pytest
 from support import kills_of_pieces as kills
@@ -6,7 +6,9 @@ from support.kills import BY
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("what, by, count", [("windows", "2 workers", 1), ("branches", "1 worker", 1)])
+@pytest.mark.parametrize(
+    "what, by, count", [("windows", "2 workers", 1), ("branches", "1 worker", 1), ("curves", "2 workers", 1)]
+)
 def test_killed_at_random_moments(what, by, count, tmp_path):
     """The same numbers; nothing that was kept is computed again, and no process is left."""
     found, same = kills.measure(tmp_path, what, by, count, 11)

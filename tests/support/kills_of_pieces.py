@@ -1,4 +1,4 @@
-"""Runs of windows and of branches killed at random moments, resumed, and compared with one that was left alone.
+"""Runs of windows, branches and curves killed at random moments, resumed, and compared with one that was left alone.
 
 The command line runs as a process of its own, with one worker, two, or the two of a Dask cluster. It gets SIGKILL a
 moment after some number of pieces has been kept, both drawn at random, once or twice, and is then resumed to its end. A
@@ -27,7 +27,17 @@ continue:
   along: {{b: {{start: 5.4, stop: 6.2}}}}
   depth: 1
 """
-WHAT = ("windows", "branches")
+CURVES = """
+system: {{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6}}
+continue:
+  from: {{sweep: {sweep}, largest: 4}}
+  along:
+    b: {{start: 5.4, stop: 6.2}}
+    omega: {{start: 0.629, stop: 0.631}}
+  depth: 1
+"""
+SCENES = {"branches": BRANCHES, "curves": CURVES}
+WHAT = ("windows", *SCENES)
 
 # The program, with a line in a log for each piece that is kept.
 PROGRAM = """
@@ -63,7 +73,7 @@ def command_of(what: str, folder: Path, sweep: Path) -> list[str]:
     if what == "windows":
         return ["windows", str(sweep)]
     scene = folder / "scene.yaml"
-    scene.write_text(BRANCHES.format(sweep=sweep))
+    scene.write_text(SCENES[what].format(sweep=sweep))
     return ["run", str(scene)]
 
 
