@@ -32,13 +32,13 @@ def chart(path: str | Path, look: Look, ax=None):
         fig = page(5.0, f"Bifurcation curves: {file.title}")
         ax = fig.subplots()
     draw(ax, curves)
-    name_points(ax, curves)
     labels = [f"{symbol('b')}$/${symbol('b_star')}" if look.relative and n == "b" else axis_name(n) for n in names]
     ax.set(xlabel=labels[0], ylabel=labels[1])
     if fig is None:
         ax.legend(handles=handles(curves), loc="best", frameon=True)
     else:
         fig.legend(handles=handles(curves), loc="outside lower center", ncols=6)
+    name_points(ax, curves)
     return fig or ax.figure
 
 
@@ -68,7 +68,7 @@ def drawn(file: FlatFile, names: list[str], relative: bool = False) -> list[Draw
 def _over(file: FlatFile, look: Look, ax):
     """Over the plane of a sweep in the same two numbers."""
     if look.relative:
-        raise PlotError("relative: a chart over a plane has the axes of the plane")
+        raise PlotError("relative: a chart over a plane has b itself as its axis; leave out `relative` or `over`")
     check_over(look.over)
     with Result(look.over, Look(variable=look.variable, size=look.size), ax) as result:
         if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):

@@ -19,7 +19,8 @@ COLOURS = {
     "sticking": "#9600fa",
 }
 LABELS = {"neimark_sacker": "Neimark-Sacker"}
-APART = (0.045, 0.03)  # of the axes: room for a name
+LETTER, LINE, GAP = 4.8, 7.5, 2.5  # points: width of a letter of a name, its height, its distance from what is beside
+CORNERS = ((1, 1), (-1, 1), (1, -1), (-1, -1))  # of a mark, where its name may stand
 VIRTUAL = (0, (1, 1.5))  # dots of what is no motion
 MANY = 100  # curves
 SHORT = {one.name: one.label for one in CODIMENSION_TWO if one.label}
@@ -44,8 +45,8 @@ def plot_curves(curves: list[Drawn], names: tuple[str, str]):
         ax = fig.subplots()
         draw(ax, curves)
         ax.set(xlabel=axis_name(names[0]), ylabel=axis_name(names[1]))
-        name_points(ax, curves)
         fig.legend(handles=handles(curves), loc="outside lower center", ncols=6)
+        name_points(ax, curves)
         return fig
 
 
@@ -85,17 +86,52 @@ def name_points(ax, curves: list[Drawn], most: int | None = None) -> None:
         ax.plot(*place, "o", color=INK, zorder=4, gid="special", **size)
     if many:  # no room for names
         return
-    scale = np.array([np.diff(ax.get_xlim())[0], np.diff(ax.get_ylim())[0]])
-    taken: list[np.ndarray] = []
-    for name, place in points:
-        where = np.array(place) / scale
-        if all(np.any(np.abs(where - other) > APART) for other in taken) and len(taken) < (most or len(points)):
-            halo = [patheffects.withStroke(linewidth=1.8, foreground="white")] if most is not None else None
-            ax.annotate(
-                name, place, (3, 3), textcoords="offset points", size=6, path_effects=halo, zorder=5, clip_on=True,
-                annotation_clip=True,
-            )  # fmt: skip
-            taken.append(where)
+    ax.autoscale_view()  # else transforms know neither the limits yet,
+    if (layout := ax.figure.get_layout_engine()) is not None:
+        layout.execute(ax.figure)  # nor where the axes will be
+    to_points, scale = ax.transData.transform, 72 / ax.figure.dpi
+    marks = scale * to_points([place for _, place in points]).reshape(-1, 2)
+    lines = scale * np.concatenate([to_points(_filled(curve)) for curve in curves])
+    frame = scale * ax.transAxes.transform([(0, 0), (1, 1)])
+    taken: list[np.ndarray] = []  # boxes (2, 2) of names, from the lower left to the upper right
+    for (name, place), mark in zip(points, marks, strict=True):
+        found = _free_corner(name, mark, marks, lines, frame, taken)
+        if found is None or len(taken) >= (most or len(points)):
+            continue
+        (right, up), box = found
+        halo = [patheffects.withStroke(linewidth=1.8, foreground="white")] if most is not None else None
+        ax.annotate(
+            name, place, (right * GAP, up * GAP), textcoords="offset points", size=6, path_effects=halo, zorder=5,
+            ha="left" if right > 0 else "right", va="bottom" if up > 0 else "top", clip_on=True, annotation_clip=True,
+        )  # fmt: skip
+        taken.append(box)
+
+
+def _free_corner(name: str, mark, marks, lines, frame, taken):
+    """((+-1, +-1), box) of the corner of a mark where its name covers no mark and no other name, and the fewest points
+    of lines; None where there is no such corner within the frame. All in points of the page."""
+    size, best = np.array([LETTER * len(name) + GAP, LINE]), None
+    for corner in CORNERS:
+        ends = mark + GAP * np.array(corner), mark + (GAP + size) * corner
+        box = np.array([np.minimum(*ends), np.maximum(*ends)])
+        inside = np.all((frame[0] <= box) & (box <= frame[1]))
+        apart = all(np.any((box[1] < other[0]) | (other[1] < box[0])) for other in taken)
+        if not inside or not apart or _within(marks, box):
+            continue
+        covered = _within(lines, box)
+        if best is None or covered < best[0]:
+            best = covered, corner, box
+    return best and best[1:]
+
+
+def _filled(curve: Drawn, pieces: int = 8) -> np.ndarray:
+    """(points, 2) of a curve, with more on its chords."""
+    at, share = np.column_stack([curve.p, curve.q]), np.arange(pieces)[:, None, None] / pieces
+    return np.concatenate([((1 - share) * at[:-1] + share * at[1:]).reshape(-1, 2), at[-1:]])
+
+
+def _within(points: np.ndarray, box: np.ndarray) -> int:
+    return int(np.count_nonzero(np.all((box[0] <= points) & (points <= box[1]), axis=1)))
 
 
 def handles(curves: list[Drawn]) -> list[Line2D]:

@@ -209,7 +209,7 @@ def _impact_counts(ax, result, values, order):
     per = result.number("record") or 1
     # (values, starts)
     right, left = (result.array(f"impacts_{side}")[order] / per for side in ("right", "left"))
-    of_both = "\nboth stops" if len(result.starts) > 1 else ""
+    of_both = "\nboth stops" if len(result.starts) > 1 and len(result.sides) > 1 else ""
     ax.set_ylabel(("impacts" if per == 1 else "impacts / $T$") + of_both)
     if result.follow:
         branches(ax, values, right + left)
