@@ -12,8 +12,10 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.branches import births, torus
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves import born
+from vibro_sweep.analysis.curves.curve_points import others_outside
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.engine.impulses.locus import TORUS
 
 BOXES = {("b", "omega"): ((0.3, 9), (0.5, 0.8)), ("b", "R"): ((0.3, 9), (0.3, 0.99))}
 
@@ -31,6 +33,12 @@ def ball(n=1, F=0.9, R=0.8):
         "one_mass", k=0, zeta=0, constant=-1, base=True, F=F, omega=1, R=R, b=0, stops="left", tau=0.0
     )
     return vs.continue_orbit(vs.periodic_orbit(system, itinerary="L", periods=n), "F", (0.2, 4))
+
+
+def test_a_critical_pair_that_rounding_parts_counts_as_no_other():
+    """At the end of a Neimark-Sacker curve: both are near 1 or -1, one of them a little outside."""
+    pair = np.array([1.65, 1 + 4e-8, 1 - 4e-8, 0.08], complex)
+    assert others_outside(np.array([pair, -pair]), TORUS, np.array([0.0, np.pi])).tolist() == [1, 1]
 
 
 @pytest.mark.slow

@@ -8,12 +8,13 @@ An impulse acts along M^-1 n: it changes the velocity of the gap g = n.x, with t
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
+FORCED = ("M", "K", "C", "along", "constant", "sine", "cosine", "omega")  # fields that move the steady motion
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 
 
@@ -70,9 +71,9 @@ class Family:
         """`linear` with this one's stops and restitution, and their derivatives by `name`, which moves nothing else."""
         step = self.build(**(self.numbers | {name: self.numbers[name] + 1j * STEP}))
         contact = {field: getattr(step, field) for field in ("low", "high", "R_low", "R_high")}
-        at_rest = {field: np.zeros(np.shape(value)) for field, value in linear._asdict().items()}
-        slope = at_rest | {field: float(np.imag(value)) / STEP for field, value in contact.items()}
-        return linear._replace(**{field: float(np.real(value)) for field, value in contact.items()}), Linear(**slope)
+        slope = {field: float(np.imag(value)) / STEP for field, value in contact.items()}
+        moved = {field: float(np.real(value)) for field, value in contact.items()}
+        return linear._replace(**moved), _no_slope(len(linear.along))._replace(**slope)
 
     def derivative(self, name: str, linear: Linear | None = None) -> Linear:
         """Derivatives of all fields by the parameter `name`, exact to rounding. linear: this one's, if it is known."""
@@ -85,6 +86,27 @@ class Family:
         if step.tau is None:
             slope = slope._replace(tau=grazing_phase_slope(linear or self.linear, slope))
         return slope
+
+
+@lru_cache
+def _no_slope(masses: int) -> Linear:
+    """Of a parameter that changes nothing."""
+    square, column = np.zeros((masses, masses)), np.zeros(masses)
+    return Linear(square, square, square, column, column, column, column, *[0.0] * 6)
+
+
+class Keyed:
+    """An oscillator as a key of what depends on these fields alone: equal where all of them are."""
+
+    def __init__(self, q: Linear, names: tuple[str, ...]):
+        self.q = q
+        self.key = tuple(np.asarray(getattr(q, name), float).tobytes() for name in names)
+
+    def __hash__(self):
+        return hash(self.key)
+
+    def __eq__(self, other):
+        return self.key == other.key
 
 
 def dynamic_stiffness(q: Linear) -> np.ndarray:
@@ -132,7 +154,12 @@ def amplitude_slopes(q: Linear, slope: Linear) -> np.ndarray:
 
 def grazing_phase(q: Linear) -> float:
     """tau for which the steady gap is largest at t = 0; 0 where there is no steady motion (eq. 18 for any n)."""
-    gain = steady_gain(q)
+    return _grazing_phase(Keyed(q, FORCED))
+
+
+@lru_cache(maxsize=64)
+def _grazing_phase(key: Keyed) -> float:
+    gain = steady_gain(key.q)
     return 0.0 if gain is None else 0.0 - float(np.angle(gain))
 
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 from vibro_sweep.analysis.branches.track import Rows
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.periodic.impulse_equations import multipliers_of
+from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.model.linear import Linear, forcing_period
 
@@ -56,7 +56,7 @@ def _multipliers(start: Solution, oscillators: list[Linear], rows: Rows) -> np.n
             continue
         contacts = np.column_stack([q.stop(start.sides), 1 + q.restitution(start.sides)])
         P, u = forcing_period(q) / 2 * start.halves, np.concatenate([t, D])
-        result.append(multipliers_of(q, start.sigma, P, contacts, u, motion))
+        result.append(multipliers_of(flow(q), start.sigma, P, contacts, u, motion))
     values = np.array(result) if start.sigma == 1 else np.array(result) ** 2
     order = np.lexsort((-values.imag, -np.abs(values)), axis=-1)
     return np.take_along_axis(values, order, axis=-1)

@@ -19,6 +19,7 @@ from vibro_sweep.analysis.branches.sticking import sticking_onset
 from vibro_sweep.analysis.branches.track import Rows, join
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.branches.way import Way
+from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.model.arguments import check_type, is_number
 from vibro_sweep.model.linear import family_of
@@ -49,6 +50,7 @@ class Branch:
         return dataset(self._walk, self._frame, self._rows)
 
 
+@one_thread()
 def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], progress=None) -> Branch:
     """Follow a periodic orbit both ways in `parameter`, a number of its system, within bounds = (lo, hi).
 

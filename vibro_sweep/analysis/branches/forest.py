@@ -14,6 +14,7 @@ from vibro_sweep.analysis.branches.continuation import continue_orbit
 from vibro_sweep.analysis.branches.flat import Flat, flatten, orbit_at, section_states, solution_of
 from vibro_sweep.analysis.branches.generations import alike, kind_of
 from vibro_sweep.analysis.branches.switching import switch
+from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import family_of
@@ -55,6 +56,7 @@ class Task(NamedTuple):
     follow: tuple[str, ...]
 
 
+@one_thread()
 def grow(task: Task) -> Flat:
     """The branch of a task, with `beyond`: the orbits found at its special points, as JSON; empty without a branch."""
     try:

@@ -54,8 +54,10 @@ class Point:
         u = self.x[:-1] * w.scale[:-1]
         family = w.family.replace(**{w.name: self.p})
         s = w.start
+        if self.held is None:
+            family.__dict__["linear"] = self.equations.q
         solution = Solution(family, s.sigma, s.halves, s.sides, u, self.change, s.rests)
-        solution.__dict__["equations"] = self.equations  # they are known
+        solution.__dict__["equations"] = self.equations  # both are known
         return solution
 
     @property

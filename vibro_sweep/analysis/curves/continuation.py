@@ -17,6 +17,7 @@ from vibro_sweep.analysis.curves.events import is_real
 from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint, Rows, Way, join
+from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.engine.impulses.locus import Place
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.linear import family_of
@@ -66,6 +67,7 @@ class BifurcationCurve:
         return plot_curves(drawn, names)
 
 
+@one_thread()
 def bifurcation_curve(
     special: SpecialPoint, parameters: tuple[str, str], box, progress=None, virtual: bool = True
 ) -> BifurcationCurve:

@@ -5,10 +5,13 @@ import xarray as xr
 
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import Rows
-from vibro_sweep.analysis.periodic.impulse_equations import multipliers_of
+from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
 from vibro_sweep.engine.impulses.curve_tests import TOUCHING
+from vibro_sweep.engine.impulses.flights import Flow
 from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, STICK, THETA, TORUS
-from vibro_sweep.model.linear import forcing_period
+from vibro_sweep.model.linear import Linear, forcing_period
+
+FREE = ("M", "K", "C", "along")  # fields of an oscillator on which its free flight depends
 
 
 def dataset(tracer: Tracer, rows: Rows) -> xr.Dataset:
@@ -25,17 +28,18 @@ def dataset(tracer: Tracer, rows: Rows) -> xr.Dataset:
     sides = tracer.resized(K).curve.sides.astype(int)
     others = np.delete(np.arange(K), tracer.curve.index) if kind >= GRAZE else np.arange(K)
     multipliers, shifts = [], []
-    for p, t, D, motion in zip(rows.p, rows.t, rows.D, rows.motion, strict=True):
-        q = tracer.oscillators.at(p).linear
+    oscillators = [tracer.oscillators.at(p).linear for p in rows.p]
+    flows = _flows(oscillators) if kind != STICK else oscillators
+    for q, f, t, D, motion in zip(oscillators, flows, rows.t, rows.D, rows.motion, strict=True):
         contacts = np.column_stack([q.stop(sides), 1 + q.restitution(sides)])[others]
         P, u = forcing_period(q) / 2 * s.halves, np.concatenate([t[others], D[others]])
         shifts.append((tracer.oscillators.tau - q.tau) / q.omega)
         if kind == STICK:
             multipliers.append(np.full(2 * len(q.along), np.nan, complex))
             continue
-        multipliers.append(multipliers_of(q, s.sigma, P, contacts, u, motion[others]))
+        multipliers.append(multipliers_of(f, s.sigma, P, contacts, u, motion[others]))
     values = np.array(multipliers)
-    unstable = _others_outside(values, kind, rows.p[:, THETA])
+    unstable = others_outside(values, kind, rows.p[:, THETA])
     values **= 1 if s.sigma == 1 else 2
     order = np.lexsort((-values.imag, -np.abs(values)), axis=-1)
     values = np.take_along_axis(values, order, axis=-1)
@@ -57,10 +61,20 @@ def dataset(tracer: Tracer, rows: Rows) -> xr.Dataset:
     return xr.Dataset(variables)
 
 
-def _others_outside(values: np.ndarray, kind: int, theta: np.ndarray) -> np.ndarray:
+def _flows(oscillators: list[Linear]) -> list[Flow]:
+    """Of each point; where only force and stops change along the curve, one for all."""
+    first = oscillators[0]
+    if all(np.array_equal(getattr(q, name), getattr(first, name)) for q in oscillators for name in FREE):
+        return [flow(first)] * len(oscillators)
+    return [flow(q) for q in oscillators]
+
+
+def others_outside(values: np.ndarray, kind: int, theta: np.ndarray) -> np.ndarray:
     """(points,) how many of the multipliers (points, 2N) lie outside the unit circle, without the critical ones."""
-    outside, rows = np.abs(values) > 1, np.arange(len(values))
+    outside, rows, values = np.abs(values) > 1, np.arange(len(values)), values.copy()
     angles = {FOLD: [0 * theta], FLIP: [0 * theta + np.pi], TORUS: [theta, -theta], GRAZE: [], STICK: []}[kind]
     for angle in angles:
-        outside[rows, np.abs(values - np.exp(1j * angle)[:, None]).argmin(axis=1)] = False
+        nearest = np.abs(values - np.exp(1j * angle)[:, None]).argmin(axis=1)
+        outside[rows, nearest] = False
+        values[rows, nearest] = np.inf  # at 1 and -1 both of a pair are equally near
     return outside.sum(axis=1)

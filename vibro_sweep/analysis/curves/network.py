@@ -19,6 +19,7 @@ from vibro_sweep.analysis.curves.flat import as_special, flatten, solution_at, s
 from vibro_sweep.analysis.curves.start import Start, start_at
 from vibro_sweep.analysis.curves.switching import ENDS, switch
 from vibro_sweep.analysis.curves.tracer import Tracer
+from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 
@@ -66,6 +67,7 @@ class CurveTask(NamedTuple):
     of: tuple[str, ...]
 
 
+@one_thread()
 def trace(task: CurveTask) -> Flat:
     """The curve of a task, with `beyond`: the starts found on it, as JSON; nothing else where there is no curve."""
     seed, names = task.seed, task.names

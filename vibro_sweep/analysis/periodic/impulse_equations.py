@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.engine.impulses import equations, extremes, flights, multipliers
 from vibro_sweep.engine.impulses.green import ResonanceError, free_modes, has_free_gap, space, space_slopes, train
-from vibro_sweep.model.linear import Linear, amplitude_slopes, amplitudes, forcing_period
+from vibro_sweep.model.linear import Keyed, Linear, amplitude_slopes, amplitudes, forcing_period
 
 
 class Equations:
@@ -21,7 +21,7 @@ class Equations:
         self.q, self.sigma, self.halves, self.slope = q, sigma, halves, slope
         self.P = forcing_period(q) / 2 * halves
         self.train = train(q, sigma, halves, slope)
-        self.steady = steady(q, sigma, halves, slope)
+        self.steady = steady(q, sigma, halves, slope) if slope is not None else _steady(Keyed(q, TABLES), sigma, halves)
 
     def with_stops(self, q: Linear, slope: Linear) -> "Equations":
         """The same tables for an oscillator that differs in its stops or restitution only."""
@@ -83,12 +83,14 @@ class Equations:
 
     def multipliers(self, sides, u, motion) -> np.ndarray:
         """(2N,) of the map over P, with the mirror for sigma = -1; by falling modulus, of a pair +im first."""
-        return multipliers_of(self.q, self.sigma, self.P, self.contacts(sides), u, motion)
+        return multipliers_of(flow(self.q), self.sigma, self.P, self.contacts(sides), u, motion)
 
 
-def multipliers_of(q: Linear, sigma: int, P: float, contacts: np.ndarray, u, motion) -> np.ndarray:
-    """`Equations.multipliers` without the tables of the equations; contacts (K, 2 or more): stop, 1 + R."""
-    f = flow(q)
+def multipliers_of(f: flights.Flow, sigma: int, P: float, contacts: np.ndarray, u, motion) -> np.ndarray:
+    """`Equations.multipliers` without the tables of the equations; contacts (K, 2 or more): stop, 1 + R.
+
+    They do not depend on the force: the flow may be that of an oscillator with another one.
+    """
     n = f.B.shape[0] - 3
     if len(contacts) == 0:
         values = sigma * np.exp(np.linalg.eigvals(f.B[:n, :n]).astype(complex) * P)
@@ -104,7 +106,7 @@ def multipliers_of(q: Linear, sigma: int, P: float, contacts: np.ndarray, u, mot
 
 def contacts_of(q: Linear, slope: Linear | None, sides) -> np.ndarray:
     """(K, 4) stop, 1 + R, and their derivatives by the parameter."""
-    result = np.zeros((len(sides), 4))
+    sides, result = np.asarray(sides), np.zeros((len(sides), 4))
     result[:, equations.STOP], result[:, equations.GAIN] = q.stop(sides), 1 + q.restitution(sides)
     if slope is not None:
         result[:, equations.STOP_SLOPE] = slope.stop(sides)
@@ -160,20 +162,6 @@ def _momentum_slope(q: Linear, slope: Linear, shape, seen, P) -> float:
     return (dP * force + P * d_force) / weight - P * force * d_weight / weight**2
 
 
-class _Keyed:
-    """An oscillator as a key: equal where all that the tables depend on is equal; stops and restitution are not."""
-
-    def __init__(self, q: Linear, names):
-        self.q = q
-        self.key = tuple(np.asarray(getattr(q, name), float).tobytes() for name in names)
-
-    def __hash__(self):
-        return hash(self.key)
-
-    def __eq__(self, other):
-        return self.key == other.key
-
-
 TABLES = ("M", "K", "C", "along", "constant", "sine", "cosine", "omega", "tau")
 
 
@@ -183,27 +171,32 @@ def moves_stops_only(slope: Linear) -> bool:
 
 
 @lru_cache(maxsize=16)
-def _flow(key: _Keyed) -> flights.Flow:
+def _flow(key: Keyed) -> flights.Flow:
     return flights.flow(key.q)
 
 
 @lru_cache(maxsize=16)
-def _held_flow(key: _Keyed) -> flights.Flow:
+def _held_flow(key: Keyed) -> flights.Flow:
     return flights.held_flow(key.q)
 
 
 @lru_cache(maxsize=64)
-def _closing(key: _Keyed, sigma: int, halves: int) -> np.ndarray:
+def _closing(key: Keyed, sigma: int, halves: int) -> np.ndarray:
     return flights.closing(key.q, sigma, halves)
 
 
+@lru_cache(maxsize=64)
+def _steady(key: Keyed, sigma: int, halves: int) -> equations.Steady:
+    return steady(key.q, sigma, halves, None)
+
+
 def flow(q: Linear) -> flights.Flow:
-    return _flow(_Keyed(q, TABLES))
+    return _flow(Keyed(q, TABLES))
 
 
 def held_flow(q: Linear) -> flights.Flow:
-    return _held_flow(_Keyed(q, TABLES))
+    return _held_flow(Keyed(q, TABLES))
 
 
 def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
-    return _closing(_Keyed(q, ("M", "K", "C", "along", "omega")), sigma, halves)
+    return _closing(Keyed(q, ("M", "K", "C", "along", "omega")), sigma, halves)

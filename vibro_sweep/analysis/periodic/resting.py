@@ -14,10 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import expm
-from threadpoolctl import ThreadpoolController
 
 from vibro_sweep.analysis.periodic.held_motion import motion_of, motion_slopes
 from vibro_sweep.analysis.periodic.impulse_equations import contacts_of, flow, held_flow, steady
+from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.engine.impulses import extremes, flights
 from vibro_sweep.engine.impulses.equations import GAIN, GAIN_SLOPE, STOP, STOP_SLOPE
 from vibro_sweep.engine.impulses.tables import ORDER
@@ -79,7 +79,7 @@ class RestEquations:
         A, dA = (self.f.H, self.df and self.df.H) if held else (self.f.B, self.df and self.df.B)
         if dA is not None and np.any(dA):
             A = np.block([[A, np.zeros_like(A)], [dA, A]])
-        with _libraries().limit(limits=1, user_api="blas"):  # threads take a hundred times longer beside other work
+        with one_thread():
             return expm(A * length)
 
     def _pass(self, sides, u, start, transition: Callable[[bool, float], np.ndarray]) -> Pass:
@@ -236,11 +236,6 @@ class RestEquations:
                 flights.fly_once(f, zeta, begin, max(end - begin, 0.0), *bounds, nearest, *work)
                 least = min(least, first, float(nearest[0]))
         return least
-
-
-@functools.cache
-def _libraries() -> ThreadpoolController:
-    return ThreadpoolController()
 
 
 def _fly_free(f: flights.Flow, zeta, begin: float, end: float, released: bool, stops, nearest) -> None:

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches.flat import Flat, solution_of
+from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.windows.continued import continued
@@ -53,6 +54,7 @@ class Cover:
         self.reason = [row.reason.copy() for row in self.rows]
         self._open = [row.reason == 0 for row in self.rows]
 
+    @one_thread()
     def search(self, evaluate: Evaluate) -> None:
         """Follow windows until no periodic point is left. evaluate : gives `window_of` of the jobs of these points."""
         while jobs := [(r, *point) for r in range(len(self.rows)) for point in self._middles(r)]:

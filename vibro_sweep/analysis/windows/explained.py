@@ -15,6 +15,7 @@ from vibro_sweep.analysis.branches.flat import Flat
 from vibro_sweep.analysis.branches.forest import Seed
 from vibro_sweep.analysis.curves.network import CurveSeed, Evaluate, Traced, network, seed_at
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
+from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.windows.edges import Edges, Plane, edges_of, passing
 from vibro_sweep.analysis.windows.job import lies_on
 from vibro_sweep.analysis.windows.stretch import stable_end
@@ -37,6 +38,7 @@ class Probe(NamedTuple):
     beyond: float
 
 
+@one_thread()
 def probe(task: Probe) -> Flat:
     """What ends the stability of an orbit on its way across an edge; as JSON the reason, and a start or null."""
     reason, seed = _probed(task)

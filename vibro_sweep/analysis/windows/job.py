@@ -7,6 +7,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.beginning import changes_rests
 from vibro_sweep.analysis.branches.flat import Flat, flatten, section_states
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
+from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows.stretch import representative, stable_stretch
 
@@ -30,6 +31,7 @@ class Result(NamedTuple):
     reason: str
 
 
+@one_thread()
 def window_of(job: Job) -> Result:
     """The window of a recorded orbit."""
     try:
