@@ -17,10 +17,10 @@ def chart(points):
     return panel, marks, [text.get_window_extent() for text in panel.texts]
 
 
-@pytest.mark.parametrize("points", [1, 12, 300])
+@pytest.mark.parametrize("points", [1, 12, 200])
 def test_names_stand_alone(points):
     panel, marks, boxes = chart(points)
-    assert min(points, 8) <= len(boxes) <= points and (points < 300 or len(boxes) < points)
+    assert min(points, 8) <= len(boxes) <= points and (points < 200 or len(boxes) < points)
     for i, box in enumerate(boxes):
         assert not any(box.contains(*mark) for mark in marks)
         assert not any(box.overlaps(other) for other in boxes[:i])

@@ -239,7 +239,12 @@ def plot_command(
     dpi: Annotated[str | None, typer.Option(metavar="N", help="Pixels an inch; by default 200.")] = None,
     windows: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.h5", exists=True, dir_okay=False, help="Show the windows of a sweep below it."),
+        typer.Option(
+            metavar="FILE.h5",
+            exists=True,
+            dir_okay=False,
+            help="Windows of the sweep, to be shown.",
+        ),
     ] = None,
     over: Annotated[
         Path | None,

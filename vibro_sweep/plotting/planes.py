@@ -8,6 +8,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from vibro_sweep.model.observables import VARIABLES
+from vibro_sweep.plotting import strip
 from vibro_sweep.plotting.result import Result
 from vibro_sweep.plotting.style import (
     DASHES,
@@ -63,10 +64,13 @@ def plane(result: Result, overlay=None, more=()):
         ax.set_xlabel(axis_name(x_key))
         ax.patch.set(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="///")
         _grazing_curve(ax, result)
+        if result.look.windows is not None:
+            strip.ends_over(ax, result)
         if overlay is not None:
             overlay(ax)
     grid[0].set_ylabel(axis_name(y_key))
-    _legend(fig, grid, any(np.isnan(values).any() for _, values in maps), more)
+    shown = [line for line in grid[0].lines if line.get_gid() == "window end"]
+    _legend(fig, grid, any(np.isnan(values).any() for _, values in maps), [*shown, *more])
     return fig
 
 

@@ -28,9 +28,7 @@ REASON_COLOURS = {
 
 def windows(ax, result: Result, values, order):
     """The strip of the windows file that the look names."""
-    file = FlatFile(result.look.windows, WINDOWS)
-    if file.sweep != str(result.settings.get("identity", "")) or file.parameters != list(result.sweep):
-        raise PlotError(f"windows: {file.name} has the windows of another sweep than {result.path}")
+    file = _windows_of(result)
     left, right = values[0], values[-1]
     lo, hi = np.maximum(file["window_lo"], left), np.minimum(file["window_hi"], right)
     shown = np.flatnonzero(hi >= lo)
@@ -50,6 +48,28 @@ def windows(ax, result: Result, values, order):
     ax.set_yticks([])
     ax.set_ylabel("windows")
     _legend(ax, file, shown, unseen)
+
+
+def _windows_of(result: Result) -> FlatFile:
+    file = FlatFile(result.look.windows, WINDOWS)
+    if file.sweep != str(result.settings.get("identity", "")) or sorted(file.parameters) != sorted(result.sweep):
+        raise PlotError(f"windows: {file.name} has the windows of another sweep than {result.path}")
+    return file
+
+
+def ends_over(ax, result: Result) -> None:
+    """What ends the windows of a plane, row by row, on the picture of the plane."""
+    file = _windows_of(result)
+    types, frame = np.array(file.types()), (ax.get_xlim(), ax.get_ylim())
+    ends = np.append(file["window_lower"], file["window_upper"])
+    order = [file.parameters.index(name) for name in result.sweep]
+    rows = max(int(file["window_row"].max(initial=0)) + 1, 1)
+    for kind, (short, name, *_) in SPECIAL.items():
+        places = file["special_value"][ends[types[ends] == kind]][:, order]
+        if len(places):
+            style = special_mark(kind, min(2.4, 60 / rows)) | {"markeredgewidth": 0.3}
+            ax.plot(*places.T, label=f"{short} {name}", gid="window end", **style)
+    ax.set(xlim=frame[0], ylim=frame[1])
 
 
 def lanes_of(lo: np.ndarray, hi: np.ndarray, apart: float) -> list[int]:
