@@ -2,12 +2,18 @@
 
 The orbits are entered at a small amplitude in the critical direction, which Newton's method keeps. A fold of doubled
 orbits begins at a degenerate flip, a Neimark-Sacker curve of doubled orbits where a flip meets a Neimark-Sacker point.
-At the resonance 1:4 the fourth iterate is, to third order (Kuznetsov, Elements of Applied Bifurcation Theory, 9.5.4),
+One begins also at the resonance 1:2 and at a fold-flip, in one of two cases: two multipliers of the doubled orbits of
+amplitude r leave 1 as 1 +- i k r; or as 1 +- k r, and then none begins (Kuznetsov, Elements of Applied Bifurcation
+Theory, 9.5.3; Kuznetsov, Meijer, van Veen, Int. J. Bifurcation Chaos 14 (2004) 2253).
+
+At the resonance 1:4 the fourth iterate is, to third order (the same book, 9.5.4),
 
     z' = eps z + c |z|^2 z + d conj(z)^3,   A = c/|d|
 
-and has two folds where |A| > 1. They and eps follow from Re(A conj(u)) = -1, eps = -|d| |z|^2 (A + u), |u| = 1. At the
-resonance 1:3 no curve of this kind begins: the orbits of three times the period are saddles on all sides.
+Its other equilibria are at eps = -|d| |z|^2 (A + u), |u| = 1. Their Jacobian has trace 2 |d| |z|^2 Re(A - u) and
+determinant -8 |d|^2 |z|^4 (1 + Re(A conj(u))). So there are two folds where |A| > 1, and one Neimark-Sacker curve,
+u = Re A - i sign(Im A) (1 - (Re A)^2)^(1/2), where the determinant is positive. At the resonance 1:3 no curve of this
+kind begins: the orbits of three times the period are saddles on all sides.
 """
 
 from dataclasses import replace
@@ -17,17 +23,25 @@ import numpy as np
 
 from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.locus import Place
+from vibro_sweep.engine.impulses.locus import THETA, Place
 
-AMPLITUDES = (0.01, 0.02, 0.005, 0.0025, 0.04)  # in the units of a curve, in the order in which they are tried
+AMPLITUDES = (0.01, 0.005, 0.0025, 0.00125, 0.02, 0.04)  # in the units of a curve, in the order in which they are tried
 REACH = 0.2  # of the parameters around the point, relative
 FARTHEST = 0.02  # relative distance of the point that is found, in both parameters
-ALIKE = 0.3  # relative difference from what the third order says
+ALIKE = 0.3  # relative difference from what the normal form says
+BEGINS = {  # curves, and which of two
+    "degenerate_flip": (("fold", 1),),
+    "flip_neimark_sacker": (("neimark_sacker", 1),),
+    "resonance_1_2": (("neimark_sacker", 1),),
+    "fold_flip": (("neimark_sacker", 1),),
+    "resonance_1_4": (("fold", 1), ("fold", -1), ("neimark_sacker", 1)),
+}
 
 
 class Entry(NamedTuple):
@@ -42,27 +56,30 @@ class Entry(NamedTuple):
 
 def born(special: CurvePoint) -> list[SpecialPoint]:
     """Points of such curves that begin at a point of codimension two of a curve; [] where none does or is found."""
-    solution, kind = special.orbit._solution, special.type
+    solution = special.orbit._solution
     if solution is None:  # of an onset of sticking
         return []
-    flip = "pitchfork" if solution.sigma == -1 else "flip"
-    if kind == "degenerate_flip":
-        name, parent, count = "fold", Start(flip, solution), 2
-    elif kind == "flip_neimark_sacker":
-        name, parent, count = "neimark_sacker", Start(flip, solution), 2
-    elif kind == "resonance_1_4":
-        name, parent, count = "fold", Start("neimark_sacker", solution, theta=np.pi / 2), 4
-    else:
-        return []
+    flip = Start("pitchfork" if solution.sigma == -1 else "flip", solution)
+    quarter = Start("neimark_sacker", solution, theta=np.pi / 2)
     found = []
-    for sign in (1, -1) if count == 4 else (1,):
+    for name, sign in BEGINS.get(special.type, ()):
+        parent, count = (quarter, 4) if special.type == "resonance_1_4" else (flip, 2)
         for amplitude in AMPLITUDES:
-            guess = entry(special, name, parent, count, amplitude, sign)
-            one = guess and entered(special, guess)
-            if one is not None:
-                found.append(one)
+            points = [
+                (guess := entry(special, name, parent, count, size, sign)) and entered(special, guess)
+                for size in (amplitude, amplitude / 2)
+            ]
+            if None not in points and _leads_to(special, *points):
+                found.append(points[0])
                 break
     return found
+
+
+def _leads_to(special: CurvePoint, one: SpecialPoint, nearer: SpecialPoint) -> bool:
+    """Whether the distance from the point is as the square of the amplitude, as on the curve that begins there."""
+    values, far, near = (np.array(list(point.parameters.values())) for point in (special, one, nearer))
+    size = np.maximum(np.abs(values), 1e-3)
+    return bool(np.linalg.norm((far - values - 4 * (near - values)) / size) < np.linalg.norm((far - values) / size))
 
 
 def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: float, sign: int) -> Entry | None:
@@ -72,24 +89,47 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
     place = tracer.first()
     if place is None:
         return None
-    w, K, moved, theta = place.w * tracer.curve.unit[: tracer.S], tracer.K, None, 0.0
+    w, K = place.w * tracer.curve.unit[: tracer.S], tracer.K
     largest = place.w[np.argmax(np.abs(place.w[: 2 * K]))]
-    factor, family = amplitude / largest, parent.solution.family
+    factor = amplitude / largest
     if count == 4:
-        found = _quarter(tracer, place, abs(factor), sign)
+        found = _quarter(tracer, place, abs(factor), name, sign)
         if found is None:
             return None
-        factor, moved = found
-        family = family.replace(**dict(zip(names, map(float, values + moved), strict=True)))
-    if name == "neimark_sacker":
+        factor, moved, theta = found
+        child, change = repeated(parent.solution, 4, factor * w[:K], factor * w[K : 2 * K], 1j)
+        family = parent.solution.family.replace(**dict(zip(names, map(float, values + moved), strict=True)))
+        child = replace(_bent(child, tracer, place, factor, moved), family=family)
+        return Entry(Start(name, child, theta=theta), change, moved)
+    child, change = repeated(parent.solution, 2, factor * w[:K], factor * w[K : 2 * K], -1.0)
+    if name == "fold":
+        return Entry(Start(name, child), change, None)
+    if special.type == "flip_neimark_sacker":
         mu = parent.solution.multipliers
         pair = mu[np.argmin(np.where(mu.imag > 1e-6, np.abs(np.abs(mu) - 1), np.inf))]
-        theta = abs(float(np.angle(pair**count)))
-    mu = -1.0 if count == 2 else 1j
-    child, change = repeated(parent.solution, count, factor * w[:K], factor * w[K : 2 * K], mu)
-    if moved is not None:
-        child = _bent(child, tracer, place, factor, moved)
-    return Entry(Start(name, replace(child, family=family), theta=theta), change, moved)
+        return Entry(Start(name, child, theta=abs(float(np.angle(pair**2)))), change, None)
+    across = int(np.argmin(np.abs(place.tangent[tracer.S : tracer.S + 2])))
+    found = _with_amplitude(child, change, names[across], values[across])
+    theta = found and _angle_near_one(found)
+    return Entry(Start(name, found, theta=theta), change, None) if theta else None
+
+
+def _with_amplitude(guess: Solution, change: np.ndarray, name: str, value: float) -> Solution | None:
+    """The orbit near a guess with its amplitude in the direction `change`; the parameter is found with it."""
+    walk = Walk(guess, name, max(abs(value), 1e-3))
+    row = np.zeros(len(walk.scale))
+    row[: len(change)] = change / walk.scale[: len(change)]
+    row /= np.linalg.norm(row)
+    point = walk.correct(np.append(guess.u, value) / walk.scale, row, row)
+    return point and point.solution
+
+
+def _angle_near_one(solution: Solution) -> float | None:
+    """theta of the two multipliers nearest to 1; None where they are real or far from the unit circle."""
+    mu = solution.multipliers
+    near = mu[np.argsort(np.abs(mu - 1))[:2]]
+    pair = np.log(near[np.argmax(near.imag)])
+    return float(pair.imag) if pair.imag > abs(pair.real) else None
 
 
 def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
@@ -106,6 +146,8 @@ def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
     if guess.moved is not None:
         far = np.abs(place.p[:2] - values - guess.moved) > ALIKE * np.abs(guess.moved).max()
     if np.any(far):
+        return None
+    if guess.start.theta and abs(place.p[THETA] - guess.start.theta) > ALIKE * guess.start.theta:
         return None
     solution = tracer.solution(place)
     parameters = dict(zip(names, map(float, place.p[:2]), strict=True))
@@ -139,18 +181,31 @@ def _bent(child: Solution, tracer: Tracer, place: Place, z: complex, moved) -> S
     return replace(child, u=child.u + np.concatenate([each[:, :K].ravel(), (signs * each[:, K:]).ravel()]))
 
 
-def _quarter(tracer: Tracer, place: Place, size: float, sign: int) -> tuple[complex, np.ndarray] | None:
-    """z, in units of w with |z| = size, and the parameters' change, at one of two folds; None: there are none."""
+def _quarter(tracer: Tracer, place: Place, size: float, name: str, sign: int):
+    """z, in units of w with |z| = size, the parameters' change, and theta (0 of a fold); None: there are none."""
     c, d, q = torus.quarter(torus.Map(tracer.solution(place)))
     K, S = tracer.K, tracer.S
     xi = (place.w * tracer.curve.unit[:S])[2 * K :]
     scale = (q.conj() @ xi) / (q.conj() @ q)  # xi = scale q
     A = c / abs(d)
-    if not abs(A) > 1:
+    u = _turn(A, name, sign)
+    if u is None:
         return None
-    u = A / abs(A) * np.exp(1j * sign * np.arccos(-1 / abs(A)))
-    z = size * abs(scale) * np.exp(1j * (np.angle(d) - np.angle(u)) / 4)
-    eps = -abs(d) * abs(z) ** 2 * (A + u)
+    r = size * abs(scale)
+    z = r * np.exp(1j * (np.angle(d) - np.angle(u)) / 4)
+    eps = -abs(d) * r**2 * (A + u)
     rates, _ = tracer.rates_of_pair(place)
     moved = np.linalg.solve(np.array([rates.real, rates.imag]), [eps.real, eps.imag])
-    return z / scale, moved
+    determinant = -8 * (1 + (A * u.conjugate()).real)
+    theta = 4 * abs(d) * r**2 * determinant**0.5 if name == "neimark_sacker" else 0.0
+    return z / scale, moved, theta
+
+
+def _turn(A: complex, name: str, sign: int) -> complex | None:
+    """u of a fold or of the Neimark-Sacker curve; None: there is none."""
+    if name == "fold":
+        return A / abs(A) * np.exp(1j * sign * np.arccos(-1 / abs(A))) if abs(A) > 1 else None
+    if not abs(A.real) < 1:
+        return None
+    u = complex(A.real, -np.copysign((1 - A.real**2) ** 0.5, A.imag))
+    return u if (A * u.conjugate()).real < -1 else None

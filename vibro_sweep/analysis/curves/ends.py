@@ -8,6 +8,7 @@ are singular at that point; so it is located on the other curve.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,31 +20,69 @@ from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, THETA, TORUS, P
 
 NEAR = 0.2  # in the units of the curve: how far from the expected end the other curve is entered
 SHORTEST = 1e-6
+BEFORE = (1e-3, 1e-2, 0.1)  # of the step to a singular end: how near to it the curve is still looked at
+ALIKE = 1e-6  # what tells the halves apart, of one orbit taken twice
 NEARLY = 0.05  # what tells the halves apart, in 1/omega and the fastest impulse, next to a birth
 LENGTHS = (1e-6, 1e-5, 1e-4, 1e-3)  # in which the end is looked for there
 BIRTHS = {
     FOLD: ("degenerate_flip", "fold_flip", "resonance_1_2"),
     FLIP: ("flip_neimark_sacker",),
-    TORUS: ("flip_neimark_sacker",),
+    TORUS: ("flip_neimark_sacker", "resonance_1_2", "fold_flip"),
     GRAZE: ("flip_graze", "pitchfork_graze", "resonant_graze"),
 }
 
 
-def strong_resonance(tracer: Tracer, a: Place, b: Place) -> tuple[Tracer, Found] | None:
-    """The resonance 1:1 or 1:2 ahead of b, on the curve of folds or flips; None: there is none near."""
+class End(NamedTuple):
+    """The point of codimension two, on the curve of `tracer`.
+
+    share : of the step from a to b, may be above 1; 0 where only a is known
+    """
+
+    tracer: Tracer
+    found: Found
+    share: float = 0.0
+
+
+def strong_resonance(tracer: Tracer, a: Place, b: Place) -> End | None:
+    """The resonance 1:1 or 1:2 ahead of b, or passed by b, on the curve of folds or flips; None: there is none near."""
     towards_one = b.p[THETA] < math.pi / 2
     name, of_type = ("resonance_1_1", "fold") if towards_one else ("resonance_1_2", "flip")
     left = b.p[THETA] if towards_one else math.pi - b.p[THETA]
     before = a.p[THETA] if towards_one else math.pi - a.p[THETA]
-    if not 0 < left < before:
+    if not abs(left) < before:
         return None
+    share = before / (before - left)
     # near the end all moves with the square of the angle that is left
-    aim = tracer.between(b, a, -(left**2) / (before**2 - left**2))
-    length = max(float(np.linalg.norm(tracer.difference(a, b))), SHORTEST)
-    return _on_other(tracer, Start(of_type, tracer.solution(aim)), aim, length, (name,))
+    aim = tracer.between(b, a, -(left**2) / (before**2 - left**2)) if left > 0 else tracer.between(a, b, share)
+    moved = tracer.difference(a, b)
+    lengths = (np.linalg.norm(moved[: tracer.S + 2]), np.linalg.norm(moved))  # the other curve has no angle
+    end = _on_other(tracer, Start(of_type, tracer.solution(aim)), aim, lengths, (name,))
+    return None if end is None or _is_repeated(end) else end._replace(share=share)
 
 
-def birth(tracer: Tracer, a: Place, b: Place) -> tuple[Tracer, Found] | None:
+def just_before(tracer: Tracer, a: Place, b: Place, end: End) -> Place | None:
+    """A point of the curve between a and its singular end, as near to the end as Newton's method allows.
+
+    With theta = 0 or pi the equations hold all along the curve of folds or flips, which is not meant.
+    """
+    row = tracer.row_of(tracer.difference(a, b))
+    for part in BEFORE:
+        guess = tracer.between(a, b, (1 - part) * end.share)
+        place, angle = tracer.correct(guess, row), guess.p[THETA]
+        turn = abs(angle - math.pi * round(angle / math.pi))
+        if place is not None and (tracer.curve.kind != TORUS or abs(place.p[THETA] - angle) < 0.5 * turn):
+            return place
+    return None
+
+
+def _is_repeated(end: End) -> bool:
+    """Whether the orbit is a simpler one, taken twice: then its own curve tells which point this is."""
+    solution = end.tracer.solution(end.found.place)
+    parts = [halves_apart(solution, sigma) for sigma in (1, -1)]
+    return any(part is not None and np.linalg.norm(part) < ALIKE for part in parts)
+
+
+def birth(tracer: Tracer, a: Place, b: Place) -> End | None:
     """Where the orbit of the curve is born between a and b, on the curve of its parent."""
     for sigma in (1, -1):
         parts = [halves_apart(tracer.solution(place), sigma) for place in (a, b)]
@@ -52,13 +91,14 @@ def birth(tracer: Tracer, a: Place, b: Place) -> tuple[Tracer, Found] | None:
         sizes = [np.linalg.norm(part) for part in parts]
         if not parts[0] @ parts[1] < -0.5 * sizes[0] * sizes[1]:
             continue
-        aim = tracer.between(a, b, sizes[0] / (sizes[0] + sizes[1]))
-        length = max(float(np.linalg.norm(tracer.difference(a, b))), SHORTEST)
-        return _first_found(tracer, aim, sigma, (length,))
+        share = float(sizes[0] / (sizes[0] + sizes[1]))
+        aim = tracer.between(a, b, share)
+        end = _first_found(tracer, aim, sigma, (np.linalg.norm(tracer.difference(a, b)),))
+        return end and end._replace(share=share)
     return None
 
 
-def birth_near(tracer: Tracer, a: Place) -> tuple[Tracer, Found] | None:
+def birth_near(tracer: Tracer, a: Place) -> End | None:
     """The same, where the steps end just before it: Newton's method may fail so near to the singular point."""
     for sigma in (1, -1):
         parts = halves_apart(tracer.solution(a), sigma)
@@ -67,29 +107,32 @@ def birth_near(tracer: Tracer, a: Place) -> tuple[Tracer, Found] | None:
     return None
 
 
-def _first_found(tracer: Tracer, aim: Place, sigma: int, lengths) -> tuple[Tracer, Found] | None:
+def _first_found(tracer: Tracer, aim: Place, sigma: int, lengths) -> End | None:
     solution, kind = tracer.solution(aim), tracer.curve.kind
     starts = []
-    if sigma > 0 and solution.K % 4 == 0 and solution.halves % 4 == 0 and kind == FOLD:
+    if sigma > 0 and solution.K % 4 == 0 and solution.halves % 4 == 0 and kind in (FOLD, TORUS):
         mirrored = solution.sides[solution.K // 4] == -solution.sides[0]
-        quarter = solution.part(4, -1 if mirrored else 1, alike=0.1)
+        quarter = solution.part(4, -1 if mirrored else 1, alike=0.1, exact=False)
         if quarter is not None:
             starts.append((Start("neimark_sacker", quarter, theta=math.pi / 2), ("resonance_1_4",)))
-    parent = solution.part(2, sigma, alike=0.1)
+    parent = solution.part(2, sigma, alike=0.1, exact=False)
     if parent is not None:
         starts.append((Start("pitchfork" if sigma < 0 else "flip", parent), BIRTHS[kind]))
     for start, types in starts:
-        for length in lengths:
-            found = _on_other(tracer, start, aim, length, types)
-            if found is not None:
-                return found
+        found = _on_other(tracer, start, aim, lengths, types)
+        if found is not None:
+            return found
     return None
 
 
-def _on_other(tracer: Tracer, start: Start, aim: Place, length: float, types) -> tuple[Tracer, Found] | None:
+def _on_other(tracer: Tracer, start: Start, aim: Place, lengths, types) -> End | None:
+    """The event on the curve from `start` that is nearest to its first point, which is near `aim`."""
     other = Tracer(start, tracer.names, tracer.box)
     first = other.first()
     if first is None or np.abs((first.p - aim.p)[:2] / np.ptp(tracer.box, axis=1)).max() > NEAR:
         return None
-    found = event_near(other, first, length, types)
-    return None if found is None else (other, found)
+    for length in lengths:
+        found = event_near(other, first, max(float(length), SHORTEST), types)
+        if found is not None:
+            return End(other, found)
+    return None

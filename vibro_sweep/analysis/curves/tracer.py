@@ -37,7 +37,8 @@ class Tracer:
         self.n, self.size_of_gap = 2 * len(q.along), s.size_of_gap
         self._take_sides(s.sides)
         middle, reach = self.box.mean(axis=1), np.ptp(self.box, axis=1) / 2
-        self.planes = self._around(middle, reach)
+        planes = self.oscillators.around(middle, reach)
+        self.planes = self._around([s.family.numbers[name] for name in names], reach) if planes is None else planes
 
     def _take_sides(self, which: tuple[int, ...]) -> None:
         """Of the impacts."""
@@ -85,6 +86,8 @@ class Tracer:
     def go_to(self, place: Place) -> bool:
         """Move the oscillator exactly to the parameters of `place`. False where it has no forced motion."""
         try:
+            if np.any(np.abs(place.p[:2] - self.planes[0]["centre"]) > self.planes[0]["reach"]):
+                self.recentre(place)  # slopes of the polynomials mean nothing beyond their reach
             values = self.oscillators.values(place.p)
         except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
             return False

@@ -10,14 +10,16 @@ from vibro_sweep.analysis.branches.births import doubled
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.curves.chatter import chatter_at, with_impacts, written_out
-from vibro_sweep.analysis.curves.ends import birth, birth_near, strong_resonance
-from vibro_sweep.analysis.curves.events import Event, Found, found_between, found_to_edge, is_real, without_echoes
+from vibro_sweep.analysis.curves.chord import root
+from vibro_sweep.analysis.curves.ends import End, birth, birth_near, just_before, strong_resonance
+from vibro_sweep.analysis.curves.events import Event, found_between, found_to_edge, is_real, without_echoes
 from vibro_sweep.analysis.curves.tracer import Tracer, copied, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.impulses import curve, curve_tests, locus
 from vibro_sweep.engine.impulses.locus import GRAZE, STICK, Place
 
 FIRST_STEP = 1e-3
+CLOSE = 1e-6  # distance, in the units of a curve, from the first point where it comes back to it
 MOST_POINTS = 50_000
 
 
@@ -100,19 +102,15 @@ class Way:
                     break
                 w, path = self.tracer, self.tracer.path
                 a, b = path.a, locus.new_place(w.K, w.n)
-            elif reason == curve.CLOSED:
+            elif reason == curve.CLOSED and closes(w, a, b, self.first):
                 self.closed = True
                 self.special.append(self._at("closed", self.first, np.nan))
                 return
             elif reason == curve.LEFT:
                 self._leave(a, b)
                 return
-            elif reason == curve.STRONG and self._ends_strongly(a, b):
-                return
-            elif reason in (curve.EVENT, curve.STRONG):
-                if self._is_born(a, b):
-                    return
-                if not self._pass(a, b):
+            elif reason in (curve.EVENT, curve.STRONG, curve.CLOSED):
+                if self._ends(a, b, reason) or not self._pass(a, b):
                     return
                 passed += 1
                 copy(b, a)
@@ -122,7 +120,7 @@ class Way:
                 end = birth_near(w, a) if w.curve.repeats or w.curve.mirrors else None
                 if end is None:
                     break
-                self._end(*end)
+                self._end(end)
                 return
         self.special.append(self._at("failed", a, np.nan))
 
@@ -196,32 +194,36 @@ class Way:
         guess.p[j] = limit
         row = np.zeros(w.size)
         row[w.S + j] = 1.0
-        place = w.correct(guess, row) or a
-        place.p[j] = limit if place is not a else place.p[j]
-        if place is not a:
-            place.tangent[:] *= np.sign(w.row_of(a.tangent) @ place.tangent[: w.size]) or 1.0
-            if not self._pass(a, place):
-                return
-        self.special.append(self._at("limit", place, 0.0))
+        place = w.correct(guess, row) or self._across(a, b, j, limit)
+        if place is None:
+            self.special.append(self._at("failed", a, np.nan))
+            return
+        place.p[j] = limit
+        place.tangent[:] *= np.sign(w.row_of(a.tangent) @ place.tangent[: w.size]) or 1.0
+        if self._pass(a, place):
+            self.special.append(self._at("limit", place, 0.0))
 
-    def _ends_strongly(self, a: Place, b: Place) -> bool:
-        """Whether the pair meets at 1 or -1 ahead: there the Neimark-Sacker curve ends."""
-        end = strong_resonance(self.tracer, a, b)
-        if end is not None:
-            self._pass(a, b)
-            self._end(*end)
-        return end is not None
+    def _across(self, a: Place, b: Place, j: int, limit: float) -> Place | None:
+        """The same, where the curve is nearly parallel to that side of the box."""
+        found = root(self.tracer, a, b, lambda place: (place.p[j] - limit) / np.ptp(self.tracer.box[j]))
+        return found and found[1]
 
-    def _is_born(self, a: Place, b: Place) -> bool:
-        """Whether the asymmetric or doubled orbit is born between a and b: there its curve ends."""
-        c = self.tracer.curve
-        end = birth(self.tracer, a, b) if c.repeats or c.mirrors else None
-        if end is not None:
-            self._end(*end)
-        return end is not None
+    def _ends(self, a: Place, b: Place, reason: int) -> bool:
+        """Whether the curve ends: its pair meets at 1 or -1 ahead, or its orbit is born between a and b."""
+        w = self.tracer
+        end = strong_resonance(w, a, b) if reason == curve.STRONG else None
+        if end is None and (w.curve.repeats or w.curve.mirrors):
+            end = birth(w, a, b)
+        if end is None:
+            return False
+        last = just_before(w, a, b, end)
+        if last is None or self._pass(a, last):
+            self._end(end)
+        return True
 
-    def _end(self, other: Tracer, found: Found) -> None:
-        """The end, on the curve of the parent."""
+    def _end(self, end: End) -> None:
+        """The end, on the curve of another orbit."""
+        other, found = end.tracer, end.found
         w, solution, p = self.tracer, other.solution(found.place), found.place.p.copy()
         self.special.append(self._at(found.event.type, found.place, found.error, found.event, other))
         while solution.K < w.K:
@@ -258,3 +260,16 @@ class Way:
 def passable(tracer: Tracer, place: Place) -> bool:
     """False where a Neimark-Sacker curve has passed the end that was not found."""
     return tracer.curve.kind != locus.TORUS or 0 < place.p[locus.THETA] < math.pi
+
+
+def closes(tracer: Tracer, a: Place, b: Place, first: Place) -> bool:
+    """Whether the curve passes through its first point between a and b; other curves may come as near as a step."""
+    period = 2 * math.pi * float(tracer.curve.unit[0])
+    first = copied(first)
+    first.t[:] += period * np.round(np.mean(a.t - first.t) / period)
+    row = tracer.row_of(first.tangent)
+    ends = [row @ tracer.difference(first, place) for place in (a, b)]
+    if ends[0] * ends[1] > 0:
+        return False
+    place = tracer.correct(tracer.between(a, b, ends[0] / (ends[0] - ends[1])), row)
+    return place is not None and bool(np.linalg.norm(tracer.difference(first, place)) < CLOSE)

@@ -140,8 +140,11 @@ class Solution:
             whole = whole.corrected() or whole
         return whole
 
-    def part(self, count: int, sigma: int, alike: float = ALIKE) -> "Solution | None":
-        """The first of `count` equal parts (mirrored ones for sigma = -1), if they are equal to the share `alike`."""
+    def part(self, count: int, sigma: int, alike: float = ALIKE, exact: bool = True) -> "Solution | None":
+        """The first of `count` equal parts (mirrored ones for sigma = -1), if they are equal to the share `alike`.
+
+        exact : corrected by Newton's method, which fails at a fold; otherwise the mean of the parts
+        """
         K, P, rests = self.K // count, self.equations.P / count, self.rests[: len(self.rests) // count]
         if self.rests != tuple(k + K * i for i in range(count) for k in rests):
             return None
@@ -155,6 +158,8 @@ class Solution:
         found = Solution(self.family, sigma, self.halves // count, tuple(self.sides[:K]), u, 0.0, rests)
         if found.equations.free:
             found = Solution(self.family, sigma, found.halves, found.sides, np.append(u, self.u[-1]))
+        if not exact:
+            return found
         found = found.corrected()
         if found is None or np.abs(found.times - shifted[0]).max() > 10 * alike * P:
             return None

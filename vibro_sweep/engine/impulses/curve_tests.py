@@ -89,9 +89,9 @@ def pair_test(c, place, b):
     left = -1
     if c.kind == FOLD or c.kind == FLIP:
         mu, least = 1.0 if c.kind == FOLD else -1.0, np.inf
-        for i in range(n):
+        for i in range(n):  # where mu is double, rounding makes a complex pair of it
             distance = math.hypot(re[i] - mu, im[i])
-            if distance < least and im[i] == 0.0:
+            if distance < least:
                 left, least = i, distance
     x, y, u, v = 1.0, 0.0, 1.0, 0.0
     for i in range(n):
