@@ -20,6 +20,8 @@ from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, THETA, TORUS, P
 
 NEAR = 0.2  # in the units of the curve: how far from the expected end the other curve is entered
 SHORTEST = 1e-6
+NEARER = 0.7  # of the angle of a, that of b, so that both tell where the angle vanishes
+AIMED = 0.5  # distance of a strong resonance from where it is expected, of that which the last two steps have left
 BEFORE = (1e-3, 1e-2, 0.1)  # of the step to a singular end: how near to it the curve is still looked at
 ALIKE = 1e-6  # what tells the halves apart, of one orbit taken twice
 NEARLY = 0.05  # what tells the halves apart, in 1/omega and the fastest impulse, next to a birth
@@ -47,27 +49,40 @@ def strong_resonance(tracer: Tracer, a: Place, b: Place) -> End | None:
     """The resonance 1:1 or 1:2 ahead of b, or passed by b, on the curve of folds or flips; None: there is none near."""
     towards_one = b.p[THETA] < math.pi / 2
     name, of_type = ("resonance_1_1", "fold") if towards_one else ("resonance_1_2", "flip")
-    left = b.p[THETA] if towards_one else math.pi - b.p[THETA]
-    before = a.p[THETA] if towards_one else math.pi - a.p[THETA]
-    if not abs(left) < before:
+    before, left = (place.p[THETA] if towards_one else math.pi - place.p[THETA] for place in (a, b))
+    if not left < NEARER * before:
         return None
     share = before / (before - left)
+    if left <= 0:
+        b = _near(tracer, a, b, share, (NEARER / 2,))
+        if b is None:
+            return None
+        left = b.p[THETA] if towards_one else math.pi - b.p[THETA]
     # near the end all moves with the square of the angle that is left
-    aim = tracer.between(b, a, -(left**2) / (before**2 - left**2)) if left > 0 else tracer.between(a, b, share)
+    aim = tracer.between(b, a, -(left**2) / (before**2 - left**2))
     moved = tracer.difference(a, b)
     lengths = (np.linalg.norm(moved[: tracer.S + 2]), np.linalg.norm(moved))  # the other curve has no angle
     end = _on_other(tracer, Start(of_type, tracer.solution(aim)), aim, lengths, (name,))
-    return None if end is None or _is_repeated(end) else end._replace(share=share)
+    if end is None or _is_repeated(end):
+        return None
+    size = np.ptp(tracer.box, axis=1)
+    missed, ahead = (np.linalg.norm((place.p - aim.p)[:2] / size) for place in (end.found.place, a))
+    return end._replace(share=share) if missed < AIMED * ahead else None
 
 
 def just_before(tracer: Tracer, a: Place, b: Place, end: End) -> Place | None:
-    """A point of the curve between a and its singular end, as near to the end as Newton's method allows.
+    """A point of the curve between a and its singular end, as near to the end as Newton's method allows."""
+    return _near(tracer, a, b, end.share, BEFORE)
+
+
+def _near(tracer: Tracer, a: Place, b: Place, share: float, parts) -> Place | None:
+    """The first point that is found of those in front of an end by these parts of the way from a.
 
     With theta = 0 or pi the equations hold all along the curve of folds or flips, which is not meant.
     """
     row = tracer.row_of(tracer.difference(a, b))
-    for part in BEFORE:
-        guess = tracer.between(a, b, (1 - part) * end.share)
+    for part in parts:
+        guess = tracer.between(a, b, (1 - part) * share)
         place, angle = tracer.correct(guess, row), guess.p[THETA]
         turn = abs(angle - math.pi * round(angle / math.pi))
         if place is not None and (tracer.curve.kind != TORUS or abs(place.p[THETA] - angle) < 0.5 * turn):

@@ -48,6 +48,8 @@ class Oscillators:
         try:
             with np.errstate(all="ignore"):
                 values = self.values(p)
+                if not values[-1] > 0:  # there is no forcing period
+                    return np.full_like(values, np.nan)
                 return np.where(np.isinf(values), 0.0, values)  # a stop that is not there
         except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
             return np.full(plane.count_of(len(self.family.linear.along)), np.nan)

@@ -110,19 +110,21 @@ class Way:
                 self._leave(a, b)
                 return
             elif reason in (curve.EVENT, curve.STRONG, curve.CLOSED):
-                if self._ends(a, b, reason) or not self._pass(a, b):
+                if self._ends(a, b, reason):
+                    return
+                if not passable(w, b):
+                    break
+                if not self._pass(a, b):
                     return
                 passed += 1
                 copy(b, a)
-                if not passable(w, a):
-                    break
             elif reason == curve.FAILED:
-                end = birth_near(w, a) if w.curve.repeats or w.curve.mirrors else None
-                if end is None:
-                    break
-                self._end(end)
-                return
-        self.special.append(self._at("failed", a, np.nan))
+                break
+        end = birth_near(w, a) if w.curve.repeats or w.curve.mirrors else None
+        if end is not None:
+            self._end(end)
+        else:
+            self.special.append(self._at("failed", a, np.nan))
 
     def _write_out(self, a: Place) -> bool:
         """Go on with as many impacts of the chatter sequence as are needed at a."""

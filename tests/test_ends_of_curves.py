@@ -1,0 +1,78 @@
+"""Ends of bifurcation curves: the same ones whatever the step, wherever in a wide box, and no curve closed that is not."""
+
+import pytest
+from support.oscillators import PAPER
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.curves import tracer
+from vibro_sweep.analysis.curves.oscillators import BEYOND, Oscillators
+from vibro_sweep.model.linear import family_of
+
+NAMES, BOX = ("b", "omega"), ((0.3, 9), (0.5, 0.8))
+MASSES, WIDE = ("mu_m", "mu_k"), ((4, 25), (2, 12))
+
+
+def first(found, kind):
+    return next(special for special in found if special.type == kind)
+
+
+def places(curve):
+    return sorted((special.type, *special.parameters.values()) for special in curve.special)
+
+
+def same(one, other):
+    return [kind for kind, *_ in one] == [kind for kind, *_ in other] and all(
+        a[1:] == pytest.approx(b[1:], abs=1e-10) for a, b in zip(one, other, strict=True)
+    )
+
+
+@pytest.mark.slow
+def test_longer_steps_pass_no_strong_resonance(symmetric_branch, one_sided_branch, monkeypatch):
+    """Where a step led behind the end, farther than it had begun before it, the end was not looked for."""
+    for branch, kind in ((symmetric_branch, "pitchfork"), (one_sided_branch, "neimark_sacker")):
+        start = first(branch.special, kind)
+        if kind == "pitchfork":
+            curve = vs.bifurcation_curve(start, NAMES, BOX)
+            start = first(vs.switch(first(curve.special, "flip_neimark_sacker")), "neimark_sacker")
+        expected = places(vs.bifurcation_curve(start, NAMES, BOX))
+        assert "failed" not in [kind for kind, *_ in expected]
+        for factor in (0.5, 2, 4):
+            with monkeypatch.context() as patch:
+                patch.setattr(tracer, "LONGEST_STEP", factor * tracer.LONGEST_STEP)
+                patch.setattr(tracer, "STRAIGHT", factor * tracer.STRAIGHT)
+                assert same(places(vs.bifurcation_curve(start, NAMES, BOX)), expected), factor
+
+
+@pytest.mark.slow
+def test_curves_in_a_corner_of_a_wide_box(symmetric_branch):
+    """Slopes of polynomials that do not reach so far were taken there; the resonances were not found."""
+    pitchforks = vs.bifurcation_curve(first(symmetric_branch.special, "pitchfork"), MASSES, WIDE)
+    special, ends = first(pitchforks.special, "resonance_1_2"), set()
+    starts = [start for start in vs.switch(special) if start.type == "neimark_sacker"]
+    assert len(starts) == 2  # of the symmetric orbit, and of the orbits without the symmetry
+    for start in starts:
+        curve = vs.bifurcation_curve(start, MASSES, WIDE)
+        begin = next(end for end in (curve.begins, curve.ends) if end.type == "resonance_1_2")
+        assert begin.parameters == pytest.approx(special.parameters, abs=1e-11)
+        ends |= {curve.begins.type, curve.ends.type}
+    assert ends == {"resonance_1_2", "resonance_1_1", "limit"}
+
+
+@pytest.mark.slow
+def test_a_curve_that_passes_near_its_first_point_is_not_closed():
+    """Both folds of a resonance 1:4 with |A| = 1.0086 are one curve, from there and back."""
+    box = ((6.2, 6.8), (3.9, 4.2))
+    branch = vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R"), "b", (3, 6))
+    curve = vs.bifurcation_curve(first(branch.special, "neimark_sacker"), MASSES, WIDE)
+    special = first(curve.special, "resonance_1_4")
+    for start in vs.switch(special):
+        if start.type == "fold":
+            for limits in (box, WIDE):
+                fold = vs.bifurcation_curve(start, MASSES, limits)
+                assert not fold.closed and fold.begins.type == fold.ends.type == "resonance_1_4"
+
+
+def test_polynomials_stop_before_a_frequency_of_zero():
+    """There is no forcing period; a curve in a wide box ended with an error where they were fitted anew."""
+    (plane,) = Oscillators(family_of(PAPER), NAMES, 2, 0.0).around((3.0, 0.55), (30.0, 1.0))
+    assert 0 < BEYOND * plane["reach"][1] < 0.55

@@ -1,0 +1,91 @@
+"""Neimark-Sacker curves of orbits with two or four times the period, where `switch` says that they begin."""
+
+import numpy as np
+import pytest
+from support.curves import solution_at
+from support.oscillators import PAPER
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.engine.period_map import PeriodMap
+
+NAMES, BOX = ("b", "omega"), ((0.3, 9), (0.5, 0.8))
+
+
+def points(special, kind, names=NAMES, box=BOX):
+    curve = vs.bifurcation_curve(special, names, box)
+    return [one for one in curve.special if one.type == kind]
+
+
+def first(found, kind):
+    return next(special for special in found if special.type == kind)
+
+
+def longer(special, kind="neimark_sacker"):
+    K = special.orbit._solution.K
+    return [start for start in vs.switch(special) if start.type == kind and start.orbit._solution.K > K]
+
+
+def pair_of(system, state, period):
+    """The complex multiplier, by the variational equations along the simulated orbit."""
+    mapped = PeriodMap(system)(np.array([state]), periods=period, jacobian=True)
+    assert np.abs(mapped.states[0] - state).max() < 1e-9
+    mu = np.linalg.eigvals(mapped.jacobian[0])
+    return mu[np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf))]
+
+
+def check(special, start, names=NAMES, box=BOX):
+    """The curve ends at the point, and a pair passes the unit circle where simulated orbits cross it."""
+    curve = vs.bifurcation_curve(start, names, box, virtual=False)
+    (end,) = (one for one in (curve.begins, curve.ends) if one.type == special.type)
+    assert end.parameters == pytest.approx(special.parameters, abs=1e-11)
+    theta = curve._rows.p[:, 2]
+    away = np.flatnonzero(~curve.points.virtual.values & (theta > 0.3 * theta.max()))  # at its end mu is double
+    for k in away[(len(away) * np.array([0.2, 0.5, 0.8])).astype(int)]:
+        solution, sizes = solution_at(curve, k), []
+        system = special.orbit.system.replace(**{name: float(curve.points[name][k]) for name in names})
+        for part in (-1e-6, 0.0, 1e-6):
+            other = system.replace(**{names[0]: getattr(system, names[0]) * (1 + part)})
+            orbit = orbit_of(system, solution)
+            found = vs.periodic_orbit(other, state=orbit.state, periods=orbit.period) if part else orbit
+            mu = pair_of(other, found.state, found.period)
+            if not part:
+                assert abs(mu) == pytest.approx(1, abs=1e-9)
+                assert np.cos(np.angle(mu)) == pytest.approx(np.cos(theta[k]), abs=1e-9)
+            else:
+                sizes.append(abs(mu) - 1)
+        assert sizes[0] * sizes[1] < 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["resonance_1_2", "fold_flip"])
+def test_doubled_orbits(kind, symmetric_branch, one_sided_branch):
+    """In one of two cases; in the other two multipliers leave 1 along the real axis."""
+    branch, of_type, expected = {
+        "resonance_1_2": (one_sided_branch, "neimark_sacker", [1]),
+        "fold_flip": (symmetric_branch, "pitchfork", [0, 1]),
+    }[kind]
+    found = points(first(branch.special, of_type), kind)
+    starts = [longer(special) for special in found]
+    assert sorted(map(len, starts)) == expected
+    for special, here in zip(found, starts, strict=True):
+        for start in here:
+            check(special, start)
+
+
+@pytest.mark.slow
+def test_no_curve_begins_at_a_resonance_1_2_of_the_other_case(symmetric_branch):
+    (special,) = points(first(symmetric_branch.special, "pitchfork"), "resonance_1_2")
+    assert longer(special) == []
+
+
+@pytest.mark.slow
+def test_orbits_of_four_times_the_period():
+    """Where |A| > 1 and the determinant of the normal form is positive: both folds and one Neimark-Sacker curve."""
+    names, box = ("mu_m", "mu_k"), ((5.5, 10.5), (3.5, 5.2))
+    orbit = vs.periodic_orbit(PAPER.replace(b=4.0, R=0.6), itinerary="R")
+    branch = vs.continue_orbit(orbit, "b", (3, 6))
+    (special,) = points(first(branch.special, "neimark_sacker"), "resonance_1_4", names, box)
+    assert len(longer(special, "fold")) == 2
+    (start,) = longer(special)
+    check(special, start, names, ((5.9715, 5.98), (3.754, 3.77)))
