@@ -1,4 +1,4 @@
-"""Ends of bifurcation curves: the same ones whatever the step, wherever in a wide box, and no curve closed that is not."""
+"""Ends of bifurcation curves: the same whatever the step, also in corners of wide boxes; none closed that is not."""
 
 import pytest
 from support.oscillators import PAPER

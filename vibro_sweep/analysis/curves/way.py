@@ -219,6 +219,8 @@ class Way:
         if end is None:
             return False
         last = just_before(w, a, b, end)
+        if last is not None and not (self.virtual or is_real(w, last) or found_to_edge(w, a, last)):
+            last = None  # no edge but the end itself
         if last is None or self._pass(a, last):
             self._end(end)
         return True
