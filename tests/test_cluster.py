@@ -118,7 +118,7 @@ def stopped(cluster, path, output, stop):
     cluster.wait(lambda: done(output))
     stop(run)
     *estimate, error = run.communicate(timeout=LIMIT)[1].splitlines()
-    assert all("orbits, about" in line for line in estimate)  # said where the machine is busy
+    assert all("orbits, about" in line for line in estimate), estimate  # said where the machine is busy
     return run.returncode, error
 
 
@@ -137,7 +137,7 @@ def test_the_scheduler_dies(tmp_path, cluster, scene, whole):
     output = tmp_path / "out.h5"
     status, error = stopped(cluster, scene, output, lambda _: cluster.processes[0].kill())
     assert status == 2
-    assert "its scheduler has died" in error and "--resume" in error
+    assert "the scheduler has died" in error and "--resume" in error
     vs.run(vs.load_scene(scene), output, mode="resume")
     assert_same_bits(arrays_of(output), whole)
 

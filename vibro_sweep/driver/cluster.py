@@ -56,13 +56,15 @@ def _is_news(record: logging.LogRecord) -> bool:
 
 @contextlib.contextmanager
 def _callbacks_filtered() -> Iterator[None]:
-    """`concurrent.futures` logs what callbacks raise, with a traceback; here without what is no news."""
-    logger = logging.getLogger("concurrent.futures")
-    logger.addFilter(_is_news)
+    """These log what callbacks raise, with a traceback; here without what is no news."""
+    loggers = [logging.getLogger(name) for name in ("concurrent.futures", "tornado.application")]
+    for logger in loggers:
+        logger.addFilter(_is_news)
     try:
         yield
     finally:
-        logger.removeFilter(_is_news)
+        for logger in loggers:
+            logger.removeFilter(_is_news)
 
 
 @contextlib.contextmanager
@@ -88,7 +90,7 @@ def cluster(address: str) -> Iterator[Executor]:
             "so the network must be closed (docs/cluster.md)",
             address,
         )
-    try:
+    with _callbacks_filtered(), _closing(client):
         try:
             client.wait_for_workers(1, timeout=JOIN_SECONDS)
         except TimeoutError:
@@ -96,8 +98,14 @@ def cluster(address: str) -> Iterator[Executor]:
         except GONE as error:
             raise ClusterError(f"the scheduler has died ({error})") from None
         _check(client)
-        with _callbacks_filtered():
-            yield ClusterExecutor(client)
+        yield ClusterExecutor(client)
+
+
+@contextlib.contextmanager
+def _closing(client: Client) -> Iterator[None]:
+    """Close the client in the end, also one whose scheduler has died."""
+    try:
+        yield
     finally:
         with contextlib.suppress(*GONE):
             client.close()

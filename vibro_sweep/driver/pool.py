@@ -71,7 +71,7 @@ def _given_up(block: Block, attempt: int, error: BaseException) -> RunError:
     if isinstance(error, BrokenExecutor):
         return RunError(f"a worker process died, killed or out of memory, and its pool with it ({reason})")
     if isinstance(error, CancelledError):
-        return RunError("the executor gave up its work: its scheduler has died, or somebody has cancelled it")
+        return RunError("the executor gave up its work: the scheduler has died, or somebody has cancelled it")
     if isinstance(error, ImportError):
         return RunError(f"a worker cannot load vibro_sweep ({reason}); install it there")
     return RunError(f"{attempt} attempts at {block} were lost with their workers ({reason})")
