@@ -56,7 +56,7 @@ class Workspace(NamedTuple):
 def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kind: Kind = PAPER) -> Workspace:
     """Room for points with at most so many cells, and for the records of so many orbits side by side."""
     impacts, states = plan.record if plan.section_side else 0, 2 * kind.masses
-    ensemble = new_ensemble(cells, masses=kind.masses, constant=kind.constant)
+    ensemble = new_ensemble(cells, kind)
     return Workspace(
         ensemble._replace(records=new_records(orbits, impacts=impacts, samples=samples, masses=kind.masses)),
         np.zeros(LANES, point_of(kind)),

@@ -6,6 +6,7 @@ import numpy as np
 
 from vibro_sweep.engine.motion.orbits import Records, Stops, new_records, orbit_of
 from vibro_sweep.engine.motion.strike import strikes_of
+from vibro_sweep.engine.records import Kind
 from vibro_sweep.engine.simd.jit import inline
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import new_lines
@@ -32,17 +33,16 @@ class Readings(NamedTuple):
     parts: int  # of the periods, after each of which the growth is read; 0: never
 
 
-def new_ensemble(
-    cells: int, impacts: int = 0, rests: int = 0, samples: int = 0, masses: int = 2, constant: bool = False
-) -> Ensemble:
+def new_ensemble(cells: int, kind: Kind, impacts: int = 0, rests: int = 0, samples: int = 0) -> Ensemble:
     """Orbits of oscillators with at most so many cells, and room for what is kept of each."""
+    masses, constant, paper = kind
     orbits = new_lines(LANES, orbit_of(masses, constant))
     orbits["lane"] = np.arange(LANES)
     return Ensemble(
         new_flight(LANES, cells, masses, constant),
         orbits,
         new_lines(1, strikes_of(masses, constant)),
-        new_lines(1, tangents_of(masses)),
+        new_lines(1, tangents_of(masses, paper)),
         new_records(LANES, impacts, rests, samples, masses),
     )
 

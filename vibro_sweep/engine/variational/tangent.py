@@ -20,8 +20,11 @@ from vibro_sweep.engine.variational.orthonormal import orthonormalise, watch
 FEW = 8  # periods
 
 
-def tangents_of(masses: int) -> np.dtype:
-    """The record of the tangent vectors of eight orbits, one column each; n vectors of n numbers, n = 2 N."""
+def tangents_of(masses: int, paper: bool) -> np.dtype:
+    """The record of the tangent vectors of eight orbits, one column each; n vectors of n numbers, n = 2 N.
+
+    paper : its oscillator, whose modes move the gap by their first numbers alone: kernels for it do not ask
+    """
     n = 2 * masses
     pairs = n * (n - 1) // 2
     fields = [
@@ -54,7 +57,7 @@ def tangents_of(masses: int) -> np.dtype:
         ("shear", float, (pairs, LANES)),  # the same of the product of all R, where they are `collected`
         ("wanted", np.bool_),  # else nothing is computed
         ("collected", np.bool_),
-        ("both", np.bool_),  # numbers of some mode move the gap, not the first alone
+        ("both", np.int64, 1 if paper else 2),  # [1]: both numbers of some mode move the gap
     ]
     return record(fields)
 
@@ -81,7 +84,8 @@ def set_frame(t, i, q):
         t.kick[m, i] = q.to_frame[m, 0]
         for j in range(1, len(t.scale)):
             t.kick[m, i] += q.kappa[j] * q.to_frame[m, 2 * j + 1]
-        t.both = t.both or (m % 2 == 1 and q.from_frame[0, m] != 0.0)
+        if len(t.both) > 1 and m % 2 == 1 and q.from_frame[0, m] != 0.0:
+            t.both[1] = 1
 
 
 @entry
@@ -280,7 +284,7 @@ def saltate(t, who, steepness, R):
     -R dx1, dv1 -> steepness dx1 - R dv1, dv2 -> dv2 - kappa (1 + R) dx1. det S = R^2.
     """
     apply_flight(t, who)
-    if t.both:
+    if len(t.both) > 1 and t.both[1]:
         saltate_by_both(t, who, steepness, R)
     else:
         for j in range(len(t.growth)):
