@@ -57,7 +57,7 @@ def tangents_of(masses: int, paper: bool) -> np.dtype:
         ("shear", float, (pairs, LANES)),  # the same of the product of all R, where they are `collected`
         ("wanted", np.bool_),  # else nothing is computed
         ("collected", np.bool_),
-        ("both", np.int64, 1 if paper else 2),  # [1]: both numbers of some mode move the gap
+        ("both", np.int64, (1 if paper else 2,)),  # [1]: both numbers of some mode move the gap
     ]
     return record(fields)
 
