@@ -48,6 +48,22 @@ def test_this_numba_is_known():
 
 
 @known
+def test_a_compilation_within_another_one_leaves_it_lean():
+    """Callees compile while their callers do; else all kernels but the innermost would take a tenth longer."""
+    from numba.core.postproc import PostProcessor
+
+    from vibro_sweep.engine.simd.lean import lean
+
+    own = PostProcessor.run
+    with lean():
+        instead = PostProcessor.run
+        with lean():
+            pass
+        assert PostProcessor.run is instead is not own
+    assert PostProcessor.run is own
+
+
+@known
 @pytest.mark.parametrize("change, outcome", [("", "yes"), (BROKEN, "no")])
 def test_a_small_kernel_tells_whether_numba_is_as_expected_inside(change, outcome, tmp_path):
     def start():

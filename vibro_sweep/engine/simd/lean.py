@@ -37,7 +37,7 @@ def _call_type_once(self, context, args, kws):
 
 _call_types: dict[tuple, object] = {}
 
-LEFT_OUT = (
+INSTEAD = (
     (PostProcessor, "run", _settle_at_the_end),
     (types.Function, "get_call_type", _call_type_once),
     (event, "install_timer", lambda kind, callback: contextlib.nullcontext()),
@@ -50,8 +50,8 @@ LEFT_OUT = (
 @contextlib.contextmanager
 def lean() -> Iterator[None]:
     """While numba's lock for compiling is held: nobody else compiles meanwhile, but kernels that this one calls."""
-    before = [(where, name, getattr(where, name)) for where, name, _ in LEFT_OUT]
-    for where, name, instead in LEFT_OUT:
+    before = [(where, name, getattr(where, name)) for where, name, _ in INSTEAD]
+    for where, name, instead in INSTEAD:
         setattr(where, name, instead)
     try:
         yield
