@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 from support.branches import repeated
 from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
 
@@ -9,9 +10,13 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.branches.way import FIRST_STEP, LONGEST_STEP, SHORTEST_STEP, STRAIGHT
+from vibro_sweep.analysis.periodic.media import still_medium
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import places
+from vibro_sweep.engine.impulses.checks import may_turn
+from vibro_sweep.engine.impulses.flights import rates
+from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.model.linear import Family
 
 
@@ -119,3 +124,34 @@ def test_orbit_written_out_several_times_has_the_same_branch(count):
         same = vs.periodic_orbit(PAPER.replace(b=point.p), itinerary="R")._solution
         assert np.abs(track.a.D - same.jumps).max() < 1e-11
         assert np.abs(track.a.z - same.states[0, :4]).max() < 1e-11
+
+
+@entry
+def asked(media, states, low, high, nearest, answers):
+    for i in range(len(states)):
+        answers[i] = may_turn(media[0], states[i], low[i], high[i], nearest[i])
+
+
+@pytest.mark.parametrize("system", [PAPER.replace(b=3.0), ONE_MASS.replace(F=0.37), CAVITY])
+def test_cells_left_out_have_no_turning_point_of_interest(system):
+    """Against 400 samples of each cell, by matrix exponentials: 4000 random flights, both bounds have work to do."""
+    rng, count, samples = np.random.default_rng(5), 4000, 400
+    q = system.linear
+    medium = still_medium(q, 2)
+    B, width = rates(q), float(medium["width"][0])
+    m = len(B)
+    states = rng.normal(size=(count, m)) * 10.0 ** rng.uniform(-2, 2, (count, 1))
+    phase = rng.uniform(0, 2 * np.pi, count)
+    states[:, m - 3], states[:, m - 2], states[:, m - 1] = np.cos(phase), np.sin(phase), 1.0
+    steps = [expm(B * s)[[0, (m - 3) // 2]] for s in np.linspace(0, width, samples)]
+    gap, slope = np.einsum("sij,pj->ips", steps, states)
+    high, low = rng.uniform(0.1, 100, count), -rng.uniform(0.1, 100, count)
+    nearest = np.where(rng.random(count) < 0.5, np.inf, rng.uniform(0, 50, count))
+    answers = np.zeros(count, bool)
+    asked(medium, states, low, high, nearest, answers)
+    turns = np.any(slope[:, 1:] * slope[:, :-1] < 0, axis=1)
+    distance = np.minimum(high - gap.max(axis=1), gap.min(axis=1) - low)
+    assert not np.any(~answers & turns & (distance < nearest))
+    assert np.count_nonzero(~answers & turns) > 50  # left out for their distance
+    assert np.count_nonzero(~answers & np.isinf(nearest)) > 1000  # left out for their slope
+    assert np.count_nonzero(answers & ~turns & np.isinf(nearest)) < 0.1 * count  # few are looked at in vain

@@ -80,4 +80,6 @@ def _built(q: Linear, c, values, centre: float, reach: float) -> np.ndarray:
         series.append(series[-1] @ f.B.astype(REAL) / k)
     r["series"], r["powers"][:], r["step"] = np.array(series), f.powers, f.powers[0].T
     r["gap_rows"] = r["series"][:, 0].T
+    r["middle_weights"], r["rest_weights"] = medium.middle_weights(f.width)
+    r["middle"], r["rest"] = r["gap_rows"] @ r["middle_weights"], np.abs(r["gap_rows"]) @ r["rest_weights"]
     return result

@@ -33,7 +33,7 @@ from vibro_sweep.engine.impulses.medium import (
 )
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.simd.memory import record
+from vibro_sweep.engine.simd.memory import put, record, row
 
 
 def room_of(masses: int) -> np.dtype:
@@ -42,10 +42,8 @@ def room_of(masses: int) -> np.dtype:
     wide = 3 * n + 4
     return record([
         ("panel", float, (2 * n + 2, wide)),
-        ("sums", float, wide),
         ("change", float, n),
         ("E", float, (n, m)),
-        ("other", float, (n, m)),
         ("zeta", float, (4, m)),
         ("ahead", float, (n, n)),
         ("behind", float, (n, n)),
@@ -57,7 +55,6 @@ def room_of(masses: int) -> np.dtype:
         ("re", float, n),
         ("im", float, n),
         ("cell", float, ORDER + 1),
-        ("after", float, m),
         ("nearest", float, 3),
         ("waiting", float, (PIECES, 2)),
     ])  # fmt: skip
@@ -74,10 +71,12 @@ def strike_of(masses: int) -> np.dtype:
 
 
 @jit
-def reflect(panel, columns, sums):
-    """Reflections that make the first columns an upper triangle. Sign of its determinant; 0.0 where it is singular."""
-    rows, wide = panel.shape
-    sign = 1.0
+def reflect(panel, columns):
+    """Reflections that make the first columns an upper triangle. Sign of its determinant; 0.0 where it is singular.
+
+    What is left below the triangle is rounding.
+    """
+    rows, sign = len(panel), 1.0
     for c in range(columns):
         size = 0.0
         for r in range(c, rows):
@@ -89,17 +88,12 @@ def reflect(panel, columns, sums):
         if diagonal < 0.0:
             sign = -sign
         panel[c, c] = first - diagonal
-        scale = 1.0 / (size - first * diagonal)
-        for j in range(c + 1, wide):
-            sums[j] = 0.0
+        total = panel[c, c] * row(panel, c)
+        for r in range(c + 1, rows):
+            total = total + panel[r, c] * row(panel, r)
+        total = total * (1.0 / (size - first * diagonal))
         for r in range(c, rows):
-            value = panel[r, c] * scale
-            for j in range(c + 1, wide):
-                sums[j] += value * panel[r, j]
-        for r in range(c, rows):
-            value = panel[r, c]
-            for j in range(c + 1, wide):
-                panel[r, j] -= value * sums[j]
+            put(panel, r, row(panel, r) - panel[r, c] * total)
         panel[c, c] = diagonal
     return sign
 
@@ -118,8 +112,7 @@ def eliminate(f, sides, sigma, t, D, z, room, strikes):
     p, F = 3 * n + 2, 3 * n + 3
     panel = room.panel
     for r in range(n):  # xi_i - xi_1 = 0 at the first impact
-        for j in range(3 * n + 4):
-            panel[r, j] = 0.0
+        put(panel, r, 0.0)
         panel[r, r], panel[r, B + r] = 1.0, -1.0
     sign = 1.0
     for i in range(K):
@@ -138,11 +131,10 @@ def eliminate(f, sides, sigma, t, D, z, room, strikes):
         v, a = zeta[N], strikes[i].rate[N]
         strikes[i].motion[0], strikes[i].motion[1] = v, a
         length = (t[i + 1] if i + 1 < K else t[0] + P) - t[i]
-        flight_matrix(f, length, room.E, room.other)
+        flight_matrix(f, length, room.E)
         E = room.E
         for r in range(n, 2 * n + 2):
-            for j in range(3 * n + 4):
-                panel[r, j] = 0.0
+            put(panel, r, 0.0)
         panel[n, 0], panel[n, A], panel[n, p], panel[n, F] = 1.0, v, -d_stop, zeta[0] - stop
         panel[n + 1, N], panel[n + 1, A], panel[n + 1, A + 1] = gain, gain * a, 1.0
         panel[n + 1, p], panel[n + 1, F] = d_gain * v, D[i] + gain * v
@@ -172,10 +164,9 @@ def eliminate(f, sides, sigma, t, D, z, room, strikes):
             else:
                 for r in range(n):
                     panel[n + 2 + r, p] -= E[r, n] * slope[n] + E[r, n + 1] * slope[n + 1]
-        sign *= reflect(panel, n + 2, room.sums)
+        sign *= reflect(panel, n + 2)
         for r in range(n + 2):
-            for j in range(r, 3 * n + 4):
-                strikes[i].kept[r, j] = panel[r, j]
+            put(strikes[i].kept, r, row(panel, r))
         for r in range(n):
             for j in range(n):
                 panel[r, j] = panel[n + 2 + r, n + 2 + j]

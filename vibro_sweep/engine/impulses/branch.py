@@ -117,7 +117,7 @@ def state_at(f, sigma, place, origin, state, w):
         zeta[j] = place.z[i, j]
     zeta[n // 2] += place.D[i]
     set_phase(f, zeta, place.t[i])
-    flight_matrix(f, max(s - place.t[i], 0.0), room.E, room.other)
+    flight_matrix(f, max(s - place.t[i], 0.0), room.E)
     sign = 1.0 if sigma > 0 or turns % 2.0 == 0.0 else -1.0
     for r in range(n):
         total = 0.0

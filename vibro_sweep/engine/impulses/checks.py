@@ -5,15 +5,33 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.impulses.elimination import sign_of_determinant, solve
-from vibro_sweep.engine.impulses.extremes import extremes_of_cell
-from vibro_sweep.engine.impulses.flights import OVERLAP
-from vibro_sweep.engine.impulses.medium import GAIN_HIGH, GAIN_LOW, HIGH, LOW, PERIOD, set_phase
+from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
+from vibro_sweep.engine.impulses.medium import GAIN_HIGH, GAIN_LOW, HIGH, LOW, PERIOD, combined, set_phase
 from vibro_sweep.engine.impulses.places import DEFECT_HERE, MARGIN, REFLECTION, TANGENT, TORUS, UNSTABLE, P
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.lanes import number
+from vibro_sweep.engine.simd.memory import put
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
 ON_CIRCLE = 1e-6  # of |mu|^2: a multiplier that near to the unit circle is on neither side; UNSTABLE is -1
+
+
+@jit
+def may_turn(f, zeta, low, high, nearest):
+    """Whether a turning point of the gap on the cell that begins with zeta may be nearer to its stop than `nearest`.
+
+    No by a bound: the slope exceeds all that the cell can take from it, or the cell is farther from both stops.
+    """
+    middle, rest = combined(zeta, f.middle, 0), 0.0
+    for j in range(len(zeta)):
+        rest += abs(zeta[j]) * f.rest[j]
+    value, by_slope = number(middle, 0), abs(number(middle, 1))
+    by_curve, by_jerk = abs(number(middle, 2)), abs(number(middle, 3))
+    if by_slope > 2.0 * by_curve + 3.0 * by_jerk + 4.0 * rest:
+        return False
+    change = by_slope + by_curve + by_jerk + rest
+    return min(high - value, value - low) - change <= nearest
 
 
 @jit
@@ -22,7 +40,7 @@ def certify(f, sides, sigma, place, room, strikes):
     K, n, m = len(sides), room.E.shape[0], room.E.shape[1]
     N = n // 2
     low, high = f.numbers[LOW], f.numbers[HIGH]
-    nearest, c, after, zeta = room.nearest, room.cell, room.after, room.zeta[0]
+    nearest, c, zeta = room.nearest, room.cell, room.zeta[0]
     nearest[0], largest = np.inf, 0.0
     for i in range(K):
         for j in range(n):
@@ -37,22 +55,14 @@ def certify(f, sides, sigma, place, room, strikes):
         length = (place.t[i + 1] if i + 1 < K else place.t[0] + f.numbers[PERIOD]) - place.t[i]
         cells = int(length / f.width)
         for k in range(cells + 1):
-            for q in range(ORDER + 1):
-                c[q] = 0.0
-            for j in range(m):
-                for q in range(ORDER + 1):
-                    c[q] += zeta[j] * f.gap_rows[j, q]
+            turns = may_turn(f, zeta, low, high, nearest[0])
+            if turns or k == cells:
+                put(room.cell, 0, combined(zeta, f.gap_rows, 0))
             width = min(f.width * OVERLAP, length - k * f.width)
-            if width > 0.0:
+            if turns and width > 0.0:
                 extremes_of_cell(c, width, low, high, nearest, room.waiting)
             if k < cells:
-                for j in range(m):
-                    after[j] = 0.0
-                for l in range(m):  # noqa: E741
-                    for j in range(m):
-                        after[j] += zeta[l] * f.step[l, j]
-                for j in range(m):
-                    zeta[j] = after[j]
+                put(room.zeta, 0, combined(zeta, f.step, 0))
         last, power = 0.0, 1.0
         u = max(length - cells * f.width, 0.0)
         for q in range(ORDER + 1):  # of the last cell

@@ -3,6 +3,8 @@
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
 
+OVERLAP = 1.0 + 1e-9  # of cells, or a turning point between two of them could be lost to both
+
 
 @jit
 def value_of(c, u):

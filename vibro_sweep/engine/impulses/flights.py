@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.extremes import extremes_of_cell
+from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
 from vibro_sweep.engine.impulses.green import (
     MOST_CELLS,
     ResonanceError,
@@ -23,7 +23,6 @@ from vibro_sweep.engine.simd.jit import entry, jit
 from vibro_sweep.model.linear import Linear, forcing_period
 
 DOUBLINGS = 18
-OVERLAP = 1.0 + 1e-9
 
 
 class Flow(NamedTuple):

@@ -8,9 +8,10 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.impulses.extremes import OVERLAP
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.simd.memory import record
+from vibro_sweep.engine.simd.memory import put, record, row
 
 LOW, HIGH, GAIN_LOW, GAIN_HIGH, OMEGA, TAU, PERIOD = range(7)  # of `numbers`; gain: 1 + R, PERIOD: P
 NUMBERS = 7
@@ -18,6 +19,7 @@ NUMBERS = 7
 
 DEGREE = 20  # of the polynomials, at most
 BITS = 18
+MIDDLE = 4  # value in the middle of a cell, and what three derivatives there change up to its ends
 
 
 def medium_of(masses: int) -> np.dtype:
@@ -43,7 +45,32 @@ def medium_of(masses: int) -> np.dtype:
         ("power_slopes", float, (BITS, m, m)),
         ("gap_rows", float, (m, ORDER + 1)),  # the gap's Taylor coefficients, by columns
         ("step", float, (m, m)),  # exp(B width) by columns
+        ("middle_weights", float, (ORDER + 1, MIDDLE)),
+        ("rest_weights", float, ORDER + 1),
+        ("middle", float, (m, MIDDLE)),  # gap_rows . middle_weights
+        ("rest", float, m),  # |gap_rows| . rest_weights
     ])  # fmt: skip
+
+
+def middle_weights(width: float) -> tuple[np.ndarray, np.ndarray]:
+    """(ORDER + 1, MIDDLE) and (ORDER + 1,): what the gap's Taylor coefficients c_k say about the middle r of a cell.
+
+    gap(r + r x) = p_0 + p_1 x + p_2 x^2 + p_3 x^3 + ..., |x| <= 1: p_j = sum_k c_k weight_kj; and what follows is
+    bounded, sum_k |c_k| weight_k >= r^4/24 max |fourth derivative|.
+    """
+    r, orders = 0.5 * OVERLAP * width, range(ORDER + 1)
+    middle = [[math.comb(k, j) * r**k for j in range(MIDDLE)] for k in orders]
+    rest = [math.comb(k, MIDDLE) * (2 * r) ** (k - MIDDLE) * r**MIDDLE if k >= MIDDLE else 0.0 for k in orders]
+    return np.array(middle), np.array(rest)
+
+
+@jit
+def combined(x, rows, first):
+    """sum_j x_j rows_{first + j}."""
+    total = x[0] * row(rows, first)
+    for j in range(1, len(x)):
+        total = total + x[j] * row(rows, first + j)
+    return total
 
 
 @jit
@@ -66,6 +93,7 @@ def move_to(f, p):
     if f.moves > 0:
         build_series(f)
         build_powers(f)
+        build_middle(f)
 
 
 @jit
@@ -76,13 +104,9 @@ def build_series(f):
             f.series[0, i, j], f.series_slopes[0, i, j] = 1.0 if i == j else 0.0, 0.0
     for k in range(1, ORDER + 1):
         for i in range(n):
-            for j in range(m):
-                f.series[k, i, j] = f.series_slopes[k, i, j] = 0.0
-            for l in range(m):  # noqa: E741
-                value, slope = f.series[k - 1, i, l] / k, f.series_slopes[k - 1, i, l] / k
-                for j in range(m):
-                    f.series[k, i, j] += value * f.B[l, j]
-                    f.series_slopes[k, i, j] += slope * f.B[l, j] + value * f.B_slope[l, j]
+            value, slope = f.series[k - 1, i], f.series_slopes[k - 1, i]
+            put(f.series, k * n + i, combined(value, f.B, 0) / k)
+            put(f.series_slopes, k * n + i, (combined(slope, f.B, 0) + combined(value, f.B_slope, 0)) / k)
         for j in range(m):
             f.gap_rows[j, k] = f.series[k, 0, j]
     for j in range(m):
@@ -94,29 +118,38 @@ def build_powers(f):
     n, m = f.series.shape[1], f.series.shape[2]
     one, one_slope = f.powers[0], f.power_slopes[0]
     for i in range(n):
-        for j in range(m):
-            value, slope = f.series[ORDER, i, j], f.series_slopes[ORDER, i, j]
-            for k in range(ORDER - 1, -1, -1):
-                value = value * f.width + f.series[k, i, j]
-                slope = slope * f.width + f.series_slopes[k, i, j]
-            one[i, j], one_slope[i, j] = value, slope
+        value, slope = row(f.series, ORDER * n + i), row(f.series_slopes, ORDER * n + i)
+        for k in range(ORDER - 1, -1, -1):
+            value = value * f.width + row(f.series, k * n + i)
+            slope = slope * f.width + row(f.series_slopes, k * n + i)
+        put(f.powers, i, value)
+        put(f.power_slopes, i, slope)
     angle, turn = f.numbers[OMEGA] * f.width, f.number_slopes[OMEGA] * f.width
     c, s = math.cos(angle), math.sin(angle)
     one[n, n], one[n, n + 1], one[n + 1, n], one[n + 1, n + 1], one[n + 2, n + 2] = c, -s, s, c, 1.0
     one_slope[n, n], one_slope[n, n + 1] = -s * turn, -c * turn
     one_slope[n + 1, n], one_slope[n + 1, n + 1] = c * turn, -s * turn
     for k in range(1, f.bits):
+        first = (k - 1) * m
         for i in range(m):
-            for j in range(m):
-                f.powers[k, i, j] = f.power_slopes[k, i, j] = 0.0
-            for l in range(m):  # noqa: E741
-                value, slope = f.powers[k - 1, i, l], f.power_slopes[k - 1, i, l]
-                for j in range(m):
-                    f.powers[k, i, j] += value * f.powers[k - 1, l, j]
-                    f.power_slopes[k, i, j] += slope * f.powers[k - 1, l, j] + value * f.power_slopes[k - 1, l, j]
+            value, slope = f.powers[k - 1, i], f.power_slopes[k - 1, i]
+            put(f.powers, k * m + i, combined(value, f.powers, first))
+            change = combined(slope, f.powers, first) + combined(value, f.power_slopes, first)
+            put(f.power_slopes, k * m + i, change)
     for i in range(m):
         for j in range(m):
             f.step[j, i] = one[i, j]
+
+
+@jit
+def build_middle(f):
+    for j in range(len(f.rest)):
+        c = f.gap_rows[j]
+        put(f.middle, j, combined(c, f.middle_weights, 0))
+        total = 0.0
+        for k in range(MIDDLE, ORDER + 1):
+            total += abs(c[k]) * f.rest_weights[k]
+        f.rest[j] = total
 
 
 @jit
@@ -128,31 +161,21 @@ def set_phase(f, zeta, t):
 
 
 @jit
-def flight_matrix(f, length, E, other):
-    """E (n, m): the state after a time `length` from zeta. other: (n, m)."""
+def flight_matrix(f, length, E):
+    """E (n, m): the state after a time `length` from zeta."""
     n, m = E.shape
     cells = int(length / f.width)
     u = length - cells * f.width
     for i in range(n):
-        for j in range(m):
-            E[i, j] = f.series[ORDER, i, j]
-    for k in range(ORDER - 1, -1, -1):
-        for i in range(n):
-            for j in range(m):
-                E[i, j] = E[i, j] * u + f.series[k, i, j]
+        total = row(f.series, ORDER * n + i)
+        for k in range(ORDER - 1, -1, -1):
+            total = total * u + row(f.series, k * n + i)
+        put(E, i, total)
     bit = 0
     while cells > 0:
         if cells & 1:
             for i in range(n):
-                for j in range(m):
-                    other[i, j] = 0.0
-                for l in range(m):  # noqa: E741
-                    value = E[i, l]
-                    for j in range(m):
-                        other[i, j] += value * f.powers[bit, l, j]
-            for i in range(n):
-                for j in range(m):
-                    E[i, j] = other[i, j]
+                put(E, i, combined(E[i], f.powers, bit * m))
         cells >>= 1
         bit += 1
 
