@@ -51,7 +51,7 @@ def orbit_of(system, itinerary):
         born = next(item.orbit for item in vs.born_at_grazing(system, 1) if item.itinerary == "LR")
         points = vs.continue_orbit(born, "b", (0.01, 60)).points
         middle = (points.b.min() + points.b.max()) / 2
-        point = points.isel(point=int(abs(points.b - middle).argmin()))
+        point = points.isel(point=int(abs(points.b - middle).argmin("point")))
         guess = zip(point.impact_t.values, point.impact_side.values, point.impact_v.values, strict=True)
         return vs.periodic_orbit(system.replace(b=float(point.b)), guess=list(guess))
     periods = 2 if isinstance(system, Family) and system.build is ONE_MASS.build else 1

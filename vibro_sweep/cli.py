@@ -3,7 +3,6 @@
 Commands import what they need when they run, so that `--help` answers at once.
 """
 
-import shlex
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -13,8 +12,9 @@ import typer
 from vibro_sweep.model.pictures import PICTURES
 
 from . import interrupt
-from .console import BAD_INPUT, BAD_POINTS, InputError, ended, input_errors, messages, say
-from .options import executor_of, key_and_value, number_in, positive
+from .computing import Work, compute_pieces, compute_sweep
+from .console import BAD_INPUT, BAD_POINTS, ended, input_errors, say
+from .options import key_and_value, number_in, positive
 from .usage import called
 
 app = typer.Typer(
@@ -31,6 +31,12 @@ app = typer.Typer(
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE.yaml", exists=True, dir_okay=False)]
 DataFile = Annotated[Path, typer.Argument(metavar="FILE.h5", exists=True, dir_okay=False)]
+Scheduler = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Compute on the workers of a dask scheduler instead.")
+]
+Resume = Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but warnings and errors.")]
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -66,69 +72,34 @@ def run(
         int | None,
         typer.Option(parser=positive, metavar="N", help="Threads; by default one for each core."),
     ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(metavar="ADDRESS", help="Compute on the workers of a dask scheduler instead."),
-    ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")] = False,
+    scheduler: Scheduler = None,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
     plot: Annotated[bool, typer.Option("--plot", help="Draw the result, next to the file.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but warnings and errors.")] = False,
+    quiet: Quiet = False,
 ):
     """Compute a scene and write its HDF5 file."""
     output = output or Path(f"{scene_file.stem}.h5")
-    again = ["vibro-sweep", "run", str(scene_file), "-o", str(output)]
-    again += ["--scheduler", scheduler] if scheduler else ["--workers", str(workers)] if workers else []
-    again += ["--plot"] if plot else []
-    to_continue = f"to continue: {shlex.join([*again, '--resume'])}"
-    # until the run has begun, what is to be overwritten is there, and would be taken for its result
-    interrupt.tells(f"to continue: {shlex.join([*again, '--overwrite'])}" if overwrite else to_continue)
+    work = Work(output, workers, scheduler, resume, overwrite, plot, quiet, ("run", str(scene_file)))
+    work.announce()
     from .scene import SceneError, is_continuation_file, load_continuation, load_scene
 
     with input_errors(SceneError):
         of_branches = is_continuation_file(scene_file)
         scene = load_continuation(scene_file) if of_branches else load_scene(scene_file)
-    if resume and overwrite:
-        raise InputError("--resume and --overwrite exclude each other: continue the old file or replace it")
-    mode = "resume" if resume else "overwrite" if overwrite else "new"
-    picture = None
+    work.check_places(scene_file)
+    bad = compute_pieces(work, _follow(scene, output)) if of_branches else compute_sweep(work, scene)
     if plot:
-        from .plotting import default_name
-
-        picture = output.with_name(default_name(output))
-    from .places import check_output
-    from .store import StoreError
-
-    with input_errors(StoreError):
-        check_output(output, scene_file, picture, mode)
-
-    if of_branches:
-        _follow(scene, output, workers, scheduler, mode, quiet, to_continue)
-        if plot:
-            _draw(output, picture, None, overwrite, quiet)
-        return
-    from .driver import sweep
-    from .progress import progress_bar
-
-    workers_of_a_cluster = executor_of(scheduler)
-    with input_errors(StoreError), interrupt.tidied_up():
-        interrupt.tells(to_continue)
-        try:
-            bar = progress_bar(scene.n_points, quiet)
-            with messages(quiet), workers_of_a_cluster as executor, bar as progress:
-                report = sweep.run(scene, output, workers, executor, progress, mode)
-        except sweep.RunError as error:
-            if error.internal:
-                raise
-            raise InputError(f"{error}. Nothing that was computed is lost; {to_continue}") from None
-    if not quiet:
-        from .summaries import summary
-
-        say(summary(output, report))
-    if plot:
-        _draw(output, picture, None, overwrite, quiet)
-    if report.bad:
+        _draw(output, work.picture, None, overwrite, quiet)
+    if bad:
         raise typer.Exit(BAD_POINTS)
+
+
+def _follow(scene, output: Path):
+    from .driver.branches import run_branches
+    from .driver.curves import run_curves
+
+    return partial(run_branches if len(scene.along) == 1 else run_curves, scene, output)
 
 
 @app.command("windows")
@@ -144,64 +115,26 @@ def windows_command(
     workers: Annotated[
         int | None, typer.Option(parser=positive, metavar="N", help="Processes; by default one.")
     ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Compute on the workers of a dask scheduler instead.")
-    ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")] = False,
+    scheduler: Scheduler = None,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
     plot: Annotated[bool, typer.Option("--plot", help="Draw the sweep with its windows, next to the file.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but warnings and errors.")] = False,
+    quiet: Quiet = False,
 ):
     """Find the windows of a sweep and what ends them; write their file.
 
     A window is an interval on which one periodic orbit is stable. The sweep's file stays as it is.
     """
-    if resume and overwrite:
-        raise InputError("--resume and --overwrite exclude each other: continue the old file or replace it")
-    mode = "resume" if resume else "overwrite" if overwrite else "new"
     output = output or Path(f"{file.name.removesuffix('.h5')}.windows.h5")
-    picture = output.with_suffix(".png") if plot else None
-    from .places import check_output
-    from .store import StoreError
-
-    with input_errors(StoreError):
-        check_output(output, file, picture, mode)
-    again = ["vibro-sweep", "windows", str(file), "-o", str(output)]
-    again += ["--along", along] if along else []
-    again += ["--scheduler", scheduler] if scheduler else ["--workers", str(workers)] if workers else []
-    to_continue = f"to continue: {shlex.join([*again, '--resume'])}"
-    interrupt.tells(to_continue)
+    command = ("windows", str(file), *(("--along", along) if along else ()))
+    work = Work(output, workers, scheduler, resume, overwrite, plot, quiet, command)
+    work.announce()
+    work.check_places(file)
     from .driver.windows import run_windows
 
-    _in_pieces(partial(run_windows, file, output, along), output, workers, scheduler, mode, quiet, to_continue)
-    if picture:
-        _draw(file, picture, None, overwrite, quiet, windows=output)
-
-
-def _follow(scene, output: Path, *how):
-    from .driver.branches import run_branches
-    from .driver.curves import run_curves
-
-    compute = run_branches if len(scene.along) == 1 else run_curves
-    _in_pieces(partial(compute, scene, output), output, *how)
-
-
-def _in_pieces(compute, output: Path, workers, scheduler, mode: str, quiet: bool, to_continue: str):
-    """Compute a file of branches or windows, and print its tables."""
-    from .driver.compute import RunError
-    from .progress import progress_bar
-    from .store import StoreError, tables
-
-    with input_errors(StoreError, ValueError), interrupt.tidied_up():
-        interrupt.tells(to_continue)
-        try:
-            bar, workers_of_a_cluster = progress_bar(0, quiet), executor_of(scheduler)
-            with messages(quiet), workers_of_a_cluster as executor, bar as progress:
-                compute(workers, executor, progress, mode)
-        except RunError as error:
-            raise InputError(f"{error}. Nothing that was computed is lost; {to_continue}") from None
-    if not quiet:
-        say("\n".join([f"{output}", *tables(output)]))
+    compute_pieces(work, partial(run_windows, file, output, along))
+    if plot:
+        _draw(file, work.picture, None, overwrite, quiet, windows=output)
 
 
 @app.command("plot")

@@ -1,0 +1,105 @@
+"""What commands that compute a file have in common: where it may go, how to continue it, progress, what is printed."""
+
+import shlex
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from . import interrupt
+from .console import InputError, input_errors, messages, say
+from .options import executor_of
+
+
+@dataclass(frozen=True)
+class Work:
+    """A file to be computed, and how the command line says that it should be."""
+
+    output: Path
+    workers: int | None
+    scheduler: str | None
+    resume: bool
+    overwrite: bool
+    plot: bool
+    quiet: bool
+    command: tuple[str, ...]  # its own words: name, source, options that no other command has
+
+    @property
+    def mode(self) -> str:
+        return "resume" if self.resume else "overwrite" if self.overwrite else "new"
+
+    @cached_property
+    def picture(self) -> Path | None:
+        """Drawn at the end, next to the file."""
+        if not self.plot:
+            return None
+        from .plotting import default_name
+
+        return self.output.with_name(default_name(self.output))
+
+    def advice(self, option: str) -> str:
+        """What to type after an interruption."""
+        again = ["vibro-sweep", *self.command, "-o", str(self.output)]
+        again += ["--scheduler", self.scheduler] if self.scheduler else []
+        again += ["--workers", str(self.workers)] if self.workers and not self.scheduler else []
+        return f"to continue: {shlex.join([*again, *(['--plot'] if self.plot else []), option])}"
+
+    def announce(self) -> None:
+        """Say from now on how to continue. Raises InputError where options exclude each other."""
+        if self.resume and self.overwrite:
+            raise InputError("--resume and --overwrite exclude each other: continue the old file or replace it")
+        # until the run has begun, what is to be overwritten is there, and would be taken for its result
+        interrupt.tells(self.advice("--overwrite" if self.overwrite else "--resume"))
+
+    def check_places(self, source: Path) -> None:
+        """Raises InputError where something is in the way."""
+        from .places import check_output
+        from .store import StoreError
+
+        with input_errors(StoreError):
+            check_output(self.output, source, self.picture, self.mode)
+
+    @contextmanager
+    def under_way(self, total: int, *errors: type[Exception]) -> Iterator[tuple]:
+        """Executor and progress, while the file is computed; what fails then has a message of its own."""
+        from .driver.compute import RunError
+        from .progress import progress_bar
+        from .store import StoreError
+
+        workers_of_a_cluster = executor_of(self.scheduler)
+        with input_errors(StoreError, *errors), interrupt.tidied_up():
+            to_continue = self.advice("--resume")
+            interrupt.tells(to_continue)
+            try:
+                bar = progress_bar(total, self.quiet)
+                with messages(self.quiet), workers_of_a_cluster as executor, bar as progress:
+                    yield executor, progress
+            except RunError as error:
+                if error.internal:
+                    raise
+                raise InputError(f"{error}. Nothing that was computed is lost; {to_continue}") from None
+
+
+def compute_sweep(work: Work, scene) -> bool:
+    """Compute a sweep and print its summary. Returns whether some points have a bad status."""
+    from .driver import sweep
+
+    with work.under_way(scene.n_points) as (executor, progress):
+        report = sweep.run(scene, work.output, work.workers, executor, progress, work.mode)
+    if not work.quiet:
+        from .summaries import summary
+
+        say(summary(work.output, report))
+    return bool(report.bad)
+
+
+def compute_pieces(work: Work, compute: Callable) -> bool:
+    """Compute a file of branches, curves or windows, and print its tables; these have no bad points: False."""
+    from .store import tables
+
+    with work.under_way(0, ValueError) as (executor, progress):
+        compute(work.workers, executor, progress, work.mode)
+    if not work.quiet:
+        say("\n".join([f"{work.output}", *tables(work.output)]))
+    return False
