@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.impulses.elimination import solve_scaled
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import entry, jit
 
@@ -190,43 +191,6 @@ def equations(train, q, contacts, u, F, J, Fp, motion, scratch):
         J[last, last] = 0.0
 
 
-@jit
-def solve(J, F, size, rows):
-    """Overwrite F by J^-1 F: Gaussian elimination with row scaling and partial pivoting. False where J is singular."""
-    for i in range(size):
-        largest = 0.0
-        for j in range(size):
-            largest = max(largest, abs(J[i, j]))
-        if not largest > 0.0:
-            return False
-        rows[i] = 1.0 / largest
-    for j in range(size):
-        p, best = j, abs(J[j, j]) * rows[j]
-        for i in range(j + 1, size):
-            if abs(J[i, j]) * rows[i] > best:
-                p, best = i, abs(J[i, j]) * rows[i]
-        if not best > 0.0:
-            return False
-        if p != j:
-            for k in range(size):
-                J[p, k], J[j, k] = J[j, k], J[p, k]
-            F[p], F[j] = F[j], F[p]
-            rows[p], rows[j] = rows[j], rows[p]
-        inverse = 1.0 / J[j, j]
-        for i in range(j + 1, size):
-            factor = J[i, j] * inverse
-            if factor != 0.0:
-                for k in range(j + 1, size):
-                    J[i, k] -= factor * J[j, k]
-                F[i] -= factor * F[j]
-    for i in range(size - 1, -1, -1):
-        total = F[i]
-        for k in range(i + 1, size):
-            total -= J[i, k] * F[k]
-        F[i] = total / J[i, i]
-    return True
-
-
 @entry
 def evaluate(train, q, contacts, u, F, J, Fp, motion, scratch):
     """`equations`, for Python."""
@@ -276,7 +240,7 @@ def newton(train, q, contacts, u, size, F, J, Fp, motion, scratch, rows):
         for i in range(K):
             left = max(left, abs(F[i]), abs(F[K + i]) / q.omega)
         most = 1e-7 if left <= ROUNDING * gap else 1e-9
-        if not solve(J, F, size, rows):
+        if not solve_scaled(J, F, size, rows):
             return np.nan
         longest, reach = 0.0, train.P
         speed = max(q.omega * math.hypot(q.real, q.imag), abs(q.momentum))  # D itself may vanish
