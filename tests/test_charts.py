@@ -155,9 +155,10 @@ def test_charts_over_a_plane(file, tmp_path, monkeypatch, capsys):
     assert main(["run", "largest.yaml"]) == 2
     assert "continue.from.largest: belongs to windows along one number; plane.h5 is a plane" in capsys.readouterr().err
     assert (tmp_path / "over.svg").read_text().count('id="curve"') >= 2
+    assert main(["plot", str(file), "--over", "plane.h5", "--relative", "-o", "relative.svg"]) == 0
+    assert (tmp_path / "relative.svg").read_text().count("<path") < 300  # cells are pixels
     capsys.readouterr()
     for more, words in (
-        (["--over", "plane.h5", "--relative"], "relative: a chart over a plane"),
         (["--over", "plane.h5", "--variable", "x9"], "variable 'x9' is not allowed; there are lyapunov"),
         (["--over", str(file)], "holds curves, and no sweep"),
     ):

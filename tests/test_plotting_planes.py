@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
+from support.oscillators import PAPER
 from support.pictures import image, write
 
+import vibro_sweep as vs
 from vibro_sweep import plotting
+from vibro_sweep.cli import main
 
 
 def test_plane_shows_the_start_with_the_largest_exponent(plane):
@@ -90,3 +93,19 @@ def test_no_numbers_no_grazing_curve(tmp_path):
     coordinates = {"b": np.linspace(3, 9, 4), "omega": np.array([0.6, 0.63])}
     file = write(tmp_path / "p.h5", coordinates, {"period": np.ones((4, 2), int)}, settings={"record": 20})
     assert not plotting.figure(file).axes[0].lines
+
+
+def test_planes_relative_to_the_grazing_clearance(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    axes = {"b": np.linspace(3, 5, 5), "omega": np.linspace(0.6, 0.606, 4)}
+    data = vs.sweep(PAPER, axes, transient=30, record=10, observe=["section"], output="plane.h5", workers=1)
+    (mesh,) = plotting.figure(data, "plane", plotting.Look(relative=True)).axes[0].collections
+    x, y = mesh.get_coordinates().transpose(2, 0, 1)
+    assert x.shape == (5, 6) and np.all(np.diff(y[:, 0]) > 0) and np.ptp(y, axis=1).max() == 0
+    middle = (x[:-1, :-1] + x[1:, 1:] + x[1:, :-1] + x[:-1, 1:]) / 4
+    stars = [vs.grazing(PAPER.replace(omega=one)).b for one in axes["omega"]]
+    assert middle == pytest.approx(axes["b"] / np.array(stars)[:, None], rel=1e-3)
+    data.close()
+    vs.sweep(PAPER, {"b": [3.0, 4.0]}, transient=30, record=10, observe=["section"], output="line.h5").close()
+    assert main(["plot", "line.h5", "--relative"]) == 2
+    assert "relative: belongs to charts and planes; line.h5 can show bifurcation" in capsys.readouterr().err

@@ -184,7 +184,7 @@ def plot_command(
         typer.Option(metavar="SWEEP.h5", exists=True, dir_okay=False, help="Draw branches or curves over a sweep."),
     ] = None,
     relative: Annotated[
-        bool, typer.Option("--relative", help="Of curves: b in parts of the grazing clearance b*.")
+        bool, typer.Option("--relative", help="Of curves and planes: b in parts of the grazing clearance b*.")
     ] = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an existing file, also one that is no picture of this program.")

@@ -31,18 +31,20 @@ SUFFIXES = (".png", ".svg", ".pdf")
 
 
 class Kind(NamedTuple):
-    """A kind of picture: what it needs, how it is drawn, variables to choose among, whether it shows single orbits."""
+    """A kind of picture: what it needs, how it is drawn, variables to choose among, whether it shows single orbits, and
+    whether b may be relative to b*."""
 
     shows: Callable[[Result], bool]
     draw: Callable[[Result], Figure]
     variables: Callable[[Result], tuple[str, ...]] = lambda result: ()
     of_orbits: bool = False
+    relative: bool = False
 
 
 _DRAWN = {
     "basins": Kind(basins.shows, basins.basins),
     "coexistence": Kind(coexistence.shows, coexistence.coexistence),
-    "plane": Kind(planes.shows, planes.plane, planes.variables),
+    "plane": Kind(planes.shows, planes.plane, planes.variables, relative=True),
     "bifurcation": Kind(sweeps.shows_bifurcation, sweeps.bifurcation, sweeps.section_variables),
     "lyapunov": Kind(sweeps.shows_lyapunov, sweeps.lyapunov),
     "impacts": Kind(sweeps.shows_impacts, sweeps.impacts),
@@ -138,6 +140,10 @@ def _chosen(result: Result, kind: str | None) -> list[str]:
     if not fitting:
         which = f"kind {kind} shows the whole sweep" if kind else f"{result.path} has no single orbits to show"
         raise PlotError(f"at: {which}; {_those(available, lambda name: KINDS[name].of_orbits)}")
+    if result.look.relative:
+        fitting = [name for name in fitting if KINDS[name].relative]
+        if not fitting:
+            raise PlotError(f"relative: belongs to charts and planes; {result.path} can show {', '.join(available)}")
     if variable:
         choices = {name: KINDS[name].variables(result) for name in fitting}
         fitting = [name for name in fitting if variable in choices[name]]

@@ -10,8 +10,9 @@ from vibro_sweep.plotting import planes
 from vibro_sweep.plotting.curves import Drawn, draw, handles, name_points
 from vibro_sweep.plotting.flat import FlatFile, check_over
 from vibro_sweep.plotting.look import Look
+from vibro_sweep.plotting.relative import axis_label, check_relative
 from vibro_sweep.plotting.result import PlotError, Result
-from vibro_sweep.plotting.style import axis_name, page, symbol
+from vibro_sweep.plotting.style import page
 
 NAMED = 14  # points of codimension two that are named over a plane
 
@@ -32,8 +33,7 @@ def chart(path: str | Path, look: Look, ax=None):
         fig = page(5.0, f"Bifurcation curves: {file.title}")
         ax = fig.subplots()
     draw(ax, curves)
-    labels = [f"{symbol('b')}$/${symbol('b_star')}" if look.relative and n == "b" else axis_name(n) for n in names]
-    ax.set(xlabel=labels[0], ylabel=labels[1])
+    ax.set(xlabel=axis_label(names[0], look.relative), ylabel=axis_label(names[1], look.relative))
     if fig is None:
         ax.legend(handles=handles(curves), loc="best", frameon=True)
     else:
@@ -44,8 +44,8 @@ def chart(path: str | Path, look: Look, ax=None):
 
 def drawn(file: FlatFile, names: list[str], relative: bool = False) -> list[Drawn]:
     """The curves of a file with these parameters as axes. relative: b in parts of the grazing clearance b*."""
-    if relative and ("b" not in names or not np.isfinite(file["b_star"]).all()):
-        raise PlotError(f"relative: {file.name} has no {'b' if 'b' not in names else 'grazing clearance'} to divide by")
+    if relative:
+        check_relative(file.name, names, file["b_star"])
     order = [file.parameters.index(name) for name in names]
     values = np.column_stack([file[name] for name in names])
     places = file["special_value"][:, order].copy()
@@ -67,16 +67,14 @@ def drawn(file: FlatFile, names: list[str], relative: bool = False) -> list[Draw
 
 def _over(file: FlatFile, look: Look, ax):
     """Over the plane of a sweep in the same two numbers."""
-    if look.relative:
-        raise PlotError("relative: a chart over a plane has b itself as its axis; leave out `relative` or `over`")
     check_over(look.over)
-    with Result(look.over, Look(variable=look.variable, size=look.size), ax) as result:
+    with Result(look.over, Look(variable=look.variable, size=look.size, relative=look.relative), ax) as result:
         if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
             raise PlotError(f"over: {result.path} is no plane over {' and '.join(file.parameters)}")
         if look.variable is not None and look.variable not in planes.variables(result):
             told = ", ".join(planes.variables(result))
             raise PlotError(f"variable {look.variable!r} is not allowed; there are {told}")
-        curves = drawn(file, list(result.sweep))
+        curves = drawn(file, list(result.sweep), look.relative)
 
         def overlay(panel):
             frame = panel.get_xlim(), panel.get_ylim()

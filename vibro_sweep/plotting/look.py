@@ -20,7 +20,7 @@ class Look:
     at: swept key -> value, where single orbits are drawn; variable: what is drawn; xlim, ylim: ranges of the axes, of
     several panels those of the first and of all that show the same; size: inches; dpi: pixels an inch; windows: a file
     of the sweep's windows, which are shown below it or on its plane; over: the file of a sweep over which branches or
-    curves are drawn; relative: whether charts show b in parts of the grazing clearance b*.
+    curves are drawn; relative: whether charts and planes show b in parts of the grazing clearance b*.
     Raises `PlotError` for values that none of the kinds can use.
     """
 

@@ -9,7 +9,8 @@ from matplotlib.ticker import MaxNLocator
 
 from vibro_sweep.model.observables import VARIABLES
 from vibro_sweep.plotting import strip
-from vibro_sweep.plotting.result import Result
+from vibro_sweep.plotting.relative import axis_label, check_relative
+from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import (
     DASHES,
     FAINT,
@@ -20,7 +21,6 @@ from vibro_sweep.plotting.style import (
     NOT_COMPUTED,
     PER_TIME,
     PERIODS,
-    axis_name,
     edges,
     exponent,
     grazing_of,
@@ -47,7 +47,8 @@ def plane(result: Result, overlay=None, more=()):
     """lambda_1 and the period over the two parameters, side by side; the impacts where neither is stored.
 
     Of several starts the one with the largest lambda_1 is shown, point by point; beside it how many attractors they
-    reach, where that is stored. A variable that is chosen is shown alone.
+    reach, where that is stored. A variable that is chosen is shown alone. Raises PlotError where the look wants b in
+    parts of b*, and b* is not known.
 
     overlay(ax) draws on each panel, `more` are its handles for the legend.
     """
@@ -59,19 +60,34 @@ def plane(result: Result, overlay=None, more=()):
     grid = fig.subplots(1, len(maps), sharex=True, sharey=True, squeeze=False)[0]
     (x_key, x), (y_key, y) = result.sweep.items()
     columns, rows = np.argsort(x), np.argsort(y)  # a sweep may run downwards; an axis does not
+    relative = result.look.relative
+    corners = (edges(x[columns]), edges(y[rows])) if not relative else _relative_corners(result, columns, rows)
     for ax, (draw, values) in zip(grid, maps, strict=True):
-        draw(ax, edges(x[columns]), edges(y[rows]), np.ma.masked_invalid(values[np.ix_(columns, rows)].T))
-        ax.set_xlabel(axis_name(x_key))
+        draw(ax, *corners, np.ma.masked_invalid(values[np.ix_(columns, rows)].T))
+        ax.set_xlabel(axis_label(x_key, relative))
         ax.patch.set(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="///")
         _grazing_curve(ax, result)
         if result.look.windows is not None:
             strip.ends_over(ax, result)
         if overlay is not None:
             overlay(ax)
-    grid[0].set_ylabel(axis_name(y_key))
+    grid[0].set_ylabel(axis_label(y_key, relative))
     shown = [line for line in grid[0].lines if line.get_gid() == "window end"]
     _legend(fig, grid, any(np.isnan(values).any() for _, values in maps), [*shown, *more])
     return fig
+
+
+def _relative_corners(result, columns, rows) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of the cells, each (rows + 1, columns + 1), with b in parts of b*. Raises PlotError."""
+    (x_key, x), (y_key, y) = result.sweep.items()
+    other, order = (x_key, columns) if y_key == "b" else (y_key, rows)
+    b_star = result.grazing(other).get("b_star")
+    check_relative(str(result.path), result.sweep, b_star)
+    if result.look.windows is not None:
+        raise PlotError("relative: ends of windows have b itself as their axis; leave out `relative` or `windows`")
+    X, Y = np.meshgrid(edges(x[columns]), edges(y[rows]))
+    star = edges(b_star[order])
+    return (X, Y / star) if y_key == "b" else (X / star[:, None], Y)
 
 
 def _grazing_curve(ax, result):
@@ -83,7 +99,7 @@ def _grazing_curve(ax, result):
     order = np.argsort(result.sweep[other])
     frame = ax.get_xlim(), ax.get_ylim()
     for name, curve in result.grazing(other).items():
-        line = result.sweep[other][order], curve[order]
+        line = result.sweep[other][order], np.ones(len(order)) if result.look.relative else curve[order]
         for style in ({"color": "white", "lw": 2.2}, {"color": INK, "lw": 1.0, "ls": CURVES[name], "gid": "grazing"}):
             ax.plot(*(line if keys[1] == "b" else line[::-1]), label=grazing_of(name), **style)
     ax.set(xlim=frame[0], ylim=frame[1])
@@ -134,7 +150,7 @@ def _exponent(ax, x, y, values):
     # Each side of zero has a scale of its own: chaos is weak beside the damping of a periodic orbit.
     tiny = 1e-6 * max(abs(low), abs(high), 1e-300)
     norm = TwoSlopeNorm(0, min(low, -tiny), max(high, tiny))
-    image = ax.pcolorfast(x, y, values, cmap="RdBu_r", norm=norm)
+    image = _image(ax, x, y, values, cmap="RdBu_r", norm=norm)
     bar = _bar(ax, image, f"{exponent(1)} {PER_TIME}; > 0: chaos", extend="both")
     if -low > 1e-3 * high and high > -1e-3 * low:
         bar.set_ticks([*_round(norm.vmin), 0, *_round(norm.vmax)])
@@ -151,7 +167,7 @@ def _round(end) -> list[float]:
 def _period(ax, x, y, values):
     colours = ListedColormap([NO_PERIOD, *PERIODS, LONGER])
     norm = BoundaryNorm(np.arange(-0.5, LONGEST + 2), colours.N)
-    image = ax.pcolorfast(x, y, np.ma.minimum(values, LONGEST + 1), cmap=colours, norm=norm)
+    image = _image(ax, x, y, np.ma.minimum(values, LONGEST + 1), cmap=colours, norm=norm)
     bar = _bar(ax, image, "period in $T$; 0: none found", ticks=range(LONGEST + 2))
     bar.ax.set_xticklabels([*range(LONGEST + 1), f">{LONGEST}"])
     bar.ax.tick_params(length=0)
@@ -173,10 +189,11 @@ def _name_regions(ax, x, y, values):
     sampling = height / part.shape[0], width / part.shape[1]
     room = ndimage.distance_transform_edt(inside, sampling=sampling)
     periods = np.unique(part[part > 0])
+    X, Y = np.meshgrid(x, y) if x.ndim == 1 else (x, y)
     for period, (row, column) in zip(periods, ndimage.maximum_position(room, part, periods), strict=True):
         if room[row, column] > ROOM:
-            row, column = row * steps[0], column * steps[1]
-            at = (x[column] + x[column + 1]) / 2, (y[row] + y[row + 1]) / 2
+            cell = slice(row * steps[0], row * steps[0] + 2), slice(column * steps[1], column * steps[1] + 2)
+            at = X[cell].mean(), Y[cell].mean()
             halo = [patheffects.withStroke(linewidth=2, foreground="white")]
             style = {"fontsize": 7, "ha": "center", "va": "center", "path_effects": halo, "color": INK}
             ax.text(*at, f"{period}", **style, clip_on=True, gid="period")
@@ -185,7 +202,7 @@ def _name_regions(ax, x, y, values):
 def _number(ax, x, y, values):
     most = int(values.max()) if values.count() else 1
     colours = ListedColormap(colormaps["viridis"](np.linspace(0, 1, most + 1)))
-    image = ax.pcolorfast(x, y, values, cmap=colours, norm=BoundaryNorm(np.arange(-0.5, most + 1), most + 1))
+    image = _image(ax, x, y, values, cmap=colours, norm=BoundaryNorm(np.arange(-0.5, most + 1), most + 1))
     _bar(ax, image, "attractors", ticks=MaxNLocator(12, integer=True))
 
 
@@ -193,9 +210,16 @@ def _amount(label):
     """Draws values on an even scale."""
 
     def draw(ax, x, y, values):
-        _bar(ax, ax.pcolorfast(x, y, values, cmap="viridis"), label)
+        _bar(ax, _image(ax, x, y, values, cmap="viridis"), label)
 
     return draw
+
+
+def _image(ax, x, y, values, **style):
+    """The cells between these corners, as pixels also in a file of lines."""
+    image = ax.pcolorfast(x, y, values, **style)
+    image.set_rasterized(True)
+    return image
 
 
 def _bar(ax, image, label, **options):

@@ -1,0 +1,19 @@
+"""b in parts of the grazing clearance b* (Theorem 1): it tells apart what hugs it."""
+
+import numpy as np
+
+from vibro_sweep.plotting.source import PlotError
+from vibro_sweep.plotting.style import axis_name, symbol
+
+
+def check_relative(name: str, keys, b_star) -> None:
+    """Raises PlotError unless b is among the keys and b* (numbers, or None) is known."""
+    missing = (
+        "b" if "b" not in keys else "grazing clearance" if b_star is None or not np.all(np.isfinite(b_star)) else ""
+    )
+    if missing:
+        raise PlotError(f"relative: {name} has no {missing} to divide by")
+
+
+def axis_label(key: str, relative: bool) -> str:
+    return f"{symbol('b')}$/${symbol('b_star')}" if relative and key == "b" else axis_name(key)
