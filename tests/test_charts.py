@@ -161,9 +161,14 @@ def test_charts_over_a_plane(file, tmp_path, monkeypatch, capsys):
     for more, words in (
         (["--over", "plane.h5", "--variable", "x9"], "variable 'x9' is not allowed; there are lyapunov"),
         (["--over", str(file)], "holds curves, and no sweep"),
+        (["--kind", "plane"], "kind: does not belong to curves"),
+        (["--at", "b=4"], "at: does not belong to curves"),
+        (["--windows", str(file)], "windows: does not belong to curves"),
     ):
         assert main(["plot", str(file), *more]) == 2
         assert words in capsys.readouterr().err
+    assert main(["plot", "plane.h5", "--over", "plane.h5"]) == 2
+    assert "over: branches and curves are drawn over a sweep; plane.h5 is one itself" in capsys.readouterr().err
 
 
 def test_real_parts_are_parts_of_the_whole_curve():

@@ -81,6 +81,7 @@ def figure(
     if ax is not None and not isinstance(ax, Axes):
         raise TypeError(f"ax: {ax!r} is not allowed; it must be matplotlib axes")
     if (of := flat_kind(data)) is not None:
+        _check_flat(data, of, kind, look or Look())
         with matplotlib.rc_context(STYLE):
             drawn = (charts.chart if of == CHART else branches.branches)(data, look or Look(), ax)
             if ax is None and look is not None:
@@ -117,6 +118,15 @@ def plot(path, output=None, kind: str | None = None, overwrite: bool = False, lo
         return [save(_draw(result, one), place, overwrite) for one, place in zip(chosen, places, strict=True)]
 
 
+def _check_flat(path, of: str, kind: str | None, look: Look) -> None:
+    """Refuse what belongs to pictures of sweeps."""
+    chosen = {"kind": kind not in (None, "all"), "at": look.at, "windows": look.windows}
+    chosen |= {} if of == CHART else {"relative": look.relative}
+    for name, value in chosen.items():
+        if value:
+            raise PlotError(f"{name}: does not belong to {of}, which {path} holds")
+
+
 def _kinds(result: Result) -> list[str]:
     """What the data can show, the picture that the scene names first."""
     if not result.done.any():
@@ -130,6 +140,8 @@ def _chosen(result: Result, kind: str | None) -> list[str]:
     available = _kinds(result)
     if not result.done.any():
         raise PlotError(f"{result.path}: nothing to show yet, no point is computed")
+    if result.look.over is not None:
+        raise PlotError(f"over: branches and curves are drawn over a sweep; {result.path} is one itself")
     if not available:
         raise PlotError(f"{result.path}: nothing to show, there is no picture of {result.contents()} alone")
     if kind not in (None, "all", *available):
