@@ -5,13 +5,9 @@ import pickle
 
 import numpy as np
 import pytest
-import xarray
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from support import ROOT, slow_cases
+from support import ROOT
 
 import vibro_sweep as vs
-from vibro_sweep import plotting
 from vibro_sweep.scene import Section, Start, Trajectory, load_scene, parse_scene
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
@@ -194,86 +190,6 @@ def test_follow_does_not_begin_behind_a_stop():
 # Pictures and datasets
 
 
-def drawn(fig):
-    canvas = FigureCanvasAgg(fig)
-    canvas.draw()
-    return np.array(canvas.buffer_rgba())
-
-
-@pytest.mark.parametrize(
-    "kind", ["bifurcation", "history", *slow_cases("lyapunov", "phase-portrait", "configuration", "iteration")]
-)
-def test_pictures_of_a_dataset_are_those_of_its_file(tmp_path, kind):
-    orders = dict(trajectory={"periods": 2, "samples": 50}, start={"follow": "both"}, observe=["section", "lyapunov"])
-    data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7]}, output=tmp_path / "a.h5", **orders, **SHORT)
-    assert plotting.kinds(data) == plotting.kinds(tmp_path / "a.h5")
-    assert np.array_equal(drawn(vs.plot(data, kind)), drawn(vs.plot(tmp_path / "a.h5", kind)))
-    assert np.array_equal(drawn(vs.plot(data.transpose(), kind)), drawn(vs.plot(data, kind)))
-
-
-def test_picture_of_a_part_of_a_dataset():
-    orders = dict(trajectory={"periods": 2, "samples": 50}, observe=["section", "lyapunov"])
-    data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7]}, **orders, **SHORT)
-    one = data.sel(b=6.6)
-    assert plotting.kinds(one) == ["phase-portrait", "configuration", "history", "iteration", "poincare"]
-    assert "b = 6.6" in vs.plot(one, "history").get_suptitle()
-    assert len(vs.plot(data.isel(b=slice(1, 3)), "history").axes) == 2
-    (ax,) = vs.plot(data, "history", at={"b": 6.61}).axes
-    assert "6.6" in ax.get_title()
-
-
-@pytest.fixture(scope="module")
-def line():
-    """A sweep with everything that a picture of one key can show."""
-    orders = dict(trajectory={"periods": 2, "samples": 50}, observe=["section", "lyapunov", "impacts"])
-    return vs.sweep(SYSTEM, {"b": [6.5, 6.55, 6.6]}, **orders, **SHORT)
-
-
-def lines_of(ax):
-    """Their points, also those that are NaN, byte for byte."""
-    return [drawn.get_xydata().tobytes() for drawn in ax.lines]
-
-
-@pytest.mark.parametrize(
-    "kind", ["bifurcation", "phase-portrait", *slow_cases("lyapunov", "impacts", "configuration", "history")]
-)
-def test_a_picture_in_the_axes_of_the_caller(line, kind):
-    fig = Figure()
-    other, ax = fig.subplots(1, 2)
-    at = None if kind in ("bifurcation", "lyapunov", "impacts") else {"b": 6.55}
-    assert vs.plot(line, kind, ax=ax, at=at) is fig
-    assert fig.axes == [other, ax] and not other.lines
-    alone = vs.plot(line, kind, at=at).axes
-    assert lines_of(ax) == lines_of(alone[0]) != []
-    assert ax.get_title() and (ax.get_xlabel(), ax.get_ylabel()) == (alone[-1].get_xlabel(), alone[0].get_ylabel())
-    assert len(drawn(fig))
-
-
-@pytest.mark.parametrize("variables", [["lyapunov", "section"], ["section"], ["impacts"]])
-def test_a_plane_in_the_axes_of_the_caller(variables):
-    data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7], "R": [0.7, 0.8]}, observe=variables, **SHORT)
-    ax = Figure().subplots()
-    assert vs.plot(data, ax=ax) is ax.figure
-    assert np.array_equal(ax.images[0].get_array(), vs.plot(data).axes[0].images[0].get_array())
-
-
-@pytest.mark.parametrize(
-    "call, message",
-    [
-        (lambda data: vs.plot(data, "iteration", ax=Figure().subplots()), "ax: the picture has 2 panels"),
-        (lambda data: vs.plot(data, "plane"), "this dataset can show bifurcation, lyapunov, iteration, poincare"),
-        (lambda data: vs.plot(data, "iteration", at={"omega": 3}), "at: 'omega' is not swept; allowed: b"),
-        (lambda data: vs.plot(data, "iteration", at={"b": "here"}), "at: b = 'here' is not allowed"),
-        (lambda data: vs.plot(xarray.Dataset()), "it has no status"),
-    ],
-)
-def test_pictures_that_cannot_be(call, message):
-    data = vs.sweep(SYSTEM, {"b": [6.5, 6.6]}, **SHORT)
-    with pytest.raises(vs.PlotError) as caught:
-        call(data)
-    assert message in str(caught.value)
-
-
 def test_orbit_as_dataset():
     orbit = vs.simulate(SYSTEM, (0, 0, 0, 0), 50, start_time=1.0)
     data = orbit.to_xarray()
@@ -282,25 +198,6 @@ def test_orbit_as_dataset():
     assert data.attrs["b"] == 6.6 and data.attrs["status"] == "ok" and data.attrs["start_time"] == 1.0
     rest = vs.simulate(SYSTEM.replace(R=0.0, b=1.0), (0, 0, 0, 0), 20)
     assert len(rest.sticking) and rest.to_xarray().rest_t_on.shape == rest.sticking.shape
-
-
-def test_picture_of_an_orbit():
-    orbit = vs.simulate(SYSTEM, (0, 0, 0, 0), 50)
-    portrait, history = orbit.plot(periods=3).axes
-    begin, end = orbit.section_times[-4], orbit.section_times[-1]
-    t = history.lines[0].get_xdata()
-    assert (t[0], t[-1]) == (begin, end)
-    inside = orbit.impacts[(orbit.impacts["t"] >= begin) & (orbit.impacts["t"] <= end)]
-    marks = np.concatenate([line.get_xdata() for line in history.lines[1:3]])
-    assert len(inside) > 1 and np.array_equal(np.sort(marks), inside["t"])
-    jumps = [line for line in portrait.lines if list(line.get_xdata()) in ([6.6, 6.6], [-6.6, -6.6])]
-    assert [tuple(line.get_ydata()) for line in jumps][: len(inside)] == [(v, -0.8 * v) for v in inside["v1"]]
-    arrows = [text for text in portrait.texts if text.get_gid() == "time"]
-    assert len(arrows) == 4 and all((one.xy[0] - one.xyann[0]) * one.xy[1] > 0 for one in arrows)  # right where v1 > 0
-    named = {text.get_text() for text in portrait.figure.legends[0].get_texts()}
-    assert {"impact", "stop", "direction of time"} < named
-    with pytest.raises(ValueError, match="no motion to draw"):
-        vs.simulate(SYSTEM, (0, 0, 0, 0), 0).plot()
 
 
 def test_exponents_with_their_error():

@@ -34,3 +34,8 @@ def drawn(seed, n, constant=True, along=None, **changes):
     state = np.zeros(2 * n)
     state[0::2] = np.linalg.lstsq(free.along[None], [system.offset], rcond=None)[0]
     return system, state
+
+
+def one_mass(**numbers):
+    """A free mass, unless the numbers say otherwise."""
+    return vs.Oscillator(**(dict(M=[[1.0]], K=[[0.0]], along=[1.0]) | numbers))

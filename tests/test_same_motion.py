@@ -1,0 +1,114 @@
+"""The same motion, described in another way: in other coordinates, mirrored, alone or among eight."""
+
+import math
+
+import numpy as np
+import pytest
+from support import slow_cases
+from support.any_oscillators import drawn, one_mass
+
+import vibro_sweep as vs
+from vibro_sweep.engine.one_system import Engine
+
+SMALL = [3, *slow_cases(1, 2)]
+
+
+@pytest.mark.parametrize("masses", [3, *slow_cases(2)])
+def test_other_coordinates(masses):
+    """x -> S x and n -> S^-T n: the same gap, whatever the coordinates."""
+    system, state = drawn(11, masses)
+    q = system.linear
+    S = np.linalg.inv(np.random.default_rng(5).normal(size=(masses, masses)) + 2 * np.eye(masses))  # x = S y
+    same = vs.Oscillator(
+        *(S.T @ matrix @ S for matrix in (q.M, q.K, q.C)), along=S.T @ q.along,
+        force=S.T @ q.sine, force_cos=S.T @ q.cosine, constant=S.T @ q.constant,
+        omega=system.omega, tau=system.tau, b=system.b, offset=system.offset, R=system.R, R_left=system.R_left,
+    )  # fmt: skip
+    there = np.kron(np.linalg.inv(S), np.eye(2)) @ state
+    one, other = vs.simulate(system, state, 20), vs.simulate(same, there, 20)
+    for name in ("t", "v1"):
+        np.testing.assert_allclose(other.impacts[name][:10], one.impacts[name][:10], rtol=0, atol=2e-12)
+    np.testing.assert_allclose(other.impacts["x"][:10] @ S.T, one.impacts["x"][:10], rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("tau", [0.4, -2.0, 1.1])
+def test_mirror_image(tau):
+    """offset -> -offset, R exchanged, tau + pi, state -> -state."""
+    numbers = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0.25, omega=0.63, b=2.0)
+    one = vs.System(**numbers, tau=tau, offset=0.3, R=0.8, R_left=0.6)
+    other = vs.System(**numbers, tau=tau + math.pi, offset=-0.3, R=0.6, R_left=0.8)
+    state = np.array([0.1, 0.2, 0.3, -0.1])
+    hits, mirrored = (vs.simulate(system, x, 20).impacts[:10] for system, x in ((one, state), (other, -state)))
+    assert np.array_equal(hits["side"], -mirrored["side"]) and set(hits["side"]) == {-1, 1}
+    np.testing.assert_allclose(hits["t"], mirrored["t"], rtol=0, atol=1e-13)
+    for name in ("v1", "x2", "v2"):
+        np.testing.assert_allclose(hits[name], -mirrored[name], rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("masses", SMALL)
+def test_mirror_image_of_any(masses):
+    """The same, with the constant force turned round."""
+    system, state = drawn(13, masses)
+    turned = [-force for force in system.constant]
+    other = system.replace(offset=-system.offset, R=system.R_left, R_left=system.R, constant=turned)
+    other = other.replace(tau=system.tau + math.pi)
+    hits, mirrored = (vs.simulate(one, x, 20).impacts[:10] for one, x in ((system, state), (other, -state)))
+    assert np.array_equal(hits["side"], -mirrored["side"]) and len(hits) == 10
+    np.testing.assert_allclose(hits["t"], mirrored["t"], rtol=0, atol=1e-13)
+    for name in ("v1", "x", "xdot"):
+        np.testing.assert_allclose(hits[name], -mirrored[name], rtol=0, atol=1e-13 * np.abs(hits[name]).max())
+
+
+def test_stiffly_joined_masses():
+    """Masses 2 and 3 joined by a spring k: the difference from two masses falls like 1/k.
+
+    The constant force displaces the two by (0.15, 0.05), from where their coordinates are counted.
+    """
+    two = vs.Oscillator(
+        [[1, 0], [0, 3]], [[1, -1], [-1, 3]], 0.1 * np.array([[1, -1], [-1, 3]]),
+        along=[1, 0], force=[1, 0], omega=0.7, tau=0.2, b=0.3, offset=-0.15, R=0.8,
+    )  # fmt: skip
+    hits, apart = vs.simulate(two, [-0.15, 0, -0.05, 0], 20).impacts[:5], []
+    for k in (1e4, 1e6, 1e8):
+        K = np.array([[1, -1, 0], [-1, 3 + k, -k], [0, -k, k]])
+        C = 0.1 * np.array([[1, -1, 0], [-1, 3, 0], [0, 0, 0]])
+        three = vs.Oscillator(
+            np.diag([1.0, 1, 2]), K, C, along=[1, 0, 0], force=[1, 0, 0], constant=[0.1, 0, 0],
+            omega=0.7, tau=0.2, b=0.3, R=0.8,
+        )  # fmt: skip
+        apart.append(np.abs(vs.simulate(three, np.zeros(6), 20).impacts[:5]["t"] - hits["t"]).max())
+    assert apart[0] < 1e-2 and apart[1] < apart[0] / 30 and apart[2] < apart[1] / 30
+
+
+def test_impacts_at_the_sections():
+    """The stop is at 0, where the gap has no size of its own to which its rounding could be compared."""
+    speed, phi = 2 * math.pi / 1.8, math.acos(0.2 * math.pi / 1.8)
+    ball = one_mass(force=[1.0], constant=[-1.0], omega=1.0, tau=phi, b=0.0, R=0.8, stops="left")
+    orbit = vs.simulate(ball, [0.0, -speed], 50)
+    assert orbit.status == "ok" and len(orbit.impacts) in (50, 51)
+    np.testing.assert_allclose(orbit.impacts["v1"], -speed, rtol=1e-12)
+    assert np.isfinite(vs.lyapunov(ball, [0.0, -speed], transient=0, periods=20)).all()
+
+
+def test_a_free_mode_of_the_paper():
+    """Without a spring to the ground: two exponents are zero."""
+    system = vs.System(mu_m=10, mu_k=0, zeta=0.05, f2=0.2, omega=0.63, R=0.8, b=1e3, tau=0.3)
+    exponents = vs.lyapunov(system, [0.1, 0.2, 0.3, 0.1], transient=0, periods=20)
+    np.testing.assert_allclose(exponents, [0, 0, -0.055, -0.055], rtol=0, atol=1e-13)  # eta_2 = zeta (1 + 1/mu_m)
+
+
+@pytest.mark.parametrize("masses", SMALL)
+def test_eight_orbits_are_as_one_alone(masses):
+    """Bit for bit, whatever the others do; chatter and rests among them."""
+    system, state = drawn(2, masses, R=0.5, b=0.4)
+    engine = Engine(system)
+    states = engine.to_contact(state + 0.05 * np.random.default_rng(1).normal(size=(8, 2 * masses)))
+    states = states[(states[:, 0] > engine.stops.left) & (states[:, 0] < engine.stops.right)]
+    together, records = engine.carry_eight(states, 0, 20)
+    ends, logged = together["X"].copy(), together["impacts_logged"].copy()
+    rows = [records.impacts[i, :count].copy() for i, count in enumerate(logged)]
+    assert len(states) > 4 and logged.sum() > 100
+    for i, start in enumerate(states):
+        alone, record = engine.carry_eight(start[None], 0, 20)
+        assert np.array_equal(alone["X"][0], ends[i])
+        assert np.array_equal(record.impacts[0, : logged[i]], rows[i])
