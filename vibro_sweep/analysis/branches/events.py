@@ -1,50 +1,64 @@
-"""What happens between two points of a branch, and where: each test's zero, located from both sides."""
+"""What happens between two points of a branch: its end, and bifurcations before it."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
+from vibro_sweep.analysis.branches.locating import Event, locate
 from vibro_sweep.analysis.branches.special import NO_SPEED
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.engine.impulses import branch
 
 ON_CIRCLE = 1e-6  # distance from the unit circle within which a multiplier is on neither side
-ROUNDED = np.finfo(float).eps  # relative to the coordinates of a point: nearer ones are the same
 
 
-@dataclass
-class Event:
-    """Something that a step from a to b passes: the type, a test that changes its sign there, its index if any."""
-
-    type: str
-    test: object
-    index: int | None = None
-
-    @property
-    def ends(self) -> bool:
-        return self.type in ("graze", "sticking", "limit")
-
-
-def events_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
-    """What changes sign from a, which is real, to b."""
-    events = []
+def ends_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
+    """What may end the branch on the way from a, which is real, to b."""
+    events, K = [], walk.start.K
     for limit, side in zip(bounds, (-1, 1), strict=True):
         if (b.p - limit) * side > 0:
-            events.append(Event("limit", _beyond(limit, side, a)))
-    for i in range(walk.start.K):
+            events.append(Event("limit", _beyond(limit, side, a), unknown=(-1, limit)))
+    for i in range(K):
         if b.solution.pushes[i] <= 0:
-            events.append(Event("graze", _positive_at(a, lambda point, i=i: point.solution.pushes[i]), i))
+            test = _positive_at(a, lambda point, i=i: point.solution.pushes[i])
+            events.append(Event("graze", test, i, unknown=(K + i, 0.0)))
         if a.releases[i] > 0 >= b.releases[i]:
             events.append(Event("sticking", lambda point, i=i: point.releases[i], i))
     if a.stays > 0 >= b.stays:
         events.append(Event("sticking", lambda point: min(point.stays, 1.0)))
-    beyond = -branch.PASSED * b.solution.size_of_gap
-    if b.solution.margin <= 0 < a.solution.margin or b.solution.margin < beyond:
+    if b.solution.margin <= 0 < a.solution.margin or _passes(b):
         most = 2 * abs(a.solution.margin) if math.isfinite(a.solution.margin) else 1.0
-        events.append(Event("graze", _positive_at(a, lambda point: min(point.solution.margin, most))))
-    return events + _bifurcations(walk, a, b)
+        test = _positive_at(a, lambda point: min(point.solution.margin, most))
+        events.append(Event("graze", test, touches=True))
+    return events
+
+
+def first_end(walk: Walk, events: list[Event], a: Point, b: Point, length: float):
+    """The first of these events, as `locate` gives it; None where none is found.
+
+    Behind an impact that vanishes, and often behind a limit, a flight passes its stop: where none does so at the first
+    end that is found, that is not looked for.
+    """
+    located = []
+    for event in sorted(events, key=lambda event: event.touches):
+        if event.touches and located and not _passes(earliest(located, length)[2]):
+            break
+        found = locate(walk, event, a, b, length)
+        if found is not None:
+            located.append(found)
+    return earliest(located, length) if located else None
+
+
+def earliest(located: list, length: float):
+    """Of ends at the same place the impact that vanishes: behind it the motion passes the stop, which looks alike."""
+    first = min(found[1] for found in located)
+    same = [found for found in located if found[1] <= first + 1e-7 * length]
+    return min(same, key=lambda found: (found[0].index is None, found[1]))
+
+
+def _passes(point: Point) -> bool:
+    """Whether a flight is beyond its stop by more than rounding."""
+    return bool(point.solution.margin < -branch.PASSED * point.solution.size_of_gap)
 
 
 def _bifurcations(walk: Walk, a: Point, b: Point) -> list[Event]:
@@ -119,59 +133,6 @@ def _beyond(limit: float, side: int, inside: Point):
     return test
 
 
-def locate(walk: Walk, event: Event, a: Point, b: Point, length: float):
-    """(event, distance from a, point, error): where the test vanishes between a and b; None if it cannot be found.
-
-    Located twice, on planes across the tangent at a and across the one at b. The error is what rounding of the gap does
-    to the parameter, and what the two differ by beyond that.
-    """
-    there = _root(walk, event, a, b, length)
-    if there is None:
-        return None
-    distance, point = there
-    back = _root(walk, event, b, a, (a.x - b.x) @ b.tangent)
-    rounding = 16 * np.finfo(float).eps * (abs(point.p) + point.sensitivity)
-    apart = abs(back[1].p - point.p) if back is not None else math.nan
-    error = rounding if apart <= rounding else rounding + 4 * (apart - rounding)
-    return event, distance, point, float(error)
-
-
-def _root(walk: Walk, event: Event, a: Point, b: Point, length: float):
-    seen: dict[float, Point] = {0.0: a}
-    across = (b.x - a.x) @ a.tangent
-    seen[across] = b
-
-    def test(s: float) -> float:
-        if s not in seen:
-            near = min(seen, key=lambda other: abs(other - s))
-            if abs(near - s) <= ROUNDED * np.abs(seen[near].x).max():
-                seen[s] = seen[near]
-                return 0.0
-            point = walk.step(a, s, seen[near].x)
-            if point is None:
-                raise ArithmeticError
-            seen[s] = point
-        return float(event.test(seen[s]))
-
-    try:
-        if test(0.0) * test(across) > 0:
-            return None
-        s = brentq(test, 0.0, across, xtol=1e-17, rtol=1e-15, maxiter=100)
-        test(s)
-    except (ArithmeticError, RuntimeError):
-        return None
-    return abs(s) if length > 0 else s, seen[s]
-
-
 def reflection_test(a: Point, b: Point):
     size = max(a.reflection[1], b.reflection[1])
     return lambda point: point.reflection[0] * math.exp(point.reflection[1] - size)
-
-
-def earliest(located: list, length: float):
-    """Of ends at the same place the impact that vanishes: behind it the motion passes the stop, which looks alike."""
-    if not located:
-        return None
-    first = min(found[1] for found in located)
-    same = [found for found in located if found[1] <= first + 1e-7 * length]
-    return min(same, key=lambda found: (found[0].index is None, found[1]))

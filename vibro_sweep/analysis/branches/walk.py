@@ -4,18 +4,19 @@ A point of the branch is x = (t_1 .. t_K, D_1 .. D_K, (c), p). Distances are mea
 the fastest impulse for impulses, and of the parameter's range.
 """
 
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.impulse_equations import Equations, moves_stops_only
+from vibro_sweep.analysis.periodic.impulse_equations import Equations, contacts_of, moves_stops_only
 from vibro_sweep.analysis.periodic.long_orbits import is_long, sign_and_log_det, solve_bordered
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.engine.impulses import across
+from vibro_sweep.engine.impulses.across import MOST_CORRECTIONS
 from vibro_sweep.engine.impulses.equations import ROUNDING
 from vibro_sweep.engine.impulses.green import space
-
-MOST_CORRECTIONS = 12
 
 
 @dataclass(eq=False)
@@ -60,14 +61,13 @@ class Point:
         solution.__dict__["equations"] = self.equations  # both are known
         return solution
 
-    @property
-    def sensitivity(self) -> float:
-        """By how much the parameter moves, on the plane across the tangent, where all gaps at impacts are off by their
+    def sensitivity(self, normal: np.ndarray) -> float:
+        """By how much the parameter moves, on the plane with this normal, where all gaps at impacts are off by their
         size."""
         K = self.walk.start.K
         axis = np.zeros(len(self.x))
         axis[-1] = self.walk.scale[-1]
-        weights = np.linalg.solve(np.vstack([self.J, self.tangent]).T, axis)
+        weights = np.linalg.solve(np.vstack([self.J, normal]).T, axis)
         return float(np.abs(weights[:K]).sum() * self.solution.size_of_gap)
 
     @cached_property
@@ -121,6 +121,15 @@ class Walk:
         self.scale[:K], self.scale[K : 2 * K], self.scale[-1] = 1 / q.omega, speed, span
         self.scale[2 * K : -1] = 1 / q.omega if start.rests else speed / q.omega
         self._contact_only = not start.rests and moves_stops_only(self.family.derivative(name))
+        self._straight = self._contact_only and self._is_straight()
+
+    def with_impact(self, start: Solution, index: int) -> "Walk":
+        """The same for `start`, orbits of this walk with one impact more, which is its impact `index`."""
+        longer, K = copy(self), self.start.K
+        longer.__dict__.pop("_contacts", None)
+        longer.start = start
+        longer.scale = np.insert(self.scale, [index, K + index], self.scale[[0, K]])
+        return longer
 
     def equations(self, p: float) -> Equations:
         """Raises ParameterError where the parameter leaves what is allowed."""
@@ -130,8 +139,26 @@ class Walk:
         q = family.linear
         return equations_for(self.start, q, family.derivative(self.name, q))
 
+    def _is_straight(self) -> bool:
+        """Whether stops and restitutions are linear in the parameter: they change by the same at other values."""
+        value, q, slopes = self.family.numbers[self.name], self.family.linear, []
+        try:
+            for share in (0.0, -0.37, 0.59):
+                family = self.family.replace(**{self.name: value + share * float(self.scale[-1])})
+                slopes.append(family.stops(self.name, q)[1])
+        except ValueError:  # beyond its range
+            return False
+        return all(slope[-4:] == slopes[0][-4:] for slope in slopes)
+
+    @cached_property
+    def _contacts(self) -> np.ndarray:
+        q, slope = self.family.stops(self.name, self.family.linear)
+        return contacts_of(q, slope, self.start.sides)
+
     def correct(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
         """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""
+        if self._straight and not is_long(self.start.equations, self.start.sides):
+            return self._corrected_at_once(guess, normal, forwards)
         x, before = guess.copy(), np.inf
         for corrections in range(1, MOST_CORRECTIONS + 1):
             try:
@@ -153,6 +180,23 @@ class Walk:
                 return Point(self, x, e, rows, motion, change, corrections, forwards)
             before = change
         return None
+
+    def _corrected_at_once(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
+        """`correct` by a kernel (engine/impulses/across.py)."""
+        n, e = len(guess) - 1, self.start.equations
+        x, J, motion = np.empty(n + 1), np.empty((n, n + 1)), np.empty((self.start.K, 3))
+        count, change = across.correct(
+            e.train, e.steady, self._contacts, float(self.family.numbers[self.name]), np.empty((self.start.K, 4)),
+            self.scale, guess, normal, float(self.start.size_of_gap), x, J, motion,
+            np.empty((7, max(n + 1, 4))), np.empty((n + 1, n + 1)),
+        )  # fmt: skip
+        if not count:
+            return None
+        try:
+            moved = self.equations(float(x[-1] * self.scale[-1]))
+        except ValueError:  # the parameter is beyond its range
+            return None
+        return Point(self, x, moved, J, motion, change, count, forwards)
 
     def solve(self, e: Equations, x, J, motion, row, F, last: float) -> np.ndarray:
         """The solution of [J; row] step = [F; last] in scaled units; J (n, n + 1) belongs to x. LinAlgError."""

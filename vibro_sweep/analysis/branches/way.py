@@ -9,15 +9,14 @@ import numpy as np
 from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.births import criticality, doubled
 from vibro_sweep.analysis.branches.events import (
-    Event,
     bifurcations,
-    earliest,
-    events_between,
+    ends_between,
+    first_end,
     is_torus,
-    locate,
     reflection_test,
     unexplained,
 )
+from vibro_sweep.analysis.branches.locating import Event, locate
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, is_free
 from vibro_sweep.analysis.branches.track import Rows, Track, join
 from vibro_sweep.analysis.branches.walk import Point, Walk
@@ -141,12 +140,11 @@ class Way:
 
     def _pass(self, a: Point, b: Point, length: float, halvings: int = HALVINGS) -> bool:
         """Record what lies between a and b, and b. True where the branch ends there."""
-        ends = [event for event in events_between(self.walk, self.bounds, a, b) if event.ends]
-        located = [found for event in ends if (found := locate(self.walk, event, a, b, length)) is not None]
-        if ends and not located:  # what follows is no motion
+        ends = ends_between(self.walk, self.bounds, a, b)
+        end = first_end(self.walk, ends, a, b, length)
+        if ends and end is None:  # what follows is no motion
             self.special.append(self._at("failed", a, math.nan))
             return True
-        end = earliest(located, length)
         last = end[2] if end else b
         reach = end[1] if end else length
         birth = self._birth(a, last, reach) if a.tangent[-1] * last.tangent[-1] < 0 else None
