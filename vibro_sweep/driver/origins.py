@@ -19,7 +19,8 @@ from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.lcp import born_at_grazing
 from vibro_sweep.analysis.periodic.orbit import STATUS, PeriodicOrbit, orbit_of
-from vibro_sweep.analysis.windows.cover import Cover, Found, solution_in
+from vibro_sweep.analysis.windows.cover import Cover, Found
+from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.rows import Row
 from vibro_sweep.driver.windows import cover_of, rows_in
 from vibro_sweep.model.any_oscillator import AnyOscillator

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from vibro_sweep.engine.impulses import equations, extremes, flights, multipliers
+from vibro_sweep.engine.impulses import equations, extremes, flights, multipliers, sections
 from vibro_sweep.engine.impulses.green import ResonanceError, free_modes, has_free_gap, space, space_slopes, train
 from vibro_sweep.model.linear import Keyed, Linear, amplitude_slopes, amplitudes, forcing_period
 
@@ -46,14 +46,18 @@ class Equations:
         equations.evaluate(self.train, self.steady, self.contacts(sides), u, F, J, Fp, motion, np.empty((2, 4)))
         return F, J, Fp, motion
 
-    def newton(self, sides, guesses) -> tuple[np.ndarray, np.ndarray]:
-        """Newton's method from guesses (m, 2K) or (m, 2K + free): solutions, and the last change, NaN: none found."""
+    def newton(self, sides, guesses, contacts=None) -> tuple[np.ndarray, np.ndarray]:
+        """Newton's method from guesses (m, 2K) or (m, 2K + free): solutions, and the last change, NaN: none found.
+
+        contacts : (m, K, 4), where the stops or the restitution are not those of `q`
+        """
         n, K = self.size(sides), len(sides)
         starts = np.zeros((len(guesses), n))
         starts[:, : np.shape(guesses)[1]] = guesses
         ends, change = np.empty_like(starts), np.full(len(starts), 0.0)
         if K:
-            contacts = np.repeat(self.contacts(sides)[None], len(starts), 0)
+            if contacts is None:
+                contacts = np.repeat(self.contacts(sides)[None], len(starts), 0)
             work = np.empty(n), np.empty((n, n)), np.empty(n), np.empty((K, 3)), np.empty((2, 4)), np.empty(n)
             equations.newton_batch(self.train, self.steady, contacts, starts, ends, change, *work)
         return ends, change
@@ -80,6 +84,20 @@ class Equations:
         low, high = self.q.low, self.q.high
         flights.fly_orbit(f, close, self.contacts(sides), u, self.P, low, high, states, nearest, waiting, work)
         return states[:-1], nearest
+
+    def sections(self, unknowns, gaps) -> np.ndarray:
+        """(m, 2n, 2N) states at the multiples of T/2 of orbits over n forcing periods, in contact coordinates.
+
+        unknowns : (m, 2K), of orbits whose stops and restitutions may differ from those of `q`
+        gaps : (m,) at the first impact
+        """
+        f, close = flow(self.q), closing(self.q, self.sigma, self.halves)
+        m, count = len(f.B), self.halves if self.sigma == 1 else 2 * self.halves
+        out = np.empty((len(unknowns), count, m - 3))
+        K, T = np.shape(unknowns)[1] // 2, forcing_period(self.q)
+        work = np.empty((2, m)), np.empty((3, m))
+        sections.sections(f, close, unknowns, gaps, K, float(self.sigma), self.P, T, out, *work)
+        return out
 
     def multipliers(self, sides, u, motion) -> np.ndarray:
         """(2N,) of the map over P, with the mirror for sigma = -1; by falling modulus, of a pair +im first."""

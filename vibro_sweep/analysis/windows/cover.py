@@ -11,12 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.flat import Flat, solution_of
+from vibro_sweep.analysis.branches.flat import Flat
 from vibro_sweep.analysis.periodic.one_thread import one_thread
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
-from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.windows.continued import continued
-from vibro_sweep.analysis.windows.job import Job, Result, lies_on
+from vibro_sweep.analysis.windows.job import Job, Result
+from vibro_sweep.analysis.windows.members import members
 from vibro_sweep.analysis.windows.rows import Row
 from vibro_sweep.model.bifurcations import ATTRACTORS, REASONS
 
@@ -139,14 +138,11 @@ class Cover:
         lo, hi = found.ends
         inside = (lo <= row.values) & (row.values <= hi)
         wanted = still & inside[:, None] & (row.period % int(found.flat["branch_period"]) == 0)
-        for i in np.flatnonzero(wanted.any(axis=1)):
-            system = row.system_at(row.values[i])
-            solution = solution_in(found.flat, float(row.values[i]), system)
-            orbit = None if solution is None else PeriodicOrbit(system, "ok", solution)
-            for j in np.flatnonzero(wanted[i]):
-                if orbit is not None and lies_on(orbit, row.states[i, j]):
-                    still[i, j] = False
-                    self.window[found.row][i, j] = w
+        places = np.flatnonzero(wanted.any(axis=1))
+        on = members(found.flat, row.system, row.parameter, row.values[places], row.states[places])
+        for i, here in zip(places, on & wanted[places], strict=True):
+            still[i, here] = False
+            self.window[found.row][i, here] = w
 
     def _sort(self) -> None:
         """Windows by row, then by their lower ends."""
@@ -174,14 +170,3 @@ def _same(one: Flat, other: Flat) -> bool:
         and one["branch_symmetric"] == other["branch_symmetric"]
         and np.array_equal(one["impact_side"], other["impact_side"])
     )
-
-
-def solution_in(flat: Flat, value: float, system) -> Solution | None:
-    """The orbit of a window at a value within it, where it is known to be real; None where Newton's method fails."""
-    p = flat["value"]
-    i = int(np.clip(np.searchsorted(p, value) - 1, 0, len(p) - 2))
-    share = (value - p[i]) / (p[i + 1] - p[i]) if p[i + 1] > p[i] else 0.0
-    parts = [
-        (1 - share) * flat[name][i] + share * flat[name][i + 1] for name in ("impact_t", "impact_v", "impact_t_off")
-    ]
-    return solution_of(flat, system, *parts).corrected()

@@ -55,5 +55,10 @@ def window_of(job: Job) -> Result:
 
 def lies_on(orbit: PeriodicOrbit, state: np.ndarray) -> bool:
     """Whether a section state is one of an orbit, or of its mirror image where the oscillator has one."""
-    distance = np.abs(section_states(orbit) - state).max(axis=1).min()
+    return is_near(section_states(orbit), state)
+
+
+def is_near(sections: np.ndarray, state: np.ndarray) -> bool:
+    """Whether a state (2N,) is one of the section states (s, 2N) of an orbit; s may be 0."""
+    distance = np.abs(sections - state).max(axis=1).min(initial=np.inf)
     return bool(distance <= NEAR * max(np.abs(state).max(), 1e-300))

@@ -1,0 +1,82 @@
+"""Which recorded orbits of a sweep lie on the orbit of a window, or on its mirror image."""
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.flat import Flat, section_states, solution_of
+from vibro_sweep.analysis.periodic.impulse_equations import contacts_of, moves_stops_only
+from vibro_sweep.analysis.periodic.long_orbits import is_long
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.analysis.windows.job import is_near
+from vibro_sweep.engine.impulses.flights import contact_coordinates
+from vibro_sweep.model.linear import Linear, family_of
+
+
+def members(flat: Flat, system, parameter: str, values: np.ndarray, states: np.ndarray) -> np.ndarray:
+    """(m, starts) whether section states (m, starts, 2N) at m values within a window lie on its orbit."""
+    result = np.zeros(states.shape[:2], bool)
+    for i, sections in enumerate(_sections(flat, system, parameter, values)):
+        result[i] = [is_near(sections, state) for state in states[i]]
+    return result
+
+
+def solution_in(flat: Flat, value: float, system) -> Solution | None:
+    """The orbit of a window at a value within it, where it is known to be real; None where Newton's method fails."""
+    parts = _between(flat, np.array([value]))
+    return solution_of(flat, system, *(part[0] for part in parts)).corrected()
+
+
+def _between(flat: Flat, values: np.ndarray) -> list[np.ndarray]:
+    """Times and speeds of impacts, and ends of rests, (m, K) each, from the neighbouring points of the branch."""
+    p = flat["value"]
+    i = np.clip(np.searchsorted(p, values) - 1, 0, len(p) - 2)
+    length = p[i + 1] - p[i]
+    share = np.where(length > 0, (values - p[i]) / np.where(length > 0, length, 1.0), 0.0)[:, None]
+    return [
+        (1 - share) * flat[name][i] + share * flat[name][i + 1] for name in ("impact_t", "impact_v", "impact_t_off")
+    ]
+
+
+def _sections(flat: Flat, system, parameter: str, values: np.ndarray) -> list[np.ndarray]:
+    """(s, 2N) for each value: all section states of the orbit and its mirror image; none where it is not found.
+
+    All at once where the parameter moves the stops and the restitution only, and nothing else speaks against it.
+    """
+    if not len(values):
+        return []
+    parts, family = _between(flat, values), family_of(system)
+    there = [family.replace(**{parameter: float(value)}) for value in values]
+    first = solution_of(flat, there[0], *(part[0] for part in parts))
+    e = first.equations
+    if not moves_stops_only(family.derivative(parameter)) or first.rests or e.free or is_long(e, first.sides):
+        return [_section_states(solution_of(flat, one, *impacts)) for one, *impacts in zip(there, *parts, strict=True)]
+    oscillators, K = [one.stops(parameter, e.q)[0] for one in there], first.K
+    contacts = np.array([contacts_of(q, None, first.sides) for q in oscillators]).reshape(len(values), K, 4)
+    guesses = np.hstack([parts[0][:, :K], -contacts[:, :, 1] * parts[1][:, :K]])
+    unknowns, change = e.newton(first.sides, guesses, contacts)
+    gaps = contacts[:, 0, 0] if K else np.zeros(len(values))
+    found = _masses(e.q, e.sections(unknowns, gaps))
+    found = [_own(q, first, states) for q, states in zip(oscillators, found, strict=True)]
+    return [states if ok else states[:0] for states, ok in zip(found, np.isfinite(change), strict=True)]
+
+
+def _section_states(solution: Solution) -> np.ndarray:
+    found = solution.corrected()
+    if found is None:
+        return np.empty((0, 2 * len(solution.family.linear.along)))
+    return section_states(PeriodicOrbit(found.family, "ok", found))
+
+
+def _own(q: Linear, solution: Solution, states: np.ndarray) -> np.ndarray:
+    """Those at t = 0 mod T of states at the multiples of T/2; and of the mirror image, where that is another orbit."""
+    if q.symmetric and solution.sigma == 1:  # x(t) -> -x(t + T/2)
+        return np.concatenate([states[::2], -states[1::2]])
+    return states[::2]
+
+
+def _masses(q: Linear, states: np.ndarray) -> np.ndarray:
+    """States (.., 2N) as x1 v1 .. xN vN from contact coordinates."""
+    inverse, N = contact_coordinates(q).inverse, len(q.along)
+    result = np.empty_like(states)
+    result[..., ::2], result[..., 1::2] = states[..., :N] @ inverse.T, states[..., N:] @ inverse.T
+    return result
