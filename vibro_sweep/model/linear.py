@@ -173,6 +173,8 @@ def steady_gain(q: Linear) -> complex | None:
 
 
 def grazing_phase_slope(q: Linear, slope: Linear) -> float:
+    if not any(np.any(getattr(slope, name)) for name in FORCED):
+        return 0.0
     gain = steady_gain(q)
     if gain is None:
         return 0.0

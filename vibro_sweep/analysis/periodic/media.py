@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from vibro_sweep.analysis.periodic.impulse_equations import flow
+from vibro_sweep.analysis.periodic.impulse_equations import flow, moves_stops_only
 from vibro_sweep.engine.impulses import branch, medium
 from vibro_sweep.engine.impulses.flights import rates
 from vibro_sweep.engine.impulses.medium import NUMBERS, TAU
@@ -15,19 +15,23 @@ NOISE = 1e-11  # where half the interval makes them no smaller, which is what ro
 NARROWEST = 1e-6  # of the branch's range
 
 
-def _numbers(q: Linear, halves: int) -> np.ndarray:
+def _numbers(q: Linear, B: np.ndarray, halves: int) -> np.ndarray:
     """B and the numbers, in the order of `values` of a medium."""
     numbers = [q.low, q.high, 1 + q.R_low, 1 + q.R_high, q.omega, q.tau, forcing_period(q) / 2 * halves]
-    return np.append(rates(q).ravel(), [value if np.isfinite(value) else 0.0 for value in numbers])
+    return np.append(B.ravel(), [value if np.isfinite(value) else 0.0 for value in numbers])
 
 
 def medium_of(family: Family, halves: int, name: str, centre: float, reach: float) -> np.ndarray | None:
     """The oscillator around a value of the parameter, to `reach` or as far as polynomials hold; None: they do not."""
     nodes = np.cos(np.pi * (np.arange(medium.DEGREE + 1) + 0.5) / (medium.DEGREE + 1))
     least, before = NARROWEST * reach, np.inf
+    still = flow(family.linear).B if moves_stops_only(family.derivative(name)) else None
 
     def sampled(p: float) -> np.ndarray:
-        return _numbers(family.replace(**{name: p}).linear, halves)
+        there = family.replace(**{name: p})
+        if still is not None:
+            return _numbers(there.stops(name, family.linear)[0], still, halves)
+        return _numbers(there.linear, rates(there.linear), halves)
 
     while reach > least:
         try:
@@ -50,7 +54,7 @@ def medium_of(family: Family, halves: int, name: str, centre: float, reach: floa
 
 def still_medium(q: Linear, halves: int) -> np.ndarray:
     """One oscillator, for steps in which no parameter changes; its parameter is 0."""
-    values = _numbers(q, halves)[None]
+    values = _numbers(q, rates(q), halves)[None]
     return _built(q, values, values, 0.0, 1.0)
 
 
@@ -60,7 +64,8 @@ def _built(q: Linear, c, values, centre: float, reach: float) -> np.ndarray:
     n = m - 3
     degree = int(np.flatnonzero(np.abs(c).max(axis=1))[-1])
     powers_of = np.zeros((max(degree, 1) + 1, c.shape[1]))
-    for j in range(c.shape[1]):
+    powers_of[0] = c[0]
+    for j in np.flatnonzero(np.any(c[1:], axis=0)):
         column = chebyshev.cheb2poly(c[: degree + 1, j])
         powers_of[: len(column), j] = column
     powers_of /= branch.BEYOND ** np.arange(len(powers_of))[:, None]
