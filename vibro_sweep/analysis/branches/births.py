@@ -1,6 +1,7 @@
 """The branch that is born at a pitchfork or flip: its orbits at a small amplitude, and on which side they exist."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,12 @@ AMPLITUDE = 1e-3  # of a branch that is born, in the units of a walk
 
 
 def born(special: SpecialPoint, amplitude: float) -> Solution | None:
-    """The solution at this amplitude on the branch that is born at a pitchfork or flip.
+    """The solution at this amplitude on the branch that is born at a pitchfork or flip."""
+    return next(_at_amplitudes(special, [amplitude]))
+
+
+def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | None]:
+    """`born` at each of these.
 
     The critical direction (dt, dD) has J(-1) (dt, dD) = 0; in the second half of the born orbit it has the sign -1
     for the times, and -sigma for the impulses. The parameter is found with the solution.
@@ -31,9 +37,9 @@ def born(special: SpecialPoint, amplitude: float) -> Solution | None:
     normal = np.zeros(len(walk.scale))
     normal[: 2 * size] = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])
     normal /= np.linalg.norm(normal)
-    guess = np.append(twice.u, value) / walk.scale + amplitude * normal
-    point = walk.correct(guess, normal, normal)
-    return point and point.solution
+    for amplitude in amplitudes:
+        point = walk.correct(np.append(twice.u, value) / walk.scale + amplitude * normal, normal, normal)
+        yield point and point.solution
 
 
 def doubled(parent: Solution) -> Solution:
@@ -53,7 +59,7 @@ def criticality(special: SpecialPoint) -> str | None:
     The parameter moves by the square of the amplitude; where it does not, the point is (nearly) degenerate: None.
     """
     name, value = next(iter(special.parameters.items()))
-    found = [born(special, amplitude) for amplitude in (AMPLITUDE, AMPLITUDE / 2)]
+    found = list(_at_amplitudes(special, [AMPLITUDE, AMPLITUDE / 2]))
     if None in found:
         return None
     moved = [solution.family.numbers[name] - value for solution in found]
