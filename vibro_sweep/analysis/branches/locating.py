@@ -9,15 +9,16 @@ searched for along the branch.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from vibro_sweep.analysis.branches.special import inserted
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.engine.impulses import branch
 
 ROUNDED = np.finfo(float).eps  # relative to the coordinates of a point: nearer ones are the same
+MOST_TRIES = 100
 WITHIN = 1e-9  # of a step, by which rounding may put an event before its beginning or behind its end
 
 
@@ -53,15 +54,7 @@ def locate(walk: Walk, event: Event, a: Point, b: Point, length: float):
         distance = float((point.x - a.x) @ a.tangent)
         if -WITHIN * length <= distance <= (1 + WITHIN) * length:
             return event, distance, point, error
-    there = _root(walk, event, a, b, length)
-    if there is None:
-        return None
-    distance, point = there
-    back = _root(walk, event, b, a, (a.x - b.x) @ b.tangent)
-    rounding = _rounding(point, point.tangent)
-    apart = abs(back[1].p - point.p) if back is not None else math.nan
-    error = rounding if apart <= rounding else rounding + 4 * (apart - rounding)
-    return event, distance, point, float(error)
+    return _at_zero(walk, event, a, b, length)
 
 
 def _rounding(point: Point, normal: np.ndarray) -> float:
@@ -107,28 +100,67 @@ def _at_touch(walk: Walk, a: Point, b: Point) -> tuple[Point, float] | None:
     return point, _rounding(found, normal)
 
 
-def _root(walk: Walk, event: Event, a: Point, b: Point, length: float):
-    seen: dict[float, Point] = {0.0: a}
-    across = (b.x - a.x) @ a.tangent
-    seen[across] = b
+class _Seen(NamedTuple):
+    """A point at a distance from a, along the tangent there, and the test."""
 
-    def test(s: float) -> float:
-        if s not in seen:
-            near = min(seen, key=lambda other: abs(other - s))
-            if abs(near - s) <= ROUNDED * np.abs(seen[near].x).max():
-                seen[s] = seen[near]
-                return 0.0
-            point = walk.step(a, s, seen[near].x)
-            if point is None:
-                raise ArithmeticError
-            seen[s] = point
-        return float(event.test(seen[s]))
+    s: float
+    point: Point
+    test: float
 
-    try:
-        if test(0.0) * test(across) > 0:
-            return None
-        s = brentq(test, 0.0, across, xtol=1e-17, rtol=1e-15, maxiter=100)
-        test(s)
-    except (ArithmeticError, RuntimeError):
+
+def _at_zero(walk: Walk, event: Event, a: Point, b: Point, length: float):
+    """`locate` of a test that changes its sign."""
+    seen = [_Seen(0.0, a, event.test(a)), _Seen(float((b.x - a.x) @ a.tangent), b, event.test(b))]
+    found = _zero(walk, event.test, seen)
+    if found is None:
         return None
-    return abs(s) if length > 0 else s, seen[s]
+    s, point, _ = found
+    slope = max(abs((one.test - found.test) / (one.s - s)) for one in seen if one is not found)
+    again = walk.step(b, float((point.x - b.x) @ b.tangent), point.x)
+    rounding, apart = _rounding(point, point.tangent), math.nan
+    if again is not None:
+        missed = event.test(again) / slope * point.tangent[-1] * walk.scale[-1]
+        apart = abs(again.p - point.p) + abs(missed)
+    error = rounding if apart <= rounding else rounding + 4 * (apart - rounding)
+    return event, abs(s) if length > 0 else s, point, float(error)
+
+
+def _zero(walk: Walk, test: Callable[[Point], float], seen: list[_Seen]) -> _Seen | None:
+    """The point of a branch where a test vanishes, between the two of `seen`, which all others are added to.
+
+    Inverse quadratic interpolation, and halves of the interval where steps do not shrink (as Brent, Algorithms for
+    Minimization without Derivatives, chapter 4).
+    """
+    low, high = sorted(seen, key=lambda one: one.s)
+    if low.test * high.test > 0:
+        return None
+    last = before = high.s - low.s
+    while len(seen) < MOST_TRIES:
+        best = min(low, high, key=lambda one: abs(one.test))
+        if best.test == 0:
+            return best
+        s = _interpolated(seen[-3:], low, high)
+        if not (low.s < s < high.s and abs(s - best.s) < abs(before) / 2):
+            s = (low.s + high.s) / 2
+        last, before = s - best.s, last
+        near = min(low, high, key=lambda one: abs(one.s - s))
+        if abs(s - near.s) <= ROUNDED * np.abs(near.point.x).max():
+            return near
+        point = walk.step(seen[0].point, s, near.point.x)
+        if point is None:
+            return None
+        seen.append(_Seen(s, point, test(point)))
+        low, high = (seen[-1], high) if seen[-1].test * low.test > 0 else (low, seen[-1])
+    return None
+
+
+def _interpolated(last: list[_Seen], low: _Seen, high: _Seen) -> float:
+    """Where the parabola s(test) through the last three points vanishes, or the straight line; NaN where none does."""
+    one = next((one for one in last if one is not low and one is not high), None)
+    (a, fa), (b, fb) = (low.s, low.test), (high.s, high.test)
+    if one is None or one.test in (fa, fb):
+        return a - fa * (b - a) / (fb - fa)
+    c, fc = one.s, one.test
+    return (
+        a * fb * fc / (fa - fb) / (fa - fc) + b * fa * fc / (fb - fa) / (fb - fc) + c * fa * fb / (fc - fa) / (fc - fb)
+    )

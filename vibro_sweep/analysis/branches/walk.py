@@ -18,6 +18,8 @@ from vibro_sweep.engine.impulses.across import MOST_CORRECTIONS
 from vibro_sweep.engine.impulses.equations import ROUNDING
 from vibro_sweep.engine.impulses.green import space
 
+MANY = 120  # impacts from which on sparse systems are faster than compiled elimination
+
 
 @dataclass(eq=False)
 class Point:
@@ -41,6 +43,13 @@ class Point:
         """The parameter is `value`, to the last bit: rounding may put it beyond what is allowed."""
         self.held = value
         self.__dict__.pop("solution", None)
+
+    def backwards(self) -> "Point":
+        """The same point of the branch in the other direction."""
+        other = copy(self)
+        other.direction = -self.direction
+        other.__dict__.pop("tangent", None)
+        return other
 
     @cached_property
     def tangent(self) -> np.ndarray:
@@ -126,7 +135,8 @@ class Walk:
     def with_impact(self, start: Solution, index: int) -> "Walk":
         """The same for `start`, orbits of this walk with one impact more, which is its impact `index`."""
         longer, K = copy(self), self.start.K
-        longer.__dict__.pop("_contacts", None)
+        for name in ("_contacts", "_first"):
+            longer.__dict__.pop(name, None)
         longer.start = start
         longer.scale = np.insert(self.scale, [index, K + index], self.scale[[0, K]])
         return longer
@@ -157,7 +167,7 @@ class Walk:
 
     def correct(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
         """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""
-        if self._straight and not is_long(self.start.equations, self.start.sides):
+        if self._straight and self.start.K < MANY:
             return self._corrected_at_once(guess, normal, forwards)
         x, before = guess.copy(), np.inf
         for corrections in range(1, MOST_CORRECTIONS + 1):
@@ -207,11 +217,16 @@ class Walk:
 
     def first(self, forwards: float) -> Point | None:
         """`start` itself; `forwards`: sign of the parameter's change."""
+        point = self._first
+        return point if point is None or forwards == 1 else point.backwards()
+
+    @cached_property
+    def _first(self) -> Point | None:
         value = self.family.numbers[self.name]
         x = np.append(self.start.u, value) / self.scale
         axis = np.zeros(len(x))
         axis[-1] = 1.0
-        point = self.correct(x, axis, forwards * axis)
+        point = self.correct(x, axis, axis)
         if point is not None:
             point.hold(value)
         return point
