@@ -13,7 +13,6 @@ with an error that falls geometrically in K, and so is extrapolated.
 import math
 
 import numpy as np
-from scipy.optimize import brentq
 
 from vibro_sweep.analysis.branches.precise import precise
 from vibro_sweep.analysis.branches.special import Chatter, SpecialPoint, graze_at
@@ -33,6 +32,8 @@ STEPS = 25
 
 def shrinking(R: float) -> float:
     """phi = 1 - f: by what the flights of a chatter sequence shrink at its onset, for 0 < R < 1."""
+    from scipy.optimize import brentq  # loaded where there is chatter: it takes as long as several windows
+
     return 1 - brentq(lambda f: (1 - f) ** 2 * (3 - f) - R * (3 - 2 * f), 0.0, 1.0, xtol=1e-16)
 
 

@@ -10,15 +10,18 @@ from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.impulse_equations import Equations, contacts_of, moves_stops_only
-from vibro_sweep.analysis.periodic.long_orbits import is_long, sign_and_log_det, solve_bordered
+from vibro_sweep.analysis.periodic.impulse_equations import (
+    Equations,
+    contacts_of,
+    moves_stops_only,
+    moves_stops_straight,
+)
+from vibro_sweep.analysis.periodic.long_orbits import is_sparse, sign_and_log_det, solve_bordered
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.engine.impulses import across
 from vibro_sweep.engine.impulses.across import MOST_CORRECTIONS
 from vibro_sweep.engine.impulses.equations import ROUNDING
 from vibro_sweep.engine.impulses.green import space
-
-MANY = 120  # impacts from which on sparse systems are faster than compiled elimination
 
 
 @dataclass(eq=False)
@@ -84,7 +87,7 @@ class Point:
         """Sign and logarithm of |det J(-1)|, zero at a flip (pitchfork)."""
         w = self.walk
         u, sides = self.x[:-1] * w.scale[:-1], w.start.sides
-        if is_long(self.equations, sides):
+        if is_sparse(self.equations, sides):
             return sign_and_log_det(self.equations, sides, u, self.motion, -1)
         sign, size = np.linalg.slogdet(self.equations.linearised(-1, sides, u, self.motion))
         return float(sign), float(size)
@@ -130,7 +133,7 @@ class Walk:
         self.scale[:K], self.scale[K : 2 * K], self.scale[-1] = 1 / q.omega, speed, span
         self.scale[2 * K : -1] = 1 / q.omega if start.rests else speed / q.omega
         self._contact_only = not start.rests and moves_stops_only(self.family.derivative(name))
-        self._straight = self._contact_only and self._is_straight()
+        self._straight = self._contact_only and moves_stops_straight(self.family, name, float(span))
 
     def with_impact(self, start: Solution, index: int) -> "Walk":
         """The same for `start`, orbits of this walk with one impact more, which is its impact `index`."""
@@ -149,17 +152,6 @@ class Walk:
         q = family.linear
         return equations_for(self.start, q, family.derivative(self.name, q))
 
-    def _is_straight(self) -> bool:
-        """Whether stops and restitutions are linear in the parameter: they change by the same at other values."""
-        value, q, slopes = self.family.numbers[self.name], self.family.linear, []
-        try:
-            for share in (0.0, -0.37, 0.59):
-                family = self.family.replace(**{self.name: value + share * float(self.scale[-1])})
-                slopes.append(family.stops(self.name, q)[1])
-        except ValueError:  # beyond its range
-            return False
-        return all(slope[-4:] == slopes[0][-4:] for slope in slopes)
-
     @cached_property
     def _contacts(self) -> np.ndarray:
         q, slope = self.family.stops(self.name, self.family.linear)
@@ -167,7 +159,7 @@ class Walk:
 
     def correct(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
         """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""
-        if self._straight and self.start.K < MANY:
+        if self._straight and not is_sparse(self.start.equations, self.start.sides):
             return self._corrected_at_once(guess, normal, forwards)
         x, before = guess.copy(), np.inf
         for corrections in range(1, MOST_CORRECTIONS + 1):
@@ -210,7 +202,7 @@ class Walk:
 
     def solve(self, e: Equations, x, J, motion, row, F, last: float) -> np.ndarray:
         """The solution of [J; row] step = [F; last] in scaled units; J (n, n + 1) belongs to x. LinAlgError."""
-        if not is_long(e, self.start.sides):
+        if not is_sparse(e, self.start.sides):
             return np.linalg.solve(np.vstack([J, row]), np.append(F, last))
         u, scale = x[:-1] * self.scale[:-1], self.scale
         return solve_bordered(e, self.start.sides, u, motion, J[:, -1] / scale[-1], row / scale, F, last) / scale

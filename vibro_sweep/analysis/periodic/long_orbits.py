@@ -10,21 +10,30 @@ Eliminating the states multiplies the determinant by det(1 - (sigma/mu) E(P)) at
 a branch.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
 from vibro_sweep.analysis.periodic.impulse_equations import Equations, flow
 from vibro_sweep.analysis.periodic.media import still_medium
 from vibro_sweep.engine.impulses import branch, flights
 from vibro_sweep.engine.impulses.places import Steps, new_place, new_work
 
-MANY = 60  # impacts from which on the sparse system is the faster one
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
+MANY = 60  # impacts from which on Newton's method with the states as unknowns is the faster one
+SPARSE = 120  # and the sparse system
 
 
 def is_long(e: Equations, sides) -> bool:
-    """Whether to use this module; a free mode that the contact sees has its equations in the dense form only."""
+    """Whether to use `newton`; a free mode that the contact sees has its equations in the dense form only."""
     return len(sides) >= MANY and not e.free
+
+
+def is_sparse(e: Equations, sides) -> bool:
+    """The same for `solve_bordered` and `sign_and_log_det`. SciPy's part for these is loaded where they are called."""
+    return len(sides) >= SPARSE and not e.free
 
 
 def newton(e: Equations, sides, u, states) -> tuple[np.ndarray, float] | None:
@@ -43,9 +52,11 @@ def newton(e: Equations, sides, u, states) -> tuple[np.ndarray, float] | None:
     return np.concatenate([place.t, place.D]), float(change)
 
 
-def extended(e: Equations, sides, u, motion, mu: int, column=None, row=None) -> csc_array:
+def extended(e: Equations, sides, u, motion, mu: int, column=None, row=None) -> "csc_array":
     """The system above, unknowns (dt_i, dD_i, xi_i) by impacts. With a border: `column` (2K,) by the parameter, `row`
     (2K + 1,), both in the order of the dense system."""
+    from scipy.sparse import csc_array
+
     f = flow(e.q)
     K, n = len(sides), f.B.shape[0] - 3
     N, m = n // 2, n + 2
@@ -89,6 +100,8 @@ def extended(e: Equations, sides, u, motion, mu: int, column=None, row=None) -> 
 
 def solve_bordered(e: Equations, sides, u, motion, column, row, F, last: float) -> np.ndarray:
     """Solution (2K + 1,) of [J column; row] x = [F; last], with J = J(1)."""
+    from scipy.sparse.linalg import splu
+
     K = len(sides)
     matrix = extended(e, sides, u, motion, 1, column, row)
     m = (matrix.shape[0] - 1) // K
@@ -104,6 +117,8 @@ def solve_bordered(e: Equations, sides, u, motion, column, row, F, last: float) 
 
 def sign_and_log_det(e: Equations, sides, u, motion, mu: int) -> tuple[float, float]:
     """Of det J(mu) up to a factor that has one sign along a branch."""
+    from scipy.sparse.linalg import splu
+
     try:
         lu = splu(extended(e, sides, u, motion, mu))
     except RuntimeError:
