@@ -1,14 +1,16 @@
 """The tables with which compiled steps work (engine/impulses/medium.py), along a parameter or for one oscillator."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from vibro_sweep.analysis.periodic.impulse_equations import flow, moves_stops_only
+from vibro_sweep.analysis.periodic.impulse_equations import TABLES, flow, moves_stops_straight
 from vibro_sweep.engine.impulses import branch, medium
 from vibro_sweep.engine.impulses.flights import rates
 from vibro_sweep.engine.impulses.medium import NUMBERS, TAU
 from vibro_sweep.engine.impulses.tables import ORDER, REAL
-from vibro_sweep.model.linear import Family, Linear, forcing_period
+from vibro_sweep.model.linear import Family, Keyed, Linear, forcing_period
 
 DECAYED = 1e-14  # relative size of their last coefficients; or
 NOISE = 1e-11  # where half the interval makes them no smaller, which is what rounding leaves
@@ -25,13 +27,12 @@ def medium_of(family: Family, halves: int, name: str, centre: float, reach: floa
     """The oscillator around a value of the parameter, to `reach` or as far as polynomials hold; None: they do not."""
     nodes = np.cos(np.pi * (np.arange(medium.DEGREE + 1) + 0.5) / (medium.DEGREE + 1))
     least, before = NARROWEST * reach, np.inf
-    still = flow(family.linear).B if moves_stops_only(family.derivative(name)) else None
+    if moves_stops_straight(family, name, reach):
+        return _straight_medium(family, halves, name, centre, reach)
 
     def sampled(p: float) -> np.ndarray:
-        there = family.replace(**{name: p})
-        if still is not None:
-            return _numbers(there.stops(name, family.linear)[0], still, halves)
-        return _numbers(there.linear, rates(there.linear), halves)
+        q = family.replace(**{name: p}).linear
+        return _numbers(q, rates(q), halves)
 
     while reach > least:
         try:
@@ -50,6 +51,14 @@ def medium_of(family: Family, halves: int, name: str, centre: float, reach: floa
             before = left
         reach /= 2
     return None
+
+
+def _straight_medium(family: Family, halves: int, name: str, centre: float, reach: float) -> np.ndarray:
+    """Where the parameter moves stops and restitutions in proportion, and no table."""
+    q = family.linear
+    ends = (family.replace(**{name: centre + x * branch.BEYOND * reach}).stops(name, q)[0] for x in (-1, 1))
+    low, high = (_numbers(end, flow(q).B, halves) for end in ends)
+    return _built(q, np.array([low + high, high - low]) / 2, np.array([low, high]), centre, reach)
 
 
 def still_medium(q: Linear, halves: int) -> np.ndarray:
@@ -80,11 +89,18 @@ def _built(q: Linear, c, values, centre: float, reach: float) -> np.ndarray:
     r["centre"], r["reach"], r["degree"], r["width"] = centre, reach, len(powers_of) - 1, f.width
     r["fit"][: len(powers_of)] = powers_of
     r["bits"] = min(max(int(np.ceil(np.log2(2 * values[:, -1].max() / f.width))), 1), medium.BITS)
-    series = [np.eye(n, m).astype(REAL)]
-    for k in range(1, ORDER + 1):
-        series.append(series[-1] @ f.B.astype(REAL) / k)
-    r["series"], r["powers"][:], r["step"] = np.array(series), f.powers, f.powers[0].T
+    r["series"], r["powers"][:], r["step"] = _series(Keyed(q, TABLES)), f.powers, f.powers[0].T
     r["gap_rows"] = r["series"][:, 0].T
     r["middle_weights"], r["rest_weights"] = medium.middle_weights(f.width)
     r["middle"], r["rest"] = r["gap_rows"] @ r["middle_weights"], np.abs(r["gap_rows"]) @ r["rest_weights"]
     return result
+
+
+@lru_cache(maxsize=16)
+def _series(key: Keyed) -> np.ndarray:
+    """(ORDER + 1, n, m) first rows of B^k/k!."""
+    B = flow(key.q).B.astype(REAL)
+    series = [np.eye(len(B) - 3, len(B)).astype(REAL)]
+    for k in range(1, ORDER + 1):
+        series.append(series[-1] @ B / k)
+    return np.array(series).astype(float)

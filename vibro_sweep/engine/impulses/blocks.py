@@ -14,6 +14,7 @@ Reflections keep all digits at any growth, and nothing is singular at D = 0.
 """
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -36,6 +37,7 @@ from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.memory import put, record, row
 
 
+@cache
 def room_of(masses: int) -> np.dtype:
     """Room for the elimination. A panel has columns for xi_i (n), dt_i, dD_i, xi_{i+1} (n), xi_1 (n), dp, F."""
     n, m = 2 * masses, 2 * masses + 3
@@ -60,6 +62,7 @@ def room_of(masses: int) -> np.dtype:
     ])  # fmt: skip
 
 
+@cache
 def strike_of(masses: int) -> np.dtype:
     """What is kept of each impact."""
     n = 2 * masses

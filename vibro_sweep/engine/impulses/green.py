@@ -193,7 +193,7 @@ def _partial(arrays) -> Linear:
     return Linear(M, K, C, along, nothing, nothing, nothing, float(omega), 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)
 def _train(M, K, C, along, omega, ratio, halves, changes) -> Train:
     q = _partial([value.value for value in (M, K, C, along, omega)])
     slope = _partial([value.value for value in changes]) if changes else None

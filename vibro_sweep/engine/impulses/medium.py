@@ -5,6 +5,7 @@ may go to any value of it. Where the flight changes with the parameter, its tabl
 """
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -22,6 +23,7 @@ BITS = 18
 MIDDLE = 4  # value in the middle of a cell, and what three derivatives there change up to its ends
 
 
+@cache
 def medium_of(masses: int) -> np.dtype:
     """zeta' = B zeta for zeta = (y, y', cos(omega t + tau), sin(omega t + tau), 1), n = 2N, m = n + 3 (flights.py)."""
     n, m = 2 * masses, 2 * masses + 3
