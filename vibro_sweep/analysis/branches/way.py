@@ -38,6 +38,7 @@ class Way:
     """One way along a branch."""
 
     through = True  # bifurcations; else the way ends at the first
+    first_step = FIRST_STEP
 
     def __init__(self, walk: Walk, forwards: float, lo: float, hi: float, system, progress=None):
         self.walk, self.system = walk, system
@@ -65,7 +66,7 @@ class Way:
         start, steps = self.walk.start, (LONGEST_STEP, SHORTEST_STEP, STRAIGHT)
         compiled = start.K > 0 and not start.rests
         track = Track(self.first, self.walk, self.bounds, self.frame[1], *steps) if compiled else None
-        if track is not None and track.begin(self.first, FIRST_STEP):
+        if track is not None and track.begin(self.first, self.first_step):
             self._run(track)
         else:
             self._step(self.first, 1)
@@ -95,7 +96,7 @@ class Way:
 
     def _step(self, a: Point, passed: int) -> None:
         """The same in Python: for orbits without impacts or with rests, and where compiled steps cannot go."""
-        length = FIRST_STEP
+        length = self.first_step
         while passed < MOST_POINTS and length >= SHORTEST_STEP:
             b = self.walk.step(a, length)
             turn = math.acos(min(1.0, a.tangent @ b.tangent)) if b is not None else math.inf
@@ -125,8 +126,7 @@ class Way:
         self._add_solution(point.p, point.solution)
 
     def _add_solution(self, p: float, s: Solution) -> None:
-        system = self.system.replace(**{self.walk.name: p})
-        state = PeriodicOrbit(system, "ok", s, self.frame).state
+        state = PeriodicOrbit(s.family, "ok", s, self.frame).state
         t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
         values = p, t, D, s.ends, motion, s.margin, s.change, state
         self.rows.append(Rows(*(np.array([value], float) for value in values)))
@@ -149,7 +149,7 @@ class Way:
         reach = end[1] if end else length
         birth = self._birth(a, last, reach) if a.tangent[-1] * last.tangent[-1] < 0 else None
         found = bifurcations(self.walk, a, last, reach)
-        before = self._before_graze(a, end) if end and end[0].type == "graze" else None
+        before = self._before_graze(a, end) if end and end[0].type == "graze" and end[0].index is not None else None
         if before is not None:
             known = {place[0].type for place in found}
             found += [place for place in bifurcations(self.walk, a, before, reach) if place[0].type not in known]
@@ -185,7 +185,7 @@ class Way:
         return end is not None
 
     def _before_graze(self, a: Point, end) -> Point | None:
-        """A point just before a graze: at the graze itself multipliers have a pole, and tests made of them no sign."""
+        """A point just before an impact vanishes: there multipliers have a pole, and tests made of them no sign."""
         _, reach, graze, _ = end
         return self.walk.step(a, (1 - BEFORE) * reach, graze.x)
 

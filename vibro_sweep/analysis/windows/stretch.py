@@ -13,6 +13,7 @@ class StableWay(Way):
     """One way along a branch, as far as the orbit is stable."""
 
     through = False
+    first_step = 4e-3  # the orbit was not just born
 
 
 def stable_stretch(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float]) -> Branch:
