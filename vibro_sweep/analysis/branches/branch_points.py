@@ -18,7 +18,7 @@ def dataset(walk: Walk, frame: tuple[int, int], rows: Rows) -> xr.Dataset:
     wrapped.
     """
     start = walk.start
-    oscillators = [walk.family.replace(**{walk.name: p}).linear for p in rows.p.tolist()]
+    oscillators = [walk.oscillator(p) for p in rows.p.tolist()]
     T = np.array([[forcing_period(q)] for q in oscillators])
     multipliers = _multipliers(walk.start, oscillators, rows)
     states, t, v, sides = rows.state, rows.t, rows.motion[:, :, 0], np.array(start.sides, int)
@@ -48,13 +48,13 @@ def dataset(walk: Walk, frame: tuple[int, int], rows: Rows) -> xr.Dataset:
 
 def _multipliers(start: Solution, oscillators: list[Linear], rows: Rows) -> np.ndarray:
     """(points, 2N) of the whole period, by falling modulus, of a pair +im first."""
-    result = []
+    result, sides, contacts = [], np.array(start.sides), np.zeros((start.K, 2))  # where stops are does not matter
     for q, t, D, ends, motion in zip(oscillators, rows.t, rows.D, rows.ends, rows.motion, strict=True):
         if start.rests:
             u = np.concatenate([t, D, ends])
             result.append(equations_for(start, q).multipliers(start.sides, u, motion))
             continue
-        contacts = np.column_stack([q.stop(start.sides), 1 + q.restitution(start.sides)])
+        contacts[:, 1] = 1 + q.restitution(sides)
         P, u = forcing_period(q) / 2 * start.halves, np.concatenate([t, D])
         result.append(multipliers_of(flow(q), start.sigma, P, contacts, u, motion))
     values = np.array(result) if start.sigma == 1 else np.array(result) ** 2

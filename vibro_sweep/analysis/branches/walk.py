@@ -22,6 +22,7 @@ from vibro_sweep.engine.impulses import across
 from vibro_sweep.engine.impulses.across import MOST_CORRECTIONS
 from vibro_sweep.engine.impulses.equations import ROUNDING
 from vibro_sweep.engine.impulses.green import space
+from vibro_sweep.model.linear import Linear
 
 
 @dataclass(eq=False)
@@ -134,6 +135,11 @@ class Walk:
         self.scale[2 * K : -1] = 1 / q.omega if start.rests else speed / q.omega
         self._contact_only = not start.rests and moves_stops_only(self.family.derivative(name))
         self._straight = self._contact_only and moves_stops_straight(self.family, name, float(span))
+
+    def oscillator(self, p: float) -> Linear:
+        """At a value of the parameter."""
+        family = self.family.replace(**{self.name: p})
+        return family.stops(self.name, self.family.linear)[0] if self._contact_only else family.linear
 
     def with_impact(self, start: Solution, index: int) -> "Walk":
         """The same for `start`, orbits of this walk with one impact more, which is its impact `index`."""

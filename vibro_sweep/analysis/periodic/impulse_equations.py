@@ -21,7 +21,8 @@ class Equations:
         self.q, self.sigma, self.halves, self.slope = q, sigma, halves, slope
         self.P = forcing_period(q) / 2 * halves
         self.train = train(q, sigma, halves, slope)
-        self.steady = steady(q, sigma, halves, slope) if slope is not None else _steady(Keyed(q, TABLES), sigma, halves)
+        moved = slope is not None and not moves_stops_only(slope)
+        self.steady = steady(q, sigma, halves, slope) if moved else _steady(Keyed(q, TABLES), sigma, halves)
 
     def with_stops(self, q: Linear, slope: Linear) -> "Equations":
         """The same tables for an oscillator that differs in its stops or restitution only."""
