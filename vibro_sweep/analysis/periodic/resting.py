@@ -13,7 +13,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import expm
 
 from vibro_sweep.analysis.periodic.held_motion import motion_of, motion_slopes
 from vibro_sweep.analysis.periodic.impulse_equations import contacts_of, flow, held_flow, steady
@@ -76,6 +75,8 @@ class RestEquations:
 
     def _transition(self, held: bool, length: float) -> np.ndarray:
         """exp(A length) (m, m) of a piece; (2m, 2m) with the derivative by the parameter, where that changes A."""
+        from scipy.linalg import expm  # loaded where an orbit rests: it takes a tenth of the program's start
+
         A, dA = (self.f.H, self.df and self.df.H) if held else (self.f.B, self.df and self.df.B)
         if dA is not None and np.any(dA):
             A = np.block([[A, np.zeros_like(A)], [dA, A]])
