@@ -1,4 +1,4 @@
-"""The points of a branch as a Dataset."""
+"""The points of a branch as columns, and as a Dataset."""
 
 import numpy as np
 import xarray as xr
@@ -11,8 +11,13 @@ from vibro_sweep.model.linear import Linear, forcing_period
 
 
 def dataset(walk: Walk, frame: tuple[int, int], rows: Rows) -> xr.Dataset:
-    """Over `point`, in order: the parameter; `multiplier_re`, `multiplier_im` (multiplier) of the whole period;
-    `unstable`, the number of multipliers outside the unit circle; the state x1 v1 .. at t = 0; `margin`;
+    """`columns` as a Dataset."""
+    return xr.Dataset(columns(walk, frame, rows))
+
+
+def columns(walk: Walk, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:
+    """Dimensions and values over `point`, in order: the parameter; `multiplier_re`, `multiplier_im` (multiplier) of the
+    whole period; `unstable`, the number of multipliers outside the unit circle; the state x1 v1 .. at t = 0; `margin`;
     `min_impact_speed`; `residual`, the largest jump of the gap between two flights, relative to its size; `impact_t`,
     `impact_side` and `impact_v` (impact) as `orbit.impacts` of the first point, from there on continuous: times are not
     wrapped.
@@ -30,7 +35,7 @@ def dataset(walk: Walk, frame: tuple[int, int], rows: Rows) -> xr.Dataset:
     t = np.hstack([t[:, first:], t[:, :first] + length]) - shift * T
     v, sides = np.roll(v, -first, axis=1), np.roll(sides, -first)
     names = [f"{kind}{i + 1}" for i in range(states.shape[1] // 2) for kind in "xv"]
-    variables = {
+    return {
         walk.name: ("point", rows.p),
         "multiplier_re": (("point", "multiplier"), multipliers.real),
         "multiplier_im": (("point", "multiplier"), multipliers.imag),
@@ -43,7 +48,6 @@ def dataset(walk: Walk, frame: tuple[int, int], rows: Rows) -> xr.Dataset:
         "impact_side": (("point", "impact"), np.tile(sides, (len(rows.p), 1))),
         "impact_v": (("point", "impact"), v),
     }
-    return xr.Dataset(variables)
 
 
 def _multipliers(start: Solution, oscillators: list[Linear], rows: Rows) -> np.ndarray:

@@ -46,7 +46,7 @@ class Branch:
 
     @cached_property
     def points(self) -> xr.Dataset:
-        """Dataset over `point`: the parameter, state at t = 0, multipliers, margin, impacts (docs of `dataset`)."""
+        """Dataset over `point`: the parameter, state at t = 0, multipliers, margin, impacts (docs of `columns`)."""
         return dataset(self._walk, self._frame, self._rows)
 
 

@@ -16,6 +16,7 @@ Words are codes of model/bifurcations.py. An index that does not exist is -1.
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch_points import columns
 from vibro_sweep.analysis.branches.continuation import Branch
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
@@ -29,10 +30,10 @@ Flat = dict[str, np.ndarray]
 
 def flatten(branch: Branch, origin: float) -> Flat:
     """The arrays of a branch; origin: the parameter of the orbit that it was followed from."""
-    data, start = branch.points, branch._walk.start
-    p = data[branch.parameter].values
-    t = data.impact_t.values
-    words = state(data.sizes["multiplier"] // 2)
+    start = branch._walk.start
+    data = {name: values for name, (_, values) in columns(branch._walk, branch._frame, branch._rows).items()}
+    p, t = data[branch.parameter], data["impact_t"]
+    words = state(data["multiplier_re"].shape[1] // 2)
     result = {
         "branch_period": np.int32(start.halves if start.sigma == -1 else start.halves // 2),
         "branch_symmetric": np.int8(start.sigma == -1),
@@ -41,15 +42,14 @@ def flatten(branch: Branch, origin: float) -> Flat:
         "branch_begins": np.int32(branch.special.index(branch.begins)),
         "branch_ends": np.int32(len(branch.special) - 1 - branch.special[::-1].index(branch.ends)),
         "value": p,
-        "state": np.stack([data[name].values for name in words], axis=-1),
-        **{name: data[name].values for name in ("multiplier_re", "multiplier_im", "margin", "min_impact_speed")},
-        "residual": data.residual.values,
-        "unstable": data.unstable.values.astype(np.int32),
+        "state": np.stack([data[name] for name in words], axis=-1),
+        **{name: data[name] for name in ("multiplier_re", "multiplier_im", "margin", "min_impact_speed", "residual")},
+        "unstable": data["unstable"].astype(np.int32),
         "status": np.zeros(len(p), np.int8),
         "impact_t": t,
-        "impact_v": data.impact_v.values,
+        "impact_v": data["impact_v"],
         "impact_t_off": _rest_ends(branch, t),
-        "impact_side": data.impact_side.values[0].astype(np.int8),
+        "impact_side": data["impact_side"][0].astype(np.int8),
     }
     return {name: np.asarray(values) for name, values in (result | _special_points(branch, p)).items()}
 

@@ -83,25 +83,28 @@ def check_data(data: xr.Dataset) -> None:
 def rows_of(data: xr.Dataset, system, key: str) -> Iterator[Row]:
     """The rows of a sweep of `system` along `key`, in the order of the file."""
     others = [name for name in np.atleast_1d(data.attrs["sweep_dimensions"]) if name != key]
-    names = state(system.masses)
-    fields = {"states": xr.concat([data[name].isel(sample=-1) for name in names], "coordinate", coords="minimal")}
-    fields |= {"period": data["period"], "reason": reasons(data)}
     lead = [*others, key, *(["start"] if "start" in data["period"].dims else [])]
-    arrays = {name: one.transpose(*lead, ...).values for name, one in fields.items()}
+
+    def ordered(variable: xr.Variable) -> np.ndarray:
+        return variable.transpose(*lead, ...).values
+
+    own = data.variables  # without coordinates: they would come along, and xarray would load Dask for them
+    last = [ordered(own[name].isel(sample=-1)) for name in state(system.masses)]
+    arrays = {"states": np.stack(last, axis=-1), "period": ordered(own["period"])}
+    arrays["reason"] = _reasons(ordered(own["status"]), arrays["period"])
     if "start" not in lead:
         arrays = {name: np.expand_dims(values, len(lead)) for name, values in arrays.items()}
     order = np.argsort(data[key].values, kind="stable")
     axis = list(np.atleast_1d(data.attrs["sweep_dimensions"])).index(key)
     for place in np.ndindex(*(data.sizes[name] for name in others)):
         held = {str(name): float(data[name].values[i]) for name, i in zip(others, place, strict=True)}
-        own = system.replace(**{name: value for name, value in held.items() if name in system.described})
+        there = system.replace(**{name: value for name, value in held.items() if name in system.described})
         parts = {name: values[place][order] for name, values in arrays.items()}
-        yield Row(own, key, held, axis, data[key].values[order].astype(float), order, **parts)
+        yield Row(there, key, held, axis, data[key].values[order].astype(float), order, **parts)
 
 
-def reasons(data: xr.Dataset) -> xr.DataArray:
+def _reasons(status: np.ndarray, period: np.ndarray) -> np.ndarray:
     """Codes of `REASONS`: 0 for periodic orbits, `not_settled` for others until they have been computed further."""
-    status, periodic = data["status"], data["period"] > 0
-    result = xr.full_like(status, _CODES["not_settled"], dtype=np.int8)
-    result = result.where(~periodic, _CODES["in_a_window"]).where(stands(status), _CODES["failed"])
-    return result.where(status != NOT_COMPUTED, _CODES["not_computed"]).astype(np.int8)
+    chosen = [(status == NOT_COMPUTED, "not_computed"), (~stands(status), "failed"), (period > 0, "in_a_window")]
+    conditions, names = zip(*chosen, strict=True)
+    return np.select(conditions, [_CODES[name] for name in names], _CODES["not_settled"]).astype(np.int8)
