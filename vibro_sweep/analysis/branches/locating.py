@@ -19,6 +19,7 @@ from vibro_sweep.engine.impulses import branch
 
 ROUNDED = np.finfo(float).eps  # relative to the coordinates of a point: nearer ones are the same
 MOST_TRIES = 100
+BESIDE = 1e-6  # of a step: so far from its zero a test says how steep it is, and not how it rounds
 WITHIN = 1e-9  # of a step, by which rounding may put an event before its beginning or behind its end
 
 
@@ -115,10 +116,12 @@ def _at_zero(walk: Walk, event: Event, a: Point, b: Point, length: float):
     if found is None:
         return None
     s, point, _ = found
-    slope = max(abs((one.test - found.test) / (one.s - s)) for one in seen if one is not found)
+    beside = [one for one in seen if abs(one.s - s) > BESIDE * abs(seen[1].s)]
+    near = min(beside, key=lambda one: abs(one.s - s), default=found)
+    slope = abs((near.test - found.test) / (near.s - s)) if near is not found else 0.0
     again = walk.step(b, float((point.x - b.x) @ b.tangent), point.x)
     rounding, apart = _rounding(point, point.tangent), math.nan
-    if again is not None:
+    if again is not None and slope > 0:
         missed = event.test(again) / slope * point.tangent[-1] * walk.scale[-1]
         apart = abs(again.p - point.p) + abs(missed)
     error = rounding if apart <= rounding else rounding + 4 * (apart - rounding)
