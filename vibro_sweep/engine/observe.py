@@ -86,7 +86,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
     numbers = len(result.end)
     for j in range(numbers):
         result.end[j] = o.X[j]
-    to_masses(point, result.end, w.other)
+    to_masses(point, result.end[:], w.other)
     if plan.states:
         turn_states(point, states, o, w.other)
     if len(phase) > 0:
@@ -97,7 +97,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
                 section[n, j] = states[n, j]
     result.resting = o.resting
     if plan.states:
-        result.period = find_period(states, o.largest, w.axes[o.lane])
+        result.period = find_period(states, o, w.axes[o.lane])
     for n in range(len(running)):
         for j in range(numbers):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
@@ -130,7 +130,7 @@ def close(e, w, plan, points, results):
             result.status = o.status
         if plan.states and o.status == status.OK:
             states, known = w.section[i], (result.lyapunov, result.lyapunov_error)
-            settled = has_settled(result.period, states, o.largest, w.axes[i], *known, CERTAIN)
+            settled = has_settled(result.period, states, o, w.axes[i], *known, CERTAIN)
             result.period = max(result.period, 0)
             if settled and plan.attractors:
                 keep_averages(states, period_of(e, o), REPEAT, o, result)

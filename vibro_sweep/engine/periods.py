@@ -59,12 +59,17 @@ def window_of(p):
 
 
 @jit
-def repeats(section, size, p):
-    """Whether all points are near to those p before them."""
+def repeats(section, size, p, o):
+    """Whether all points are near to those p before them.
+
+    o: the orbit, from which the compiler knows how many numbers a point has, and compares them at once.
+    """
     for n in range(p, len(section)):  # from the beginning: where the orbit has not settled, the first point tells
-        for i in range(section.shape[1]):
-            if not abs(section[n, i] - section[n - p, i]) <= REPEAT * size[i]:
-                return False
+        near = True
+        for i in range(2 * len(o.c)):
+            near &= abs(section[n, i] - section[n - p, i]) <= REPEAT * size[i]
+        if not near:
+            return False
     return True
 
 
@@ -86,19 +91,19 @@ def fades(section, size, d, p):
 
 
 @jit
-def find_period(section, sizes, size):
-    """Least period of the points, (n, 2 N), up to half of them; 0 if there is none.
+def find_period(section, o, size):
+    """Least period of the points, (n, 2 N), of an orbit, up to half of them; 0 if there is none.
 
-    `NOT_CONVERGING` where points seem to repeat themselves but do not come nearer to doing so. sizes: of the points,
-    (2 N,) or longer. size: scratch of the same length.
+    `NOT_CONVERGING` where points seem to repeat themselves but do not come nearer to doing so. size: scratch, (2 N,) or
+    longer.
     """
-    count, largest = len(section), 0.0
+    count, sizes, largest = len(section), o.largest, 0.0
     for i in range(section.shape[1]):
         largest = max(largest, sizes[i])
     for i in range(section.shape[1]):
         size[i] = max(sizes[i], 1e-3 * largest)
     for p in range(1, count // 2 + 1):
-        if repeats(section, size, p):
+        if repeats(section, size, p, o):
             for d in range(1, p):
                 if p % d == 0 and fades(section, size, d, p):
                     return d
@@ -130,7 +135,7 @@ def is_approaching(section, size):
 
 
 @jit
-def has_settled(period, section, sizes, size, spectrum, error, certain):
+def has_settled(period, section, o, size, spectrum, error, certain):
     """Whether an orbit is on its attractor, and not on its way there.
 
     Without a period, one that contracts (lambda_1 is below zero by `certain` of its errors) is on its way, or its
@@ -141,4 +146,4 @@ def has_settled(period, section, sizes, size, spectrum, error, certain):
         return True
     if spectrum[0] < -certain * error[0]:
         return False
-    return find_period(section[-(len(section) // 4) :], sizes, size) <= 0 and not is_approaching(section, size)
+    return find_period(section[-(len(section) // 4) :], o, size) <= 0 and not is_approaching(section, size)

@@ -35,8 +35,9 @@ class _Part(JITCodeLibrary):
     def _optimize_functions(self, ll_module):
         ll_module.data_layout = self._codegen._data_layout
         for function in ll_module.functions:
-            passes, builder = self._codegen._function_pass_manager(opt=1)
-            passes.run(function, builder)
+            if not function.is_declaration:
+                passes, builder = self._codegen._function_pass_manager(opt=1)
+                passes.run(function, builder)
 
     def finalize(self):
         self._finalized = True
@@ -86,10 +87,12 @@ class _Whole(JITCodeLibrary):
     def _finalize_specific(self):
         """Machine code. Where a loop lies across the lines that are fetched depends on all before it, and takes 5 %."""
         set_option("vibro_sweep", "-align-loops=64")
+        set_option("vibro_sweep", "-align-all-functions=6")
         try:
             super()._finalize_specific()
         finally:
             set_option("vibro_sweep", "-align-loops=0")
+            set_option("vibro_sweep", "-align-all-functions=0")
 
 
 class _Flags(Flags):

@@ -9,9 +9,11 @@ import numpy as np
 
 from vibro_sweep.engine.simd.jit import aside, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES, bits, select
+from vibro_sweep.engine.simd.matrices import column, product, put_column, scaled, subtract
 from vibro_sweep.engine.simd.memory import put, row
 
 CONDITION = 1e3  # bound on the condition number of Z past which it is orthonormalised
+SHORTEST, LONGEST = 1e-100, 1e100  # products of lengths before their logarithm is taken
 SMALLEST = 1e-30  # of the squares of all vectors together: where all decay alike, none lies too close to another
 
 
@@ -38,13 +40,12 @@ def watch(t, who, determinant):
 @aside
 def orthonormalise(t, who):
     """Gram-Schmidt: Z = Q R, Z becomes Q and the diagonal of R is added to the growth."""
+    orthogonalise(t, who)
     if t.collected:
-        reduce(t, who, True)
         collect(t, bits(who))
-        for i in range(len(t.growth)):
-            grow(t, who, i, row(t.length, i))
-    else:
-        reduce(t, who, False)
+    extreme = normalise(t, who)
+    if bits(extreme) != 0:
+        take_logs(t, bits(extreme))
     put(t.volume, 0, select(who, 1.0, row(t.volume, 0)))
 
 
@@ -55,54 +56,41 @@ def place_of(size, i, j):
 
 
 @inline
-def along(Z, size, i, j):
-    """The product of vectors i and j."""
-    total = row(Z, i) * row(Z, j) + row(Z, size + i) * row(Z, size + j)
-    for m in range(2, size, 2):
-        first, second = m * size, (m + 1) * size
-        total = total + (row(Z, first + i) * row(Z, first + j) + row(Z, second + i) * row(Z, second + j))
-    return total
+def orthogonalise(t, who):
+    """The columns of Z become orthogonal; what stands beside the diagonal of R is kept.
 
-
-@inline
-def reduce(t, who, kept):
-    """Z becomes Q. What stands beside the diagonal of R, and the diagonal, is kept; or the growth has it at once.
-
-    The lengths are taken out last: the next vector need not wait for a square root.
+    Lengths are left to `normalise`: the next vector need not wait for a square root, and LLVM unrolls these loops for
+    one and two masses, whose Z then stays in registers. A longer body would not be unrolled.
     """
     Z, size, place = t.Z, len(t.growth), 0
     for i in range(size):
-        square = along(Z, size, i, i)
-        square = select(row(t.lost, 0) >= float(size - i), 0.0, square)
+        z = column(Z, i)
+        square = select(row(t.lost, 0) >= float(size - i), 0.0, product(z, z))
+        put(t.square_length, i, square)
         inverse = select(square > 0.0, 1.0 / square, 0.0)
         for j in range(i + 1, size):
-            part = inverse * along(Z, size, i, j)
-            if kept:
-                put(t.along, place, part)
-                place += 1
-            for m in range(size):
-                w = row(Z, m * size + j)
-                put(Z, m * size + j, select(who, w - part * row(Z, m * size + i), w))
-        length = math.sqrt(square)
-        inverse = select(square > 0.0, 1.0 / length, 0.0)
-        for m in range(size):
-            z = row(Z, m * size + i)
-            put(Z, m * size + i, select(who, inverse * z, z))
-        if kept:
-            put(t.length, i, length)
-        else:
-            grow(t, who, i, length)
+            w = column(Z, j)
+            along = inverse * product(z, w)
+            put(t.along, place, along)
+            put_column(Z, j, subtract(who, w, along, z))
+            place += 1
 
 
 @inline
-def grow(t, who, i, length):
-    """The growth of vector i times a length."""
-    growth = row(t.growth, i)
-    put(t.growth, i, select(who, growth * length, growth))
-    growth = row(t.growth, i)
-    extreme = bits(who & ~((growth > 1e-100) & (growth < 1e100)))
-    if extreme != 0:
-        take_logs(t, i, extreme)
+def normalise(t, who):
+    """The columns of Z become unit vectors, and the growth is multiplied by their lengths.
+
+    Returns the mask of the orbits in which a growth has left the range SHORTEST .. LONGEST.
+    """
+    extreme = who & ~who
+    for i in range(len(t.growth)):
+        square = row(t.square_length, i)
+        length = math.sqrt(square)
+        put_column(t.Z, i, scaled(who, column(t.Z, i), select(square > 0.0, 1.0 / length, 0.0)))
+        growth = select(who, row(t.growth, i) * length, row(t.growth, i))
+        put(t.growth, i, growth)
+        extreme = extreme | (who & ~((growth > SHORTEST) & (growth < LONGEST)))
+    return extreme
 
 
 @aside
@@ -131,9 +119,10 @@ def collect(t, who):
 
 
 @aside
-def take_logs(t, j, extreme):
-    """Begin products anew before they leave the range of the floats."""
-    for i in range(LANES):
-        if extreme >> i & 1:
-            t.logs[j, i] += np.log(t.growth[j, i])
-            t.growth[j, i] = 1.0
+def take_logs(t, who):
+    """Begin the products of these orbits anew before they leave the range of the floats. who: as bits."""
+    for j in range(len(t.growth)):
+        for i in range(LANES):
+            if who >> i & 1 and not SHORTEST < t.growth[j, i] < LONGEST:
+                t.logs[j, i] += np.log(t.growth[j, i])
+                t.growth[j, i] = 1.0

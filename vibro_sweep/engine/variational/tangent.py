@@ -52,7 +52,7 @@ def tangents_of(masses: int, paper: bool) -> np.dtype:
         ("volume", float, LANES),  # |det Z|, from the identity det S = R^2
         ("growth", float, (n, LANES)),  # products of the diagonals of R in Z = Q R
         ("logs", float, (n, LANES)),  # their logarithms, taken before they leave the range of the floats
-        ("length", float, (n, LANES)),  # diagonal of R in the last Z = Q R, and
+        ("square_length", float, (n, LANES)),  # squares of the diagonal of R in the last Z = Q R, and
         ("along", float, (pairs, LANES)),  # what stands beside it, over it, row by row: 01, 02, 03, 12, 13, 23;
         ("shear", float, (pairs, LANES)),  # the same of the product of all R, where they are `collected`
         ("wanted", np.bool_),  # else nothing is computed
@@ -131,13 +131,19 @@ def fly(t, who):
 
 
 @inline
+def leap_in_period(t, i, nodes, cells):
+    """The factors of a flight over whole cells, no more than a period."""
+    frame = nodes[cells].frame
+    for j in range(len(frame)):
+        t.leap[j, i] = frame[j]
+
+
+@jit
 def leap_over(t, i, q, nodes, cells):
     """The factors of a flight over whole cells."""
     t.part[i] = 0.0
     if cells <= q.cells:
-        frame = nodes[cells].frame
-        for j in range(len(frame)):
-            t.leap[j, i] = frame[j]
+        leap_in_period(t, i, nodes, cells)
     elif cells <= FEW * q.cells:
         leap_over_periods(t, i, q, nodes, cells)
     else:
@@ -185,14 +191,9 @@ def stop_over(t, i, q, nodes, cells):
     return cells
 
 
-@inline
-def aim(t, i, q, nodes, k, s):
-    """What `fly` is to do to bring the collected flight of orbit i to offset s of cell k of this period."""
-    cells, u = k - t.cell[i], s - t.offset[i]
-    if u < 0.0:
-        cells -= 1
-        u += q.width
-    t.cell[i], t.offset[i] = k, s
+@aside
+def aim_far(t, i, q, nodes, cells, u):
+    """`aim` where the flight is long, or the system stiff."""
     if t.stretch[i] + cells > most_cells(t, i, q):
         cells = stop_over(t, i, q, nodes, cells)
     t.stretch[i] += cells
@@ -202,6 +203,22 @@ def aim(t, i, q, nodes, k, s):
     elif u > 0.0:  # too far for the series
         fly(t, only(i))
         decay_over(t, i, q, u)
+
+
+@inline
+def aim(t, i, q, nodes, k, s):
+    """What `fly` is to do to bring the collected flight of orbit i to offset s of cell k of this period."""
+    cells, u = k - t.cell[i], s - t.offset[i]
+    if u < 0.0:
+        cells -= 1
+        u += q.width
+    t.cell[i], t.offset[i] = k, s
+    if cells > q.cells or t.stretch[i] + cells > most_cells(t, i, q) or q.stiff:
+        aim_far(t, i, q, nodes, cells, u)
+    else:
+        t.stretch[i] += cells
+        t.part[i] = u
+        leap_in_period(t, i, nodes, cells)
 
 
 @jit
