@@ -98,7 +98,7 @@ def crossing(q, o, stops, side, sign, n, left):
     if n == 0 and gap <= 0.0:  # rounding: it was reached at the end of the last series
         return 0.0
     set_gap(o.gap, o.c[0], gap, sign * side, n)
-    return first_contact(o.gap, bounds(q, o.gap)[1], left)
+    return first_contact(o.gap, bounds(q, o.gap[:])[1], left)
 
 
 @jit

@@ -25,7 +25,7 @@ def contact_on(q, o, stops, side, n, reach, left):
     if n == 0 and gap > reach:
         return np.inf
     set_gap(o.gap, o.c[0], gap, side, n)
-    return first_contact(o.gap, bounds(q, o.gap)[1], left)
+    return first_contact(o.gap, bounds(q, o.gap[:])[1], left)
 
 
 @jit

@@ -63,7 +63,7 @@ def set_oscillator(strikes, i, q, stops):
     """Give orbit i its oscillator and its stops."""
     masses, states = len(q.series), 2 * len(q.series)
     for j in range(len(q.force)):
-        economise(TO_TERMS, q, q.series[0, j], strikes.series, TERMS * j, i)
+        economise(TO_TERMS, q, q.series[0, j], strikes.series[:], TERMS * j, i)
         strikes.tail[j, i] = 0.0
         for n in range(TAIL, TERMS):
             strikes.tail[j, i] += q.third[n] * abs(strikes.series[TERMS * j + n, i])
@@ -71,7 +71,7 @@ def set_oscillator(strikes, i, q, stops):
             x, v = flight.evaluate(q.series[m, j], q.width)
             strikes.end[states * j + 2 * m, i], strikes.end[states * j + 2 * m + 1, i] = x, v
     for m in range(masses):
-        economise(TO_FEWER_TERMS, q, q.series[m, 1], strikes.impulses, FEWER_TERMS * m, i)
+        economise(TO_FEWER_TERMS, q, q.series[m, 1], strikes.impulses[:], FEWER_TERMS * m, i)
     for n in range(TAIL):
         strikes.third[n, i] = q.third[n]
     strikes.width[i], strikes.drag[i], strikes.impulse_third[i] = q.width, -q.force[1], q.impulse_third

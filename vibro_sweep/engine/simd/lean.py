@@ -2,15 +2,16 @@
 
 numba looks after each pass for how long every variable lives, which is needed once, at the end; measures how long each
 call of LLVM takes, once for each kernel that is being compiled; finds the type of an operation anew wherever it stands,
-and whether the function that writes it takes a line number; searches for `with` and for dictionaries; and asks LLVM for
-the size of a type as often as a variable has it.
+and whether the function that writes it takes a line number; searches for `with` and for dictionaries; asks LLVM for the
+size of a type as often as a variable has it; and prepares, for each operation, to catch warnings about it and to tell
+where an error has come from. (Errors still name their line; warnings go where all others go.)
 """
 
 import contextlib
 import functools
 from collections.abc import Iterator
 
-from numba.core import base, event, interpreter, types
+from numba.core import base, errors, event, interpreter, lowering, typeinfer, types
 from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.transforms import canonicalize_cfg
 
@@ -36,11 +37,21 @@ def _call_type_once(self, context, args, kws):
 
 
 _call_types: dict[tuple, object] = {}
+_nothing = contextlib.nullcontext()
+
+
+def _in_no_context(*args, **about):
+    """In place of numba's context managers that are entered for every operation."""
+    return _nothing
+
 
 INSTEAD = (
     (PostProcessor, "run", _settle_at_the_end),
     (types.Function, "get_call_type", _call_type_once),
-    (event, "install_timer", lambda kind, callback: contextlib.nullcontext()),
+    (event, "install_timer", _in_no_context),
+    (typeinfer, "new_error_context", _in_no_context),
+    (lowering, "new_error_context", _in_no_context),
+    (errors.WarningsFixer, "catch_warnings", _in_no_context),
     (base, "_has_loc", functools.cache(base._has_loc)),
     (interpreter, "peep_hole_delete_with_exit", lambda func_ir: func_ir),
     (interpreter, "peep_hole_fuse_dict_add_updates", lambda func_ir: func_ir),

@@ -31,7 +31,7 @@ def fill_scan(q, nodes, scan, psi, omega_squared, mu_m, f2):
         if not q.stiff:
             for i in range(4):
                 q.remainder[i] = max(q.remainder[i], bound_fourth(q, E[i], 4))
-            q.remainder[4] = max(q.remainder[4], bound_fourth(q, z, 6))
+            q.remainder[4] = max(q.remainder[4], bound_fourth(q, z[:], 6))
     for i in range(5):
         largest = 0.0
         for p in range(2 * q.cells + 1):

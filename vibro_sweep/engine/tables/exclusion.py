@@ -46,7 +46,7 @@ def fill_exclusion(q, nodes, scan):
                 largest = max(largest, put_points(q, scan[i], k, E[0], E[1]))
                 fourth = max(fourth, bound_fourth(q, E, states))
             else:
-                z = nodes[k].z
+                z = nodes[k].z[:]  # a row, as E is: one kernel serves both
                 largest = max(largest, put_points(q, scan[i], k, z[0], z[1]))
                 fourth = max(fourth, bound_fourth(q, z, inputs))
         # a point is a sum of states + 1 terms, and so is its rounding

@@ -18,8 +18,8 @@ MOST_STRETCH = 1_000_000_000
 def fill_frame(q, psi, omega_squared, mu_m):
     """The metric in which free flight is a rotation times a decay (tangent.py)."""
     series, to_frame, from_frame = q.frame_series, q.to_frame, q.from_frame
-    clear(to_frame)
-    clear(from_frame)
+    clear(to_frame[:])
+    clear(from_frame[:])
     fastest, slowest, turning, q.vanishing = 0.0, np.inf, True, 0
     for j in range(2):
         eta = q.zeta * omega_squared[j]

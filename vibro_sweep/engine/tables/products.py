@@ -29,7 +29,7 @@ def change_within(c, u):
 def fill_short(q, D, u):
     """D of a flight over a time u that the series reach over."""
     states, inputs = 2 * len(q.series), len(q.force)
-    clear(D)
+    clear(D[:])
     for m in range(len(q.series)):
         for j in range(inputs):
             c = q.series[m, j]
@@ -67,10 +67,10 @@ def fill_products(q, nodes):
     while u > 1.001 * q.step:
         u *= 0.5
         halvings += 1
-    clear(nodes[0].E)
+    clear(nodes[0].E[:])
     fill_short(q, nodes[1].E, u)
     for _ in range(halvings):
-        clear(nodes[2].E)
+        clear(nodes[2].E[:])
         join(nodes[1].E, nodes[1].E, nodes[2].E, states, inputs, q.omega * u)
         for j in range(inputs):
             for i in range(states):
@@ -78,7 +78,7 @@ def fill_products(q, nodes):
         u *= 2.0
     for k in range(2, cells + 1):
         step = k & -k if k & (k - 1) else k // 2
-        clear(nodes[k].E)
+        clear(nodes[k].E[:])
         angle = 2.0 * math.pi * ((k - step) / cells)
         join(nodes[k - step].E, nodes[step].E, nodes[k].E, states, inputs, angle)
     for k in range(cells + 1):
