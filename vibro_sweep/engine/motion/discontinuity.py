@@ -28,7 +28,7 @@ from vibro_sweep.engine.motion.impacts import count_impact, log_impact
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import alike
 from vibro_sweep.engine.tables.flight import decaying
-from vibro_sweep.engine.variational import tangent
+from vibro_sweep.engine.variational import tangent_flight
 from vibro_sweep.engine.variational.orthonormal import watch
 from vibro_sweep.model import status
 
@@ -40,7 +40,7 @@ def map_period(f, stops, o, records, t, second):
     o.events = 0
     for side in (1.0, -1.0):
         if t.wanted:
-            tangent.fly_to(t, o.lane, q, f.nodes, 0 if side > 0.0 else half, 0.0)
+            tangent_flight.fly_to(t, o.lane, q, f.nodes, 0 if side > 0.0 else half, 0.0)
         if side > 0.0 and stops.right < np.inf:
             jump(f, stops.right, stops.R_right, 1.0, o, records, t, second)  # (41)
         elif side < 0.0 and stops.left > -np.inf:
@@ -139,7 +139,7 @@ def push_tangent(q, R, psi, a, w, v1, late, second, o, t):
         dw, d_late = impact_slopes(a, psi, v1, w, late, second, da, d_psi, dv)
         p[i], r[i] = -(1.0 + R) * dw, -(1.0 + R) * w * d_late
     Z, lane, back, to = t.Z, o.lane, q.from_frame, q.to_frame
-    tangent.apply_flight(t, tangent.only(lane))
+    tangent_flight.apply_flight(t, tangent_flight.only(lane))
     t.mixed[lane] = 1.0
     for j in range(states):
         kick, shift = 0.0, 0.0
@@ -165,4 +165,4 @@ def push_tangent(q, R, psi, a, w, v1, late, second, o, t):
             ru += r[2 * m] * c[m, 1] + r[2 * m + 1] * c[m, 2]
         determinant = (1.0 + pe) * (1.0 - ru) + pu * re
     o.log_volume += np.log(abs(determinant))
-    watch(t, tangent.only(lane), alike(abs(determinant)))
+    watch(t, tangent_flight.only(lane), alike(abs(determinant)))

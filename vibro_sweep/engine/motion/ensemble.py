@@ -24,7 +24,7 @@ from vibro_sweep.engine.simd.jit import aside, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES, lanes_of, number, select
 from vibro_sweep.engine.simd.memory import put, put_state, row
 from vibro_sweep.engine.tables.flight import load
-from vibro_sweep.engine.variational import tangent
+from vibro_sweep.engine.variational import tangent, tangent_flight
 from vibro_sweep.model import status
 
 
@@ -257,8 +257,8 @@ def carry(e, mapping, readings):
                 if struck >> i & 1:
                     o = e.orbits[i]
                     f = flight_of(e, o)
-                    tangent.aim(t, i, f.oscillator[0], f.nodes, o.cell, strikes.offset[i])
-            tangent.fly(t, lanes_of(struck))
+                    tangent_flight.aim(t, i, f.oscillator[0], f.nodes, o.cell, strikes.offset[i])
+            tangent_flight.fly(t, lanes_of(struck))
             tangent.saltate(t, lanes_of(struck), row(strikes.jump, 0) / row(strikes.speed, 0), row(strikes.R, 0))
         for i in range(LANES):
             if waiting >> i & 1:

@@ -11,7 +11,7 @@ from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import alike
 from vibro_sweep.engine.simd.memory import row
 from vibro_sweep.engine.tables.flight import ORDER, bounds, evaluate, load
-from vibro_sweep.engine.variational import tangent
+from vibro_sweep.engine.variational import tangent, tangent_flight
 from vibro_sweep.model import status
 
 MOST_EVENTS = 100_000  # impacts, grazes and rests in one forcing period; an orbit that needs more gets a status
@@ -95,10 +95,10 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
         after += a[states] * sin + a[states + 1] * cos
         if len(a) > states + 2:
             after += a[states + 2]
-        tangent.fly_to(t, o.lane, q, f.nodes, k, s)
+        tangent_flight.fly_to(t, o.lane, q, f.nodes, k, s)
         # a1+ + R a1-, since a1+ - a1- = 2 zeta (1 + R) v1-, with a[1] = -2 zeta
         steepness = (1.0 + R) * (after / before + a[1] * R)
-        tangent.saltate(t, tangent.only(o.lane), alike(steepness), alike(R))
+        tangent.saltate(t, tangent_flight.only(o.lane), alike(steepness), alike(R))
 
 
 @jit

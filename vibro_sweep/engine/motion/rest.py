@@ -9,7 +9,7 @@ from vibro_sweep.engine.motion.orbits import restitution_of, take_samples
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, evaluate
 from vibro_sweep.engine.tables.resting import bound_third_over, carry_over_rest, state_after
-from vibro_sweep.engine.variational import held, tangent
+from vibro_sweep.engine.variational import held, tangent_flight
 
 CHATTER = 2.0**-53  # of a period: the error allowed in time when the rest of a chatter sequence is summed up
 
@@ -45,7 +45,7 @@ def begin_rest(f, o, records, t, k, s, side, w):
     mark_rest(o, records, k, s, side)
     if t.wanted:
         q = f.oscillator[0]
-        tangent.fly_to(t, o.lane, q, f.nodes, k, s - w)
+        tangent_flight.fly_to(t, o.lane, q, f.nodes, k, s - w)
         held.rest(t, o.lane, q.kappa)
         carry_tangent(t, o.lane, q, w)
         t.cell[o.lane], t.offset[o.lane] = k, s

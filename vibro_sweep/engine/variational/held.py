@@ -2,7 +2,7 @@
 
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.variational.orthonormal import orthonormalise
-from vibro_sweep.engine.variational.tangent import apply_flight, only
+from vibro_sweep.engine.variational.tangent_flight import apply_flight, only
 
 
 @jit

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.engine.point_tables import divergence_of
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.variational import held, tangent
+from vibro_sweep.engine.variational import held, tangent, tangent_flight
 from vibro_sweep.engine.variational.orthonormal import CONDITION
 from vibro_sweep.model import exponents, status
 
@@ -33,8 +33,8 @@ def end_warm_up(e, count):
         o = e.orbits[i]
         if o.status == status.OK:
             n = o.table
-            tangent.fly_to(t, i, e.flights.oscillator[n, 0], e.flights.nodes[n], 0, 0.0)
-            tangent.catch_up(t, tangent.only(i))
+            tangent_flight.fly_to(t, i, e.flights.oscillator[n, 0], e.flights.nodes[n], 0, 0.0)
+            tangent_flight.catch_up(t, tangent_flight.only(i))
             if t.lost[i] > 0.0:  # on the way here; what the attractor itself loses shows again
                 tangent.begin(t, i)
                 keep_at_rest(e, i)
