@@ -15,6 +15,8 @@ from support.branches import branch_of
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.curves.continuation import first_of
 from vibro_sweep.analysis.curves.start import Start, start_at
 from vibro_sweep.analysis.curves.tracer import LONGEST_STEP, Tracer, copy
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -25,10 +27,9 @@ PIECES = 40  # a step is so much shorter than usual
 BOX = ((3, 9), (0.58, 0.68))  # b, omega
 
 
-def speed(start: Start, names, box) -> tuple[float, float]:
-    """Points per second, and corrections for each."""
-    tracer = Tracer(start, names, box)
-    first = tracer.first()
+def speed(start: Start, names, box) -> tuple[float, float, int]:
+    """Points per second, corrections for each, and how many impacts there are in the equations."""
+    tracer, first = first_of(Tracer(start, names, box))
     tracer.path = tracer.path._replace(longest=LONGEST_STEP / PIECES)
     place, best, corrections = locus.new_place(tracer.K, tracer.n), 0.0, 0.0
     for _ in range(ROUNDS):
@@ -40,7 +41,7 @@ def speed(start: Start, names, box) -> tuple[float, float]:
         spent = time.process_time() - began
         points, made = map(int, tracer.path.counts[1:])
         best, corrections = max(best, points / spent), made / max(points, 1)
-    return best, corrections
+    return best, corrections, tracer.K
 
 
 def longer(start: Start, times: int) -> Start:
@@ -55,15 +56,24 @@ def longer(start: Start, times: int) -> Start:
     return Start(start.type, solution, start.index, theta)
 
 
+def onset() -> SpecialPoint:
+    """The sticking onset of the paper's symmetric orbit."""
+    system = PAPER.replace(b=0.0666)
+    orbit = vs.periodic_orbit(system, state=vs.simulate(system, (0, 0, 0, 0), 400).section[-1])
+    branch = vs.continue_orbit(orbit, "b", (0.06, 0.067))
+    return next(special for special in branch.special if special.type == "sticking")
+
+
 def starts() -> list[Start]:
-    """Of each type, with 1 to 4 impacts."""
+    """Of each type, with 1 to 5 impacts; of an onset of sticking, as many as are to be written out."""
     symmetric = vs.continue_orbit(vs.periodic_orbit(PAPER, itinerary="LR"), "b", (0.3, 6.8))
     one_sided = vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R"), "b", (0.3, 6.8))
     window = branch_of(6.6, 13)
     pitchfork, torus = start_at(symmetric.special[1]), start_at(one_sided.special[1])
     fold = start_at(next(special for special in window.special if special.type == "fold"))
     grazes = [start_at(branch.begins) for branch in (symmetric, one_sided, window)]
-    return [pitchfork, longer(pitchfork, 3), torus, longer(torus, 4), fold, start_at(symmetric.ends), *grazes]
+    smooth = [pitchfork, longer(pitchfork, 3), torus, longer(torus, 4), fold]
+    return [*smooth, start_at(symmetric.ends), *grazes, start_at(onset())]
 
 
 def chart(path: str) -> tuple[float, int, int]:
@@ -89,11 +99,11 @@ def main() -> None:
     for start in starts():
         s = start.solution
         numbers = s.family.numbers
-        print(f"{start.type}, {s.K} impacts, P = {s.halves / 2:g} T:")
+        print(f"{start.type}, P = {s.halves / 2:g} T:")
         for names in (("b", "omega"), ("b", "R"), ("mu_m", "zeta")):
             box = [(0.97 * numbers[name], 1.03 * numbers[name]) for name in names]
-            rate, made = speed(start, names, box)
-            print(f"    in {', '.join(names)}: {rate:7.0f} points per second, {made:.1f} corrections each")
+            rate, made, K = speed(start, names, box)
+            print(f"    in {', '.join(names)}: {rate:7.0f} points per second, {K} impacts, {made:.1f} corrections each")
 
 
 if __name__ == "__main__":

@@ -97,6 +97,17 @@ def test_curves_in_30_digits(names, kind, symmetric_branch, one_sided_branch):
         assert error_at(curve, k) < 1e-12, k
 
 
+@pytest.mark.slow
+def test_margin_where_cells_are_passed_over(symmetric_branch):
+    """What is farther from the stops than at the point before is not looked at; that of a single orbit is."""
+    fold = first(branch_of(6.6, 13), "fold")
+    for special, box in ((first(symmetric_branch, "pitchfork"), BOXES["b", "omega"]), (fold, ((6, 7.5), (0.61, 0.65)))):
+        curve = vs.bifurcation_curve(special, ("b", "omega"), box)
+        margins = curve.points.margin.values  # inf: there is no turning point
+        for k in range(0, len(margins), 5):
+            assert margins[k] == pytest.approx(solution_at(curve, k).margin, rel=1e-8, abs=1e-10)
+
+
 @pytest.mark.parametrize("count", [pytest.param(4, marks=pytest.mark.slow), pytest.param(20, marks=pytest.mark.soak)])
 @pytest.mark.parametrize(("b", "periods"), [(6.6, 13), (6.7125, 15)])
 def test_windows_in_30_digits(b, periods, count):

@@ -1,5 +1,6 @@
 """Ends of bifurcation curves: the same whatever the step, also in corners of wide boxes; none closed that is not."""
 
+import numpy as np
 import pytest
 from support.oscillators import PAPER
 
@@ -70,6 +71,25 @@ def test_a_curve_that_passes_near_its_first_point_is_not_closed():
             for limits in (box, WIDE):
                 fold = vs.bifurcation_curve(start, MASSES, limits)
                 assert not fold.closed and fold.begins.type == fold.ends.type == "resonance_1_4"
+
+
+@pytest.mark.slow
+def test_a_curve_that_leaves_the_box_within_a_step_ends_there(symmetric_branch):
+    """b has a maximum on the pitchfork curve; the points of the wide box tell where, by interpolation."""
+    pitchfork = first(symmetric_branch.special, "pitchfork")
+    points = vs.bifurcation_curve(pitchfork, NAMES, BOX).points
+    k = int(points.b.values.argmax())
+    b, omega = (points[name].values[k - 3 : k + 4] for name in NAMES)
+    fitted = np.polynomial.Polynomial.fit(omega, b, 6)
+    (at,) = (x.real for x in fitted.deriv().roots() if abs(x.imag) < 1e-9 and omega[2] < x.real < omega[4])
+    top = fitted(at)
+    assert top > b.max()
+    for below in (1e-3, 0.5 * (top - b.max()), 1e-6, 1e-8):
+        curve = vs.bifurcation_curve(pitchfork, NAMES, ((0.3, top - below), BOX[1]))
+        assert curve.ends.type == "limit" and curve.ends.parameters["b"] == top - below
+        assert curve.ends.parameters["omega"] < at and curve.points.b.max() == top - below
+    curve = vs.bifurcation_curve(pitchfork, NAMES, ((0.3, top + 1e-8), BOX[1]))
+    assert curve.points.b.max() < top + 1e-8 and curve.ends.parameters["b"] < 1
 
 
 def test_polynomials_stop_before_a_frequency_of_zero():

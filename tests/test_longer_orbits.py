@@ -1,9 +1,10 @@
-"""Neimark-Sacker curves of orbits with two or four times the period, where `switch` says that they begin."""
+"""Curves of orbits with two or four times the period, where `switch` says that they begin."""
 
 import numpy as np
 import pytest
-from support.curves import solution_at
+from support.curves import chosen, solution_at
 from support.oscillators import PAPER
+from support.random_curves import Report, simulate_beside
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.periodic.orbit import orbit_of
@@ -89,3 +90,36 @@ def test_orbits_of_four_times_the_period():
     assert len(longer(special, "fold")) == 2
     (start,) = longer(special)
     check(special, start, names, ((5.9715, 5.98), (3.754, 3.77)))
+
+
+@pytest.fixture(scope="module")
+def asymmetric_graze():
+    """The branch of the symmetric orbit of a system whose pitchfork curve meets its graze curve, and a box."""
+    system = vs.System(mu_m=1.5, mu_k=2.65, zeta=0.08, f2=0, omega=1.58, R=0.45, b=1.0)
+    star = vs.grazing(system).b
+    orbit = vs.periodic_orbit(system.replace(b=0.5 * star), itinerary="LR")
+    branch = vs.continue_orbit(orbit, "b", (0.1 * star, 1.05 * star))
+    return branch, ((0.05 * star, 3 * star), (0.95, 2.3))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["flip_graze", "pitchfork_graze"])
+def test_grazes_of_the_orbits_that_are_born(kind, one_sided_branch, asymmetric_graze):
+    """Of one half of them: they begin where the flip (pitchfork) meets the graze, and simulated orbits are there."""
+    branch, box = (one_sided_branch, BOX) if kind == "flip_graze" else asymmetric_graze
+    special = first(vs.bifurcation_curve(first(branch.special, "graze"), NAMES, box).special, kind)
+    smooth = next(start for start in vs.switch(special) if start.type == kind.removesuffix("_graze"))
+    (again,) = points(smooth, kind, box=box)  # from the other curve the motion has no impact there, it touches the stop
+    assert again.touches and not special.touches
+    for one in (special, again):
+        (start,) = (start for start in vs.switch(one) if start.type == "graze" and start.orbit._solution.K == 3)
+        curve = vs.bifurcation_curve(start, NAMES, box, virtual=False)
+        (end,) = (end for end in (curve.begins, curve.ends) if end.type == kind)
+        assert end.parameters == pytest.approx(special.parameters, abs=1e-11)
+        report = Report(0)
+        for k in chosen(curve, 9)[1:-1]:
+            t, P = curve.points.impact_t[k].values, solution_at(curve, k).equations.P
+            assert np.abs((t + P / 2 - t[:, None] + P / 4) % P - P / 4).min() > 1e-4  # no orbit taken twice
+            simulate_beside(report, curve, k, kind)
+        assert report.points >= 6 and report.wrong == []
+        assert len({(one.type, *one.parameters.values()) for one in curve.special}) == len(curve.special)

@@ -10,6 +10,9 @@ from reference.chatter import Chatter
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.curves.continuation import first_of
+from vibro_sweep.analysis.curves.start import start_at
+from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.engine.impulses.flights import contact_coordinates
 
 pytestmark = pytest.mark.slow
@@ -74,6 +77,19 @@ def test_one_mass(names, one_mass_onset):
     curve = vs.bifurcation_curve(one_mass_onset, names, ((0.05, 0.99), (0.2, 0.9)))
     assert [one.type for one in curve.special] == ["limit", "limit"]
     assert max(error_at(end) for end in (curve.begins, curve.ends)) < 1e-13
+
+
+def test_the_tangent_is_that_of_the_points(symmetric_onset):
+    """By differences of neighbouring points: the derivatives of the chatter's series have fewer orders than it."""
+    names = ("mu_m", "omega")
+    tracer, place = first_of(Tracer(start_at(symmetric_onset, names), names, ((9, 11), (0.6, 0.65))))
+    h = 1e-3  # nearer, rounding of slow impacts is seen
+    beside = [tracer.along(place, sign * h) for sign in (-2, -1, 1, 2)]
+    far, near = tracer.difference(beside[0], beside[3]), tracer.difference(beside[1], beside[2])
+    slope = (8 * near - far) / (12 * h)
+    tangent = place.tangent[: tracer.size].copy()
+    tangent[2 * tracer.K : tracer.S] = 0.0
+    np.testing.assert_allclose(slope, tangent, rtol=0, atol=3e-8)
 
 
 def test_simulated_orbits_rest_on_one_side_of_the_curve(one_mass_onset):

@@ -54,7 +54,7 @@ def _follow(report: Report, special, rng) -> None:
     if any(end.type == "failed" for end in (curve.begins, curve.ends)):
         report.wrong.append(f"{where}: failed")
     for k in chosen(curve, 3):
-        _simulate(report, curve, k, where)
+        simulate_beside(report, curve, k, where)
     k = int(rng.choice(chosen(curve, 9)))
     other = vs.bifurcation_curve(special_at(curve, k, special), ("b", "omega"), box)
     report.again += 1
@@ -81,7 +81,7 @@ def special_at(curve, k, special) -> SpecialPoint:
     return SpecialPoint(curve.type, parameters, orbit_of(system, solution), np.empty(0), impact=impact)
 
 
-def _simulate(report: Report, curve, k, where: str) -> None:
+def simulate_beside(report: Report, curve, k, where: str) -> None:
     """The orbit on each side of the curve, where there is one, is the motion that the engine computes."""
     solution = solution_at(curve, k)
     if curve.type == "graze":

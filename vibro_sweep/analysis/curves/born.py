@@ -14,6 +14,9 @@ Its other equilibria are at eps = -|d| |z|^2 (A + u), |u| = 1. Their Jacobian ha
 determinant -8 |d|^2 |z|^4 (1 + Re(A conj(u))). So there are two folds where |A| > 1, and one Neimark-Sacker curve,
 u = Re A - i sign(Im A) (1 - (Re A)^2)^(1/2), where the determinant is positive. At the resonance 1:3 no curve of this
 kind begins: the orbits of three times the period are saddles on all sides.
+
+Where a flip (pitchfork) meets a graze, one half of the doubled (asymmetric) orbits comes nearer to the stop by their
+amplitude r, so that they graze at a distance from the point that grows like r.
 """
 
 from dataclasses import replace
@@ -22,13 +25,16 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches import torus
-from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.curves.pair import rates_of_pair, second_order
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses.curve_tests import TOUCHING
 from vibro_sweep.engine.impulses.locus import THETA, Place
 
 AMPLITUDES = (0.01, 0.005, 0.0025, 0.00125, 0.02, 0.04)  # in the units of a curve, in the order in which they are tried
@@ -37,6 +43,8 @@ FARTHEST = 0.02  # relative distance of the point that is found, in both paramet
 ALIKE = 0.3  # relative difference from what the normal form says
 BEGINS = {  # curves, and which of two
     "degenerate_flip": (("fold", 1),),
+    "flip_graze": (("graze", 1),),
+    "pitchfork_graze": (("graze", 1),),
     "flip_neimark_sacker": (("neimark_sacker", 1),),
     "resonance_1_2": (("neimark_sacker", 1),),
     "fold_flip": (("neimark_sacker", 1),),
@@ -59,6 +67,8 @@ def born(special: CurvePoint) -> list[SpecialPoint]:
     solution = special.orbit._solution
     if solution is None:  # of an onset of sticking
         return []
+    if special.type in ("flip_graze", "pitchfork_graze") and not special.touches:
+        solution = bare(solution, int(np.argmin(np.abs(solution.jumps))))
     flip = Start("pitchfork" if solution.sigma == -1 else "flip", solution)
     quarter = Start("neimark_sacker", solution, theta=np.pi / 2)
     found = []
@@ -69,17 +79,17 @@ def born(special: CurvePoint) -> list[SpecialPoint]:
                 (guess := entry(special, name, parent, count, size, sign)) and entered(special, guess)
                 for size in (amplitude, amplitude / 2)
             ]
-            if None not in points and _leads_to(special, *points):
+            if None not in points and _leads_to(special, *points, 2 if name == "graze" else 4):
                 found.append(points[0])
                 break
     return found
 
 
-def _leads_to(special: CurvePoint, one: SpecialPoint, nearer: SpecialPoint) -> bool:
-    """Whether the distance from the point is as the square of the amplitude, as on the curve that begins there."""
+def _leads_to(special: CurvePoint, one: SpecialPoint, nearer: SpecialPoint, ratio: int) -> bool:
+    """Whether twice the amplitude is `ratio` times as far from the point, as on the curve that begins there."""
     values, far, near = (np.array(list(point.parameters.values())) for point in (special, one, nearer))
     size = np.maximum(np.abs(values), 1e-3)
-    return bool(np.linalg.norm((far - values - 4 * (near - values)) / size) < np.linalg.norm((far - values) / size))
+    return bool(np.linalg.norm((far - values - ratio * (near - values)) / size) < np.linalg.norm((far - values) / size))
 
 
 def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: float, sign: int) -> Entry | None:
@@ -104,6 +114,9 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
     child, change = repeated(parent.solution, 2, factor * w[:K], factor * w[K : 2 * K], -1.0)
     if name == "fold":
         return Entry(Start(name, child), change, None)
+    if name == "graze":  # at the turning point that is nearest to its stop
+        touching, index = inserted(child)
+        return Entry(Start(name, touching, index), np.insert(change, [index, child.K + index], 0.0), None)
     if special.type == "flip_neimark_sacker":
         mu = parent.solution.multipliers
         pair = mu[np.argmin(np.where(mu.imag > 1e-6, np.abs(np.abs(mu) - 1), np.inf))]
@@ -151,8 +164,13 @@ def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
         return None
     solution = tracer.solution(place)
     parameters = dict(zip(names, map(float, place.p[:2]), strict=True))
-    orbit = orbit_of(special.orbit.system.replace(**parameters), solution)
-    return SpecialPoint(guess.start.type, parameters, orbit, solution.multipliers, float(special.error))
+    orbit, error = orbit_of(special.orbit.system.replace(**parameters), solution), float(special.error)
+    if guess.start.type != "graze":
+        return SpecialPoint(guess.start.type, parameters, orbit, solution.multipliers, error)
+    (stop, impact), without = stop_and_impact(solution, guess.start.index), bare(solution, guess.start.index)
+    if without.margin < -TOUCHING * without.size_of_gap:  # the other half passes the stop
+        return None
+    return SpecialPoint("graze", parameters, orbit, without.multipliers, error, stop=stop, impact=impact)
 
 
 def _box(values: np.ndarray) -> np.ndarray:
@@ -173,10 +191,10 @@ def repeated(parent: Solution, count: int, dt, dD, mu: complex) -> tuple[Solutio
 
 def _bent(child: Solution, tracer: Tracer, place: Place, z: complex, moved) -> Solution:
     """To second order in z: the multipliers of the child, near 1, differ from 1 by as much as this changes them."""
-    bend, mean = tracer.second_order(place)
+    bend, mean = second_order(tracer, place)
     K, s, count = tracer.K, float(tracer.start.solution.sigma), child.K // tracer.K
     turns, signs = (-1.0) ** np.arange(count)[:, None], s ** np.arange(count)[:, None]
-    _, along = tracer.rates_of_pair(place)
+    _, along = rates_of_pair(tracer, place)
     each = 2 * turns * (z * z * bend).real + abs(z) ** 2 * mean + along @ moved  # (count, 2K)
     return replace(child, u=child.u + np.concatenate([each[:, :K].ravel(), (signs * each[:, K:]).ravel()]))
 
@@ -194,7 +212,7 @@ def _quarter(tracer: Tracer, place: Place, size: float, name: str, sign: int):
     r = size * abs(scale)
     z = r * np.exp(1j * (np.angle(d) - np.angle(u)) / 4)
     eps = -abs(d) * r**2 * (A + u)
-    rates, _ = tracer.rates_of_pair(place)
+    rates, _ = rates_of_pair(tracer, place)
     moved = np.linalg.solve(np.array([rates.real, rates.imag]), [eps.real, eps.imag])
     determinant = -8 * (1 + (A * u.conjugate()).real)
     theta = 4 * abs(d) * r**2 * determinant**0.5 if name == "neimark_sacker" else 0.0

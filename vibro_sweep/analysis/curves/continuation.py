@@ -14,9 +14,10 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.chatter import written_out
 from vibro_sweep.analysis.curves.curve_points import dataset
 from vibro_sweep.analysis.curves.events import is_real
+from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.curves.tracer import Tracer
-from vibro_sweep.analysis.curves.way import CurvePoint, Rows, Way, join
+from vibro_sweep.analysis.curves.way import CurvePoint, Way
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.engine.impulses.locus import Place
 from vibro_sweep.model.arguments import check_type
@@ -101,7 +102,7 @@ def bifurcation_curve(
             raise ValueError(f"box: {ends!r} of {name} is not allowed; it must be (lo, hi), lo < hi, around {value!r}")
     start = start_at(special, names)
     tracer = Tracer(start, names, limits)
-    tracer, first = _first(tracer)
+    tracer, first = first_of(tracer)
     if first is None:
         raise ValueError(f"special: this {special.type} cannot be followed; it may belong to several curves at once")
     if len(special.parameters) > 1 or special.type != start.type:  # perhaps of codimension two: begin beside it
@@ -123,7 +124,7 @@ def bifurcation_curve(
     return BifurcationCurve(start.type, names, ends, down.special[-1], up.special[-1], False, tracer, rows)
 
 
-def _first(tracer: Tracer) -> tuple[Tracer, Place | None]:
+def first_of(tracer: Tracer) -> tuple[Tracer, Place | None]:
     """The first point, if there is one; of an onset of sticking with as many impacts as are needed."""
     if tracer.start.state is None:
         return tracer, tracer.first()

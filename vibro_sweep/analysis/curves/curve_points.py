@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
+from vibro_sweep.analysis.curves.rows import Rows
 from vibro_sweep.analysis.curves.tracer import Tracer
-from vibro_sweep.analysis.curves.way import Rows
 from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
 from vibro_sweep.engine.impulses.curve_tests import TOUCHING
 from vibro_sweep.engine.impulses.flights import Flow

@@ -12,10 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.births import doubled
+from vibro_sweep.analysis.branches.special import bare, inserted
 from vibro_sweep.analysis.branches.way import halves_apart
 from vibro_sweep.analysis.curves.events import Found, event_near
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.curves.tracer import Tracer
+from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, THETA, TORUS, Place
 
 NEAR = 0.2  # in the units of the curve: how far from the expected end the other curve is entered
@@ -24,6 +27,7 @@ NEARER = 0.7  # of the angle of a, that of b, so that both tell where the angle 
 AIMED = 0.5  # distance of a strong resonance from where it is expected, of that which the last two steps have left
 BEFORE = (1e-3, 1e-2, 0.1)  # of the step to a singular end: how near to it the curve is still looked at
 ALIKE = 1e-6  # what tells the halves apart, of one orbit taken twice
+LEAST = 1e-4  # the same, where tests, which vanish like its square, still have their signs
 NEARLY = 0.05  # what tells the halves apart, in 1/omega and the fastest impulse, next to a birth
 LENGTHS = (1e-6, 1e-5, 1e-4, 1e-3)  # in which the end is looked for there
 BIRTHS = {
@@ -70,6 +74,21 @@ def strong_resonance(tracer: Tracer, a: Place, b: Place) -> End | None:
     return end._replace(share=share) if missed < AIMED * ahead else None
 
 
+def in_full(tracer: Tracer, end: End) -> Solution:
+    """The orbit at the end with all impacts of the curve that ends there."""
+    solution = end.tracer.solution(end.found.place)
+    while 2 * solution.K <= tracer.K:
+        solution = doubled(solution)
+    if solution.K == tracer.K:
+        return solution
+    touching, index = inserted(solution)  # both halves touch the stop, and that of the curve is meant
+    k, half = tracer.curve.index, solution.equations.P / 2
+    time = touching.times[index] + half * np.sign(k - index)
+    sides = (*solution.sides[:k], int(tracer.curve.sides[k]), *solution.sides[k:])
+    u = np.insert(solution.u, [k, solution.K + k], [time, 0.0])
+    return Solution(solution.family, solution.sigma, solution.halves, sides, u)
+
+
 def just_before(tracer: Tracer, a: Place, b: Place, end: End) -> Place | None:
     """A point of the curve between a and its singular end, as near to the end as Newton's method allows."""
     return _near(tracer, a, b, end.share, BEFORE)
@@ -78,16 +97,33 @@ def just_before(tracer: Tracer, a: Place, b: Place, end: End) -> Place | None:
 def _near(tracer: Tracer, a: Place, b: Place, share: float, parts) -> Place | None:
     """The first point that is found of those in front of an end by these parts of the way from a.
 
-    With theta = 0 or pi the equations hold all along the curve of folds or flips, which is not meant.
+    With theta = 0 or pi the equations hold all along the curve of folds or flips, and with equal halves all along the
+    graze curve of the simpler orbit; these are not meant.
     """
     row = tracer.row_of(tracer.difference(a, b))
     for part in parts:
         guess = tracer.between(a, b, (1 - part) * share)
         place, angle = tracer.correct(guess, row), guess.p[THETA]
         turn = abs(angle - math.pi * round(angle / math.pi))
-        if place is not None and (tracer.curve.kind != TORUS or abs(place.p[THETA] - angle) < 0.5 * turn):
+        if place is None or (tracer.curve.kind == TORUS and not abs(place.p[THETA] - angle) < 0.5 * turn):
+            continue
+        if _apart(tracer, place) >= max(LEAST, 0.5 * _apart(tracer, guess)):
             return place
     return None
+
+
+def struck(tracer: Tracer, solution: Solution) -> Solution:
+    """A point's orbit without the touch that only one of its two halves can have: a graze, of an odd number."""
+    of_graze = tracer.curve.kind == GRAZE and solution.K % 2
+    return bare(solution, tracer.curve.index) if of_graze else solution
+
+
+def _apart(tracer: Tracer, place: Place) -> float:
+    """By how much the halves of an orbit differ; inf where it cannot be a simpler one, taken twice."""
+    if not (tracer.curve.repeats or tracer.curve.mirrors):
+        return math.inf
+    solution = struck(tracer, tracer.solution(place))
+    return float(np.linalg.norm(halves_apart(solution, 1 if tracer.curve.repeats else -1)))
 
 
 def _is_repeated(end: End) -> bool:
@@ -100,7 +136,7 @@ def _is_repeated(end: End) -> bool:
 def birth(tracer: Tracer, a: Place, b: Place) -> End | None:
     """Where the orbit of the curve is born between a and b, on the curve of its parent."""
     for sigma in (1, -1):
-        parts = [halves_apart(tracer.solution(place), sigma) for place in (a, b)]
+        parts = [halves_apart(struck(tracer, tracer.solution(place)), sigma) for place in (a, b)]
         if parts[0] is None or parts[1] is None:
             continue
         sizes = [np.linalg.norm(part) for part in parts]
@@ -116,14 +152,14 @@ def birth(tracer: Tracer, a: Place, b: Place) -> End | None:
 def birth_near(tracer: Tracer, a: Place) -> End | None:
     """The same, where the steps end just before it: Newton's method may fail so near to the singular point."""
     for sigma in (1, -1):
-        parts = halves_apart(tracer.solution(a), sigma)
+        parts = halves_apart(struck(tracer, tracer.solution(a)), sigma)
         if parts is not None and np.linalg.norm(parts) < NEARLY:
             return _first_found(tracer, a, sigma, LENGTHS)
     return None
 
 
 def _first_found(tracer: Tracer, aim: Place, sigma: int, lengths) -> End | None:
-    solution, kind = tracer.solution(aim), tracer.curve.kind
+    solution, kind = struck(tracer, tracer.solution(aim)), tracer.curve.kind
     starts = []
     if sigma > 0 and solution.K % 4 == 0 and solution.halves % 4 == 0 and kind in (FOLD, TORUS):
         mirrored = solution.sides[solution.K // 4] == -solution.sides[0]

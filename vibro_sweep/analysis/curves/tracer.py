@@ -8,10 +8,9 @@ from vibro_sweep.analysis.branches.beginning import keeps_symmetry
 from vibro_sweep.analysis.curves.oscillators import Oscillators
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
-from vibro_sweep.engine.impulses import curve, locus
+from vibro_sweep.engine.impulses import curve, curve_path, locus
 from vibro_sweep.engine.impulses.curve_tests import RESIDUAL
 from vibro_sweep.engine.impulses.locus import Curve, Place
-from vibro_sweep.engine.impulses.normal_form import MIXED, SQUARE
 from vibro_sweep.model.linear import Family, forcing_period
 
 MOST_CORRECTIONS = 12
@@ -50,13 +49,15 @@ class Tracer:
         unit = np.concatenate([np.full(K, 1 / q.omega), np.full(K, speed), states, np.ptp(self.box, axis=1), [1.0]])
         row_unit = np.concatenate([np.full(K, speed / q.omega), np.full(K, speed), states])
         sides = np.array(which, float)
-        half, whole = K // 2, s.sigma == 1 and K > 0 and K % 2 == 0 and start.kind != locus.STICK
-        repeats = whole and s.halves % 4 == 0 and which[:half] == which[half:]
+        struck = which[: start.index] + which[start.index + 1 :] if start.kind == locus.GRAZE and K % 2 else which
+        half, whole = len(struck) // 2, s.sigma == 1 and len(struck) > 0 and len(struck) % 2 == 0
+        whole = whole and start.kind != locus.STICK
+        repeats = whole and s.halves % 4 == 0 and struck[:half] == struck[half:]
         symmetric = q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
-        mirrors = whole and symmetric and s.halves % 4 == 2 and which[:half] == tuple(-side for side in which[half:])
+        mirrors = whole and symmetric and s.halves % 4 == 2 and struck[:half] == tuple(-side for side in struck[half:])
         self.curve = Curve(start.kind, start.index, sides, float(s.sigma), unit, row_unit, repeats, mirrors)
-        self._bench = locus.new_bench(K, n)
-        self.path = curve.new_path(AT_ONCE, K, n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
+        self.bench = locus.new_bench(K, n)
+        self.path = curve_path.new_path(AT_ONCE, K, n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
 
     def resized(self, K: int) -> "Tracer":
         """For the same curve with K impacts: without the last, or with more on the same stop."""
@@ -79,9 +80,10 @@ class Tracer:
         """Polynomials around this place."""
         self.planes = self._around(place.p, np.ptp(self.box, axis=1) / 2)
 
-    def _do(self, task: int, place: Place, row: np.ndarray | None = None) -> float:
+    def do(self, task: int, place: Place, row: np.ndarray | None = None) -> float:
+        """One task of `curve.at`; what it leaves is in `bench`."""
         row = place.tangent if row is None else row
-        return curve.at(task, self.planes, self.curve, self.path, place, row, self._bench)
+        return curve.at(task, self.planes, self.curve, self.path, place, row, self.bench)
 
     def go_to(self, place: Place) -> bool:
         """Move the oscillator exactly to the parameters of `place`. False where it has no forced motion."""
@@ -91,49 +93,31 @@ class Tracer:
             values = self.oscillators.values(place.p)
         except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
             return False
-        self._do(curve.FIT, place)  # slopes
+        self.do(curve.FIT, place)  # slopes
         self.planes[0]["values"] = values
-        return bool(np.all(np.isfinite(place.p)) and self._do(curve.SPREAD, place))
+        return bool(np.all(np.isfinite(place.p)) and self.do(curve.SPREAD, place))
 
     def walk(self, place: Place) -> int:
         """Compiled steps from `path.a` until something happens, and why they end (engine/impulses/curve.py)."""
-        return int(self._do(curve.WALK, place, np.zeros(self.S + 3)))
+        return int(self.do(curve.WALK, place, np.zeros(self.S + 3)))
 
     def motion(self, place: Place) -> np.ndarray:
         """(K, 2) gap velocity and acceleration before each impact."""
         self.go_to(place)
-        self._do(curve.ASSEMBLE, place)
-        return self._bench.room.motion.copy()
-
-    def second_order(self, place: Place) -> tuple[np.ndarray, np.ndarray]:
-        """Of the times and impulses (2K,) on the plane z w + conj(z w) of a Neimark-Sacker point: of z^2 and |z|^2."""
-        self.go_to(place)
-        self._do(curve.EXAMINE, place)
-        series = self._bench.series[: 2 * self.K]
-        return series[:, SQUARE].copy(), series[:, MIXED].real.copy()
-
-    def rates_of_pair(self, place: Place) -> tuple[np.ndarray, np.ndarray]:
-        """Slopes along the orbits: of log mu of a Neimark-Sacker pair (2,), of times and impulses (2K, 2)."""
-        self.go_to(place)
-        self._do(curve.ASSEMBLE, place)
-        J, S = self._bench.J, self.S
-        along = -np.linalg.solve(J[:S, :S], J[:S, S : S + 2])
-        slopes = J[S, : S + 3] + 1j * J[S + 1, : S + 3]
-        unit = self.curve.unit
-        rates = -1j * (slopes[:S] @ along + slopes[S : S + 2]) / slopes[S + 2] / unit[S : S + 2]
-        return rates, (along * unit[:S, None] / unit[S : S + 2])[: 2 * self.K]
+        self.do(curve.ASSEMBLE, place)
+        return self.bench.room.motion.copy()
 
     def tail(self, place: Place) -> np.ndarray:
         """`numbers` of what follows the last impact written out, of an onset of sticking."""
         self.go_to(place)
-        self._do(curve.ASSEMBLE, place)
-        return self._bench.tail.numbers.copy()
+        self.do(curve.ASSEMBLE, place)
+        return self.bench.tail.numbers.copy()
 
     def nearest(self, place: Place) -> tuple[float, int]:
         """Time and side of the turning point nearest to its stop."""
         self.go_to(place)
-        self._do(curve.EXAMINE, place)
-        return float(self._bench.nearest[1]), int(self._bench.nearest[2])
+        self.do(curve.EXAMINE, place)
+        return float(self.bench.nearest[1]), int(self.bench.nearest[2])
 
     def first(self, row: np.ndarray | None = None) -> Place | None:
         """The point of the curve at `start`, or near it on the plane across `row`; None where it is not isolated."""
@@ -160,9 +144,9 @@ class Tracer:
             return None
         if self.curve.kind < locus.GRAZE:
             self._take_null_vectors(place)
-        if not self._do(curve.ASSEMBLE, place):
-            return None
-        return self.correct(place, self._direction() if row is None else row)
+        if row is None:
+            row = self._direction(place)
+        return None if row is None else self.correct(place, row)
 
     def beside(self, place: Place) -> list[Place]:
         """Points of the curve within the box, a little beside `place`."""
@@ -197,9 +181,9 @@ class Tracer:
     def _take_null_vectors(self, place: Place) -> None:
         """w and psi, the singular vectors of M(mu)."""
         place.w[:], place.psi[:] = 1.0, 1.0  # any border
-        self._do(curve.ASSEMBLE, place)
+        self.do(curve.ASSEMBLE, place)
         unit, row_unit = self.curve.unit[: self.S], self.curve.row_unit
-        M = (self._bench.room.M * unit / row_unit[:, None]).astype(complex)
+        M = (self.bench.room.M * unit / row_unit[:, None]).astype(complex)
         mu = {locus.FOLD: 1.0, locus.FLIP: -1.0}.get(self.curve.kind, np.exp(1j * place.p[locus.THETA]))
         closing = np.arange(2 * self.K, self.S)
         M[closing, closing] += self.curve.sigma * mu
@@ -208,10 +192,17 @@ class Tracer:
         left, _, right = np.linalg.svd(M)
         place.w[:], place.psi[:] = right[-1].conj(), left[:, -1].conj()
 
-    def _direction(self) -> np.ndarray:
-        """The tangent of the curve at the point that was assembled last."""
-        J = self._bench.J[: self.size - 1, : self.size]
-        return self.row_of(np.linalg.svd(J)[2][-1])
+    def _direction(self, place: Place) -> np.ndarray | None:
+        """The tangent of the curve at a place to which the oscillator was moved."""
+        if self.curve.kind == locus.STICK:
+            for row in np.eye(self.S + 3)[self.S : self.S + 2]:  # one of the parameters may have its extremum there
+                beside = copied(place)
+                if np.isfinite(self.do(curve.CORRECT, beside, row)):
+                    return self.row_of(beside.tangent)
+            return None
+        if not self.do(curve.ASSEMBLE, place):
+            return None
+        return self.row_of(np.linalg.svd(self.bench.J[: self.size - 1, : self.size])[2][-1])
 
     def row_of(self, tangent) -> np.ndarray:
         """The plane across a tangent: distances are not measured over h."""
@@ -229,7 +220,7 @@ class Tracer:
         exact : of the oscillator itself, or of its polynomials, which is ten times as fast and nearly the same
         """
         place = copied(guess)
-        near = self._do(curve.NEAR, place, row)
+        near = self.do(curve.NEAR, place, row)
         if not exact:
             return place if near else None
         place = place if near else copied(guess)
@@ -237,13 +228,13 @@ class Tracer:
         for _ in range(MOST_CORRECTIONS):
             if not self.go_to(place):
                 return None
-            change = self._do(curve.CORRECT, place, row)
+            change = self.do(curve.CORRECT, place, row)
             if not change <= 1.0:
                 return None
             if change <= 1e-15 or (change < 1e-8 and change >= 0.3 * before):
                 place.tests[RESIDUAL] = change
                 place.tangent[: self.size] /= np.linalg.norm(self._measured(place.tangent))
-                return place if self.go_to(place) and self._do(curve.EXAMINE, place) else None
+                return place if self.go_to(place) and self.do(curve.EXAMINE, place) else None
             before = change
         return None
 

@@ -2,20 +2,19 @@
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.births import doubled
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.curves.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.curves.chord import root
-from vibro_sweep.analysis.curves.ends import End, birth, birth_near, just_before, strong_resonance
+from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
 from vibro_sweep.analysis.curves.events import Event, found_between, found_to_edge, is_real, without_echoes
+from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.curves.tracer import Tracer, copied, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
-from vibro_sweep.engine.impulses import curve, curve_tests, locus
+from vibro_sweep.engine.impulses import curve, curve_path, curve_tests, locus
 from vibro_sweep.engine.impulses.locus import GRAZE, STICK, Place
 
 FIRST_STEP = 1e-3
@@ -38,30 +37,6 @@ class CurvePoint(SpecialPoint):
 
     curve: str = ""
     touches: bool = False
-
-
-class Rows(NamedTuple):
-    """Points of a curve."""
-
-    p: np.ndarray  # (points, 3)
-    t: np.ndarray  # (points, K)
-    D: np.ndarray  # (points, K)
-    motion: np.ndarray  # (points, K, 2)
-    margin: np.ndarray  # (points,)
-    residual: np.ndarray  # (points,)
-
-
-def join(parts: list[Rows]) -> Rows:
-    """One after the other; NaN where a part has fewer impacts than another."""
-    K = max(part.t.shape[1] for part in parts)
-
-    def filled(values):
-        missing = [(0, 0)] * values.ndim
-        missing[1] = (0, K - values.shape[1])
-        return np.pad(values, missing, constant_values=np.nan)
-
-    full = [part._replace(t=filled(part.t), D=filled(part.D), motion=filled(part.motion)) for part in parts]
-    return Rows(*(np.concatenate(values) for values in zip(*full, strict=True)))
 
 
 class Way:
@@ -102,14 +77,14 @@ class Way:
                     break
                 w, path = self.tracer, self.tracer.path
                 a, b = path.a, locus.new_place(w.K, w.n)
-            elif reason == curve.CLOSED and closes(w, a, b, self.first):
+            elif reason == curve.LEFT and (beyond := outside_between(w, a, b)) is not None:
+                self._leave(a, beyond)
+                return
+            elif reason in (curve.CLOSED, curve.LEFT) and closes(w, a, b, self.first):
                 self.closed = True
                 self.special.append(self._at("closed", self.first, np.nan))
                 return
-            elif reason == curve.LEFT:
-                self._leave(a, b)
-                return
-            elif reason in (curve.EVENT, curve.STRONG, curve.CLOSED):
+            elif reason in (curve.EVENT, curve.STRONG, curve.CLOSED, curve.LEFT):
                 if self._ends(a, b, reason):
                     return
                 if not passable(w, b):
@@ -140,7 +115,7 @@ class Way:
         self.tracer = w
         return True
 
-    def _keep(self, record: curve.Record, count: int) -> None:
+    def _keep(self, record: curve_path.Record, count: int) -> None:
         r = record
         values = r.p, r.t, r.D, r.motion, r.tests[:, curve_tests.MARGIN], r.tests[:, curve_tests.RESIDUAL]
         self.rows.append(Rows(*(value[:count].copy() for value in values)))
@@ -228,10 +203,8 @@ class Way:
     def _end(self, end: End) -> None:
         """The end, on the curve of another orbit."""
         other, found = end.tracer, end.found
-        w, solution, p = self.tracer, other.solution(found.place), found.place.p.copy()
+        w, solution, p = self.tracer, in_full(self.tracer, end), found.place.p.copy()
         self.special.append(self._at(found.event.type, found.place, found.error, found.event, other))
-        while solution.K < w.K:
-            solution = doubled(solution)
         q = solution.family.linear
         if w.curve.kind == locus.TORUS:
             p[locus.THETA] = round(self.points.p[-1, locus.THETA] / np.pi) * np.pi
@@ -259,6 +232,16 @@ class Way:
             of_type, parameters, orbit, multipliers, error, impact=impact, stop=stop, curve=w.start.type,
             touches=event is not None and event.touches,
         )  # fmt: skip
+
+
+def outside_between(tracer: Tracer, a: Place, b: Place) -> Place | None:
+    """b, or the point between a and b where a parameter has its extremum, if it lies out of the box."""
+    extrema = [tracer.S + j for j in range(2) if a.tangent[tracer.S + j] * b.tangent[tracer.S + j] < 0]
+    found = [root(tracer, a, b, lambda place, j=j: place.tangent[j]) for j in extrema]
+    for place in (b, *(one[1] for one in found if one is not None)):
+        if np.any((place.p[:2] < tracer.box[:, 0]) | (place.p[:2] > tracer.box[:, 1])):
+            return place
+    return None
 
 
 def passable(tracer: Tracer, place: Place) -> bool:

@@ -9,8 +9,14 @@ T - s is followed by one at T - p(s), and its impulse is D(s). With mu_m(s) = su
     sum_m y_m (-s)^(m-1)/(m-1)! = sum_k D_k gamma'(s_k - s) + D(s) R/(1 + R)      restitution
 
 p, D and mu_m are power series in s, solved order by order: p = s pi(s), D = s^2 d(s), mu_m = s^(m+2) nu_m(s), and
-pi(0) = phi with phi^2 (2 + phi) = R (1 + 2 phi) (orbits.md). Each number is followed by its derivatives: by the state
-at T, by T, and by the two parameters.
+pi(0) = phi with phi^2 (2 + phi) = R (1 + 2 phi) (orbits.md). At each order l two linear equations give d_l and pi_l,
+since pi^k and nu_m are linear in them:
+
+    (pi^k)_l = .. + k phi^(k-1) pi_l      nu_m,l = .. + alpha_m d_l + beta_m pi_l
+    nu_1,l - nu_0,l = ..                  R/(1 + R) d_l + nu_0,l = ..
+
+Derivatives by the state at T, by T, and by the two parameters satisfy the same equations with other right sides. They
+are for Newton's method, which needs fewer orders of them.
 """
 
 import math
@@ -22,176 +28,169 @@ from vibro_sweep.engine.impulses.plane import GAIN_HIGH, GAIN_LOW
 from vibro_sweep.engine.simd.jit import jit
 
 ORDERS = 16  # of the series
+SLOPES = 8  # orders of its derivatives: what is left out is at most 3e-8 of them
 FACTORIAL = np.array([math.factorial(m) for m in range(ORDERS + 4)], float)
-CHOOSE = np.array([[math.comb(m, j) * (-1.0) ** (m - j) for j in range(ORDERS + 2)] for m in range(ORDERS + 2)])
+_CHOOSE = [[math.comb(m, j) * (-1.0) ** (m - j) for j in range(ORDERS + 2)] for m in range(ORDERS + 2)]
+GAP = np.array(_CHOOSE) / FACTORIAL[: ORDERS + 2, None]  # of (s_k - s)^m/m!, powers of s_k
+SPEED = np.vstack([np.zeros(ORDERS + 2), GAP[:-1]])  # of its derivative
 
 
 class Tail(NamedTuple):
-    """V = n + 4: a number, its derivatives by h (n), by the time and by both parameters."""
+    """W = n + 3 derivatives: by h (n), by the time and by both parameters; they stand behind their numbers."""
 
     rows: np.ndarray  # (3, ORDERS + 3, n): e_gap A^m, and its derivatives by the parameters
     columns: np.ndarray  # (3, ORDERS + 1, n): A^m e_v
-    y: np.ndarray  # (ORDERS + 3, V)
-    gamma: np.ndarray  # (ORDERS + 2, V)
-    power: np.ndarray  # (ORDERS + 3, ORDERS, V): coefficients of pi^k
-    nu: np.ndarray  # (ORDERS + 1, ORDERS, V)
-    d: np.ndarray  # (ORDERS, V)
-    work: np.ndarray  # (12, V)
-    Q: np.ndarray  # (n, V + 1): the last column is the derivative by s
+    y: np.ndarray  # (ORDERS + 3,)
+    y_slopes: np.ndarray  # (ORDERS + 3, W)
+    gamma: np.ndarray  # (ORDERS + 2,)
+    gamma_slopes: np.ndarray  # (ORDERS + 2, W)
+    power: np.ndarray  # (ORDERS, ORDERS + 3): [l, k] is coefficient l of pi^k
+    power_slopes: np.ndarray  # (SLOPES, ORDERS + 3, W)
+    nu: np.ndarray  # (ORDERS, ORDERS + 1): [l, m] is coefficient l of nu_m
+    nu_slopes: np.ndarray  # (SLOPES, ORDERS + 1, W)
+    d: np.ndarray  # (ORDERS,)
+    d_slopes: np.ndarray  # (SLOPES, W)
+    kept_slopes: np.ndarray  # (W,): of R/(1 + R)
+    sides: np.ndarray  # (3, W): right sides
+    Q: np.ndarray  # (n, W + 2): the number, its derivatives, and that by s
     numbers: np.ndarray  # (2,): see chatter.py
 
 
 def new_tail(n: int) -> Tail:
-    V, L = n + 4, ORDERS
-    shapes = (3, L + 3, n), (3, L + 1, n), (L + 3, V), (L + 2, V), (L + 3, L, V), (L + 1, L, V), (L, V), (12, V)
-    return Tail(*map(np.zeros, shapes), np.zeros((n, V + 1)), np.zeros(2))
+    W, L = n + 3, ORDERS
+    shapes = (3, L + 3, n), (3, L + 1, n), L + 3, (L + 3, W), L + 2, (L + 2, W), (L, L + 3), (SLOPES, L + 3, W)
+    more = (L, L + 1), (SLOPES, L + 1, W), L, (SLOPES, W), W, (3, W), (n, W + 2), 2
+    return Tail(*map(np.zeros, [*shapes, *more]))
 
 
 @jit
-def add(out, factor, a):
-    for v in range(len(out)):
-        out[v] += factor * a[v]
-
-
-@jit
-def add_product(out, factor, a, b):
-    for v in range(1, len(out)):
-        out[v] += factor * (a[0] * b[v] + a[v] * b[0])
-    out[0] += factor * a[0] * b[0]
-
-
-@jit
-def divide(out, a):
-    out[0] /= a[0]
-    for v in range(1, len(out)):
-        out[v] = (out[v] - out[0] * a[v]) / a[0]
-
-
-@jit
-def clear(out):
-    for v in range(len(out)):
-        out[v] = 0.0
-
-
-@jit
-def take_power(tail, k, j):
-    """Coefficient j of pi^k, from those before (Miller)."""
-    power = tail.power
-    out = power[k, j]
-    clear(out)
-    for i in range(1, j + 1):
-        add_product(out, (k * i - j + i) / j, power[1, i], power[k, j - i])
-    divide(out, power[1, 0])
-
-
-@jit
-def later_impacts(tail, m, l, out):  # noqa: E741
-    """out = coefficient l of pi^(m + 2) (d + nu_m)(s pi), as far as d_i and nu_m,i are known: i < l."""
-    clear(out)
-    for i in range(l):
-        add_product(out, 1.0, tail.d[i], tail.power[i + m + 2, l - i])
-        add_product(out, 1.0, tail.nu[m, i], tail.power[i + m + 2, l - i])
-
-
-@jit
-def first_order(f, side, tail):
-    """phi, d_0 and nu_m,0."""
+def start(f, side, tail):
+    """phi, its powers, d_0 and nu_m,0, and their derivatives."""
     gain = GAIN_HIGH if side > 0 else GAIN_LOW
-    n, power, d, nu, w = f.n, tail.power, tail.d, tail.nu, tail.work
-    R, phi = f.numbers[gain] - 1.0, 1.0
+    n, power, nu, d = f.n, tail.power, tail.nu, tail.d
+    W, R, phi = n + 3, f.numbers[gain] - 1.0, 1.0
     for _ in range(60):
         step = (phi * phi * (2.0 + phi) - R * (1.0 + 2.0 * phi)) / (3.0 * phi * phi + 4.0 * phi - 2.0 * R)
         phi -= step
         if not abs(step) > 1e-16 * phi:
             break
-    clear(power[1, 0])
-    power[1, 0, 0] = phi
-    for j in range(2):
-        change = f.number_slopes[j, gain] * (1.0 + 2.0 * phi)
-        power[1, 0, n + 2 + j] = change / (3.0 * phi * phi + 4.0 * phi - 2.0 * R)
-    for k in range(2, ORDERS + 3):
-        clear(power[k, 0])
-        add_product(power[k, 0], 1.0, power[k - 1, 0], power[1, 0])
+    power[0, 0] = 1.0
+    for k in range(1, ORDERS + 3):
+        power[0, k] = power[0, k - 1] * phi
+    # nu_m,0 = phi^(m+2)/(1 - phi^(m+2)) d_0
+    rest, other = power[0, 2] / (1.0 - power[0, 2]), power[0, 3] / (1.0 - power[0, 3])
+    d[0] = tail.y[3] / (6.0 * (rest - other))
     for m in range(ORDERS + 1):
-        clear(nu[m, 0])
-        add(nu[m, 0], 1.0, power[m + 2, 0])
-        clear(w[0])
-        add(w[0], -1.0, power[m + 2, 0])
-        w[0, 0] += 1.0
-        divide(nu[m, 0], w[0])
-    clear(w[0])
-    add(w[0], 6.0, nu[0, 0])
-    add(w[0], -6.0, nu[1, 0])
-    clear(d[0])
-    add(d[0], 1.0, tail.y[3])
-    divide(d[0], w[0])
-    for m in range(ORDERS + 1):
-        clear(w[0])
-        add_product(w[0], 1.0, nu[m, 0], d[0])
-        for v in range(n + 4):
-            nu[m, 0, v] = w[0, v]
+        nu[0, m] = d[0] * power[0, m + 2] / (1.0 - power[0, m + 2])
+    for v in range(W):
+        by_R = f.number_slopes[v - n - 1, gain] if v > n else 0.0
+        by_phi = by_R * (1.0 + 2.0 * phi) / (3.0 * phi * phi + 4.0 * phi - 2.0 * R)
+        tail.kept_slopes[v] = by_R / f.numbers[gain] ** 2
+        for k in range(1, SLOPES + 3):
+            tail.power_slopes[0, k, v] = k * power[0, k - 1] * by_phi
+        change = 2.0 * phi * by_phi / (1.0 - power[0, 2]) ** 2 - 3.0 * power[0, 2] * by_phi / (1.0 - power[0, 3]) ** 2
+        tail.d_slopes[0, v] = (tail.y_slopes[3, v] / 6.0 - d[0] * change) / (rest - other)
+        for m in range(SLOPES + 1):
+            q = power[0, m + 2]
+            turn = d[0] * tail.power_slopes[0, m + 2, v] / (1.0 - q)
+            tail.nu_slopes[0, m, v] = (tail.d_slopes[0, v] * q + turn) / (1.0 - q)
 
 
 @jit
-def next_order(f, side, l, tail):  # noqa: E741
-    """pi_l, d_l and nu_m,l from those of lower order."""
-    gain = GAIN_HIGH if side > 0 else GAIN_LOW
-    n, power, d, nu, w = f.n, tail.power, tail.d, tail.nu, tail.work
-    gap, speed, kept, one = w[0], w[1], w[2], w[3]
-    # nu_m,l = b_m + alpha_m d_l + beta_m pi_l for m = 0, 1
-    clear(power[1, l])
-    for m in range(2):
-        alpha, beta, b = w[4 + m], w[6 + m], w[8 + m]
-        take_power(tail, m + 2, l)
-        later_impacts(tail, m, l, b)
-        clear(one)
-        add(one, -1.0, power[l + m + 2, 0])
-        one[0] += 1.0
-        divide(b, one)
-        clear(alpha)
-        add(alpha, 1.0, power[l + m + 2, 0])
-        divide(alpha, one)
-        clear(beta)
-        add_product(beta, m + 2.0, power[m + 1, 0], d[0])
-        add_product(beta, m + 2.0, power[m + 1, 0], nu[m, 0])
-        divide(beta, one)
+def shares(tail, l, m):  # noqa: E741
+    """alpha_m and beta_m at order l."""
+    power = tail.power[0]
+    left = 1.0 - power[l + m + 2]
+    return power[l + m + 2] / left, (m + 2) * power[m + 1] * (tail.d[0] + tail.nu[0, m]) / left
+
+
+@jit
+def solve_two(kept, tail, l, gap, speed):  # noqa: E741
+    """d_l and pi_l from both equations."""
+    alpha, beta = shares(tail, l, 0)
+    other_alpha, other_beta = shares(tail, l, 1)
+    a, b, c = other_alpha - alpha, other_beta - beta, kept + alpha
+    determinant = a * beta - b * c
+    return (gap * beta - speed * b) / determinant, (speed * a - gap * c) / determinant
+
+
+@jit
+def next_order(kept, l, tail):  # noqa: E741
+    """pi_l, d_l, their powers and nu_m,l from those of lower order; kept: R/(1 + R)."""
+    power, nu, d = tail.power, tail.nu, tail.d
+    highest, most = ORDERS + 3 - l, ORDERS + 1 - l
+    for k in range(highest):
+        power[l, k] = 0.0
+    for m in range(most):
+        nu[l, m] = 0.0
+    for i in range(1, l):  # Miller's rule for powers of a series
+        factor = power[i, 1] / (l * power[0, 1])
+        for k in range(2, highest):
+            power[l, k] += (k * i - l + i) * factor * power[l - i, k]
+    for i in range(l):
+        for m in range(most):
+            nu[l, m] += (d[i] + nu[i, m]) * power[l - i, i + m + 2]
+    for m in range(most):
+        nu[l, m] /= 1.0 - power[0, l + m + 2]
     sign = -1.0 if l % 2 == 0 else 1.0
-    clear(gap)
-    clear(speed)
-    add(gap, sign / FACTORIAL[l + 3], tail.y[l + 3])
-    add(speed, -sign / FACTORIAL[l + 2], tail.y[l + 3])
+    gap = sign / FACTORIAL[l + 3] * tail.y[l + 3] + nu[l, 0] - nu[l, 1]
+    speed = -sign / FACTORIAL[l + 2] * tail.y[l + 3] - nu[l, 0]
     for m in range(2, l + 2):
+        moved = moving = 0.0
         for j in range(m + 1):
-            add_product(gap, -CHOOSE[m, j] / FACTORIAL[m], tail.gamma[m], nu[j, l - m + 1])
-            if j < m:
-                add_product(speed, -CHOOSE[m - 1, j] / FACTORIAL[m - 1], tail.gamma[m], nu[j, l - m + 1])
-    # two equations: (alpha_1 - alpha_0) d + (beta_1 - beta_0) pi = gap, (R/(1 + R) + alpha_0) d + beta_0 pi = speed
-    add(gap, 1.0, w[8])
-    add(gap, -1.0, w[9])
-    add(speed, -1.0, w[8])
-    add(w[5], -1.0, w[4])
-    add(w[7], -1.0, w[6])
-    clear(kept)
-    kept[0] = 1.0 - 1.0 / f.numbers[gain]
-    for j in range(2):
-        kept[n + 2 + j] = f.number_slopes[j, gain] / f.numbers[gain] ** 2
-    add(kept, 1.0, w[4])
-    clear(one)
-    add_product(one, 1.0, w[5], w[6])
-    add_product(one, -1.0, w[7], kept)
-    clear(d[l])
-    add_product(d[l], 1.0, gap, w[6])
-    add_product(d[l], -1.0, speed, w[7])
-    divide(d[l], one)
-    add_product(power[1, l], 1.0, speed, w[5])
-    add_product(power[1, l], -1.0, gap, kept)
-    divide(power[1, l], one)
-    for k in range(2, ORDERS + 3 - l):
-        take_power(tail, k, l)
-    for m in range(ORDERS + 1 - l):
-        later_impacts(tail, m, l, nu[m, l])
-        add_product(nu[m, l], 1.0, d[l], power[l + m + 2, 0])
-        clear(one)
-        add(one, -1.0, power[l + m + 2, 0])
-        one[0] += 1.0
-        divide(nu[m, l], one)
+            moved += GAP[m, j] * nu[l - m + 1, j]
+            moving += SPEED[m, j] * nu[l - m + 1, j]
+        gap -= tail.gamma[m] * moved
+        speed -= tail.gamma[m] * moving
+    d[l], power[l, 1] = solve_two(kept, tail, l, gap, speed)
+    for k in range(2, highest):
+        power[l, k] += k * power[0, k - 1] * power[l, 1]
+    for m in range(most):
+        alpha, beta = shares(tail, l, m)
+        nu[l, m] += alpha * d[l] + beta * power[l, 1]
+
+
+@jit
+def next_slopes(kept, W, l, tail):  # noqa: E741
+    """The derivatives of what `next_order` has computed."""
+    power, nu, d = tail.power, tail.nu, tail.d
+    powers, nus, ds, sides = tail.power_slopes, tail.nu_slopes, tail.d_slopes, tail.sides
+    highest, most, gap, speed, moved = SLOPES + 3 - l, SLOPES + 1 - l, sides[0], sides[1], sides[2]
+    for k in range(2, highest):  # d(pi^k) = k pi^(k-1) dpi
+        for v in range(W):
+            powers[l, k, v] = 0.0
+        for i in range(l):
+            for v in range(W):
+                powers[l, k, v] += k * power[l - i, k - 1] * powers[i, 1, v]
+    for m in range(most):
+        left = 1.0 - power[0, l + m + 2]
+        for v in range(W):
+            nus[l, m, v] = (d[l] + nu[l, m]) * powers[0, l + m + 2, v] / left
+        for i in range(l):
+            later, both = power[l - i, i + m + 2] / left, (d[i] + nu[i, m]) / left
+            for v in range(W):
+                nus[l, m, v] += (ds[i, v] + nus[i, m, v]) * later + both * powers[l - i, i + m + 2, v]
+    sign = -1.0 if l % 2 == 0 else 1.0
+    for v in range(W):
+        gap[v] = sign / FACTORIAL[l + 3] * tail.y_slopes[l + 3, v] + nus[l, 0, v] - nus[l, 1, v]
+        speed[v] = -sign / FACTORIAL[l + 2] * tail.y_slopes[l + 3, v] - nus[l, 0, v] - d[l] * tail.kept_slopes[v]
+    for m in range(2, l + 2):
+        for factors, side in ((GAP, gap), (SPEED, speed)):
+            total = 0.0
+            for v in range(W):
+                moved[v] = 0.0
+            for j in range(m + 1):
+                total += factors[m, j] * nu[l - m + 1, j]
+                for v in range(W):
+                    moved[v] += factors[m, j] * nus[l - m + 1, j, v]
+            for v in range(W):
+                side[v] -= tail.gamma_slopes[m, v] * total + tail.gamma[m] * moved[v]
+    for v in range(W):
+        ds[l, v], powers[l, 1, v] = solve_two(kept, tail, l, gap[v], speed[v])
+    for k in range(2, highest):
+        for v in range(W):
+            powers[l, k, v] += k * power[0, k - 1] * powers[l, 1, v]
+    for m in range(most):
+        alpha, beta = shares(tail, l, m)
+        for v in range(W):
+            nus[l, m, v] += alpha * ds[l, v] + beta * powers[l, 1, v]

@@ -5,23 +5,21 @@ something happens between two points, so that the caller can locate it; both poi
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.impulses.chatter_steps import follow
+from vibro_sweep.engine.impulses.curve_path import bulges, comes_back, copy_place, keep, outside
 from vibro_sweep.engine.impulses.curve_tests import BEFORE, LAST, LENGTH, RESIDUAL, examine, happens
 from vibro_sweep.engine.impulses.locus import (
     FIRST,
     SECOND,
     STICK,
-    TESTS,
     THETA,
     TORUS,
-    Place,
     assemble,
     in_order,
     move,
-    new_place,
     newton_step,
     size_of,
 )
@@ -29,61 +27,14 @@ from vibro_sweep.engine.impulses.plane import fit_at, move_to, spread
 from vibro_sweep.engine.simd.jit import entry, jit
 
 FULL, EVENT, CLOSED, FAILED, FAR, LEFT, STRONG, CHATTER = range(8)
-# why a call ends; FAR: beyond the reach of the plane, LEFT: out of the box, STRONG: near the resonance 1:1 or 1:2,
-# CHATTER: more or fewer impacts of a chatter sequence are to be written out
+# why a call ends; FAR: beyond the reach of the plane, LEFT: perhaps out of the box, STRONG: near the resonance 1:1 or
+# 1:2, CHATTER: more or fewer impacts of a chatter sequence are to be written out
 MOST_CORRECTIONS = 6
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
 BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
 EARLY = 10  # points before which a curve is not yet taken to be closed
 NEAR_STRONG = 0.05  # theta from 0 or pi
 LATEST, EARLIEST = 0.9, 0.4  # values of LAST and BEFORE at which another number of impacts is to be written out
-
-
-class Record(NamedTuple):
-    """Points, in order."""
-
-    t: np.ndarray  # (most, K)
-    D: np.ndarray  # (most, K)
-    motion: np.ndarray  # (most, K, 2)
-    p: np.ndarray  # (most, 3)
-    tests: np.ndarray  # (most, TESTS)
-    h: np.ndarray  # (most, n)
-
-
-class Path(NamedTuple):
-    """How to step, in the units of the curve, and what is passed."""
-
-    longest: float
-    shortest: float
-    straight: float  # radians between neighbouring tangents
-    box: np.ndarray  # (2, 2): ends of both parameters
-    counts: np.ndarray  # (3,) integers: points of the curve before this call; points and corrections of this call
-    first: Place  # of the curve
-    a: Place  # where the last step began
-    record: Record
-
-
-def new_path(most: int, K: int, n: int, longest: float, shortest: float, straight: float, box) -> Path:
-    """most: points of one call."""
-    record = Record(*map(np.zeros, [(most, K), (most, K), (most, K, 2), (most, 3), (most, TESTS), (most, n)]))
-    return Path(longest, shortest, straight, box, np.zeros(3, np.int64), new_place(K, n), new_place(K, n), record)
-
-
-@jit
-def copy_place(a, b):
-    """b <- a."""
-    for i in range(len(a.t)):
-        b.t[i], b.D[i] = a.t[i], a.D[i]
-    for i in range(len(a.h)):
-        b.h[i] = a.h[i]
-    for i in range(3):
-        b.p[i] = a.p[i]
-    for i in range(len(a.w)):
-        b.w[i], b.psi[i] = a.w[i], a.psi[i]
-    for i in range(len(a.tangent)):
-        b.tangent[i] = a.tangent[i]
-    for i in range(len(a.tests)):
-        b.tests[i] = a.tests[i]
 
 
 @jit
@@ -141,51 +92,6 @@ def correct(f, c, place, row, b):
 
 
 @jit
-def outside(path, place):
-    for j in range(2):
-        if not path.box[j, 0] <= place.p[j] <= path.box[j, 1]:
-            return True
-    return False
-
-
-@jit
-def comes_back(c, a, first, length):
-    """Whether the step from a passes the first point; times count modulo the forcing period."""
-    K, S = len(a.t), len(a.w)
-    shift = 0.0
-    for i in range(K):
-        shift += (first.t[i] - a.t[i]) / c.unit[i] / K
-    shift = 2.0 * math.pi * math.floor(shift / (2.0 * math.pi) + 0.5)
-    along, size = 0.0, 0.0
-    for j in range(size_of(c, a)):
-        if j < K:
-            offset = (first.t[j] - a.t[j]) / c.unit[j] - shift
-        elif j < 2 * K:
-            offset = (first.D[j - K] - a.D[j - K]) / c.unit[j]
-        elif j < S:
-            continue
-        else:
-            offset = (first.p[j - S] - a.p[j - S]) / c.unit[j]
-        along += offset * a.tangent[j]
-        size += offset * offset
-    return 0.0 <= along <= length and size - along * along < 0.01 * length * length
-
-
-@jit
-def keep(place, b, record, count):
-    for i in range(len(place.t)):
-        record.t[count, i], record.D[count, i] = place.t[i], place.D[i]
-        for j in range(2):
-            record.motion[count, i, j] = b.room.motion[i, j]
-    for j in range(3):
-        record.p[count, j] = place.p[j]
-    for j in range(len(place.tests)):
-        record.tests[count, j] = place.tests[j]
-    for j in range(len(place.h)):
-        record.h[count, j] = place.h[j]
-
-
-@jit
 def rate_again(f, a, b):
     """h' before the first impact of a, where b was used for another point since."""
     if move_to(f, a.p[FIRST], a.p[SECOND]):
@@ -193,6 +99,17 @@ def rate_again(f, a, b):
             b.room.rate[0, r] = f.A[r, len(a.h)]
             for k in range(len(a.h)):
                 b.room.rate[0, r] += f.A[r, k] * a.h[k]
+
+
+@jit
+def set_up(f, c, place, b):
+    """What tests of a corrected point need; of a chatter's tail, what the last correction left serves."""
+    if c.kind != STICK:
+        return assemble(f, c, place, b)
+    for r in range(len(place.h)):
+        b.room.h[0, r] = place.h[r]
+    follow(f, c.sides, c.sigma, place.t, place.D, b.room)
+    return True
 
 
 @jit
@@ -228,9 +145,9 @@ def walk(f, c, path, place, row, b):
             rate_again(f, a, b)
             continue
         place.tests[LENGTH] = length
-        if outside(path, place):
+        if outside(path, place) or bulges(path, c, a, place):
             return LEFT
-        if not (move_to(f, place.p[FIRST], place.p[SECOND]) and assemble(f, c, place, b)):
+        if not (move_to(f, place.p[FIRST], place.p[SECOND]) and set_up(f, c, place, b)):
             return FAILED
         examine(f, c, place, b)
         if c.kind == TORUS and not NEAR_STRONG < place.p[THETA] < math.pi - NEAR_STRONG:

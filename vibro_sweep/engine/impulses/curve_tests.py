@@ -1,18 +1,14 @@
-"""Tests along a bifurcation curve: zero at its points of codimension two; and the certificate of its orbit."""
+"""Tests along a bifurcation curve: zero at its points of codimension two."""
 
-import cmath
 import math
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.chatter import NEXT, REACH
-from vibro_sweep.engine.impulses.extremes import extremes_of_cell
+from vibro_sweep.engine.impulses.chatter import REACH
+from vibro_sweep.engine.impulses.curve_certificate import certify
 from vibro_sweep.engine.impulses.factors import factorise, square, substitute
-from vibro_sweep.engine.impulses.flights import OVERLAP
 from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, STICK, THETA, TORUS
 from vibro_sweep.engine.impulses.normal_form import coefficient
-from vibro_sweep.engine.impulses.plane import HIGH, LOW, OMEGA, polynomial
-from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
@@ -22,7 +18,6 @@ PLUS, MINUS, DOUBLE, CUSP, PAIR, BARE_PLUS, BARE_MINUS, NORMAL, MARGIN, LENGTH, 
 # the reach of its series
 SIGNED = 8  # so many of them are zero at points of codimension two
 TOUCHING = 1e-12  # margin, in parts of the size of the gap, that counts as zero
-ASIDE = 1e-3  # of 1/omega beside a graze in which its own turning point lies
 
 
 @jit
@@ -104,60 +99,6 @@ def pair_test(c, place, b):
 
 
 @jit
-def certify(f, c, place, b):
-    """The least distance of a turning point of the gap from its stop; that of the graze itself is left out.
-
-    b.nearest: the distance, its time and the side.
-    """
-    K, n = len(place.t), f.n
-    N, omega = n // 2, f.numbers[OMEGA]
-    cell, nearest, h, after = b.cell, b.nearest, b.after[0], b.after[1]
-    nearest[0] = np.inf
-    aside = ASIDE / omega
-    for i in range(K):
-        end = place.t[i + 1] if i + 1 < K else place.t[0] + f.P
-        begin = place.t[i]
-        for r in range(n):
-            h[r] = b.room.h[i, r]
-        h[N] += place.D[i]
-        if c.kind >= GRAZE:
-            if i == c.index:
-                polynomial(n, f.series, aside, b.room.other[0])
-                for r in range(n):
-                    after[r] = b.room.other[0, r, n]
-                    for k in range(n):
-                        after[r] += b.room.other[0, r, k] * h[k]
-                for r in range(n):
-                    h[r] = after[r]
-                begin += aside
-            if (i + 1) % K == c.index:
-                end -= b.tail.numbers[NEXT] if c.kind == STICK else aside
-        length = end - begin
-        e, turn = cmath.exp(1j * (omega * begin + f.tau)), cmath.exp(1j * omega * f.width)
-        cells = int(length / f.width)
-        for k in range(cells + 1):
-            swing = f.Z[0] * e
-            for q in range(ORDER + 1):
-                total = f.series[q, 0, n]
-                for r in range(n):
-                    total += f.series[q, 0, r] * h[r]
-                cell[q] = total + swing.real
-                swing *= 1j * omega / (q + 1)
-            width = min(f.width * OVERLAP, length - k * f.width)
-            if width > 0.0 and extremes_of_cell(cell, width, f.numbers[LOW], f.numbers[HIGH], nearest, b.waiting):
-                nearest[1] += begin + k * f.width
-            if k < cells:
-                for r in range(n):
-                    after[r] = f.powers[0, r, n]
-                    for q in range(n):
-                        after[r] += f.powers[0, r, q] * h[q]
-                for r in range(n):
-                    h[r] = after[r]
-                e *= turn
-    return nearest[0]
-
-
-@jit
 def examine(f, c, place, b):
     """Tests and certificate of a corrected point, for which `locus.assemble` has filled b; its new w and psi."""
     K, S = len(place.t), len(place.w)
@@ -210,10 +151,11 @@ def is_born(c, sign, a, b):
 
     A necessary condition, from the impulses alone; analysis/curves/ends.py looks closer.
     """
-    half = len(a.t) // 2
+    half, touch = len(a.t) // 2, c.index if c.kind == GRAZE and len(a.t) % 2 == 1 else len(a.t)
     product, size_a, size_b = 0.0, 0.0, 0.0
-    for i in range(half):
-        x, y = a.D[i + half] - sign * a.D[i], b.D[i + half] - sign * b.D[i]
+    for k in range(half):  # a touch that only one half has does not count
+        i, j = k + (1 if k >= touch else 0), k + half + (1 if k + half >= touch else 0)
+        x, y = a.D[j] - sign * a.D[i], b.D[j] - sign * b.D[i]
         product += x * y
         size_a += x * x
         size_b += y * y

@@ -3,7 +3,7 @@
 Besides the equations of the orbit (condensed.py) it satisfies
 
     fold, flip (pitchfork), Neimark-Sacker: g = 0      graze: D_i = 0
-    sticking onset: D_1 = 0, the end of a chatter sequence (chatter.py)
+    sticking onset: D_1 = 0, the end of a chatter sequence (chatter.py, with its own elimination: chatter_steps.py)
 
 with mu = 1, -1, e^{i theta}, and g of the bordered matrix, which is zero where M(mu) is singular:
 
@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.chatter import add_chatter
 from vibro_sweep.engine.impulses.chatter_series import Tail, new_tail
+from vibro_sweep.engine.impulses.chatter_steps import Steps, add_tail, follow, new_steps, solve
 from vibro_sweep.engine.impulses.condensed import Room, equations, gradient, new_room
 from vibro_sweep.engine.impulses.extremes import PIECES
 from vibro_sweep.engine.impulses.factors import factorise, square, substitute, substitute_transposed
@@ -75,11 +75,13 @@ class Bench(NamedTuple):
     nearest: np.ndarray  # (3,): of the turning point nearest to its stop: distance, time, side
     waiting: np.ndarray  # (PIECES, 2)
     after: np.ndarray  # (2, n)
+    weights: np.ndarray  # (n + 1,): see `curve_certificate.weigh`
     series: np.ndarray  # (S, TERMS) complex: see normal_form.py
     left: np.ndarray  # (S, TERMS) complex
     states: np.ndarray  # (3, n, TERMS) complex
     jets: np.ndarray  # (3, TERMS) complex
     tail: Tail
+    steps: Steps
 
 
 TESTS = 13
@@ -97,10 +99,10 @@ def new_bench(K: int, n: int) -> Bench:
     vectors = [np.zeros(size, complex) for size in (S + 1, S + 1, S + 2)]
     border = np.zeros((S + 1, S + 1), complex)
     order = np.zeros(S + 3, np.int64)
-    rest = [np.zeros(shape) for shape in ((S, S), (n, n), n, n, ORDER + 1, 3, (PIECES, 2), (2, n))]
+    rest = [np.zeros(shape) for shape in ((S, S), (n, n), n, n, ORDER + 1, 3, (PIECES, 2), (2, n), n + 1)]
     series = [np.zeros(shape, complex) for shape in ((S, TERMS), (S, TERMS), (3, n, TERMS), (3, TERMS))]
     first = new_room(K, n), np.zeros((S + 3, S + 3)), np.zeros(S + 3), border
-    return Bench(*first, *vectors, order, *rest, *series, new_tail(n))
+    return Bench(*first, *vectors, order, *rest, *series, new_tail(n), new_steps(K, n))
 
 
 @jit
@@ -160,16 +162,21 @@ def slopes_of_g(f, c, place, b):
 
 @jit
 def assemble(f, c, place, b):
-    """Equations and their derivatives by the scaled unknowns: `b.step` and `b.J` but the last row. False: singular."""
+    """Equations and their derivatives by the scaled unknowns: `b.step` and `b.J` but the last row. False: singular.
+
+    Of an onset of sticking: the motion and its tail alone.
+    """
     K, S = len(place.t), len(place.w)
     n = S - 2 * K
     size = size_of(c, place)
     room, J = b.room, b.J
     for r in range(n):
         room.h[0, r] = place.h[r]
-    equations(f, c.sides, c.sigma, place.t, place.D, room)
     if c.kind == STICK:
-        add_chatter(f, c.sides[0], c.sigma, c.unit[0], place.t, room, b.tail)
+        follow(f, c.sides, c.sigma, place.t, place.D, room)
+        add_tail(f, c.sides, c.sigma, place.t, room, b.tail)
+        return True
+    equations(f, c.sides, c.sigma, place.t, place.D, room)
     for i in range(S):
         b.step[i] = room.F[i] / c.row_unit[i]
         for j in range(S):
@@ -179,7 +186,7 @@ def assemble(f, c, place, b):
         J[i, S + 2] = 0.0
     for i in range(2 * K, S):
         J[i, i] += c.sigma * c.unit[i] / c.row_unit[i]
-    if c.kind >= GRAZE:
+    if c.kind == GRAZE:
         for j in range(size):
             J[S, j] = 1.0 if j == K + c.index else 0.0
         b.step[S] = place.D[c.index] / c.unit[K + c.index]
@@ -200,6 +207,20 @@ def assemble(f, c, place, b):
 
 
 @jit
+def solve_on_plane(row, b, size, tangent):
+    """`b.step` becomes Newton's step on the plane across `row`; False: singular."""
+    for j in range(size):
+        b.J[size - 1, j] = row[j]
+        tangent[j] = 0.0
+    b.step[size - 1], tangent[size - 1] = 0.0, 1.0
+    if factorise(b.J, size, b.order) == 0.0:
+        return False
+    substitute(b.J, size, b.order, b.step)
+    substitute(b.J, size, b.order, tangent)
+    return True
+
+
+@jit
 def newton_step(f, c, place, row, b, tangent):
     """One correction of `place` on the plane across `row`, at the parameters to which f was moved. Its size, or NaN.
 
@@ -209,14 +230,11 @@ def newton_step(f, c, place, row, b, tangent):
     size = size_of(c, place)
     if not assemble(f, c, place, b):
         return np.nan
-    for j in range(size):
-        b.J[size - 1, j] = row[j]
-        tangent[j] = 0.0
-    b.step[size - 1], tangent[size - 1] = 0.0, 1.0
-    if factorise(b.J, size, b.order) == 0.0:
+    if c.kind == STICK:
+        if not solve(f, c, place, row, b, tangent):
+            return np.nan
+    elif not solve_on_plane(row, b, size, tangent):
         return np.nan
-    substitute(b.J, size, b.order, b.step)
-    substitute(b.J, size, b.order, tangent)
     change = 0.0
     for j in range(size):
         if j < 2 * K or j >= S:

@@ -185,13 +185,13 @@ def build_series(f):
 @jit
 def polynomial(n, series, u, out):
     """out = sum_k series_k u^k, (n, n + 1)."""
-    for r in range(n):
-        for c in range(n + 1):
-            out[r, c] = series[ORDER, r, c]
+    size = n * (n + 1)
+    terms, total = series.reshape((ORDER + 1, size)), out.reshape(size)  # one long row is computed faster
+    for i in range(size):
+        total[i] = terms[ORDER, i]
     for k in range(ORDER - 1, -1, -1):
-        for r in range(n):
-            for c in range(n + 1):
-                out[r, c] = out[r, c] * u + series[k, r, c]
+        for i in range(size):
+            total[i] = total[i] * u + terms[k, i]
 
 
 @jit
