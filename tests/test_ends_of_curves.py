@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from support.oscillators import PAPER
+from support.random_branches import attractors, random_oscillator
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.curves import tracer
@@ -42,6 +43,52 @@ def test_longer_steps_pass_no_strong_resonance(symmetric_branch, one_sided_branc
                 patch.setattr(tracer, "LONGEST_STEP", factor * tracer.LONGEST_STEP)
                 patch.setattr(tracer, "STRAIGHT", factor * tracer.STRAIGHT)
                 assert same(places(vs.bifurcation_curve(start, NAMES, BOX)), expected), factor
+
+
+def same_whatever_the_step(special, names, box, monkeypatch):
+    """Its points of codimension two."""
+    expected = places(vs.bifurcation_curve(special, names, box))
+    for factor in (0.5, 2):
+        with monkeypatch.context() as patch:
+            patch.setattr(tracer, "LONGEST_STEP", factor * tracer.LONGEST_STEP)
+            patch.setattr(tracer, "STRAIGHT", factor * tracer.STRAIGHT)
+            assert same(places(vs.bifurcation_curve(special, names, box)), expected), factor
+    return [kind for kind, *_ in expected]
+
+
+@pytest.mark.slow
+def test_an_orbit_that_is_born_next_to_the_side_of_the_box(monkeypatch):
+    """The step from the graze of a doubled orbit to its birth also leaves the box."""
+    system = vs.System(
+        mu_m=7.246127476057355, mu_k=2.287345399823902, zeta=0.01518081597191766, f2=0, omega=1.5505364507815478,
+        R=0.5496994433217061, b=0.603379592936371, offset=-0.2335030344355092, R_left=0.8465644910234273,
+    )  # fmt: skip
+    state = (-0.04835425, -0.54930262, 0.15744071, 0.03340232)
+    orbit = vs.periodic_orbit(system, state=vs.simulate(system, state, 500).section[-1], periods=10)
+    graze = first(vs.continue_orbit(orbit, "b", (0.3, 0.9)).special, "graze")
+    reach, b, offset = 0.1 * graze.parameters["b"], graze.parameters["b"], system.offset
+    box = ((b - reach, b + reach), (offset - reach, offset + reach))
+    assert same_whatever_the_step(graze, ("b", "offset"), box, monkeypatch).count("flip_graze") == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("masses", "seed", "name"), [(3, 26, "offset"), (8, 1, "omega")])
+def test_nothing_is_invented_where_another_impact_vanishes(masses, seed, name, monkeypatch):
+    """Multipliers have a pole there, and what tells Neimark-Sacker points changes its sign."""
+    rng = np.random.default_rng([seed, ord("N") + ord(str(masses))])
+    system = random_oscillator(rng, masses)
+    ((state, periods),) = attractors(system, rng, most=1, tries=6)
+    orbit, b = vs.periodic_orbit(system, state=state, periods=periods), system.b
+    branch = vs.continue_orbit(orbit, "b", (0.5 * b, 1.5 * b))
+    value = system.offset if name == "offset" else system.linear.omega
+    found = []
+    for special in branch.special:
+        if special.type == "graze":
+            at = special.parameters["b"]
+            reach = 0.1 * at if name == "offset" else 0.05 * value
+            box = ((0.9 * at, 1.1 * at), (value - reach, value + reach))
+            found += same_whatever_the_step(special, ("b", name), box, monkeypatch)
+    assert "double_graze" in found and "neimark_sacker_graze" not in found
 
 
 @pytest.mark.slow

@@ -39,9 +39,9 @@ def random_system(rng) -> vs.System:
     return system.replace(b=vs.grazing(system).b * rng.uniform(0.1, 1.05))
 
 
-def random_oscillator(rng) -> vs.Oscillator:
+def random_oscillator(rng, masses=None) -> vs.Oscillator:
     """One or three masses between unequal stops; the matrices are full and the damping is not proportional."""
-    n = int(rng.choice([1, 3]))
+    n = masses or int(rng.choice([1, 3]))
     numbers = {
         "M": positive(rng, n, 1.0), "K": positive(rng, n, 0.3), "C": 0.1 * positive(rng, n, 0.1),
         "along": rng.normal(size=n), "force": rng.normal(size=n), "force_cos": rng.normal(size=n),

@@ -43,6 +43,8 @@ TOUCHES = VANISHES | {FOLD: "fold_graze", FLIP: "flip_graze"}
 ANGLES = {"resonance_1_3": 2 * math.pi / 3, "resonance_1_4": math.pi / 2}
 ROUNDING = 1e-10  # of the box: points nearer to each other are one
 PIECE = 0.02  # of the distance between two events
+VANISHED = 1e-6  # of a test at the ends: more than rounding leaves of it at a zero
+SLOW = 1e-6  # in units of the curve: an impulse next to which rounding of the multipliers is as large as the smaller ones
 SETTLED = 1e-10  # Newton's last change
 REACH = (0.25, 0.5, 1.0, 2.0, 4.0)
 SAME = 1e-3  # of a step: a margin that vanishes with an impact does so like the square of its speed
@@ -177,15 +179,27 @@ def named(tracer: Tracer, event: Event) -> Event:
 def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
     """None where the test does not vanish between a and b, or at a place that is singular for Newton's method.
 
+    A test may change its sign at a pole as well, where an impact vanishes.
+
     The error: what two locations from both ends differ by, and rounding.
     """
     there, back = root(tracer, a, b, event.value), root(tracer, b, a, event.value)
     if there is None or back is None or max(there[1].tests[RESIDUAL], back[1].tests[RESIDUAL]) > SETTLED:
         return None
     share, place = there
+    if event.test is not None and not (abs(event.value(place)) < VANISHED and is_sharp(tracer, event, place)):
+        return None
     error = np.abs(place.p[:2] - back[1].p[:2]).max()
     rounding = 64 * np.finfo(float).eps * np.abs(place.p[:2]).max()
     return Found(event, share, place, float(4 * error + rounding))
+
+
+def is_sharp(tracer: Tracer, event: Event, place: Place) -> bool:
+    """Whether rounding leaves a test its sign: that of multipliers has a pole where another impact vanishes."""
+    impulses = np.abs(place.D)
+    if tracer.curve.kind == GRAZE:
+        impulses = np.delete(impulses, tracer.curve.index)
+    return event.test != curve_tests.PAIR or not np.any(impulses < SLOW * tracer.curve.unit[tracer.K])
 
 
 def is_real(tracer: Tracer, place: Place) -> bool:

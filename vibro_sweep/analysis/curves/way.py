@@ -177,7 +177,7 @@ class Way:
             return
         place.p[j] = limit
         place.tangent[:] *= np.sign(w.row_of(a.tangent) @ place.tangent[: w.size]) or 1.0
-        if self._pass(a, place):
+        if not self._ends(a, place, curve.LEFT) and self._pass(a, place):
             self.special.append(self._at("limit", place, 0.0))
 
     def _across(self, a: Place, b: Place, j: int, limit: float) -> Place | None:
