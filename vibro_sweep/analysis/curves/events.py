@@ -43,8 +43,8 @@ TOUCHES = VANISHES | {FOLD: "fold_graze", FLIP: "flip_graze"}
 ANGLES = {"resonance_1_3": 2 * math.pi / 3, "resonance_1_4": math.pi / 2}
 ROUNDING = 1e-10  # of the box: points nearer to each other are one
 PIECE = 0.02  # of the distance between two events
-VANISHED = 1e-6  # of a test at the ends: more than rounding leaves of it at a zero
-SLOW = 1e-6  # in units of the curve: an impulse next to which rounding of the multipliers is as large as the smaller ones
+VANISHED = 1e-12  # of a test: more than rounding leaves of it at a zero
+SLOW = 1e-6  # in units of the curve: an impulse next to which rounding of the multipliers is too large
 SETTLED = 1e-10  # Newton's last change
 REACH = (0.25, 0.5, 1.0, 2.0, 4.0)
 SAME = 1e-3  # of a step: a margin that vanishes with an impact does so like the square of its speed
@@ -187,8 +187,10 @@ def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
     if there is None or back is None or max(there[1].tests[RESIDUAL], back[1].tests[RESIDUAL]) > SETTLED:
         return None
     share, place = there
-    if event.test is not None and not (abs(event.value(place)) < VANISHED and is_sharp(tracer, event, place)):
-        return None
+    if event.test is not None:
+        at, *ends = (abs(float(one.tests[event.test])) for one in (place, a, b))
+        if at > max(0.5 * min(ends), VANISHED) or not is_sharp(tracer, event, place):
+            return None
     error = np.abs(place.p[:2] - back[1].p[:2]).max()
     rounding = 64 * np.finfo(float).eps * np.abs(place.p[:2]).max()
     return Found(event, share, place, float(4 * error + rounding))
