@@ -58,6 +58,7 @@ def test_it_holds_what_follow_branches_finds(file):
         assert int((data["branch_row_size"] * data["branch_impacts"]).sum()) == data.sizes["impact"]
 
 
+@pytest.mark.slow
 def test_a_point_of_the_file_is_where_a_scene_goes_on(file, tmp_path):
     """Over the pitchfork of the symmetric orbit, and along another number from it."""
     with vs.open(file) as data:

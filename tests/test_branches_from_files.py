@@ -28,6 +28,7 @@ def special_points(path) -> set[tuple[str, int, float]]:
         return set(zip(types, data["branch_period"].values[own].tolist(), values.tolist(), strict=True))
 
 
+@pytest.mark.slow
 def test_branches_of_a_sweep_pass_its_windows(few, tmp_path):  # noqa: F811
     """Every end of every window is a special point of a branch that was followed anew."""
     run_branches(scene(f"{{sweep: {few}}}", 5.1, 6.8), tmp_path / "b.h5")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.engine.period_map import PeriodMap
@@ -43,10 +44,11 @@ def test_what_no_planes_part_has_no_frame(monkeypatch):
     assert np.isnan(frame.frame_of(contact_coordinates(chain.linear), chain.omega).to).all()
 
 
-def test_frames_of_random_chains():
-    """2000 of one mass to five, of which two springs and dampers of three are missing."""
+@pytest.mark.parametrize("count", [500, *slow_cases(2000)])
+def test_frames_of_random_chains(count):
+    """Chains of one mass to five, of which two springs and dampers of three are missing."""
     rng = np.random.default_rng(0)
-    for _ in range(2000):
+    for _ in range(count):
         n = int(rng.integers(1, 6))
         k, c = (rng.choice([0, 0, 1], n + 1) * 10 ** rng.uniform(-2, 0.3, n + 1) for _ in range(2))
         numbers = dict(m=rng.uniform(0.5, 2, n), force=np.ones(n), omega=0.5, R=0.6, b=1.0, tau=0.0)

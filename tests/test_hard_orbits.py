@@ -35,6 +35,7 @@ def test_many_impacts_near_the_onset_of_sticking(b, impacts):
     assert branch.begins.type == branch.ends.type == "graze" and "fold" in [s.type for s in branch.special]
 
 
+@pytest.mark.slow
 def test_period_29_from_its_graze_to_its_fold():
     """orbits.md, b = 6.69: symmetric, four impacts on each stop."""
     orbit = of_state(PAPER.replace(b=6.69), 29, settle=6000)

@@ -6,7 +6,7 @@ from support.oscillators import PAPER
 
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.simd.jit import entry
-from vibro_sweep.engine.variational import tangent
+from vibro_sweep.engine.variational import tangent, tangent_flight
 
 
 @entry
@@ -14,7 +14,7 @@ def leaps(e, cells, out):
     t, flights = e.tangent[0], e.flights
     tangent.set_frame(t, 0, flights.oscillator[0, 0])
     for n in range(len(cells)):
-        tangent.leap_over(t, 0, flights.oscillator[0, 0], flights.nodes[0], cells[n])
+        tangent_flight.leap_over(t, 0, flights.oscillator[0, 0], flights.nodes[0], cells[n])
         for j in range(out.shape[1]):
             out[n, j] = t.leap[j, 0]
 
@@ -24,7 +24,7 @@ def test_flights_over_any_number_of_cells(changes):
     """e^{-eta u} cos(omega_d u) and e^{-eta u} sin(omega_d u)/omega_d, up to more periods than are joined."""
     engine = Engine(PAPER.replace(**changes))
     q = engine.ensemble.flights.oscillator[0, 0]
-    cells = np.arange(0, (tangent.FEW + 2) * engine.cells, 7)
+    cells = np.arange(0, (tangent_flight.FEW + 2) * engine.cells, 7)
     found = np.empty((len(cells), 4))
     leaps(engine.ensemble, cells, found)
     u = cells * np.longdouble(engine.width)
