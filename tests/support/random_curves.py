@@ -1,9 +1,11 @@
-"""Bifurcation curves of random systems, held against simulation, and against the same curves from other points.
+"""Bifurcation curves of random systems, held against simulation, and against the same curves from other points and
+with other steps.
 
 python tests/support/random_curves.py 0 100     # prints what disagrees, and a summary
 """
 
 import sys
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,6 +15,7 @@ from support.curves import chosen, solution_at
 from support.random_branches import attractors, random_system
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.curves import tracer
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 
 TYPES = ("fold", "flip", "pitchfork", "neimark_sacker", "graze")
@@ -25,7 +28,7 @@ class Report:
     seed: int
     curves: int = 0
     points: int = 0  # compared with simulation, on each side
-    again: int = 0  # curves followed from another point
+    again: int = 0  # times that curves were followed from another point, or with other steps
     codimension_two: int = 0
     wrong: list[str] = field(default_factory=list)
 
@@ -56,16 +59,31 @@ def _follow(report: Report, special, rng) -> None:
     for k in chosen(curve, 3):
         simulate_beside(report, curve, k, where)
     k = int(rng.choice(chosen(curve, 9)))
-    other = vs.bifurcation_curve(special_at(curve, k, special), ("b", "omega"), box)
-    report.again += 1
-    pairs = [sorted(map(key, one.special)) for one in (curve, other)]
-    same = len(pairs[0]) == len(pairs[1]) and all(
-        a[0] == b[0] and np.allclose(a[1:], b[1:], rtol=1e-9, atol=0) for a, b in zip(*pairs, strict=True)
-    )
-    if not curve.closed and not same:
-        report.wrong.append(f"{where}: other points from point {k}: {pairs}")
+    ways = {f"from point {k}": vs.bifurcation_curve(special_at(curve, k, special), ("b", "omega"), box)}
+    for factor in (0.5, 2.0):
+        with steps_of(factor):
+            ways[f"with steps of {factor} times the length"] = vs.bifurcation_curve(special, ("b", "omega"), box)
+    report.again += len(ways)
+    for way, other in ways.items():
+        pairs = [sorted(map(key, one.special)) for one in (curve, other)]
+        same = len(pairs[0]) == len(pairs[1]) and all(
+            a[0] == b[0] and np.allclose(a[1:], b[1:], rtol=1e-9, atol=0) for a, b in zip(*pairs, strict=True)
+        )
+        if not curve.closed and not same:
+            report.wrong.append(f"{where}: other points {way}: {pairs}")
     if len({key(one) for one in curve.special}) < len(curve.special) and not curve.closed:
         report.wrong.append(f"{where}: a point twice")
+
+
+@contextmanager
+def steps_of(factor: float):
+    """Within, steps along a curve, and the angles between them, may be so much larger."""
+    before = tracer.LONGEST_STEP, tracer.STRAIGHT
+    tracer.LONGEST_STEP, tracer.STRAIGHT = (factor * most for most in before)
+    try:
+        yield
+    finally:
+        tracer.LONGEST_STEP, tracer.STRAIGHT = before
 
 
 def key(special):

@@ -102,11 +102,11 @@ class Found(NamedTuple):
 def found_between(tracer: Tracer, a: Place, b: Place) -> list[Found]:
     """All events from a to b, located.
 
-    Of several in one step two may hide each other: a test has a pole where an impact vanishes, or passes zero twice. So
-    the pieces of the step beside each event are looked at as well.
+    Two in one step may hide each other: a test has a pole where an impact vanishes, that of a cusp at a resonance 1:1, or
+    it passes zero twice. So the pieces of the step beside each event that is found are looked at as well.
     """
     found = _located(tracer, a, b)
-    if len(found) < 2 and not any(one.event.impact is not None for one in found):
+    if not found:
         return found
     shares = np.unique([0.0, *(one.share for one in found), 1.0])
     aside = PIECE * np.diff(shares).min()

@@ -145,11 +145,13 @@ def walk(f, c, path, place, row, b):
             rate_again(f, a, b)
             continue
         place.tests[LENGTH] = length
-        if outside(path, place) or bulges(path, c, a, place):
+        if outside(path, place):
             return LEFT
         if not (move_to(f, place.p[FIRST], place.p[SECOND]) and set_up(f, c, place, b)):
             return FAILED
         examine(f, c, place, b)
+        if bulges(path, c, a, place):  # the curve may leave and come back, and if not it goes on from here
+            return LEFT
         if c.kind == TORUS and not NEAR_STRONG < place.p[THETA] < math.pi - NEAR_STRONG:
             return STRONG
         if happens(c, a, place):
