@@ -102,8 +102,8 @@ class Found(NamedTuple):
 def found_between(tracer: Tracer, a: Place, b: Place) -> list[Found]:
     """All events from a to b, located.
 
-    Two in one step may hide each other: a test has a pole where an impact vanishes, that of a cusp at a resonance 1:1, or
-    it passes zero twice. So the pieces of the step beside each event that is found are looked at as well.
+    Two in one step may hide each other: a test has a pole where an impact vanishes, or passes zero twice. So the pieces
+    of the step beside each event that is found are looked at as well.
     """
     found = _located(tracer, a, b)
     if not found:
