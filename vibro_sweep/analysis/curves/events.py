@@ -102,11 +102,11 @@ class Found(NamedTuple):
 def found_between(tracer: Tracer, a: Place, b: Place) -> list[Found]:
     """All events from a to b, located.
 
-    Two in one step may hide each other: a test has a pole where an impact vanishes, or passes zero twice. So the pieces
-    of the step beside each event that is found are looked at as well.
+    Of several in one step two may hide each other: a test has a pole where an impact vanishes, or passes zero twice. So
+    the pieces of the step beside each event are looked at as well.
     """
     found = _located(tracer, a, b)
-    if not found:
+    if len(found) < 2 and not any(one.event.impact is not None for one in found):
         return found
     shares = np.unique([0.0, *(one.share for one in found), 1.0])
     aside = PIECE * np.diff(shares).min()
