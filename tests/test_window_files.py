@@ -1,5 +1,8 @@
 """The file of a sweep's windows: what is in it, that it does not depend on how it was made, and the commands."""
 
+import subprocess
+import sys
+
 import h5py
 import numpy as np
 import pytest
@@ -89,6 +92,17 @@ def test_dask_makes_the_same_file(few, file, tmp_path):  # noqa: F811
     ):
         run_windows(few, tmp_path / "w.h5", executor=executor)
     assert numbers(tmp_path / "w.h5") == numbers(file)
+
+
+def test_windows_are_found_without_xarray(few):  # noqa: F811
+    """Its import takes as long as all other parts of the program together."""
+    code = (
+        "import sys, vibro_sweep.driver.windows as w; from vibro_sweep import store;"
+        "file = store.contents(sys.argv[1]); data = file.__enter__(); w.rows_in(data, None);"
+        "print(sorted({'xarray', 'pandas', 'dask'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code, few], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
 
 
 def test_commands(few, tmp_path, monkeypatch, capsys):  # noqa: F811

@@ -88,7 +88,11 @@ def run(
         of_branches = is_continuation_file(scene_file)
         scene = load_continuation(scene_file) if of_branches else load_scene(scene_file)
     work.check_places(scene_file)
-    bad = compute_pieces(work, _follow(scene, output)) if of_branches else compute_sweep(work, scene)
+    bad = False
+    if of_branches:
+        compute_pieces(work, _follow(scene, output))
+    else:
+        bad = compute_sweep(work, scene)
     if plot:
         _draw(output, work.picture, None, overwrite, quiet)
     if bad:

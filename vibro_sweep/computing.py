@@ -94,12 +94,11 @@ def compute_sweep(work: Work, scene) -> bool:
     return bool(report.bad)
 
 
-def compute_pieces(work: Work, compute: Callable) -> bool:
-    """Compute a file of branches, curves or windows, and print its tables; these have no bad points: False."""
+def compute_pieces(work: Work, compute: Callable) -> None:
+    """Compute a file of branches, curves or windows, and print its tables."""
     from .store import tables
 
     with work.under_way(0, ValueError) as (executor, progress):
         compute(work.workers, executor, progress, work.mode)
     if not work.quiet:
         say("\n".join([f"{work.output}", *tables(work.output)]))
-    return False

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from vibro_sweep import store
 from vibro_sweep.analysis.branches.flat import special_point
@@ -27,6 +26,7 @@ from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.bifurcations import CURVES
 from vibro_sweep.model.branch_file import CHART, WINDOWS
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
+from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.joining import branch_of, curve_of
 from vibro_sweep.store.pieces import Pieces
 
@@ -46,13 +46,13 @@ def source_of(scene: Continuation) -> Source:
     """Raises ValueError where the file that a scene begins from is of another oscillator than the scene."""
     free = {name: lo for name, (lo, _) in scene.along.items()}
     if scene.origin == "sweep":
-        with store.open(Path(scene.begin)) as data:
+        with store.contents(Path(scene.begin)) as data:
             if "kind" in data.attrs:
                 raise ValueError(f"continue.from.sweep: {scene.begin} holds {data.attrs['kind']}, no sweep")
             own = _rows(scene, data)[0].system
             identity = data.attrs.get("identity", "")
     elif scene.origin == "branches":
-        with store.open(Path(scene.begin)) as data:
+        with store.contents(Path(scene.begin)) as data:
             own, names = _at_special(scene, data)
             identity = data.attrs["identity"]
         free |= {name: own.numbers[name] for name in names}
@@ -111,7 +111,7 @@ def _check_same(scene: Continuation, own: AnyOscillator, asked: AnyOscillator) -
             raise ValueError(f"continue.from.{scene.origin}: {told}; branches belong to one oscillator")
 
 
-def _rows(scene: Continuation, data: xr.Dataset) -> list[Row]:
+def _rows(scene: Continuation, data: Contents) -> list[Row]:
     """The row of a sweep along the first number; of a plane that at the scene's value of the other key.
 
     All rows of a plane whose keys are both followed. Raises ValueError.
@@ -130,7 +130,7 @@ def _rows(scene: Continuation, data: xr.Dataset) -> list[Row]:
 
 def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | None) -> list[PeriodicOrbit]:
     """An orbit of each window of a sweep that reaches into the scene's range, near where it was found."""
-    with store.open(Path(scene.begin)) as data:
+    with store.contents(Path(scene.begin)) as data:
         rows = _rows(scene, data)
     orbits = []
     for found in _chosen(scene, cover_of(rows, file, pool)):
@@ -179,7 +179,7 @@ def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> lis
         if special.type not in CURVES:
             raise ValueError(f"continue.from.special: {special.type!r} is not allowed; it must be {', '.join(CURVES)}")
         return [special]
-    with store.open(Path(scene.begin)) as data:
+    with store.contents(Path(scene.begin)) as data:
         rows = _rows(scene, data)
     key = next(iter(scene.along))
     chosen = _chosen(scene, cover_of(rows, file, pool))
@@ -188,10 +188,10 @@ def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> lis
 
 def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:
     """The special point of `{branches: FILE, special: n}`, and the numbers that vary in that file."""
-    with store.open(Path(scene.begin)) as data:
+    with store.contents(Path(scene.begin)) as data:
         system, names = _at_special(scene, data)
         kind = data.attrs["kind"]
-        arrays = {name: data[name].values for name in data.data_vars}
+        arrays = {name: data.values(name) for name in data.names}
     index = int(arrays["special_branch"][scene.special])
     place = scene.special - int(arrays["branch_special"][:index].sum())
     if kind == CHART:
@@ -199,7 +199,7 @@ def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:
     return special_point(branch_of(arrays, names[0], index), place, names[0], system), names
 
 
-def _at_special(scene: Continuation, data: xr.Dataset) -> tuple[AnyOscillator, list[str]]:
+def _at_special(scene: Continuation, data: Contents) -> tuple[AnyOscillator, list[str]]:
     """The oscillator at the scene's special point, and the numbers that vary in the file. Raises ValueError."""
     if "kind" not in data.attrs:
         raise ValueError(f"continue.from.branches: {scene.begin} holds no branches")
@@ -208,7 +208,7 @@ def _at_special(scene: Continuation, data: xr.Dataset) -> tuple[AnyOscillator, l
         raise ValueError(f"continue.from.special: {scene.special} is not allowed; it must be < {count}")
     parse = parse_scene if data.attrs["kind"] == WINDOWS else parse_continuation
     names = np.atleast_1d(data.attrs["parameters"]).tolist()
-    values = data["special_value"].values[scene.special].tolist()
+    values = data.values("special_value")[scene.special].tolist()
     system = parse(data.attrs["scene"]).system
     numbers = {name: data.attrs.get(name, value) for name, value in system.numbers.items() if isinstance(value, float)}
     return system.replace(**numbers | dict(zip(names, values, strict=True))), names

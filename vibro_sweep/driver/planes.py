@@ -21,7 +21,7 @@ def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
     if scene.origin != "sweep":
         return None
     names = list(scene.along)
-    with store.open(scene.begin) as data:
+    with store.contents(scene.begin) as data:
         keys = [str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"])]
         if len(keys) != 2:
             return None
@@ -35,14 +35,14 @@ def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
                 f"continue.from.largest: belongs to windows along one number; {scene.begin} is a plane whose edges are "
                 "explained; leave it out"
             )
-        if "start" in data["period"].dims:
+        if "start" in data.dims("period"):
             raise ValueError(f"continue.from.sweep: {scene.begin} has several starts; it must be a plane of one")
         system = parse_scene(data.attrs["scene"]).system
-        data = data.sortby(names).transpose(*names, ...)
-        values = tuple(data[name].values.astype(float) for name in names)
-        period = data["period"].values.astype(int)
-        states = np.stack([data[name].isel(sample=-1).values for name in state(system.masses)], axis=-1)
-    return Plane(values, period), states, system
+        values = [data.values(name).astype(float) for name in names]
+        rising = np.ix_(*(np.argsort(axis, kind="stable") for axis in values))
+        period = data.values("period", names)[rising].astype(int)
+        states = np.stack([data.values(name, names)[..., -1][rising] for name in state(system.masses)], axis=-1)
+    return Plane(tuple(np.sort(axis) for axis in values), period), states, system
 
 
 def edges_in_file(plane: Plane, found: Explained) -> dict[str, np.ndarray]:

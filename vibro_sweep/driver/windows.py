@@ -5,7 +5,6 @@ from concurrent.futures import Executor
 from pathlib import Path
 
 import numpy as np
-import xarray as xr
 
 from vibro_sweep import store
 from vibro_sweep.analysis.windows.cover import Cover
@@ -20,6 +19,7 @@ from vibro_sweep.model.branch_file import UNSEEN, WINDOWS, columns
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import parse_scene
+from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.flat_files import Subject
 from vibro_sweep.store.joining import joined
 from vibro_sweep.store.pieces import Pieces, pieces
@@ -43,7 +43,7 @@ def windows(path: str | Path, key: str | None = None) -> Windows:
 
     Raises StoreError for a file that cannot be read, ValueError for one that has no windows to look for.
     """
-    with store.open(path) as data:
+    with store.contents(path) as data:
         cover = Cover(rows_in(data, key))
     cover.search(lambda _, jobs: [window_of(job) for job in jobs])
     return windows_of(cover)
@@ -63,7 +63,7 @@ def run_windows(
     progress : called as progress(done, total) in orbits of the sweep
     The file does not depend on workers, executor or interruptions. Raises what `windows` and `run` raise.
     """
-    with store.open(path) as data:
+    with store.contents(path) as data:
         rows = rows_in(data, key)
         subject = _subject(data, rows[0].parameter)
     with pieces(subject, Path(output), mode) as file:
@@ -95,7 +95,7 @@ def cover_of(
     return cover
 
 
-def rows_in(data: xr.Dataset, key: str | None) -> list[Row]:
+def rows_in(data: Contents, key: str | None) -> list[Row]:
     """The rows of a file along a swept number. Raises ValueError where there can be no windows."""
     if data.attrs.get("type") == BUILD:
         raise ValueError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
@@ -104,7 +104,7 @@ def rows_in(data: xr.Dataset, key: str | None) -> list[Row]:
     return list(rows_of(data, system, chosen_key(data, system, key)))
 
 
-def _subject(data: xr.Dataset, key: str) -> Subject:
+def _subject(data: Contents, key: str) -> Subject:
     title = str(data.attrs["title"]).removeprefix("vibro_sweep: ")
     names = [key, *(str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"]) if name != key)]
     attributes = {"sweep": data.attrs.get("identity", ""), "key": key, "parameters": names}

@@ -8,11 +8,10 @@ from vibro_sweep.plotting.style import axis_name, symbol
 
 def check_relative(name: str, keys, b_star) -> None:
     """Raises PlotError unless b is among the keys and b* (numbers, or None) is known."""
-    missing = (
-        "b" if "b" not in keys else "grazing clearance" if b_star is None or not np.all(np.isfinite(b_star)) else ""
-    )
-    if missing:
-        raise PlotError(f"relative: {name} has no {missing} to divide by")
+    if "b" not in keys:
+        raise PlotError(f"relative: {name} has no b to divide by b*")
+    if b_star is None or not np.all(np.isfinite(b_star)):
+        raise PlotError(f"relative: {name} has no grazing clearance to divide by")
 
 
 def axis_label(key: str, relative: bool) -> str:

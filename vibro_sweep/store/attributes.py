@@ -8,6 +8,8 @@ from vibro_sweep.model import catalogue
 
 # the attributes of a file that hold a number, or a word, for all points (`numbers.attributes`)
 NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "record")
+# how HDF5 joins datasets and their dimensions, and how CF names coordinates
+SCALES = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "coordinates")
 WORDS = ("stops", "model", "type", "section", "section_stop")
 
 
@@ -37,6 +39,23 @@ def texts(of: h5py.File | h5py.Dataset, name: str) -> list[str]:
     values = of.attrs[name]
     found = [] if isinstance(values, h5py.Empty) else np.asarray(values, object).ravel().tolist()
     return [value.decode() if isinstance(value, bytes) else str(value) for value in found]
+
+
+def attributes(of: h5py.File | h5py.Dataset) -> dict:
+    """All but those by which HDF5 joins datasets, as xarray has them."""
+    return {name: _told(of.attrs[name]) for name in of.attrs if name not in SCALES}
+
+
+def _told(value):
+    """Texts as texts, a number as one."""
+    if isinstance(value, h5py.Empty):
+        return []
+    if isinstance(value, bytes):
+        return value.decode()
+    if isinstance(value, np.ndarray) and value.dtype.kind in "SO":
+        found = [item.decode() if isinstance(item, bytes) else item for item in value.tolist()]
+        return found if len(found) != 1 else found[0]
+    return value[0] if isinstance(value, np.ndarray) and value.shape == (1,) else value
 
 
 def check_numbers(file: h5py.File) -> None:

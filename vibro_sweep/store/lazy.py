@@ -9,10 +9,8 @@ import xarray
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
+from vibro_sweep.store.attributes import attributes
 from vibro_sweep.store.opening import axes_of, dimensions_of, following_of, quantities_of
-
-# how HDF5 joins datasets and their dimensions, and how CF names coordinates
-_SCALES = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "coordinates")
 
 
 class _Numbers(BackendArray):
@@ -52,7 +50,7 @@ def dataset_of(file: h5py.File) -> xarray.Dataset:
     coordinates = {name: _variable([name], file[name]) for name in axes_of(file)}
     coordinates |= {name: _variable(along, file[name]) for name, along in following_of(file).items()}
     quantities = {name: _variable(dimensions_of(file, name), file[name]) for name in quantities_of(file)}
-    result = xarray.Dataset(quantities, coordinates, _attributes(file))
+    result = xarray.Dataset(quantities, coordinates, attributes(file))
     result.set_close(_Close(file))
     return result
 
@@ -60,20 +58,4 @@ def dataset_of(file: h5py.File) -> xarray.Dataset:
 def _variable(dimensions: list[str], dataset: h5py.Dataset) -> xarray.Variable:
     lazy = indexing.LazilyIndexedArray(_Numbers(dataset))
     values = indexing.MemoryCachedArray(indexing.CopyOnWriteArray(lazy))  # as `xarray.open_dataset` has them
-    return xarray.Variable(dimensions, values, _attributes(dataset), fastpath=True)
-
-
-def _attributes(of: h5py.File | h5py.Dataset) -> dict:
-    return {name: _told(of.attrs[name]) for name in of.attrs if name not in _SCALES}
-
-
-def _told(value):
-    """Texts as texts, numbers as xarray has them."""
-    if isinstance(value, h5py.Empty):
-        return []
-    if isinstance(value, bytes):
-        return value.decode()
-    if isinstance(value, np.ndarray) and value.dtype.kind in "SO":
-        found = [item.decode() if isinstance(item, bytes) else item for item in value.tolist()]
-        return found if len(found) != 1 else found[0]
-    return value[0] if isinstance(value, np.ndarray) and value.shape == (1,) else value
+    return xarray.Variable(dimensions, values, attributes(dataset), fastpath=True)

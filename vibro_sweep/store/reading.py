@@ -1,8 +1,10 @@
 """Reading a file: as an `xarray.Dataset`, or described in words."""
 
+import contextlib
 import json
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -11,6 +13,7 @@ from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.branch_file import CHART, WINDOWS
 from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STANDING, meaning
 from vibro_sweep.store import checks
+from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.attributes import text, texts
 from vibro_sweep.store.flat_tables import curves_table, special_table, windows_table
 from vibro_sweep.store.opening import StoreError, blocks_lost, is_flat, open_file, opened, quantities_of
@@ -37,13 +40,26 @@ def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray
     """
     from vibro_sweep.store.lazy import dataset_of
 
+    return _whole(path, dataset_of)
+
+
+@contextlib.contextmanager
+def contents(path: str | Path) -> Iterator[Contents]:
+    """As `open`, for what computes with the numbers."""
+    file = _whole(path, lambda file: file)
+    with file:
+        yield Contents(file)
+
+
+def _whole(path: str | Path, made: Callable[[h5py.File], Any]) -> Any:
+    """What is made of a file, if it is not damaged."""
     check_type("path", path, (str, Path), "the path of a file")
     path = Path(path)
     file, lost = open_file(path)
     try:
         if found := _damage(file, lost):
             raise StoreError(f"{path} is damaged: {found}; {REMEDY}")
-        return dataset_of(file)
+        return made(file)
     except (OSError, RuntimeError, ValueError) as error:
         file.close()
         raise error if isinstance(error, StoreError) else StoreError(f"{path} is damaged ({error})") from None

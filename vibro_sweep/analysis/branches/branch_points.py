@@ -1,7 +1,8 @@
 """The points of a branch as columns, and as a Dataset."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from vibro_sweep.analysis.branches.track import Rows
 from vibro_sweep.analysis.branches.walk import Walk
@@ -9,10 +10,15 @@ from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.model.linear import Linear, forcing_period
 
+if TYPE_CHECKING:
+    import xarray
 
-def dataset(walk: Walk, frame: tuple[int, int], rows: Rows) -> xr.Dataset:
+
+def dataset(walk: Walk, frame: tuple[int, int], rows: Rows) -> "xarray.Dataset":
     """`columns` as a Dataset."""
-    return xr.Dataset(columns(walk, frame, rows))
+    import xarray
+
+    return xarray.Dataset(columns(walk, frame, rows))
 
 
 def columns(walk: Walk, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:

@@ -8,9 +8,9 @@ the end of a branch is no motion any more.
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from vibro_sweep.analysis.branches.beginning import changes_rests, start_of_walk
 from vibro_sweep.analysis.branches.branch_points import dataset
@@ -23,6 +23,9 @@ from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.model.arguments import check_type, is_number
 from vibro_sweep.model.linear import family_of
+
+if TYPE_CHECKING:
+    import xarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +48,7 @@ class Branch:
     _rows: Rows
 
     @cached_property
-    def points(self) -> xr.Dataset:
+    def points(self) -> "xarray.Dataset":
         """Dataset over `point`: the parameter, state at t = 0, multipliers, margin, impacts (docs of `columns`)."""
         return dataset(self._walk, self._frame, self._rows)
 

@@ -7,8 +7,7 @@ say so (`virtual`).
 import math
 from dataclasses import dataclass
 from functools import cached_property
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.chatter import written_out
@@ -22,6 +21,9 @@ from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.engine.impulses.locus import Place
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.linear import family_of
+
+if TYPE_CHECKING:
+    import xarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +47,7 @@ class BifurcationCurve:
     _rows: Rows
 
     @cached_property
-    def points(self) -> xr.Dataset:
+    def points(self) -> "xarray.Dataset":
         """Dataset over `point`: parameters, multipliers, whether it is real, impacts (docs of `dataset`)."""
         return dataset(self._tracer, self._rows)
 

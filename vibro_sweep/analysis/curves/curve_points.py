@@ -1,7 +1,8 @@
 """The points of a bifurcation curve as a Dataset."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from vibro_sweep.analysis.curves.rows import Rows
 from vibro_sweep.analysis.curves.tracer import Tracer
@@ -11,10 +12,13 @@ from vibro_sweep.engine.impulses.flights import Flow
 from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, STICK, THETA, TORUS
 from vibro_sweep.model.linear import Linear, forcing_period
 
+if TYPE_CHECKING:
+    import xarray
+
 FREE = ("M", "K", "C", "along")  # fields of an oscillator on which its free flight depends
 
 
-def dataset(tracer: Tracer, rows: Rows) -> xr.Dataset:
+def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     """Over `point`, in order: both parameters; `multiplier_re`, `multiplier_im` (multiplier) of the whole period, at a
     graze of the orbit without the grazing impact; `unstable`, how many lie outside the unit circle beside those that
     the curve is about; `virtual`, whether the orbit is no motion: an impulse pulls or a
@@ -58,7 +62,9 @@ def dataset(tracer: Tracer, rows: Rows) -> xr.Dataset:
         "impact_side": (("point", "impact"), np.tile(sides, (len(rows.p), 1))),
         "impact_v": (("point", "impact"), rows.motion[:, :, 0]),
     }
-    return xr.Dataset(variables)
+    import xarray
+
+    return xarray.Dataset(variables)
 
 
 def _flows(oscillators: list[Linear]) -> list[Flow]:

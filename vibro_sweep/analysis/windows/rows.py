@@ -1,12 +1,11 @@
 """The orbits of a sweep, row by row: a row is all points along the number that is followed, other keys held."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
-import xarray as xr
 
 from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.parameters import range_of
@@ -16,6 +15,19 @@ from vibro_sweep.model.status import NOT_COMPUTED, stands
 BEYOND = 1.0  # of the sweep's length: so far beyond its ends windows are followed
 BEFORE = 0.25  # of the way from where a number must not be: there a frequency's period is infinite
 _CODES = {name: code for code, name in enumerate(REASONS)}
+
+
+class Contents(Protocol):
+    """The file of a sweep (store/arrays.py)."""
+
+    attrs: dict[str, Any]
+    sizes: dict[str, int]
+
+    def __contains__(self, name: str) -> bool: ...
+
+    def dims(self, name: str) -> list[str]: ...
+
+    def values(self, name: str, first: Sequence[str] = ()) -> np.ndarray: ...
 
 
 @dataclass(frozen=True)
@@ -59,7 +71,7 @@ class Row:
         return lo, min(hi, allowed.get("maximum", np.inf))
 
 
-def chosen_key(data: xr.Dataset, system, key: str | None) -> str:
+def chosen_key(data: Contents, system, key: str | None) -> str:
     """The swept number along which windows are followed, by default the first. Raises ValueError."""
     swept = [str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"])]
     able = [name for name in swept if name in system.described and data.sizes[name] > 1]
@@ -70,8 +82,8 @@ def chosen_key(data: xr.Dataset, system, key: str | None) -> str:
     return key or able[0]
 
 
-def check_data(data: xr.Dataset) -> None:
-    """Raise ValueError where a Dataset has no section states at t = 0 mod T, or not of the oscillator itself."""
+def check_data(data: Contents) -> None:
+    """Raise ValueError where a file has no section states at t = 0 mod T, or not of the oscillator itself."""
     if data.attrs.get("model", "flow") != "flow":
         raise ValueError("model: 'map' is not allowed; windows are those of the oscillator itself, model: flow")
     if data.attrs.get("section", "phase") != "phase":
@@ -80,27 +92,24 @@ def check_data(data: xr.Dataset) -> None:
         raise ValueError("observe: has no 'section'; windows start from the section states of a sweep")
 
 
-def rows_of(data: xr.Dataset, system, key: str) -> Iterator[Row]:
+def rows_of(data: Contents, system, key: str) -> Iterator[Row]:
     """The rows of a sweep of `system` along `key`, in the order of the file."""
     others = [name for name in np.atleast_1d(data.attrs["sweep_dimensions"]) if name != key]
-    lead = [*others, key, *(["start"] if "start" in data["period"].dims else [])]
+    lead = [*others, key, *(["start"] if "start" in data.dims("period") else [])]
 
-    def ordered(variable: xr.Variable) -> np.ndarray:
-        return variable.transpose(*lead, ...).values
-
-    own = data.variables  # without coordinates: they would come along, and xarray would load Dask for them
-    last = [ordered(own[name].isel(sample=-1)) for name in state(system.masses)]
-    arrays = {"states": np.stack(last, axis=-1), "period": ordered(own["period"])}
-    arrays["reason"] = _reasons(ordered(own["status"]), arrays["period"])
+    last = [data.values(name, lead)[..., -1] for name in state(system.masses)]
+    arrays = {"states": np.stack(last, axis=-1), "period": data.values("period", lead)}
+    arrays["reason"] = _reasons(data.values("status", lead), arrays["period"])
     if "start" not in lead:
         arrays = {name: np.expand_dims(values, len(lead)) for name, values in arrays.items()}
-    order = np.argsort(data[key].values, kind="stable")
+    axes = {name: data.values(name) for name in (*others, key)}
+    order = np.argsort(axes[key], kind="stable")
     axis = list(np.atleast_1d(data.attrs["sweep_dimensions"])).index(key)
     for place in np.ndindex(*(data.sizes[name] for name in others)):
-        held = {str(name): float(data[name].values[i]) for name, i in zip(others, place, strict=True)}
+        held = {str(name): float(axes[name][i]) for name, i in zip(others, place, strict=True)}
         there = system.replace(**{name: value for name, value in held.items() if name in system.described})
         parts = {name: values[place][order] for name, values in arrays.items()}
-        yield Row(there, key, held, axis, data[key].values[order].astype(float), order, **parts)
+        yield Row(there, key, held, axis, axes[key][order].astype(float), order, **parts)
 
 
 def _reasons(status: np.ndarray, period: np.ndarray) -> np.ndarray:

@@ -1,0 +1,47 @@
+"""A file's numbers as arrays, for what computes with them: xarray, which `open` gives, takes long to be imported."""
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import h5py
+import numpy as np
+
+from vibro_sweep.store.attributes import attributes
+from vibro_sweep.store.opening import axes_of, dimensions_of, quantities_of
+
+
+class Contents:
+    """What an `xarray.Dataset` of the file would say by the same words; numbers are read when asked for."""
+
+    def __init__(self, file: h5py.File):
+        self._file = file
+        self.attrs = attributes(file)
+
+    @cached_property
+    def names(self) -> list[str]:
+        """What is computed."""
+        return quantities_of(self._file)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.names
+
+    def dims(self, name: str) -> list[str]:
+        """Names of the dimensions of a quantity."""
+        return dimensions_of(self._file, name)
+
+    @cached_property
+    def sizes(self) -> dict[str, int]:
+        """Of all dimensions."""
+        found = {axis: len(self._file[axis]) for axis in axes_of(self._file)}
+        for name in self.names:
+            found |= zip(self.dims(name), self._file[name].shape, strict=True)
+        return found
+
+    def values(self, name: str, first: Sequence[str] = ()) -> np.ndarray:
+        """Of a quantity or a dimension; these dimensions first, in their order."""
+        values = self._file[name][()]
+        if not first:
+            return values
+        dims = self.dims(name)
+        lead = [dims.index(dim) for dim in first]
+        return values.transpose(*lead, *(i for i in range(len(dims)) if i not in lead))
