@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from vibro_sweep.engine.impulses import equations, extremes, flights, multipliers, sections
+from vibro_sweep.engine.impulses import equations, flights, multipliers, sections
 from vibro_sweep.engine.impulses.green import ResonanceError, free_modes, has_free_gap, space, space_slopes, train
 from vibro_sweep.model.linear import Family, Keyed, Linear, amplitude_slopes, amplitudes, forcing_period
 
@@ -80,10 +80,9 @@ class Equations:
         point of the gap nearest to its stop, inf where there is none."""
         f, close = flow(self.q), closing(self.q, self.sigma, self.halves)
         m, K = f.B.shape[0], len(sides)
-        states, nearest = np.empty((max(K, 1) + 1, m)), np.empty(3)
-        waiting, work = np.empty((extremes.PIECES, 2)), np.empty((3, max(m, equations.ORDER + 1)))
+        states, nearest, room = np.empty((max(K, 1) + 1, m)), np.empty(3), flights.new_room(m)
         low, high = self.q.low, self.q.high
-        flights.fly_orbit(f, close, self.contacts(sides), u, self.P, low, high, states, nearest, waiting, work)
+        flights.fly_orbit(f, close, self.contacts(sides), u, self.P, low, high, states, nearest, room)
         return states[:-1], nearest
 
     def sections(self, unknowns, gaps) -> np.ndarray:
@@ -96,8 +95,8 @@ class Equations:
         m, count = len(f.B), self.halves if self.sigma == 1 else 2 * self.halves
         out = np.empty((len(unknowns), count, m - 3))
         K, T = np.shape(unknowns)[1] // 2, forcing_period(self.q)
-        work = np.empty((2, m)), np.empty((3, m))
-        sections.sections(f, close, unknowns, gaps, K, float(self.sigma), self.P, T, out, *work)
+        flying, room = np.empty((2, m)), flights.new_room(m)
+        sections.sections(f, close, unknowns, gaps, K, float(self.sigma), self.P, T, out, flying, room)
         return out
 
     def multipliers(self, sides, u, motion) -> np.ndarray:
@@ -115,10 +114,10 @@ def multipliers_of(f: flights.Flow, sigma: int, P: float, contacts: np.ndarray, 
         values = sigma * np.exp(np.linalg.eigvals(f.B[:n, :n]).astype(complex) * P)
         return values[np.lexsort((-values.imag, -np.abs(values)))]
     product, columns, couplings = np.empty((n, n)), np.empty((n, n)), np.zeros(n)
-    order, work = np.empty(n, np.int64), np.empty((4, n + 3, n + 3))
-    factors = np.empty((len(contacts) + int(P * f.spread / 4.0), n, n))
+    order, work, room = np.empty(n, np.int64), np.empty((3, n, n)), flights.new_room(n + 3)
+    factors = np.empty((len(contacts) + int(P * f.spread / multipliers.STRETCH), n, n))
     motion = np.ascontiguousarray(motion)
-    multipliers.multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work)
+    multipliers.multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work, room)
     values = sigma * multipliers.eigenvalues(product, columns, couplings)
     return values[np.lexsort((-values.imag, -np.abs(values)))]
 

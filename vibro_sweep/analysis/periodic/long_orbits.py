@@ -63,7 +63,7 @@ def extended(e: Equations, sides, u, motion, mu: int, column=None, row=None) -> 
     contacts = e.contacts(sides)
     t, D = u[:K], u[K : 2 * K]
     E = np.empty((K, n, n))
-    flights.flight_matrices(f, np.diff(np.append(t, t[0] + e.P)), E, np.empty((3, n + 3)))
+    flights.flight_matrices(f, np.diff(np.append(t, t[0] + e.P)), E, flights.new_room(n + 3))
     first = m * np.arange(K)
     following = np.roll(first, -1)
     gain, v, a = contacts[:, 1], motion[:, 0], motion[:, 1]

@@ -1,16 +1,13 @@
 """The tables with which compiled steps work (engine/impulses/medium.py), along a parameter or for one oscillator."""
 
-from functools import lru_cache
-
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from vibro_sweep.analysis.periodic.impulse_equations import TABLES, flow, moves_stops_straight
-from vibro_sweep.engine.impulses import branch, medium
+from vibro_sweep.analysis.periodic.impulse_equations import flow, moves_stops_straight
+from vibro_sweep.engine.impulses import branch, extremes, medium
 from vibro_sweep.engine.impulses.flights import rates
 from vibro_sweep.engine.impulses.medium import NUMBERS, TAU
-from vibro_sweep.engine.impulses.tables import ORDER, REAL
-from vibro_sweep.model.linear import Family, Keyed, Linear, forcing_period
+from vibro_sweep.model.linear import Family, Linear, forcing_period
 
 DECAYED = 1e-14  # relative size of their last coefficients; or
 NOISE = 1e-11  # where half the interval makes them no smaller, which is what rounding leaves
@@ -89,18 +86,8 @@ def _built(q: Linear, c, values, centre: float, reach: float) -> np.ndarray:
     r["centre"], r["reach"], r["degree"], r["width"] = centre, reach, len(powers_of) - 1, f.width
     r["fit"][: len(powers_of)] = powers_of
     r["bits"] = min(max(int(np.ceil(np.log2(2 * values[:, -1].max() / f.width))), 1), medium.BITS)
-    r["series"], r["powers"][:], r["step"] = _series(Keyed(q, TABLES)), f.powers, f.powers[0].T
+    r["series"], r["powers"][:], r["step"] = f.series.reshape(-1, m, m)[:, :n], f.powers, f.powers[0].T
     r["gap_rows"] = r["series"][:, 0].T
-    r["middle_weights"], r["rest_weights"] = medium.middle_weights(f.width)
+    r["middle_weights"], r["rest_weights"] = extremes.middle_weights(f.width)
     r["middle"], r["rest"] = r["gap_rows"] @ r["middle_weights"], np.abs(r["gap_rows"]) @ r["rest_weights"]
     return result
-
-
-@lru_cache(maxsize=16)
-def _series(key: Keyed) -> np.ndarray:
-    """(ORDER + 1, n, m) first rows of B^k/k!."""
-    B = flow(key.q).B.astype(REAL)
-    series = [np.eye(len(B) - 3, len(B)).astype(REAL)]
-    for k in range(1, ORDER + 1):
-        series.append(series[-1] @ B / k)
-    return np.array(series).astype(float)

@@ -17,7 +17,7 @@ import numpy as np
 from vibro_sweep.analysis.periodic.held_motion import motion_of, motion_slopes
 from vibro_sweep.analysis.periodic.impulse_equations import contacts_of, flow, held_flow, steady
 from vibro_sweep.analysis.periodic.one_thread import one_thread
-from vibro_sweep.engine.impulses import extremes, flights
+from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.equations import GAIN, GAIN_SLOPE, STOP, STOP_SLOPE
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.model.linear import Linear, forcing_period
@@ -233,8 +233,8 @@ class RestEquations:
                 first = side * float(f.rows[0] @ zeta)
                 bounds = (0.0, np.inf) if side > 0 else (-np.inf, 0.0)
                 nearest = np.array([np.inf, 0.0, 0.0])
-                work = np.empty((extremes.PIECES, 2)), np.empty((3, max(len(zeta), ORDER + 1)))
-                flights.fly_once(f, zeta, begin, max(end - begin, 0.0), *bounds, nearest, *work)
+                room = flights.new_room(len(zeta))
+                flights.fly_once(f, zeta, begin, max(end - begin, 0.0), *bounds, nearest, room)
                 least = min(least, first, float(nearest[0]))
         return least
 
@@ -243,13 +243,13 @@ def _fly_free(f: flights.Flow, zeta, begin: float, end: float, released: bool, s
     """Lower `nearest` to the turning points of a flight. After a rest it leaves the stop like the third power of time:
     as long as its third derivative dominates, the gap does not turn."""
     m = len(zeta)
+    room = flights.new_room(m)
     if released:
         c = f.rows @ zeta
         orders, u = np.arange(4, ORDER + 1), min(f.width, end - begin)
         while np.sum(orders * np.abs(c[4:]) * u ** (orders - 3.0)) >= 3 * abs(c[3]) and u > 1e-9 * f.width:
             u /= 2
         out, at = np.empty((1, m)), np.array([begin + u])
-        flights.sample_flights(f, zeta[None], np.array([begin]), np.zeros(1, int), at, out, np.empty((2, m)))
+        flights.sample_flights(f, zeta[None], np.array([begin]), np.zeros(1, int), at, out, room)
         zeta, begin = out[0], begin + u
-    work = np.empty((extremes.PIECES, 2)), np.empty((3, max(m, ORDER + 1)))
-    flights.fly_once(f, zeta, begin, end - begin, *stops, nearest, *work)
+    flights.fly_once(f, zeta, begin, end - begin, *stops, nearest, room)

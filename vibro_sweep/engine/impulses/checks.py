@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.impulses.elimination import sign_of_determinant, solve
-from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
+from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
 from vibro_sweep.engine.impulses.medium import GAIN_HIGH, GAIN_LOW, HIGH, LOW, PERIOD, combined, set_phase
 from vibro_sweep.engine.impulses.places import DEFECT_HERE, MARGIN, REFLECTION, TANGENT, TORUS, UNSTABLE, P
 from vibro_sweep.engine.impulses.tables import ORDER
@@ -19,19 +19,12 @@ ON_CIRCLE = 1e-6  # of |mu|^2: a multiplier that near to the unit circle is on n
 
 @jit
 def may_turn(f, zeta, low, high, nearest):
-    """Whether a turning point of the gap on the cell that begins with zeta may be nearer to its stop than `nearest`.
-
-    No by a bound: the slope exceeds all that the cell can take from it, or the cell is farther from both stops.
-    """
+    """`turns_near` of the cell that begins with zeta."""
     middle, rest = combined(zeta, f.middle, 0), 0.0
     for j in range(len(zeta)):
         rest += abs(zeta[j]) * f.rest[j]
-    value, by_slope = number(middle, 0), abs(number(middle, 1))
-    by_curve, by_jerk = abs(number(middle, 2)), abs(number(middle, 3))
-    if by_slope > 2.0 * by_curve + 3.0 * by_jerk + 4.0 * rest:
-        return False
-    change = by_slope + by_curve + by_jerk + rest
-    return min(high - value, value - low) - change <= nearest
+    value, slope, curve, jerk = number(middle, 0), number(middle, 1), number(middle, 2), number(middle, 3)
+    return turns_near(value, slope, curve, jerk, rest, low, high, nearest)
 
 
 @jit

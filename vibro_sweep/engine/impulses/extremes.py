@@ -1,9 +1,40 @@
 """Turning points of the gap on one cell of a flight, where it is a Taylor polynomial; certified by bounds."""
 
+import math
+
+import numpy as np
+
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
 
 OVERLAP = 1.0 + 1e-9  # of cells, or a turning point between two of them could be lost to both
+MIDDLE = 4  # value in the middle of a cell, and what three derivatives there change up to its ends
+
+
+def middle_weights(width: float) -> tuple[np.ndarray, np.ndarray]:
+    """(ORDER + 1, MIDDLE) and (ORDER + 1,): what the gap's Taylor coefficients c_k say about the middle r of a cell.
+
+    gap(r + r x) = p_0 + p_1 x + p_2 x^2 + p_3 x^3 + ..., |x| <= 1: p_j = sum_k c_k weight_kj; and what follows is
+    bounded, sum_k |c_k| weight_k >= r^4/24 max |fourth derivative|.
+    """
+    r, orders = 0.5 * OVERLAP * width, range(ORDER + 1)
+    middle = [[math.comb(k, j) * r**k for j in range(MIDDLE)] for k in orders]
+    rest = [math.comb(k, MIDDLE) * (2 * r) ** (k - MIDDLE) * r**MIDDLE if k >= MIDDLE else 0.0 for k in orders]
+    return np.array(middle), np.array(rest)
+
+
+@jit
+def turns_near(value, slope, curve, jerk, rest, low, high, nearest):
+    """Whether a turning point of the gap on a cell may be nearer to its stop than `nearest`, by the cell's middle.
+
+    value, slope, curve, jerk: p_0 .. p_3 of `middle_weights`, rest: the bound. No where the slope exceeds all that the
+    cell can take from it, or the cell is farther from both stops.
+    """
+    by_slope, by_curve, by_jerk = abs(slope), abs(curve), abs(jerk)
+    if by_slope > 2.0 * by_curve + 3.0 * by_jerk + 4.0 * rest:
+        return False
+    change = by_slope + by_curve + by_jerk + rest
+    return min(high - value, value - low) - change <= nearest
 
 
 @jit

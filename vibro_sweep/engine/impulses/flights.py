@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
+from vibro_sweep.engine.impulses.extremes import OVERLAP, PIECES, extremes_of_cell, middle_weights, turns_near
 from vibro_sweep.engine.impulses.green import (
     MOST_CELLS,
     ResonanceError,
@@ -31,10 +31,27 @@ class Flow(NamedTuple):
     B: np.ndarray  # (m, m)
     width: float  # of a cell
     powers: np.ndarray  # (DOUBLINGS, m, m): exp(B width 2^j)
+    series: np.ndarray  # (ORDER + 1, m^2): B^k/k!
     rows: np.ndarray  # (ORDER + 1, m): the gap's Taylor coefficients
+    middle: np.ndarray  # (m, MIDDLE): rows^T . middle_weights (extremes.py)
+    rest: np.ndarray  # (m,): |rows|^T . its rest_weights
     omega: float
     tau: float
     spread: float  # between the fastest and the slowest decay, per unit time
+
+
+class Room(NamedTuple):
+    """Scratch of flights."""
+
+    E: np.ndarray  # (m^2,)
+    state: np.ndarray  # (m,)
+    column: np.ndarray  # (m,)
+    c: np.ndarray  # (ORDER + 1,)
+    waiting: np.ndarray  # (PIECES, 2)
+
+
+def new_room(m: int) -> Room:
+    return Room(*(np.empty(shape) for shape in (m * m, m, m, ORDER + 1, (PIECES, 2))))
 
 
 class Coordinates(NamedTuple):
@@ -96,9 +113,22 @@ def _flow(q: Linear, B: np.ndarray, row: np.ndarray) -> Flow:
         for _ in range(DOUBLINGS):
             powers.append(step.astype(float))
             step = step @ step
-    rows = taylor_rows(B.astype(REAL), row.astype(REAL)).astype(float)
+    series = taylor_rows(B.astype(REAL), np.eye(len(B), dtype=REAL))
+    rows = (row.astype(REAL) @ series).astype(float)
+    middle, rest = middle_weights(float(width))
     decays = np.linalg.eigvals(B[:n, :n]).real
-    return Flow(B, float(width), np.array(powers), rows, q.omega, float(q.tau), float(np.ptp(decays)))
+    return Flow(
+        B,
+        float(width),
+        np.array(powers),
+        series.astype(float).reshape(ORDER + 1, -1),
+        rows,
+        rows.T @ middle,
+        np.abs(rows.T) @ rest,
+        q.omega,
+        float(q.tau),
+        float(np.ptp(decays)),
+    )
 
 
 def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
@@ -133,39 +163,59 @@ def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
 
 
 @jit
-def advance(f, z, length, work):
-    """zeta over a time `length` >= 0, in place. work: (2, m)."""
+def multiply(matrix, z, column):
+    """z <- matrix z."""
     m = len(z)
-    cells = int(length / f.width)
-    u = length - cells * f.width
+    for i in range(m):
+        column[i] = 0.0
+        for k in range(m):
+            column[i] += matrix[i, k] * z[k]
+    for i in range(m):
+        z[i] = column[i]
+
+
+@jit
+def within_cell(f, u, E):
+    """E = exp(B u), one row after the other; u: at most the width of a cell."""
+    for i in range(len(E)):
+        E[i] = f.series[ORDER, i]
+    for k in range(ORDER - 1, -1, -1):
+        for i in range(len(E)):
+            E[i] = E[i] * u + f.series[k, i]
+
+
+@jit
+def over_cells(f, z, cells, room):
+    """z over so many cells, in place."""
     j = 0
     while cells > 0:
         last = j == len(f.powers) - 1
         for _ in range(cells if last else cells & 1):
-            for i in range(m):
-                total = 0.0
-                for k in range(m):
-                    total += f.powers[j, i, k] * z[k]
-                work[0, i] = total
-            for i in range(m):
-                z[i] = work[0, i]
+            multiply(f.powers[j], z, room.column)
         cells = 0 if last else cells >> 1
         j += 1
-    for i in range(m):
-        work[0, i] = z[i]
-    for n in range(1, ORDER + 1):
-        largest = 0.0
-        for i in range(m):
-            total = 0.0
-            for k in range(m):
-                total += f.B[i, k] * work[0, k]
-            work[1, i] = total * u / n
-        for i in range(m):
-            work[0, i] = work[1, i]
-            z[i] += work[1, i]
-            largest = max(largest, abs(work[1, i]))
-        if largest == 0.0:
-            break
+
+
+@jit
+def advance(f, z, length, room):
+    """zeta over a time `length` >= 0, in place."""
+    cells = int(length / f.width)
+    over_cells(f, z, cells, room)
+    within_cell(f, length - cells * f.width, room.E)
+    multiply(room.E.reshape(f.B.shape), z, room.column)
+
+
+@jit
+def may_turn(f, z, low, high, nearest):
+    """`turns_near` of the cell that begins with z."""
+    value = slope = curve = jerk = rest = 0.0
+    for j in range(len(z)):
+        value += z[j] * f.middle[j, 0]
+        slope += z[j] * f.middle[j, 1]
+        curve += z[j] * f.middle[j, 2]
+        jerk += z[j] * f.middle[j, 3]
+        rest += abs(z[j]) * f.rest[j]
+    return turns_near(value, slope, curve, jerk, rest, low, high, nearest)
 
 
 @jit
@@ -176,37 +226,30 @@ def set_phase(f, z, t):
 
 
 @jit
-def extremes(f, z, length, low, high, nearest, waiting, work):
+def extremes(f, z, length, low, high, nearest, room):
     """Fly `length` from zeta in place; lower `nearest` (distance, time from the start, side) to its turning points'."""
-    m = len(z)
-    c = work[2]
+    m, c = len(z), room.c
     cells = int(length / f.width)
     for k in range(cells + 1):
         start = k * f.width
         width = min(f.width * OVERLAP, length - start)  # or a turning point between two cells could be lost to both
         if not width > 0.0:
             break
-        for n in range(ORDER + 1):
-            total = 0.0
-            for i in range(m):
-                total += f.rows[n, i] * z[i]
-            c[n] = total
-        if extremes_of_cell(c, width, low, high, nearest, waiting):
-            nearest[1] += start
+        if may_turn(f, z, low, high, nearest[0]):
+            for n in range(ORDER + 1):
+                c[n] = 0.0
+                for i in range(m):
+                    c[n] += f.rows[n, i] * z[i]
+            if extremes_of_cell(c, width, low, high, nearest, room.waiting):
+                nearest[1] += start
         if k < cells:
-            for i in range(m):
-                total = 0.0
-                for j in range(m):
-                    total += f.powers[0, i, j] * z[j]
-                work[0, i] = total
-            for i in range(m):
-                z[i] = work[0, i]
+            multiply(f.powers[0], z, room.column)
         else:
-            advance(f, z, width, work)
+            advance(f, z, width, room)
 
 
 @jit
-def start_of_orbit(f, close, u, K, P, gap, z, work):
+def start_of_orbit(f, close, u, K, P, gap, z, room):
     """zeta before the first impact (at t = 0 without impacts) of the orbit with these times and impulses."""
     m = len(z)
     n, N = m - 3, (m - 3) // 2
@@ -216,30 +259,29 @@ def start_of_orbit(f, close, u, K, P, gap, z, work):
     set_phase(f, z, first)
     for k in range(K):
         z[N] += u[K + k]
-        advance(f, z, (u[k + 1] if k + 1 < K else first + P) - u[k], work)
+        advance(f, z, (u[k + 1] if k + 1 < K else first + P) - u[k], room)
     if K == 0:
-        advance(f, z, P, work)
+        advance(f, z, P, room)
     for i in range(n):
-        work[0, i] = z[i]
+        room.column[i] = z[i]
     for i in range(n):
         total = close[i, n] * gap
         for j in range(n):
-            total += close[i, j] * work[0, j]
+            total += close[i, j] * room.column[j]
         z[i] = total
     set_phase(f, z, first)
 
 
 @entry
-def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, waiting, work):
+def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, room):
     """States before each impact, (max(K, 1), m), and the turning point nearest to its stop: (distance, t, side).
 
-    Without impacts: the state at t = 0. work: (3, max(m, ORDER + 1)).
+    Without impacts: the state at t = 0.
     """
     K = len(contacts)
     z = states[0]
     m = len(z)
-    work = work[:, : max(m, ORDER + 1)]
-    start_of_orbit(f, close, u, K, P, contacts[0, 0] if K > 0 else 0.0, z, work)
+    start_of_orbit(f, close, u, K, P, contacts[0, 0] if K > 0 else 0.0, z, room)
     nearest[0], nearest[1], nearest[2] = np.inf, 0.0, 0.0
     N = (m - 3) // 2
     flying = states[max(K, 1)]
@@ -258,41 +300,49 @@ def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, waiting, wor
         distance = nearest[0]
         if K == 0:  # a turning point at t = 0 must not be lost between the ends
             end += 0.5 * f.width
-        extremes(f, flying, end - begin, low, high, nearest, waiting, work)
+        extremes(f, flying, end - begin, low, high, nearest, room)
         if nearest[0] < distance:
             nearest[1] += begin
 
 
 @entry
-def fly_once(f, z, begin, length, low, high, nearest, waiting, work):
+def fly_once(f, z, begin, length, low, high, nearest, room):
     """Fly `length` from z in place; lower `nearest` (distance, t, side) to the turning points of the gap."""
     distance = nearest[0]
     set_phase(f, z, begin)
-    extremes(f, z, length, low, high, nearest, waiting, work)
+    extremes(f, z, length, low, high, nearest, room)
     if nearest[0] < distance:
         nearest[1] += begin
 
 
+@jit
+def flight_matrix(f, length, E, room):
+    """E (n, n) = exp(A length) of the free motion, without the force."""
+    n, z = len(E), room.state
+    cells = int(length / f.width)
+    within_cell(f, length - cells * f.width, room.E)
+    for j in range(n):
+        for i in range(len(z)):
+            z[i] = 1.0 if i == j else 0.0
+        over_cells(f, z, cells, room)
+        multiply(room.E.reshape(f.B.shape), z, room.column)
+        for i in range(n):
+            E[i, j] = z[i]
+
+
 @entry
-def flight_matrices(f, lengths, out, work):
-    """exp(A length) of each flight: out (flights, n, n). work: (3, n + 3)."""
-    n = out.shape[1]
-    z = work[2]
+def flight_matrices(f, lengths, out, room):
+    """`flight_matrix` of each flight: out (flights, n, n)."""
     for k in range(len(lengths)):
-        for j in range(n):
-            for i in range(n + 3):
-                z[i] = 1.0 if i == j else 0.0
-            advance(f, z, lengths[k], work)
-            for i in range(n):
-                out[k, i, j] = z[i]
+        flight_matrix(f, lengths[k], out[k], room)
 
 
 @entry
-def sample_flights(f, starts, begins, which, times, out, work):
+def sample_flights(f, starts, begins, which, times, out, room):
     """zeta at `times` of the flights that start with starts[which] at begins[which]: out (samples, m)."""
     for i in range(len(times)):
         k = which[i]
         for j in range(out.shape[1]):
             out[i, j] = starts[k, j]
         set_phase(f, out[i], begins[k])
-        advance(f, out[i], times[i] - begins[k], work)
+        advance(f, out[i], times[i] - begins[k], room)

@@ -9,7 +9,7 @@ from functools import cache
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.extremes import OVERLAP
+from vibro_sweep.engine.impulses.extremes import MIDDLE
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.memory import put, record, row
@@ -20,7 +20,6 @@ NUMBERS = 7
 
 DEGREE = 20  # of the polynomials, at most
 BITS = 18
-MIDDLE = 4  # value in the middle of a cell, and what three derivatives there change up to its ends
 
 
 @cache
@@ -52,18 +51,6 @@ def medium_of(masses: int) -> np.dtype:
         ("middle", float, (m, MIDDLE)),  # gap_rows . middle_weights
         ("rest", float, m),  # |gap_rows| . rest_weights
     ])  # fmt: skip
-
-
-def middle_weights(width: float) -> tuple[np.ndarray, np.ndarray]:
-    """(ORDER + 1, MIDDLE) and (ORDER + 1,): what the gap's Taylor coefficients c_k say about the middle r of a cell.
-
-    gap(r + r x) = p_0 + p_1 x + p_2 x^2 + p_3 x^3 + ..., |x| <= 1: p_j = sum_k c_k weight_kj; and what follows is
-    bounded, sum_k |c_k| weight_k >= r^4/24 max |fourth derivative|.
-    """
-    r, orders = 0.5 * OVERLAP * width, range(ORDER + 1)
-    middle = [[math.comb(k, j) * r**k for j in range(MIDDLE)] for k in orders]
-    rest = [math.comb(k, MIDDLE) * (2 * r) ** (k - MIDDLE) * r**MIDDLE if k >= MIDDLE else 0.0 for k in orders]
-    return np.array(middle), np.array(rest)
 
 
 @jit

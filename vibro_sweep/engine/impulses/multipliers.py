@@ -17,10 +17,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.flights import advance
+from vibro_sweep.engine.impulses.flights import flight_matrix
 from vibro_sweep.engine.simd.jit import entry, jit
 
 PASSES = 40
+STRETCH = 4.0  # logarithm: so far directions may be stretched against each other before they are factorised
+TINY = 1e-280  # squares that are smaller may have lost digits
 EARLIEST = 12  # pass after which moduli closer than 0.01^(1/12) = 0.68 need not be told apart
 
 
@@ -41,8 +43,9 @@ def factorise(Y, order, T, product, columns):
             a, b = columns[i - 1, j], columns[i, j]
             if b == 0.0:
                 continue
-            r = math.hypot(a, b)
-            c, s = a / r, b / r
+            square = a * a + b * b
+            inverse = 1.0 / (math.sqrt(square) if square > TINY else math.hypot(a, b))
+            c, s = a * inverse, b * inverse
             for k in range(n):
                 x, y = columns[i - 1, k], columns[i, k]
                 columns[i - 1, k], columns[i, k] = c * x + s * y, c * y - s * x
@@ -72,15 +75,20 @@ def turn(Y, i, j, c, s):
 
 
 @jit
-def salt(f, gain, v, a, Y, order, T, product, columns):
-    """Y <- S Y for one impact, factorised. gain: 1 + R."""
+def shear_of(gain, v, a):
+    """The shear that is split off the saltation matrix, and its larger singular value; 0 and 1 where R = 0."""
+    beta = -gain * a / (v * (gain - 1.0)) if gain > 1.0 else 0.0
+    return beta, 0.5 * (abs(beta) + math.hypot(beta, 2.0))
+
+
+@jit
+def salt(f, gain, v, a, split, Y, order, T, product, columns):
+    """Y <- S Y for one impact; split: with the shear by itself, and factorised. gain: 1 + R."""
     n = len(order)
     N = n // 2
-    R = gain - 1.0
     shear = gain * a / v
-    if R > 0.0:
-        beta = -shear / R
-        size = 0.5 * (abs(beta) + math.hypot(beta, 2.0))
+    if split:
+        beta, size = shear_of(gain, v, a)
         c, s = 1.0 / math.hypot(1.0, 1.0 / size), math.copysign(1.0 / math.hypot(1.0, size), beta)
         turn(Y, 0, N, c, s)  # V^T: the right singular vector of the large singular value first
         for k in range(n):
@@ -90,6 +98,8 @@ def salt(f, gain, v, a, Y, order, T, product, columns):
             order[i] = i if i < N else i + 1
         order[n - 1] = N
         factorise(Y, order, T, product, columns)
+        for i in range(n):
+            order[i] = i
         turn(Y, 0, N, abs(s), -math.copysign(c, beta))  # U
         shear = 0.0
     for k in range(n):
@@ -108,35 +118,30 @@ def flight_length(u, P, K, k):
 
 @jit
 def flight_pieces(spread, length):
-    """Pieces of a flight in each of which no direction shrinks by more than e^-4 against another."""
-    return 1 + int(length * spread / 4.0)
+    """Pieces of a flight in each of which no direction shrinks by more than e^-STRETCH against another."""
+    return 1 + int(length * spread / STRETCH)
 
 
 @entry
-def multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work):
+def multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work, room):
     """The product of all factors as `columns` times `product`, both (n, n), in the last basis of the iteration.
 
     `product` is an upper triangle, `columns` falls apart into diagonal blocks where `couplings` (n,) vanish. motion:
     (K, 3), gap velocity and acceleration before each impact. order: (n,) integers. factors: (pieces, n, n), room for
-    the flights in `flight_pieces` pieces each. work: (4, n + 3, n + 3).
+    the flights in `flight_pieces` pieces each. work: (3, n, n). room: of flights.
     """
     K = len(contacts)
     n = len(order)
-    Y, T, start = work[0, :n, :n], work[1, :n, :n], work[2, :n, :n]
-    flying, helper = work[3, 0], work[3, 1:3]
+    Y, T, start = work[0], work[1], work[2]
     for i in range(n):
+        order[i] = i
         for j in range(n):
             Y[i, j] = 1.0 if i == j else 0.0
     count = 0
     for k in range(K):
         length = flight_length(u, P, K, k)
         pieces = flight_pieces(f.spread, length)
-        for j in range(n):
-            for i in range(n + 3):
-                flying[i] = 1.0 if i == j else 0.0
-            advance(f, flying, length / pieces, helper)
-            for i in range(n):
-                factors[count, i, j] = flying[i]
+        flight_matrix(f, length / pieces, factors[count], room)
         for piece in range(1, pieces):
             for i in range(n):
                 for j in range(n):
@@ -146,12 +151,18 @@ def multiply(f, contacts, u, P, motion, product, columns, couplings, order, fact
         for i in range(n):
             for j in range(n):
                 start[i, j], product[i, j] = Y[i, j], 1.0 if i == j else 0.0
-        count = 0
+        count, stretched = 0, 0.0  # the logarithm of how far Y may be stretched since it was factorised
         for k in range(K):
-            salt(f, contacts[k, 1], motion[k, 0], motion[k, 1], Y, order, T, product, columns)
-            for i in range(n):
-                order[i] = i
-            for _ in range(flight_pieces(f.spread, flight_length(u, P, K, k))):
+            gain, v, a = contacts[k, 1], motion[k, 0], motion[k, 1]
+            more = 2.0 * math.log(shear_of(gain, v, a)[1])
+            split = stretched + more > STRETCH
+            if split and stretched > 0.0:
+                factorise(Y, order, T, product, columns)
+            salt(f, gain, v, a, split, Y, order, T, product, columns)
+            stretched = 0.0 if split else stretched + more
+            length = flight_length(u, P, K, k)
+            pieces = flight_pieces(f.spread, length)
+            for _ in range(pieces):
                 for i in range(n):
                     for j in range(n):
                         total = 0.0
@@ -162,7 +173,11 @@ def multiply(f, contacts, u, P, motion, product, columns, couplings, order, fact
                     for j in range(n):
                         Y[i, j] = T[i, j]
                 count += 1
-                factorise(Y, order, T, product, columns)
+                stretched += length * f.spread / pieces
+                if stretched > STRETCH:
+                    factorise(Y, order, T, product, columns)
+                    stretched = 0.0
+        factorise(Y, order, T, product, columns)
         settled = True
         for i in range(n):
             for j in range(n):

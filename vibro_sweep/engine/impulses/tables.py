@@ -37,7 +37,7 @@ def nodes(E: np.ndarray, start: np.ndarray, count: int) -> np.ndarray:
 
 
 def taylor_rows(A: np.ndarray, row: np.ndarray) -> np.ndarray:
-    """row A^n/n! for n = 0 .. ORDER."""
+    """row A^n/n! for n = 0 .. ORDER; of a row or a matrix of them."""
     rows = [row]
     for n in range(1, ORDER + 1):
         rows.append(rows[-1] @ A / REAL(n))
