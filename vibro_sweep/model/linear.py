@@ -15,6 +15,7 @@ import numpy as np
 
 DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
 FORCED = ("M", "K", "C", "along", "constant", "sine", "cosine", "omega")  # fields that move the steady motion
+CONTACT = ("low", "high", "R_low", "R_high")  # fields of the stops, the last ones of a `Linear`
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 
 
@@ -70,7 +71,7 @@ class Family:
     def stops(self, name: str, linear: Linear) -> tuple[Linear, Linear]:
         """`linear` with this one's stops and restitution, and their derivatives by `name`, which moves nothing else."""
         step = self.build(**(self.numbers | {name: self.numbers[name] + 1j * STEP}))
-        contact = {field: getattr(step, field) for field in ("low", "high", "R_low", "R_high")}
+        contact = {field: getattr(step, field) for field in CONTACT}
         slope = {field: float(np.imag(value)) / STEP for field, value in contact.items()}
         moved = {field: float(np.real(value)) for field, value in contact.items()}
         return linear._replace(**moved), _no_slope(len(linear.along))._replace(**slope)

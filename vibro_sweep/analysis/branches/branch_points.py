@@ -29,7 +29,7 @@ def columns(walk: Walk, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:
     wrapped.
     """
     start = walk.start
-    oscillators = [walk.oscillator(p) for p in rows.p.tolist()]
+    oscillators = walk.oscillators(rows.p)
     T = np.array([[forcing_period(q)] for q in oscillators])
     multipliers = _multipliers(walk.start, oscillators, rows)
     states, t, v, sides = rows.state, rows.t, rows.motion[:, :, 0], np.array(start.sides, int)

@@ -22,7 +22,7 @@ from vibro_sweep.engine.impulses import across
 from vibro_sweep.engine.impulses.across import MOST_CORRECTIONS
 from vibro_sweep.engine.impulses.equations import ROUNDING
 from vibro_sweep.engine.impulses.green import space
-from vibro_sweep.model.linear import Linear
+from vibro_sweep.model.linear import CONTACT, Linear
 
 
 @dataclass(eq=False)
@@ -136,10 +136,17 @@ class Walk:
         self._contact_only = not start.rests and moves_stops_only(self.family.derivative(name))
         self._straight = self._contact_only and moves_stops_straight(self.family, name, float(span))
 
-    def oscillator(self, p: float) -> Linear:
-        """At a value of the parameter."""
-        family = self.family.replace(**{self.name: p})
-        return family.stops(self.name, self.family.linear)[0] if self._contact_only else family.linear
+    def oscillators(self, values: np.ndarray) -> list[Linear]:
+        """At values of the parameter that points of the branch have."""
+        if self._straight:
+            q, slope = self.family.stops(self.name, self.family.linear)
+            at_start, slopes = (np.array(one[-len(CONTACT) :]) for one in (q, slope))
+            moved = np.multiply.outer(values - self.family.numbers[self.name], slopes)
+            return [q._replace(**dict(zip(CONTACT, row, strict=True))) for row in (at_start + moved).tolist()]
+        families = [self.family.replace(**{self.name: p}) for p in values.tolist()]
+        if self._contact_only:
+            return [family.stops(self.name, self.family.linear)[0] for family in families]
+        return [family.linear for family in families]
 
     def with_impact(self, start: Solution, index: int) -> "Walk":
         """The same for `start`, orbits of this walk with one impact more, which is its impact `index`."""

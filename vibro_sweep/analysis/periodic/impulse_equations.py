@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.engine.impulses import equations, flights, multipliers, sections
 from vibro_sweep.engine.impulses.green import ResonanceError, free_modes, has_free_gap, space, space_slopes, train
-from vibro_sweep.model.linear import Family, Keyed, Linear, amplitude_slopes, amplitudes, forcing_period
+from vibro_sweep.model.linear import CONTACT, Family, Keyed, Linear, amplitude_slopes, amplitudes, forcing_period
 
 
 class Equations:
@@ -198,7 +198,7 @@ def moves_stops_straight(family: Family, name: str, span: float) -> bool:
             slopes.append(family.replace(**{name: value + share * span}).stops(name, q)[1])
     except ValueError:  # beyond its range
         return False
-    return all(slope[-4:] == slopes[0][-4:] for slope in slopes)
+    return all(slope[-len(CONTACT) :] == slopes[0][-len(CONTACT) :] for slope in slopes)
 
 
 @lru_cache(maxsize=16)

@@ -5,6 +5,7 @@ gap, and an impulse changes y_1' and nothing else. zeta' = B zeta.
 """
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ from vibro_sweep.engine.impulses.green import (
 )
 from vibro_sweep.engine.impulses.tables import ORDER, REAL, exponential, power, taylor_rows
 from vibro_sweep.engine.simd.jit import entry, jit
-from vibro_sweep.model.linear import Linear, forcing_period
+from vibro_sweep.model.linear import Keyed, Linear, forcing_period
 
 DOUBLINGS = 18
 
@@ -63,6 +64,12 @@ class Coordinates(NamedTuple):
 
 def contact_coordinates(q: Linear) -> Coordinates:
     """T with first row n and other rows w_i, w_i M^-1 n = 0; the identity where n = e_1 and M is diagonal."""
+    return _coordinates(Keyed(q, ("M", "along")))
+
+
+@lru_cache(maxsize=16)
+def _coordinates(key: Keyed) -> Coordinates:
+    q = key.q
     N = len(q.along)
     direction = np.linalg.solve(q.M, q.along)
     T = np.eye(N)
