@@ -155,17 +155,18 @@ def amplitude_slopes(q: Linear, slope: Linear) -> np.ndarray:
 
 def grazing_phase(q: Linear) -> float:
     """tau for which the steady gap is largest at t = 0; 0 where there is no steady motion (eq. 18 for any n)."""
-    return _grazing_phase(Keyed(q, FORCED))
-
-
-@lru_cache(maxsize=64)
-def _grazing_phase(key: Keyed) -> float:
-    gain = steady_gain(key.q)
+    gain = steady_gain(q)
     return 0.0 if gain is None else 0.0 - float(np.angle(gain))
 
 
 def steady_gain(q: Linear) -> complex | None:
     """G of the steady gap g_s + Re(G e^{i(omega t + tau)}); None where there is no steady motion."""
+    return _steady_gain(Keyed(q, FORCED))
+
+
+@lru_cache(maxsize=1024)  # as many as a curve has points
+def _steady_gain(key: Keyed) -> complex | None:
+    q = key.q
     try:
         gain = complex(q.along @ amplitudes(q))
     except np.linalg.LinAlgError:
@@ -187,6 +188,8 @@ def static_state(q: Linear) -> np.ndarray | None:
 
     Of several, where there are free modes, the nearest to zero.
     """
+    if not np.any(q.constant):
+        return np.zeros(len(q.constant))
     found = np.linalg.lstsq(q.K, q.constant, rcond=None)[0]
     left_over = np.abs(q.K @ found - q.constant).max()
     return found if left_over <= 1e-9 * np.abs(q.constant).max() else None

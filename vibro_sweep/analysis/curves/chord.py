@@ -10,6 +10,8 @@ from vibro_sweep.engine.impulses.locus import Place
 ROUNDING = 1e-15  # of tests, in their units
 ASIDE = 1e-7  # of a chord: a zero found by polynomials is exact to far less
 LEAST = 1e-14  # of a chord, far below what rounding of tests leaves of a zero
+EXACT, NOISE = 1e-14, 1e-11  # of a test at the ends of the chord: a zero; what rounding leaves of one, at most
+STEPS = 4
 
 
 def root(tracer: Tracer, a: Place, b: Place, test: Callable[[Place], float]) -> tuple[float, Place] | None:
@@ -18,9 +20,10 @@ def root(tracer: Tracer, a: Place, b: Place, test: Callable[[Place], float]) -> 
     try:
         if chord.value(0.0) * chord.value(1.0) > 0:
             return None
-        lo, hi = chord.near_zero()
-        share = brentq(chord.value, lo, hi, xtol=LEAST, rtol=1e-15, maxiter=100)
-        chord.value(share)
+        share = chord.near_zero()
+        if share is None:
+            share = brentq(chord.value, 0.0, 1.0, xtol=LEAST, rtol=1e-15, maxiter=100)
+            chord.value(share)
     except (ArithmeticError, RuntimeError):
         return None
     return share, chord.seen[share]
@@ -40,8 +43,8 @@ class Chord:
         found = self.test(self.seen[share])
         return found if abs(found) > ROUNDING else 0.0  # or the search may creep where rounding has one sign
 
-    def near_zero(self) -> tuple[float, float]:
-        """Two shares between which the test changes its sign, close to the zero that polynomials give."""
+    def near_zero(self) -> float | None:
+        """The zero, by Newton's method from that of the polynomials; None where that does not find it."""
         seen = dict(self.seen)
 
         def rough(share: float) -> float:
@@ -50,15 +53,28 @@ class Chord:
             return self.test(seen[share])
 
         try:
-            zero = brentq(rough, 0.0, 1.0, xtol=ASIDE / 100, maxiter=100)
-            if zero not in self.seen:
-                self.seen[zero] = self._point(zero, seen, exact=True)
-            lo, hi = max(zero - ASIDE, 0.0), min(zero + ASIDE, 1.0)
-            if self.value(lo) * self.value(hi) <= 0:
-                return lo, hi
+            begin = brentq(rough, 0.0, 1.0, xtol=ASIDE / 100, maxiter=100)
+            beside = begin + (ASIDE if begin < 0.5 else -ASIDE)
+            slope = (rough(beside) - rough(begin)) / (beside - begin)
+            self.seen[begin] = self._point(begin, seen, exact=True)
+            return self._refined(begin, slope)
         except (ArithmeticError, RuntimeError, ValueError):
-            pass
-        return 0.0, 1.0
+            return None
+
+    def _refined(self, begin: float, slope: float) -> float | None:
+        """The zero near `begin`, as far as rounding of the test lets it be told."""
+        zero, size = begin, max(abs(self.value(0.0)), abs(self.value(1.0)))
+        for _ in range(STEPS):
+            left = self.value(zero)
+            if abs(left) <= EXACT * size:
+                break
+            moved = zero - left / slope
+            if not (0.0 <= moved <= 1.0 and abs(moved - begin) <= ASIDE):
+                return None
+            if not abs(self.value(moved)) < 0.5 * abs(left):
+                break
+            zero = moved
+        return zero if abs(self.value(zero)) <= NOISE * size else None
 
     def _point(self, share: float, seen: dict[float, Place], exact: bool) -> Place:
         near = min(seen, key=lambda other: abs(other - share))

@@ -10,7 +10,7 @@ from vibro_sweep.engine.impulses.normal_form import MIXED, SQUARE
 
 def second_order(tracer: Tracer, place: Place) -> tuple[np.ndarray, np.ndarray]:
     """Of the times and impulses (2K,) on the plane z w + conj(z w): coefficients of z^2 and |z|^2."""
-    tracer.go_to(place)
+    tracer.take(place)
     tracer.do(curve.EXAMINE, place)
     series = tracer.bench.series[: 2 * tracer.K]
     return series[:, SQUARE].copy(), series[:, MIXED].real.copy()

@@ -85,17 +85,19 @@ class Tracer:
         row = place.tangent if row is None else row
         return curve.at(task, self.planes, self.curve, self.path, place, row, self.bench)
 
-    def go_to(self, place: Place) -> bool:
-        """Move the oscillator exactly to the parameters of `place`. False where it has no forced motion."""
+    def take(self, place: Place) -> bool:
+        """Take the oscillator's numbers at the parameters of `place`. False where there is none."""
         try:
             if np.any(np.abs(place.p[:2] - self.planes[0]["centre"]) > self.planes[0]["reach"]):
                 self.recentre(place)  # slopes of the polynomials mean nothing beyond their reach
-            values = self.oscillators.values(place.p)
+            self.planes[0]["exact"] = self.oscillators.values(place.p)
         except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
             return False
-        self.do(curve.FIT, place)  # slopes
-        self.planes[0]["values"] = values
-        return bool(np.all(np.isfinite(place.p)) and self.do(curve.SPREAD, place))
+        return bool(np.isfinite(place.p).all())
+
+    def go_to(self, place: Place) -> bool:
+        """Move the oscillator exactly to the parameters of `place`. False where it has no forced motion."""
+        return self.take(place) and bool(self.do(curve.MOVE, place))
 
     def walk(self, place: Place) -> int:
         """Compiled steps from `path.a` until something happens, and why they end (engine/impulses/curve.py)."""
@@ -115,7 +117,7 @@ class Tracer:
 
     def nearest(self, place: Place) -> tuple[float, int]:
         """Time and side of the turning point nearest to its stop."""
-        self.go_to(place)
+        self.take(place)
         self.do(curve.EXAMINE, place)
         return float(self.bench.nearest[1]), int(self.bench.nearest[2])
 
@@ -226,7 +228,7 @@ class Tracer:
         place = place if near else copied(guess)
         before = np.inf
         for _ in range(MOST_CORRECTIONS):
-            if not self.go_to(place):
+            if not self.take(place):
                 return None
             change = self.do(curve.CORRECT, place, row)
             if not change <= 1.0:
@@ -234,7 +236,7 @@ class Tracer:
             if change <= 1e-15 or (change < 1e-8 and change >= 0.3 * before):
                 place.tests[RESIDUAL] = change
                 place.tangent[: self.size] /= np.linalg.norm(self._measured(place.tangent))
-                return place if self.go_to(place) and self.do(curve.EXAMINE, place) else None
+                return place if self.take(place) and self.do(curve.EXAMINE, place) else None
             before = change
         return None
 

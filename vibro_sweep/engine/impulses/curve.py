@@ -23,7 +23,7 @@ from vibro_sweep.engine.impulses.locus import (
     newton_step,
     size_of,
 )
-from vibro_sweep.engine.impulses.plane import fit_at, move_to, spread
+from vibro_sweep.engine.impulses.plane import move_exactly, move_to
 from vibro_sweep.engine.simd.jit import entry, jit
 
 FULL, EVENT, CLOSED, FAILED, FAR, LEFT, STRONG, CHATTER = range(8)
@@ -167,23 +167,22 @@ def walk(f, c, path, place, row, b):
     return FULL
 
 
-FIT, SPREAD, ASSEMBLE, CORRECT, EXAMINE, NEAR, WALK = range(7)  # what `at` is to do
+MOVE, ASSEMBLE, CORRECT, EXAMINE, NEAR, WALK = range(6)  # what `at` is to do
 
 
 @entry
 def at(task, planes, c, path, place, row, b):
     """One kernel for Python, since each is compiled with all that it calls; 0 or NaN where something is singular.
 
-    FIT: the polynomials of the plane at the parameters of `place`; SPREAD: its tables from these values. ASSEMBLE,
-    CORRECT, EXAMINE: equations, one step of Newton's method (its size is returned), tests. NEAR: all steps of Newton's
-    method, with the polynomials of the plane, and tests. WALK: why it ends.
+    MOVE: to the parameters of `place`, with the values `exact` of the plane; CORRECT, one step of Newton's method (its
+    size is returned), and EXAMINE, tests, do that first. ASSEMBLE: equations. NEAR: all steps of Newton's method, with
+    the polynomials of the plane, and tests. WALK: why it ends.
     """
     f = planes[0]
-    if task == FIT:
-        fit_at(f, place.p[FIRST], place.p[SECOND])
-        return 1.0
-    if task == SPREAD:
-        return 1.0 if spread(f) else 0.0
+    if task == MOVE or task == CORRECT or task == EXAMINE:
+        moved = move_exactly(f, place.p[FIRST], place.p[SECOND])
+        if task == MOVE or not moved:
+            return 1.0 if moved else np.nan if task == CORRECT else 0.0
     if task == CORRECT:
         change = newton_step(f, c, place, row, b, place.tangent)
         return change if in_order(f.P, place) else np.nan

@@ -60,6 +60,7 @@ class Coordinates(NamedTuple):
 
     T: np.ndarray  # (N, N)
     inverse: np.ndarray
+    by_force: np.ndarray  # T M^-1: y'' by the force
 
 
 def contact_coordinates(q: Linear) -> Coordinates:
@@ -76,14 +77,13 @@ def _coordinates(key: Keyed) -> Coordinates:
     T[0] = q.along
     if np.count_nonzero(q.along[1:]) or np.count_nonzero(direction[1:]):
         T[1:] = np.linalg.qr(np.column_stack([direction, np.eye(N)]))[0].T[1:]
-    return Coordinates(T, np.linalg.inv(T))
+    return Coordinates(T, np.linalg.inv(T), T @ np.linalg.inv(q.M))
 
 
 def rates(q: Linear) -> np.ndarray:
     """B of zeta' = B zeta, (m, m)."""
     N = len(q.along)
-    T, inverse = contact_coordinates(q)
-    to_y = T @ np.linalg.inv(q.M)
+    _, inverse, to_y = contact_coordinates(q)
     n = 2 * N
     B = np.zeros((n + 3, n + 3))
     B[:N, N:n] = np.eye(N)
@@ -145,8 +145,7 @@ def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
     """
     N = len(q.along)
     n = 2 * N
-    T, inverse = contact_coordinates(q)
-    to_y = T @ np.linalg.inv(q.M)
+    T, inverse, to_y = contact_coordinates(q)
     A = np.zeros((n, n), REAL)
     A[:N, N:] = np.eye(N)
     A[N:, :N], A[N:, N:] = -to_y @ q.K @ inverse, -to_y @ q.C @ inverse

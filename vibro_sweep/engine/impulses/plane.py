@@ -44,6 +44,7 @@ def plane_of(masses: int) -> np.dtype:
         ("P", float),
         ("P_slopes", float, 2),
         ("fit", float, (DEGREE + 1, DEGREE + 1, count)),  # coefficients of the powers of (p - centre)/reach
+        ("exact", float, count),  # what `values` are at a point, of the oscillator itself
         ("values", float, count),
         ("slopes", float, (2, count)),
         ("A", float, (n, n + 1)),
@@ -76,6 +77,15 @@ def fit_at(f, p, q):
             value = value * s + row
             by_u = by_u * s + slope
         f.values[i], f.slopes[0, i], f.slopes[1, i] = value, by_s / f.reach[0], by_u / f.reach[1]
+
+
+@jit
+def move_exactly(f, p, q):
+    """To the parameters (p, q) with the values `exact`, and slopes of the polynomials. False as of `spread`."""
+    fit_at(f, p, q)
+    for i in range(len(f.values)):
+        f.values[i] = f.exact[i]
+    return spread(f)
 
 
 @jit
