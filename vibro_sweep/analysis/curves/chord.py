@@ -56,8 +56,9 @@ class Chord:
             begin = brentq(rough, 0.0, 1.0, xtol=ASIDE / 100, maxiter=100)
             beside = begin + (ASIDE if begin < 0.5 else -ASIDE)
             slope = (rough(beside) - rough(begin)) / (beside - begin)
-            self.seen[begin] = self._point(begin, seen, exact=True)
-            return self._refined(begin, slope)
+            if begin not in self.seen:
+                self.seen[begin] = self._point(begin, seen, exact=True)
+            return self._refined(begin, slope) if slope else None
         except (ArithmeticError, RuntimeError, ValueError):
             return None
 
