@@ -11,12 +11,12 @@ so that dt_1, xi_1 and both parameters are left. An impact that is nearly a graz
 for division by its speed would lose digits.
 """
 
-import cmath
 from typing import NamedTuple
 
 import numpy as np
 
 from vibro_sweep.engine.impulses.chatter import sum_chatter
+from vibro_sweep.engine.impulses.condensed import reach
 from vibro_sweep.engine.impulses.factors import factorise, substitute
 from vibro_sweep.engine.impulses.plane import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, flight
 from vibro_sweep.engine.simd.jit import jit
@@ -50,20 +50,10 @@ def new_steps(K: int, n: int) -> Steps:
 def follow(f, sides, sigma, t, D, room):
     """The motion through all impacts: fills `room`, whose h[0] is given, but for derivatives; F without the tail."""
     K, n = len(t), f.n
-    N, omega, F = n // 2, f.numbers[OMEGA], room.F
+    N = n // 2
     for i in range(K):
         h, E = room.h[i], room.E[i]
-        stop, gain = (HIGH, GAIN_HIGH) if sides[i] > 0 else (LOW, GAIN_LOW)
-        e = cmath.exp(1j * (omega * t[i] + f.tau))
-        room.turns[i] = e
-        for r in range(n):
-            total = f.A[r, n]
-            for c in range(n):
-                total += f.A[r, c] * h[c]
-            room.rate[i, r] = total
-        v = h[N] + (f.Z[N] * e).real
-        room.motion[i, 0], room.motion[i, 1] = v, room.rate[i, N] + (1j * omega * f.Z[N] * e).real
-        F[i], F[K + i] = h[0] + (f.Z[0] * e).real - f.numbers[stop], D[i] + f.numbers[gain] * v
+        reach(f, sides, t, D, i, room)
         flight(f, (t[i + 1] if i + 1 < K else t[0] + f.P) - t[i], E, room.other)
         for r in range(n):
             total = E[0, r, n] + E[0, r, N] * D[i]
@@ -71,7 +61,7 @@ def follow(f, sides, sigma, t, D, room):
                 total += E[0, r, c] * h[c]
             room.h[i + 1, r] = total
     for r in range(n):
-        F[2 * K + r] = sigma * room.h[0, r] - room.h[K, r]
+        room.F[2 * K + r] = sigma * room.h[0, r] - room.h[K, r]
 
 
 @jit

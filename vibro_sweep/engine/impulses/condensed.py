@@ -50,11 +50,28 @@ def new_room(K: int, n: int) -> Room:
 
 
 @jit
+def reach(f, sides, t, D, i, room):
+    """The motion before impact i, from the free part of its state in `room`, and what it leaves of the equations."""
+    n, N, K, h = f.n, f.n // 2, len(t), room.h[i]
+    stop, gain = (HIGH, GAIN_HIGH) if sides[i] > 0 else (LOW, GAIN_LOW)
+    e = cmath.exp(1j * (f.numbers[OMEGA] * t[i] + f.tau))
+    room.turns[i] = e
+    for r in range(n):
+        total = f.A[r, n]
+        for c in range(n):
+            total += f.A[r, c] * h[c]
+        room.rate[i, r] = total
+    v = h[N] + (f.Z[N] * e).real
+    room.motion[i, 0], room.motion[i, 1] = v, room.rate[i, N] + (1j * f.numbers[OMEGA] * f.Z[N] * e).real
+    room.F[i], room.F[K + i] = h[0] + (f.Z[0] * e).real - f.numbers[stop], D[i] + f.numbers[gain] * v
+
+
+@jit
 def equations(f, sides, sigma, t, D, room):
     """Fill `room`, whose h[0] is given, at the parameters to which f was moved."""
     K, n = len(t), f.n
     N, S = n // 2, 2 * K + n
-    omega, P = f.numbers[OMEGA], f.P
+    P = f.P
     X, Y, M, F, Fp = room.X, room.Y, room.M, room.F, room.Fp
     for r in range(n):
         for c in range(S):
@@ -63,18 +80,8 @@ def equations(f, sides, sigma, t, D, room):
     for i in range(K):
         h, E = room.h[i], room.E[i]
         stop, gain = (HIGH, GAIN_HIGH) if sides[i] > 0 else (LOW, GAIN_LOW)
-        R1 = f.numbers[gain]
-        e = cmath.exp(1j * (omega * t[i] + f.tau))
-        room.turns[i] = e
-        for r in range(n):
-            total = f.A[r, n]
-            for c in range(n):
-                total += f.A[r, c] * h[c]
-            room.rate[i, r] = total
-        v = h[N] + (f.Z[N] * e).real
-        a = room.rate[i, N] + (1j * omega * f.Z[N] * e).real
-        room.motion[i, 0], room.motion[i, 1] = v, a
-        F[i], F[K + i] = h[0] + (f.Z[0] * e).real - f.numbers[stop], D[i] + R1 * v
+        reach(f, sides, t, D, i, room)
+        R1, e, v, a = f.numbers[gain], room.turns[i], room.motion[i, 0], room.motion[i, 1]
         for c in range(S):
             M[i, c], M[K + i, c] = X[i, 0, c], R1 * X[i, N, c]
         M[i, i] += v
