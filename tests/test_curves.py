@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from support.branches import branch_of
-from support.curves import chosen, error_at, exact_codimension_two, exact_resonance, solution_at
+from support.curves import chosen, error_at, exact_codimension_two, exact_resonance, first, solution_at, types
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
@@ -20,39 +20,10 @@ from vibro_sweep.engine.impulses.locus import TORUS
 BOXES = {("b", "omega"): ((0.3, 9), (0.5, 0.8)), ("b", "R"): ((0.3, 9), (0.3, 0.99))}
 
 
-def types(curve):
-    return [special.type for special in curve.special]
-
-
-def first(branch, kind):
-    return next(special for special in branch.special if special.type == kind)
-
-
-def ball(n=1, F=0.9, R=0.8):
-    system = vs.Oscillator.named(
-        "one_mass", k=0, zeta=0, constant=-1, base=True, F=F, omega=1, R=R, b=0, stops="left", tau=0.0
-    )
-    return vs.continue_orbit(vs.periodic_orbit(system, itinerary="L", periods=n), "F", (0.2, 4))
-
-
 def test_a_critical_pair_that_rounding_parts_counts_as_no_other():
     """At the end of a Neimark-Sacker curve: both are near 1 or -1, one of them a little outside."""
     pair = np.array([1.65, 1 + 4e-8, 1 - 4e-8, 0.08], complex)
     assert others_outside(np.array([pair, -pair]), TORUS, np.array([0.0, np.pi])).tolist() == [1, 1]
-
-
-@pytest.mark.slow
-def test_bouncing_ball():
-    """Fold and flip in (Gamma, R): physics of P. J. Holmes, J. Sound Vib. 84 (1982) 173; a free mode, N = 1."""
-    branch = ball()
-    for kind in ("fold", "flip"):
-        curve = vs.bifurcation_curve(first(branch, kind), ("F", "R"), ((0.05, 4), (0.2, 0.95)))
-        R = curve.points.R.values
-        least = math.pi * (1 - R) / (1 + R)
-        expected = least if kind == "fold" else np.hypot(least, 2 * (1 + R**2) / (1 + R) ** 2)
-        np.testing.assert_allclose(curve.points.F.values, expected, rtol=1e-13)
-        assert curve.type == kind and not curve.points.virtual.any() and np.ptp(R) == pytest.approx(0.75)
-        assert curve.begins.parameters["F"] < curve.ends.parameters["F"] and types(curve) == ["limit", "limit"]
 
 
 @pytest.mark.slow
@@ -117,63 +88,6 @@ def test_windows_in_30_digits(b, periods, count):
             curve = vs.bifurcation_curve(special, ("b", "omega"), ((6, 7.5), (0.61, 0.65)))
             for k in chosen(curve, count):
                 assert error_at(curve, k) < 1e-12, (special.type, k)
-
-
-def wall(omega, F):
-    return vs.Oscillator.named("one_mass", zeta=0.02, F=F, omega=omega, R=0.9, b=1, stops="right")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("kind", "begin", "ranges", "omega", "F"),
-    [
-        ("flip", (0.9, 0.25), ((0.01, 0.5), (0.81, 1.0)), 0.81, 0.347533397),
-        ("fold", (0.79, 0.37), ((0.01, 0.5), (0.78, 0.799)), 0.799, 0.362836202),
-    ],
-)
-def test_one_impact_in_two_periods(kind, begin, ranges, omega, F):
-    """arXiv 2510.16218, worked out anew in 30 digits: reached from far away."""
-    branch = vs.continue_orbit(vs.periodic_orbit(wall(*begin), itinerary="R", periods=2), "F", (0.01, 0.5))
-    curve = vs.bifurcation_curve(first(branch, kind), ("F", "omega"), ranges)
-    (end,) = [one for one in curve.special if one.parameters["omega"] == omega]
-    assert end.type == "limit" and end.parameters["F"] == pytest.approx(F, abs=6e-10)
-
-
-@pytest.mark.slow
-def test_fold_and_flip_begin_at_the_resonant_graze():
-    """arXiv 2510.16218: from (0.36, 0.8) the fold goes down to omega = 0.788, the flip up to 0.9998; both are tangent
-    to the graze curve there, with a distance that grows like the square."""
-    box = ((0.01, 0.5), (0.78, 1.05))
-    branch = vs.continue_orbit(vs.periodic_orbit(wall(0.81, 0.4), itinerary="R", periods=2), "F", (0.01, 0.6))
-    flip = vs.bifurcation_curve(first(branch, "flip"), ("F", "omega"), box)
-    graze = vs.bifurcation_curve(branch.begins, ("F", "omega"), box)
-    branch = vs.continue_orbit(vs.periodic_orbit(wall(0.799, 0.364), itinerary="R", periods=2), "F", (0.01, 0.6))
-    fold = vs.bifurcation_curve(first(branch, "fold"), ("F", "omega"), box)
-    places = {}
-    for curve in (flip, fold, graze):
-        for special in curve.special:
-            if special.type == "resonant_graze":
-                places.setdefault(curve.type, []).append(special.parameters["omega"])
-    (begin,) = places["fold"]
-    rate = math.sqrt(1 - 0.02**2)  # of the free decay: gamma = 0 at zero delay where it swings a whole number of times
-    assert begin == pytest.approx(4 / 5 * rate, abs=1e-12)
-    assert sorted(places["flip"]) == pytest.approx([begin, rate], abs=1e-12)
-    assert sorted(places["graze"]) == pytest.approx(sorted(places["flip"]), abs=1e-12)
-    assert [special.parameters["omega"] for special in fold.special if special.type == "fold_graze"] == pytest.approx(
-        [0.7881222563629103], abs=1e-12
-    )
-    special = next(one for one in fold.special if one.type == "resonant_graze")
-    near_box = ((special.parameters["F"] - 0.004, special.parameters["F"] + 0.004), (begin - 0.002, begin + 0.002))
-    starts = [start for start in vs.switch(special) if start.type in ("fold", "flip")]
-    assert len(starts) == 2
-    for curve in (vs.bifurcation_curve(start, ("F", "omega"), near_box) for start in starts):
-        real = curve.points.isel(point=~curve.points.virtual.values)
-        omega, F = real.omega.values, real.F.values
-        near = np.abs(omega - begin) > 1e-5
-        gain = np.hypot(1 - omega**2, 0.04 * omega)  # the free motion touches the stop at this F
-        distance = np.abs(F - gain)[near]
-        power = np.polyfit(np.log(np.abs(omega - begin)[near]), np.log(distance), 1)[0]
-        assert near.sum() >= 4 and power == pytest.approx(2, abs=0.05)
 
 
 @pytest.mark.slow
@@ -326,46 +240,6 @@ def test_the_fold_of_asymmetric_orbits_begins_where_the_pitchfork_turns_from_sup
     )
     assert end.parameters == pytest.approx(nearest.parameters, abs=1e-12)
     assert "cusp" in types(fold)
-
-
-@pytest.mark.slow
-def test_double_graze_unfolds_where_the_stops_are_unequal():
-    """In (b, offset) four graze curves cross at b*: of orbits that hit one stop, where they touch it, b = b* +- offset,
-    and of the orbit that hits both, where it loses one impact."""
-    box, star = ((3, 9), (-1, 1)), vs.grazing(PAPER).b
-    orbit = vs.periodic_orbit(PAPER.replace(offset=0.05, b=4.0), itinerary="R")
-    curve = vs.bifurcation_curve(vs.continue_orbit(orbit, "b", (0.3, 6.9)).ends, ("b", "offset"), box)
-    (double,) = (special for special in curve.special if special.type == "double_graze")
-    assert double.parameters == {"b": pytest.approx(star, abs=1e-12), "offset": pytest.approx(0, abs=1e-12)}
-    starts = vs.switch(double)
-    assert sorted((start.type, start.orbit.itinerary, start.stop) for start in starts) == [
-        ("graze", "L", -1), ("graze", "LR", -1), ("graze", "LR", 1), ("graze", "R", 1),
-    ]  # fmt: skip
-    both = []
-    for start in starts:
-        other = vs.bifurcation_curve(start, ("b", "offset"), box)
-        assert types(other).count("double_graze") == 1
-        if start.orbit.itinerary != "LR":
-            np.testing.assert_allclose(other.points.b, star - start.stop * other.points.offset, rtol=1e-13)
-        else:
-            both.append([special.parameters for special in other.special if special.type == "neimark_sacker_graze"])
-    (one,), (mirror,) = both
-    assert one["b"] == pytest.approx(mirror["b"], abs=1e-12)
-    assert one["offset"] == pytest.approx(-mirror["offset"], abs=1e-12)
-
-
-@pytest.mark.slow
-def test_pitchfork_is_a_cusp_of_folds_where_the_symmetry_is_broken(symmetric_branch):
-    pitchfork = first(symmetric_branch, "pitchfork")
-    curve = vs.bifurcation_curve(pitchfork, ("b", "offset"), ((3, 5), (-0.2, 0.2)))
-    points = curve.points
-    assert curve.type == "fold" and types(curve) == ["limit", "cusp", "limit"]
-    cusp = curve.special[1].parameters
-    assert cusp == {"b": pytest.approx(pitchfork.parameters["b"], abs=1e-12), "offset": pytest.approx(0, abs=1e-12)}
-    b, offset = points.b.values, points.offset.values
-    near = (np.abs(offset) > 1e-6) & (np.abs(offset) < 1e-2)  # |b - b_0| like offset^(2/3)
-    power = np.polyfit(np.log(np.abs(offset[near])), np.log(np.abs(b[near] - pitchfork.parameters["b"])), 1)[0]
-    assert near.sum() > 6 and power == pytest.approx(2 / 3, abs=0.03)
 
 
 @pytest.mark.slow

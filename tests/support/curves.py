@@ -12,6 +12,16 @@ from vibro_sweep.analysis.periodic.solution import Solution
 SLOWEST = 1e-4  # impact speed: below it the reference's monodromy matrix is next to its pole
 
 
+def types(curve):
+    """Of the points of codimension two along a curve."""
+    return [special.type for special in curve.special]
+
+
+def first(branch, kind):
+    """The first special point of a type."""
+    return next(special for special in branch.special if special.type == kind)
+
+
 def chosen(curve, count):
     """Indices of `count` points along the real part of a curve, where no impact but the grazing one is very slow."""
     points = curve.points
