@@ -54,7 +54,7 @@ def test_the_file_holds_the_curve(file, curve):
     with xr.open_dataset(file, engine="h5netcdf") as data:
         assert data.attrs["kind"] == "curves" and data.attrs["mu_m"] == 10 and "tau" not in data.attrs
         assert [CURVES[code] for code in data["branch_type"].values] == ["pitchfork"]
-        for name in (*NAMES, "multiplier_re", "residual", "unstable"):
+        for name in (*NAMES, "x1", "v2", "multiplier_re", "residual", "unstable"):
             np.testing.assert_allclose(data[name], curve.points[name], rtol=1e-12, atol=1e-13)
         assert not data["status"].values.any() and data.sizes["impact"] == 2 * data.sizes["point"]
         types = [CODIMENSION_TWO[code].name for code in data["special_type"].values]

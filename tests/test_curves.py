@@ -243,6 +243,21 @@ def test_the_fold_of_asymmetric_orbits_begins_where_the_pitchfork_turns_from_sup
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("names", [("b", "omega"), ("omega", "mu_m"), ("b", "R")])
+def test_states_of_points_are_those_of_the_orbits(names, symmetric_branch, one_sided_branch):
+    specials = [first(symmetric_branch, "pitchfork"), one_sided_branch.ends, first(one_sided_branch, "neimark_sacker")]
+    for special in specials:
+        here = special.parameters | {"omega": 0.63, "mu_m": 10.0, "R": 0.8}
+        box = tuple((here[name] - 0.05 * abs(here[name]), here[name] + 0.05 * abs(here[name])) for name in names)
+        curve = vs.bifurcation_curve(special, names, box)
+        states = np.stack([curve.points[name].values for name in ("x1", "v1", "x2", "v2")], axis=-1)
+        assert len(states) > 8
+        for k in range(0, len(states), 3):
+            orbit = orbit_of(None, solution_at(curve, k))
+            assert states[k] == pytest.approx(orbit.state, abs=1e-11 * np.abs(orbit.state).max()), (special.type, k)
+
+
+@pytest.mark.slow
 def test_picture(symmetric_branch):
     pitchfork = first(symmetric_branch, "pitchfork")
     curves = [vs.bifurcation_curve(pitchfork, names, BOXES[names]) for names in BOXES]

@@ -211,9 +211,9 @@ OF_EDGES = (  # of curves that begin at the edges of a plane
 def columns(kind: str, parameters: list[str], states: list[str]) -> list[Column]:
     """All variables of a file; parameters : the names of numbers along which branches lead, states : x1, v1, ..."""
     own = [Column(name, ("point",), "f8", name, f"the parameter {name}") for name in parameters]
+    own += [Column(name, ("point",), "f8", name, f"{name} at t = 0, before an impact there") for name in states]
     if kind == CHART:
         return [*own, *OF_CURVES]
-    own += [Column(name, ("point",), "f8", name, f"{name} at t = 0, before an impact there") for name in states]
     if kind == WINDOWS:
         text = "at t = 0 mod T, of a start that stays on the window's orbit at `unseen_at`; NaN where none is known"
         starts = [Column(f"unseen_{name}", ("unseen",), "f8", name, f"{name} {text}") for name in states]

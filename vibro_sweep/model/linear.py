@@ -121,7 +121,14 @@ def amplitudes(q: Linear) -> np.ndarray:
 
     Where the force does not drive the mode in resonance, the steady motion without that mode.
     """
-    return _response(q, q.cosine - 1j * q.sine)
+    return _amplitudes(Keyed(q, FORCED))
+
+
+@lru_cache(maxsize=1024)  # as many as a curve has points
+def _amplitudes(key: Keyed) -> np.ndarray:
+    found = _response(key.q, key.q.cosine - 1j * key.q.sine)
+    found.flags.writeable = False  # it is shared
+    return found
 
 
 def _response(q: Linear, force: np.ndarray) -> np.ndarray:
@@ -164,7 +171,7 @@ def steady_gain(q: Linear) -> complex | None:
     return _steady_gain(Keyed(q, FORCED))
 
 
-@lru_cache(maxsize=1024)  # as many as a curve has points
+@lru_cache(maxsize=1024)
 def _steady_gain(key: Keyed) -> complex | None:
     q = key.q
     try:

@@ -22,8 +22,6 @@ def joined(flats: list[Arrays], parameters: list[str], others: list[tuple[float,
     result["branch_origin"] = first_point + np.array([int(flat["branch_origin"]) for flat in flats], int)
     for name in ("branch_period", "branch_symmetric", "branch_closed"):
         result[name] = np.array([flat[name] for flat in flats])
-    states = _stacked([flat["state"] for flat in flats], 2 * masses)
-    result |= {name: states[:, i] for i, name in enumerate(state(masses))}
     for name in _ALONG_IMPACTS:
         result[name] = _stacked([flat[name].ravel() for flat in flats])
     values = np.array(others, float).reshape(len(flats), len(parameters) - 1)
@@ -68,6 +66,8 @@ def _common(flats: list[Arrays], masses: int) -> tuple[np.ndarray, np.ndarray, A
         "special_branch": np.repeat(np.arange(len(flats)), specials),
         "special_point": np.where(places >= 0, places + np.repeat(first_point, specials), -1),
     }
+    states = _stacked([flat["state"] for flat in flats], 2 * masses)
+    result |= {name: states[:, i] for i, name in enumerate(state(masses))}
     columns = {"multiplier_re": 2 * masses, "multiplier_im": 2 * masses}
     for name in _ALONG_POINTS:
         result[name] = _stacked([flat[name] for flat in flats], columns.get(name))

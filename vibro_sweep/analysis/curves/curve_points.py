@@ -1,5 +1,6 @@
 """The points of a bifurcation curve as a Dataset."""
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -8,40 +9,44 @@ from vibro_sweep.analysis.curves.rows import Rows
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
 from vibro_sweep.engine.impulses.curve_tests import TOUCHING
-from vibro_sweep.engine.impulses.flights import Flow
+from vibro_sweep.engine.impulses.flights import Flow, contact_coordinates, free_part, new_room, steady_motion
 from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, STICK, THETA, TORUS
 from vibro_sweep.model.linear import Linear, forcing_period
+from vibro_sweep.model.state import state
 
 if TYPE_CHECKING:
     import xarray
 
-FREE = ("M", "K", "C", "along")  # fields of an oscillator on which its free flight depends
+FREE = ("M", "K", "C", "along", "constant")  # fields of an oscillator on which its free flight depends
 
 
 def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
-    """Over `point`, in order: both parameters; `multiplier_re`, `multiplier_im` (multiplier) of the whole period, at a
-    graze of the orbit without the grazing impact; `unstable`, how many lie outside the unit circle beside those that
-    the curve is about; `virtual`, whether the orbit is no motion: an impulse pulls or a
-    flight passes a stop; `margin`, the least distance of its other turning points from their stop; `residual`;
-    `impact_t`, `impact_side` and `impact_v` (impact): of the half orbit where it is symmetric, times not wrapped.
+    """Over `point`, in order: both parameters; the state x1 v1 .. at t = 0, before an impact there; `multiplier_re`,
+    `multiplier_im` (multiplier) of the whole period, at a graze of the orbit without the grazing impact; `unstable`,
+    how many lie outside the unit circle beside those that the curve is about; `virtual`, whether the orbit is no
+    motion: an impulse pulls or a flight passes a stop; `margin`, the least distance of its other turning points from
+    their stop; `residual`; `impact_t`, `impact_side` and `impact_v` (impact): of the half orbit where it is symmetric,
+    times not wrapped.
 
-    At an onset of sticking there are no multipliers (NaN). The impacts are the end of the chatter, with no speed, and
-    those before the next end that are written out (NaN: fewer than elsewhere on the curve).
+    At an onset of sticking there are no multipliers and no states (NaN). The impacts are the end of the chatter, with
+    no speed, and those before the next end that are written out (NaN: fewer than elsewhere on the curve).
     """
     s, kind, names, K = tracer.start.solution, tracer.curve.kind, tracer.names, rows.t.shape[1]
     sides = tracer.resized(K).curve.sides.astype(int)
     others = np.delete(np.arange(K), tracer.curve.index) if kind >= GRAZE else np.arange(K)
-    multipliers, shifts = [], []
+    multipliers, shifts, states = [], [], []
     oscillators = [tracer.oscillators.at(p).linear for p in rows.p]
     flows = _flows(oscillators) if kind != STICK else oscillators
-    for q, f, t, D, motion in zip(oscillators, flows, rows.t, rows.D, rows.motion, strict=True):
+    for q, f, t, D, motion, h in zip(oscillators, flows, rows.t, rows.D, rows.motion, rows.h, strict=True):
         contacts = np.column_stack([q.stop(sides), 1 + q.restitution(sides)])[others]
         P, u = forcing_period(q) / 2 * s.halves, np.concatenate([t[others], D[others]])
         shifts.append((tracer.oscillators.tau - q.tau) / q.omega)
         if kind == STICK:
             multipliers.append(np.full(2 * len(q.along), np.nan, complex))
+            states.append(np.full(2 * len(q.along), np.nan))
             continue
         multipliers.append(multipliers_of(f, s.sigma, P, contacts, u, motion[others]))
+        states.append(_state(q, f, s.sigma, P, t + shifts[-1], D, h))
     values = np.array(multipliers)
     unstable = others_outside(values, kind, rows.p[:, THETA])
     values **= 1 if s.sigma == 1 else 2
@@ -52,6 +57,7 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     variables = {
         names[0]: ("point", rows.p[:, 0]),
         names[1]: ("point", rows.p[:, 1]),
+        **{name: ("point", values) for name, values in zip(state(len(q.along)), np.transpose(states), strict=True)},
         "multiplier_re": (("point", "multiplier"), values.real),
         "multiplier_im": (("point", "multiplier"), values.imag),
         "unstable": ("point", unstable),
@@ -65,6 +71,15 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     import xarray
 
     return xarray.Dataset(variables)
+
+
+def _state(q: Linear, f: Flow, sigma: int, P: float, t: np.ndarray, D: np.ndarray, h: np.ndarray) -> np.ndarray:
+    """(2N,) at t = 0, before an impact there: that at a multiple of P after the first impact."""
+    later = math.ceil(t[0] / P) if len(t) else 0
+    room, N = new_room(len(f.B)), len(q.along)
+    free_part(f, h, t, D, P, later * P, room)
+    y = (room.state[: 2 * N] + steady_motion(q, later * P)) * (1 if sigma == 1 or later % 2 == 0 else -1)
+    return np.reshape([contact_coordinates(q).inverse @ y[:N], contact_coordinates(q).inverse @ y[N:]], -1, "F")
 
 
 def _flows(oscillators: list[Linear]) -> list[Flow]:

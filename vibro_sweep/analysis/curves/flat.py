@@ -27,6 +27,7 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.locus import GRAZE
 from vibro_sweep.model.bifurcations import CODES_OF_CURVES, CODIMENSION_TWO, CURVES
 from vibro_sweep.model.linear import Linear, steady_gain
+from vibro_sweep.model.state import state
 
 
 def flatten(curve: BifurcationCurve) -> Flat:
@@ -49,6 +50,7 @@ def flatten(curve: BifurcationCurve) -> Flat:
         "branch_begins": np.int32(curve.special.index(curve.begins)),
         "branch_ends": np.int32(len(curve.special) - 1 - curve.special[::-1].index(curve.ends)),
         "value": value,
+        "state": np.column_stack([data[name].values for name in state(data.sizes["multiplier"] // 2)]),
         **{name: data[name].values for name in ("multiplier_re", "multiplier_im", "margin", "residual")},
         "min_impact_speed": speeds.min(axis=1, initial=np.inf),
         "b_star": np.array([_grazing_clearance(q) for q in oscillators]),

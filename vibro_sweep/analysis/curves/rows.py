@@ -14,6 +14,7 @@ class Rows(NamedTuple):
     motion: np.ndarray  # (points, K, 2)
     margin: np.ndarray  # (points,)
     residual: np.ndarray  # (points,)
+    h: np.ndarray  # (points, n): free part of the state before the first impact, in contact coordinates
 
 
 def join(parts: list[Rows]) -> Rows:

@@ -15,6 +15,7 @@ from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.curves.tracer import Tracer, copied, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.impulses import curve, curve_path, curve_tests, locus
+from vibro_sweep.engine.impulses.flights import steady_motion
 from vibro_sweep.engine.impulses.locus import GRAZE, STICK, Place
 
 FIRST_STEP = 1e-3
@@ -117,12 +118,12 @@ class Way:
 
     def _keep(self, record: curve_path.Record, count: int) -> None:
         r = record
-        values = r.p, r.t, r.D, r.motion, r.tests[:, curve_tests.MARGIN], r.tests[:, curve_tests.RESIDUAL]
+        values = r.p, r.t, r.D, r.motion, r.tests[:, curve_tests.MARGIN], r.tests[:, curve_tests.RESIDUAL], r.h
         self.rows.append(Rows(*(value[:count].copy() for value in values)))
 
     def _add(self, place: Place) -> None:
         margin, residual = place.tests[curve_tests.MARGIN], place.tests[curve_tests.RESIDUAL]
-        values = place.p, place.t, place.D, self.tracer.motion(place), margin, residual
+        values = place.p, place.t, place.D, self.tracer.motion(place), margin, residual, place.h
         self.rows.append(Rows(*(np.array(value)[None].copy() for value in values)))
 
     def _pass(self, a: Place, b: Place) -> bool:
@@ -210,7 +211,8 @@ class Way:
             p[locus.THETA] = round(self.points.p[-1, locus.THETA] / np.pi) * np.pi
         t = solution.times + (q.tau - w.oscillators.tau) / q.omega
         motion = solution.motion[:, :2]
-        values = p, t, solution.jumps, motion, np.array(solution.margin), np.array(solution.change)
+        h = solution.states[0, : w.n] - steady_motion(q, solution.times[0])
+        values = p, t, solution.jumps, motion, np.array(solution.margin), np.array(solution.change), h
         self.rows.append(Rows(*(value[None].copy() for value in values)))
 
     def _at(self, of_type, place: Place, error: float, event: Event | None = None, tracer=None) -> CurvePoint:

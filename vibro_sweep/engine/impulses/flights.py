@@ -21,7 +21,7 @@ from vibro_sweep.engine.impulses.green import (
 )
 from vibro_sweep.engine.impulses.tables import ORDER, REAL, exponential, power, taylor_rows
 from vibro_sweep.engine.simd.jit import entry, jit
-from vibro_sweep.model.linear import Keyed, Linear, forcing_period
+from vibro_sweep.model.linear import Keyed, Linear, amplitudes, forcing_period
 
 DOUBLINGS = 18
 
@@ -78,6 +78,12 @@ def _coordinates(key: Keyed) -> Coordinates:
     if np.count_nonzero(q.along[1:]) or np.count_nonzero(direction[1:]):
         T[1:] = np.linalg.qr(np.column_stack([direction, np.eye(N)]))[0].T[1:]
     return Coordinates(T, np.linalg.inv(T), T @ np.linalg.inv(q.M))
+
+
+def steady_motion(q: Linear, t: float) -> np.ndarray:
+    """(2N,) the part of (y, y') that the harmonic force drives, at the time t."""
+    swing = contact_coordinates(q).T @ amplitudes(q) * np.exp(1j * (q.omega * t + q.tau))
+    return np.concatenate([swing.real, -q.omega * swing.imag])
 
 
 def rates(q: Linear) -> np.ndarray:
@@ -309,6 +315,21 @@ def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, room):
         extremes(f, flying, end - begin, low, high, nearest, room)
         if nearest[0] < distance:
             nearest[1] += begin
+
+
+@entry
+def free_part(f, h, t, D, P, moment, room):
+    """room.state becomes the free part of zeta, without the harmonic force, at `moment` in [t_1, t_1 + P], before an
+    impact there. h (n,): before the first impact; t, D: times and impulses (K,)."""
+    K, n, z = len(t), len(h), room.state
+    for i in range(n):
+        z[i] = h[i]
+    z[n], z[n + 1], z[n + 2] = 0.0, 0.0, 1.0
+    k = 0
+    while k < K and t[k] < moment:
+        z[n // 2] += D[k]
+        advance(f, z, min(t[k + 1] if k + 1 < K else t[0] + P, moment) - t[k], room)
+        k += 1
 
 
 @entry
