@@ -15,7 +15,7 @@ from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import places
 from vibro_sweep.engine.impulses.checks import may_turn
-from vibro_sweep.engine.impulses.flights import rates
+from vibro_sweep.engine.impulses.flow import rates
 from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.model.linear import Family
 

@@ -13,7 +13,7 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.curves.continuation import first_of
 from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.curves.tracer import Tracer
-from vibro_sweep.engine.impulses.flights import contact_coordinates
+from vibro_sweep.engine.impulses.flow import contact_coordinates
 
 pytestmark = pytest.mark.slow
 

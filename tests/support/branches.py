@@ -8,7 +8,7 @@ from reference.shooting import Shooting
 import vibro_sweep as vs
 from support.oscillators import PAPER
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.flights import contact_coordinates
+from vibro_sweep.engine.impulses.flow import contact_coordinates
 
 NUMBERS = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")  # of the reference: both stops alike, offset 0
 

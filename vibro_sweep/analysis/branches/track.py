@@ -7,7 +7,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.media import medium_of
 from vibro_sweep.engine.impulses import branch, places
-from vibro_sweep.engine.impulses.flights import contact_coordinates
+from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.engine.impulses.places import Place, Steps, new_place, new_record, new_work
 
 AT_ONCE = 1024  # points of one call

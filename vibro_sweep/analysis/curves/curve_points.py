@@ -9,7 +9,8 @@ from vibro_sweep.analysis.curves.rows import Rows
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
 from vibro_sweep.engine.impulses.curve_tests import TOUCHING
-from vibro_sweep.engine.impulses.flights import Flow, contact_coordinates, free_part, new_room, steady_motion
+from vibro_sweep.engine.impulses.flights import free_part, new_room
+from vibro_sweep.engine.impulses.flow import Flow, contact_coordinates, steady_motion
 from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, STICK, THETA, TORUS
 from vibro_sweep.model.linear import Linear, forcing_period
 from vibro_sweep.model.state import state

@@ -5,7 +5,7 @@ from numpy.polynomial import chebyshev
 
 from vibro_sweep.analysis.periodic.impulse_equations import flow
 from vibro_sweep.engine.impulses import plane
-from vibro_sweep.engine.impulses.flights import rates
+from vibro_sweep.engine.impulses.flow import rates
 from vibro_sweep.engine.impulses.plane import NUMBERS
 from vibro_sweep.engine.impulses.tables import ORDER, REAL
 from vibro_sweep.model.linear import Family, Linear

@@ -15,7 +15,7 @@ from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.curves.tracer import Tracer, copied, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.impulses import curve, curve_path, curve_tests, locus
-from vibro_sweep.engine.impulses.flights import steady_motion
+from vibro_sweep.engine.impulses.flow import steady_motion
 from vibro_sweep.engine.impulses.locus import GRAZE, STICK, Place
 
 FIRST_STEP = 1e-3

@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from vibro_sweep.engine.impulses import equations, flights, multipliers, sections
+from vibro_sweep.engine.impulses import flow as free_flight
 from vibro_sweep.engine.impulses.green import ResonanceError, free_modes, has_free_gap, space, space_slopes, train
 from vibro_sweep.model.linear import CONTACT, Family, Keyed, Linear, amplitude_slopes, amplitudes, forcing_period
 
@@ -104,7 +105,7 @@ class Equations:
         return multipliers_of(flow(self.q), self.sigma, self.P, self.contacts(sides), u, motion)
 
 
-def multipliers_of(f: flights.Flow, sigma: int, P: float, contacts: np.ndarray, u, motion) -> np.ndarray:
+def multipliers_of(f: free_flight.Flow, sigma: int, P: float, contacts: np.ndarray, u, motion) -> np.ndarray:
     """`Equations.multipliers` without the tables of the equations; contacts (K, 2 or more): stop, 1 + R.
 
     They do not depend on the force: the flow may be that of an oscillator with another one.
@@ -202,18 +203,18 @@ def moves_stops_straight(family: Family, name: str, span: float) -> bool:
 
 
 @lru_cache(maxsize=16)
-def _flow(key: Keyed) -> flights.Flow:
-    return flights.flow(key.q)
+def _flow(key: Keyed) -> free_flight.Flow:
+    return free_flight.flow(key.q)
 
 
 @lru_cache(maxsize=16)
-def _held_flow(key: Keyed) -> flights.Flow:
-    return flights.held_flow(key.q)
+def _held_flow(key: Keyed) -> free_flight.Flow:
+    return free_flight.held_flow(key.q)
 
 
 @lru_cache(maxsize=64)
 def _closing(key: Keyed, sigma: int, halves: int) -> np.ndarray:
-    return flights.closing(key.q, sigma, halves)
+    return free_flight.closing(key.q, sigma, halves)
 
 
 @lru_cache(maxsize=64)
@@ -221,11 +222,11 @@ def _steady(key: Keyed, sigma: int, halves: int) -> equations.Steady:
     return steady(key.q, sigma, halves, None)
 
 
-def flow(q: Linear) -> flights.Flow:
+def flow(q: Linear) -> free_flight.Flow:
     return _flow(Keyed(q, TABLES))
 
 
-def held_flow(q: Linear) -> flights.Flow:
+def held_flow(q: Linear) -> free_flight.Flow:
     return _held_flow(Keyed(q, TABLES))
 
 

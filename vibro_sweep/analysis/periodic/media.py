@@ -5,7 +5,7 @@ from numpy.polynomial import chebyshev
 
 from vibro_sweep.analysis.periodic.impulse_equations import flow, moves_stops_straight
 from vibro_sweep.engine.impulses import branch, extremes, medium
-from vibro_sweep.engine.impulses.flights import rates
+from vibro_sweep.engine.impulses.flow import rates
 from vibro_sweep.engine.impulses.medium import NUMBERS, TAU
 from vibro_sweep.model.linear import Family, Linear, forcing_period
 

@@ -11,6 +11,7 @@ from vibro_sweep.analysis.periodic.impulse_equations import flow, held_flow
 from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
+from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.engine.one_system import IMPACT, STICKING
 from vibro_sweep.model.arguments import LATEST, checked_times
 from vibro_sweep.model.general import Oscillator
@@ -126,7 +127,7 @@ class PeriodicOrbit:
     def _masses(self, states) -> np.ndarray:
         """States (m, 2N) as x1 v1 .. xN vN from contact coordinates."""
         q = self._solution.family.linear
-        inverse, N = flights.contact_coordinates(q).inverse, len(q.along)
+        inverse, N = contact_coordinates(q).inverse, len(q.along)
         result = np.empty_like(states)
         result[:, ::2], result[:, 1::2] = states[:, :N] @ inverse.T, states[:, N : 2 * N] @ inverse.T
         return result

@@ -19,6 +19,7 @@ from vibro_sweep.analysis.periodic.impulse_equations import contacts_of, flow, h
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.equations import GAIN, GAIN_SLOPE, STOP, STOP_SLOPE
+from vibro_sweep.engine.impulses.flow import Flow, contact_coordinates
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.model.linear import Linear, forcing_period
 
@@ -204,8 +205,8 @@ class RestEquations:
         return values
 
     def starts(self, sides, u):
-        """[(kind, side, begin, end, zeta in contact coordinates)] of each piece; see flights.py."""
-        T = flights.contact_coordinates(self.q).T
+        """[(kind, side, begin, end, zeta in contact coordinates)] of each piece; see flow.py."""
+        T = contact_coordinates(self.q).T
         N, found = len(self.q.along), self._repeated(sides, u)
         return [
             (kind, sides[k], begin, end, np.concatenate([T @ zeta[:N], T @ zeta[N : 2 * N], zeta[2 * N :]]))
@@ -214,7 +215,7 @@ class RestEquations:
 
     def fly(self, sides, u) -> tuple[np.ndarray, np.ndarray]:
         """As `Equations.fly`."""
-        T, found = flights.contact_coordinates(self.q).T, self._repeated(sides, u)
+        T, found = contact_coordinates(self.q).T, self._repeated(sides, u)
         N = len(self.q.along)
         states = np.hstack([found.before[:, :N] @ T.T, found.before[:, N : 2 * N] @ T.T, found.before[:, 2 * N :]])
         nearest = np.array([np.inf, 0.0, 0.0])
@@ -239,7 +240,7 @@ class RestEquations:
         return least
 
 
-def _fly_free(f: flights.Flow, zeta, begin: float, end: float, released: bool, stops, nearest) -> None:
+def _fly_free(f: Flow, zeta, begin: float, end: float, released: bool, stops, nearest) -> None:
     """Lower `nearest` to the turning points of a flight. After a rest it leaves the stop like the third power of time:
     as long as its third derivative dominates, the gap does not turn."""
     m = len(zeta)

@@ -8,7 +8,7 @@ from vibro_sweep.analysis.periodic.long_orbits import is_long
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.windows.job import is_near
-from vibro_sweep.engine.impulses.flights import contact_coordinates
+from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.model.linear import Linear, family_of
 
 

@@ -6,9 +6,8 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.impulses.chatter import NEXT
-from vibro_sweep.engine.impulses.extremes import extremes_of_cell
+from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
 from vibro_sweep.engine.impulses.factors import square
-from vibro_sweep.engine.impulses.flights import OVERLAP
 from vibro_sweep.engine.impulses.locus import GRAZE, STICK
 from vibro_sweep.engine.impulses.plane import HIGH, LOW, OMEGA, polynomial
 from vibro_sweep.engine.impulses.tables import ORDER
