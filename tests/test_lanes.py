@@ -7,7 +7,7 @@ import pytest
 
 from vibro_sweep.engine.simd.columns import put_transposed, sizes, transposed, weigh
 from vibro_sweep.engine.simd.jit import entry
-from vibro_sweep.engine.simd.lanes import LANES, alike, bits, count_leading, lanes_of, number, select, state_and_rest
+from vibro_sweep.engine.simd.lanes import LANES, alike, bits, lanes_of, lowest, number, select, state_and_rest
 from vibro_sweep.engine.simd.memory import LINE, eight, new_lines, put, put_state, record, row
 
 SPECIAL = np.array([0.0, -0.0, 1.0, np.inf, -np.inf, np.nan, 1e-310, -1e300])
@@ -33,7 +33,7 @@ def comparisons(a, masks, out):
     x, y = row(a, 0), row(a, 1)
     masks[0], masks[1], masks[2], masks[3] = bits(x < y), bits(x <= y), bits(x > 1.0), bits(0.0 >= y)
     masks[4], masks[5] = bits((x < y) & (x > 1.0)), bits((x < y) | ~(x > 1.0))
-    masks[6] = count_leading(lanes_of(0b00010111))
+    masks[6] = lowest(bits(lanes_of(0b11101000)))
     put(out, 0, select(x < y, x, y))
     put(out, 1, select(x < y, 1.0, alike(2.0)))
 

@@ -11,18 +11,14 @@ import numpy as np
 from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
-from vibro_sweep.engine.motion.orbits import (
-    add_count,
-    keep_start,
-    take_off,
-    take_samples,
-)
-from vibro_sweep.engine.motion.scan import careful_state, first_suspect, open_cell, state_at, suspect_state
+from vibro_sweep.engine.motion.orbits import add_count, keep_start, take_off, take_samples
+from vibro_sweep.engine.motion.scan import careful_state, first_suspect, is_inside, open_cell, state_at, suspect_state
+from vibro_sweep.engine.motion.section import end_period, end_period_here
 from vibro_sweep.engine.motion.strike import clear_counts, strike
 from vibro_sweep.engine.motion.together import flight_of, records_of, stops_of
 from vibro_sweep.engine.simd.jit import aside, inline, jit
-from vibro_sweep.engine.simd.lanes import LANES, lanes_of, number, select
-from vibro_sweep.engine.simd.memory import put, put_state, row
+from vibro_sweep.engine.simd.lanes import LANES, lanes_of, lowest, number
+from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.tables.flight import load
 from vibro_sweep.engine.variational import tangent, tangent_flight
 from vibro_sweep.model import status
@@ -32,32 +28,6 @@ class Mapping(NamedTuple):
     """The discontinuity mapping in place of the flow: a type of its own, so that it is compiled only if asked for."""
 
     order: int  # 1 or 2
-
-
-@inline
-def end_period(e, o, q, nodes, X, readings):
-    """Take the orbit over the section, where its state is X."""
-    parts = readings.parts
-    o.cell = o.events = o.samples_taken = 0
-    take_off(o, nodes, X)
-    o.period += 1
-    if readings.keep:
-        largest = row(o.largest, 0)
-        put_state(readings.states[np.uint64(o.lane)], o.done, X, o.c)
-        put(o.largest, 0, select(abs(X) > largest, abs(X), largest))
-    o.done += 1
-    t = e.tangent[0]
-    if t.wanted:
-        t.cell[o.lane] -= q.cells
-        if parts > 0 and o.done * parts >= (o.read + 1) * o.periods:
-            tangent.read_growth(t, o.lane, q, nodes, readings.growth[o.lane, o.read])
-            o.read += 1
-
-
-@aside
-def end_period_here(e, o, f, readings):
-    """`end_period` of an orbit that has its state there, for those that came a rare way."""
-    end_period(e, o, f.oscillator[0], f.nodes, row(o.X, 0), readings)
 
 
 @inline
@@ -144,7 +114,7 @@ def glide(e, o, f, readings):
     o.suspect = first_suspect(f, o)
     if o.suspect == o.ends and o.done + 1 < o.periods:
         X = state_at(o, f.nodes, o.ends)
-        if o.low <= number(X, 0) <= o.high:  # else the last cell is suspect
+        if is_inside(o, number(X, 0)):  # else the last cell is suspect
             end_period(e, o, f.oscillator[0], f.nodes, X, readings)
             o.suspect = first_suspect(f, o)
 
@@ -207,19 +177,37 @@ def watch_cell(e, o, f, free):
         watch_rebound(q, o, records, o.cell, strikes.offset[i], strikes.side[i], strikes.speed[i], strikes.impulse[i])
 
 
-@inline
-def settle(e, o, free, struck, readings):
-    """Go on to the end of the cell in which the orbit may have struck."""
-    f, strikes, i = flight_of(e, o), e.strike[0], o.lane
-    if not (free or struck):
-        hold(o, row(strikes.z, i))
-        go_long_way(e, o, f, readings)
-        return
-    if len(e.records.times) > 0 or (struck and e.records.impacts.shape[1] > 0):
+@aside
+def stay(e, o, free, struck, readings):
+    """`settle` for an orbit that is watched in its cell, or neither flies freely there nor strikes once."""
+    f, X = flight_of(e, o), row(e.strike[0].z, o.lane)
+    if free or struck:
         watch_cell(e, o, f, free)
-    o.cell += 1
-    if struck:
-        take_off(o, f.nodes, row(strikes.X, i))
+    else:
+        hold(o, X)
+        go_long_way(e, o, f, readings)
+
+
+@inline
+def settle(e, waiting, free, struck, readings):
+    """Go on to the ends of the cells in which the `waiting` may have struck."""
+    left = waiting & ~(free | struck)
+    if len(e.records.times) > 0:
+        left = waiting
+    elif e.records.impacts.shape[1] > 0:
+        left |= struck
+    while left != 0:
+        i = lowest(left)
+        left &= left - 1
+        stay(e, e.orbits[i], free >> i & 1, struck >> i & 1, readings)
+    while free != 0:
+        e.orbits[lowest(free)].cell += 1
+        free &= free - 1
+    while struck != 0:
+        o = e.orbits[lowest(struck)]
+        struck &= struck - 1
+        o.cell += 1
+        take_off(o, flight_of(e, o).nodes, row(e.strike[0].X, o.lane))
 
 
 @jit
@@ -253,16 +241,16 @@ def carry(e, mapping, readings):
             put_carefully(e, waiting & careful)
         free, struck = strike(strikes, lanes_of(waiting))
         if t.wanted and struck != 0:
-            for i in range(LANES):
-                if struck >> i & 1:
-                    o = e.orbits[i]
-                    f = flight_of(e, o)
-                    tangent_flight.aim(t, i, f.oscillator[0], f.nodes, o.cell, strikes.offset[i])
+            left = struck
+            while left != 0:
+                i = lowest(left)
+                left &= left - 1
+                o = e.orbits[i]
+                f = flight_of(e, o)
+                tangent_flight.aim(t, i, f.oscillator[0], f.nodes, o.cell, strikes.offset[i])
             tangent_flight.fly(t, lanes_of(struck))
             tangent.saltate(t, lanes_of(struck), row(strikes.jump, 0) / row(strikes.speed, 0), row(strikes.R, 0))
-        for i in range(LANES):
-            if waiting >> i & 1:
-                settle(e, e.orbits[i], free >> i & 1, struck >> i & 1, readings)
+        settle(e, waiting, free, struck, readings)
     for i in range(LANES):
         add_count(e.orbits[i], strikes.hits[0, i], strikes.hits[1, i], strikes.slowest[i], strikes.miss[i])
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.simd.lanes import LANES, bits, count_leading, number, state_and_rest
+from vibro_sweep.engine.simd.lanes import LANES, bits, lowest, number, state_and_rest
 from vibro_sweep.engine.simd.memory import eight, row
 from vibro_sweep.engine.tables.flight import CHUNK
 
@@ -13,7 +13,7 @@ def control_points(scan, p, since, y, states):
     """Control points p, ..., p + 7 of a flight that starts at y, `states` numbers; since: as counted from there."""
     points = eight(scan[states], p)
     for j in range(states):
-        points = points + eight(scan[j], since) * number(y, j)
+        points = points + eight(scan[j], since) * y[j]
     return points
 
 
@@ -26,24 +26,23 @@ def first_suspect(f, o):
     points before it are inside (`suspect_state`).
     """
     scan, cells, bound = f.scan, f.oscillator[0].cells, f.oscillator[0].remainder
-    origin, y, states = o.origin, row(o.y, 0), len(bound) - 1
-    margin = bound[0] * abs(number(y, 0)) + bound[1] * abs(number(y, 1))
+    origin, y, states = o.origin, o.y, len(bound) - 1
+    margin = bound[0] * abs(y[0]) + bound[1] * abs(y[1])
     for j in range(2, states, 2):
-        margin = margin + (bound[j] * abs(number(y, j)) + bound[j + 1] * abs(number(y, j + 1)))
+        margin = margin + (bound[j] * abs(y[j]) + bound[j + 1] * abs(y[j + 1]))
     margin = margin + bound[states]
     low, high = o.stops[0] + margin, o.stops[1] - margin
     o.low, o.high = low, high
-    k = cells
-    for p in range(2 * o.cell, 2 * cells, CHUNK):
+    p = 2 * o.cell
+    while p < 2 * cells:
         since = p - 2 * origin
         a = control_points(scan, p, since, y, states)
         b = control_points(scan, p + LANES, since + LANES, y, states)
-        a_inside, b_inside = (a >= low) & (a <= high), (b >= low) & (b <= high)
-        if bits(~(a_inside & b_inside)) != 0:
-            n = count_leading(a_inside)
-            k = min((p + n + (count_leading(b_inside) if n == LANES else 0)) // 2, cells)
-            break
-    return k
+        outside = bits(~((a >= low) & (a <= high))) | bits(~((b >= low) & (b <= high))) << LANES
+        if outside != 0:
+            return min((p + lowest(outside)) // 2, cells)
+        p += CHUNK
+    return cells
 
 
 @inline
@@ -65,11 +64,17 @@ def state_at(o, nodes, k):
 
 
 @inline
+def is_inside(o, x):
+    """Whether x1 at an end of a cell lies inside. One comparison, not two: the processor has to guess each outcome."""
+    return min(x - o.low, o.high - x) >= 0.0
+
+
+@inline
 def suspect_state(o, nodes):
     """The suspect cell, and X at its beginning; or the cell before, if that end of it lies outside."""
     k = o.suspect
     X = state_at(o, nodes, k)
-    if k > o.cell and not o.low <= number(X, 0) <= o.high:
+    if k > o.cell and not is_inside(o, number(X, 0)):
         k -= 1
         X = state_at(o, nodes, k)
     return k, X

@@ -171,15 +171,15 @@ def number(typingctx, x, i):
 
 
 @intrinsic
-def count_leading(typingctx, condition):
-    """How many lanes from the first on a mask holds in."""
-    if isinstance(condition, MaskType):
+def lowest(typingctx, number):
+    """The place of the lowest bit that is set in an integer other than 0."""
+    if isinstance(number, types.Integer):
 
         def codegen(context, builder, sig, args):
-            number = builder.zext(builder.bitcast(args[0], ir.IntType(LANES)), ir.IntType(64))
-            return builder.cttz(builder.not_(number), ir.Constant(ir.IntType(1), 1))
+            number = context.cast(builder, args[0], sig.args[0], types.int64)
+            return builder.cttz(number, ir.Constant(ir.IntType(1), 1))
 
-        return types.int64(condition), codegen
+        return types.int64(number), codegen
 
 
 @intrinsic

@@ -5,7 +5,7 @@ vectors at the next impact.
 """
 
 from vibro_sweep.engine.simd.jit import aside, inline, jit
-from vibro_sweep.engine.simd.lanes import LANES, bits, lanes_of, select
+from vibro_sweep.engine.simd.lanes import bits, lanes_of, lowest, select
 from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.tables.flight import ORDER, decaying
 from vibro_sweep.engine.variational.orthonormal import orthonormalise
@@ -155,9 +155,10 @@ def apply_flight(t, who):
         put(flight, 2 * j, select(who, 1.0, c))
         put(flight, 2 * j + 1, select(who, 0.0, s))
     put(t.volume, 0, select(who, volume, row(t.volume, 0)))
-    for i in range(LANES):
-        if bits(who) >> i & 1:
-            t.stretch[i] = 0
+    left = bits(who)
+    while left != 0:
+        t.stretch[lowest(left)] = 0
+        left &= left - 1
 
 
 @jit
