@@ -1,9 +1,11 @@
 """Kernels compiled as one with all that they call are the kernels that numba compiles by itself."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -91,3 +93,47 @@ def test_numba_by_itself_gives_the_same_numbers_but_for_rounding(tmp_path):
     for name, values in whole.items():
         np.testing.assert_allclose(plain[name], values, rtol=1e-9, atol=1e-9, err_msg=name)
     assert str(plain["identity"]) != identity.identity()
+
+
+def wander(records, times):
+    """Fields, items, views and tuples that are made in one block and used in others, as kernels do it."""
+    found, last, pair = 0.0, records[0].rows[-1], (0.0, 1.0)
+    for i in range(times):
+        o = records[i % len(records)]
+        row = o.rows[i % 2]
+        if i % 3 == 0:
+            last, pair = row, (pair[1], found)
+        for j in range(-1, 2):
+            if row[j] > 4.0:
+                break
+            row[j] += 0.5
+            found += o.rows[j % 2, j] * last[j] - pair[j % 2]
+        o.total = found
+    return found, records[-1].total, last[0], pair
+
+
+@known
+def test_values_that_are_kept_out_of_memory_are_those_of_python():
+    dtype = np.dtype([("rows", float, (2, 3)), ("total", float)])
+    one, other = (np.zeros(3, dtype).view(np.recarray) for _ in range(2))
+    one.rows[:] = other.rows[:] = np.arange(18).reshape(3, 2, 3) / 4
+    compiled = jit._compiled(wander, jit.WholeCompiler)(one, 20)
+    assert compiled == wander(other, 20)
+    assert one.tobytes() == other.tobytes()
+
+
+@known
+def test_names_of_kernels_do_not_hold_all_that_their_arguments_hold():
+    """They stand wherever a kernel is called, and were most of what was compiled and kept."""
+
+    def area(e):
+        return e.sides[0].width * e.sides[0].height
+
+    class Sides(NamedTuple):
+        sides: np.ndarray
+
+    others = [(f"a_number_that_is_not_needed_{i}", float) for i in range(99)]
+    dtype = np.dtype([("width", float), ("height", float), *others])
+    kernel = jit._compiled(area, jit.WholeCompiler)
+    kernel(Sides(np.zeros(1, dtype)))
+    assert max(map(len, re.findall(r"_ZN\w+", kernel.inspect_llvm(kernel.signatures[0])))) < 300

@@ -12,8 +12,6 @@ from llvmlite.binding import Linkage, set_option
 from numba.core.codegen import CPUCodegen, JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
 
-from vibro_sweep.engine.simd.lean import lean, remember_sizes
-
 NEEDED = {JITCodeLibrary: "_optimize_functions", CPUCodegen: "_pass_builder", Flags(): "_values"}
 if not all(hasattr(where, name) for where, name in NEEDED.items()):
     raise ImportError("this numba is another inside")
@@ -23,6 +21,13 @@ SPARED = frozenset(
     "with_lifting inline_closure_likes inline_inlinables find_literally literal_unroll LiteralPropagation "
     "inline_overloads nopython_rewrites annotate_types".split()
 )
+
+
+def _lean():
+    """What leaves steps out, loaded when there is something to compile: it takes 0.1 s."""
+    from vibro_sweep.engine.simd import lean
+
+    return lean
 
 
 class LinkError(RuntimeError):
@@ -113,13 +118,15 @@ class WholeCompiler(Compiler):
     library = _Whole
 
     def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
-        super().__init__(typingctx, targetctx, library, args, return_type, _Flags(flags), locals)
+        targetctx.load_additional_registries()  # once: for kernels that this one calls, a lean compiler does not
+        with _lean().lean():
+            super().__init__(typingctx, targetctx, library, args, return_type, _Flags(flags), locals)
         # Wherever an array is used, numba asks for a function "__array__" that there is not, and loads all registries
         # to ask once more.
         context = self.state.targetctx
         ask = context.get_function
         context.get_function = lambda fn, sig, _firstcall=True: ask(fn, sig, _firstcall and not isinstance(fn, str))
-        remember_sizes(context)
+        _lean().remember_sizes(context)
 
     def define_pipelines(self):
         [pipeline] = super().define_pipelines()
@@ -133,7 +140,7 @@ class WholeCompiler(Compiler):
         collecting = gc.isenabled()
         gc.disable()  # a tenth of the time, and there is little to collect
         try:
-            with lean():
+            with _lean().lean():
                 return super().compile_extra(func)
         finally:
             if collecting:

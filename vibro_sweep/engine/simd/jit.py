@@ -15,6 +15,7 @@ from pathlib import Path
 
 import llvmlite
 import numba
+import numpy as np
 from numba.core import config, types
 from numba.core.caching import FunctionCache
 from numba.core.cpu import CPUTargetOptions
@@ -26,16 +27,23 @@ except Exception:  # another numba: kernels compile as it does by itself, in twi
 
 
 @property
-def _mangling(record: types.Record) -> tuple[str, tuple[int]]:
-    """What stands for a record in the names of kernels in machine code.
+def _mangling(kind: types.Type) -> tuple[str, tuple[int]]:
+    """What stands for a record, or a tuple with names, in the names of kernels in machine code.
 
-    numba takes a number that records get as they come up in a process. So two processes can give kernels of different
-    records one name, and where a third one loads both from the cache, one of them is called in place of the other.
+    For records numba takes a number that they get as they come up in a process. So two processes can give kernels of
+    different records one name, and where a third one loads both from the cache, one of them is called in place of the
+    other. For tuples with names it takes all that they hold, field by field: 20 kB, wherever a kernel is named.
     """
-    return type(record).__name__, (int.from_bytes(hashlib.blake2b(record.name.encode(), digest_size=8).digest()),)
+    return type(kind).__name__, (_digest(kind.name),)
 
 
-types.Record.mangling_args = _mangling
+@functools.cache
+def _digest(name: str) -> int:
+    return int.from_bytes(hashlib.blake2b(name.encode(), digest_size=8).digest())
+
+
+for _kind in (types.Record, types.NamedTuple, types.NamedUniTuple):
+    _kind.mangling_args = _mangling
 
 ENGINE, MODEL = Path(__file__).parents[1], Path(__file__).parents[2] / "model"
 SHARED = ("exponents.py", "status.py")  # of the model: constants and formulas that are compiled into kernels
@@ -174,19 +182,23 @@ def _compiled(function, compiler, forceinline=False, **options):
 def _works() -> bool:
     """Whether an entry, a part and an aside compile as one and compute what they should: numba may differ inside."""
 
-    def double(x):
-        return 2.0 * x
+    def double(record):
+        return 2.0 * record.numbers[1]
 
     def half(x):
         return 0.5 * x
 
     double, half = jit(double), aside(half)
 
-    def both(x):
-        return double(x) - half(x)
+    def both(records):
+        total = 0.0
+        for i in range(len(records)):
+            total += double(records[i]) - half(3.0)
+        return total
 
     try:
-        return _compiled(both, WholeCompiler)(3.0) == 4.5
+        records = np.array([([1.0, 3.0],), ([2.0, 4.0],)], [("numbers", float, 2)])
+        return _compiled(both, WholeCompiler)(records) == 11.0
     except Exception:  # whatever numba's inside says to what it does not expect
         return False
 

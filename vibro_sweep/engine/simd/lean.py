@@ -1,26 +1,46 @@
-"""Steps of numba's compiler that kernels have no use for, left out while kernels compile: a fifth of the time.
+"""Steps of numba's compiler that kernels have no use for, left out while kernels compile: two fifths of the time.
 
-numba looks after each pass for how long every variable lives, which is needed once, at the end; measures how long each
-call of LLVM takes, once for each kernel that is being compiled; finds the type of an operation anew wherever it stands,
-and whether the function that writes it takes a line number; searches for `with` and for dictionaries; asks LLVM for the
-size of a type as often as a variable has it; and prepares, for each operation, to catch warnings about it and to tell
-where an error has come from. (Errors still name their line; warnings go where all others go.)
+numba looks after each pass for how long every variable lives, for references that kernels do not count; puts what it
+computes into memory and takes it out again (values.py); measures how long each call of LLVM takes, once for each kernel
+that is being compiled; finds the type of an operation anew wherever it stands, and whether the function that writes it
+takes a line number; writes out what each statement is and which types the kernel has, for whoever listens; imports all
+that could be called, for each kernel; searches for `with` and for dictionaries; asks LLVM for the size of a type as
+often as a variable has it; and prepares, for each operation, to catch warnings about it and to tell where an error has
+come from. (Errors still name their line; warnings go where all others go.)
 """
 
 import contextlib
 import functools
 from collections.abc import Iterator
 
-from numba.core import base, errors, event, interpreter, lowering, typeinfer, types
+from llvmlite import ir
+from numba.core import (
+    base,
+    byteflow,
+    cgutils,
+    cpu,
+    errors,
+    event,
+    interpreter,
+    lowering,
+    ssa,
+    targetconfig,
+    typeinfer,
+    types,
+)
+from numba.core import ir as numba_ir
 from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.transforms import canonicalize_cfg
+from numba.np import arrayobj
+
+from vibro_sweep.engine.simd import values
 
 _settle, _call_type = PostProcessor.run, types.Function.get_call_type
 
 
 def _settle_at_the_end(self, emit_dels=False, extend_lifetimes=False):
-    """`PostProcessor.run` in full only before machine code is made: then it says where variables end."""
-    if emit_dels:
+    """`PostProcessor.run` in full only where references are counted: for that it says where variables end."""
+    if emit_dels and targetconfig.ConfigStack.top_or_none().nrt:
         _settle(self, emit_dels, extend_lifetimes)
         return
     ir = self.func_ir
@@ -30,19 +50,35 @@ def _settle_at_the_end(self, emit_dels=False, extend_lifetimes=False):
 
 def _call_type_once(self, context, args, kws):
     """The signature with which numba's own function is called, remembered."""
-    key = self, tuple(args), tuple(kws.items())
+    key = self._code, tuple(kind._code for kind in args), tuple(kws.items())
     if key not in _call_types:
         _call_types[key] = _call_type(self, context, args, kws)
     return _call_types[key]
 
 
 _call_types: dict[tuple, object] = {}
-_nothing = contextlib.nullcontext()
 
 
 def _in_no_context(*args, **about):
     """In place of numba's context managers that are entered for every operation."""
     return _nothing
+
+
+_nothing = contextlib.nullcontext()
+
+
+def _look_through_registries(context):
+    """`CPUContext.load_additional_registries` for what has come meanwhile: all modules of numba are loaded already."""
+    for registry in list(context._registries):
+        context.install_registry(registry)
+
+
+class _Silent:
+    """In place of numba's loggers, which are told of each bytecode and statement."""
+
+    @staticmethod
+    def debug(*args):
+        pass
 
 
 INSTEAD = (
@@ -55,6 +91,18 @@ INSTEAD = (
     (base, "_has_loc", functools.cache(base._has_loc)),
     (interpreter, "peep_hole_delete_with_exit", lambda func_ir: func_ir),
     (interpreter, "peep_hole_fuse_dict_add_updates", lambda func_ir: func_ir),
+    (types.Record, "__repr__", types.Type.__repr__),
+    (numba_ir.Assign, "__str__", object.__repr__),
+    (cpu.CPUContext, "load_additional_registries", _look_through_registries),
+    (byteflow, "_logger", _Silent),
+    (ssa, "_logger", _Silent),
+    (cgutils, "create_struct_proxy", values.create_struct_proxy),
+    (arrayobj, "make_array", values.make_array),
+    (lowering.Lower, "_find_singly_assigned_variable", values.find_values),
+    (lowering.Lower, "storevar", values.store_variable),
+    (ir.IRBuilder, "extract_value", values.extract_value),
+    (ir.IRBuilder, "insert_value", values.insert_value),
+    (ir.IRBuilder, "mul", values.mul),
 )
 
 
