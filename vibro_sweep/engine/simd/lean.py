@@ -2,11 +2,12 @@
 
 numba looks after each pass for how long every variable lives, for references that kernels do not count; puts what it
 computes into memory and takes it out again (values.py); measures how long each call of LLVM takes, once for each kernel
-that is being compiled; finds the type of an operation anew wherever it stands, and whether the function that writes it
-takes a line number; writes out what each statement is and which types the kernel has, for whoever listens; imports all
-that could be called, for each kernel; searches for `with` and for dictionaries; asks LLVM for the size of a type as
-often as a variable has it; and prepares, for each operation, to catch warnings about it and to tell where an error has
-come from. (Errors still name their line; warnings go where all others go.)
+that is being compiled; finds the type of an operation anew wherever it stands, how its arguments are passed, and
+whether the function that writes it takes a line number; goes through a whole kernel for each variable that is assigned
+twice; writes out each statement and the types of the kernel, for whoever listens; imports all that could be called,
+once for each kernel; searches for `with` and for dictionaries; asks LLVM for the size of a type as often as a variable
+has it; and prepares, for each operation, to catch warnings about it and to tell where an error has come from. (Errors
+still name their line; warnings go where all others go.)
 """
 
 import contextlib
@@ -36,6 +37,7 @@ from numba.np import arrayobj
 from vibro_sweep.engine.simd import values
 
 _settle, _call_type = PostProcessor.run, types.Function.get_call_type
+_pack, _rewrite = base.BaseContext.get_arg_packer, ssa._run_block_rewrite
 
 
 def _settle_at_the_end(self, emit_dels=False, extend_lifetimes=False):
@@ -56,7 +58,31 @@ def _call_type_once(self, context, args, kws):
     return _call_types[key]
 
 
+def _pack_once(self, kinds):
+    """How arguments of these types are passed, remembered."""
+    key = tuple(kind._code for kind in kinds)
+    if key not in _packers:
+        _packers[key] = _pack(self, kinds)
+    return _packers[key]
+
+
 _call_types: dict[tuple, object] = {}
+_packers: dict[tuple, object] = {}
+
+
+def _rewrite_where_named(blocks, states, handler):
+    """`ssa._run_block_rewrite` of those blocks alone that name the variable which it is about."""
+    named = {label: block for label, block in blocks.items() if states["varname"] in _names(block)}
+    return blocks | _rewrite(named, states, handler)
+
+
+def _names(block):
+    """Of all variables in a block, kept with its body."""
+    body, names = getattr(block, "names_in", (None, None))
+    if body is not block.body:
+        names = {variable.name for step in block.body for variable in step.list_vars()}
+        block.names_in = block.body, names
+    return names
 
 
 def _in_no_context(*args, **about):
@@ -84,6 +110,8 @@ class _Silent:
 INSTEAD = (
     (PostProcessor, "run", _settle_at_the_end),
     (types.Function, "get_call_type", _call_type_once),
+    (base.BaseContext, "get_arg_packer", _pack_once),
+    (ssa, "_run_block_rewrite", _rewrite_where_named),
     (event, "install_timer", _in_no_context),
     (typeinfer, "new_error_context", _in_no_context),
     (lowering, "new_error_context", _in_no_context),
