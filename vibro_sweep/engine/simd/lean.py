@@ -1,4 +1,4 @@
-"""Steps of numba's compiler that kernels have no use for, left out while kernels compile: two fifths of the time.
+"""Steps of numba's compiler that kernels have no use for, left out while kernels compile: a third of the time.
 
 numba looks after each pass for how long every variable lives, for references that kernels do not count; puts what it
 computes into memory and takes it out again (values.py); measures how long each call of LLVM takes, once for each kernel

@@ -2,8 +2,8 @@
 
 numba writes 20 instructions for a field that is an array, and as many for an item of it: each time a place on the
 stack, filled with zeros and then member by member. A variable that is read in another block has such a place, too. LLVM
-finds out that none of this is needed, and the machine code is the same; but half of what LLVM was given to read was of
-this kind, and a quarter of all the time went into it.
+finds out that none of this is needed, and makes the same machine code; but half of what it was given to read was of
+this kind, and a tenth of all the time went into it.
 """
 
 import functools
@@ -86,18 +86,18 @@ class _Held(cgutils.ValueStructProxy):
 
 
 @functools.cache
-def _held(kind):
-    return type(f"Held_{type(kind).__name__}", (_Held,), {"_fe_type": kind})
+def _held(fe_type):
+    return type(f"Held_{type(fe_type).__name__}", (_Held,), {"_fe_type": fe_type})
 
 
-def create_struct_proxy(kind, where="value"):
-    """numba's, but for values."""
-    return _held(kind) if where == "value" else _create_struct_proxy(kind, where)
+def create_struct_proxy(fe_type, kind="value"):
+    """`cgutils.create_struct_proxy`, where kind is "value" or "data": values of the type, or what is stored of it."""
+    return _held(fe_type) if kind == "value" else _create_struct_proxy(fe_type, kind)
 
 
-def make_array(kind):
-    """numba's, but for its own arrays without a look for what makes a user's type an array."""
-    return _held(kind) if isinstance(kind, types.Array) else _make_array(kind)
+def make_array(array_type):
+    """`arrayobj.make_array`, which looks for what makes a user's type an array, where the type is numba's own."""
+    return _held(array_type) if isinstance(array_type, types.Array) else _make_array(array_type)
 
 
 def extract_value(self, whole, place, name=""):
