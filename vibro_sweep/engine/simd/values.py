@@ -96,7 +96,7 @@ def create_struct_proxy(fe_type, kind="value"):
 
 
 def make_array(array_type):
-    """`arrayobj.make_array`, which looks for what makes a user's type an array, where the type is numba's own."""
+    """`arrayobj.make_array`; numba's own arrays need no search for what makes an array of a user's type."""
     return _held(array_type) if isinstance(array_type, types.Array) else _make_array(array_type)
 
 
