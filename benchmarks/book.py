@@ -97,12 +97,14 @@ def styled(draw):
     return styled_draw
 
 
-def arguments(description: str) -> argparse.Namespace:
+def arguments(description: str, before: bool = False) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--quick", action="store_true", help="everything in reduced form: shows that it works")
     parser.add_argument(
         "-o", "--output", type=Path, help="folder of the results (default: this one; with --quick a temporary one)"
     )
+    if before:
+        parser.add_argument("--before", type=Path, metavar="CHECKOUT", help="another version, to be compared with")
     chosen = parser.parse_args()
     if chosen.output is None:
         chosen.output = Path(tempfile.mkdtemp(prefix="vibro_sweep_benchmarks_")) if chosen.quick else HERE

@@ -1,9 +1,12 @@
-"""Run every benchmark and write report.md with its figures: `python benchmarks/report.py` (`--quick`: reduced).
+"""Run every benchmark and write report.md with its figures: `python benchmarks/report.py` (`--quick`: reduced;
+`--before CHECKOUT`: beside another version, too).
 
 Nothing else should run on the machine meanwhile.
 """
 
 import time
+from functools import partial
+from pathlib import Path
 
 import compile_time
 import driver
@@ -11,21 +14,31 @@ import floor
 import masses
 import scaling
 import speed
+import versions
 import work_precision
-from book import GOAL_HEADER, arguments, machine, section, table
+from book import GOAL_HEADER, Goal, arguments, machine, section, table
 
 ROOMS = (speed, work_precision, floor, masses, scaling, driver, compile_time)
 
 
+def beside(checkout: Path, quick: bool) -> tuple[str, list[Goal]]:
+    """The part about another version."""
+    rows = versions.measure(checkout, 6 if quick else versions.ROUNDS)
+    return f"## Beside version {versions.commit_of(checkout)}\n\n{versions.text(rows, checkout)}", versions.goals(rows)
+
+
 def main() -> None:
-    chosen = arguments(__doc__)
+    chosen = arguments(__doc__, before=True)
     chosen.output.mkdir(parents=True, exist_ok=True)
     about, parts, goals, began = machine(), [], [], time.perf_counter()
     reduced = "A reduced run (`--quick`): it shows that everything works; its figures are rough.\n\n" * chosen.quick
     path = chosen.output / "report.md"
-    for room in ROOMS:
-        print(f"{room.TITLE} ...", flush=True)
-        part, reached = section(room, chosen.quick, chosen.output)
+    jobs = [(room.TITLE, partial(section, room, chosen.quick, chosen.output)) for room in ROOMS]
+    if chosen.before is not None:
+        jobs.insert(0, (versions.TITLE, partial(beside, chosen.before, chosen.quick)))
+    for title, job in jobs:
+        print(f"{title} ...", flush=True)
+        part, reached = job()
         parts.append(part)
         goals += reached
         took = f"- {time.perf_counter() - began:.0f} s, by `python benchmarks/report.py{' --quick' * chosen.quick}`"
