@@ -1,5 +1,5 @@
 """Two versions of this package side by side: `python benchmarks/versions.py CHECKOUT` compares another checkout with
-this one and writes versions.md; `python benchmarks/report.py --before CHECKOUT` has it as a part.
+this one; `python benchmarks/report.py --before CHECKOUT` has that as a part.
 
 Each version computes in processes of its own, with the benchmarks of its own checkout. The two take turns, and the
 median of the ratios counts: what else the machine does meanwhile hits both. There are several processes of each, since
@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from book import HERE, Goal, digits, machine, table
+from book import GOAL_HEADER, HERE, Goal, digits, machine, table
 from problem import CHAOTIC, CLEARANCES
 
 PERIODIC = (6.8, *CLEARANCES)
@@ -248,10 +248,9 @@ def main() -> None:
     parser.add_argument("checkout", type=Path)
     parser.add_argument("--rounds", type=int, default=ROUNDS)
     chosen = parser.parse_args()
-    about, rows = machine(), measure(chosen.checkout, chosen.rounds)
-    count = f"- {chosen.rounds} rounds, {PAIRS} processes of each version\n\n"
-    title = f"# Beside version {commit_of(chosen.checkout)}\n\n"
-    (HERE / "versions.md").write_text(f"{title}{about}{count}{text(rows, chosen.checkout)}")
+    rows = measure(chosen.checkout, chosen.rounds)
+    goal_rows = [goal.row() for goal in goals(rows)]
+    print(f"{machine()}\n{text(rows, chosen.checkout)}\n{table(GOAL_HEADER, goal_rows)}")
 
 
 if __name__ == "__main__":
