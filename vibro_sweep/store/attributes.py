@@ -8,9 +8,9 @@ from vibro_sweep.model import catalogue
 
 # the attributes of a file that hold a number, or a word, for all points (`numbers.attributes`)
 NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "record")
+WORDS = ("stops", "model", "type", "section", "section_stop")
 # how HDF5 joins datasets and their dimensions, and how CF names coordinates
 SCALES = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "coordinates")
-WORDS = ("stops", "model", "type", "section", "section_stop")
 
 
 def set_text(of: h5py.File | h5py.Dataset, name: str, value: str) -> None:

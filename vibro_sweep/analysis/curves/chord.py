@@ -10,7 +10,7 @@ from vibro_sweep.engine.impulses.locus import Place
 ROUNDING = 1e-15  # of tests, in their units
 ASIDE = 1e-7  # of a chord: a zero found by polynomials is exact to far less
 LEAST = 1e-14  # of a chord, far below what rounding of tests leaves of a zero
-EXACT, NOISE = 1e-14, 1e-11  # of a test at the ends of the chord: a zero; what rounding leaves of one, at most
+NOISE = 1e-11  # of a chord: nearer to a zero rounding of a test may lie
 STEPS = 4
 
 
@@ -64,10 +64,10 @@ class Chord:
 
     def _refined(self, begin: float, slope: float) -> float | None:
         """The zero near `begin`, as far as rounding of the test lets it be told."""
-        zero, size = begin, max(abs(self.value(0.0)), abs(self.value(1.0)))
+        zero = begin
         for _ in range(STEPS):
             left = self.value(zero)
-            if abs(left) <= EXACT * size:
+            if abs(left) <= LEAST * abs(slope):
                 break
             moved = zero - left / slope
             if not (0.0 <= moved <= 1.0 and abs(moved - begin) <= ASIDE):
@@ -75,7 +75,7 @@ class Chord:
             if not abs(self.value(moved)) < 0.5 * abs(left):
                 break
             zero = moved
-        return zero if abs(self.value(zero)) <= NOISE * size else None
+        return zero if abs(self.value(zero)) <= NOISE * abs(slope) else None
 
     def _point(self, share: float, seen: dict[float, Place], exact: bool) -> Place:
         near = min(seen, key=lambda other: abs(other - share))

@@ -9,7 +9,8 @@ The saltation matrix in contact coordinates, with v, a the gap velocity and acce
     S = 1 - (1 + R) (e_v e_v^T + A e_v e_g^T) + (1 + R) (a/v) e_v e_g^T
 
 Only the last term grows near a graze. For R > 0 it is split off, S = S_0 (1 - (1 + R) a/(R v) e_v e_g^T), and the
-shear is written as rotation, stretch, rotation, so that its small singular value keeps its digits.
+shear is written as rotation, stretch, rotation, so that its small singular value keeps its digits. What stretches less
+is multiplied as it is, until directions have been stretched against each other by e^STRETCH.
 """
 
 import math
@@ -154,12 +155,12 @@ def multiply(f, contacts, u, P, motion, product, columns, couplings, order, fact
         count, stretched = 0, 0.0  # the logarithm of how far Y may be stretched since it was factorised
         for k in range(K):
             gain, v, a = contacts[k, 1], motion[k, 0], motion[k, 1]
-            more = 2.0 * math.log(shear_of(gain, v, a)[1])
-            split = stretched + more > STRETCH
+            sheared = 2.0 * math.log(shear_of(gain, v, a)[1])
+            split = stretched + sheared > STRETCH
             if split and stretched > 0.0:
                 factorise(Y, order, T, product, columns)
             salt(f, gain, v, a, split, Y, order, T, product, columns)
-            stretched = 0.0 if split else stretched + more
+            stretched = (0.0 if split else stretched + sheared) - math.log(gain - 1.0)  # S_0 has 1 and R
             length = flight_length(u, P, K, k)
             pieces = flight_pieces(f.spread, length)
             for _ in range(pieces):

@@ -1,0 +1,40 @@
+"""Multipliers of many impacts: eigenvalues of products that span seventy decades, against 400 digits."""
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from support.oscillators import PAPER
+
+from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
+
+P = 5.0
+
+
+def exact(B, R, t, motion):
+    """Decimal logarithms of the moduli, falling."""
+    with mp.workdps(400):
+        A, M = mp.matrix(B[:4, :4].tolist()), mp.eye(4)
+        for k, (v, a) in enumerate(motion[:, :2]):
+            gain, S = 1 + mpf(R), mp.eye(4)
+            S[0, 0] -= gain
+            for i in (2, 3):
+                S[i, 0] -= gain * A[i, 2]
+            S[2, 0] += gain * mpf(a) / mpf(v)
+            S[2, 2] -= gain
+            end = mpf(t[k + 1]) if k + 1 < len(t) else mpf(t[0]) + mpf(P)
+            M = mp.expm(A * (end - mpf(t[k])), method="taylor") * S * M
+        return sorted((float(mp.log10(abs(value))) for value in mp.eig(M)[0]), reverse=True)
+
+
+@pytest.mark.parametrize("fastest", [0.3, 300.0])  # acceleration before an impact: the shear is small, or large
+@pytest.mark.parametrize("R", [0.8, 0.3, 0.1, 1e-3])
+def test_each_multiplier_keeps_its_digits(R, fastest):
+    """Also where restitution and shear stretch little at one impact, and much at sixteen."""
+    rng, f = np.random.default_rng(1), flow(PAPER.family.linear)
+    t = np.sort(rng.uniform(0, P, 16)).tolist()
+    motion = np.column_stack([rng.uniform(0.5, 1, 16), rng.uniform(-fastest, fastest, 16), np.zeros(16)])
+    contacts = np.column_stack([np.zeros(16), np.full(16, 1 + R)])
+    found = multipliers_of(f, 1, P, contacts, np.array([*t, *np.zeros(16)]), motion)
+    R = contacts[0, 1] - 1  # as it is known
+    error = np.log(10) * np.abs(np.log10(np.abs(found)) - exact(f.B, R, t, motion)).max()
+    assert error < 1e-11
