@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 from reference import monodromy, naive
-from reference.naive_map import NaiveMap
-from support import slow_cases
+from support.quotients import DIGITS, STEP, quotient
 
 import vibro_sweep as vs
 from vibro_sweep.engine.free_flight import FreeFlight
@@ -19,8 +18,6 @@ from vibro_sweep.engine.variational.sensitivity import differentiate
 from vibro_sweep.model import status
 from vibro_sweep.model.parameters import NAMES
 
-DIGITS = 30
-STEP = mpf(10) ** -15  # of the quotients: what they leave is its square, times third derivatives
 TOLERANCE = 1e-10  # of the largest entry
 ROUNDING = 2.0**-53
 PAPER = dict(**naive.PAPER, tau=1.0)
@@ -40,11 +37,6 @@ def end_of(params, state, periods):
     start, length = mp.pi / mpf(params["omega"]), mpf(periods) + mpf(10) ** -DIGITS
     moved = {**params, "tau": mpf(params["tau"]) - mp.pi}
     return naive.simulate(moved, state, periods=length, start_time=start, digits=DIGITS).section[-1]
-
-
-def quotient(function, x):
-    """Derivative of a function of one number, which returns 4, by central differences."""
-    return [float((p - q) / (2 * STEP)) for p, q in zip(function(x + STEP), function(x - STEP), strict=True)]
 
 
 def by_state(params, state, periods):
@@ -178,45 +170,6 @@ def test_tau_that_follows_the_graze():
     fixed = PeriodMap(vs.System(**params, tau=vs.System(**params).phase))([state], parameters=True).parameters[0]
     np.testing.assert_array_equal(found[:, -1], fixed[:, -1])
     assert abs(found - fixed)[:, :5].max() > 1e-3
-
-
-# --- the discontinuity mapping
-
-
-def slow_map(order, expand_at, params, X, periods):
-    slow = NaiveMap(params, order)
-    if expand_at is not None:
-        slow.graze[0] = mpf(expand_at)
-    X = mp.matrix(X)
-    return list(-slow.middle(X) if periods == 0.5 else slow(X))
-
-
-@pytest.mark.parametrize("expand_at", [None, *slow_cases(6.7107356)])
-@pytest.mark.parametrize("order", [1, 2])
-@pytest.mark.parametrize("periods", [0.5, 1])
-def test_derivatives_of_the_discontinuity_mapping(order, expand_at, periods):
-    params = {**naive.PAPER, "b": 6.25, "f2": 0.1}  # b* = 6.358: both stops are hit
-    step = PeriodMap(vs.System(**params), order, expand_at)
-    for state in step.graze + np.array([[0.2, 0.3, -0.1, 0.1], [-0.3, -0.2, 0.4, 0.3], [-0.3, 0.1, -0.4, -0.3]]):
-        mapped = step([state], periods, jacobian=True, parameters=True)
-        X = [mpf(x) for x in state]
-
-        def slow(i=None, x=None, X=X, **changes):
-            return slow_map(order, expand_at, params | changes, [x if i == j else y for j, y in enumerate(X)], periods)
-
-        np.testing.assert_allclose(mapped.states[0], [float(x) for x in slow()], rtol=0, atol=1e-12)
-        exact = np.array([quotient(lambda x, i=i: slow(i, x), X[i]) for i in range(4)]).T
-        np.testing.assert_allclose(mapped.jacobian[0], exact, rtol=0, atol=1e-10 * abs(exact).max())
-        exact = np.array([quotient(lambda x, n=n: slow(**{n: x}), mpf(params[n])) for n in NAMES[:-1]]).T
-        np.testing.assert_allclose(mapped.parameters[0, :, :-1], exact, rtol=0, atol=1e-10 * abs(exact).max())
-        assert (mapped.parameters[0, :, -1] == 0).all()  # its section is the graze, whatever tau
-
-
-def test_the_mapping_has_both_stops_or_one():
-    system = vs.System(**naive.PAPER, b=6.6)
-    X = PeriodMap(system, 2).graze + np.array([0.2, 0.3, -0.1, 0.1])
-    hit = {stops: PeriodMap(system.replace(stops=stops), 2)([X]).impacts[0]["side"] for stops in ("both", "left")}
-    assert 1 in hit["both"] and 1 not in hit["left"]
 
 
 # --- identities

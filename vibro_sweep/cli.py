@@ -231,15 +231,12 @@ def check(scene_file: SceneFile):
         scene = load_scene(scene_file)
 
     from .driver.compute import RunError
-    from .driver.cost import duration, estimate
-    from .summaries import points, size_of
+    from .driver.cost import estimate
+    from .summaries import cost_text
 
     with input_errors(RunError):
         cost = estimate(scene)
-    say(f"{scene_file}: {scene}")
-    say(f"  file      {points(cost.points)}, {size_of(cost.bytes)}")
-    say(f"  work      {cost.orbits:,} orbits, {cost.periods:,} forcing periods in all")
-    say(f"  time      about {duration(cost.seconds)} here, once compiled")
+    say(f"{scene_file}: {scene}\n{cost_text(cost)}")
 
 
 @app.command()
@@ -248,27 +245,12 @@ def grazing(scene_file: SceneFile):
 
     There the non-impacting steady motion just touches its stops. If the scene sweeps what they depend on: the curve.
     """
-    from vibro_sweep.model.grazing import grazing
-
     from .scene import SceneError, load_scene
-    from .store.numbers import depends_on
-    from .summaries import grazing_text
+    from .summaries import grazing_of
 
     with input_errors(SceneError):
         scene = load_scene(scene_file)
-    along = depends_on(scene)
-    if len(along) == 1:
-        touches = [grazing(scene.system.replace(**{along[0]: one})) for one in scene.sweep[along[0]].tolist()]
-        alike = all(touch.b_right == touch.b_left for touch in touches)
-        say(f"# {along[0]} {'b*' if alike else 'b_right b_left'} tau*")
-        for value, touch in zip(scene.sweep[along[0]].tolist(), touches, strict=True):
-            sizes = [touch.b] if alike else [touch.b_right, touch.b_left]
-            say(" ".join(map(repr, [value, *sizes, touch.tau])))
-        return
-    if along:
-        first = ", ".join(f"{key} = {getattr(scene.system, key)!r}" for key in along)
-        say(f"at the first point of the sweep: {first}")
-    say(grazing_text(grazing(scene.system), scene.system))
+    say(grazing_of(scene))
 
 
 @app.command()

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.grazing import Grazing
+from vibro_sweep.model.grazing import Grazing, grazing
 from vibro_sweep.model.linear import static_state
 from vibro_sweep.model.models import MODELS
 from vibro_sweep.model.models.declaration import Model, Option
@@ -14,7 +14,33 @@ from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.model.state import state as names
 
 if TYPE_CHECKING:
+    from .driver.cost import Estimate
     from .driver.sweep import RunReport
+    from .scene import Scene
+
+
+def grazing_of(scene: "Scene") -> str:
+    """What `grazing` prints: of a sweep of one number on which the graze depends the curve."""
+    from .store.numbers import depends_on
+
+    along, system = depends_on(scene), scene.system
+    if len(along) == 1:
+        return _grazing_curve(system, along[0], scene.sweep[along[0]].tolist())
+    lines = [grazing_text(grazing(system), system)]
+    if along:
+        first = ", ".join(f"{key} = {getattr(system, key)!r}" for key in along)
+        lines.insert(0, f"at the first point of the sweep: {first}")
+    return "\n".join(lines)
+
+
+def _grazing_curve(system: AnyOscillator, key: str, values: list[float]) -> str:
+    touches = [grazing(system.replace(**{key: value})) for value in values]
+    alike = all(touch.b_right == touch.b_left for touch in touches)
+    lines = [f"# {key} {'b*' if alike else 'b_right b_left'} tau*"]
+    for value, touch in zip(values, touches, strict=True):
+        sizes = [touch.b] if alike else [touch.b_right, touch.b_left]
+        lines.append(" ".join(map(repr, [value, *sizes, touch.tau])))
+    return "\n".join(lines)
 
 
 def grazing_text(touch: Grazing, system: AnyOscillator) -> str:
@@ -37,6 +63,17 @@ def grazing_text(touch: Grazing, system: AnyOscillator) -> str:
     holds = "holds" if touch.satisfied or (not alike and touch.determinant) else "does not hold"
     lines += [f"tau*  = {touch.tau!r}", f"state = {told}{where}"]
     return "\n".join([*lines, f"the existence condition (19) {holds}; determinant (15): {touch.determinant:.6g}"])
+
+
+def cost_text(cost: "Estimate") -> str:
+    """What `check` prints of the work that a scene is."""
+    from .driver.cost import duration
+
+    return (
+        f"  file      {points(cost.points)}, {size_of(cost.bytes)}\n"
+        f"  work      {cost.orbits:,} orbits, {cost.periods:,} forcing periods in all\n"
+        f"  time      about {duration(cost.seconds)} here, once compiled"
+    )
 
 
 def model_list() -> str:

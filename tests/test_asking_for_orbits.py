@@ -1,0 +1,87 @@
+"""`periodic_orbit`: what may be asked for, how failures are told, files and pictures of orbits."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from support.oscillators import PAPER
+
+import vibro_sweep as vs
+
+
+def test_guess_may_be_a_rotation_of_the_itinerary():
+    orbit = vs.periodic_orbit(PAPER, itinerary="LR")
+    guess = [(hit["t"], hit["side"], hit["v1"]) for hit in orbit.impacts[::-1]]
+    guess[1] = (guess[1][0] + PAPER.period, *guess[1][1:])
+    again = vs.periodic_orbit(PAPER, itinerary="LR", guess=guess)
+    assert again.ok and again.impacts["t"] == pytest.approx(orbit.impacts["t"], abs=1e-13)
+
+
+def test_failures_are_told_by_status():
+    assert vs.periodic_orbit(PAPER.replace(b=9.0), guess=[(0.0, 1, 3.0)]).status in ("not_converged", "not_real")
+    resonant = PAPER.replace(zeta=0.0, tau=0.0, omega=math.sqrt(PAPER.modes.omega_squared[0]))
+    orbit = vs.periodic_orbit(resonant, itinerary="")
+    assert orbit.status == "resonance" and not orbit.ok and len(orbit.impacts) == 0 and math.isnan(orbit.margin)
+    resting = PAPER.replace(b=0.03)
+    state = vs.simulate(resting, (0, 0, 0, 0), 200).section[-1]
+    assert vs.periodic_orbit(resting, state=state).status == "sticking"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({}, "give either"),
+        ({"state": (0, 0, 0, 0), "itinerary": "R"}, "give either"),
+        ({"itinerary": "RX"}, "word of R and L"),
+        ({"itinerary": "R", "periods": 0}, "whole number"),
+        ({"guess": [(1.0, 1, 0.1), (0.5, -1, -0.1)]}, "must rise"),
+        ({"state": (0, 0, 0, 0), "periods": math.inf}, "whole number"),
+        ({"state": (0, 0, 0, 0), "periods": math.nan}, "whole number"),
+        ({"guess": [(1.0, 2, 0.1)]}, "side 1 or -1"),
+        ({"guess": [(1.0, 1.5, 0.1)]}, "side 1 or -1"),
+        ({"guess": [(1.0, math.inf, 0.1)]}, "side 1 or -1"),
+        ({"guess": [(1.0, 1, 0.1)], "itinerary": ""}, "differs"),
+        ({"guess": [(1.0, 1, 0.1)], "itinerary": "L"}, "differs"),
+        ({"guess": [(1.0, 1, 0.1), (50.0, 1, 0.1)]}, "one period"),
+    ],
+)
+def test_bad_input_is_refused(arguments, said):
+    with pytest.raises(ValueError, match=said):
+        vs.periodic_orbit(PAPER, **arguments)
+    with pytest.raises(ValueError, match="does not have"):
+        vs.periodic_orbit(PAPER.replace(stops="right"), itinerary="L")
+
+
+def test_orbit_survives_its_file(tmp_path):
+    orbit = vs.periodic_orbit(PAPER.replace(b=1.0), itinerary="LLRR")
+    path = orbit.save(tmp_path / "orbit.json")
+    again = vs.load_orbit(path)
+    assert again.status == "ok" and again.system == orbit.system
+    assert again.impacts.tobytes() == orbit.impacts.tobytes()
+    with pytest.raises(FileExistsError):
+        orbit.save(path)
+    record = json.loads(path.read_text())
+    for damage in ({"format": "x"}, {"sides": [1, 5]}, {"unknowns": [1.0]}, {"system": {"b": 1}}, {"halves": 2}):
+        path.write_text(json.dumps(record | damage))
+        with pytest.raises(ValueError, match=path.name):
+            vs.load_orbit(path)
+    path.write_bytes(b"\xff\x00")
+    with pytest.raises(ValueError, match=path.name):
+        vs.load_orbit(path)
+
+
+def test_picture(tmp_path):
+    figure = vs.periodic_orbit(PAPER, itinerary="LR").plot()
+    portrait, history = figure.axes
+    gap = history.lines[0].get_ydata()
+    assert np.nanmax(np.abs(gap)) <= PAPER.b * (1 + 1e-12)
+    figure.savefig(tmp_path / "orbit.png")
+    assert len(portrait.lines) >= 3
+    with pytest.raises(ValueError, match="no motion"):
+        vs.periodic_orbit(PAPER.replace(b=9.0), guess=[(0.0, 1, 3.0), (0.1, 1, 1e9)]).plot()
+
+
+def test_two_impacts_in_501_periods_pass_the_stops():
+    """Thousands of solutions do, which a look at one period shows."""
+    assert vs.periodic_orbit(PAPER.replace(b=3.0), itinerary="LR", periods=501).status == "not_real"
