@@ -4,7 +4,6 @@ import json
 import re
 import subprocess
 import sys
-import time
 from types import SimpleNamespace
 
 import numpy as np
@@ -25,11 +24,9 @@ def test_from_the_shell(scene_folder):
     assert len(done.stderr.splitlines()) == 1
 
 
-def test_help_is_quick():
-    start = time.perf_counter()
+def test_help_waits_for_no_heavy_import():
     command = [sys.executable, "-X", "importtime", "-m", "vibro_sweep", "--help"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert time.perf_counter() - start < 1
     heavy = {"numpy", "numba", "h5py", "matplotlib", "pydantic", "scipy"}
     assert not heavy & {line.rsplit("|")[-1].strip() for line in done.stderr.splitlines()}
 
