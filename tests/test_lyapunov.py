@@ -73,6 +73,39 @@ def test_overdamped_without_impacts(changes):
     np.testing.assert_allclose(vs.lyapunov(system, REST, periods=100), free_exponents(system), rtol=1e-9)
 
 
+FAR_APART = {
+    "modes that begin in the wrong order": dict(mu_m=1.0, mu_k=1.0, zeta=10.0, omega=0.01),
+    "multipliers of 1e-8 and 1e-237": dict(mu_m=4469.557, mu_k=70.271, zeta=0.455548, omega=0.00524343),
+    "multipliers of 1e-8 and 1e-168": dict(mu_m=0.470989, mu_k=8.226366, zeta=0.0151352, omega=0.00485748),
+    "e^-1880 in a cell": dict(mu_m=0.002090458, mu_k=68.28828, zeta=6.063975, omega=0.654213),
+}
+
+
+@pytest.mark.parametrize("numbers", FAR_APART.values(), ids=FAR_APART)
+def test_modes_far_apart_without_impacts(numbers):
+    """After records of any length; -inf for what vanishes within a cell."""
+    system = vs.System(f2=0.6, R=0.8, b=1e9, tau=0.0, **numbers)
+    for transient, periods in ((300, 2), (300, 50)):
+        exponents = vs.lyapunov(system, (0.3, 0.2, 0.1, 0.4), transient, periods)
+        known = ~np.isneginf(exponents)
+        assert known[:3].all()
+        np.testing.assert_allclose(exponents[known], free_exponents(system)[known], rtol=1e-9)
+
+
+@pytest.mark.parametrize("b, omega", [(0.5, 1.0), (1.0, 0.5)])
+def test_a_mode_that_no_impact_reaches(b, omega):
+    """With impacts and without: the exponents of the two masses, each alone. The unseen one, whose exponents lie e^1000
+    apart in a period, is the first mode."""
+    told = dict(omega=omega, b=b, R=0.5, tau=0.0)
+    both = vs.Oscillator(np.eye(2), np.diag([1, 3]), np.diag([200, 0.2]), force=[2, 2], along=[0, 1], **told)
+    seen = vs.Oscillator([[1]], [[3]], [[0.2]], force=[2], along=[1], **told)
+    assert (len(vs.simulate(seen, (0, 0), 100).impacts) > 0) == (b < 1)
+    exponents = vs.lyapunov(both, REST, transient=2000, periods=200)
+    alone = np.concatenate([vs.lyapunov(seen, (0, 0), transient=2000, periods=200), np.roots([1, 200, 1])])
+    np.testing.assert_allclose(exponents, np.sort(alone)[::-1], rtol=1e-11)
+    assert abs(exponents.residual) < 1e-12
+
+
 @pytest.mark.parametrize(
     "changes, count", [(dict(b=3), 4), (dict(b=1), 4), (dict(zeta=1.2, mu_m=0.5, b=0.3, omega=1.5), 3)], ids=str
 )

@@ -124,8 +124,11 @@ def close(e, w, plan, points, results):
     """What remains to be said of the orbits after all phases, and how they went."""
     for i in range(len(results)):
         o, result = e.orbits[i], results[i]
-        if plan.lyapunov and o.status == status.OK:
-            close_spectrum(e, o, w, plan, points[i], result)
+        if plan.lyapunov:
+            if o.status == status.OK:
+                close_spectrum(e, o, w, plan, points[i], result)
+            else:  # averages of a record whose multipliers were not found
+                put(result.lyapunov, 0, np.nan)
         if o.status != status.NOT_COMPUTED:
             result.status = o.status
         if plan.states and o.status == status.OK:

@@ -3,6 +3,7 @@
 import math
 
 from vibro_sweep.engine.simd.jit import aside, jit
+from vibro_sweep.engine.variational.graded import separate
 
 STEPS = 60  # to one eigenvalue or one pair; some three are usual
 ROUNDING = 2.0**-52
@@ -76,6 +77,7 @@ def eigenvalues(a, n, re, im):
 
     A matrix that is graded from large above to small below gives small eigenvalues to their own last digits.
     """
+    separate(a, n, re)
     reduce(a, n)
     last, step = n - 1, 0
     while last >= 0:

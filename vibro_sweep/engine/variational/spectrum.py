@@ -38,6 +38,7 @@ def end_warm_up(e, count):
             if t.lost[i] > 0.0:  # on the way here; what the attractor itself loses shows again
                 tangent.begin(t, i)
                 keep_at_rest(e, i)
+            tangent.sort_vectors(t, i)
             tangent.start_record(t, i)
 
 

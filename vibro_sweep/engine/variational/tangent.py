@@ -17,6 +17,8 @@ from vibro_sweep.engine.tables.flight import ORDER
 from vibro_sweep.engine.variational.orthonormal import watch
 from vibro_sweep.engine.variational.tangent_flight import apply_flight, catch_up, fly_to, only
 
+ALIKE = 10.0  # difference of the logarithms of two growths that need not be told apart
+
 
 def tangents_of(masses: int, paper: bool) -> np.dtype:
     """The record of the tangent vectors of eight orbits, one column each; n vectors of n numbers, n = 2 N.
@@ -102,6 +104,35 @@ def start_record(t, i):
         t.growth[j, i], t.logs[j, i] = 1.0, 0.0
 
 
+@jit
+def sort_vectors(t, i):
+    """Vectors by falling growth, where Z is orthonormal: those of modes that no impact joins find no order themselves.
+
+    Vectors that grow alike stay where they are.
+    """
+    size = len(t.growth)
+    for last in range(1, size):
+        for j in range(last, 0, -1):
+            if not log_growth(t, j, i) > log_growth(t, j - 1, i) + ALIKE:
+                break
+            for m in range(size):
+                swap(t.Z, size * m + j, size * m + j - 1, i)
+            swap(t.growth, j, j - 1, i)
+            swap(t.logs, j, j - 1, i)
+
+
+@jit
+def swap(rows, m, n, i):
+    """Exchange two numbers of orbit i."""
+    rows[m, i], rows[n, i] = rows[n, i], rows[m, i]
+
+
+@jit
+def log_growth(t, j, i):
+    """-inf for dimensions that are lost."""
+    return t.logs[j, i] + np.log(t.growth[j, i])
+
+
 @inline
 def motion_of(t, mass, j):
     """Displacement and speed of a mass in tangent vector j; each mode moves the mass by its first number alone."""
@@ -163,4 +194,4 @@ def read_growth(t, i, q, nodes, out):
     fly_to(t, i, q, nodes, 0, 0.0)
     catch_up(t, only(i))
     for j in range(len(t.growth)):
-        out[j] = t.logs[j, i] + np.log(t.growth[j, i])
+        out[j] = log_growth(t, j, i)
