@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 from concurrent.futures import Future, ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -264,6 +265,19 @@ def test_a_closed_client_is_a_scheduler_that_has_died(monkeypatch):
     executor = driver_cluster.ClusterExecutor.__new__(driver_cluster.ClusterExecutor)
     with pytest.raises(RunError, match="the scheduler has died"):
         executor.submit(print)
+
+
+@pytest.mark.slow
+def test_a_worker_dies_while_it_is_asked_for_its_version(cluster):
+    """The other one computes."""
+    for _ in range(2):
+        cluster.worker()
+    cluster.wait_for_workers(2)
+    one = cluster.processes[-1]
+    one.send_signal(signal.SIGSTOP)  # it does not answer, until it is dead
+    threading.Timer(2.0, one.kill).start()
+    with driver_cluster.cluster(cluster.address) as executor:
+        assert executor.submit(driver_cluster.version).result(LIMIT) == driver_cluster.version()
 
 
 @pytest.mark.parametrize("error, told", [(driver_cluster.GONE[-1]("closed"), False), (ValueError("a bug"), True)])

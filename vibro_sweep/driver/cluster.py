@@ -121,12 +121,16 @@ def _is_loopback(host: str) -> bool:
 
 
 def _check(client: Client) -> None:
-    """Raise ClusterError, with their addresses, where workers have not the version of this program."""
+    """Raise ClusterError, with their addresses, where workers that answer have not the version of this program."""
     try:
         answers = client.run(version, on_error="return")
     except GONE as error:
         raise ClusterError(f"the scheduler has died ({error})") from None
-    wrong = [f"{address} has {_told(answer)}" for address, answer in answers.items() if answer != version()]
+    wrong = [
+        f"{address} has {_told(answer)}"
+        for address, answer in answers.items()
+        if answer != version() and not isinstance(answer, OSError)  # of a worker that has died meanwhile
+    ]
     if wrong:
         raise ClusterError(f"worker {'; worker '.join(wrong)}. This program is {version()}: install the same on all")
 
