@@ -1,5 +1,7 @@
 """Any linear oscillator with one contact: `Oscillator`, by its matrices or as a model with a name."""
 
+from __future__ import annotations  # help() says ArrayLike, and not all that this may be
+
 from collections.abc import Callable, Mapping
 from functools import cached_property, partial
 from typing import Any, Literal
@@ -114,7 +116,7 @@ class Oscillator(AnyOscillator):
     def linear(self) -> Linear:
         return self.family.linear
 
-    def replace(self, **changes: Any) -> "Oscillator":
+    def replace(self, **changes: Any) -> Oscillator:
         """A copy with other numbers. Raises ParameterError, also for a name that is none of them."""
         given = dict(self.given)
         for name, value in changes.items():

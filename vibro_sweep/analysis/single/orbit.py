@@ -1,5 +1,7 @@
 """One orbit, for a person at a prompt: `simulate` and `lyapunov`."""
 
+from __future__ import annotations  # help() says ArrayLike, and not all that this may be
+
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -32,7 +34,7 @@ class Status(str):
     code: int
     note: str
 
-    def __new__(cls, code: int, chatters: int) -> "Status":
+    def __new__(cls, code: int, chatters: int) -> Status:
         status_name = super().__new__(cls, status.meaning(code))
         status_name.code = code
         status_name.note = (
@@ -56,7 +58,7 @@ class Orbit:
     impacts: np.ndarray
     sticking: np.ndarray
     section: np.ndarray
-    status: "Status"
+    status: Status
     _start: np.ndarray  # in contact coordinates, as
     _states: np.ndarray  # `section`
     _engine: Engine
@@ -71,13 +73,13 @@ class Orbit:
         first = math.ceil(self.start_time / self._engine.period)
         return (first + np.arange(len(self.section))) * self._engine.period
 
-    def to_xarray(self) -> "xarray.Dataset":
+    def to_xarray(self) -> xarray.Dataset:
         """The orbit as a Dataset: states over `section`, impacts over `impact`, rests over `rest`."""
         from vibro_sweep.analysis.single.dataset import dataset_of
 
         return dataset_of(self)
 
-    def plot(self, periods: int = 4) -> "Figure":
+    def plot(self, periods: int = 4) -> Figure:
         """Phase portrait and time history of the last forcing periods, impacts marked.
 
         Raises ValueError where that is no whole number >= 1, or nothing is simulated.
