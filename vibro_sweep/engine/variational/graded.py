@@ -11,7 +11,7 @@ from vibro_sweep.engine.simd.jit import jit
 
 ROUNDING = 2.0**-52
 GAP = 16.0  # ratio of eigenvalues from which on they are separated
-MOST_STEPS = 60  # 13 are enough but for eigenvalues that are falsely ordered
+MOST_STEPS = 60  # 13 are enough unless eigenvalues stand in the wrong order
 
 
 @jit
