@@ -1,6 +1,6 @@
 """From a point to its tables, and between the coordinates of its masses and those of its contact.
 
-paper : scratch of tables/build.py, by modes; None unless it is the paper's oscillator
+paper : scratch of tables/series.py, by modes; None unless it is the paper's oscillator
 other : scratch of tables/general.py; None of the paper's oscillator, whose coordinates are those of its contact
 
 numba leaves out what stands under `if x is not None` where x is None: each kind of point has kernels of its own.

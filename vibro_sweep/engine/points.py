@@ -13,7 +13,7 @@ from vibro_sweep.engine.point_tables import fill_tables, same_tables, set_graze,
 from vibro_sweep.engine.records import PAPER, Kind, point_of
 from vibro_sweep.engine.simd.jit import entry, jit
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.engine.tables import general
+from vibro_sweep.engine.tables import general, series
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.model import status
 
@@ -49,7 +49,7 @@ class Workspace(NamedTuple):
     state: np.ndarray  # (2 N,)
     axes: np.ndarray  # (LANES, 4 N^2)
     matrix: np.ndarray  # (2 N, 2 N)
-    paper: np.ndarray | None  # (7, 6), or
+    paper: series.Scratch | None  # or
     other: general.Scratch | None  # as in point_tables.py
 
 
@@ -65,7 +65,7 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty(states),
         np.empty((LANES, states**2)),
         np.empty((states, states)),
-        np.empty((7, 6)) if kind.paper else None,
+        series.new_scratch() if kind.paper else None,
         None if kind.paper else general.new_scratch(kind.masses, kind.constant),
     )
 

@@ -171,6 +171,21 @@ def number(typingctx, x, i):
 
 
 @intrinsic
+def added(typingctx, x):
+    """The sum of eight numbers: of neighbours, then of pairs, then of fours."""
+    if x == lanes:
+
+        def codegen(context, builder, sig, args):
+            total = args[0]
+            for step in (1, 2, 4):
+                partner = ir.Constant(ir.VectorType(INDEX, LANES), [i ^ step for i in range(LANES)])
+                total = builder.fadd(total, builder.shuffle_vector(total, total, partner))
+            return builder.extract_element(total, ir.Constant(INDEX, 0))
+
+        return types.float64(x), codegen
+
+
+@intrinsic
 def lowest(typingctx, number):
     """The place of the lowest bit that is set in an integer other than 0."""
     if isinstance(number, types.Integer):

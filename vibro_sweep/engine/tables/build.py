@@ -5,11 +5,11 @@ from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.engine.tables.close_modes import CLOSE
 from vibro_sweep.engine.tables.control_points import fill_scan
 from vibro_sweep.engine.tables.flight import ORDER
-from vibro_sweep.engine.tables.forced import fill_motion
+from vibro_sweep.engine.tables.forced import fill_motion, fill_phases
 from vibro_sweep.engine.tables.frame import fill_frame
 from vibro_sweep.engine.tables.free import fill_coupling, fill_flight, gap_of
 from vibro_sweep.engine.tables.resting import fill_rest
-from vibro_sweep.engine.tables.series import fill_series, set_grid
+from vibro_sweep.engine.tables.series import fill_equations, fill_series, set_grid
 from vibro_sweep.engine.tables.stiff import rate_of
 
 
@@ -17,14 +17,16 @@ from vibro_sweep.engine.tables.stiff import rate_of
 def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, tau):
     """Fill the tables of an oscillator with modes psi (2, 2), omega_squared (2,), and phase tau (radians) at node 0.
 
-    scratch: (7, 6) floats.
+    scratch: `series.Scratch`.
     """
     q = f.oscillator[0]
     q.zeta, q.kappa[0], q.kappa[1] = zeta, 0.0, 2.0 * zeta / mu_m
     rate = max(omega, max(rate_of(omega_squared[0], zeta), rate_of(omega_squared[1], zeta)))
+    fill_phases(q, f.nodes, cells, tau)
     set_grid(q, cells, omega, rate)
-    fill_series(q, scratch[:6], scratch[6], mu_m, mu_k, f2)
-    fill_rest(q, scratch[:6], scratch[6], mu_m, mu_k, f2)
+    fill_equations(q, scratch, mu_m, mu_k, f2)
+    fill_series(q, scratch)
+    fill_rest(q, mu_m, mu_k, f2)
     q.impulse_third = 0.0
     for n in range(ORDER):
         q.impulse_third += q.third[n] * abs(q.series[0, 1, n])
@@ -32,7 +34,7 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
     gap = gap_of(mu_m, mu_k)
     if gap < CLOSE * omega_squared[1]:
         fill_coupling(q, f.nodes, psi, omega_squared, mu_m, gap)
-    fill_motion(q, f.nodes, psi, omega_squared, f2, tau)
+    fill_motion(q, f.nodes, psi, omega_squared, f2)
     q.largest = 0.0
     for k in range(cells + 1):
         q.largest = max(q.largest, abs(f.nodes[k].z[0]))

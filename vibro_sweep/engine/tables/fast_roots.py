@@ -79,7 +79,7 @@ def fill_stiff_exclusion(q, nodes, scan, point, turned):
                 x, v = nodes[k].z[0], nodes[k].z[1]
             elif k == 0:
                 q.slow[i] = x
-            put_points(q, scan[i], k, x, v)
+            put_points(scan[i], q.width / 3.0, k, x, v)
     for i in range(states + 1):
         fast, fourth = bound_roots(q, point, i)
         largest = 0.0

@@ -41,10 +41,19 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one oscillator. Structured arrays go to kernels by one pointer, and need no reference counts."""
     states, inputs = 2 * masses, inputs_of(masses, constant)
     fields = [
+        # rows of whole cache lines come first
+        ("series", float, (masses, inputs, ORDER)),  # Taylor coefficients of x1, x2, ... of the inputs
+        # while M1 rests, of (x1, x2, v2, x3, ..., sin, cos): its free acceleration, and x2, ...
+        ("resting", float, (masses, inputs - 1, ORDER)),
+        ("reach", float, ORDER),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
+        ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell, and
+        ("fourth", float, ORDER),  # on the fourth
+        ("frame_series", float, (ORDER, states)),  # of tangent.py
         ("cells", np.int64),
         ("width", float),  # of a cell
         ("step", float),  # width of a series: a cell, or where stiff a part of one
         ("omega", float),
+        ("tau", float),
         ("zeta", float),
         (
             "kappa",
@@ -54,20 +63,13 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         ("graze", float, states),  # the point at which the discontinuity mapping is expanded
         ("remainder", float, states + 1),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
         ("slow", float, states),  # part of the slow modes in x1; of a stiff system
-        ("series", float, (masses, inputs, ORDER)),  # Taylor coefficients of x1, x2, ... of the inputs
         ("force", float, inputs),  # acceleration of M1 as a function of them
-        # while M1 rests, of (x1, x2, v2, x3, ..., sin, cos): its free acceleration, and x2, ...
-        ("resting", float, (masses, inputs - 1, ORDER)),
-        ("rest_step", float),  # width of these series; of M2 alone, where there is a closed form (resting.py):
+        ("rest_step", float),  # width of the series `resting`; of M2 alone, where there is a closed form (resting.py):
         ("rest_square", float),  # omega^2; 0: there is none
         ("rest_static", float),  # x2 in equilibrium, for x1 = 1
         ("rest_response", float, 2),  # steady response of x2 to sin and cos
-        ("reach", float, ORDER),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
         ("impulse_third", float),  # bound on |d3 x1/du3| over a cell after a unit impulse on M1
-        ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell, and
-        ("fourth", float, ORDER),  # on the fourth
-        ("frame_series", float, (ORDER, states)),  # of tangent.py, like all that follow
-        ("vanishing", np.int64),  # directions that a flight over a cell takes below the rounding of the others
+        ("vanishing", np.int64),  # of tangent.py: directions that a flight over a cell takes below the others' rounding
         ("stretch", np.int64),  # cells that may be flown between looks at the tangent vectors, and
         ("leash", np.int64),  # while each lies in the plane of one mode
         ("frame_scale", float, masses),  # g_j
@@ -79,11 +81,7 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         ("steady", float, states),  # of coast.py, like all that follow: the steady motion at node 0
         ("middle", float),  # of the gap of the steady motion, and
         ("swing", float),  # by how much it swings about that
-        (
-            "confining",
-            float,
-            (states, states),
-        ),  # quadratic form of X - steady: bound on the square of what it moves the gap
+        ("confining", float, (states, states)),  # quadratic form of X - steady: bound on the gap's motion, squared
         ("power", float, (2, states, states)),  # scratch, and
         ("apart", float, (2, states)),  # scratch
     ]
@@ -99,7 +97,8 @@ def node_of(masses: int, constant: bool = False) -> np.dtype:
         # flight from node 0: row j is X here of the unit state j there, the others that of the force's sin and cos
         ("E", float, (inputs + inputs % 2, width)),  # there, and of the constant force, from rest; padded
         ("forced", float, (masses, 2, 2)),  # modal motion from rest at node 0: mode; xi, xi'; to sin, cos there
-        ("turn", float, 2),  # sin and cos of omega t
+        ("angle", float),  # omega t, and
+        ("turn", float, 2),  # its sin and cos
         ("frame", float, states),  # c_1, s_1, c_2, s_2, ... of a flight from node 0
     ]
     return record(fields)
@@ -134,9 +133,9 @@ def decaying(eta, omega_squared, u):
     square = omega_squared - eta * eta
     if square >= 0.0:
         root = math.sqrt(square)
-        decay = math.exp(-eta * u)
-        c = decay * math.cos(root * u)
-        s = decay * (math.sin(root * u) / root if root > 0.0 else u)
+        decay, cos, sin = math.exp(-eta * u), math.cos(root * u), math.sin(root * u)  # side by side they are one call
+        c = decay * cos
+        s = decay * (sin / root if root > 0.0 else u)
         return c, s, c + eta * s, c - eta * s
     root = math.sqrt(-square)
     slow = math.exp(-omega_squared / (eta + root) * u)

@@ -3,22 +3,22 @@
 import math
 
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.simd.lanes import alike, lanes_of, number, select
 from vibro_sweep.engine.tables.flight import ORDER, decaying
 from vibro_sweep.engine.tables.stiff import is_fast
 
 
 @jit
 def forced_series(eta, omega_squared, omega, width, sin, cos):
-    """xi and xi' after `width`, from rest, of xi'' + 2 eta xi' + omega_j^2 xi = sin(omega t + phase)."""
-    now, before, total, rate = 0.0, 0.0, 0.0, 0.0  # Taylor terms c_(n+1) width^(n+1) and c_n width^n, and the sums
+    """xi and xi' after `width`, from rest, of eight xi'' + 2 eta xi' + omega_j^2 xi = sin(omega t + phase)."""
+    now = before = total = rate = alike(0.0)  # Taylor terms c_(n+1) width^(n+1) and c_n width^n, and the sums
     square, force, turned = width * width, sin, omega * width * cos
     for n in range(ORDER - 2):
         # (5), term by term
-        after = force * square - 2.0 * eta * width * (n + 1.0) * now - omega_squared * square * before
-        after /= (n + 1.0) * (n + 2.0)
-        total += after
-        rate += (n + 2.0) * after / width
+        change = force * square - 2.0 * eta * width * (n + 1.0) * now - omega_squared * square * before
+        after = change / ((n + 1.0) * (n + 2.0))
+        total = total + after
+        rate = rate + (n + 2.0) * after / width
         before, now = now, after
         # derivatives of the force, over n!
         force, turned = turned / (n + 1.0), -omega * omega * square * force / (n + 1.0)
@@ -26,21 +26,34 @@ def forced_series(eta, omega_squared, omega, width, sin, cos):
 
 
 @jit
-def fill_motion(q, nodes, psi, omega_squared, f2, tau):
-    """The phase at the nodes, and the motion r.
+def fill_phases(q, nodes, cells, tau):
+    """sin and cos of omega t at the nodes, and of omega t + tau.
+
+    Most oscillators of a sweep have the cells, and many the phase, of the one whose tables they replace.
+    """
+    if cells != q.cells:
+        for k in range(cells + 1):
+            angle = 2.0 * math.pi * (k / cells)
+            nodes[k].angle, nodes[k].turn[0], nodes[k].turn[1] = angle, math.sin(angle), math.cos(angle)
+    if cells != q.cells or tau != q.tau:
+        for k in range(cells + 1):
+            phase = tau + nodes[k].angle
+            nodes[k].z[4], nodes[k].z[5] = math.sin(phase), math.cos(phase)
+    q.cells, q.tau = cells, tau
+
+
+@jit
+def fill_motion(q, nodes, psi, omega_squared, f2):
+    """The motion r.
 
     The flight to node k = rest + step, with step its lowest binary digit, is one to `rest` and one of `step` cells:
     rounding errors grow with the number of digits of k, not with k.
     """
     cells = q.cells
     for k in range(cells + 1):
-        phase = tau + 2.0 * math.pi * (k / cells)
         z = nodes[k].z
-        for i in range(LANES):
-            z[i] = 0.0
-        z[4], z[5] = math.sin(phase), math.cos(phase)
-        angle = 2.0 * math.pi * (k / cells)
-        nodes[k].turn[0], nodes[k].turn[1] = math.sin(angle), math.cos(angle)
+        z[0] = z[1] = z[2] = z[3] = 0.0
+    begin_modes(q, nodes, omega_squared)
     for j in range(2):
         eta, square = q.zeta * omega_squared[j], omega_squared[j]
         force = psi[0, j] * (1.0 - f2) + psi[1, j] * f2
@@ -67,12 +80,22 @@ def fill_motion(q, nodes, psi, omega_squared, f2, tau):
 
 
 @jit
+def begin_modes(q, nodes, omega_squared):
+    """What sin and cos at node 0 do to both modes from rest, at nodes 0 and 1. (Of a fast mode it is not used.)"""
+    slower, of_sin = lanes_of(0b0011), lanes_of(0b0101)
+    square = select(slower, omega_squared[0], omega_squared[1])
+    sin, cos = select(of_sin, 1.0, 0.0), select(of_sin, 0.0, 1.0)
+    xi, rate = forced_series(q.zeta * square, square, q.omega, q.width, sin, cos)
+    for j in range(2):
+        first, one = nodes[0].forced[j], nodes[1].forced[j]
+        for i in range(2):
+            first[0, i] = first[1, i] = 0.0
+            one[0, i], one[1, i] = number(xi, 2 * j + i), number(rate, 2 * j + i)
+
+
+@jit
 def fill_mode(q, nodes, j, eta, square):
     """What sin and cos at node 0 do to mode j from rest, at each node."""
-    first, one = nodes[0].forced[j], nodes[1].forced[j]
-    first[0, 0] = first[0, 1] = first[1, 0] = first[1, 1] = 0.0
-    one[0, 0], one[1, 0] = forced_series(eta, square, q.omega, q.width, 1.0, 0.0)
-    one[0, 1], one[1, 1] = forced_series(eta, square, q.omega, q.width, 0.0, 1.0)
     for k in range(2, q.cells + 1):
         step = k & -k if k & (k - 1) else k // 2
         before, after, out = nodes[k - step].forced[j], nodes[step].forced[j], nodes[k].forced[j]

@@ -33,11 +33,13 @@ def fill_coupling(q, nodes, psi, omega_squared, mu_m, gap):
 def fill_flight(q, nodes, psi, omega_squared, mu_m):
     """E = exp(A t_k) in physical coordinates, from the 2x2 block of each mode."""
     for k in range(q.cells + 1):
-        E, frame = nodes[k].E, nodes[k].frame
-        clear(E)
-        for j in range(2):
-            eta = q.zeta * omega_squared[j]
-            c, s, xi, rate = decaying(eta, omega_squared[j], k * q.width)
+        clear(nodes[k].E)
+    for j in range(2):
+        square = omega_squared[j]
+        eta = q.zeta * square
+        for k in range(q.cells + 1):
+            E, frame = nodes[k].E, nodes[k].frame
+            c, s, xi, rate = decaying(eta, square, k * q.width)
             frame[2 * j], frame[2 * j + 1] = c, s
             # (6): e^{-eta u} ((c + eta s, s), (-omega_j^2 s, c - eta s)) of xi_j and xi_j'
             for i in range(2):
@@ -45,5 +47,5 @@ def fill_flight(q, nodes, psi, omega_squared, mu_m):
                     weight = psi[i, j] * psi[m, j] * (mu_m if m == 1 else 1.0)
                     E[2 * m, 2 * i] += weight * xi
                     E[2 * m + 1, 2 * i] += weight * s
-                    E[2 * m, 2 * i + 1] -= weight * omega_squared[j] * s
+                    E[2 * m, 2 * i + 1] -= weight * square * s
                     E[2 * m + 1, 2 * i + 1] += weight * rate

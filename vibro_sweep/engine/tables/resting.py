@@ -12,24 +12,14 @@ import math
 
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, WIDTH, decaying, evaluate
-from vibro_sweep.engine.tables.series import clear, derive
 from vibro_sweep.engine.tables.stiff import rate_of
 
 
 @jit
-def fill_rest(q, A, row, mu_m, mu_k, f2):
-    """Series of M1's free acceleration and of x2, and the closed form. A (6, 6) and row (6,) are scratch."""
+def fill_rest(q, mu_m, mu_k, f2):
+    """How far the series of M2 alone reach, and its closed form."""
     zeta, omega = q.zeta, q.omega
     square = (1.0 + mu_k) / mu_m
-    clear(A)
-    # z' = A z for z = (x1, x2, v2, sin(omega t + tau), cos(omega t + tau))
-    A[1, 2] = 1.0
-    A[2, 0], A[2, 1], A[2, 2], A[2, 3] = 1.0 / mu_m, -square, -2.0 * zeta * (1.0 + mu_k) / mu_m, f2 / mu_m
-    A[3, 4], A[4, 3] = omega, -omega
-    row[0], row[1], row[2], row[3], row[4] = q.force[0], q.force[2], q.force[3], q.force[4], 0.0
-    derive(A, row, 5, q.resting[0])
-    row[0], row[1], row[2], row[3] = 0.0, 1.0, 0.0, 0.0
-    derive(A, row, 5, q.resting[1])
     rate = max(omega, rate_of(square, zeta))
     q.rest_step = q.width if rate * q.width <= 1.0001 * WIDTH else q.width / math.ceil(rate * q.width / WIDTH)
     # x2 = static x1 + A sin + B cos, the steady response (7) of this oscillator

@@ -1,8 +1,13 @@
 """Taylor series of flight over a cell (eq. 3)."""
 
 import math
+from typing import NamedTuple
 
-from vibro_sweep.engine.simd.jit import jit
+import numpy as np
+
+from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.engine.simd.lanes import LANES, alike, lanes_of, number, select
+from vibro_sweep.engine.simd.memory import new_lines, put, row
 from vibro_sweep.engine.tables.flight import ORDER, WIDTH
 
 
@@ -42,12 +47,21 @@ def set_grid(q, cells, omega, rate):
         power *= q.step
 
 
+class Scratch(NamedTuple):
+    """The matrices A of z' = A z for z = (x1, v1, x2, v2, sin(omega t + tau), cos(omega t + tau)), eq. (3), padded."""
+
+    free: np.ndarray  # (6, LANES)
+    held: np.ndarray  # (6, LANES), while M1 rests: v1 = 0
+
+
+def new_scratch() -> Scratch:
+    return Scratch(new_lines((6, LANES), float), new_lines((6, LANES), float))
+
+
 @jit
-def fill_series(q, A, row, mu_m, mu_k, f2):
-    """Taylor series of x1 and x2, and the acceleration of M1 (eq. 3). A (6, 6) and row (6,) are scratch."""
-    zeta, omega = q.zeta, q.omega
-    clear(A)
-    # (3) as z' = A z for z = (x1, v1, x2, v2, sin(omega t + tau), cos(omega t + tau))
+def fill_equations(q, w, mu_m, mu_k, f2):
+    """Both matrices, and the acceleration of M1 as a function of z. What is zero in every A stays as it was made."""
+    A, held, zeta, omega = w.free, w.held, q.zeta, q.omega
     A[0, 1] = A[2, 3] = 1.0
     A[1, 0], A[1, 1], A[1, 2], A[1, 3], A[1, 4] = -1.0, -2.0 * zeta, 1.0, 2.0 * zeta, 1.0 - f2
     A[3, 0], A[3, 1] = 1.0 / mu_m, 2.0 * zeta / mu_m
@@ -55,8 +69,34 @@ def fill_series(q, A, row, mu_m, mu_k, f2):
     A[4, 5], A[5, 4] = omega, -omega
     for i in range(6):
         q.force[i] = A[1, i]
-        row[i] = 0.0
-    row[0] = 1.0
-    derive(A, row, 6, q.series[0])
-    row[0], row[2] = 0.0, 1.0
-    derive(A, row, 6, q.series[1])
+    for i in range(2, 6):
+        put(held, i, row(A, i))
+    held[3, 1] = 0.0
+
+
+@inline
+def times(c, A):
+    """The row vector c times A, both of six numbers, padded."""
+    total = alike(0.0)
+    for i in range(6):
+        total = total + row(A, i) * number(c, i)
+    return total
+
+
+@jit
+def fill_series(q, w):
+    """Taylor series of x1 and x2 in free flight; and while M1 rests of its free acceleration and of x2.
+
+    Each term is the one before it times A/n. All four go side by side: none waits for the last step of another.
+    """
+    x1, x2 = select(lanes_of(0b000001), 1.0, 0.0), select(lanes_of(0b000100), 1.0, 0.0)
+    pull, held_x2 = select(lanes_of(0b000010), 0.0, row(w.free, 1)), x2
+    for n in range(ORDER):
+        if n > 0:
+            x1, x2 = times(x1, w.free) / n, times(x2, w.free) / n
+            pull, held_x2 = times(pull, w.held) / n, times(held_x2, w.held) / n
+        for i in range(6):
+            q.series[0, i, n], q.series[1, i, n] = number(x1, i), number(x2, i)
+        for i in range(5):  # without v1
+            j = i + 1 if i > 0 else 0
+            q.resting[0, i, n], q.resting[1, i, n] = number(pull, j), number(held_x2, j)
