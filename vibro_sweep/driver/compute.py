@@ -75,7 +75,9 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     if block.follow:  # chains along the first axis, one for each point of the others
         steps = np.ascontiguousarray(table.reshape(len(table), -1)[:: -1 if block.reverse else 1])
     else:
-        steps = np.repeat(table.reshape(1, -1), n_starts, axis=1)
+        steps = table.reshape(1, -1)
+        if n_starts > 1:
+            steps = np.repeat(steps, n_starts, axis=1)
     record = plan.record if "x1" in block.wanted else 0
     arrays = {
         "results": new_results(steps.shape, kind.masses),
@@ -90,8 +92,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     begins = np.stack([first, anew])
     points.run_points(steps, begins, *arrays.values(), workspace, plan, mapping)
     energies = energies_of(block, steps, kind, arrays["results"], begins) if "impact_power" in block.wanted else {}
-    last = arrays["results"][-1]
-    ends = np.where(status.stands(last["status"])[:, None], last["end"], anew)
+    ends = {} if block.last else {CHAIN_ENDS: _ends(arrays["results"][-1], anew)}
     if plan.lyapunov:
         _drop_without_exponents(arrays)
     turn = -1 if block.reverse else 1
@@ -105,8 +106,12 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     if block.samples:
         named |= trajectories_of(block, table, arrays["results"], workspace, lead)
         named["status"] = arrays["results"]["status"].reshape(lead)
-    wanted = {name: values for name, values in named.items() if name in block.wanted}
-    return wanted if block.last else wanted | {CHAIN_ENDS: ends}
+    return {name: values for name, values in named.items() if name in block.wanted} | ends
+
+
+def _ends(last: np.ndarray, anew: np.ndarray) -> np.ndarray:
+    """From where chains go on; anew: from there after a point that failed."""
+    return np.where(status.stands(last["status"])[:, None], last["end"], anew)
 
 
 def _drop_without_exponents(arrays: dict[str, np.ndarray]) -> None:

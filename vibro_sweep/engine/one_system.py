@@ -30,6 +30,12 @@ STICKING = np.dtype([("t_on", float), ("t_off", float), ("side", np.int8)])
 ROOM = 256  # impacts and rests of each of eight orbits there is room for at first
 
 
+def unrepeated(values) -> np.ndarray:
+    """An array without the repetitions of `np.broadcast_to`: such axes have the length 1."""
+    values = np.asarray(values, float)
+    return values[tuple(slice(None) if stride else slice(1) for stride in values.strides)]
+
+
 def points_of(parameters: dict[str, np.ndarray], stops: str = "both") -> np.ndarray:
     """Systems with these numbers (arrays of one shape, tau resolved) as POINTs of the kernels, of that shape.
 
@@ -38,8 +44,10 @@ def points_of(parameters: dict[str, np.ndarray], stops: str = "both") -> np.ndar
     result = np.zeros(np.shape(parameters["b"]), POINT)
     for name in NAMES:
         result[name] = parameters[name]
-    result["psi"], result["omega_squared"] = modes(result["mu_m"], result["mu_k"])
-    result["cells"] = cells.cells_needed(result["omega_squared"], result["zeta"], result["omega"])
+    few = {name: unrepeated(parameters[name]) for name in NAMES}
+    psi, omega_squared = modes(few["mu_m"], few["mu_k"])
+    result["psi"], result["omega_squared"] = psi, omega_squared
+    result["cells"] = cells.cells_needed(omega_squared, few["zeta"], few["omega"])
     offset, R = parameters.get("offset", 0.0), parameters["R"]
     result["stops"][..., 0] = offset - parameters["b"] if stops != "right" else -np.inf
     result["stops"][..., 1] = offset + parameters["b"] if stops != "left" else np.inf

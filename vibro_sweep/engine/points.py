@@ -44,6 +44,7 @@ class Workspace(NamedTuple):
 
     ensemble: Ensemble
     built: np.ndarray  # (LANES,) POINT: whose tables these are
+    carried: np.ndarray  # (LANES,) POINT: whose oscillators the columns of `strike` and `tangent` hold
     section: np.ndarray  # (orbits, record, 2 N)
     growth: np.ndarray  # (LANES, parts, 2 N)
     state: np.ndarray  # (2 N,)
@@ -59,6 +60,7 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
     ensemble = new_ensemble(cells, kind)
     return Workspace(
         ensemble._replace(records=new_records(orbits, impacts=impacts, samples=samples, masses=kind.masses)),
+        np.zeros(LANES, point_of(kind)),
         np.zeros(LANES, point_of(kind)),
         np.empty((orbits, plan.record if plan.states else 0, states)),
         np.empty((LANES, plan.parts, states)),
@@ -93,9 +95,12 @@ def prepare(points, i, w, plan):
     set_graze(q, point)
     stops = Stops(point.stops[0], point.stops[1], point.stops[2], point.stops[3])
     o.careful = int(q.stiff or q.largest > LARGE * clearance(stops))
-    strike.set_oscillator(e.strike[0], i, q, stops)
-    if plan.lyapunov:
-        tangent.set_frame(e.tangent[0], i, q)
+    strike.set_stops(e.strike[0], i, stops)
+    if not same_tables(point, w.carried[i], w.paper, w.other):
+        strike.set_oscillator(e.strike[0], i, q)
+        if plan.lyapunov:
+            tangent.set_frame(e.tangent[0], i, q)
+        w.carried[i] = point
     return stops
 
 

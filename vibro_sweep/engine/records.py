@@ -1,5 +1,6 @@
 """What kernels are given of each point of a sweep, and what they give back of each orbit."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -83,9 +84,9 @@ def result_of(masses: int) -> np.dtype:
 
 def new_results(shape: tuple[int, ...], masses: int = 2) -> np.ndarray:
     """Results of points that are not computed yet."""
-    results = np.zeros(shape, result_of(masses))
+    result = np.zeros(1, result_of(masses))
     for one in OF_AN_ORBIT:
-        results[one.name] = one.fill
+        result[one.name] = one.fill
     for name in ("log_multiplier", "log_error", "end"):
-        results[name] = np.nan
-    return results
+        result[name] = np.nan
+    return result.repeat(math.prod(shape)).reshape(shape)

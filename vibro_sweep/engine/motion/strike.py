@@ -59,8 +59,8 @@ def strikes_of(masses: int, constant: bool = False) -> np.dtype:
 
 
 @jit
-def set_oscillator(strikes, i, q, stops):
-    """Give orbit i its oscillator and its stops."""
+def set_oscillator(strikes, i, q):
+    """Give orbit i its oscillator."""
     masses, states = len(q.series), 2 * len(q.series)
     for j in range(len(q.force)):
         economise(TO_TERMS, q, q.series[0, j], strikes.series[:], TERMS * j, i)
@@ -75,6 +75,11 @@ def set_oscillator(strikes, i, q, stops):
     for n in range(TAIL):
         strikes.third[n, i] = q.third[n]
     strikes.width[i], strikes.drag[i], strikes.impulse_third[i] = q.width, -q.force[1], q.impulse_third
+
+
+@jit
+def set_stops(strikes, i, stops):
+    """Give orbit i its stops."""
     strikes.left[i], strikes.right[i] = stops.left, stops.right
     strikes.restitution[0, i], strikes.restitution[1, i] = stops.R_left, stops.R_right
 
