@@ -92,6 +92,7 @@ def test_modes_far_apart_without_impacts(numbers):
         np.testing.assert_allclose(exponents[known], free_exponents(system)[known], rtol=1e-9)
 
 
+@pytest.mark.slow  # kernels of two kinds
 @pytest.mark.parametrize("b, omega", [(0.5, 1.0), (1.0, 0.5)])
 def test_a_mode_that_no_impact_reaches(b, omega):
     """With impacts and without: the exponents of the two masses, each alone. The unseen one, whose exponents lie e^1000
