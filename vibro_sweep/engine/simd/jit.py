@@ -125,19 +125,39 @@ _told = _announced = False
 _FOLDER = _cache_folder()
 
 
+class _Part:
+    """A kernel that other kernels call.
+
+    numba's object for it is made when one of these is compiled: for all two hundred that takes 40 ms, which a start
+    does without where compiled kernels are found.
+    """
+
+    def __init__(self, function, compiler, **options):
+        functools.update_wrapper(self, function)
+        self._make = functools.partial(_compiled, function, compiler, no_cpython_wrapper=True, **options)
+
+    @functools.cached_property
+    def _kernel(self):
+        return self._make()
+
+    @property
+    def _numba_type_(self):  # what other kernels see of it
+        return self._kernel._numba_type_
+
+
 def jit(function):
     """`numba.njit` for a kernel that other kernels call."""
-    return _compiled(function, PartCompiler, no_cpython_wrapper=True)
+    return _Part(function, PartCompiler)
 
 
 def inline(function):
     """`jit` for what is on the way of all orbits: a call would pass vectors, and the tables' many words, by memory."""
-    return _compiled(function, PartCompiler, no_cpython_wrapper=True, forceinline=True)
+    return _Part(function, PartCompiler, forceinline=True)
 
 
 def aside(function):
     """`jit` for what is rare: inlined, it would take registers and room from what is on the way."""
-    return _compiled(function, AsideCompiler, no_cpython_wrapper=True)
+    return _Part(function, AsideCompiler)
 
 
 class entry:  # noqa: N801  # a decorator

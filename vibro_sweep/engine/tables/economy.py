@@ -8,7 +8,6 @@ no acceleration is asked for, 12 terms suffice.
 """
 
 import numpy as np
-from numpy.polynomial import Chebyshev, Polynomial
 
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER
@@ -16,11 +15,20 @@ from vibro_sweep.engine.tables.flight import ORDER
 
 def economy(terms: int) -> np.ndarray:
     """What each power of s from s^terms on adds to the powers below it, (ORDER - terms, terms)."""
-    powers = np.eye(ORDER)
+    powers, polynomials = np.eye(ORDER), shifted_chebyshev(ORDER)
     for n in range(ORDER - 1, terms - 1, -1):
-        shifted = Chebyshev.basis(n, domain=[0, 1]).convert(kind=Polynomial, domain=[-1, 1]).coef
-        powers[:, : n + 1] -= np.outer(powers[:, n], shifted / shifted[n])
+        powers -= np.outer(powers[:, n], polynomials[n] / polynomials[n, n])
     return powers[terms:, :terms].copy()
+
+
+def shifted_chebyshev(count: int) -> np.ndarray:
+    """Coefficients of T*_0, T*_1, ..., whole numbers: T*_(n+1) = 2 (2 s - 1) T*_n - T*_(n-1)."""
+    polynomials = np.zeros((count, count))
+    polynomials[0, 0], polynomials[1, 0], polynomials[1, 1] = 1, -1, 2
+    for n in range(2, count):
+        polynomials[n] = -2 * polynomials[n - 1] - polynomials[n - 2]
+        polynomials[n, 1:] += 4 * polynomials[n - 1, :-1]
+    return polynomials
 
 
 TERMS, FEWER_TERMS = 13, 12
