@@ -3,11 +3,14 @@
 Called by compile_time.py with a scene; prints JSON.
 """
 
+import gc
 import json
 import sys
 import time
 
-from numba.core import event
+gc.disable()  # until `all_is_imported`, as the program does (vibro_sweep/__main__.py)
+
+from numba.core import event  # noqa: E402
 
 
 class Clock(event.Listener):
@@ -33,9 +36,11 @@ def first_point(path: str) -> dict:
     """Times since the epoch at which the scene is read and its first point computed; `own`: the Clock's seconds."""
     clock = Clock()
     event.register("numba:compile", clock)
+    from vibro_sweep.console import all_is_imported
     from vibro_sweep.driver import blocks, compute
     from vibro_sweep.scene import scene
 
+    all_is_imported()
     block = next(blocks.blocks(scene.load_scene(path), points_per_block=1))
     loaded = time.time()
     compute.compute(block)

@@ -122,6 +122,8 @@ class Version:
         self.root = root
         path = os.pathsep.join((str(root), str(root / "benchmarks")))
         self.environment = os.environ | {"PYTHONPATH": path, "PYTHONSAFEPATH": "1", "NUMBA_CACHE_DIR": cache}
+        # modules are compiled once, as where the package is installed: else each start would do it again
+        self.environment.pop("PYTHONDONTWRITEBYTECODE", None)
         command, pipe = [sys.executable, "-c", WORKER], subprocess.PIPE
         self.worker = subprocess.Popen(command, env=self.environment, cwd=root, stdin=pipe, stdout=pipe, text=True)
 

@@ -48,12 +48,17 @@ def entries(folder, ending):
 
 
 def test_a_second_start_compiles_nothing_and_loads_nothing_that_compiling_takes(program, tmp_path):
-    """numba's own way to a kernel in the cache loads scipy and all of numba's registries: a quarter of a second."""
-    source = tmp_path / "program.py"
-    source.write_text("import sys\n" + PROGRAM + "print('numba.np.linalg' in sys.modules, file=sys.stderr)\n")
+    """numba's own way to a kernel in the cache loads scipy and all of numba's registries: a quarter of a second.
+
+    Nor does it make an object for each kernel that only kernels call.
+    """
+    with_part = PROGRAM.replace("@jit.entry", "@jit.jit\ndef half(x):\n    return 0.5 * x\n\n@jit.entry", 1)
+    with_part = with_part.replace("return 2.0 * x", "return 4.0 * half(x)")
+    told = "print('numba.np.linalg' in sys.modules, '_kernel' in vars(half), file=sys.stderr)\n"
+    (tmp_path / "program.py").write_text("import sys\n" + with_part + told)
     folder = str(tmp_path / "cache")
-    assert program(NUMBA_CACHE_DIR=folder) == (0, ["True"])
-    assert program(NUMBA_CACHE_DIR=folder) == (1, ["False"])
+    assert program(NUMBA_CACHE_DIR=folder) == (0, ["True True"])
+    assert program(NUMBA_CACHE_DIR=folder) == (1, ["False False"])
 
 
 @pytest.mark.parametrize("cuts", [[(".nbi", 0), (".nbc", 0.5)], *slow_cases([(".nbi", 0.5), (".nbc", 0)])])

@@ -17,6 +17,7 @@ import vibro_sweep as vs
 from vibro_sweep.driver import blocks, compute
 from vibro_sweep.driver.attractor_ids import number_attractors
 from vibro_sweep.driver.starts import starts_of
+from vibro_sweep.scene import parse_scene
 
 
 @pytest.mark.parametrize("name", ["random", "follow", "attractors", *slow_cases("plane", "basins")])
@@ -25,6 +26,26 @@ def test_workers_do_not_matter(tmp_path, name):
     assert np.all(one["status"] == 0)
     for workers in (2, 3):
         assert_same_bits(run(tmp_path, SCENES[name], workers=workers), one)
+
+
+@pytest.mark.parametrize("model", ["", "mu_c: 2, "])
+def test_tables_do_not_depend_on_those_in_whose_place_they_come(model):
+    """What an oscillator shares with the one before it in its lane (cells, phase, all but the stops) stays there."""
+    text = f"""
+system: {{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, {model}R: 0.8, b: 6}}
+sweep:
+  tau: {{values: [0.1, 0.2, 0.3]}}
+  omega: {{values: [0.2, 0.21, 0.6, 0.61, 0.62, 0.63, 0.64, 0.65, 0.66, 0.67, 0.7, 0.71]}}
+orbit: {{transient: 20, record: 10}}
+observe: [section, lyapunov, impacts]
+"""
+    scene = parse_scene(text)
+    ((_, together),) = (compute.compute(block) for block in blocks.blocks(scene, points_per_block=100))
+    for block in blocks.blocks(scene, points_per_block=1):
+        with ThreadPoolExecutor(1) as fresh:  # a thread has its own tables
+            box, alone = fresh.submit(compute.compute, block).result()
+        for key, values in alone.items():
+            assert together[key][box].tobytes() == values.tobytes(), (box, key)
 
 
 @pytest.mark.parametrize("name", SCENES)

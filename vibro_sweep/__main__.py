@@ -12,6 +12,7 @@ def program() -> None:
     """The command line as a process, which it ends."""
     interrupt.install()
     prepare_process()
+    gc.disable()  # until console.all_is_imported
     from .cli import main  # takes time, in which there may be a Ctrl-C
 
     status = main()

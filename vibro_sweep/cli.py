@@ -13,7 +13,7 @@ from vibro_sweep.model.pictures import PICTURES
 
 from . import interrupt
 from .computing import Work, compute_pieces, compute_sweep
-from .console import BAD_INPUT, BAD_POINTS, ended, input_errors, say
+from .console import BAD_INPUT, BAD_POINTS, all_is_imported, ended, input_errors, say
 from .options import key_and_value, number_in, positive
 from .usage import called
 
@@ -293,6 +293,7 @@ def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, qu
     from .plotting import Look, PlotError, plot
     from .store import StoreError
 
+    all_is_imported()
     with input_errors(PlotError, StoreError), interrupt.tidied_up():
         pictures = plot(file, output, kind, overwrite, Look(*look, **beside))
     if not quiet:

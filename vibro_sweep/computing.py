@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from . import interrupt
-from .console import InputError, input_errors, messages, say
+from .console import InputError, all_is_imported, input_errors, messages, say
 from .options import executor_of
 
 
@@ -67,6 +67,7 @@ class Work:
         from .progress import progress_bar
         from .store import StoreError
 
+        all_is_imported()
         workers_of_a_cluster = executor_of(self.scheduler)
         with input_errors(StoreError, *errors), interrupt.tidied_up():
             to_continue = self.advice("--resume")
