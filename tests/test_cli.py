@@ -1,5 +1,6 @@
 """The program from outside: exit status, messages, and what it leaves on the disk."""
 
+import gc
 import json
 import re
 import subprocess
@@ -29,6 +30,20 @@ def test_help_waits_for_no_heavy_import():
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     heavy = {"numpy", "numba", "h5py", "matplotlib", "pydantic", "scipy"}
     assert not heavy & {line.rsplit("|")[-1].strip() for line in done.stderr.splitlines()}
+
+
+@pytest.mark.parametrize("command", [["run", "good.yaml", "--quiet"], ["plot", "good.h5"]], ids=lambda c: c[0])
+def test_garbage_is_looked_for_when_all_is_imported(scene_folder, command):
+    """`program` puts that off; nothing large may gather while a command computes or draws."""
+    if command[0] == "plot":
+        assert main(["run", "good.yaml", "--quiet"]) == 0
+    gc.disable()
+    try:
+        assert main(command) == 0
+        assert gc.isenabled()
+    finally:
+        gc.enable()
+        gc.unfreeze()
 
 
 def test_version(capsys):
