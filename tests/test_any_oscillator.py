@@ -240,3 +240,20 @@ def test_derivatives_of_the_period_map(changes):
         )
         bound = 1e-6 * max(np.abs(found.parameters[0][:, j]).max(), 1)
         np.testing.assert_allclose(found.parameters[0][:, j], quotient, atol=bound, err_msg=name)
+
+
+@pytest.mark.parametrize("stops", ["both", "right"])
+def test_units_change_nothing(stops):
+    """In units that are a power of two larger all is the same, also where the search leaves single precision."""
+    K, start = np.array([[2.0, -1.0], [-1.0, 2.0]]), np.zeros(4)
+    units = [2.0**k for k in (0, -300, -140, -110, 90, 120, 126, 128, 400)]
+    systems = [
+        vs.Oscillator(
+            np.eye(2), K, 0.05 * K, force=[unit, 0], along=[1, 0], omega=0.9, b=0.8 * unit, R=0.8, tau=0.0, stops=stops
+        )
+        for unit in units
+    ]
+    first, *others = (vs.simulate(system, start, 60).impacts["t"] for system in systems)
+    assert len(first) > 100
+    for unit, times in zip(units[1:], others, strict=True):
+        np.testing.assert_array_equal(times, first, f"{unit:g}")

@@ -7,8 +7,8 @@ import pytest
 
 from vibro_sweep.engine.simd.columns import put_transposed, sizes, transposed, weigh
 from vibro_sweep.engine.simd.jit import entry
-from vibro_sweep.engine.simd.lanes import LANES, alike, bits, lanes_of, lowest, number, select, state_and_rest
-from vibro_sweep.engine.simd.memory import LINE, eight, new_lines, put, put_state, record, row
+from vibro_sweep.engine.simd.lanes import LANES, SINGLES, alike, bits, lanes_of, lowest, number, select, state_and_rest
+from vibro_sweep.engine.simd.memory import LINE, eight, head, new_lines, put, put_state, record, row, sixteen, widened
 
 SPECIAL = np.array([0.0, -0.0, 1.0, np.inf, -np.inf, np.nan, 1e-310, -1e300])
 
@@ -49,6 +49,7 @@ def block(width, like):
             ("sums", float, (2, LANES)),
             ("state", float, width),
             ("joined", float, width),
+            ("short", float, width),
         ]
     )
 
@@ -63,6 +64,7 @@ def moved(r, a, out):
     put(r.sums, 0, weigh(a, 1, 2, (row(a, 0), row(a, 1), row(a, 2), row(a, 3))))
     put(r.sums, 1, sizes((row(a, 0), row(a, 1)))[1])
     put(r.joined, 0, state_and_rest(row(r.state, 0), row(r.wide, 1), r.sums))
+    put(r.short, 0, widened(head(r.wide, 2, r.sums), r.wide) - row(r.wide, 1))
 
 
 def numbers(shape, seed):
@@ -107,6 +109,29 @@ def test_rows_and_columns(width, like):
     np.testing.assert_allclose(r["sums"][0, 0], (a[1::2] * a[:4]).sum(0), rtol=0, atol=1e-14)
     np.testing.assert_array_equal(r["sums"][0, 1], abs(a[1]))
     np.testing.assert_array_equal(r["joined"][0], [*r["state"][0, :4], *r["wide"][0, 1, 4:]])
+    np.testing.assert_array_equal(r["short"][0], [*(r["wide"][0, 2, :4] - r["wide"][0, 1, :4]), *-r["wide"][0, 1, 4:]])
+
+
+@entry
+def single(a, y, masks):
+    x, z = sixteen(a, 3), sixteen(a, 3 + a.shape[1])
+    masks[0], masks[1] = bits(x * y + z > 1.0), bits((x <= z) & ~(x >= y))
+    masks[2], masks[3] = bits(abs(x) < 0.5), bits(select(x < z, x, y) + z > 0.0)
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_single_precision():
+    rng = np.random.default_rng(2)
+    for special in (False, True):
+        a, y = rng.normal(size=(2, SINGLES + 4)).astype(np.float32), rng.normal()
+        if special:
+            a[0, 3:11] = SPECIAL
+        masks = np.empty(4, np.int64)
+        single(a, y, masks)
+        (x, z), y = a[:, 3 : 3 + SINGLES], np.float32(y)
+        product = x.astype(float) * y + z.astype(float)  # fused: rounded once, and not near to 1
+        tests = (product > 1, (x <= z) & ~(x >= y), abs(x) < 0.5, np.where(x < z, x, y) + z > 0)
+        assert masks.tolist() == [int(np.packbits(test, bitorder="little").view(np.uint16)[0]) for test in tests]
 
 
 def test_records_begin_with_a_cache_line():

@@ -16,6 +16,7 @@ import vibro_sweep as vs
 from vibro_sweep.engine import one_system
 from vibro_sweep.engine.motion import ensemble, impacts, orbits, scan, together
 from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.tables import exclusion
 from vibro_sweep.model import status
 
 CHAIN = 8 * EPS  # of the largest term of x1 along the flight: rounding allowed from the section to the contact
@@ -28,6 +29,7 @@ def first_impacts(e, stops, states, record, suspects, nothing):
     for i in range(len(states)):
         x = states[i]
         orbits.place(o, f.nodes, stops, 0, 0.0, x)
+        orbits.know(o, f.oscillator[0])
         o.suspect = scan.first_suspect(f, o)
         suspects[i] = scan.suspect_state(o, f.nodes)[0]
         # the first cell alone, with one event allowed: R = 1 makes a mass that creeps off the stop knock for ever
@@ -140,6 +142,31 @@ def test_flights():
     assert rows[..., 3].sum() > 500
     for column, what in ((1, "missed"), (2, "invented"), (4, "excluded by the scan, with a contact")):
         assert rows[..., column].sum() == 0, what
+
+
+def test_single_precision():
+    """Control points computed in it, without fused multiply-adds, are as near to the true ones as their bounds say."""
+    rng, worst = default_rng(5), 0.0
+    for _ in range(20):
+        engine = one_system.Engine(random_system(rng))
+        q, scan = engine.flight.oscillator.view(np.recarray)[0], engine.flight.scan
+        nodes, states = engine.flight.nodes, len(q.remainder) - 1
+        rows = np.concatenate([nodes["E"][:, :states, :2], nodes["z"][:, None, :2]], 1).astype(REAL)
+        third, last = REAL(q.width) / 3, 2 * engine.cells
+        exact = np.empty((states + 1, last + 1), REAL)
+        exact[:, ::2] = (rows[..., 0] + third * rows[..., 1]).T
+        exact[:, 1::2] = (rows[..., 0] - third * rows[..., 1]).T[:, 1:]
+        largest = np.abs(exact).max(1).astype(float)
+        bounds = np.array([exclusion.rounding.__wrapped__(q, i, largest[i]) for i in range(states + 1)])
+        assert (q.remainder >= bounds).all()
+        for _ in range(50):
+            y = rng.normal(size=states) * 10.0 ** rng.uniform(-3, 3, states)
+            points = scan[states]
+            for j in range(states):
+                points = points + scan[j] * np.float32(y[j])
+            error = np.abs(points[: last + 1] - (exact[states] + y @ exact[:states])).max()
+            worst = max(worst, error / (bounds[states] + np.abs(y) @ bounds[:states]))
+    assert 0.1 < worst < 1.0
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import numpy as np
 from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
-from vibro_sweep.engine.motion.orbits import add_count, keep_start, take_off, take_samples
+from vibro_sweep.engine.motion.orbits import add_count, keep_start, know, take_off, take_samples
 from vibro_sweep.engine.motion.scan import careful_state, first_suspect, is_inside, open_cell, state_at, suspect_state
 from vibro_sweep.engine.motion.section import end_period, end_period_here
 from vibro_sweep.engine.motion.strike import clear_counts, strike
@@ -120,16 +120,13 @@ def glide(e, o, f, readings):
 
 
 @inline
-def seek(e, readings):
-    """Carry all orbits on to the next cells in which they may strike. Returns who has one, as bits.
+def seek(e, seeking, readings):
+    """Carry these orbits, as bits, on to the next cells in which they may strike. Returns who has one.
 
     Each step is done for all of them before the next, so that the processor has work while one waits for its numbers.
     """
     sampled, strikes = len(e.records.times) > 0, e.strike[0]
-    waiting = seeking = 0
-    for i in range(LANES):
-        if under_way(e.orbits[i]):
-            seeking |= 1 << i
+    waiting = 0
     while seeking != 0:
         for i in range(LANES):
             if seeking >> i & 1:
@@ -145,7 +142,7 @@ def seek(e, readings):
                 q = f.oscillator[0]
                 k, X = suspect_state(o, f.nodes)
                 o.cell = k
-                if k < q.cells and o.stops[0] < number(X, 0) < o.stops[1] and not q.stiff:
+                if k < o.crossed and o.stops[0] < number(X, 0) < o.stops[1]:
                     put(strikes.z, i, X)
                     waiting |= 1 << i
                     seeking ^= 1 << i
@@ -190,7 +187,7 @@ def stay(e, o, free, struck, readings):
 
 @inline
 def settle(e, waiting, free, struck, readings):
-    """Go on to the ends of the cells in which the `waiting` may have struck."""
+    """Go on to the ends of the cells in which the `waiting` may have struck. Returns who has periods to go."""
     left = waiting & ~(free | struck)
     if len(e.records.times) > 0:
         left = waiting
@@ -200,6 +197,8 @@ def settle(e, waiting, free, struck, readings):
         i = lowest(left)
         left &= left - 1
         stay(e, e.orbits[i], free >> i & 1, struck >> i & 1, readings)
+        if not under_way(e.orbits[i]):
+            waiting ^= 1 << i
     while free != 0:
         e.orbits[lowest(free)].cell += 1
         free &= free - 1
@@ -208,6 +207,7 @@ def settle(e, waiting, free, struck, readings):
         struck &= struck - 1
         o.cell += 1
         take_off(o, flight_of(e, o).nodes, row(e.strike[0].X, o.lane))
+    return waiting
 
 
 @jit
@@ -217,12 +217,12 @@ def carry(e, mapping, readings):
     mapping: None for the flow, or the `Mapping` that takes its place.
     """
     t, strikes = e.tangent[0], e.strike[0]
-    careful = 0
+    careful = waiting = 0
     for i in range(LANES):
         o = e.orbits[i]
         o.done = o.read = 0
         if under_way(o):  # of others there may be no tables
-            o.ends = -1 if o.careful else flight_of(e, o).oscillator[0].cells
+            know(o, flight_of(e, o).oscillator[0])
             careful |= o.careful << i
     clear_counts(strikes)
     if mapping is not None:
@@ -233,8 +233,9 @@ def carry(e, mapping, readings):
         o = e.orbits[i]
         if under_way(o) and (o.offset > 0.0 or o.resting != 0.0):
             go_long_way(e, o, flight_of(e, o), readings)
+        waiting |= int(under_way(o)) << i
     while True:
-        waiting = seek(e, readings)
+        waiting = seek(e, waiting, readings)
         if waiting == 0:
             break
         if waiting & careful != 0:
@@ -250,7 +251,7 @@ def carry(e, mapping, readings):
                 tangent_flight.aim(t, i, f.oscillator[0], f.nodes, o.cell, strikes.offset[i])
             tangent_flight.fly(t, lanes_of(struck))
             tangent.saltate(t, lanes_of(struck), row(strikes.jump, 0) / row(strikes.speed, 0), row(strikes.R, 0))
-        settle(e, waiting, free, struck, readings)
+        waiting = settle(e, waiting, free, struck, readings)
     for i in range(LANES):
         add_count(e.orbits[i], strikes.hits[0, i], strikes.hits[1, i], strikes.slowest[i], strikes.miss[i])
 

@@ -11,6 +11,8 @@ from vibro_sweep.engine.simd.memory import put, record, row
 from vibro_sweep.engine.tables.flight import ORDER, evaluate, width_of
 from vibro_sweep.model import status
 
+FARTHEST = 2.0**127  # where a stop is at most for the search, which is in single precision: an infinite x1 is outside
+
 
 class Stops(NamedTuple):
     """The walls, infinite where there is none, and the coefficient of restitution of each."""
@@ -40,6 +42,11 @@ def orbit_of(masses: int, constant: bool = False) -> np.dtype:
         ("y", float, width),  # X - r at node `origin`, from which the exclusion test looks ahead
         ("start", float, width),  # if `careful`, and `origin` is no longer `base`: X, sin and cos at node `base`
         ("largest", float, width),  # sizes of the section states that were kept
+        # of the oscillator, for the search: in its tables the processor would have to look for them
+        ("remainder", float, 2 * masses + 1),
+        ("cells", np.int64),
+        ("crossed", np.int64),  # of these cells those that `strike` crosses: all, or none if the system is stiff
+        ("limits", float, 2),  # the stops; FARTHEST where there is none that near
         ("lane", np.int64),  # its place among eight
         ("table", np.int64),  # place of its oscillator's tables
         ("status", np.int64),
@@ -111,6 +118,16 @@ def place(o, nodes, stops, cell, offset, state):
     o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
     take_off(o, nodes, row(o.X, 0))
     reset_counts(o)
+
+
+@jit
+def know(o, q):
+    """Keep with the orbit what the search asks of its oscillator again and again, and what it holds x1 against."""
+    for j in range(len(o.remainder)):
+        o.remainder[j] = q.remainder[j]
+    o.cells, o.crossed = q.cells, 0 if q.stiff else q.cells
+    o.ends = -1 if o.careful else q.cells
+    o.limits[0], o.limits[1] = max(o.stops[0], -FARTHEST), min(o.stops[1], FARTHEST)
 
 
 @inline

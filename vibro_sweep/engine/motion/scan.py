@@ -3,17 +3,18 @@
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.simd.lanes import LANES, bits, lowest, number, state_and_rest
-from vibro_sweep.engine.simd.memory import eight, row
+from vibro_sweep.engine.simd.lanes import bits, lowest, number, state_and_rest
+from vibro_sweep.engine.simd.memory import head, row, sixteen, widened
 from vibro_sweep.engine.tables.flight import CHUNK
 
 
 @inline
 def control_points(scan, p, since, y, states):
-    """Control points p, ..., p + 7 of a flight that starts at y, `states` numbers; since: as counted from there."""
-    points = eight(scan[states], p)
+    """Control points from p on of a flight that starts at y, `states` numbers; since: p as counted from there."""
+    length = scan.shape[1]
+    points = sixteen(scan, states * length + p)
     for j in range(states):
-        points = points + eight(scan[j], since) * y[j]
+        points = points + sixteen(scan, j * length + since) * y[j]
     return points
 
 
@@ -23,22 +24,19 @@ def first_suspect(f, o):
 
     The orbit is in free flight from node `origin`. The control points of all cells
     (tables/control_points.py) are looked at, `CHUNK` at a time; an end of a cell may lie outside though all control
-    points before it are inside (`suspect_state`).
+    points before it are inside (`suspect_state`). What leaves the range of single precision is not inside.
     """
-    scan, cells, bound = f.scan, f.oscillator[0].cells, f.oscillator[0].remainder
-    origin, y, states = o.origin, o.y, len(bound) - 1
+    cells, bound, y, states = o.cells, o.remainder, o.y, len(o.remainder) - 1
     margin = bound[0] * abs(y[0]) + bound[1] * abs(y[1])
     for j in range(2, states, 2):
         margin = margin + (bound[j] * abs(y[j]) + bound[j + 1] * abs(y[j + 1]))
     margin = margin + bound[states]
-    low, high = o.stops[0] + margin, o.stops[1] - margin
+    low, high = o.limits[0] + margin, o.limits[1] - margin
     o.low, o.high = low, high
     p = 2 * o.cell
     while p < 2 * cells:
-        since = p - 2 * origin
-        a = control_points(scan, p, since, y, states)
-        b = control_points(scan, p + LANES, since + LANES, y, states)
-        outside = bits(~((a >= low) & (a <= high))) | bits(~((b >= low) & (b <= high))) << LANES
+        points = control_points(f.scan, p, p - 2 * o.origin, y, states)
+        outside = bits(~((points >= low) & (points <= high)))
         if outside != 0:
             return min((p + lowest(outside)) // 2, cells)
         p += CHUNK
@@ -46,12 +44,12 @@ def first_suspect(f, o):
 
 
 @inline
-def combine(E, y, count):
-    """The sum of the first `count` rows of E times y, by pairs."""
-    moved = row(E, 0) * y[0] + row(E, 1) * y[1]
+def combine(E, y, count, c):
+    """The sum of the first `count` rows of E times y, by pairs: the states, and zeros. c: as of an orbit."""
+    moved = head(E, 0, c) * y[0] + head(E, 1, c) * y[1]
     for j in range(2, count, 2):
-        moved = moved + (row(E, j) * y[j] + row(E, j + 1) * y[j + 1])
-    return moved
+        moved = moved + (head(E, j, c) * y[j] + head(E, j + 1, c) * y[j + 1])
+    return widened(moved, E)
 
 
 @inline
@@ -60,7 +58,7 @@ def state_at(o, nodes, k):
     if k == o.origin:
         return row(o.X, 0)
     E = nodes[np.uint64(k - o.origin)].E
-    return combine(E, o.y, 2 * len(o.c)) + row(nodes[np.uint64(k)].z, 0)
+    return combine(E, o.y, 2 * len(o.c), o.c) + row(nodes[np.uint64(k)].z, 0)
 
 
 @inline
@@ -112,4 +110,4 @@ def careful_state(o, nodes, k):
     if k == o.base:
         return row(o.start, 0)
     E = nodes[np.uint64(k - o.base)].E
-    return state_and_rest(combine(E, o.start, len(E)), row(nodes[np.uint64(k)].z, 0), o.c)
+    return state_and_rest(combine(E, o.start, len(E), o.c), row(nodes[np.uint64(k)].z, 0), o.c)

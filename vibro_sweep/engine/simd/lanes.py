@@ -4,7 +4,8 @@ Jitted code writes a formula for `Lanes` as it would for floats; each operation 
 compiler has to find out by itself that a loop can be turned into vectors. A lane never sees its neighbours: its
 digits are the same whatever they hold. Where orbits part ways, both ways are computed and `select` takes one.
 
-How many numbers there are belongs to the type: `Lanes(8)` for eight orbits, `Lanes(width)` for a state.
+How many numbers there are belongs to the type: `Lanes(8)` for eight orbits, `Lanes(width)` for a state. So does their
+precision: `singles` are twice as many as `lanes` in a vector of the same size, for bounds that have room for it.
 """
 
 import itertools
@@ -17,14 +18,21 @@ from numba.core.extending import intrinsic, lower_builtin, models, register_mode
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 
 LANES = 8
-DOUBLE, INDEX = ir.DoubleType(), ir.IntType(32)
+SINGLES = 2 * LANES
+INDEX = ir.IntType(32)
+FLOATS = {types.float64: ir.DoubleType(), types.float32: ir.FloatType()}
+DOUBLE = FLOATS[types.float64]
 CONTRACT = ("contract",)  # as in jit.py
 
 
 class LanesType(types.Type):
-    def __init__(self, count):
-        super().__init__(f"Lanes({count})")
-        self.count = count
+    def __init__(self, count, element=types.float64):
+        super().__init__(f"Lanes({count}, {element})")
+        self.count, self.element = count, element
+
+    @property
+    def vector(self):
+        return ir.VectorType(FLOATS[self.element], self.count)
 
 
 class MaskType(types.Type):
@@ -34,12 +42,13 @@ class MaskType(types.Type):
 
 
 lanes, mask = LanesType(LANES), MaskType(LANES)
+singles = LanesType(SINGLES, types.float32)
 
 
 @register_model(LanesType)
 class _LanesModel(models.PrimitiveModel):
     def __init__(self, dmm, fe_type):
-        super().__init__(dmm, fe_type, ir.VectorType(DOUBLE, fe_type.count))
+        super().__init__(dmm, fe_type, fe_type.vector)
 
 
 @register_model(MaskType)
@@ -48,20 +57,20 @@ class _MaskModel(models.PrimitiveModel):
         super().__init__(dmm, fe_type, ir.VectorType(ir.IntType(1), fe_type.count))
 
 
-def spread(context, builder, kind, value, count):
-    """A float as so many equal ones; lanes as they are."""
+def spread(context, builder, kind, value, like):
+    """A float as equal ones, of the type `like`; lanes as they are."""
     if isinstance(kind, LanesType):
         return value
-    value = context.cast(builder, value, kind, types.float64)
-    nothing = ir.Constant(ir.VectorType(DOUBLE, count), ir.Undefined)
+    value = context.cast(builder, value, kind, like.element)
+    nothing = ir.Constant(like.vector, ir.Undefined)
     first = builder.insert_element(nothing, value, ir.Constant(INDEX, 0))
-    return builder.shuffle_vector(first, nothing, ir.Constant(ir.VectorType(INDEX, count), [0] * count))
+    return builder.shuffle_vector(first, nothing, ir.Constant(ir.VectorType(INDEX, like.count), [0] * like.count))
 
 
-def _count(kinds):
-    """How many numbers the lanes among these types have: one count, or None."""
-    counts = {kind.count for kind in kinds if isinstance(kind, LanesType)}
-    return counts.pop() if len(counts) == 1 else None
+def _lanes_of(kinds):
+    """The type of the lanes among these types: one type, or None."""
+    found = {kind for kind in kinds if isinstance(kind, LanesType)}
+    return found.pop() if len(found) == 1 else None
 
 
 def _define(function, result, emit, count=2):
@@ -73,12 +82,13 @@ def _define(function, result, emit, count=2):
     class Typing(AbstractTemplate):
         def generic(self, args, kws):
             fits = len(args) == count and all(isinstance(kind, (LanesType, types.Number)) for kind in args)
-            if fits and _count(args):
-                return signature(result(_count(args)), *args)
+            kind = _lanes_of(args)
+            if fits and kind:
+                return signature(kind if result is LanesType else result(kind.count), *args)
 
     def lower(context, builder, sig, args):
-        count, pairs = _count(sig.args), zip(sig.args, args, strict=True)
-        return emit(builder, *(spread(context, builder, kind, arg, count) for kind, arg in pairs))
+        like, pairs = _lanes_of(sig.args), zip(sig.args, args, strict=True)
+        return emit(builder, *(spread(context, builder, kind, arg, like) for kind, arg in pairs))
 
     infer_global(function)(Typing)
     for kinds in itertools.product((LanesType, types.Number), repeat=count):
@@ -92,7 +102,7 @@ def call(name):
     def emit(builder, *vectors):
         vector = vectors[0].type
         kind = ir.FunctionType(vector, [vector] * len(vectors))
-        full = f"llvm.{name}.v{vector.count}f64"
+        full = f"llvm.{name}.v{vector.count}f{64 if vector.element == DOUBLE else 32}"
         function = builder.module.globals.get(full) or ir.Function(builder.module, kind, full)
         return builder.call(function, vectors)
 
@@ -117,13 +127,14 @@ _define(math.sqrt, LanesType, call("sqrt"), 1)
 def select(typingctx, condition, x, y):
     """x where the mask `condition` holds, else y."""
     if isinstance(condition, MaskType):
+        like = _lanes_of((x, y)) or LanesType(condition.count)
 
         def codegen(context, builder, sig, args):
             pairs = zip(sig.args[1:], args[1:], strict=True)
-            x, y = (spread(context, builder, kind, arg, condition.count) for kind, arg in pairs)
+            x, y = (spread(context, builder, kind, arg, like) for kind, arg in pairs)
             return builder.select(args[0], x, y)
 
-        return LanesType(condition.count)(condition, x, y), codegen
+        return like(condition, x, y), codegen
 
 
 def _define_logic(function, emit, count):
@@ -145,7 +156,7 @@ _define_logic(operator.invert, lambda builder, x: builder.not_(x), 1)
 def alike(typingctx, x):
     """Eight equal numbers."""
     if isinstance(x, types.Number):
-        return lanes(x), lambda context, builder, sig, args: spread(context, builder, sig.args[0], args[0], LANES)
+        return lanes(x), lambda context, builder, sig, args: spread(context, builder, sig.args[0], args[0], lanes)
 
 
 @intrinsic
@@ -154,7 +165,7 @@ def bits(typingctx, condition):
     if isinstance(condition, MaskType):
 
         def codegen(context, builder, sig, args):
-            return builder.zext(builder.bitcast(args[0], ir.IntType(LANES)), ir.IntType(64))
+            return builder.zext(builder.bitcast(args[0], ir.IntType(condition.count)), ir.IntType(64))
 
         return types.int64(condition), codegen
 
@@ -167,7 +178,7 @@ def number(typingctx, x, i):
         def codegen(context, builder, sig, args):
             return builder.extract_element(args[0], context.cast(builder, args[1], sig.args[1], types.int32))
 
-        return types.float64(x, i), codegen
+        return x.element(x, i), codegen
 
 
 @intrinsic

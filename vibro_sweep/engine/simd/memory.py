@@ -10,7 +10,7 @@ from llvmlite import ir
 from numba.core import types
 from numba.core.extending import intrinsic
 
-from vibro_sweep.engine.simd.lanes import DOUBLE, INDEX, LANES, LanesType, lanes, spread
+from vibro_sweep.engine.simd.lanes import DOUBLE, INDEX, LANES, LanesType, lanes, singles, spread
 
 LINE = 64  # bytes of a cache line, which is as much as eight floats: what lies across two of them takes twice as long
 
@@ -34,13 +34,13 @@ def width_of_row(array):
     return array.shape[-1] if isinstance(array, types.NestedArray) else LANES
 
 
-def address(context, builder, kinds, args, scale, count):
+def address(context, builder, kinds, args, scale, count, element=DOUBLE):
     """Of `count` numbers, from number `scale` args[1] of the array args[0] on."""
     data = context.data_model_manager[kinds[0]].get(builder, args[0], "data")
     place = context.cast(builder, args[1], kinds[1], types.intp)
     place = builder.mul(place, ir.Constant(place.type, scale)) if scale > 1 else place
-    first = builder.gep(builder.bitcast(data, DOUBLE.as_pointer()), [place])
-    return builder.bitcast(first, ir.VectorType(DOUBLE, count).as_pointer())
+    first = builder.gep(builder.bitcast(data, element.as_pointer()), [place])
+    return builder.bitcast(first, ir.VectorType(element, count).as_pointer())
 
 
 @intrinsic
@@ -56,6 +56,32 @@ def row(typingctx, array, n):
 
 
 @intrinsic
+def head(typingctx, array, n, like):
+    """The beginning of the n-th row: the least power of two that holds 2 N numbers; like: a field with N rows."""
+    if isinstance(array, types.Array) and isinstance(n, types.Integer) and isinstance(like, types.NestedArray):
+        width, states = width_of_row(array), 2 * like.shape[0]
+        count = 1 << (states - 1).bit_length()
+
+        def codegen(context, builder, sig, args):
+            return builder.load(address(context, builder, sig.args, args, width, count), align=8)
+
+        return LanesType(count)(array, n, like), codegen
+
+
+@intrinsic
+def widened(typingctx, x, array):
+    """As many numbers as a row of the array has: x, and zeros."""
+    if isinstance(x, LanesType) and isinstance(array, types.Array):
+        like = LanesType(width_of_row(array))
+        chosen = ir.Constant(ir.VectorType(INDEX, like.count), [min(i, x.count) for i in range(like.count)])
+
+        def codegen(context, builder, sig, args):
+            return builder.shuffle_vector(args[0], ir.Constant(x.vector, [0.0] * x.count), chosen)
+
+        return like(x, array), codegen
+
+
+@intrinsic
 def eight(typingctx, array, place):
     """Eight numbers of a contiguous array, from `place` on."""
     if isinstance(array, types.Array) and isinstance(place, types.Integer):
@@ -67,13 +93,25 @@ def eight(typingctx, array, place):
 
 
 @intrinsic
+def sixteen(typingctx, array, place):
+    """Sixteen numbers of a contiguous array in single precision, from `place` on; rows follow one another."""
+    if isinstance(array, types.Array) and array.dtype == singles.element and isinstance(place, types.Integer):
+        count, element = singles.count, singles.vector.element
+
+        def codegen(context, builder, sig, args):
+            return builder.load(address(context, builder, sig.args, args, 1, count, element), align=4)
+
+        return singles(array, place), codegen
+
+
+@intrinsic
 def put(typingctx, array, n, value):
     """The n-th row of a contiguous array becomes `value`."""
     if isinstance(array, types.Array) and isinstance(value, (LanesType, types.Number)):
         width = width_of_row(array)
 
         def codegen(context, builder, sig, args):
-            value = spread(context, builder, sig.args[2], args[2], width)
+            value = spread(context, builder, sig.args[2], args[2], LanesType(width))
             builder.store(value, address(context, builder, sig.args, args, width, width), align=8)
             return context.get_dummy_value()
 

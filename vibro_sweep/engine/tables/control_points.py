@@ -1,7 +1,7 @@
 """Control points of x1 over the cells, by which a scan excludes cells without contact."""
 
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.tables.exclusion import ROUNDING, fill_exclusion, largest_point, put_points
+from vibro_sweep.engine.tables.exclusion import fill_exclusion, largest_point, put_points, rounding
 from vibro_sweep.engine.tables.stiff import add_stiff_remainder, slow_part
 
 
@@ -22,7 +22,7 @@ def fill_scan(q, nodes, scan, psi, omega_squared, mu_m, f2):
             if i < 4:
                 x, v = slow_part(q, psi, omega_squared, mu_m, i, k * q.width)
             put_points(scan[i], q.width / 3.0, k, x, v)
-        q.remainder[i] = ROUNDING * largest_point(q, scan[i])
+        q.remainder[i] = rounding(q, i, largest_point(q, scan[i]))
         if i < 4:
             q.slow[i], _ = slow_part(q, psi, omega_squared, mu_m, i, 0.0)
     add_stiff_remainder(q, nodes, psi, omega_squared, mu_m, f2)

@@ -1,11 +1,23 @@
 """Control points of the gap over the cells, for any number of masses; what they are for stands in control_points.py."""
 
 from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.simd.lanes import LANES, added, number, select
-from vibro_sweep.engine.simd.memory import eight
+from vibro_sweep.engine.simd.lanes import LANES, SINGLES, added, number, select
+from vibro_sweep.engine.simd.memory import eight, sixteen
 from vibro_sweep.engine.tables.flight import CHUNK, ORDER
 
-ROUNDING = 1e-15  # of a control point of two masses, a few units in the last place of each of its terms
+UNIT = 2.0**-24  # rounding of single precision, in which control points are kept and held against the stops
+SMALLEST = 2.0**-100  # of x1: what is lost below the range of single precision lies far below it
+
+
+@jit
+def rounding(q, i, size):
+    """What rounding may change of a control point, for unit X - r in state i, or for r; size: of the largest one there.
+
+    Each of its `states` + 1 terms is rounded when it is tabulated, its factor is, and so are the product and each sum;
+    the last one is for what the point is held against, which matters only where that is no larger than these terms.
+    """
+    states = 2 * len(q.series)
+    return (states + 5) * UNIT * size + (SMALLEST if i == states else 0.0)
 
 
 @inline
@@ -33,12 +45,12 @@ def largest_point(q, points):
     last = 2 * q.cells
     for p in range(last + 1, last + CHUNK):
         points[p] = 0.0
-    sizes = abs(eight(points, 0))
-    for p in range(LANES, last + 1, LANES):
-        others = abs(eight(points, p))
+    sizes = abs(sixteen(points, 0))
+    for p in range(SINGLES, last + 1, SINGLES):
+        others = abs(sixteen(points, p))
         sizes = select(others > sizes, others, sizes)
     largest = 0.0
-    for i in range(LANES):
+    for i in range(SINGLES):
         largest = max(largest, number(sizes, i))
     return largest
 
@@ -61,8 +73,6 @@ def fill_exclusion(q, nodes, scan):
                 put_points(scan[i], third, k, z[0], z[1])
             for k in range(q.cells + 1):
                 fourth = max(fourth, bound_fourth(q, nodes[k].z, inputs))
-        # a point is a sum of states + 1 terms, and so is its rounding
-        margin = ROUNDING * max(1.0, 0.5 * len(q.series)) * largest_point(q, scan[i])
-        q.remainder[i] = fourth * q.width**4 / 144.0 + margin
+        q.remainder[i] = fourth * q.width**4 / 144.0 + rounding(q, i, largest_point(q, scan[i]))
         if i < states:
             q.slow[i] = 0.0

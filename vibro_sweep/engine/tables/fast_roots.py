@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.tables.exclusion import ROUNDING, put_points
+from vibro_sweep.engine.tables.exclusion import put_points, rounding
 from vibro_sweep.engine.tables.flight import CHUNK, WIDTH
 
 DOUBT = 10.0
@@ -85,7 +85,7 @@ def fill_stiff_exclusion(q, nodes, scan, point, turned):
         largest = 0.0
         for p in range(2 * q.cells + 1):
             largest = max(largest, abs(scan[i, p]))
-        margin = ROUNDING * max(1.0, 0.5 * len(q.series)) * (largest + fast)
+        margin = rounding(q, i, largest + fast)
         q.remainder[i] = (fast + fourth * q.width**4 / 144.0) + (DOUBT * q.remainder[i] + margin)
         if not (point.told and q.remainder[i] < np.inf):
             q.remainder[i] = np.inf  # no cell can be excluded

@@ -15,12 +15,12 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.simd.lanes import LANES, number
+from vibro_sweep.engine.simd.lanes import LANES, SINGLES, number
 from vibro_sweep.engine.simd.memory import new_lines, record
 
 ORDER = 16  # Taylor coefficients of a cell: with rate * width <= WIDTH the first one left out is below 2^-53 / 1000
 WIDTH = 0.5
-CHUNK = 16  # control points examined together: two to a cell
+CHUNK = SINGLES  # control points examined together: two to a cell
 
 
 # Kernels take the number of masses from the shapes of the records' fields, which belong to the types that numba sees:
@@ -109,9 +109,9 @@ class Flight(NamedTuple):
 
     oscillator: np.ndarray  # (1,) `oscillator_of`
     nodes: np.ndarray  # (cells + 1,) `node_of`
-    scan: (
-        np.ndarray
-    )  # (2 N + 1, 2 cells + CHUNK): control points, two to a cell, as a function of X - r at node 0; those of r
+    # (2 N + 1, 2 cells + CHUNK), in single precision: control points, two to a cell, as a function of X - r at node 0;
+    # those of r
+    scan: np.ndarray
 
 
 def new_flight(count: int, cells: int, masses: int, constant: bool = False) -> Flight:
@@ -119,7 +119,7 @@ def new_flight(count: int, cells: int, masses: int, constant: bool = False) -> F
     return Flight(
         new_lines((count, 1), oscillator_of(masses, constant)),
         new_lines((count, cells + 1), node_of(masses, constant)),
-        new_lines((count, 2 * masses + 1, 2 * cells + CHUNK), float),
+        new_lines((count, 2 * masses + 1, 2 * cells + CHUNK), np.float32),
     )
 
 
