@@ -37,7 +37,7 @@ def test_tables(benchmark):
     point = points_of({name: np.array(value) for name, value in params.items()})[()]
     names = ("psi", "omega_squared", "mu_m", "mu_k", "zeta", "f2", "omega", "tau")
     cells = int(point["cells"])
-    flights = new_flight(1, cells)
+    flights = new_flight(1, cells, 2)
     flight = Flight(flights.oscillator[0], flights.nodes[0], flights.scan[0])
     arguments = (flight, new_scratch(), cells, *(point[name] for name in names))
     tables.build(*arguments)
