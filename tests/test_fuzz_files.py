@@ -6,14 +6,15 @@ import os
 import pytest
 from support.fuzz_files import COMMANDS, OUTCOMES, fuzz
 
+NAMES = "whole.h5", "half.h5.part"
 
-@pytest.mark.parametrize("name", ["whole.h5", "half.h5.part"])
+
 @pytest.mark.parametrize(
-    "few",
+    ("name", "few"),
     [
-        pytest.param(1, id="few"),
-        pytest.param(8, id="sample", marks=pytest.mark.slow),
-        pytest.param(None, id="all", marks=pytest.mark.soak),
+        pytest.param("whole.h5", 1, id="few"),
+        *(pytest.param(name, 8, id=f"sample of {name}", marks=pytest.mark.slow) for name in NAMES),
+        *(pytest.param(name, None, id=f"all of {name}", marks=pytest.mark.soak) for name in NAMES),
     ],
 )
 def test_damaged_files(files, tmp_path, monkeypatch, capsys, name, few):

@@ -241,7 +241,7 @@ def hold(reports):
 
 def test_a_few_orbits():
     """The first, and some that once failed: M1 beyond a stop, M2 moved, while chatter is summed up."""
-    hold([check(n) for n in (*range(10), 1783, 4019, 4025)])
+    hold([check(n) for n in (*range(4), 1783, 4019, 4025)])
 
 
 @pytest.mark.slow
