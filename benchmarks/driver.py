@@ -7,7 +7,6 @@ The wall time begins after a small run on the same workers, which starts and com
 
 import contextlib
 import json
-import math
 import os
 import subprocess
 import sys
@@ -21,7 +20,7 @@ from book import Goal, digits, main, table
 from scaling import in_processes
 
 import vibro_sweep as vs
-from vibro_sweep.driver import cost, sweep
+from vibro_sweep.driver import cost, measuring, sweep
 from vibro_sweep.driver.compute import compute
 from vibro_sweep.scene import scene
 
@@ -119,7 +118,7 @@ def dask():
 
 def share(executor: Executor, seconds: float) -> dict[str, float]:
     """Run a sweep that takes about so long; where the time of its workers went."""
-    one = cost.orbit_seconds(scene.parse_scene(LINE.format(points=1000)))
+    one = cost.orbit_cost(scene.parse_scene(LINE.format(points=1000)), WORKERS).seconds
     text = LINE.format(points=int(WORKERS * seconds / one))
     with tempfile.TemporaryDirectory() as folder, patch.object(sweep, "SECONDS", BLOCK_SECONDS):
         vs.run(scene.parse_scene(LINE.format(points=200)), Path(folder) / "warm.h5", executor=executor)
@@ -145,8 +144,8 @@ def measure(quick: bool) -> dict:
     for observe in ("[impacts]", "[lyapunov, impacts]"):
         plane = scene.parse_scene(PLANE.format(observe=observe))
         periods = plane.transient + plane.record
-        with patch.multiple(cost, POINTS=100, MEASURED=math.inf):  # more of them, from beginning to end
-            planes[observe] = (plane.n_points * periods, cost.orbit_seconds(plane) / periods)
+        with patch.multiple(measuring, PLACES=100, MEASURED=0.5):  # more of them, from beginning to end
+            planes[observe] = (plane.n_points * periods, cost.orbit_cost(plane, 1).seconds / periods)
     return {"shares": shares, "store": (rows * 4000, wall, peak, size), "planes": planes}
 
 

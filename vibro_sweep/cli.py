@@ -13,7 +13,7 @@ from vibro_sweep.model.pictures import PICTURES
 
 from . import interrupt
 from .computing import Work, compute_pieces, compute_sweep
-from .console import BAD_INPUT, BAD_POINTS, all_is_imported, ended, input_errors, say
+from .console import BAD_INPUT, BAD_POINTS, all_is_imported, ended, input_errors, messages, say
 from .options import key_and_value, number_in, positive
 from .usage import called
 
@@ -221,7 +221,10 @@ def info(file: DataFile):
 
 @app.command()
 def check(scene_file: SceneFile):
-    """Validate a scene; say what it computes, its size and time."""
+    """Validate a scene; say what it computes, its size and time.
+
+    Orbits are measured for that: kernels that are not there yet are compiled first.
+    """
     from .scene import SceneError, is_continuation_file, load_continuation, load_scene
 
     with input_errors(SceneError):
@@ -234,9 +237,11 @@ def check(scene_file: SceneFile):
     from .driver.cost import estimate
     from .summaries import cost_text
 
-    with input_errors(RunError):
+    say(f"{scene_file}: {scene}")
+    all_is_imported()
+    with input_errors(RunError), messages(quiet=False):
         cost = estimate(scene)
-    say(f"{scene_file}: {scene}\n{cost_text(cost)}")
+    say(cost_text(cost))
 
 
 @app.command()

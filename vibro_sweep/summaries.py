@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from .scene import Scene
 
 
+BUSY = 1.3  # times longer than alone, from which on it is said what else runs
+
+
 def grazing_of(scene: "Scene") -> str:
     """What `grazing` prints: of a sweep of one number on which the graze depends the curve."""
     from .store.numbers import depends_on
@@ -69,10 +72,12 @@ def cost_text(cost: "Estimate") -> str:
     """What `check` prints of the work that a scene is."""
     from .driver.cost import duration
 
+    busy = f" beside what else runs now, {duration(cost.alone)} alone" if cost.seconds > BUSY * cost.alone else ""
+    compiled = f"\n  compiled  in {duration(cost.compiling)} just now, once: no run needs it again" * bool(cost.compiling)
     return (
         f"  file      {points(cost.points)}, {size_of(cost.bytes)}\n"
         f"  work      {cost.orbits:,} orbits, {cost.periods:,} forcing periods in all\n"
-        f"  time      about {duration(cost.seconds)} here, once compiled"
+        f"  time      about {duration(cost.seconds)} here{busy}{compiled}"
     )
 
 

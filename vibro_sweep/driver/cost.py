@@ -1,32 +1,35 @@
-"""What a scene costs: the time of an orbit, measured on a few, and from it the size of a block."""
+"""What a scene costs, from what its orbits take (measuring.py): the time of a run, and the size of a block."""
 
 import math
 import time
-from dataclasses import dataclass, replace
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 
-import numpy as np
+from numba.core import event
 
 from vibro_sweep import store
-from vibro_sweep.driver.blocks import Block, blocks
+from vibro_sweep.driver import measuring
+from vibro_sweep.driver.blocks import Block
 from vibro_sweep.driver.compute import compute
+from vibro_sweep.driver.measuring import OrbitCost
 from vibro_sweep.driver.memory import available_cores, orbits_per_block
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.scene import Scene
 
-POINTS = 8  # that are measured, spread over the sweep
-STARTS = 4
-MEASURED = 0.02  # seconds of this thread that a measurement takes at least, where the scene has as many periods
-LOADING = 1.0  # seconds that kernels take to be loaded from the cache, at most
+CROWDED = 0.1  # seconds for which all workers compute, to see how they get on
 WRITING = 5e7  # bytes a second: results are written into the part, and from there into the file
-EASY = 1e9  # forcing frequency
 BLOCKS_PER_WORKER = 8  # at least, so that workers end together
+BLOCK_SECONDS = 1.0  # of a thread's block: long enough for its overhead not to count, short enough to lose
 
 
 @dataclass
 class Estimate:
-    """What `sweep.run` would do; `seconds` is measured on a few points, for this machine's cores.
+    """What `sweep.run` would do; measured on a few points, for this machine's cores.
 
-    Part of it is what each run begins with, loading kernels and measuring orbits, and the writing of its file.
+    seconds : of the run beside what else the machine does now. Part of them is what each run begins with, loading
+        kernels and measuring orbits, and the writing of its file
+    alone : the same if the machine did nothing else
+    compiling : seconds for which the estimate itself had to compile kernels; they are kept, and no run needs them again
     """
 
     points: int
@@ -34,21 +37,71 @@ class Estimate:
     periods: int
     bytes: int
     seconds: float
+    alone: float
+    compiling: float
 
 
 def estimate(scene: Scene, workers: int | None = None) -> Estimate:
     """What `sweep.run` would do with so many threads, by default one for each core."""
-    orbits, size = scene.n_points, store.size(scene)
+    count, orbits, size = workers or available_cores(), scene.n_points, store.size(scene)
+    compiling: list[float] = []
     began = time.perf_counter()
-    each = orbit_seconds(scene)
-    beginning = min(time.perf_counter() - began, LOADING)  # more than that was compiling
-    seconds = beginning + orbits * each / side_by_side(scene, workers or available_cores()) + size / WRITING
-    return Estimate(orbits, orbits, orbits * (scene.transient + scene.record), size, seconds)
+    with event.install_timer("numba:compile", compiling.append):
+        cost = orbit_cost(scene, count)
+    beginning = max(0.0, time.perf_counter() - began - sum(compiling))
+    alone = run_seconds(scene, cost, orbits, count)
+    beside = alone * crowding(cost, threads_of(scene, count))
+    rest = beginning + size / WRITING
+    periods = orbits * (scene.transient + scene.record)
+    return Estimate(orbits, orbits, periods, size, rest + beside, rest + alone, sum(compiling))
+
+
+def orbit_cost(scene: Scene, workers: int) -> OrbitCost:
+    """What an orbit takes, in blocks as large as those of the scene's run; compiles what the scene needs."""
+    measuring.compile_for(scene)
+    width = max(1, min(LANES, int(_fair(scene, workers))))
+    cost = measuring.orbit_cost(scene, width)
+    points = points_per_block(scene, cost.seconds, workers, BLOCK_SECONDS)
+    return cost if points >= width else measuring.orbit_cost(scene, points)
+
+
+def run_seconds(scene: Scene, cost: OrbitCost, orbits: int, workers: int) -> float:
+    """Seconds that threads take for so many orbits, if the machine does nothing else."""
+    return orbits * cost.seconds / threads_of(scene, workers)
+
+
+def threads_of(scene: Scene, workers: int) -> int:
+    """Threads that compute at the same time: more than there are cores take turns."""
+    return min(side_by_side(scene, workers), available_cores())
+
+
+def crowding(cost: OrbitCost, threads: int) -> float:
+    """How many times longer orbits take if so many threads compute them, beside what else the machine does now."""
+    rounds = math.ceil(CROWDED / max(cost.sample_seconds, CROWDED / 1000))
+
+    def work(_: int) -> None:
+        for block in cost.sample * rounds:
+            compute(block)
+
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(_begin, [cost.sample[0]] * threads))
+        began = time.perf_counter()
+        list(pool.map(work, range(threads)))
+        seconds = time.perf_counter() - began
+    return max(1.0, seconds / (rounds * cost.sample_seconds))
+
+
+def _begin(block: Block) -> None:
+    """A thread's first block: it allocates what the thread works on."""
+    compute(block)
 
 
 def side_by_side(scene: Scene, workers: int) -> int:
-    """Workers that have something to do: those of a `follow` take chains, each point of which waits for the last."""
-    return min(workers, scene.n_points // (scene.sweep_shape[0] if scene.start.kind == "follow" else 1))
+    """Workers that have something to do: all starts of a point, and eight chains of a `follow`, are one worker's."""
+    if scene.start.kind == "follow":
+        directions = scene.n_starts
+        return min(workers, directions * math.ceil(math.prod(scene.sweep_shape[1:]) / LANES))
+    return min(workers, scene.n_points // scene.n_starts)
 
 
 def duration(seconds: float) -> str:
@@ -58,64 +111,16 @@ def duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.3g} h"
 
 
-def orbit_seconds(scene: Scene) -> float:
-    """Seconds of one core for an orbit of the scene, measured on a few; compiles what the scene needs.
-
-    One orbit over one period first, which may take seconds where the oscillator is stiff, and then is enough.
-    """
-    total = scene.transient + scene.record
-    compute(_thinned(_eased(scene), 1, 1, 1))  # compiles
-    seconds, orbits = _measured(_thinned(scene, 1, 1, 1))
-    if seconds >= MEASURED:
-        return seconds / orbits * total
-    points, starts, periods = POINTS, STARTS, 1
-    while True:
-        seconds, orbits = _measured(_thinned(scene, points, starts, periods))
-        if seconds >= MEASURED or periods == total:
-            return seconds / orbits * total / periods
-        periods = min(8 * periods, total)
-
-
-def _eased(scene: Scene) -> Scene:
-    """The scene with a period so short that nothing is stiff: the kernels that it needs are the same."""
-    if "omega" not in scene.system.described:  # made by a function, which may have no such number
-        return scene
-    sweep = {key: np.array([EASY]) if key == "omega" else values for key, values in scene.sweep.items()}
-    return replace(scene, sweep=sweep, system=scene.system.replace(omega=EASY))
-
-
-def _measured(block: Block) -> tuple[float, int]:
-    """Seconds that a block takes, and its orbits."""
-    began = time.thread_time()
-    _, arrays = compute(block)
-    return time.thread_time() - began, arrays["status"].size
-
-
-def _thinned(scene: Scene, points: int, starts: int, periods: int) -> Block:
-    """A block of some points and starts of the scene, spread over the sweep, with fewer periods in proportion."""
-    total = scene.transient + scene.record
-    record = max(1, scene.record * periods // total)
-    along = round(points ** (1 / max(1, len(scene.sweep))))
-    few = replace(
-        scene,
-        sweep={key: values[_spread(len(values), along)] for key, values in scene.sweep.items()},
-        start=replace(scene.start, count=min(scene.start.count, starts)),
-        transient=min(scene.transient, max(0, periods - record)),
-        record=record,
-        trajectory=scene.trajectory and replace(scene.trajectory, periods=1, samples=2),
-    )
-    return next(blocks(few, math.prod(few.sweep_shape)))
-
-
-def _spread(extent: int, count: int) -> np.ndarray:
-    return np.unique(np.linspace(0, extent - 1, count).astype(int))
-
-
 def points_per_block(scene: Scene, orbit_seconds: float, workers: int, seconds: float) -> int:
     """Points that take about so many seconds; fewer, where they would need too much memory or leave workers idle."""
     orbits = 1 if scene.start.kind == "follow" else scene.n_starts  # of a point in one block
     by_time = seconds / (orbits * orbit_seconds)
     by_memory = orbits_per_block(scene, workers) / orbits
-    fair = scene.n_points / orbits / (BLOCKS_PER_WORKER * workers)
-    count = max(1, int(min(by_time, by_memory, fair)))
+    count = max(1, int(min(by_time, by_memory, _fair(scene, workers))))
     return count - count % LANES if count > LANES else count  # that many orbits are computed at once
+
+
+def _fair(scene: Scene, workers: int) -> float:
+    """Points of a block of which each worker gets several."""
+    orbits = 1 if scene.start.kind == "follow" else scene.n_starts
+    return scene.n_points / orbits / (BLOCKS_PER_WORKER * workers)

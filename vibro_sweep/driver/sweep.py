@@ -17,7 +17,16 @@ from vibro_sweep.driver import MOST_WORKERS
 from vibro_sweep.driver.attractor_ids import number_attractors
 from vibro_sweep.driver.blocks import Block, blocks, next_part, whole_chains
 from vibro_sweep.driver.compute import CHAIN_ENDS, RunError
-from vibro_sweep.driver.cost import duration, orbit_seconds, points_per_block, side_by_side
+from vibro_sweep.driver.cost import (
+    BLOCK_SECONDS,
+    crowding,
+    duration,
+    orbit_cost,
+    points_per_block,
+    run_seconds,
+    side_by_side,
+    threads_of,
+)
 from vibro_sweep.driver.memory import available_cores, blocks_under_way, orbits_per_block
 from vibro_sweep.driver.pool import as_computed
 from vibro_sweep.driver.provenance import provenance
@@ -31,7 +40,7 @@ __all__ = ["RunError", "RunReport", "run"]
 _log = logging.getLogger("vibro_sweep")
 
 WORTH_SAYING = 10.0  # seconds that a run will take from which on that is said before
-THREAD_SECONDS, SECONDS = 1.0, 4.0  # of a block: long enough for its overhead not to count, short enough to lose
+SECONDS = 4.0  # of a block that an executor computes
 
 
 @dataclass
@@ -114,13 +123,17 @@ def _results(
     scene: Scene, file: store.Writer, missing: int, workers: int, executor: Executor | None
 ) -> Iterator[tuple]:
     """Results of all blocks with one of the missing orbits, as they come."""
-    cost = off_the_main_thread(orbit_seconds, scene)
     count = workers if executor is None else _worker_count(executor, workers)
+    cost = off_the_main_thread(orbit_cost, scene, count)
     orbits = orbits_per_block(scene, count)
     most = blocks_under_way(scene, orbits, here=executor is None)
     pool = executor or ThreadPoolExecutor(min(workers, most))
-    size = points_per_block(scene, cost, count, THREAD_SECONDS if executor is None else SECONDS)
-    seconds = cost * missing / side_by_side(scene, count)
+    size = points_per_block(scene, cost.seconds, count, BLOCK_SECONDS if executor is None else SECONDS)
+    if executor is None:
+        seconds = run_seconds(scene, cost, missing, count)
+        seconds *= off_the_main_thread(crowding, cost, threads_of(scene, count)) if seconds > WORTH_SAYING else 1.0
+    else:  # on machines of which nothing is known
+        seconds = cost.seconds * missing / side_by_side(scene, count)
     if seconds > WORTH_SAYING:
         _log.info("%s orbits, about %s with %s workers", f"{missing:,}", duration(seconds), count)
     todo = (block for block in blocks(scene, size, orbits) if file.missing(whole_chains(block)))

@@ -16,7 +16,7 @@ from vibro_sweep.analysis.periodic.impulse_equations import (
     moves_stops_only,
     moves_stops_straight,
 )
-from vibro_sweep.analysis.periodic.long_orbits import is_sparse, sign_and_log_det, solve_bordered
+from vibro_sweep.analysis.periodic.long_orbits import influence, is_sparse, sign_and_log_det, solve_bordered
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.engine.impulses import across
 from vibro_sweep.engine.impulses.across import MOST_CORRECTIONS
@@ -32,7 +32,7 @@ class Point:
     walk: "Walk"
     x: np.ndarray
     equations: Equations
-    J: np.ndarray  # (n, n + 1), by scaled unknowns and parameter
+    J: np.ndarray  # (n, n + 1), by scaled unknowns and parameter; where the equations are sparse (n, 1), by the latter
     motion: np.ndarray
     change: float
     corrections: int
@@ -77,10 +77,14 @@ class Point:
     def sensitivity(self, normal: np.ndarray) -> float:
         """By how much the parameter moves, on the plane with this normal, where all gaps at impacts are off by their
         size."""
-        K = self.walk.start.K
-        axis = np.zeros(len(self.x))
-        axis[-1] = self.walk.scale[-1]
-        weights = np.linalg.solve(np.vstack([self.J, normal]).T, axis)
+        w, K = self.walk, self.walk.start.K
+        if is_sparse(self.equations, w.start.sides):
+            u, column = self.x[:-1] * w.scale[:-1], self.J[:, -1] / w.scale[-1]
+            weights = influence(self.equations, w.start.sides, u, self.motion, column, normal / w.scale)
+        else:
+            axis = np.zeros(len(self.x))
+            axis[-1] = w.scale[-1]
+            weights = np.linalg.solve(np.vstack([self.J, normal]).T, axis)
         return float(np.abs(weights[:K]).sum() * self.solution.size_of_gap)
 
     @cached_property
@@ -172,14 +176,20 @@ class Walk:
 
     def correct(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
         """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""
-        if self._straight and not is_sparse(self.start.equations, self.start.sides):
+        sparse = is_sparse(self.start.equations, self.start.sides)
+        if self._straight and not sparse:
             return self._corrected_at_once(guess, normal, forwards)
         x, before = guess.copy(), np.inf
         for corrections in range(1, MOST_CORRECTIONS + 1):
             try:
                 e = self.equations(float(x[-1] * self.scale[-1]))
-                F, J, Fp, motion = e.evaluate(self.start.sides, x[:-1] * self.scale[:-1])
-                rows = np.hstack([J, Fp[:, None]]) * self.scale
+                u = x[:-1] * self.scale[:-1]
+                if sparse:
+                    F, Fp, motion = e.residual(self.start.sides, u)
+                    rows = Fp[:, None] * self.scale[-1]
+                else:
+                    F, J, Fp, motion = e.evaluate(self.start.sides, u)
+                    rows = np.hstack([J, Fp[:, None]]) * self.scale
                 step = self.solve(e, x, rows, motion, normal, F, normal @ (x - guess))
             except (np.linalg.LinAlgError, ValueError):  # also a parameter beyond its range
                 return None
@@ -214,7 +224,7 @@ class Walk:
         return Point(self, x, moved, J, motion, change, count, forwards)
 
     def solve(self, e: Equations, x, J, motion, row, F, last: float) -> np.ndarray:
-        """The solution of [J; row] step = [F; last] in scaled units; J (n, n + 1) belongs to x. LinAlgError."""
+        """The solution of [J; row] step = [F; last] in scaled units; J, as of `Point`, belongs to x. LinAlgError."""
         if not is_sparse(e, self.start.sides):
             return np.linalg.solve(np.vstack([J, row]), np.append(F, last))
         u, scale = x[:-1] * self.scale[:-1], self.scale

@@ -43,10 +43,20 @@ class Equations:
 
     def evaluate(self, sides, u):
         """F, dF/du, dF/dp, and (K, 3) gap velocity, acceleration and jerk before each impact."""
-        n, K = self.size(sides), len(sides)
-        F, J, Fp, motion = np.empty(n), np.empty((n, n)), np.empty(n), np.empty((K, 3))
-        equations.evaluate(self.train, self.steady, self.contacts(sides), u, F, J, Fp, motion, np.empty((2, 4)))
+        n = self.size(sides)
+        J = np.empty((n, n))
+        F, Fp, motion = self._filled(sides, u, J)
         return F, J, Fp, motion
+
+    def residual(self, sides, u):
+        """F, dF/dp and the motion, as of `evaluate`; of thousands of impacts, dF/du would fill 100 MB."""
+        return self._filled(sides, u, np.empty((0, 0)))
+
+    def _filled(self, sides, u, J):
+        n = self.size(sides)
+        F, Fp, motion = np.empty(n), np.empty(n), np.empty((len(sides), 3))
+        equations.evaluate(self.train, self.steady, self.contacts(sides), u, F, J, Fp, motion, np.empty((2, 4)))
+        return F, Fp, motion
 
     def newton(self, sides, guesses, contacts=None) -> tuple[np.ndarray, np.ndarray]:
         """Newton's method from guesses (m, 2K) or (m, 2K + free): solutions, and the last change, NaN: none found.

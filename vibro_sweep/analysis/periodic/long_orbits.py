@@ -100,19 +100,32 @@ def extended(e: Equations, sides, u, motion, mu: int, column=None, row=None) -> 
 
 def solve_bordered(e: Equations, sides, u, motion, column, row, F, last: float) -> np.ndarray:
     """Solution (2K + 1,) of [J column; row] x = [F; last], with J = J(1)."""
+    lu, places = _bordered(e, sides, u, motion, column, row)
+    right = np.zeros(lu.shape[0])
+    right[places] = np.append(F, last)
+    return lu.solve(right)[places]
+
+
+def influence(e: Equations, sides, u, motion, column, row) -> np.ndarray:
+    """(2K + 1,) derivatives of the last unknown of `solve_bordered` by its right-hand side (F, last)."""
+    lu, places = _bordered(e, sides, u, motion, column, row)
+    axis = np.zeros(lu.shape[0])
+    axis[-1] = 1.0
+    return lu.solve(axis, "T")[places]
+
+
+def _bordered(e: Equations, sides, u, motion, column, row):
+    """The factors of [J column; row] with the states as unknowns, and where the dense system's unknowns are."""
     from scipy.sparse.linalg import splu
 
     K = len(sides)
     matrix = extended(e, sides, u, motion, 1, column, row)
     m = (matrix.shape[0] - 1) // K
-    places = np.concatenate([m * np.arange(K), m * np.arange(K) + 1])
-    right = np.zeros(matrix.shape[0])
-    right[places], right[-1] = F, last
     try:
-        solution = splu(matrix).solve(right)
+        lu = splu(matrix)
     except RuntimeError:
         raise np.linalg.LinAlgError("the bordered system is singular") from None
-    return np.append(solution[places], solution[-1])
+    return lu, np.concatenate([m * np.arange(K), m * np.arange(K) + 1, [m * K]])
 
 
 def sign_and_log_det(e: Equations, sides, u, motion, mu: int) -> tuple[float, float]:

@@ -156,6 +156,11 @@ class RestEquations:
         J = self._closed(found, 1)
         return found.F, np.ascontiguousarray(J[:, :-1]), J[:, -1].copy(), found.motion
 
+    def residual(self, sides, u):
+        """F, dF/dp and the motion, as of `evaluate`."""
+        F, _, Fp, motion = self.evaluate(sides, u)
+        return F, Fp, motion
+
     def _closed(self, found: Pass, mu: float) -> np.ndarray:
         """Derivatives by u and the parameter, of what is multiplied by mu in each period."""
         n = len(found.end)

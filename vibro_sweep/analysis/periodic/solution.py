@@ -66,7 +66,7 @@ class Solution:
     @cached_property
     def motion(self) -> np.ndarray:
         """(K, 3) gap velocity, acceleration and jerk before each impact."""
-        return self.equations.evaluate(self.sides, self.u)[3]
+        return self.equations.residual(self.sides, self.u)[2]
 
     @cached_property
     def _flights(self):

@@ -138,9 +138,9 @@ def steady_added(q, t, i, out):
 def equations(train, q, contacts, u, F, J, Fp, motion, scratch):
     """Residual F, Jacobian J = dF/du, Fp = dF/dp, and g', g'', g''' before each impact: motion (K, 3).
 
-    F and Fp: (2K + free,). scratch: (2, 4).
+    F and Fp: (2K + free,). scratch: (2, 4). A J of shape (0, 0) is not wanted.
     """
-    K = len(contacts)
+    K, dense = len(contacts), len(J) > 0
     t, D = u[:K], u[K : 2 * K]
     out, slope = scratch[0], scratch[1]
     size = 2 * K + (1 if q.free else 0)
@@ -157,14 +157,16 @@ def equations(train, q, contacts, u, F, J, Fp, motion, scratch):
             jerk += D[k] * out[3]
             d_gap += D[k] * slope[0]
             d_v += D[k] * slope[1]
-            J[i, k] = -D[k] * out[1]
-            J[i, K + k] = out[0]
-            J[K + i, k] = -gain * D[k] * out[2]
-            J[K + i, K + k] = gain * out[1]
+            if dense:
+                J[i, k] = -D[k] * out[1]
+                J[i, K + k] = out[0]
+                J[K + i, k] = -gain * D[k] * out[2]
+                J[K + i, K + k] = gain * out[1]
         if q.free:
             gap += u[2 * K]
-            J[i, 2 * K] = 1.0
-            J[K + i, 2 * K] = 0.0
+            if dense:
+                J[i, 2 * K] = 1.0
+                J[K + i, 2 * K] = 0.0
         F[i] = gap - contacts[i, STOP]
         if follows(train, contacts, t, i):
             steady_added(q, t, i, out)
@@ -178,17 +180,20 @@ def equations(train, q, contacts, u, F, J, Fp, motion, scratch):
         F[K + i] = D[i] + gain * v
         Fp[i] = d_gap - contacts[i, STOP_SLOPE]
         Fp[K + i] = gain * d_v + d_gain * v
-        J[i, i] += v
-        J[K + i, i] += gain * a
-        J[K + i, K + i] += 1.0
+        if dense:
+            J[i, i] += v
+            J[K + i, i] += gain * a
+            J[K + i, K + i] += 1.0
         motion[i, 0], motion[i, 1], motion[i, 2] = v, a, jerk
     if q.free:
         last = size - 1
         F[last], Fp[last] = q.momentum, q.d_momentum
         for k in range(K):
             F[last] += D[k]
-            J[last, k], J[last, K + k] = 0.0, 1.0
-        J[last, last] = 0.0
+            if dense:
+                J[last, k], J[last, K + k] = 0.0, 1.0
+        if dense:
+            J[last, last] = 0.0
 
 
 @entry

@@ -1,0 +1,149 @@
+"""What an orbit of a scene takes, measured on a few of its orbits.
+
+It does not grow with the periods alone: an orbit has tables to be filled, and a record to be looked through. So orbits
+are computed from beginning to end where that takes a moment, and otherwise over two lengths, of which only the
+difference is multiplied. Seconds are CPU time of the thread, which does not pass while other processes run, and the
+least of two calls: the first one allocates, and reads what it works on into the processor's cache.
+"""
+
+import math
+import time
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.driver.blocks import Block, blocks
+from vibro_sweep.driver.compute import compute
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.scene import Scene
+
+PLACES = 8  # of the sweep, at which is measured
+MEASURED = 0.01  # seconds that a measurement takes at least, where the scene has as many periods and points
+GROWN = 1.5  # so many times longer than the shorter one the longer of two measurements takes
+LONGER = 4  # times as many periods, or places, in the next measurement
+AT_ONCE = 0.5  # seconds of the first period, up to which more than one orbit is measured
+EASY = 1e9  # forcing frequency
+
+
+class OrbitCost(NamedTuple):
+    """seconds : of one core for an orbit. sample : blocks of such orbits, which took `sample_seconds`."""
+
+    seconds: float
+    sample: list[Block]
+    sample_seconds: float
+
+
+class _Sample(NamedTuple):
+    """Orbits that are measured: places of the sweep, neighbouring points at each, starts of a point, periods."""
+
+    places: int
+    beside: int
+    starts: int
+    periods: int
+
+
+class _Measured(NamedTuple):
+    sample: list[Block]
+    periods: int
+    orbits: int
+    seconds: float
+
+    @property
+    def each(self) -> float:
+        return self.seconds / self.orbits
+
+
+def compile_for(scene: Scene) -> None:
+    """Compile, or load, what the scene needs: with a period so short that nothing is stiff."""
+    if "omega" in scene.system.described:  # else a function made it, which may have no such number
+        sweep = {key: np.array([EASY]) if key == "omega" else values for key, values in scene.sweep.items()}
+        scene = replace(scene, sweep=sweep, system=scene.system.replace(omega=EASY))
+    _compute(_blocks(scene, _Sample(1, 1, 1, 1)))
+
+
+def orbit_cost(scene: Scene, width: int) -> OrbitCost:
+    """What an orbit of the scene takes where so many neighbouring points of the sweep make a block."""
+    total = scene.transient + scene.record
+    sample = _affordable(scene, width)
+    before, now = None, _measured(scene, sample)
+    while now.periods < total and (before is None or now.seconds < max(MEASURED, GROWN * before.seconds)):
+        sample = sample._replace(periods=min(LONGER * now.periods, total))
+        before, now = now, _measured(scene, sample)
+    while now.periods == total and now.seconds < MEASURED:
+        sample = sample._replace(places=LONGER * sample.places)
+        more = _measured(scene, sample)
+        if more.orbits == now.orbits:  # all that there are
+            break
+        now = more
+    seconds = now.each
+    if now.periods < total:
+        slope = max(0.0, now.each - before.each) / (now.periods - before.periods)
+        seconds += slope * (total - now.periods)
+    return OrbitCost(seconds, now.sample, now.seconds)
+
+
+def _affordable(scene: Scene, width: int) -> _Sample:
+    """The orbits to begin with: eight side by side at each place, or fewer where their tables take long."""
+    alone = _Sample(1, 1, 1, 1)
+    first = _measured(scene, alone).seconds
+    starts = min(scene.start.count, LANES)
+    beside = min(width, math.ceil(LANES / starts))
+    for sample in (_Sample(PLACES, beside, starts, 1), _Sample(PLACES, 1, 1, 1)):
+        if first * sample.places * sample.beside * sample.starts <= AT_ONCE:
+            return sample
+    return alone
+
+
+def _measured(scene: Scene, sample: _Sample) -> _Measured:
+    made = _blocks(scene, sample)
+    seconds = np.inf
+    for _ in range(2):
+        began = time.thread_time()
+        orbits = _compute(made)
+        seconds = min(seconds, time.thread_time() - began)
+    return _Measured(made, sample.periods, orbits, seconds)
+
+
+def _compute(made: list[Block]) -> int:
+    """How many orbits they are."""
+    return sum(compute(block)[1]["status"].size for block in made)
+
+
+def _blocks(scene: Scene, sample: _Sample) -> list[Block]:
+    """Blocks of some points and starts of the scene, with fewer periods in proportion.
+
+    One for all of them, where they fill the lanes as those of the whole scene do; else one for each place.
+    """
+    total, follow = scene.transient + scene.record, scene.start.kind == "follow"
+    record = max(1, scene.record * sample.periods // total)
+    along = round(sample.places ** (1 / max(1, len(scene.sweep))))
+    beside = [1] * (len(scene.sweep) - 1) + [sample.beside]
+    sweep = {
+        key: values[_spread(len(values), along, near)]
+        for (key, values), near in zip(scene.sweep.items(), beside, strict=False)
+    }
+    shown = scene.trajectory
+    few = replace(
+        scene,
+        sweep=sweep,
+        start=replace(scene.start, count=min(scene.start.count, sample.starts)),
+        transient=min(scene.transient, max(0, sample.periods - record)),
+        record=record,
+        trajectory=shown and replace(
+            shown,
+            periods=max(1, shown.periods * sample.periods // total),
+            samples=max(2, shown.samples * sample.periods // total),
+        ),
+    )  # fmt: skip
+    if follow:
+        return [next(blocks(few, math.prod(few.sweep_shape)))]
+    narrow = sample.beside * sample.starts < LANES
+    return list(blocks(few, sample.beside if narrow else math.prod(few.sweep_shape)))
+
+
+def _spread(extent: int, places: int, beside: int) -> np.ndarray:
+    """Indices around the middles of equal parts of an axis, so many beside each other."""
+    beside = min(beside, extent)
+    first = ((np.arange(places) + 0.5) * extent / places - beside / 2).round().astype(int).clip(0, extent - beside)
+    return np.unique(first[:, None] + np.arange(beside))
