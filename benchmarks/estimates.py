@@ -1,5 +1,5 @@
-"""What `check` says that a scene will take, beside what its run takes: twenty scenes, on the machine as it is and beside
-two busy processes.
+"""What `check` says that a scene will take, beside what its run takes: twenty scenes, as the machine is and beside two
+busy processes.
 
 Both are asked in Pythons of their own, with kernels that are compiled already: the estimate, then the run, whose own
 seconds count, as `run` says them at its end.
@@ -35,7 +35,8 @@ WRITTEN = {
     "observe: [impacts, lyapunov]\n",
     "a period each": PAPER + "sweep: {R: {start: 0.5, stop: 0.9, num: 500}, b: {start: 5, stop: 7, num: 2000}}\n"
     "orbit: {transient: 0, record: 1}\nobserve: [impacts]\n",
-    "tables at each point": PAPER + "sweep: {omega: {start: 0.05, stop: 2, num: 300}, b: {start: 1, stop: 7, num: 300}}\n"
+    "tables at each point": PAPER
+    + "sweep: {omega: {start: 0.05, stop: 2, num: 300}, b: {start: 1, stop: 7, num: 300}}\n"
     "orbit: {transient: 20, record: 10}\nobserve: [section]\n",
     "slow forcing": PAPER + "sweep: {omega: {start: 0.0005, stop: 0.005, num: 60}}\n"
     "orbit: {transient: 50, record: 50}\nobserve: [impacts]\n",
@@ -111,8 +112,8 @@ def text(data: dict) -> str:
     header = ("scene", "estimate, s", "run, s", "ratio", f"beside {BUSY}: estimate, s", "run, s", "ratio")
     return (
         f"What `check` says of a scene, and the seconds of its run, with two workers: on the machine as it is (load "
-        f"{data['load']:.1f} at the end), and beside {BUSY} processes that do nothing but compute. Kernels are compiled "
-        f"before.\n\n{table(header, rows)}"
+        f"{data['load']:.1f} at the end), and beside {BUSY} processes that do nothing but compute. Kernels are "
+        f"compiled before.\n\n{table(header, rows)}"
     )
 
 

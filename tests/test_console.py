@@ -11,6 +11,7 @@ import pytest
 from support import slow_cases
 
 from vibro_sweep.cli import main
+from vibro_sweep.driver.measuring import OrbitCost
 
 SCENE = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}\n"
 SHORT = SCENE + "sweep: {b: {values: [6.5, 6.6, 6.7]}}\norbit: {transient: 2, record: 3}\n"
@@ -204,7 +205,9 @@ def test_help_names_every_exit_status(capsys):
 
 
 def test_a_long_run_is_announced(folder, capsys, monkeypatch):
-    monkeypatch.setattr("vibro_sweep.driver.sweep.orbit_seconds", lambda _: 100.0)
+    monkeypatch.setattr("vibro_sweep.driver.sweep.orbit_cost", lambda *_: OrbitCost(100.0, [], 1.0))
+    monkeypatch.setattr("vibro_sweep.driver.sweep.crowding", lambda *_: 1.0)
+    monkeypatch.setattr("vibro_sweep.driver.cost.available_cores", lambda: 2)
     assert main(["run", "good.yaml", "--workers", "2"]) == 0
     assert capsys.readouterr().err == "vibro-sweep: 3 orbits, about 2 min with 2 workers\n"
     assert main(["run", "good.yaml", "--workers", "2", "--quiet", "--overwrite"]) == 0

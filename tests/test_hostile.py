@@ -179,7 +179,7 @@ def test_killed_at_the_very_end(folder, monkeypatch, at):
         assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 9
     assert Path("out.h5.part").exists() and Path("out.h5").exists() == (at == "named")
     assert any(path.name.startswith(".vibro_sweep-") for path in folder.iterdir()) == (at == "made")
-    monkeypatch.setattr("vibro_sweep.driver.sweep.orbit_seconds", None)  # nothing is computed
+    monkeypatch.setattr("vibro_sweep.driver.sweep.orbit_cost", None)  # nothing is computed
     vs.run(SCENE, "out.h5", mode="resume")
     assert_same_bits(arrays_of("out.h5"), whole)
     assert sorted(os.listdir()) == ["out.h5", "scene.yaml", "x.h5", "y.h5.part"]

@@ -10,6 +10,7 @@ from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, computed,
 
 import vibro_sweep as vs
 from vibro_sweep.driver import cost, memory, sweep
+from vibro_sweep.driver.measuring import OrbitCost
 from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.scene import SceneError, parse_scene
 from vibro_sweep.scene.size import MAX_AT_ONCE, numbers_at_once
@@ -125,31 +126,21 @@ def test_few_large_blocks_at_a_time():
     assert memory.blocks_under_way(small, memory.orbits_per_block(small, 2), here=True) > 8
 
 
-def test_a_stiff_orbit_is_measured_in_one_period(monkeypatch):
-    """Two seconds a period: what it will take is known after two of them, not after minutes."""
-    scene = scene_of("orbit: {transient: 10, record: 70}\nsweep: {b: {start: 5, stop: 6, num: 10}}")
-    clock = [0.0]
-
-    def counting(block):
-        clock[0] += 2.0 * (block.plan.transient + block.plan.record)
-        return block.box, {"status": np.zeros(block.box[0].stop - block.box[0].start)}
-
-    monkeypatch.setattr(cost, "compute", counting)
-    monkeypatch.setattr(cost.time, "thread_time", lambda: clock[0])
-    assert cost.orbit_seconds(scene) == pytest.approx(2.0 * 80)
-    assert clock[0] <= 4.0
-
-
 def test_an_estimate_knows_what_runs_side_by_side(monkeypatch):
-    monkeypatch.setattr(cost, "orbit_seconds", lambda _: 1.0)
-    monkeypatch.setattr(cost, "LOADING", 0.0)
+    """Starts of a point, and up to eight chains in one direction, are one worker's."""
+    monkeypatch.setattr(cost, "orbit_cost", lambda *_: OrbitCost(1.0, [], 1.0))
+    monkeypatch.setattr(cost, "crowding", lambda *_: 3.0)
+    monkeypatch.setattr(cost.time, "perf_counter", lambda: 0.0)
     monkeypatch.setattr(cost, "WRITING", float("inf"))
     monkeypatch.setattr(cost, "available_cores", lambda: 8)
     one = scene_of("orbit: {transient: 0, record: 1}")
-    chains = scene_of(SCENES["follow"])
-    assert cost.estimate(one).seconds == 1.0
-    assert cost.estimate(chains).seconds == 9.0  # six chains of nine points
-    assert cost.estimate(chains, workers=2).seconds == 27.0
+    starts = scene_of("orbit: {transient: 0, record: 1}\nstart: {random: 5, seed: 1}")
+    chains = scene_of(SCENES["follow"])  # six of nine points, in two directions
+    assert (cost.estimate(one).alone, cost.estimate(one).seconds) == (1.0, 3.0)
+    assert cost.estimate(starts).alone == 5.0
+    directions = chains.n_starts
+    assert cost.estimate(chains).alone == chains.n_points / directions
+    assert cost.estimate(chains, workers=1).alone == chains.n_points
 
 
 PLANES = (

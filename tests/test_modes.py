@@ -65,7 +65,7 @@ def test_resume_of_nothing_is_a_run(path):
 def test_resume_of_a_complete_file_changes_nothing(path, monkeypatch):
     vs.run(scene_of(SWEEP), path)
     before, written = path.read_bytes(), path.stat().st_mtime_ns
-    monkeypatch.setattr("vibro_sweep.driver.sweep.orbit_seconds", None)  # nothing is computed
+    monkeypatch.setattr("vibro_sweep.driver.sweep.orbit_cost", None)  # nothing is computed
     seen = []
     report = vs.run(scene_of(SWEEP), path, mode="resume", progress=lambda *progress: seen.append(progress))
     assert (report.points, report.bad, seen) == (3, 0, [(3, 3)])

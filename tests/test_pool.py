@@ -10,7 +10,6 @@ import sys
 import time
 import tracemalloc
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
-from dataclasses import replace
 from itertools import islice
 
 import pytest
@@ -217,20 +216,3 @@ def test_size_of_a_block(monkeypatch):
     assert 0.7 < cost.points_per_block(scene, 1e-9, 1000, 4.0) * each / (memory.BYTES_UNDER_WAY / 1000) < 1
     small = scene_of(SCENES["plane"])
     assert cost.points_per_block(small, 1e-9, 1, 4.0) == 35 // cost.BLOCKS_PER_WORKER
-
-
-@pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("transient", [0, 7, 10**6])
-def test_cost_of_an_orbit(monkeypatch, name, transient):
-    """By a clock that runs a microsecond in each period: what is measured stands for the whole, and takes no second."""
-    scene, clock = replace(scene_of(SCENES[name]), transient=transient), [0.0]
-
-    def counting(block):
-        box, arrays = compute(block._replace(plan=block.plan._replace(transient=0, warm_up=0)))
-        clock[0] += 1e-6 * (block.plan.transient + block.plan.record) * arrays["status"].size
-        return box, arrays
-
-    monkeypatch.setattr(cost, "compute", counting)
-    monkeypatch.setattr(cost.time, "thread_time", lambda: clock[0])
-    assert cost.orbit_seconds(scene) == pytest.approx(1e-6 * (transient + scene.record))
-    assert clock[0] < 1

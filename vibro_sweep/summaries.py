@@ -73,7 +73,9 @@ def cost_text(cost: "Estimate") -> str:
     from .driver.cost import duration
 
     busy = f" beside what else runs now, {duration(cost.alone)} alone" if cost.seconds > BUSY * cost.alone else ""
-    compiled = f"\n  compiled  in {duration(cost.compiling)} just now, once: no run needs it again" * bool(cost.compiling)
+    compiled = f"\n  compiled  in {duration(cost.compiling)} just now, once: no run needs it again" * bool(
+        cost.compiling
+    )
     return (
         f"  file      {points(cost.points)}, {size_of(cost.bytes)}\n"
         f"  work      {cost.orbits:,} orbits, {cost.periods:,} forcing periods in all\n"

@@ -2,8 +2,8 @@
 
 It does not grow with the periods alone: an orbit has tables to be filled, and a record to be looked through. So orbits
 are computed from beginning to end where that takes a moment, and otherwise over two lengths, of which only the
-difference is multiplied. Seconds are CPU time of the thread, which does not pass while other processes run, and the
-least of two calls: the first one allocates, and reads what it works on into the processor's cache.
+difference is multiplied. Seconds are CPU time of the thread, which does not pass while other processes run; short calls
+are made twice, and the less counts: the first one allocates, and fills the processor's cache.
 """
 
 import math
@@ -22,7 +22,9 @@ PLACES = 8  # of the sweep, at which is measured
 MEASURED = 0.01  # seconds that a measurement takes at least, where the scene has as many periods and points
 GROWN = 1.5  # so many times longer than the shorter one the longer of two measurements takes
 LONGER = 4  # times as many periods, or places, in the next measurement
-AT_ONCE = 0.5  # seconds of the first period, up to which more than one orbit is measured
+SAME = 1.1  # times longer than the one before: a measurement in which periods do not count yet
+AT_ONCE = 0.1  # seconds of the first period, up to which more than one orbit is measured
+SHORT = 1.0  # seconds of a call below which it is made twice
 EASY = 1e9  # forcing frequency
 
 
@@ -59,7 +61,7 @@ def compile_for(scene: Scene) -> None:
     if "omega" in scene.system.described:  # else a function made it, which may have no such number
         sweep = {key: np.array([EASY]) if key == "omega" else values for key, values in scene.sweep.items()}
         scene = replace(scene, sweep=sweep, system=scene.system.replace(omega=EASY))
-    _compute(_blocks(scene, _Sample(1, 1, 1, 1)))
+    _timed(_blocks(scene, _Sample(1, 1, 1, 1)))
 
 
 def orbit_cost(scene: Scene, width: int) -> OrbitCost:
@@ -68,7 +70,9 @@ def orbit_cost(scene: Scene, width: int) -> OrbitCost:
     sample = _affordable(scene, width)
     before, now = None, _measured(scene, sample)
     while now.periods < total and (before is None or now.seconds < max(MEASURED, GROWN * before.seconds)):
-        sample = sample._replace(periods=min(LONGER * now.periods, total))
+        tables_alone = before is not None and now.seconds < SAME * before.seconds
+        longer = LONGER**2 if tables_alone else LONGER
+        sample = sample._replace(periods=min(longer * now.periods, total))
         before, now = now, _measured(scene, sample)
     while now.periods == total and now.seconds < MEASURED:
         sample = sample._replace(places=LONGER * sample.places)
@@ -97,17 +101,17 @@ def _affordable(scene: Scene, width: int) -> _Sample:
 
 def _measured(scene: Scene, sample: _Sample) -> _Measured:
     made = _blocks(scene, sample)
-    seconds = np.inf
-    for _ in range(2):
-        began = time.thread_time()
-        orbits = _compute(made)
-        seconds = min(seconds, time.thread_time() - began)
+    orbits, seconds = _timed(made)
+    if seconds < SHORT:
+        seconds = min(seconds, _timed(made)[1])
     return _Measured(made, sample.periods, orbits, seconds)
 
 
-def _compute(made: list[Block]) -> int:
-    """How many orbits they are."""
-    return sum(compute(block)[1]["status"].size for block in made)
+def _timed(made: list[Block]) -> tuple[int, float]:
+    """How many orbits blocks are, and their seconds."""
+    began = time.thread_time()
+    orbits = sum(compute(block)[1]["status"].size for block in made)
+    return orbits, time.thread_time() - began
 
 
 def _blocks(scene: Scene, sample: _Sample) -> list[Block]:

@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 from vibro_sweep.model.branch_file import BRANCHES
 from vibro_sweep.model.state import MOST_MASSES, state
-from vibro_sweep.plotting import sweeps
+from vibro_sweep.plotting import joined, sweeps
 from vibro_sweep.plotting.flat import FlatFile, check_over
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.result import PlotError, Result
@@ -15,12 +15,13 @@ from vibro_sweep.plotting.style import DASHES, INK, LEFT, SPECIAL, axis_name, li
 
 LINES = (LEFT, "#c26a00", "#446644", "#7b3294", "#77541f", "#1a1a2e")  # of branches, in turn
 MOST = 3.0  # modulus of a multiplier that is shown: at a graze it is infinite
+ON_CIRCLE = ("fold", "flip", "pitchfork", "neimark_sacker")  # special points with a multiplier of modulus 1
 NEAR = 0.012  # of the axis: special points nearer than that have one label
 
 
 def variables(file: FlatFile) -> tuple[str, ...]:
     """What may be drawn over the parameter."""
-    return (*(name for name in state(MOST_MASSES) if name in file.arrays), "impact_speed", "multiplier", "margin")
+    return (*_sections(file), "impact_speed", "multiplier", "margin")
 
 
 def branches(path, look: Look, ax=None):
@@ -40,7 +41,8 @@ def branches(path, look: Look, ax=None):
     if look.over is not None:
         _sweep(ax, look, file, name)
     values = values_of(file, name)
-    _lines(ax, file, _drawn(file, name, values, look.over is not None))
+    together = joined.margins(file, _sections(file)) if name == "margin" else np.ones(len(values), bool)
+    _lines(ax, file, _drawn(file, name, values, look.over is not None), together)
     _marks(ax, file, values)
     ax.set_xlabel(axis_name(file.parameters[0]))
     if look.over is None:
@@ -55,9 +57,9 @@ def branches(path, look: Look, ax=None):
 
 
 def values_of(file: FlatFile, name: str) -> np.ndarray:
-    """What is drawn, of each point; NaN where it is not there."""
+    """(points,) or (points, lines) what is drawn, of each point; NaN where it is not there."""
     if name == "multiplier":
-        return np.hypot(file["multiplier_re"], file["multiplier_im"]).max(axis=1)
+        return joined.multipliers(file)
     if name in ("impact_speed", "margin"):
         found = file["min_impact_speed" if name == "impact_speed" else name].astype(float)
         return np.where(np.isfinite(found), found, np.nan)
@@ -67,14 +69,21 @@ def values_of(file: FlatFile, name: str) -> np.ndarray:
 def _label(name: str) -> str:
     labels = {
         "impact_speed": "smallest impact speed",
-        "multiplier": "largest $|\\mu|$ of the multipliers",
+        "multiplier": "modulus $|\\mu|$ of the multipliers",
         "margin": "distance of the nearest turning point from its stop",
     }
     return labels.get(name) or f"{symbol(name)} at $t = 0$"
 
 
-def _lines(ax, file: FlatFile, values: list[np.ndarray]) -> None:
-    """Each branch between its special points, where alone its stability changes."""
+def _sections(file: FlatFile) -> list[str]:
+    return [name for name in state(MOST_MASSES) if name in file.arrays]
+
+
+def _lines(ax, file: FlatFile, values: list[np.ndarray], together: np.ndarray) -> None:
+    """Each branch between its special points, where alone its stability changes.
+
+    together : (points,) whether a point is joined with the next one
+    """
     p, special, begin = file[file.parameters[0]], file["special_point"], 0
     for number, size in enumerate(file["branch_row_size"].tolist()):
         inner = special[(special > begin) & (special < begin + size - 1)]
@@ -83,8 +92,10 @@ def _lines(ax, file: FlatFile, values: list[np.ndarray]) -> None:
             stable = file["unstable"][(one + other) // 2] == 0
             style = {"ls": "-", "lw": 1.2} if stable else {"ls": DASHES, "lw": 0.7}
             style["color"], style["gid"] = LINES[number % len(LINES)], "stable" if stable else "unstable"
+            gaps = np.flatnonzero(~together[one:other]) + 1
             for y in values[number]:
-                ax.plot(p[line], y[one - begin : other + 1 - begin], **style)
+                shown = y[one - begin : other + 1 - begin]
+                ax.plot(*(np.insert(part, gaps, np.nan) for part in (p[line], shown)), **style)
         begin += size
 
 
@@ -92,7 +103,7 @@ def _drawn(file: FlatFile, name: str, values: np.ndarray, all_sections: bool) ->
     """Of each branch what is drawn, (lines, its points): over a sweep all section states, mirror images among them."""
     ends = np.cumsum(file["branch_row_size"])[:-1]
     if not all_sections:
-        return [part[None] for part in np.split(values, ends)]
+        return [part.reshape(len(part), -1).T for part in np.split(values, ends)]
     sizes, counts = file["branch_row_size"], file["branch_sections"]
     parts = np.split(file[f"section_{name}"], np.cumsum(sizes * counts)[:-1])
     return [part.reshape(-1, count).T for part, count in zip(parts, counts, strict=True)]
@@ -102,6 +113,9 @@ def _marks(ax, file: FlatFile, values: np.ndarray) -> None:
     """Special points, with the labels of those that stand alone."""
     x = file["special_value"][:, 0]
     y = values[_places(file)]
+    if y.ndim == 2:
+        kinds = file.types()
+        y = np.array([joined.at_circle(m, kind in ON_CIRCLE) for m, kind in zip(y, kinds, strict=True)])
     width, height = (np.ptp(one[np.isfinite(one)]) or 1.0 for one in (file[file.parameters[0]], values))
     labelled = []
     for kind, at_x, at_y in zip(file.types(), x, y, strict=True):
