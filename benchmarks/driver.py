@@ -175,7 +175,7 @@ def text(data: dict) -> str:
             table(header, shares),
             f"A plane of {points:,} points, a period each, two threads: {wall:.0f} s, peak memory {peak / 1e6:.0f} MB, "
             f"file {size / 1e6:.0f} MB.\n",
-            "4000 x 4000 points, 16 random starts each, 3906 periods: the rate of one core measured here on 400 of "
+            "4000 x 4000 points, 16 random starts each, 3906 periods: the rate of one core measured here on some of "
             "the plane's own orbits, with the share above that Dask leaves to kernels, gives hours on so many cores "
             "(were those as fast):\n",
             table(("observed", "periods", "ns a period", *(f"{n} cores" for n in CORES)), planes),

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import compile_time
 import driver
+import estimates
 import floor
 import masses
 import scaling
@@ -18,7 +19,7 @@ import versions
 import work_precision
 from book import GOAL_HEADER, Goal, arguments, machine, section, table
 
-ROOMS = (speed, work_precision, floor, masses, scaling, driver, compile_time)
+ROOMS = (speed, work_precision, floor, masses, scaling, driver, estimates, compile_time)
 
 
 def beside(checkout: Path, quick: bool) -> tuple[str, list[Goal]]:

@@ -11,6 +11,7 @@ from support.oscillators import CHAIN, PAPER
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic import long_orbits
+from vibro_sweep.analysis.periodic.solution import equations_for
 
 
 @pytest.mark.parametrize("system", [PAPER, CHAIN])
@@ -31,6 +32,39 @@ def test_sparse_equations_are_the_dense_ones(system, count):
         found = long_orbits.sign_and_log_det(e, solution.sides, solution.u, motion, mu)
         assert found[0] == sign * np.sign(states)
         assert found[1] == pytest.approx(size + np.log(abs(states)), abs=1e-8)
+
+
+@pytest.mark.parametrize("name", ["R", "b", "omega"])
+@pytest.mark.parametrize("system", [PAPER, CHAIN])
+def test_flights_leave_the_residual_of_the_sums(system, name):
+    """Beside an orbit of 160 impacts, where nothing vanishes; and the slopes of all unknowns on it."""
+    solution = repeated(vs.periodic_orbit(system, itinerary="LR"), 80)
+    q = solution.family.linear
+    e, sides = equations_for(solution, q, solution.family.derivative(name)), solution.sides
+    assert long_orbits.is_sparse(e, sides)
+    u = solution.u * (1 + 1e-4 * np.random.default_rng(1).normal(size=solution.size))
+    for one, other in zip(long_orbits.residual(e, sides, u), e.residual(sides, u), strict=True):
+        assert one == pytest.approx(other, rel=1e-10, abs=1e-10 * np.abs(other).max())
+    _, J, Fp, motion = e.evaluate(sides, solution.u)
+    exact = np.linalg.solve(J, -Fp)
+    assert long_orbits.slopes(e, sides, solution.u) == pytest.approx(exact, rel=1e-6, abs=1e-8 * np.abs(exact).max())
+    rng = np.random.default_rng(2)
+    column, row = rng.normal(size=2 * solution.K), rng.normal(size=2 * solution.K + 1)
+    inverse = np.linalg.inv(np.vstack([np.column_stack([J, column]), row]))
+    found = long_orbits.influence(e, sides, solution.u, motion, column, row)
+    assert found == pytest.approx(inverse[-1], rel=1e-7, abs=1e-9 * np.abs(inverse[-1]).max())
+
+
+def test_chatter_is_left_to_the_sums(monkeypatch):
+    """Where impacts follow each other at once, differences of states would lose the digits that the sums keep."""
+    solution = repeated(vs.periodic_orbit(PAPER, itinerary="LR"), 80)
+    e, sides, u = solution.equations, solution.sides, solution.u.copy()
+    monkeypatch.setattr(type(e), "fly", None)
+    chatter = (1, *sides[1:])
+    chatter = (*chatter[:2], chatter[1], *chatter[3:])
+    u[2] = u[1] + 1e-9
+    for one, other in zip(long_orbits.residual(e, chatter, u), e.residual(chatter, u), strict=True):
+        assert np.array_equal(one, other)
 
 
 def test_long_orbit_is_followed_like_the_short_one():

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from vibro_sweep.analysis.periodic import long_orbits
 from vibro_sweep.analysis.periodic.impulse_equations import Equations
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
@@ -139,5 +140,7 @@ def slopes(e: Equations, solution: Solution) -> np.ndarray:
     """du/dp of an orbit that is not at a fold."""
     if solution.size == 0:
         return np.zeros(0)
+    if not solution.rests and long_orbits.is_sparse(e, solution.sides):
+        return long_orbits.slopes(e, solution.sides, solution.u)
     _, J, Fp, _ = e.evaluate(solution.sides, solution.u)
     return -np.linalg.solve(J, Fp)

@@ -16,7 +16,7 @@ from vibro_sweep.analysis.periodic.impulse_equations import (
     moves_stops_only,
     moves_stops_straight,
 )
-from vibro_sweep.analysis.periodic.long_orbits import influence, is_sparse, sign_and_log_det, solve_bordered
+from vibro_sweep.analysis.periodic.long_orbits import influence, is_sparse, residual, sign_and_log_det, solve_bordered
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.engine.impulses import across
 from vibro_sweep.engine.impulses.across import MOST_CORRECTIONS
@@ -185,7 +185,7 @@ class Walk:
                 e = self.equations(float(x[-1] * self.scale[-1]))
                 u = x[:-1] * self.scale[:-1]
                 if sparse:
-                    F, Fp, motion = e.residual(self.start.sides, u)
+                    F, Fp, motion = residual(e, self.start.sides, u)
                     rows = Fp[:, None] * self.scale[-1]
                 else:
                     F, J, Fp, motion = e.evaluate(self.start.sides, u)

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.impulse_equations import Equations, flow
+from vibro_sweep.analysis.periodic.impulse_equations import Equations, flow, moves_stops_only
 from vibro_sweep.analysis.periodic.media import still_medium
-from vibro_sweep.engine.impulses import branch, flights
+from vibro_sweep.engine.impulses import branch, equations, flights
 from vibro_sweep.engine.impulses.places import Steps, new_place, new_work
 
 if TYPE_CHECKING:
@@ -50,6 +50,34 @@ def newton(e: Equations, sides, u, states) -> tuple[np.ndarray, float] | None:
         return None
     change = max(np.abs(work.change_t[0]).max() / e.P, np.abs(work.change_jump[0]).max() / speed)
     return np.concatenate([place.t, place.D]), float(change)
+
+
+def residual(e: Equations, sides, u):
+    """`Equations.residual`, where the parameter moves stops and restitutions only: from flight to flight.
+
+    Sums over all impacts at each impact take seconds for thousands of them. In chatter they hold more digits, and at
+    R = 0 a flight does not begin with what the unknowns say: there they are kept.
+    """
+    contacts = e.contacts(sides)
+    t, D, gain = u[: len(sides)], u[len(sides) :], contacts[:, equations.GAIN]
+    again = contacts[1:, equations.STOP] == contacts[:-1, equations.STOP]
+    short = np.any(again & (np.diff(t) < equations.SHORT * e.train.width))
+    if short or not np.all(gain > 1) or (e.slope is not None and not moves_stops_only(e.slope)):
+        return e.residual(sides, u)
+    states, B = e.fly(sides, u)[0], flow(e.q).B
+    N, rates = (len(B) - 3) // 2, states @ B.T
+    v = states[:, N]
+    F = np.concatenate([states[:, 0] - contacts[:, equations.STOP], D + gain * v])
+    Fp = np.concatenate([-contacts[:, equations.STOP_SLOPE], contacts[:, equations.GAIN_SLOPE] * v])
+    return F, Fp, np.stack([v, rates[:, N], rates @ B[N]], axis=1)
+
+
+def slopes(e: Equations, sides, u) -> np.ndarray:
+    """du/dp (2K,) of an orbit that is not at a fold."""
+    K = len(sides)
+    _, Fp, motion = residual(e, sides, u)
+    axis = np.append(np.zeros(2 * K), 1.0)  # the parameter moves by 1
+    return solve_bordered(e, sides, u, motion, Fp, axis, np.zeros(2 * K), 1.0)[:-1]
 
 
 def extended(e: Equations, sides, u, motion, mu: int, column=None, row=None) -> "csc_array":

@@ -66,7 +66,10 @@ class Solution:
     @cached_property
     def motion(self) -> np.ndarray:
         """(K, 3) gap velocity, acceleration and jerk before each impact."""
-        return self.equations.residual(self.sides, self.u)[2]
+        e = self.equations
+        if not self.rests and long_orbits.is_sparse(e, self.sides):
+            return long_orbits.residual(e, self.sides, self.u)[2]
+        return e.residual(self.sides, self.u)[2]
 
     @cached_property
     def _flights(self):
