@@ -67,6 +67,19 @@ def test_chatter_is_left_to_the_sums(monkeypatch):
         assert np.array_equal(one, other)
 
 
+def test_the_critical_direction_of_a_long_orbit():
+    """A pitchfork of the paper's oscillator, written out: J(1) of 81 half orbits is singular as J(-1) of one is."""
+    orbit = vs.periodic_orbit(PAPER.replace(b=3.892819435563419), itinerary="LR")
+    solution = repeated(orbit, 61)
+    e, sides, u, motion = solution.equations, solution.sides, solution.u, solution.motion
+    assert long_orbits.is_sparse(e, sides)
+    scale = np.abs(np.random.default_rng(4).normal(1, 0.1, 2 * solution.K))
+    _, sizes, rows = np.linalg.svd(e.linearised(1, sides, u, motion) * scale)
+    assert sizes[-1] < 1e-8 * sizes[-2]
+    found = long_orbits.critical_direction(e, sides, u, motion, 1, scale)
+    assert abs(found @ rows[-1]) == pytest.approx(1, abs=1e-9)
+
+
 def test_long_orbit_is_followed_like_the_short_one():
     """61 periods of the one-sided orbit written out: each of them is what the short orbit is."""
     short = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")

@@ -8,6 +8,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.special import SpecialPoint, slopes
 from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.periodic.long_orbits import critical_direction, is_sparse
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 
 AMPLITUDE = 1e-3  # of a branch that is born, in the units of a walk
@@ -28,11 +29,13 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
     name, value = next(iter(special.parameters.items()))
     K, rests = parent.K, len(parent.rests)
     size = 2 * K + rests
-    J = parent.equations.linearised(-1, parent.sides, parent.u, parent.motion)[:size, :size]
-    twice = doubled(parent)
+    e, sides, twice = parent.equations, parent.sides, doubled(parent)
     walk = Walk(twice, name, max(abs(value), 1e-3))
     scale = np.concatenate([walk.scale[:K], walk.scale[2 * K : 3 * K], walk.scale[4 * K : 4 * K + rests]])
-    critical = np.linalg.svd(J * scale)[2][-1]
+    if not rests and is_sparse(e, sides):
+        critical = critical_direction(e, sides, parent.u, parent.motion, -1, scale)
+    else:
+        critical = np.linalg.svd(e.linearised(-1, sides, parent.u, parent.motion)[:size, :size] * scale)[2][-1]
     dt, dD, de = critical[:K], critical[K : 2 * K], critical[2 * K :]
     normal = np.zeros(len(walk.scale))
     normal[: 2 * size] = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])

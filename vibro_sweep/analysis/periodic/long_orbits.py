@@ -126,9 +126,9 @@ def extended(e: Equations, sides, u, motion, mu: int, column=None, row=None) -> 
     return csc_array((np.concatenate(values), indices), shape=(size, size))
 
 
-def solve_bordered(e: Equations, sides, u, motion, column, row, F, last: float) -> np.ndarray:
-    """Solution (2K + 1,) of [J column; row] x = [F; last], with J = J(1)."""
-    lu, places = _bordered(e, sides, u, motion, column, row)
+def solve_bordered(e: Equations, sides, u, motion, column, row, F, last: float, mu: int = 1) -> np.ndarray:
+    """Solution (2K + 1,) of [J column; row] x = [F; last], with J = J(mu)."""
+    lu, places = _bordered(e, sides, u, motion, column, row, mu)
     right = np.zeros(lu.shape[0])
     right[places] = np.append(F, last)
     return lu.solve(right)[places]
@@ -142,12 +142,21 @@ def influence(e: Equations, sides, u, motion, column, row) -> np.ndarray:
     return lu.solve(axis, "T")[places]
 
 
-def _bordered(e: Equations, sides, u, motion, column, row):
+def critical_direction(e: Equations, sides, u, motion, mu: int, scale) -> np.ndarray:
+    """(2K,) of length 1 in units `scale`: what a singular J(mu) takes to zero."""
+    nothing, column, row = np.zeros(2 * len(sides)), np.ones(2 * len(sides)), 1 / scale
+    for _ in range(2):  # first across any direction, which may lie badly, then across the one that is found
+        found = solve_bordered(e, sides, u, motion, column, np.append(row, 0.0), nothing, 1.0, mu)[:-1] / scale
+        row = found / np.linalg.norm(found) / scale
+    return found / np.linalg.norm(found)
+
+
+def _bordered(e: Equations, sides, u, motion, column, row, mu: int = 1):
     """The factors of [J column; row] with the states as unknowns, and where the dense system's unknowns are."""
     from scipy.sparse.linalg import splu
 
     K = len(sides)
-    matrix = extended(e, sides, u, motion, 1, column, row)
+    matrix = extended(e, sides, u, motion, mu, column, row)
     m = (matrix.shape[0] - 1) // K
     try:
         lu = splu(matrix)
