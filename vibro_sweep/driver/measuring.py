@@ -2,8 +2,8 @@
 
 It does not grow with the periods alone: an orbit has tables to be filled, and a record to be looked through. So orbits
 are computed from beginning to end where that takes a moment, and otherwise over two lengths, of which only the
-difference is multiplied. Seconds are CPU time of the thread, which does not pass while other processes run; short calls
-are made twice, and the less counts: the first one allocates, and fills the processor's cache.
+difference is multiplied, after each has been measured twice. Seconds are CPU time of the thread, which does not pass
+while other processes run.
 """
 
 import math
@@ -24,7 +24,7 @@ GROWN = 1.5  # so many times longer than the shorter one the longer of two measu
 LONGER = 4  # times as many periods, or places, in the next measurement
 SAME = 1.1  # times longer than the one before: a measurement in which periods do not count yet
 AT_ONCE = 0.1  # seconds of the first period, up to which more than one orbit is measured
-SHORT = 1.0  # seconds of a call below which it is made twice
+SHORT = 1.0  # seconds of a measurement that is made twice, at most
 EASY = 1e9  # forcing frequency
 
 
@@ -69,12 +69,15 @@ def orbit_cost(scene: Scene, width: int) -> OrbitCost:
     total = scene.transient + scene.record
     sample = _affordable(scene, width)
     before, now = None, _measured(scene, sample)
-    while now.periods < total and (before is None or now.seconds < max(MEASURED, GROWN * before.seconds)):
-        tables_alone = before is not None and now.seconds < SAME * before.seconds
-        longer = LONGER**2 if tables_alone else LONGER
-        sample = sample._replace(periods=min(longer * now.periods, total))
+    while now.periods < total:
+        if before is not None and _is_longer(now, before):
+            before, now = _again(before), _again(now)
+            if _is_longer(now, before):
+                break
+        quick = now.seconds < MEASURED / LONGER or (before is not None and now.seconds < SAME * before.seconds)
+        sample = sample._replace(periods=min((LONGER**2 if quick else LONGER) * now.periods, total))
         before, now = now, _measured(scene, sample)
-    while now.periods == total and now.seconds < MEASURED:
+    while now.periods == total and now.seconds < MEASURED / 2:
         sample = sample._replace(places=LONGER * sample.places)
         more = _measured(scene, sample)
         if more.orbits == now.orbits:  # all that there are
@@ -82,29 +85,37 @@ def orbit_cost(scene: Scene, width: int) -> OrbitCost:
         now = more
     seconds = now.each
     if now.periods < total:
-        slope = max(0.0, now.each - before.each) / (now.periods - before.periods)
-        seconds += slope * (total - now.periods)
+        seconds += max(0.0, now.each - before.each) / (now.periods - before.periods) * (total - now.periods)
     return OrbitCost(seconds, now.sample, now.seconds)
+
+
+def _is_longer(now: _Measured, before: _Measured) -> bool:
+    """Whether periods, and not what a call takes in any case, make the longer of two measurements long."""
+    return now.seconds >= max(MEASURED, GROWN * before.seconds)
 
 
 def _affordable(scene: Scene, width: int) -> _Sample:
     """The orbits to begin with: eight side by side at each place, or fewer where their tables take long."""
     alone = _Sample(1, 1, 1, 1)
-    first = _measured(scene, alone).seconds
+    first = _measured(scene, alone)
     starts = min(scene.start.count, LANES)
     beside = min(width, math.ceil(LANES / starts))
-    for sample in (_Sample(PLACES, beside, starts, 1), _Sample(PLACES, 1, 1, 1)):
-        if first * sample.places * sample.beside * sample.starts <= AT_ONCE:
-            return sample
-    return alone
+    many = PLACES * beside * starts
+    if first.seconds * many > AT_ONCE:
+        first = _again(first)
+    if first.seconds * many <= AT_ONCE:
+        return _Sample(PLACES, beside, starts, 1)
+    return _Sample(PLACES, 1, 1, 1) if first.seconds * PLACES <= AT_ONCE else alone
 
 
 def _measured(scene: Scene, sample: _Sample) -> _Measured:
     made = _blocks(scene, sample)
-    orbits, seconds = _timed(made)
-    if seconds < SHORT:
-        seconds = min(seconds, _timed(made)[1])
-    return _Measured(made, sample.periods, orbits, seconds)
+    return _Measured(made, sample.periods, *_timed(made))
+
+
+def _again(one: _Measured) -> _Measured:
+    """The less of two measurements: the first call allocates, and fills the processor's cache."""
+    return one._replace(seconds=min(one.seconds, _timed(one.sample)[1])) if one.seconds < SHORT else one
 
 
 def _timed(made: list[Block]) -> tuple[int, float]:
