@@ -3,6 +3,7 @@
 import numpy as np
 
 from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.periodic.long_orbits import is_sparse, residual
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import Family
 
@@ -68,7 +69,14 @@ def _neighbour(walk: Walk, length: float) -> Point | None:
     """The point of the branch at a distance from the start, also where that is a fold."""
     start = walk.start
     e = walk.equations(walk.family.numbers[walk.name])
-    _, J, Fp, _ = e.evaluate(start.sides, start.u)
-    tangent = np.linalg.svd(np.hstack([J, Fp[:, None]]) * walk.scale)[2][-1]
     x = np.append(start.u, walk.family.numbers[walk.name]) / walk.scale
+    if not start.rests and is_sparse(e, start.sides):
+        _, Fp, motion = residual(e, start.sides, start.u)
+        tangent, zeros = np.ones(len(x)), np.zeros(len(x) - 1)
+        for _ in range(2):  # first across any direction, which may lie badly
+            tangent = walk.solve(e, x, Fp[:, None] * walk.scale[-1], motion, tangent, zeros, 1.0)
+            tangent /= np.linalg.norm(tangent)
+    else:
+        _, J, Fp, _ = e.evaluate(start.sides, start.u)
+        tangent = np.linalg.svd(np.hstack([J, Fp[:, None]]) * walk.scale)[2][-1]
     return walk.correct(x + length * tangent, tangent, tangent)
