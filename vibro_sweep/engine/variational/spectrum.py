@@ -1,4 +1,8 @@
-"""Lyapunov spectra: from the growth of tangent vectors over a record, or over one period of a periodic orbit."""
+"""Lyapunov spectra: from the growth of tangent vectors over a record, or over one period of a periodic orbit.
+
+Where nothing struck, tangent vectors obey the same linear equations as free motion, and the exponents are the real
+parts of its roots. This is used where a mode keeps its energy: its exponents are exactly 0, which averages are not.
+"""
 
 import math
 
@@ -87,6 +91,33 @@ def period_of(e, o):
 
 
 @jit
+def is_free(o, plan):
+    """Whether the orbit met no stop in what was counted last."""
+    struck = o.impacts_left + o.impacts_right > 0 or o.rest_time > 0.0 or o.resting != 0.0
+    return plan.order == 0 and not struck
+
+
+@jit
+def keeps_energy(q):
+    """Whether free motion has a root on the imaginary axis."""
+    for j in range(len(q.frame_square)):
+        eta = -q.frame_series[1, 2 * j]
+        if eta == 0.0 or q.frame_square[j] + eta * eta == 0.0:
+            return True
+    return False
+
+
+@jit
+def real_parts(q, spectrum):
+    """Those of the roots -eta +- sqrt(-square) of free motion."""
+    for j in range(len(q.frame_square)):
+        eta, square = -q.frame_series[1, 2 * j], q.frame_square[j]
+        fast = eta + math.sqrt(max(-square, 0.0))
+        slow = (square + eta * eta) / fast if square < 0.0 else eta
+        spectrum[2 * j], spectrum[2 * j + 1] = 0.0 - slow, 0.0 - fast
+
+
+@jit
 def close_spectrum(e, o, w, plan, point, result):
     """Floquet exponents in place of averages; the residual of the sum rule, which is part of the last one's error."""
     q, spectrum, error = e.flights.oscillator[o.table, 0], result.lyapunov, result.lyapunov_error
@@ -95,6 +126,12 @@ def close_spectrum(e, o, w, plan, point, result):
     if result.period > 0:
         for j in range(len(spectrum)):
             spectrum[j], error[j] = result.log_multiplier[j] / time, result.log_error[j] / time
+    if is_free(o, plan) and keeps_energy(q) and spectrum[0] == spectrum[0]:
+        real_parts(q, spectrum)
+        for j in range(len(spectrum)):
+            error[j] = 0.0
+    for j in range(len(spectrum)):
+        error[j] += point.rounding if spectrum[j] > -np.inf else 0.0
     exact = divergence_of(point, w.paper, w.other) + o.log_volume / time
     if plan.order == 0:
         left, right = o.impacts_left, o.impacts_right
