@@ -14,7 +14,8 @@ from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.status import NOT_SETTLED, stands
 
-MORE = 4000  # forcing periods: the exponents' errors are then some 5 times smaller than in a record of 200
+WARM_UP = 200  # forcing periods, for tangent vectors
+MORE = 3800  # forcing periods after them: the exponents' errors are then some 4 times smaller than in a record of 200
 MUCH_MORE = 40_000  # for those that are still on their way: the last ones of a window take longest
 LONGEST = 1000  # period that is looked at; a longer one counts as not settled
 AT_ONCE = 256  # orbits
@@ -30,7 +31,7 @@ class Continued(NamedTuple):
 
 
 def continued(row: Row, i: np.ndarray, j: np.ndarray) -> Continued:
-    """The orbits of a row at the values i of the starts j, `MORE` periods on, and where they need it `MUCH_MORE`."""
+    """The orbits of a row at the values i of the starts j, some periods on: `MORE`, where they need it `MUCH_MORE`."""
     found = _continued(row, i, row.states[i, j], 0)
     slow = np.flatnonzero(found.reason == _CODES["not_settled"])
     if len(slow):
@@ -49,7 +50,7 @@ def _continued(row: Row, i: np.ndarray, states: np.ndarray, transient: int) -> C
 def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Continued:
     table, kind = table_of(row.system, {row.parameter: row.values[i]}, frames=True)
     n, states = len(i), 2 * kind.masses
-    plan = plan_of(transient, MORE, lyapunov=True)._replace(impacts=True)
+    plan = plan_of(transient + WARM_UP, MORE, lyapunov=True)._replace(impacts=True)
     results, nothing = new_results((1, n), kind.masses), np.empty((1, n, 0))
     starts = np.stack([begin, begin])
     workspace = points.new_workspace(plan, int(table["cells"].max()), 0, min(n, LANES), kind)

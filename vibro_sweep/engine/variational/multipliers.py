@@ -9,16 +9,18 @@ factors, in which nothing large hides anything small. The monodromy matrix has t
 a graded matrix, whose small eigenvalues are found as precisely as its large ones (graded.py). Nothing is supposed of
 their moduli: some of them, or all, may be of like size.
 
-Their error has two parts: rounding, also that of an impact at a low speed v, on which rounding of the state acts like
-1/v^2, times the condition of each; and what the second of two periods changes, times r/(1 - r) with r the largest
-modulus, since the orbit itself still comes nearer to the periodic one by r a period.
+Their error has three parts: rounding, also that of an impact at a low speed v, on which rounding of the state acts like
+1/v^2, times the condition of each; what the second of two periods changes, times r/(1 - r) with r the largest modulus,
+since the orbit itself still comes nearer to the periodic one by r a period; and what follows from rounding of the orbit,
+which a third period shows. It begins beside the orbit, in the direction that grows most: the first row of D U Q_0^T.
 """
 
 import math
 
 import numpy as np
 
-from vibro_sweep.engine.motion.orbits import reset_counts
+from vibro_sweep.engine.motion.orbits import place, reset_counts
+from vibro_sweep.engine.motion.together import flight_of, stops_of
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
@@ -29,17 +31,21 @@ from vibro_sweep.model import status
 RANGE = 350.0  # of the logarithms of growths that one matrix of floats can hold, and products of two of its entries
 APART = 37.0  # logarithm of what is beyond rounding
 NEAREST = 1e-6  # to 1, that r is taken to be at most: REPEAT tells no slower approach apart
+FIRST, AGAIN, BESIDE = range(3)  # the periods
+ASIDE = 1e4  # units of rounding of the state by which the third begins beside the orbit, and
+OFF = 16.0  # by how many of them rounding moves an orbit over a period
 
 
 @jit
-def begin_period(e, w, results):
-    """Set periodic orbits out for exactly one more period of each."""
+def begin_period(e, w, results, which):
+    """Set periodic orbits out for exactly one more period of each; beside the orbit all but those at rest on a stop."""
     t = e.tangent[0]
     t.collected = True
     for i in range(len(results)):
         o, result = e.orbits[i], results[i]
-        o.periods = result.period if o.status == status.OK and result.period > 0 else 0
-        if o.periods > 0:
+        goes = o.status == status.OK and result.period > 0 and not (which == BESIDE and o.resting != 0.0)
+        o.periods = result.period if goes else 0
+        if goes:
             for _ in range(2):  # where rounding alone was left of a vector, it is not at right angles to the others yet
                 orthonormalise(t, only(i))
             tangent.sort_vectors(t, i)
@@ -47,24 +53,61 @@ def begin_period(e, w, results):
                 w.axes[i, m] = t.Z[m, i]
             for n in range(len(t.shear)):
                 t.shear[n, i] = 0.0
+            if which == BESIDE:
+                step_aside(e, o, w.beside[i, 0], w.state)
             reset_counts(o)
             tangent.start_record(t, i)
 
 
+@jit
+def step_aside(e, o, direction, state):
+    """Move the orbit by `ASIDE` units of its rounding in this direction of the frame of tangent vectors."""
+    t, f, size = e.tangent[0], flight_of(e, o), len(direction)
+    omega, stops, largest, longest = f.oscillator[0].omega, stops_of(o), 0.0, 0.0
+    for m in range(size):
+        unit = omega if m % 2 == 1 else 1.0
+        state[m] = 0.0
+        for j in range(size):
+            state[m] += t.from_frame[size * m + j, o.lane] * direction[j]
+        largest, longest = max(largest, abs(o.X[m]) / unit), max(longest, abs(state[m]) / unit)
+    step = 2.0**-52 * ASIDE * largest / longest if longest > 0.0 else 0.0
+    if not stops.left <= o.X[0] + step * state[0] <= stops.right:
+        step = -step
+    for m in range(size):
+        state[m] = o.X[m] + step * state[m]
+    state[0] = min(max(state[0], stops.left), stops.right)
+    place(o, f.nodes, stops, 0, 0.0, state)
+
+
 @aside
-def read_period(e, w, results, again):
-    """The multipliers over the period that has just passed; `again`: with what has changed since the one before."""
+def read_period(e, w, results, which):
+    """The multipliers over the first of three periods; with their errors over the next; and what the last adds."""
     t = e.tangent[0]
     t.collected = False
     for i in range(len(results)):
         o, result = e.orbits[i], results[i]
+        if which == BESIDE and o.periods > 0 and o.status != status.OK:
+            o.status, o.periods = status.OK, 0  # the orbit itself has not failed
         if o.periods > 0 and o.status == status.OK:
             omega, largest = e.flights.oscillator[o.table, 0].omega, o.largest[0]
             for j in range(2, len(t.growth), 2):
                 largest = max(largest, o.largest[j])
             graze = 2.0**-52 * (omega * largest / o.slowest) ** 2
-            if not find_multipliers(t, i, w.growth[i, 0], w.axes[i], w.matrix, graze, result, again):
+            found = find_multipliers(t, i, w.growth[i, 0], w.axes[i], w.matrix, graze, result, w.beside[i], which)
+            if not (found or which == BESIDE):
                 o.status = status.NOT_FINITE
+            if which == AGAIN:
+                find_direction(t, i, w.axes[i], w.beside[i, 0])
+
+
+@jit
+def find_direction(t, i, axes, direction):
+    """The first row of U Q_0^T."""
+    size = len(direction)
+    for m in range(size):
+        direction[m] = axes[size * m]
+        for k in range(1, size):
+            direction[m] += t.shear[place_of(size, 0, k), i] * axes[size * m + k]
 
 
 @jit
@@ -93,18 +136,22 @@ def end_of_group(logs, first):
 
 
 @jit
-def find_multipliers(t, i, logs, axes, matrix, graze, result, again):
+def find_multipliers(t, i, logs, axes, matrix, graze, result, beside, which):
     """Multipliers by falling modulus, of a pair that with Im > 0 first; the logarithms of their moduli, with errors.
 
-    graze: what rounding of the state does to the slowest impact, relative to its speed.
+    graze: what rounding of the state does to the slowest impact, relative to its speed. beside (3, 2 N): scratch.
     """
     first = 0
     while first < len(logs):
         last = end_of_group(logs, first)
         if last == first:
             last = len(logs)
-            lose(result, first)
-        elif not find_group(t, i, logs, first, last, axes, matrix, graze, result, again):
+            if which != BESIDE:
+                lose(result, first)
+        elif which == BESIDE:
+            if not widen_group(t, i, logs, first, last, axes, matrix, result, beside):
+                return False
+        elif not find_group(t, i, logs, first, last, axes, matrix, graze, result, which == AGAIN):
             return False
         first = last
     return True
@@ -123,15 +170,10 @@ def find_group(t, i, logs, first, last, axes, matrix, graze, result, again):
     """The multipliers of the directions first .. last - 1."""
     re, im = result.multiplier_re[first:last], result.multiplier_im[first:last]
     log, error = result.log_multiplier[first:last], result.log_error[first:last]
-    count, size, scale = last - first, 0.0, logs[first]
-    for j in range(count):
-        for k in range(count):
-            entry = product(t, i, axes, first + j, first + k)
-            size += entry * entry
-            matrix[j, k] = entry * math.exp(0.5 * (logs[first + j] + logs[first + k]) - scale)
-    if not (size < np.inf and eigenvalues(matrix, count, re, im)):
+    count, scale = last - first, logs[first]
+    size = solve_group(t, i, logs, first, count, axes, matrix, re, im)
+    if not size < np.inf:
         return False
-    sort_moduli(re, im, count)
     for j in range(count):
         before = log[j]
         log[j] = math.log(math.hypot(re[j], im[j])) + scale
@@ -145,6 +187,44 @@ def find_group(t, i, logs, first, last, axes, matrix, graze, result, again):
         re[j] *= math.exp(scale)
         im[j] *= math.exp(scale)
         result.multiplier_error[first + j] = error[j] * math.hypot(re[j], im[j])
+    return True
+
+
+@jit
+def solve_group(t, i, logs, first, count, axes, matrix, re, im):
+    """The multipliers of so many directions, in units of exp(logs[first]). Returns the square of the matrix's size."""
+    size = 0.0
+    for j in range(count):
+        for k in range(count):
+            entry = product(t, i, axes, first + j, first + k)
+            size += entry * entry
+            matrix[j, k] = entry * math.exp(0.5 * (logs[first + j] + logs[first + k]) - logs[first])
+    if not (size < np.inf and eigenvalues(matrix, count, re, im)):
+        return np.inf
+    sort_moduli(re, im, count)
+    return size
+
+
+@jit
+def widen_group(t, i, logs, first, last, axes, matrix, result, beside):
+    """Add what rounding of the orbit does to these multipliers: it moves the section point by (1 - M)^-1 times itself."""
+    re, im, count = beside[1], beside[2], last - first
+    if not solve_group(t, i, logs, first, count, axes, matrix, re, im) < np.inf:
+        return False
+    apart = 1.0
+    for j in range(len(result.multiplier_re)):
+        apart = min(apart, math.hypot(1.0 - result.multiplier_re[j], result.multiplier_im[j]))
+    part = OFF / ASIDE / max(apart, NEAREST)
+    for j in range(count):
+        n = first + j
+        old, modulus = result.log_multiplier[n], math.hypot(result.multiplier_re[n], result.multiplier_im[n])
+        if old == -np.inf or re[j] == im[j] == 0.0:
+            continue
+        unit = math.exp(logs[first] - old)
+        result.log_error[n] += part * abs(math.log(unit * math.hypot(re[j], im[j])))
+        if modulus > 0.0:
+            x, y = result.multiplier_re[n] / modulus, result.multiplier_im[n] / modulus
+            result.multiplier_error[n] += part * modulus * math.hypot(unit * re[j] - x, unit * im[j] - y)
     return True
 
 

@@ -54,7 +54,7 @@ def keep_at_rest(e, i):
 
 
 @jit
-def time_average(growth, periods, T, spectrum, error):
+def time_average(growth, periods, warm_up, T, spectrum, error):
     """Exponents after so many periods, and their standard errors from the scatter over parts; growth as in `carry`.
 
     Neighbouring parts are joined until `BATCHES` are left. Where the scatter of one part is like that of the part
@@ -81,6 +81,24 @@ def time_average(growth, periods, T, spectrum, error):
             error[i] = math.sqrt(scatter / (batches * (batches - 1.0)) * (1.0 + c) / (1.0 - c)) + rounding
         if spectrum[i] == -np.inf:
             error[i] = 0.0
+    add_shear(periods, warm_up, T, spectrum, error)
+
+
+@jit
+def add_shear(periods, warm_up, T, spectrum, error):
+    """Let the errors include what the growth of vectors by shear would give.
+
+    In regular motion without losses a vector grows like the time t, and another shrinks like 1/t. Over a record after a
+    warm-up that seems to be an exponent +-ln(1 + record/warm-up)/(record T), and the parts do not scatter about it.
+    """
+    largest = spectrum[0]
+    for i in range(1, len(spectrum)):
+        largest = max(largest, spectrum[i])
+    if largest > 0.0:
+        shear = math.log(1.0 + periods / max(warm_up, 1)) / (periods * T)
+        for i in range(len(spectrum)):
+            if spectrum[i] > -np.inf:
+                error[i] = math.sqrt(error[i] * error[i] + shear * shear)
 
 
 @jit
