@@ -23,7 +23,6 @@ from vibro_sweep.engine.variational.spectrum import (
     time_average,
 )
 from vibro_sweep.model import status
-from vibro_sweep.model.exponents import CERTAIN
 
 LEAST_RECORD = 50  # periods from which on a record can tell whether its orbit has settled
 TRANSIENT, WARM_UP, RECORD, FLOQUET, PHASES = 0, 1, 2, 3, 6
@@ -132,8 +131,8 @@ def close(e, w, plan, points, results):
         if o.status != status.NOT_COMPUTED:
             result.status = o.status
         if plan.states and o.status == status.OK:
-            states, known = w.section[i], (result.lyapunov, result.lyapunov_error)
-            settled = has_settled(result.period, states, o, w.axes[i], *known, CERTAIN)
+            states = w.section[i]
+            settled = has_settled(result.period, states, o, w.axes[i], result.lyapunov, result.lyapunov_error)
             result.period = max(result.period, 0)
             if settled and plan.attractors:
                 keep_averages(states, period_of(e, o), REPEAT, o, result)

@@ -9,6 +9,7 @@ and where the distance after the found period itself does not fade, the points o
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.model import exponents
 
 REPEAT = 1e-6  # section points this near to each other, relative to their size, are the same point
 ROUNDING = 1e-10  # relative distance that rounding may leave of it
@@ -18,6 +19,8 @@ WINDOWS = 5
 NEAR = 1e-2  # relative distance below which an orbit approaches a periodic one as a linear map would
 UNEVEN = 1.3  # by which the distance may rise from window to window all the same
 NOT_CONVERGING = -1
+
+sign_of = jit(exponents.sign_of)
 
 
 @jit
@@ -135,15 +138,15 @@ def is_approaching(section, size):
 
 
 @jit
-def has_settled(period, section, o, size, spectrum, error, certain):
+def has_settled(period, section, o, size, spectrum, error):
     """Whether an orbit is on its attractor, and not on its way there.
 
-    Without a period, one that contracts (lambda_1 is below zero by `certain` of its errors) is on its way, or its
-    period is too long to be found; and one that repeats itself in the end, or comes steadily nearer to doing so, too.
+    Without a period, one that contracts (lambda_1 is certainly below zero) is on its way, or its period is too long to
+    be found; and one that repeats itself in the end, or comes steadily nearer to doing so, too.
     spectrum: NaN where unknown.
     """
     if period != 0:
         return True
-    if spectrum[0] < -certain * error[0]:
+    if sign_of(spectrum[0], error[0]) < 0:
         return False
     return find_period(section[-(len(section) // 4) :], o, size) <= 0 and not is_approaching(section, size)

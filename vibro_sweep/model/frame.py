@@ -138,7 +138,7 @@ def _planes(A: np.ndarray, contact: Contact) -> _Planes:
     drifting = np.zeros((len(A), free.shape[1]))
     drifting[1::2] = free / root[:, None]
     nothing = np.zeros(free.shape[1])
-    rounding = max(rounding, *moved(nothing, nothing, of_dampings[idle] / 2, of_squares[idle]))
+    rounding = max([rounding, *moved(nothing, nothing, of_dampings[idle] / 2, of_squares[idle])])
     return _Planes(np.append(nothing, eta), np.append(nothing, square), np.hstack([drifting, seconds]), rounding)
 
 

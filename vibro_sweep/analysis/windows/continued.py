@@ -11,7 +11,7 @@ from vibro_sweep.engine.one_system import plan_of
 from vibro_sweep.engine.records import new_results
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model.bifurcations import REASONS
-from vibro_sweep.model.exponents import CERTAIN
+from vibro_sweep.model.exponents import sign_of
 from vibro_sweep.model.status import NOT_SETTLED, stands
 
 WARM_UP = 200  # forcing periods, for tangent vectors
@@ -63,14 +63,15 @@ def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Con
 
 def _reasons(found: np.ndarray) -> np.ndarray:
     """Codes of `REASONS`: 0 for periodic orbits."""
-    largest, error = found["lyapunov"][:, 0], CERTAIN * found["lyapunov_error"][:, 0]
+    largest = found["lyapunov"][:, 0]
+    sign = sign_of(largest, found["lyapunov_error"][:, 0])
     chosen = [
         (~stands(found["status"]), "failed"),
         ((found["period"] > 0) & (found["period"] <= LONGEST), "in_a_window"),
-        (largest - error > 0, "chaos"),
+        (sign > 0, "chaos"),
         (found["sticking_time"] > 0, "sticking"),
-        ((found["status"] == NOT_SETTLED) | (largest + error < 0), "not_settled"),
-        (np.abs(largest) <= error, "quasi_periodic"),
+        ((found["status"] == NOT_SETTLED) | (sign < 0), "not_settled"),
+        (np.isfinite(largest), "quasi_periodic"),
     ]
     conditions, names = zip(*chosen, strict=True)
     return np.select(conditions, [_CODES[name] for name in names], _CODES["not_settled"]).astype(np.int8)

@@ -11,8 +11,9 @@ their moduli: some of them, or all, may be of like size.
 
 Their error has three parts: rounding, also that of an impact at a low speed v, on which rounding of the state acts like
 1/v^2, times the condition of each; what the second of two periods changes, times r/(1 - r) with r the largest modulus,
-since the orbit itself still comes nearer to the periodic one by r a period; and what follows from rounding of the orbit,
-which a third period shows. It begins beside the orbit, in the direction that grows most: the first row of D U Q_0^T.
+since the orbit itself still comes nearer to the periodic one by r a period; and what rounding of the orbit does to
+them. That is seen in a third period, which begins beside the orbit in the direction that grows most: the first row of
+U Q_0^T.
 """
 
 import math
@@ -33,7 +34,7 @@ APART = 37.0  # logarithm of what is beyond rounding
 NEAREST = 1e-6  # to 1, that r is taken to be at most: REPEAT tells no slower approach apart
 FIRST, AGAIN, BESIDE = range(3)  # the periods
 ASIDE = 1e4  # units of rounding of the state by which the third begins beside the orbit, and
-OFF = 16.0  # by how many of them rounding moves an orbit over a period
+OFF = 16.0  # by how many of them rounding at one impact moves the orbit; that at others has nothing to do with it
 
 
 @jit
@@ -93,7 +94,8 @@ def read_period(e, w, results, which):
             for j in range(2, len(t.growth), 2):
                 largest = max(largest, o.largest[j])
             graze = 2.0**-52 * (omega * largest / o.slowest) ** 2
-            found = find_multipliers(t, i, w.growth[i, 0], w.axes[i], w.matrix, graze, result, w.beside[i], which)
+            off = OFF / ASIDE * math.sqrt(1.0 + o.impacts_left + o.impacts_right)
+            found = find_multipliers(t, i, w.growth[i, 0], w.axes[i], w.matrix, graze, off, result, w.beside[i], which)
             if not (found or which == BESIDE):
                 o.status = status.NOT_FINITE
             if which == AGAIN:
@@ -136,10 +138,11 @@ def end_of_group(logs, first):
 
 
 @jit
-def find_multipliers(t, i, logs, axes, matrix, graze, result, beside, which):
+def find_multipliers(t, i, logs, axes, matrix, graze, off, result, beside, which):
     """Multipliers by falling modulus, of a pair that with Im > 0 first; the logarithms of their moduli, with errors.
 
-    graze: what rounding of the state does to the slowest impact, relative to its speed. beside (3, 2 N): scratch.
+    graze: what rounding of the state does to the slowest impact, relative to its speed. off: rounding of the orbit over
+    how far it began beside it. beside (3, 2 N): scratch.
     """
     first = 0
     while first < len(logs):
@@ -149,7 +152,7 @@ def find_multipliers(t, i, logs, axes, matrix, graze, result, beside, which):
             if which != BESIDE:
                 lose(result, first)
         elif which == BESIDE:
-            if not widen_group(t, i, logs, first, last, axes, matrix, result, beside):
+            if not widen_group(t, i, logs, first, last, axes, matrix, result, beside, off):
                 return False
         elif not find_group(t, i, logs, first, last, axes, matrix, graze, result, which == AGAIN):
             return False
@@ -206,15 +209,18 @@ def solve_group(t, i, logs, first, count, axes, matrix, re, im):
 
 
 @jit
-def widen_group(t, i, logs, first, last, axes, matrix, result, beside):
-    """Add what rounding of the orbit does to these multipliers: it moves the section point by (1 - M)^-1 times itself."""
+def widen_group(t, i, logs, first, last, axes, matrix, result, beside, off):
+    """Add what rounding of the orbit does to these multipliers; off: as of `find_multipliers`.
+
+    What happens in a period moves the section point of the periodic orbit by (1 - M)^-1 times as much.
+    """
     re, im, count = beside[1], beside[2], last - first
     if not solve_group(t, i, logs, first, count, axes, matrix, re, im) < np.inf:
         return False
     apart = 1.0
     for j in range(len(result.multiplier_re)):
         apart = min(apart, math.hypot(1.0 - result.multiplier_re[j], result.multiplier_im[j]))
-    part = OFF / ASIDE / max(apart, NEAREST)
+    part = off / max(apart, NEAREST)
     for j in range(count):
         n = first + j
         old, modulus = result.log_multiplier[n], math.hypot(result.multiplier_re[n], result.multiplier_im[n])

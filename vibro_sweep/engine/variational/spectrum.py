@@ -86,10 +86,11 @@ def time_average(growth, periods, warm_up, T, spectrum, error):
 
 @jit
 def add_shear(periods, warm_up, T, spectrum, error):
-    """Let the errors include what the growth of vectors by shear would give.
+    """No error is smaller than what the growth of vectors by shear would give.
 
     In regular motion without losses a vector grows like the time t, and another shrinks like 1/t. Over a record after a
-    warm-up that seems to be an exponent +-ln(1 + record/warm-up)/(record T), and the parts do not scatter about it.
+    warm-up that seems to be an exponent +-ln(1 + record/warm-up)/(record T), and the parts hardly scatter about it. The
+    errors of chaos are larger.
     """
     largest = spectrum[0]
     for i in range(1, len(spectrum)):
@@ -98,7 +99,7 @@ def add_shear(periods, warm_up, T, spectrum, error):
         shear = math.log(1.0 + periods / max(warm_up, 1)) / (periods * T)
         for i in range(len(spectrum)):
             if spectrum[i] > -np.inf:
-                error[i] = math.sqrt(error[i] * error[i] + shear * shear)
+                error[i] = max(error[i], shear)
 
 
 @jit
