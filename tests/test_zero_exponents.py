@@ -47,7 +47,7 @@ def test_without_losses_no_exponent_differs_from_zero():
 
 def test_periods_of_a_sweep_without_impacts_are_all_one():
     ball = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.59, zeta=0.01, F=1, omega=0.9, b=1e3, tau=0, R=0.6)
-    sweep = vs.sweep(ball, {"omega": np.linspace(0.5, 1.5, 16)}, observe=("section", "lyapunov"))
+    sweep = vs.sweep(ball, {"omega": np.linspace(0.5, 1.5, 16)}, transient=1300, observe=["section", "lyapunov"])
     assert (sweep.period == 1).all() and (sweep.lyapunov[:, 0] == 0).all() and (sweep.status == 0).all()
 
 
@@ -92,10 +92,8 @@ def of_free_motion(seeds, most):
 def test_free_motion(count, most, capsys):
     tried, compared, two, five, zeros, wrong = of_free_motion(range(count), most)
     with capsys.disabled():
-        print(
-            f"\nfree motion: {tried} oscillators, {compared} exponents, beyond 2 and 5 errors {two}, {five}; ", end=""
-        )
-        print(f"{zeros} exponents 0, not exactly 0: {wrong}")
+        print(f"\nfree motion: {tried} oscillators, {compared} exponents, beyond 2 and 5 errors {two}, {five}")
+        print(f"of these {zeros} are 0, found not exactly 0: {wrong}")
     assert compared > 1.5 * count and zeros > count / 2 and five == wrong == 0 and two <= 0.03 * compared
 
 
@@ -114,8 +112,8 @@ def test_regular_motion_without_losses(count, capsys):
         tried, compared = tried + 1, compared + len(zero)
         chaotic += len(found) == 4 and sign_of(found[0], found.error[0]) > 0
     with capsys.disabled():
-        print(f"\nwithout losses: {tried} oscillators, {compared} numbers that are 0, beyond 2 and 5 errors ", end="")
-        print(f"{beyond[0]}, {beyond[1]}; {chaotic} of two masses chaotic")
+        print(f"\nwithout losses: {tried} oscillators, {chaotic} of two masses chaotic")
+        print(f"{compared} numbers that are 0, beyond 2 and 5 errors {beyond[0]}, {beyond[1]}")
     assert beyond[1] == 0 and beyond[0] <= 0.03 * compared
 
 
@@ -132,7 +130,7 @@ def scatter(running, T):
 
 @pytest.mark.parametrize("count", [3, *slow_cases(40), *soak(500)])
 def test_chaos_is_told_from_zero_as_well_as_by_the_scatter_alone(count, capsys):
-    """Orbits whose lambda_1 > 0 is certain from a record 100 times as long: how many a short one tells, and its error."""
+    """Of orbits whose lambda_1 > 0 is certain from a record 100 times as long."""
     certain = before = after = tried = seed = 0
     ratios = []
     while certain < count:
@@ -154,10 +152,8 @@ def test_chaos_is_told_from_zero_as_well_as_by_the_scatter_alone(count, capsys):
         before, after = before + (found > CERTAIN * alone[m]), after + (found > CERTAIN * error)
         ratios.append(error / alone[m])
     with capsys.disabled():
-        print(
-            f"\nchaos: {tried} oscillators, {certain} certain from the long record; significant by the scatter alone "
-        )
-        print(f"{before}, as stated {after}; median of the errors' ratio {np.median(ratios):.4f}")
+        print(f"\nchaos: {tried} oscillators, {certain} certain from the long record; significant by the scatter")
+        print(f"alone {before}, as stated {after}; median of the errors' ratio {np.median(ratios):.4f}")
     assert after >= before and np.median(ratios) <= 1.2
 
 

@@ -120,8 +120,7 @@ def is_free(o, plan):
 def keeps_energy(q):
     """Whether free motion has a root on the imaginary axis."""
     for j in range(len(q.frame_square)):
-        eta = -q.frame_series[1, 2 * j]
-        if eta == 0.0 or q.frame_square[j] + eta * eta == 0.0:
+        if -q.frame_series[1, 2 * j] == math.sqrt(max(-q.frame_square[j], 0.0)):
             return True
     return False
 
@@ -131,9 +130,11 @@ def real_parts(q, spectrum):
     """Those of the roots -eta +- sqrt(-square) of free motion."""
     for j in range(len(q.frame_square)):
         eta, square = -q.frame_series[1, 2 * j], q.frame_square[j]
-        fast = eta + math.sqrt(max(-square, 0.0))
-        slow = (square + eta * eta) / fast if square < 0.0 else eta
-        spectrum[2 * j], spectrum[2 * j + 1] = 0.0 - slow, 0.0 - fast
+        apart = math.sqrt(max(-square, 0.0))
+        slow = (square + eta * eta) / (eta + apart) if square < 0.0 else eta
+        if eta == apart:  # but for rounding of the product
+            slow = 0.0
+        spectrum[2 * j], spectrum[2 * j + 1] = 0.0 - slow, 0.0 - (eta + apart)
 
 
 @jit
