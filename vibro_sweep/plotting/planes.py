@@ -32,6 +32,7 @@ _OF_A_POINT = {one.name: one.label for one in VARIABLES if not one.dimensions}
 
 CURVES = {"b_star": DASHES, "b_right": DASHES, "b_left": ":"}
 ROOM = 4.5  # points (1/72 inch) around a period that is written into the plane
+LETTERS = 140  # in a line of the legend
 COARSE = 400  # cells a side among which places for the periods are sought
 
 
@@ -117,7 +118,10 @@ def _legend(fig, grid, gaps, more):
     if gaps:
         handles.append(Patch(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="////", label="no number"))
     if handles:
-        fig.legend(handles=handles, loc="outside lower center", ncols=min(4 if more else 3, len(handles)))
+        columns = min(4 if more else 3, len(handles))
+        while columns > 1 and sum(sorted(len(handle.get_label()) for handle in handles)[-columns:]) > LETTERS:
+            columns -= 1
+        fig.legend(handles=handles, loc="outside lower center", ncols=columns)
 
 
 def _maps(result):
