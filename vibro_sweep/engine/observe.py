@@ -8,7 +8,7 @@ import numpy as np
 
 from vibro_sweep.engine.averages import keep_averages
 from vibro_sweep.engine.motion.orbits import reset_counts
-from vibro_sweep.engine.periods import REPEAT, find_period, has_settled
+from vibro_sweep.engine.periods import REPEAT, ROUNDING, find_period, has_settled
 from vibro_sweep.engine.point_tables import to_masses
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import LANES
@@ -18,6 +18,8 @@ from vibro_sweep.engine.variational.spectrum import (
     begin_warm_up,
     close_spectrum,
     end_warm_up,
+    is_free,
+    keeps_energy,
     period_of,
     periods_read,
     time_average,
@@ -96,12 +98,22 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
                 section[n, j] = states[n, j]
     result.resting = o.resting
     if plan.states:
-        result.period = find_period(states, o, w.axes[o.lane])
+        result.period = find_period(states, o, w.axes[o.lane], rounding_of(e, o, plan))
     for n in range(len(running)):
         for j in range(numbers):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
     if plan.lyapunov:
         time_average(growth, plan.record, plan.warm_up, T, result.lyapunov, result.lyapunov_error)
+
+
+@jit
+def rounding_of(e, o, plan):
+    """How far from each other rounding may leave points that repeat themselves.
+
+    A free mode that keeps its energy adds up what rounding gives it, and drifts.
+    """
+    drifts = is_free(o, plan) and keeps_energy(e.flights.oscillator[o.table, 0])
+    return REPEAT if drifts else ROUNDING
 
 
 @jit
@@ -132,7 +144,9 @@ def close(e, w, plan, points, results):
             result.status = o.status
         if plan.states and o.status == status.OK:
             states = w.section[i]
-            settled = has_settled(result.period, states, o, w.axes[i], result.lyapunov, result.lyapunov_error)
+            settled = has_settled(
+                result.period, states, o, w.axes[i], rounding_of(e, o, plan), result.lyapunov, result.lyapunov_error
+            )
             result.period = max(result.period, 0)
             if settled and plan.attractors:
                 keep_averages(states, period_of(e, o), REPEAT, o, result)

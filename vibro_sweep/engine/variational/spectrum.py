@@ -119,8 +119,8 @@ def is_free(o, plan):
 @jit
 def keeps_energy(q):
     """Whether free motion has a root on the imaginary axis."""
-    for j in range(len(q.frame_square)):
-        if -q.frame_series[1, 2 * j] == math.sqrt(max(-q.frame_square[j], 0.0)):
+    for j in range(len(q.frame_square)):  # without a frame there are no scales
+        if -q.frame_series[1, 2 * j] == math.sqrt(max(-q.frame_square[j], 0.0)) and q.frame_scale[j] > 0.0:
             return True
     return False
 
