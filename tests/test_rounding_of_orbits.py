@@ -1,4 +1,4 @@
-"""Errors of exponents and multipliers of periodic orbits include the rounding of the orbit itself: against 30 digits."""
+"""Errors of exponents and multipliers of periodic orbits include the rounding of the orbit: against 30 digits."""
 
 import numpy as np
 import pytest

@@ -154,7 +154,7 @@ def find_multipliers(t, i, logs, axes, matrix, graze, off, result, beside, which
         elif which == BESIDE:
             if not widen_group(t, i, logs, first, last, axes, matrix, result, beside, off):
                 return False
-        elif not find_group(t, i, logs, first, last, axes, matrix, graze, result, which == AGAIN):
+        elif not find_group(t, i, logs, first, last, axes, matrix, graze, result, beside, which == AGAIN):
             return False
         first = last
     return True
@@ -169,9 +169,9 @@ def lose(result, first):
 
 
 @jit
-def find_group(t, i, logs, first, last, axes, matrix, graze, result, again):
+def find_group(t, i, logs, first, last, axes, matrix, graze, result, beside, again):
     """The multipliers of the directions first .. last - 1."""
-    re, im = result.multiplier_re[first:last], result.multiplier_im[first:last]
+    re, im, turned = beside[1], beside[2], result.multiplier_error[first:last]
     log, error = result.log_multiplier[first:last], result.log_error[first:last]
     count, scale = last - first, logs[first]
     size = solve_group(t, i, logs, first, count, axes, matrix, re, im)
@@ -181,16 +181,27 @@ def find_group(t, i, logs, first, last, axes, matrix, graze, result, again):
         before = log[j]
         log[j] = math.log(math.hypot(re[j], im[j])) + scale
         error[j] = abs(log[j] - before) if again else 0.0
+        turned[j] = turn(re[j], im[j], result.multiplier_re[first + j], result.multiplier_im[first + j])
     if again:
         r = min(math.exp(result.log_multiplier[0]), 1.0 - NEAREST)
         for j in range(count):
             known = (graze + 2.0**-52 * CONDITION * math.sqrt(size)) * condition(re, im, count, j)
             error[j] = error[j] * max(1.0, r / (1.0 - r)) + min(known, math.sqrt(2.0**-52 * CONDITION))
+            turned[j] *= max(1.0, r / (1.0 - r))
     for j in range(count):
-        re[j] *= math.exp(scale)
-        im[j] *= math.exp(scale)
-        result.multiplier_error[first + j] = error[j] * math.hypot(re[j], im[j])
+        x, y = re[j] * math.exp(scale), im[j] * math.exp(scale)
+        result.multiplier_re[first + j], result.multiplier_im[first + j] = x, y
+        turned[j] = (error[j] + turned[j]) * math.hypot(x, y)
     return True
+
+
+@jit
+def turn(x, y, other_x, other_y):
+    """The angle, if it is small, between two complex numbers; 0 where one of them is 0."""
+    one, other = math.hypot(x, y), math.hypot(other_x, other_y)
+    if not (one > 0.0 and other > 0.0):
+        return 0.0
+    return math.hypot(x / one - other_x / other, y / one - other_y / other)
 
 
 @jit
