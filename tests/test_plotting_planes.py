@@ -2,12 +2,16 @@
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgba
 from support.oscillators import PAPER
 from support.pictures import image, write
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
 from vibro_sweep.cli import main
+from vibro_sweep.model.exponents import sign_of
+from vibro_sweep.plotting.style import NEUTRAL
+from vibro_sweep.store import describe
 
 
 def test_plane_shows_the_start_with_the_largest_exponent(plane):
@@ -35,17 +39,34 @@ def test_plane_colours_change_sign_at_zero_and_count_periods(plane):
     assert picture.get_array()[0, 3] == 13  # 40, beyond the colours
 
 
-def test_ticks_are_round_numbers(tmp_path):
+def test_one_unit_on_both_sides_of_zero(tmp_path):
     rng = np.random.default_rng(0)
     largest = np.concatenate([-0.0372 * rng.uniform(0, 1, 300), 0.0191 * rng.uniform(0, 1, 100)])
     spectrum = np.full((20, 20, 4), -0.1)
     spectrum[..., 0] = largest.reshape(20, 20)
     coordinates = {"b": np.arange(20.0), "R": np.linspace(0, 1, 20)}
     fig = plotting.figure(write(tmp_path / "p.h5", coordinates, {"lyapunov": spectrum}))
-    (bar,) = (ax for ax in fig.axes if ax.get_label() == "<colorbar>")
-    assert np.round(bar.get_xticks(), 6).tolist() == [-0.03, -0.02, -0.01, 0, 0.005, 0.01, 0.015]
-    told = [label.get_text().replace("\N{MINUS SIGN}", "-") for label in bar.get_xticklabels()]
-    assert told == ["-0.03", "-0.02", "-0.01", "0", "0.005", "0.01", "0.015"]
+    norm = image(fig.axes[0]).norm
+    assert norm(0.01) - 0.5 == pytest.approx(0.5 - norm(-0.01)) and 0.036 < norm.vmax == -norm.vmin < 0.0372
+
+
+def test_what_errors_do_not_tell_from_zero_has_the_neutral_colour(tmp_path):
+    """By the rule that kernels, windows and diagrams use, and nothing else, however small it is."""
+    spectrum, error = np.full((5, 2, 4), -0.1), np.zeros((5, 2, 4))
+    spectrum[..., 0] = np.transpose([[0.1, 0.01, 0.01, -0.01, -0.01], [1e-9, 0.0, -1e-9, 1e-9, -0.1]])
+    error[..., 0] = np.transpose([[0.0, 0.0051, 0.0049, 0.0051, 0.0049], [0.0, 0.0, 0.0, 1e-9, 0.0]])
+    coordinates = {"b": np.arange(5.0), "R": [0.1, 0.2]}
+    file = write(tmp_path / "p.h5", coordinates, {"lyapunov": spectrum, "lyapunov_error": error})
+    fig = plotting.figure(file)
+    picture = image(fig.axes[0])
+    colours = picture.cmap(picture.norm(picture.get_array()))
+    red_less_blue = np.sign(colours[..., 0] - colours[..., 2])
+    assert red_less_blue.tolist() == [[1, 0, 1, 0, -1], [1, 0, -1, 0, -1]]
+    assert (colours[red_less_blue == 0] == to_rgba(NEUTRAL)).all()
+    assert "within 2 standard errors of 0" in fig.legends[0].get_texts()[0].get_text()
+    signs = sign_of(spectrum[..., 0], error[..., 0])
+    assert (red_less_blue == signs.T).all()
+    assert "above zero by more than 2 errors: 3 of 10 orbits; not told from zero: 4" in describe(file)
 
 
 @pytest.mark.parametrize("size", [40, 1300])

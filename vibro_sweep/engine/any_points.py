@@ -71,6 +71,7 @@ def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
         point["root"], point["part"] = (np.stack([one.real, one.imag], -1) for one in (sums.roots, sums.parts))
     if frames and point["cells"] > 0:
         frame = frame_of(contact, q.omega)
+        point["rounding"] = frame.rounding
         point["frame_eta"], point["frame_square"], point["frame_scale"] = frame.eta, frame.square, frame.scale
         point["to_frame"], point["from_frame"] = frame.to, frame.back
     return point[()]

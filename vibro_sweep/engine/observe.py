@@ -1,32 +1,33 @@
 """What a scene observes of orbits: section points, their period, impacts, exponents.
 
 An orbit goes through phases: its transient, at the end of which tangent vectors warm up; the record; and, if it turns
-out to be periodic and exponents are wanted, twice one more period.
+out to be periodic and exponents are wanted, three times one more period, the last of them beside the orbit.
 """
 
 import numpy as np
 
 from vibro_sweep.engine.averages import keep_averages
 from vibro_sweep.engine.motion.orbits import reset_counts
-from vibro_sweep.engine.periods import REPEAT, find_period, has_settled
+from vibro_sweep.engine.periods import REPEAT, ROUNDING, find_period, has_settled
 from vibro_sweep.engine.point_tables import to_masses
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import put
-from vibro_sweep.engine.variational.multipliers import begin_period, read_period
+from vibro_sweep.engine.variational.multipliers import BESIDE, begin_period, read_period
 from vibro_sweep.engine.variational.spectrum import (
     begin_warm_up,
     close_spectrum,
     end_warm_up,
+    is_free,
+    keeps_energy,
     period_of,
     periods_read,
     time_average,
 )
 from vibro_sweep.model import status
-from vibro_sweep.model.exponents import CERTAIN
 
 LEAST_RECORD = 50  # periods from which on a record can tell whether its orbit has settled
-TRANSIENT, WARM_UP, RECORD, FLOQUET, PHASES = 0, 1, 2, 3, 5
+TRANSIENT, WARM_UP, RECORD, FLOQUET, PHASES = 0, 1, 2, 3, 6
 
 
 @aside
@@ -44,14 +45,14 @@ def begin_phase(e, w, plan, phase, results):
             put(e.orbits[i].largest, 0, 0.0)
             e.orbits[i].impacts_logged, e.orbits[i].log_side = 0, plan.section_side
         return plan.parts
-    if not plan.lyapunov:
+    if not plan.lyapunov or (plan.order > 0 and phase == FLOQUET + BESIDE):  # points of the map may be behind a stop
         return -1
     if phase == WARM_UP:
         begin_warm_up(e, len(results))
         set_out(e, plan.warm_up)
         return 0
     set_out(e, 0)
-    begin_period(e, w, results)
+    begin_period(e, w, results, phase - FLOQUET)
     return 1
 
 
@@ -72,7 +73,7 @@ def end_phase(e, w, plan, phase, points, results, sections, phases, running):
             if e.orbits[i].status == status.OK:
                 keep_record(e, w, plan, points[i], results[i], sections[i], phases[i], running[i], e.orbits[i])
     elif phase >= FLOQUET:
-        read_period(e, w, results, phase > FLOQUET)
+        read_period(e, w, results, phase - FLOQUET)
 
 
 @aside
@@ -97,12 +98,22 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
                 section[n, j] = states[n, j]
     result.resting = o.resting
     if plan.states:
-        result.period = find_period(states, o, w.axes[o.lane])
+        result.period = find_period(states, o, w.axes[o.lane], rounding_of(e, o, plan))
     for n in range(len(running)):
         for j in range(numbers):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
     if plan.lyapunov:
-        time_average(growth, plan.record, T, result.lyapunov, result.lyapunov_error)
+        time_average(growth, plan.record, plan.warm_up, T, result.lyapunov, result.lyapunov_error)
+
+
+@jit
+def rounding_of(e, o, plan):
+    """How far from each other rounding may leave points that repeat themselves.
+
+    A free mode that keeps its energy adds up what rounding gives it, and drifts.
+    """
+    drifts = is_free(o, plan) and keeps_energy(e.flights.oscillator[o.table, 0])
+    return REPEAT if drifts else ROUNDING
 
 
 @jit
@@ -132,8 +143,10 @@ def close(e, w, plan, points, results):
         if o.status != status.NOT_COMPUTED:
             result.status = o.status
         if plan.states and o.status == status.OK:
-            states, known = w.section[i], (result.lyapunov, result.lyapunov_error)
-            settled = has_settled(result.period, states, o, w.axes[i], *known, CERTAIN)
+            states = w.section[i]
+            settled = has_settled(
+                result.period, states, o, w.axes[i], rounding_of(e, o, plan), result.lyapunov, result.lyapunov_error
+            )
             result.period = max(result.period, 0)
             if settled and plan.attractors:
                 keep_averages(states, period_of(e, o), REPEAT, o, result)

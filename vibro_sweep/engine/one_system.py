@@ -13,6 +13,7 @@ from vibro_sweep.engine.tables.flight import Flight
 from vibro_sweep.engine.variational.spectrum import BATCHES
 from vibro_sweep.model import status
 from vibro_sweep.model.arguments import checked_state
+from vibro_sweep.model.frame import ROUNDING, moved
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.parameters import NAMES, ParameterError
@@ -47,6 +48,9 @@ def points_of(parameters: dict[str, np.ndarray], stops: str = "both") -> np.ndar
     few = {name: unrepeated(parameters[name]) for name in NAMES}
     psi, omega_squared = modes(few["mu_m"], few["mu_k"])
     result["psi"], result["omega_squared"] = psi, omega_squared
+    with np.errstate(all="ignore"):  # where there are no modes
+        eta = few["zeta"][..., None] * omega_squared
+        result["rounding"] = moved(eta, omega_squared - eta**2, ROUNDING * eta, ROUNDING * omega_squared).max(axis=-1)
     result["cells"] = cells.cells_needed(omega_squared, few["zeta"], few["omega"])
     offset, R = parameters.get("offset", 0.0), parameters["R"]
     result["stops"][..., 0] = offset - parameters["b"] if stops != "right" else -np.inf

@@ -9,15 +9,18 @@ and where the distance after the found period itself does not fade, the points o
 import numpy as np
 
 from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.model import exponents
 
 REPEAT = 1e-6  # section points this near to each other, relative to their size, are the same point
-ROUNDING = 1e-10  # relative distance that rounding may leave of it
+ROUNDING = 1e-10  # relative distance that rounding may leave of it, where motion forgets it
 FADED = 0.7  # part of the last distance that may be left in the end
 LEAST_WINDOW = 12  # points over which distances are averaged
 WINDOWS = 5
 NEAR = 1e-2  # relative distance below which an orbit approaches a periodic one as a linear map would
 UNEVEN = 1.3  # by which the distance may rise from window to window all the same
 NOT_CONVERGING = -1
+
+sign_of = jit(exponents.sign_of)
 
 
 @jit
@@ -74,11 +77,11 @@ def repeats(section, size, p, o):
 
 
 @jit
-def fades(section, size, d, p):
+def fades(section, size, d, p, rounding):
     """Whether the distance after d points fades away; points nearly repeat themselves after p, a multiple of d."""
     window = min(window_of(p), len(section) - d)
     after = window_distance(section, size, d, window, 2, 3, np.inf)
-    if after <= ROUNDING:
+    if after <= rounding:
         return True
     if len(section) - d - window < window // 4:  # too few points to tell
         return d == p
@@ -91,11 +94,11 @@ def fades(section, size, d, p):
 
 
 @jit
-def find_period(section, o, size):
+def find_period(section, o, size, rounding):
     """Least period of the points, (n, 2 N), of an orbit, up to half of them; 0 if there is none.
 
     `NOT_CONVERGING` where points seem to repeat themselves but do not come nearer to doing so. size: scratch, (2 N,) or
-    longer.
+    longer. rounding: distance that it may leave.
     """
     count, sizes, largest = len(section), o.largest, 0.0
     for i in range(section.shape[1]):
@@ -105,9 +108,9 @@ def find_period(section, o, size):
     for p in range(1, count // 2 + 1):
         if repeats(section, size, p, o):
             for d in range(1, p):
-                if p % d == 0 and fades(section, size, d, p):
+                if p % d == 0 and fades(section, size, d, p, rounding):
                     return d
-            return p if fades(section, size, p, p) else NOT_CONVERGING
+            return p if fades(section, size, p, p, rounding) else NOT_CONVERGING
     return 0
 
 
@@ -135,15 +138,15 @@ def is_approaching(section, size):
 
 
 @jit
-def has_settled(period, section, o, size, spectrum, error, certain):
+def has_settled(period, section, o, size, rounding, spectrum, error):
     """Whether an orbit is on its attractor, and not on its way there.
 
-    Without a period, one that contracts (lambda_1 is below zero by `certain` of its errors) is on its way, or its
-    period is too long to be found; and one that repeats itself in the end, or comes steadily nearer to doing so, too.
+    Without a period, one that contracts (lambda_1 is certainly below zero) is on its way, or its period is too long to
+    be found; and one that repeats itself in the end, or comes steadily nearer to doing so, too.
     spectrum: NaN where unknown.
     """
     if period != 0:
         return True
-    if spectrum[0] < -certain * error[0]:
+    if sign_of(spectrum[0], error[0]) < 0:
         return False
-    return find_period(section[-(len(section) // 4) :], o, size) <= 0 and not is_approaching(section, size)
+    return find_period(section[-(len(section) // 4) :], o, size, rounding) <= 0 and not is_approaching(section, size)

@@ -49,6 +49,7 @@ class Workspace(NamedTuple):
     growth: np.ndarray  # (LANES, parts, 2 N)
     state: np.ndarray  # (2 N,)
     axes: np.ndarray  # (LANES, 4 N^2)
+    beside: np.ndarray  # (LANES, 3, 2 N): of multipliers.py
     matrix: np.ndarray  # (2 N, 2 N)
     paper: series.Scratch | None  # or
     other: general.Scratch | None  # as in point_tables.py
@@ -66,6 +67,7 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((LANES, plan.parts, states)),
         np.empty(states),
         np.empty((LANES, states**2)),
+        np.empty((LANES, 3, states)),
         np.empty((states, states)),
         series.new_scratch() if kind.paper else None,
         None if kind.paper else general.new_scratch(kind.masses, kind.constant),

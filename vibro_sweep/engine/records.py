@@ -22,6 +22,7 @@ PAPER = Kind(2, False, True)
 POINT = np.dtype(
     [(name, float) for name in NAMES]
     + [("psi", float, (2, 2)), ("omega_squared", float, 2), ("cells", np.int64)]
+    + [("rounding", float)]  # how far rounding may have moved the real part of a root
     + [("stops", float, 4)]  # left, right, and the restitution of each
     + [("graze", float, 4)]  # the point at which the discontinuity mapping is expanded
 )
@@ -56,6 +57,7 @@ def point_of(kind: Kind) -> np.dtype:
             ("root", float, (2 * n + 3, 2)),  # real and imaginary parts
             ("part", float, (2 * n + 1, 2 * n + 3, 2)),
             ("begin", float, 2 * n),
+            ("rounding", float),  # how far rounding may have moved the real part of a root
             ("frame_eta", float, n),  # of tangent vectors (model/frame.py)
             ("frame_square", float, n),
             ("frame_scale", float, n),

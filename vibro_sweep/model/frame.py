@@ -9,6 +9,9 @@ With classical damping a plane is that of a mode. Otherwise it belongs to a comp
 e2 has no part in y1, so that the gap moves by the first number of each plane alone; only where such an e2 would be a
 vector of one root, as where a damper alone holds a mass, it has one. Planes that the contact does not see come first:
 tangent vectors begin as the vectors of the planes, in this order, and what a rest takes is taken from the last of them.
+
+What springs or dampers do in a mode is rounding where it lies below `ROUNDING` of the terms that it is the sum of
+(`_parts`). It is 0 then: a mode that nothing holds neither grows nor decays.
 """
 
 from typing import NamedTuple
@@ -18,10 +21,12 @@ import numpy as np
 from vibro_sweep.model.contact import Contact, flight_matrix
 
 CLASSICAL = 1e-13  # of the matrices: what may couple modes and be neglected
+ROUNDING = 2.0**-48  # of the terms of a sum: what rounding may leave of it, for each mass
 NO_PLANES = 1e10  # condition from which on coordinates that part what is not coupled are tried
 UNSEEN = 1e-10  # share of the gap in a plane, in the metric of the masses, that is none
 NO_EASE = 1e6  # condition from which on planes of real roots are tried whose e2 has a part in y1
-NO_ROOT = 1e-12  # of the largest singular value: that of a root 0
+MAY_BE_NONE = 1e-6  # of the largest root: one that may be 0
+NO_ROOT = 1e-12  # of the largest root: length of the first vector of a plane that is none
 SLOWEST = 1e-5  # of omega: a plane that turns more slowly has the scale of omega
 LEAST_SCALE = 1e-3  # of the rate of a plane: near critical damping it shears instead of turning, and any scale serves
 
@@ -32,17 +37,27 @@ class Frame(NamedTuple):
     eta: np.ndarray  # (N,)
     square: np.ndarray  # (N,)
     scale: np.ndarray  # (N,): g
+    rounding: float  # how far rounding may have moved the real part of a root
     to: np.ndarray  # (2 N, 2 N)
     back: np.ndarray  # (2 N, 2 N): its inverse
+
+
+class _Planes(NamedTuple):
+    eta: np.ndarray  # (N,)
+    square: np.ndarray  # (N,)
+    seconds: np.ndarray  # (2 N, N): e2
+    rounding: float
 
 
 def frame_of(contact: Contact, omega: float) -> Frame:
     """omega: a rate for planes that have none. `to` is NaN, and so are exponents, where roots cannot be parted."""
     A = flight_matrix(contact.stiffness, contact.damping)
-    planes = _modes(contact)
+    root = np.sqrt(contact.masses)
+    K, C = (_in_the_metric(contact, matrix) for matrix in (contact.stiffness, contact.damping))
+    planes = _modes(root, K, C)
     if planes is None:
-        planes = _planes(A, contact)
-    eta, square, seconds = planes
+        planes = _planes(A, root, K, C)
+    eta, square, seconds, rounding = planes
     order = np.argsort(np.abs(seconds[1]) * np.sqrt(contact.masses[0]) > UNSEEN, kind="stable")
     eta, square, seconds = eta[order], square[order], seconds[:, order]
     product = square + eta**2
@@ -52,52 +67,115 @@ def frame_of(contact: Contact, omega: float) -> Frame:
     back[:, 1::2] = seconds
     back[:, 0::2] = (A @ seconds + eta * seconds) / scale
     parted = np.linalg.cond(back) < NO_PLANES
-    return Frame(eta, square, scale, np.linalg.inv(back) if parted else np.full(back.shape, np.nan), back)
+    return Frame(eta, square, scale, rounding, np.linalg.inv(back) if parted else np.full(back.shape, np.nan), back)
 
 
-def _modes(contact: Contact):
+class _Matrix(NamedTuple):
+    """K or C in the metric of the masses, symmetric."""
+
+    values: np.ndarray  # (N, N)
+    terms: np.ndarray  # (N, N): sums of the moduli of the terms that each number is the sum of
+
+
+def _in_the_metric(contact: Contact, matrix: np.ndarray) -> _Matrix:
+    root, back = np.sqrt(contact.masses), np.abs(contact.back)
+    values = root[:, None] * matrix / root
+    if (contact.T == np.eye(len(root))).all():
+        return _Matrix(values, np.abs(values))
+    of_the_masses = contact.T.T @ (contact.masses[:, None] * matrix) @ contact.T
+    return _Matrix(values, back.T @ np.abs(of_the_masses) @ back / (root[:, None] * root))
+
+
+def _parts(vectors: np.ndarray, matrix: _Matrix) -> tuple[np.ndarray, np.ndarray]:
+    """What K or C does in each of the modes `vectors` (N, m), 0 where it is below its rounding; and its error."""
+    found = np.diag(vectors.T @ matrix.values @ vectors)
+    # vectors of length 1 have errors too
+    rounding = ROUNDING * len(vectors) * (_forms(np.abs(vectors), matrix.terms) + ROUNDING * matrix.terms.max())
+    kept = found > rounding
+    if kept.all():
+        return found, rounding
+    left = np.linalg.norm(matrix.values @ vectors, axis=0)  # an eigenvalue is no farther from 0
+    return np.where(kept, found, 0.0), np.where(kept, rounding, np.minimum(rounding, 4 * left))
+
+
+def _forms(x: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """x.matrix x of each column."""
+    return (x * (matrix @ x)).sum(axis=0)
+
+
+def _modes(root: np.ndarray, stiffness: _Matrix, damping: _Matrix) -> _Planes | None:
     """Planes of the modes, if damping is classical: K and C have common eigenvectors in the metric M."""
-    root = np.sqrt(contact.masses)
-    K, C = (root[:, None] * matrix / root for matrix in (contact.stiffness, contact.damping))
+    K, C = stiffness.values, damping.values
     sizes = [np.abs(matrix).max() or 1.0 for matrix in (K, C)]
     _, vectors = np.linalg.eigh((K / sizes[0] + K.T / sizes[0]) + 0.618 * (C / sizes[1] + C.T / sizes[1]))
     turned = [vectors.T @ matrix @ vectors for matrix in (K, C)]
     apart = max(np.abs(m - np.diag(np.diag(m))).max() / size for m, size in zip(turned, sizes, strict=True))
     if apart > CLASSICAL * len(K):
         return None
-    squares, eta = np.maximum(np.diag(turned[0]), 0), np.maximum(np.diag(turned[1]), 0) / 2
+    (squares, of_squares), (dampings, of_dampings) = (_parts(vectors, matrix) for matrix in (stiffness, damping))
+    eta = dampings / 2
     seconds = np.zeros((2 * len(K), len(K)))
     seconds[1::2] = vectors / root[:, None]
-    return eta, squares - eta**2, seconds
+    rounding = moved(eta, squares - eta**2, of_dampings / 2, of_squares)
+    return _Planes(eta, squares - eta**2, seconds, float(rounding.max(initial=0.0)))
 
 
-def _planes(A: np.ndarray, contact: Contact):
+def moved(eta: np.ndarray, square: np.ndarray, of_eta: np.ndarray, of_product: np.ndarray) -> np.ndarray:
+    """How far rounding of eta and of eta^2 + square moves the roots -eta +- sqrt(-square) along the real axis."""
+    apart = np.sqrt(np.maximum(-square, 0.0))
+    more = np.maximum(2 * eta * of_eta + of_product - np.maximum(square, 0.0), 0.0)  # of apart^2
+    return of_eta + np.divide(more, apart + np.sqrt(apart**2 + more), where=more > 0, out=np.zeros(more.shape))
+
+
+def _planes(A: np.ndarray, root: np.ndarray, K: _Matrix, C: _Matrix) -> _Planes:
     """Planes of pairs of roots, whatever the damping.
 
     Modes with neither stiffness nor damping are taken apart first: their two roots 0 have one eigenvector only.
     """
-    root = np.sqrt(contact.masses)
-    K, C = (root[:, None] * matrix / root for matrix in (contact.stiffness, contact.damping))
-    together = sum((matrix + matrix.T) / (np.abs(matrix).max() or 1.0) for matrix in (K, C))
-    values, vectors = np.linalg.eigh(together)
-    idle = values <= CLASSICAL * len(K) * values[-1]
+    together = sum((matrix + matrix.T) / (np.abs(matrix).max() or 1.0) for matrix in (K.values, C.values))
+    vectors = np.linalg.eigh(together)[1]
+    (squares, of_squares), (dampings, of_dampings) = (_parts(vectors, matrix) for matrix in (K, C))
+    idle = (squares == 0) & (dampings == 0)
+    free, others = vectors[:, idle], vectors[:, ~idle]
     if not idle.any():
-        condition, planes = _pairs(A, np.eye(len(A)), np.eye(len(A)), np.repeat(root, 2))
+        condition, planes = _pairs(A, np.eye(len(A)), np.eye(len(A)), np.repeat(root, 2), others, K, C)
         if condition < NO_PLANES:
             return planes
-    free, others = vectors[:, idle], vectors[:, ~idle]
     to, back = np.kron(others.T * root, np.eye(2)), np.kron(others / root[:, None], np.eye(2))
-    _, (eta, square, seconds) = _pairs(A, to, back, np.repeat(root, 2))
+    _, (eta, square, seconds, rounding) = _pairs(A, to, back, np.repeat(root, 2), others, K, C)
     drifting = np.zeros((len(A), free.shape[1]))
     drifting[1::2] = free / root[:, None]
     nothing = np.zeros(free.shape[1])
-    return np.append(nothing, eta), np.append(nothing, square), np.hstack([drifting, seconds])
+    rounding = max([rounding, *moved(nothing, nothing, of_dampings[idle] / 2, of_squares[idle])])
+    return _Planes(np.append(nothing, eta), np.append(nothing, square), np.hstack([drifting, seconds]), rounding)
 
 
-def _pairs(A: np.ndarray, to: np.ndarray, back: np.ndarray, root: np.ndarray):
-    """(condition, planes) of pairs of roots in the space of `back`. root: square roots of masses, (2 N,)."""
-    roots, vectors = _roots(to @ A @ back)
+def _moved(roots: np.ndarray, x: np.ndarray, K: _Matrix, C: _Matrix) -> np.ndarray:
+    """How far rounding may have moved each of the roots r with these shapes x (N, m).
+
+    From (r^2 + C r + K) x = 0: x.(2 r + C)x dr = -x.(dC r + dK)x, and dr^2 in place of 2 r dr where two roots meet.
+    """
+    size, moduli = np.abs(x), np.abs(roots)
+    lengths = np.sum(size**2, axis=0)
+    terms = moduli**2 * lengths + moduli * _forms(size, C.terms) + _forms(size, K.terms)
+    changes = ROUNDING * len(x) * terms
+    slopes = np.abs(2 * roots * (x * x).sum(axis=0) + _forms(x, C.values))
+    return np.divide(changes, np.maximum(slopes, np.sqrt(changes * lengths)), where=changes > 0, out=0 * changes)
+
+
+def _pairs(
+    A: np.ndarray, to: np.ndarray, back: np.ndarray, root: np.ndarray, space: np.ndarray, K: _Matrix, C: _Matrix
+):
+    """(condition, planes) of pairs of roots in the space of `back`, that of these modes (N, m).
+
+    root: square roots of masses, (2 N,)
+    """
+    roots, vectors = _roots(to @ A @ back, space, K)
     vectors = back @ vectors
+    rounding = _moved(roots, vectors[0::2] * root[::2, None], K, C)
+    roots = np.where(np.abs(roots.real) > rounding, roots, 1j * roots.imag)
+    rounding = float(rounding.max())
+    fastest = np.abs(roots).max()
     upper, real = np.flatnonzero(roots.imag > 0), np.flatnonzero(roots.imag == 0)
     real = real[np.argsort(roots[real].real)]
     sizes = np.linalg.norm(vectors * root[:, None], axis=0)
@@ -111,26 +189,35 @@ def _pairs(A: np.ndarray, to: np.ndarray, back: np.ndarray, root: np.ndarray):
         firsts = A @ seconds + eta * seconds
         sizes = np.linalg.norm(firsts * root[:, None], axis=0)
         # two equal roots, as 0 of two damped free modes, make no plane
-        if np.any(sizes <= NO_ROOT * np.abs(roots).max()):
-            return np.inf, (eta, square, seconds)
+        if np.any(sizes <= NO_ROOT * fastest):
+            return np.inf, _Planes(eta, square, seconds, rounding)
         condition = np.linalg.cond(np.hstack([seconds, firsts / sizes]) * root[:, None])
-        return condition, (eta, square, seconds)
+        return condition, _Planes(eta, square, seconds, rounding)
 
-    ways = [np.concatenate([_partners(group, outwards) for group in groups]) for outwards in (False, True)]
+    both = (False, True) if len(real) > 2 else (False,)
+    ways = [np.concatenate([_partners(group, outwards) for group in groups]) for outwards in both]
     best = min((planes(partners) for partners in ways), key=lambda found: found[0])
     if best[0] > NO_EASE:
         best = min(best, planes(_partners(real, outwards=True), [1.0, 1.0]), key=lambda found: found[0])
     return best
 
 
-def _roots(A: np.ndarray):
-    """Roots and vectors. If the root 0 has several vectors, they are independent: free modes that only dampers hold."""
+def _roots(A: np.ndarray, space: np.ndarray, K: _Matrix):
+    """Roots and vectors of A, in a space of modes (N, m). Each mode that only dampers hold has one root 0.
+
+    Where there are several, their vectors are independent.
+    """
     roots, vectors = np.linalg.eig(A)
-    _, sizes, rows = np.linalg.svd(A)
-    free = rows[sizes <= NO_ROOT * sizes[0]].T
-    if free.shape[1] > 1:
-        least = np.argsort(np.abs(roots), kind="stable")[: free.shape[1]]
-        roots[least], vectors[:, least] = 0.0, free
+    order = np.argsort(np.abs(roots), kind="stable")
+    if abs(roots[order[0]]) > MAY_BE_NONE * abs(roots[order[-1]]):
+        return roots, vectors
+    modes = space @ np.linalg.eigh(space.T @ K.values @ space)[1]
+    free = np.count_nonzero(_parts(modes, K)[0] == 0)
+    if free and roots[order[:free]].imag.sum() != 0:  # rounding made it one of a pair
+        roots[order[free]] = roots[order[free]].real
+    roots[order[:free]] = 0.0
+    if free > 1:
+        vectors[:, order[:free]] = np.linalg.svd(A)[2][-free:].T
     return roots, vectors
 
 

@@ -150,7 +150,7 @@ _OF_ANY = (
     ),
     Variable(
         "lyapunov_error", _EXPONENTS, "error of the exponent",
-        "standard error of the exponents; for a periodic orbit the change over one more period", ("exponent",),
+        "standard error of the exponents; of a periodic orbit what rounding and one more period change", ("exponent",),
         attributes={"significant": CERTAIN},  # so many of these errors tell an exponent from zero
     ),
     Variable(

@@ -2,7 +2,7 @@
 
 import numpy as np
 from matplotlib import colormaps, patheffects
-from matplotlib.colors import BoundaryNorm, ListedColormap, TwoSlopeNorm
+from matplotlib.colors import BoundaryNorm, CenteredNorm, ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
@@ -13,10 +13,12 @@ from vibro_sweep.plotting.relative import axis_label, check_relative
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import (
     DASHES,
+    DIVERGING,
     FAINT,
     INK,
     LONGER,
     LONGEST,
+    NEUTRAL,
     NO_PERIOD,
     NOT_COMPUTED,
     PER_TIME,
@@ -30,6 +32,7 @@ _OF_A_POINT = {one.name: one.label for one in VARIABLES if not one.dimensions}
 
 CURVES = {"b_star": DASHES, "b_right": DASHES, "b_left": ":"}
 ROOM = 4.5  # points (1/72 inch) around a period that is written into the plane
+LETTERS = 140  # in a line of the legend
 COARSE = 400  # cells a side among which places for the periods are sought
 
 
@@ -73,6 +76,9 @@ def plane(result: Result, overlay=None, more=()):
             overlay(ax)
     grid[0].set_ylabel(axis_label(y_key, relative))
     shown = [line for line in grid[0].lines if line.get_gid() == "window end"]
+    if "lyapunov_error" in result and any(draw is _exponent and (values == 0).any() for draw, values in maps):
+        errors = f"{result.significant:.2g} standard errors"
+        shown.append(Patch(facecolor=NEUTRAL, edgecolor=FAINT, label=f"{exponent(1)} within {errors} of 0"))
     _legend(fig, grid, any(np.isnan(values).any() for _, values in maps), [*shown, *more])
     return fig
 
@@ -112,7 +118,10 @@ def _legend(fig, grid, gaps, more):
     if gaps:
         handles.append(Patch(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="////", label="no number"))
     if handles:
-        fig.legend(handles=handles, loc="outside lower center", ncols=min(4 if more else 3, len(handles)))
+        columns = min(4 if more else 3, len(handles))
+        while columns > 1 and sum(sorted(len(handle.get_label()) for handle in handles)[-columns:]) > LETTERS:
+            columns -= 1
+        fig.legend(handles=handles, loc="outside lower center", ncols=columns)
 
 
 def _maps(result):
@@ -120,7 +129,7 @@ def _maps(result):
     starts = len(result.starts)
     chosen = np.zeros((*result.done.shape[:-1], 1), int)
     note = f"; first of {starts} starts" if starts > 1 else ""
-    largest = result.array("lyapunov")[..., 0] if "lyapunov" in result else None
+    largest = result.largest_exponent() if "lyapunov" in result else None
     if largest is not None and starts > 1:
         chosen = np.argmax(np.where(np.isnan(largest), -np.inf, largest), axis=-1)[..., None]
         note = f"; of {starts} starts the one with the largest {exponent(1)}"
@@ -145,23 +154,13 @@ def _maps(result):
 
 
 def _exponent(ax, x, y, values):
-    finite = values.compressed()
-    low, high = np.quantile(finite, [0.005, 0.995]) if finite.size else (-1.0, 1.0)
-    # Each side of zero has a scale of its own: chaos is weak beside the damping of a periodic orbit.
-    tiny = 1e-6 * max(abs(low), abs(high), 1e-300)
-    norm = TwoSlopeNorm(0, min(low, -tiny), max(high, tiny))
-    image = _image(ax, x, y, values, cmap="RdBu_r", norm=norm)
-    bar = _bar(ax, image, f"{exponent(1)} {PER_TIME}; > 0: chaos", extend="both")
-    if -low > 1e-3 * high and high > -1e-3 * low:
-        bar.set_ticks([*_round(norm.vmin), 0, *_round(norm.vmax)])
-        bar.ax.xaxis.set_major_formatter("{x:.4g}")
-        bar.minorticks_off()
-
-
-def _round(end) -> list[float]:
-    """Some round numbers between zero and the end of a colour bar."""
-    ticks = MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(*sorted((0.0, end)))
-    return [tick for tick in ticks.tolist() if 0.2 <= tick / end <= 1]
+    """One unit on both sides of zero; 0 has the neutral colour, and no other value has."""
+    finite = np.abs(values[values != 0].compressed())
+    norm = CenteredNorm(0, max(np.quantile(finite, 0.995), 1e-300) if finite.size else 1.0)
+    least = 1.01 * norm.halfrange / DIVERGING.N
+    tinted = np.ma.where(values == 0, 0.0, np.copysign(np.maximum(np.abs(values), least), values))
+    image = _image(ax, x, y, tinted, cmap=DIVERGING, norm=norm)
+    _bar(ax, image, f"{exponent(1)} {PER_TIME}; > 0: chaos", extend="both")
 
 
 def _period(ax, x, y, values):

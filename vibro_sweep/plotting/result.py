@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibro_sweep.model.catalogue import OF_A_SYSTEM
+from vibro_sweep.model.exponents import CERTAIN, sign_of
 from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.plotting.look import Look
@@ -174,9 +175,17 @@ class Result:
 
     def is_chaotic(self) -> np.ndarray:
         """Where lambda_1 > 0 beyond its errors, if they are stored; bool, shape (*sweep, starts)."""
+        return self._sign_of_the_largest() > 0
+
+    def largest_exponent(self) -> np.ndarray:
+        """lambda_1, and 0 where it does not differ from that by more than its errors; shape (*sweep, starts)."""
         largest = self.array("lyapunov")[..., 0]
-        error = self.interval(self.array("lyapunov_error")[..., 0]) if "lyapunov_error" in self else 0.0
-        return largest - error > 0
+        return np.where((self._sign_of_the_largest() == 0) & np.isfinite(largest), 0.0, largest)
+
+    def _sign_of_the_largest(self) -> np.ndarray:
+        known = "lyapunov_error" in self
+        error, certain = (self.array("lyapunov_error")[..., 0], self.significant) if known else (0.0, CERTAIN)
+        return sign_of(self.array("lyapunov")[..., 0], error, certain)
 
     def model(self) -> str:
         """What was iterated, for a title: nothing where it is the oscillator itself."""

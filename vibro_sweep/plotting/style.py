@@ -2,7 +2,7 @@
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.colors import ListedColormap
+from matplotlib.colors import ListedColormap, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -37,6 +37,11 @@ FAINT = "#8a8a96"
 # Colours that stand side by side in a legend are told apart by readers with any colour vision (tests/test_colours.py).
 EXPONENTS = ("#b2182b", "#2f8fd8", "#1a1a5e", "#e0a030")  # lambda_1 .. lambda_4
 CHAOS = "#fbe3dc"  # the tint where lambda_1 > 0
+NEUTRAL = "#f7f7f7"  # where it does not differ from 0
+# below zero and above it, so that the palest colours still differ from the neutral one between them
+DIVERGING = ListedColormap(
+    [*colormaps["RdBu_r"](np.linspace(0, 0.42, 128)), to_rgba(NEUTRAL), *colormaps["RdBu_r"](np.linspace(0.58, 1, 128))]
+)
 SECTION = "#b2182b"  # states at t = 0 mod T
 IMPACT = "#2f8fd8"
 GRAZING = "#7b3294"

@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -11,6 +12,7 @@ import numpy as np
 
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.branch_file import CHART, WINDOWS
+from vibro_sweep.model.exponents import CERTAIN, sign_of
 from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STANDING, meaning
 from vibro_sweep.store import checks
 from vibro_sweep.store.arrays import Contents
@@ -21,7 +23,8 @@ from vibro_sweep.store.opening import StoreError, blocks_lost, is_flat, open_fil
 if TYPE_CHECKING:
     import xarray
 
-ACCURACY = ("status", "lyapunov", "lyapunov_residual", "contact_error", "min_impact_speed")  # what `describe` reads
+# what `describe` reads
+ACCURACY = ("status", "lyapunov", "lyapunov_error", "lyapunov_residual", "contact_error", "min_impact_speed")
 REMEDY = "`run --resume` computes that again"
 
 
@@ -108,7 +111,7 @@ def _examined(file: h5py.File, path: Path, lost: int) -> Description:
         lines.append(f"  {name:<18} {shape:<16} {_described(dataset)}")
     lines += _progress(file)
     lines.append(f"damaged      {found}; {REMEDY}" if found else "checksums    all hold")
-    lines += [*_accuracy(file), *_made_by(file)]
+    lines += [*_exponents(file), *_accuracy(file), *_made_by(file)]
     return Description("\n".join(lines), bool(found))
 
 
@@ -153,6 +156,19 @@ def _progress(file: h5py.File) -> list[str]:
         *(f"  {meaning}: {count:,}" for meaning, count in failed.items()),
         *([f"not settled  {counts[NOT_SETTLED]:,}"] if counts[NOT_SETTLED] else []),
     ]
+
+
+def _exponents(file: h5py.File) -> list[str]:
+    """How many orbits are chaotic."""
+    if not {"lyapunov", "lyapunov_error"} <= set(quantities_of(file)):
+        return []
+    certain, counts = float(file["lyapunov_error"].attrs.get("significant", CERTAIN)), Counter()
+    for piece, exponents in checks.readable(file["lyapunov"]):
+        with contextlib.suppress(OSError):  # a damaged chunk, which is told of elsewhere
+            largest, error = exponents[..., 0], file["lyapunov_error"][piece][..., 0]
+            counts.update(sign_of(largest, error, certain)[~np.isnan(largest)].tolist())
+    told = f"{counts[1]:,} of {counts.total():,} orbits; not told from zero: {counts[0]:,}"
+    return [f"lambda_1     above zero by more than {certain:g} errors: {told}"] if counts else []
 
 
 def _accuracy(file: h5py.File) -> list[str]:

@@ -7,7 +7,7 @@ averages of these, differ.
 
 import numpy as np
 
-from vibro_sweep.model.exponents import CERTAIN
+from vibro_sweep.model.exponents import sign_of
 
 BAD, NOT_SETTLED = -1, 0  # of an orbit without attractor
 ERRORS = 4  # to each side of an average; where the ranges of two orbits meet, the averages may be the same
@@ -59,7 +59,7 @@ def settled(low) -> np.ndarray:
 
 def doubtful(period, average, error) -> np.ndarray:
     """Whether an orbit may be on its way to a periodic one."""
-    return (period == 0) & (average[..., -1] <= CERTAIN * error[..., -1])
+    return (period == 0) & (sign_of(average[..., -1], error[..., -1]) <= 0)
 
 
 def alike(period, base) -> np.ndarray:

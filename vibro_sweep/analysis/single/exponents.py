@@ -6,7 +6,7 @@ import numpy as np
 class Exponents(np.ndarray):
     """Lyapunov exponents (4,), descending, per unit time; what is computed from them are plain arrays.
 
-    error : (4,) standard errors; of a periodic orbit: what one more period changes
+    error : (4,) standard errors; of a periodic orbit: what rounding and one more period change
     residual : sum of the exponents minus its exact value; NaN where dimensions are lost
     """
 

@@ -9,16 +9,19 @@ factors, in which nothing large hides anything small. The monodromy matrix has t
 a graded matrix, whose small eigenvalues are found as precisely as its large ones (graded.py). Nothing is supposed of
 their moduli: some of them, or all, may be of like size.
 
-Their error has two parts: rounding, also that of an impact at a low speed v, on which rounding of the state acts like
-1/v^2, times the condition of each; and what the second of two periods changes, times r/(1 - r) with r the largest
-modulus, since the orbit itself still comes nearer to the periodic one by r a period.
+Their error has three parts: rounding, also that of an impact at a low speed v, on which rounding of the state acts like
+1/v^2, times the condition of each; what the second of two periods changes, times r/(1 - r) with r the largest modulus,
+since the orbit itself still comes nearer to the periodic one by r a period; and what rounding of the orbit does to
+them. That is seen in a third period, which begins beside the orbit in the direction that grows most: the first row of
+U Q_0^T.
 """
 
 import math
 
 import numpy as np
 
-from vibro_sweep.engine.motion.orbits import reset_counts
+from vibro_sweep.engine.motion.orbits import place, reset_counts
+from vibro_sweep.engine.motion.together import flight_of, stops_of
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
@@ -29,17 +32,21 @@ from vibro_sweep.model import status
 RANGE = 350.0  # of the logarithms of growths that one matrix of floats can hold, and products of two of its entries
 APART = 37.0  # logarithm of what is beyond rounding
 NEAREST = 1e-6  # to 1, that r is taken to be at most: REPEAT tells no slower approach apart
+FIRST, AGAIN, BESIDE = range(3)  # the periods
+ASIDE = 1e4  # units of rounding of the state by which the third begins beside the orbit, and
+OFF = 16.0  # by how many of them rounding at one impact moves the orbit; that at others has nothing to do with it
 
 
 @jit
-def begin_period(e, w, results):
-    """Set periodic orbits out for exactly one more period of each."""
+def begin_period(e, w, results, which):
+    """Set periodic orbits out for exactly one more period of each; beside the orbit all but those at rest on a stop."""
     t = e.tangent[0]
     t.collected = True
     for i in range(len(results)):
         o, result = e.orbits[i], results[i]
-        o.periods = result.period if o.status == status.OK and result.period > 0 else 0
-        if o.periods > 0:
+        goes = o.status == status.OK and result.period > 0 and not (which == BESIDE and o.resting != 0.0)
+        o.periods = result.period if goes else 0
+        if goes:
             for _ in range(2):  # where rounding alone was left of a vector, it is not at right angles to the others yet
                 orthonormalise(t, only(i))
             tangent.sort_vectors(t, i)
@@ -47,24 +54,62 @@ def begin_period(e, w, results):
                 w.axes[i, m] = t.Z[m, i]
             for n in range(len(t.shear)):
                 t.shear[n, i] = 0.0
+            if which == BESIDE:
+                step_aside(e, o, w.beside[i, 0], w.state)
             reset_counts(o)
             tangent.start_record(t, i)
 
 
+@jit
+def step_aside(e, o, direction, state):
+    """Move the orbit by `ASIDE` units of its rounding in this direction of the frame of tangent vectors."""
+    t, f, size = e.tangent[0], flight_of(e, o), len(direction)
+    omega, stops, largest, longest = f.oscillator[0].omega, stops_of(o), 0.0, 0.0
+    for m in range(size):
+        unit = omega if m % 2 == 1 else 1.0
+        state[m] = 0.0
+        for j in range(size):
+            state[m] += t.from_frame[size * m + j, o.lane] * direction[j]
+        largest, longest = max(largest, abs(o.X[m]) / unit), max(longest, abs(state[m]) / unit)
+    step = 2.0**-52 * ASIDE * largest / longest if longest > 0.0 else 0.0
+    if not stops.left <= o.X[0] + step * state[0] <= stops.right:
+        step = -step
+    for m in range(size):
+        state[m] = o.X[m] + step * state[m]
+    state[0] = min(max(state[0], stops.left), stops.right)
+    place(o, f.nodes, stops, 0, 0.0, state)
+
+
 @aside
-def read_period(e, w, results, again):
-    """The multipliers over the period that has just passed; `again`: with what has changed since the one before."""
+def read_period(e, w, results, which):
+    """The multipliers over the first of three periods; with their errors over the next; and what the last adds."""
     t = e.tangent[0]
     t.collected = False
     for i in range(len(results)):
         o, result = e.orbits[i], results[i]
+        if which == BESIDE and o.periods > 0 and o.status != status.OK:
+            o.status, o.periods = status.OK, 0  # the orbit itself has not failed
         if o.periods > 0 and o.status == status.OK:
             omega, largest = e.flights.oscillator[o.table, 0].omega, o.largest[0]
             for j in range(2, len(t.growth), 2):
                 largest = max(largest, o.largest[j])
             graze = 2.0**-52 * (omega * largest / o.slowest) ** 2
-            if not find_multipliers(t, i, w.growth[i, 0], w.axes[i], w.matrix, graze, result, again):
+            off = OFF / ASIDE * math.sqrt(1.0 + o.impacts_left + o.impacts_right)
+            found = find_multipliers(t, i, w.growth[i, 0], w.axes[i], w.matrix, graze, off, result, w.beside[i], which)
+            if not (found or which == BESIDE):
                 o.status = status.NOT_FINITE
+            if which == AGAIN:
+                find_direction(t, i, w.axes[i], w.beside[i, 0])
+
+
+@jit
+def find_direction(t, i, axes, direction):
+    """The first row of U Q_0^T."""
+    size = len(direction)
+    for m in range(size):
+        direction[m] = axes[size * m]
+        for k in range(1, size):
+            direction[m] += t.shear[place_of(size, 0, k), i] * axes[size * m + k]
 
 
 @jit
@@ -93,18 +138,23 @@ def end_of_group(logs, first):
 
 
 @jit
-def find_multipliers(t, i, logs, axes, matrix, graze, result, again):
+def find_multipliers(t, i, logs, axes, matrix, graze, off, result, beside, which):
     """Multipliers by falling modulus, of a pair that with Im > 0 first; the logarithms of their moduli, with errors.
 
-    graze: what rounding of the state does to the slowest impact, relative to its speed.
+    graze: what rounding of the state does to the slowest impact, relative to its speed. off: rounding of the orbit over
+    how far it began beside it. beside (3, 2 N): scratch.
     """
     first = 0
     while first < len(logs):
         last = end_of_group(logs, first)
         if last == first:
             last = len(logs)
-            lose(result, first)
-        elif not find_group(t, i, logs, first, last, axes, matrix, graze, result, again):
+            if which != BESIDE:
+                lose(result, first)
+        elif which == BESIDE:
+            if not widen_group(t, i, logs, first, last, axes, matrix, result, beside, off):
+                return False
+        elif not find_group(t, i, logs, first, last, axes, matrix, graze, result, beside, which == AGAIN):
             return False
         first = last
     return True
@@ -119,32 +169,79 @@ def lose(result, first):
 
 
 @jit
-def find_group(t, i, logs, first, last, axes, matrix, graze, result, again):
+def find_group(t, i, logs, first, last, axes, matrix, graze, result, beside, again):
     """The multipliers of the directions first .. last - 1."""
-    re, im = result.multiplier_re[first:last], result.multiplier_im[first:last]
+    re, im, turned = beside[1], beside[2], result.multiplier_error[first:last]
     log, error = result.log_multiplier[first:last], result.log_error[first:last]
-    count, size, scale = last - first, 0.0, logs[first]
-    for j in range(count):
-        for k in range(count):
-            entry = product(t, i, axes, first + j, first + k)
-            size += entry * entry
-            matrix[j, k] = entry * math.exp(0.5 * (logs[first + j] + logs[first + k]) - scale)
-    if not (size < np.inf and eigenvalues(matrix, count, re, im)):
+    count, scale = last - first, logs[first]
+    size = solve_group(t, i, logs, first, count, axes, matrix, re, im)
+    if not size < np.inf:
         return False
-    sort_moduli(re, im, count)
     for j in range(count):
         before = log[j]
         log[j] = math.log(math.hypot(re[j], im[j])) + scale
         error[j] = abs(log[j] - before) if again else 0.0
+        turned[j] = turn(re[j], im[j], result.multiplier_re[first + j], result.multiplier_im[first + j])
     if again:
         r = min(math.exp(result.log_multiplier[0]), 1.0 - NEAREST)
         for j in range(count):
             known = (graze + 2.0**-52 * CONDITION * math.sqrt(size)) * condition(re, im, count, j)
             error[j] = error[j] * max(1.0, r / (1.0 - r)) + min(known, math.sqrt(2.0**-52 * CONDITION))
+            turned[j] *= max(1.0, r / (1.0 - r))
     for j in range(count):
-        re[j] *= math.exp(scale)
-        im[j] *= math.exp(scale)
-        result.multiplier_error[first + j] = error[j] * math.hypot(re[j], im[j])
+        x, y = re[j] * math.exp(scale), im[j] * math.exp(scale)
+        result.multiplier_re[first + j], result.multiplier_im[first + j] = x, y
+        turned[j] = (error[j] + turned[j]) * math.hypot(x, y)
+    return True
+
+
+@jit
+def turn(x, y, other_x, other_y):
+    """The angle, if it is small, between two complex numbers; 0 where one of them is 0."""
+    one, other = math.hypot(x, y), math.hypot(other_x, other_y)
+    if not (one > 0.0 and other > 0.0):
+        return 0.0
+    return math.hypot(x / one - other_x / other, y / one - other_y / other)
+
+
+@jit
+def solve_group(t, i, logs, first, count, axes, matrix, re, im):
+    """The multipliers of so many directions, in units of exp(logs[first]). Returns the square of the matrix's size."""
+    size = 0.0
+    for j in range(count):
+        for k in range(count):
+            entry = product(t, i, axes, first + j, first + k)
+            size += entry * entry
+            matrix[j, k] = entry * math.exp(0.5 * (logs[first + j] + logs[first + k]) - logs[first])
+    if not (size < np.inf and eigenvalues(matrix, count, re, im)):
+        return np.inf
+    sort_moduli(re, im, count)
+    return size
+
+
+@jit
+def widen_group(t, i, logs, first, last, axes, matrix, result, beside, off):
+    """Add what rounding of the orbit does to these multipliers; off: as of `find_multipliers`.
+
+    What happens in a period moves the section point of the periodic orbit by (1 - M)^-1 times as much.
+    """
+    re, im, count = beside[1], beside[2], last - first
+    if not solve_group(t, i, logs, first, count, axes, matrix, re, im) < np.inf:
+        return False
+    apart = 1.0
+    for j in range(len(result.multiplier_re)):
+        apart = min(apart, math.hypot(1.0 - result.multiplier_re[j], result.multiplier_im[j]))
+    part = off / max(apart, NEAREST)
+    for j in range(count):
+        n = first + j
+        old, modulus = result.log_multiplier[n], math.hypot(result.multiplier_re[n], result.multiplier_im[n])
+        if old == -np.inf or re[j] == im[j] == 0.0:
+            continue
+        unit = math.exp(logs[first] - old)
+        result.log_error[n] += part * abs(math.log(unit * math.hypot(re[j], im[j])))
+        if modulus > 0.0:
+            x, y = result.multiplier_re[n] / modulus, result.multiplier_im[n] / modulus
+            result.multiplier_error[n] += part * modulus * math.hypot(unit * re[j] - x, unit * im[j] - y)
     return True
 
 

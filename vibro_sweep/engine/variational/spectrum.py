@@ -1,4 +1,8 @@
-"""Lyapunov spectra: from the growth of tangent vectors over a record, or over one period of a periodic orbit."""
+"""Lyapunov spectra: from the growth of tangent vectors over a record, or over one period of a periodic orbit.
+
+Where nothing struck, tangent vectors obey the same linear equations as free motion, and the exponents are the real
+parts of its roots. This is used where a mode keeps its energy: its exponents are exactly 0, which averages are not.
+"""
 
 import math
 
@@ -50,7 +54,7 @@ def keep_at_rest(e, i):
 
 
 @jit
-def time_average(growth, periods, T, spectrum, error):
+def time_average(growth, periods, warm_up, T, spectrum, error):
     """Exponents after so many periods, and their standard errors from the scatter over parts; growth as in `carry`.
 
     Neighbouring parts are joined until `BATCHES` are left. Where the scatter of one part is like that of the part
@@ -77,6 +81,25 @@ def time_average(growth, periods, T, spectrum, error):
             error[i] = math.sqrt(scatter / (batches * (batches - 1.0)) * (1.0 + c) / (1.0 - c)) + rounding
         if spectrum[i] == -np.inf:
             error[i] = 0.0
+    add_shear(periods, warm_up, T, spectrum, error)
+
+
+@jit
+def add_shear(periods, warm_up, T, spectrum, error):
+    """No error is smaller than what the growth of vectors by shear would give.
+
+    In regular motion without losses a vector grows like the time t, and another shrinks like 1/t. Over a record after a
+    warm-up that seems to be an exponent +-ln(1 + record/warm-up)/(record T), and the parts hardly scatter about it. The
+    errors of chaos are larger.
+    """
+    largest = spectrum[0]
+    for i in range(1, len(spectrum)):
+        largest = max(largest, spectrum[i])
+    if largest > 0.0:
+        shear = math.log(1.0 + periods / max(warm_up, 1)) / (periods * T)
+        for i in range(len(spectrum)):
+            if spectrum[i] > -np.inf:
+                error[i] = max(error[i], shear)
 
 
 @jit
@@ -84,6 +107,34 @@ def period_of(e, o):
     """The forcing period T."""
     q = e.flights.oscillator[o.table, 0]
     return q.width * q.cells
+
+
+@jit
+def is_free(o, plan):
+    """Whether the orbit met no stop in what was counted last."""
+    struck = o.impacts_left + o.impacts_right > 0 or o.rest_time > 0.0 or o.resting != 0.0
+    return plan.order == 0 and not struck
+
+
+@jit
+def keeps_energy(q):
+    """Whether free motion has a root on the imaginary axis."""
+    for j in range(len(q.frame_square)):  # without a frame there are no scales
+        if -q.frame_series[1, 2 * j] == math.sqrt(max(-q.frame_square[j], 0.0)) and q.frame_scale[j] > 0.0:
+            return True
+    return False
+
+
+@jit
+def real_parts(q, spectrum):
+    """Those of the roots -eta +- sqrt(-square) of free motion."""
+    for j in range(len(q.frame_square)):
+        eta, square = -q.frame_series[1, 2 * j], q.frame_square[j]
+        apart = math.sqrt(max(-square, 0.0))
+        slow = (square + eta * eta) / (eta + apart) if square < 0.0 else eta
+        if eta == apart:  # but for rounding of the product
+            slow = 0.0
+        spectrum[2 * j], spectrum[2 * j + 1] = 0.0 - slow, 0.0 - (eta + apart)
 
 
 @jit
@@ -95,6 +146,12 @@ def close_spectrum(e, o, w, plan, point, result):
     if result.period > 0:
         for j in range(len(spectrum)):
             spectrum[j], error[j] = result.log_multiplier[j] / time, result.log_error[j] / time
+    if is_free(o, plan) and keeps_energy(q) and spectrum[0] == spectrum[0]:
+        real_parts(q, spectrum)
+        for j in range(len(spectrum)):
+            error[j] = 0.0
+    for j in range(len(spectrum)):
+        error[j] += point.rounding if spectrum[j] > -np.inf else 0.0
     exact = divergence_of(point, w.paper, w.other) + o.log_volume / time
     if plan.order == 0:
         left, right = o.impacts_left, o.impacts_right
