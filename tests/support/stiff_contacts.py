@@ -95,7 +95,7 @@ class Flight:
 
     def at(self, parts, s):
         """State after the time s."""
-        z = self.V * mp.matrix([c * mp.exp(l * s) for c, l in zip(parts, self.roots, strict=True)])
+        z = self.V * mp.matrix([c * mp.exp(root * s) for c, root in zip(parts, self.roots, strict=True)])
         return [z[i].real for i in range(2 * self.n)]
 
     def gap(self, z):
@@ -105,7 +105,7 @@ class Flight:
         """The gap at these times, rounded."""
         row = [mp.fdot(self.along, [self.V[i, k] for i in range(self.n)]) for k in range(len(self.roots))]
         factors = np.array([complex(a * c) for a, c in zip(row, parts, strict=True)])
-        return (factors @ np.exp(np.outer([complex(l) for l in self.roots], times))).real
+        return (factors @ np.exp(np.outer([complex(root) for root in self.roots], times))).real
 
 
 def impacts_of(q, state, guesses, sides, walls=None, look=False):

@@ -63,7 +63,12 @@ def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
     point = np.zeros((), point_of(kind))
     contact = contact_coordinates(q)
     point["omega"], point["tau"] = q.omega, q.tau
-    point["P"], point["back"], point["origin"], point["turned"] = contact.P, contact.back, contact.origin, contact.turned
+    point["P"], point["back"], point["origin"], point["turned"] = (
+        contact.P,
+        contact.back,
+        contact.origin,
+        contact.turned,
+    )
     point["stiffness"], point["damping"], point["force"] = contact.stiffness, contact.damping, contact.force
     point["held"], point["push"] = contact.held, contact.push
     point["divergence"] = -np.trace(contact.damping)

@@ -167,9 +167,9 @@ def run_energy(points, begins, resting, masses, back, origin, periods, w, plan, 
     """Carry each orbit over its record. n = orbits.
 
     points: (n,). begins: (n, 2 N) in contact coordinates, and `resting` (n,) the stops that they rest on. masses: (n,)
-    of the contact. back: (n, N, N) and origin (n, N), from contact coordinates. loss: (n,); squares: (n, 2 N), integrals over time;
-    peaks: (n, 2 N). outcome: (n,), NOT_COMPUTED where an orbit is wanted; then its status; NOT_COMPUTED again where
-    there was too little room.
+    of the contact. back: (n, N, N) and origin (n, N), from contact coordinates. loss: (n,); squares: (n, 2 N),
+    integrals over time; peaks: (n, 2 N). outcome: (n,), NOT_COMPUTED where an orbit is wanted; then its status;
+    NOT_COMPUTED again where there was too little room.
     """
     e, hits, rests, begin = w.ensemble, scratch.hits, scratch.rests, scratch.begin
     o, room, states = e.orbits[0], scratch.hits.shape[1], len(scratch.begin)

@@ -13,6 +13,7 @@ from vibro_sweep.engine.tables.flight import Flight
 from vibro_sweep.engine.variational.spectrum import BATCHES
 from vibro_sweep.model import status
 from vibro_sweep.model.arguments import checked_state
+from vibro_sweep.model.contact import is_far
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.parameters import NAMES, ParameterError
@@ -72,9 +73,16 @@ def plan_of(transient: int = 0, record: int = 0, lyapunov: bool = False) -> poin
     )
 
 
-def is_paper(system) -> bool:
-    """Whether it is the paper's oscillator, with proportional damping and without a free mode."""
-    return isinstance(system, System) and system.mu_k > 0 and (system.mu_c is None or system.mu_c == system.mu_k)
+def is_paper(system, axes: dict[str, np.ndarray] | None = None) -> bool:
+    """Whether it is the paper's oscillator, with proportional damping, without a free mode, and with stops about 0.
+
+    axes : values for some of its numbers, for all of which it must be
+    """
+    axes = axes or {}
+    if not isinstance(system, System) or "mu_c" in axes or not (system.mu_c is None or system.mu_c == system.mu_k):
+        return False
+    offset, b = (np.abs(axes.get(name, getattr(system, name))) for name in ("offset", "b"))
+    return bool(np.all(axes.get("mu_k", system.mu_k))) and not is_far(np.max(offset), np.min(b))
 
 
 def point_of_one(system, later: float) -> tuple[np.ndarray, Kind]:

@@ -9,8 +9,8 @@ impulse on the gap then moves the other masses too,
 
 For n = e1 the coordinates are those of the masses; if M is diagonal as well, p is e1.
 
-x0 is 0, or where stops lie about an offset a state whose gap is in the middle of the stops: the state of an orbit is
-rounded as a distance from there, and not as one from a far origin.
+x0 is 0, or where the stops lie on one side of 0 a state whose gap is in the middle of the stops: the state of an orbit
+is rounded as a distance from there, and not as one from a far origin.
 """
 
 from fractions import Fraction
@@ -98,15 +98,20 @@ def push_of(q: Linear, P: np.ndarray) -> np.ndarray:
 
 
 def origin_of(q: Linear) -> np.ndarray:
-    """x0: at rest with the gap in the middle of the stops, as nearly as rounding lets it be; 0 if they are about 0."""
-    n = len(q.along)
-    if q.middle == 0 or not np.isfinite(q.middle):
+    """x0: at rest with the gap in the middle of the stops, as nearly as rounding lets it be; 0 if that lies between."""
+    n, b = len(q.along), min(abs(q.middle - q.low), abs(q.high - q.middle))
+    if not is_far(q.middle, b):
         return np.zeros(n)
     bordered = np.block([[q.K, q.along[:, None]], [q.along[None], np.zeros((1, 1))]])
     scale = 1 / np.sqrt(np.append(np.maximum(np.abs(np.diag(q.K)), q.omega * q.omega * np.diag(q.M)), 1.0))
     scale[-1] = 1 / max(np.abs(q.along * scale[:-1]).max(), 1e-300)
     found = np.linalg.lstsq(bordered * np.outer(scale, scale), np.append(q.constant, q.middle) * scale, rcond=None)[0]
     return (found * scale)[:n]
+
+
+def is_far(offset, b):
+    """Whether the stops, which are b from the offset, lie on one side of 0. Also of arrays."""
+    return np.abs(offset) > np.abs(b)
 
 
 def rest_force(q: Linear, origin: np.ndarray) -> np.ndarray:

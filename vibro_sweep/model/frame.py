@@ -152,9 +152,7 @@ def _plane(one: complex, span: np.ndarray, root: np.ndarray, gap: np.ndarray):
     return -one.real, one.imag**2, _unseen(span, root, gap, [0.0, 1.0])
 
 
-def _plane_of_two(
-    pair: np.ndarray, span: np.ndarray, root: np.ndarray, gap: np.ndarray, any_of: list[float] | None
-):
+def _plane_of_two(pair: np.ndarray, span: np.ndarray, root: np.ndarray, gap: np.ndarray, any_of: list[float] | None):
     """any_of : parts in `span` of e2; None: such that it has no part in y1"""
     if any_of is None:
         second = _unseen(span, root, gap, [1.0, 1.0])
