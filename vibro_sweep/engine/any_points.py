@@ -17,10 +17,13 @@ from vibro_sweep.model.contact import (
     natural_coordinates,
     origin_of,
 )
+from vibro_sweep.model.exact import exact_motion
 from vibro_sweep.model.exponentials import gap_exponentials
 from vibro_sweep.model.frame import frame_of
 from vibro_sweep.model.linear import Linear, steady_gain
 from vibro_sweep.model.sensitivity import grazing_state
+
+APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits
 
 
 def kind_of(linears: Iterable[Linear]) -> Kind:
@@ -75,6 +78,14 @@ def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
     point["rate"] = fastest_rate(contact.stiffness, contact.damping)
     n = len(contact.push)
     point["held_rate"] = fastest_rate(-contact.held[1:, 1:n], -contact.held[1:, n + 1 : 2 * n])
+    point["apart"] = not contact.own and np.isfinite(point["rate"]) and point["rate"] > APART * q.omega
+    if point["apart"]:
+        rounded, point["low"] = exact_motion(q, contact)
+        point["stiffness"], point["damping"], point["force"] = (
+            -rounded[:, :n],
+            -rounded[:, n : 2 * n],
+            rounded[:, 2 * n :],
+        )
     point["cells"] = cells.cells_for(np.maximum(point["rate"], q.omega), q.omega)
     point["steady"], point["middle"], point["swing"], point["confining"] = confinement_of(q, contact)
     if point["cells"] == cells.STIFF_CELLS:

@@ -44,6 +44,11 @@ class Contact(NamedTuple):
     held: np.ndarray  # (N, 2 N + 3): q'' as a function of (q, q', sin, cos, 1) while a stop holds the gap
 
     @property
+    def own(self) -> bool:
+        """Whether these are the masses' own coordinates, of which an impulse moves the first alone."""
+        return not self.turned and not np.any(self.push[1:])
+
+    @property
     def turned(self) -> bool:
         """Whether states are others than those of the masses."""
         return not np.array_equal(self.P, np.eye(len(self.P))) or bool(np.any(self.origin))

@@ -20,11 +20,17 @@ class Scratch(NamedTuple):
     A: np.ndarray  # (inputs, inputs)
     row: np.ndarray  # (inputs,)
     turned: np.ndarray  # (2, 2 N + 3)
+    twofold: np.ndarray  # (4, 2, inputs, inputs)
 
 
 def new_scratch(masses: int, constant: bool) -> Scratch:
     inputs = inputs_of(masses, constant)
-    return Scratch(np.empty((inputs, inputs)), np.empty(inputs), np.empty((2, 2 * masses + 3)))
+    return Scratch(
+        np.empty((inputs, inputs)),
+        np.empty(inputs),
+        np.empty((2, 2 * masses + 3)),
+        np.empty((4, 2, inputs, inputs)),
+    )
 
 
 @entry
@@ -37,7 +43,7 @@ def build_any(f, w, point):
     fill_flight_series(q, w)
     fill_impulse(q, point)
     fill_rest_series(q, w, point, max(point.omega, point.held_rate))
-    fill_products(q, f.nodes)
+    fill_products(q, f.nodes, point, w.twofold)
     fill_forced_motion(q, f.nodes, point.tau, point.begin)
     if q.stiff:
         fill_stiff_exclusion(q, f.nodes, f.scan, point, w.turned)
