@@ -1,4 +1,4 @@
-"""Contacts between stiffly and softly held masses, and stops far from the origin: as exact as rounding the data allows.
+"""Contacts between stiffly and softly held masses, and far stops: as exact as rounding the data allows.
 
 `python tests/test_stiff_contacts.py FIRST LAST` compares the oscillators FIRST ... LAST - 1, and prints a line for each.
 """

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.green import (
     MOST_CELLS,
@@ -20,7 +21,7 @@ from vibro_sweep.engine.impulses.green import (
     free_modes,
     has_free_gap,
 )
-from vibro_sweep.engine.impulses.tables import ORDER, REAL, exponential, power, taylor_rows
+from vibro_sweep.engine.impulses.tables import ORDER, exponential, power, taylor_rows
 from vibro_sweep.model.contact import coordinates, push_of
 from vibro_sweep.model.linear import Keyed, Linear, amplitudes, forcing_period
 
@@ -130,15 +131,15 @@ def _flow(q: Linear, B: np.ndarray, row: np.ndarray) -> Flow:
     cells = 2 * cells_needed(q)
     if cells > MOST_CELLS:
         raise TooStiffError(f"a forcing period needs {cells} cells, at most {MOST_CELLS} are allowed")
-    width = REAL(forcing_period(q)) / cells
-    step = exponential(B.astype(REAL), width)
+    width = extended(forcing_period(q)) / cells
+    step = exponential(extended(B), width)
     powers = []
     with np.errstate(over="ignore", invalid="ignore"):  # beyond a bound of the parameter flights may grow
         for _ in range(DOUBLINGS):
             powers.append(step.astype(float))
             step = step @ step
-    series = taylor_rows(B.astype(REAL), np.eye(len(B), dtype=REAL))
-    rows = (row.astype(REAL) @ series).astype(float)
+    series = taylor_rows(extended(B), identity(len(B)))
+    rows = np.stack([extended(row) @ term for term in series]).astype(float)
     middle, rest = middle_weights(float(width))
     decays = np.linalg.eigvals(B[:n, :n]).real
     return Flow(
@@ -162,9 +163,9 @@ def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
     """
     N = len(q.along)
     n = 2 * N
-    to, A = contact_coordinates(q), free_rates(q).astype(REAL)
+    to, A = contact_coordinates(q), extended(free_rates(q))
     cells = cells_needed(q)
-    half = power(exponential(A, REAL(forcing_period(q)) / 2 / cells), cells)
+    half = power(exponential(A, extended(forcing_period(q)) / 2 / cells), cells)
     matrix = (sigma * np.eye(n) - power(half, halves)).astype(float)
     result = np.zeros((n, n + 1))
     if sigma == 1 and has_free_gap(q):
