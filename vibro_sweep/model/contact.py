@@ -56,9 +56,16 @@ class Contact(NamedTuple):
 
 def contact_coordinates(q: Linear) -> Contact:
     """The oscillator in contact coordinates."""
+    n, origin = len(q.along), origin_of(q)
+    if q.along[0] == 1 and np.count_nonzero(q.along) == 1 and is_diagonal(q.M):
+        eye, masses = np.eye(n), q.M.diagonal()[:, None]
+        stiffness, damping = q.K / masses, q.C / masses
+        force = np.stack([q.sine, q.cosine, rest_force(q, origin)], -1) / masses
+        held = np.concatenate([-stiffness, -damping, force], -1)
+        held[0] = 0.0
+        return Contact(eye, eye, origin, eye[0], stiffness, damping, force, held)
     P, back = coordinates(q.along, held_least(q))
     push = push_of(q, P)
-    origin = origin_of(q)
     stiffness, damping = (P @ by_mass(q.M, matrix @ back) for matrix in (q.K, q.C))
     forces = np.stack([q.sine, q.cosine, rest_force(q, origin)], -1)
     held = np.zeros((len(P), 2 * len(P) + 3))
@@ -69,9 +76,11 @@ def contact_coordinates(q: Linear) -> Contact:
 
 def by_mass(M: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """M^-1 rows."""
-    if np.count_nonzero(M - np.diag(np.diag(M))) == 0:
-        return rows / np.diag(M)[:, None]
-    return np.linalg.solve(M, rows)
+    return rows / M.diagonal()[:, None] if is_diagonal(M) else np.linalg.solve(M, rows)
+
+
+def is_diagonal(M: np.ndarray) -> bool:
+    return np.count_nonzero(M) == np.count_nonzero(M.diagonal())
 
 
 def held_least(q: Linear) -> int:
@@ -140,7 +149,7 @@ def exact_sum(a, b) -> float:
 
 def natural_coordinates(q: Linear, contact: Contact) -> Natural:
     """Those of the masses where M is diagonal; else w = L^T x, with M = L L^T."""
-    if np.count_nonzero(q.M - np.diag(np.diag(q.M))) == 0:
+    if is_diagonal(q.M):
         masses = np.diag(q.M).astype(float)
         to_contact = None if np.array_equal(contact.P, np.eye(len(masses))) else contact.P
         return Natural(masses, by_mass(q.M, q.K), by_mass(q.M, q.C), q.along.astype(float), to_contact)
