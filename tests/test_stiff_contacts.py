@@ -48,6 +48,18 @@ def test_between_a_stiffly_and_a_softly_held_mass(k, c, omega, time):
     assert abs(vs.simulate(system, [0] * 4, 1).impacts["t"][0] - time) <= 2 * np.spacing(time)
 
 
+@pytest.mark.parametrize("offset", [3e1, 3e2, -3e3])
+def test_far_stops_are_like_near_ones(offset):
+    """Shifted with all that holds it, an oscillator strikes when it did, to the rounding of a gap of the size of b."""
+    K = np.array([[1, -0.5], [-0.5, 2.0]])
+    numbers = dict(M=np.diag([1.0, 4.0]), K=K, C=0.0625 * K, along=[1, 0], force=[1, 0.5], omega=0.63, R=0.8, tau=0.1)
+    place = np.array([offset, offset / 2])
+    near = vs.Oscillator(b=1.0, **numbers, constant=[1e-300, 0])
+    far = vs.Oscillator(b=1.0, offset=offset, constant=K @ place, **numbers)
+    times = [vs.simulate(one, np.kron(x, [1, 0]), 6).impacts["t"][:10] for one, x in ((near, 0 * place), (far, place))]
+    np.testing.assert_allclose(times[1], times[0], rtol=0, atol=1e-13)
+
+
 def test_a_few_oscillators():
     """Among them those whose stiff masses carry most of the force, and those with far stops."""
     hold([compared(seed) for seed in (2, 4, 54, 88, 96, 99)])
