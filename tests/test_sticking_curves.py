@@ -42,8 +42,7 @@ def numbers_at(special):
     """Of the orbit: in the coordinates of the masses at the end of the chatter, and times before it."""
     s, state = special._chatter.solution, special._chatter.state
     q, N = s.family.linear, len(state) // 2
-    inverse = contact_coordinates(q).inverse
-    masses = s.sigma * np.concatenate([inverse @ state[:N], inverse @ state[N:]])
+    masses = s.sigma * contact_coordinates(q).to_masses(state).reshape(N, 2).T.ravel()
     return s, q, masses, s.times[0] + s.equations.P
 
 

@@ -47,11 +47,12 @@ def energies_of(
     back = flat["back"] if "back" in flat.dtype.names else np.tile(np.eye(kind.masses), (len(flat), 1, 1))
     # contiguous, whether they are the fields of one record, of several, or in reverse: for each the kernel would be
     # compiled anew
+    origin = np.ascontiguousarray(flat["origin"]) if "origin" in flat.dtype.names else np.zeros(back.shape[:2])
     back, masses = np.ascontiguousarray(back), np.ascontiguousarray(_contact_masses(block, shape).reshape(-1))
     parts, room = _parts(flat), ROOM
     while True:  # once in any case: what a scene needs is compiled with its first point, however that goes
         run_energy(
-            flat, begins, resting, masses, back, block.plan.record, workspace, plan,
+            flat, begins, resting, masses, back, origin, block.plan.record, workspace, plan,
             new_scratch(parts, room, kind.masses), *wanted.values(), outcome,
         )  # fmt: skip
         room *= 8
@@ -91,10 +92,11 @@ def _contact_masses(block: Block, shape: tuple[int, int]) -> np.ndarray:
 
 def at_contact(table: np.ndarray, ends: np.ndarray, resting: np.ndarray) -> np.ndarray:
     """States (..., 2 N) of the masses in contact coordinates, none behind a stop, and at one where they rest."""
-    if "T" in table.dtype.names:
-        pairs = ends.reshape(*ends.shape[:-1], -1, 2)
-        ends = np.einsum("...ij,...jk->...ik", table["T"], pairs).reshape(ends.shape)
     ends = np.array(ends)
+    if "P" in table.dtype.names:
+        ends[..., 0::2] -= table["origin"]
+        pairs = ends.reshape(*ends.shape[:-1], -1, 2)
+        ends = np.einsum("...ij,...jk->...ik", table["P"], pairs).reshape(ends.shape)
     low, high = table["stops"][..., 0], table["stops"][..., 1]
     ends[..., 0] = np.where(resting > 0, high, np.where(resting < 0, low, np.clip(ends[..., 0], low, high)))
     ends[..., 1] = np.where(resting == 0, ends[..., 1], 0.0)

@@ -48,7 +48,9 @@ def _of_the_masses(block: Block, points: np.ndarray, kept) -> tuple[np.ndarray, 
 
     def turned(values):  # (p, s, n, 2 N)
         pairs = values.reshape(*values.shape[:-1], -1, 2)
-        return np.einsum("pij,psnjk->psnik", back, pairs).reshape(values.shape)
+        masses = np.einsum("pij,psnjk->psnik", back, pairs)
+        masses[..., 0] += points["origin"][:, None, None]
+        return masses.reshape(values.shape)
 
     side = kept.impacts[..., 1]
     stops = points["stops"][:, None, None]

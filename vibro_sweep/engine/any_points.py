@@ -8,17 +8,28 @@ from vibro_sweep.engine.records import Kind, point_of
 from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH
 from vibro_sweep.model.confinement import confinement_of
-from vibro_sweep.model.contact import contact_coordinates, fastest_rate
+from vibro_sweep.model.contact import (
+    contact_coordinates,
+    coordinates,
+    distance,
+    fastest_rate,
+    held_least,
+    natural_coordinates,
+    origin_of,
+)
+from vibro_sweep.model.exact import exact_motion
 from vibro_sweep.model.exponentials import gap_exponentials
 from vibro_sweep.model.frame import frame_of
 from vibro_sweep.model.linear import Linear, steady_gain
 from vibro_sweep.model.sensitivity import grazing_state
 
+APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits
+
 
 def kind_of(linears: Iterable[Linear]) -> Kind:
     """What kernels must be compiled for: oscillators with the same number of masses."""
     linears = list(linears)
-    return Kind(len(linears[0].along), any(np.any(q.constant) for q in linears), False)
+    return Kind(len(linears[0].along), any(np.any(q.constant) or np.any(origin_of(q)) for q in linears), False)
 
 
 def any_points(linears: np.ndarray, kind: Kind, frames: bool = True) -> np.ndarray:
@@ -26,12 +37,13 @@ def any_points(linears: np.ndarray, kind: Kind, frames: bool = True) -> np.ndarr
     known, result = {}, np.zeros(linears.shape, point_of(kind))
     for place in np.ndindex(linears.shape):
         q = linears[place]
-        motion = (q.M, q.K, q.C, q.along, q.sine, q.cosine, q.constant, q.omega, q.tau)
+        motion = (q.M, q.K, q.C, q.along, q.sine, q.cosine, q.constant, q.omega, q.tau, q.middle)
         key = b"".join(np.asarray(value, float).tobytes() for value in motion)
         if key not in known:
             known[key] = _point(q, kind, frames)
         result[place] = known[key]
-        result[place]["stops"] = q.low, q.high, q.R_low, q.R_high
+        low, high = (distance(q, known[key]["origin"], gap) for gap in (q.low, q.high))
+        result[place]["stops"] = low, high, q.R_low, q.R_high
     return result
 
 
@@ -44,7 +56,7 @@ def grazing_points(linears: np.ndarray, expand_at: float | None) -> np.ndarray:
     for place in np.ndindex(linears.shape):
         q = linears[place]
         if steady_gain(q):
-            state = np.kron(contact_coordinates(q).T, np.eye(2)) @ grazing_state(q)
+            state = np.kron(coordinates(q.along, held_least(q))[0], np.eye(2)) @ grazing_state(q)
             state[0] = state[0] if expand_at is None else expand_at
             result[place] = state
     return result
@@ -54,15 +66,26 @@ def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
     point = np.zeros((), point_of(kind))
     contact = contact_coordinates(q)
     point["omega"], point["tau"] = q.omega, q.tau
-    point["T"], point["back"], point["turned"] = (
-        contact.T,
+    point["P"], point["back"], point["origin"], point["turned"] = (
+        contact.P,
         contact.back,
-        not np.array_equal(contact.T, np.eye(len(contact.T))),
+        contact.origin,
+        contact.turned,
     )
     point["stiffness"], point["damping"], point["force"] = contact.stiffness, contact.damping, contact.force
+    point["held"], point["push"] = contact.held, contact.push
     point["divergence"] = -np.trace(contact.damping)
     point["rate"] = fastest_rate(contact.stiffness, contact.damping)
-    point["held_rate"] = fastest_rate(contact.stiffness[1:, 1:], contact.damping[1:, 1:])
+    n = len(contact.push)
+    point["held_rate"] = fastest_rate(-contact.held[1:, 1:n], -contact.held[1:, n + 1 : 2 * n])
+    point["apart"] = not contact.own and np.isfinite(point["rate"]) and point["rate"] > APART * q.omega
+    if point["apart"]:
+        rounded, point["low"] = exact_motion(q, contact)
+        point["stiffness"], point["damping"], point["force"] = (
+            -rounded[:, :n],
+            -rounded[:, n : 2 * n],
+            rounded[:, 2 * n :],
+        )
     point["cells"] = cells.cells_for(np.maximum(point["rate"], q.omega), q.omega)
     point["steady"], point["middle"], point["swing"], point["confining"] = confinement_of(q, contact)
     if point["cells"] == cells.STIFF_CELLS:
@@ -70,7 +93,7 @@ def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
         point["told"], point["begin"] = sums.told, sums.begin
         point["root"], point["part"] = (np.stack([one.real, one.imag], -1) for one in (sums.roots, sums.parts))
     if frames and point["cells"] > 0:
-        frame = frame_of(contact, q.omega)
+        frame = frame_of(natural_coordinates(q, contact), q.omega)
         point["rounding"] = frame.rounding
         point["frame_eta"], point["frame_square"], point["frame_scale"] = frame.eta, frame.square, frame.scale
         point["to_frame"], point["from_frame"] = frame.to, frame.back

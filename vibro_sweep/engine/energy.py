@@ -94,7 +94,7 @@ def set_times(cuts, q, times):
 
 
 @jit
-def add_up(cuts, samples, back, squares, peaks, values):
+def add_up(cuts, samples, back, origin, squares, peaks, values):
     """Add integrals of squares, in cells, and raise the peaks. values: scratch (2, NODES)."""
     masses, count = len(back), 0
     for i in range(len(cuts) - 1):
@@ -103,7 +103,7 @@ def add_up(cuts, samples, back, squares, peaks, values):
             continue
         for j in range(2 * masses):
             for n in range(NODES):
-                values[0, n] = 0.0
+                values[0, n] = origin[j // 2] if j % 2 == 0 else 0.0
                 for m in range(masses):
                     values[0, n] += back[j // 2, m] * samples[count + n, 2 * m + j % 2]
                 squares[j] += length * WEIGHTS[n] * values[0, n] ** 2
@@ -163,13 +163,13 @@ def carry_one(e, w, begin, rest, part):
 
 
 @entry
-def run_energy(points, begins, resting, masses, back, periods, w, plan, scratch, loss, squares, peaks, outcome):
+def run_energy(points, begins, resting, masses, back, origin, periods, w, plan, scratch, loss, squares, peaks, outcome):
     """Carry each orbit over its record. n = orbits.
 
     points: (n,). begins: (n, 2 N) in contact coordinates, and `resting` (n,) the stops that they rest on. masses: (n,)
-    of the contact. back: (n, N, N), from contact coordinates. loss: (n,); squares: (n, 2 N), integrals over time;
-    peaks: (n, 2 N). outcome: (n,), NOT_COMPUTED where an orbit is wanted; then its status; NOT_COMPUTED again where
-    there was too little room.
+    of the contact. back: (n, N, N) and origin (n, N), from contact coordinates. loss: (n,); squares: (n, 2 N),
+    integrals over time; peaks: (n, 2 N). outcome: (n,), NOT_COMPUTED where an orbit is wanted; then its status;
+    NOT_COMPUTED again where there was too little room.
     """
     e, hits, rests, begin = w.ensemble, scratch.hits, scratch.rests, scratch.begin
     o, room, states = e.orbits[0], scratch.hits.shape[1], len(scratch.begin)
@@ -197,7 +197,7 @@ def run_energy(points, begins, resting, masses, back, periods, w, plan, scratch,
             cuts = scratch.cuts[: cuts_of(struck, rests[0, : o.rests_logged], q, scratch.cuts)]
             count = set_times(cuts, q, scratch.times)
             carry_one(e, w, begin, rest, Records(hits, rests, scratch.times[:count], scratch.samples[:count]))
-            add_up(cuts, scratch.samples, back[n], squares[n], peaks[n], scratch.values)
+            add_up(cuts, scratch.samples, back[n], origin[n], squares[n], peaks[n], scratch.values)
             rest = o.resting
         for j in range(states):
             squares[n, j] *= q.width

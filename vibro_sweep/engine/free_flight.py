@@ -85,7 +85,7 @@ class FreeFlight:
         find_extremes(
             engine.flight, engine.orbit[0], engine.stops, cell, offset, engine.to_contact(states), duration, out
         )
-        return Extremes(out[:, :2], out[:, 2], out[:, 3:5], out[:, 5])
+        return Extremes(out[:, :2] + engine.middle, out[:, 2], out[:, 3:5] + engine.middle, out[:, 5])
 
     def _flights(self, states, start_time, duration) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The arguments as arrays of n rows."""

@@ -13,6 +13,7 @@ from vibro_sweep.engine.tables.flight import Flight
 from vibro_sweep.engine.variational.spectrum import BATCHES
 from vibro_sweep.model import status
 from vibro_sweep.model.arguments import checked_state
+from vibro_sweep.model.contact import is_far
 from vibro_sweep.model.frame import ROUNDING, moved
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.oscillator import System
@@ -76,9 +77,16 @@ def plan_of(transient: int = 0, record: int = 0, lyapunov: bool = False) -> poin
     )
 
 
-def is_paper(system) -> bool:
-    """Whether it is the paper's oscillator, with proportional damping and without a free mode."""
-    return isinstance(system, System) and system.mu_k > 0 and (system.mu_c is None or system.mu_c == system.mu_k)
+def is_paper(system, axes: dict[str, np.ndarray] | None = None) -> bool:
+    """Whether it is the paper's oscillator, with proportional damping, without a free mode, and with stops about 0.
+
+    axes : values for some of its numbers, for all of which it must be
+    """
+    axes = axes or {}
+    if not isinstance(system, System) or "mu_c" in axes or not (system.mu_c is None or system.mu_c == system.mu_k):
+        return False
+    offset, b = (np.abs(axes.get(name, getattr(system, name))) for name in ("offset", "b"))
+    return bool(np.all(axes.get("mu_k", system.mu_k))) and not is_far(np.max(offset), np.min(b))
 
 
 def point_of_one(system, later: float) -> tuple[np.ndarray, Kind]:
@@ -136,8 +144,9 @@ class Engine:
         """The state in contact coordinates. ValueError where it is none, or behind a stop."""
         values = self.to_contact(checked_state(state, self.kind.masses))
         if not self.stops.left <= values[0] <= self.stops.right:
-            allowed, name = f"{self.stops.left!r} .. {self.stops.right!r}", "the gap" if self.turned else "x1"
-            raise ValueError(f"state: {name} = {float(values[0])!r} is behind a stop; allowed: {allowed}")
+            low, high, gap = (float(one + self.middle) for one in (self.stops.left, self.stops.right, values[0]))
+            name = "the gap" if self.turned else "x1"
+            raise ValueError(f"state: {name} = {gap!r} is behind a stop; allowed: {low!r} .. {high!r}")
         return values
 
     @property
@@ -145,13 +154,19 @@ class Engine:
         """Whether contact coordinates are others than those of the masses."""
         return not self.kind.paper and bool(self.point["turned"][0])
 
+    @property
+    def middle(self) -> float:
+        """The gap of the masses where it is 0 in contact coordinates."""
+        return float(self.point["P"][0, 0] @ self.point["origin"][0]) if self.turned else 0.0
+
     def to_contact(self, states) -> np.ndarray:
         """States (..., 2 N) of the masses in contact coordinates; on a stop, and at rest there, but for rounding."""
         states = np.array(states, float)
         if self.turned:
-            T = self.point["T"][0]
-            sizes = np.abs(states[..., 0::2]) @ np.abs(T[0]), np.abs(states[..., 1::2]) @ np.abs(T[0])
-            states = self._turn(states, T)
+            P = self.point["P"][0]
+            sizes = np.abs(states[..., 0::2]) @ np.abs(P[0]), np.abs(states[..., 1::2]) @ np.abs(P[0])
+            states[..., 0::2] -= self.point["origin"][0]
+            states = self._turn(states, P)
             states[..., 1][np.abs(states[..., 1]) <= ON_STOP * sizes[1]] = 0.0
             for wall in (self.stops.left, self.stops.right):
                 states[..., 0][np.abs(states[..., 0] - wall) <= ON_STOP * sizes[0]] = wall
@@ -159,7 +174,10 @@ class Engine:
 
     def to_masses(self, states: np.ndarray) -> np.ndarray:
         """States (..., 2 N) in contact coordinates as those of the masses."""
-        return self._turn(states, self.point["back"][0]) if self.turned else states
+        if self.turned:
+            states = self._turn(states, self.point["back"][0])
+            states[..., 0::2] += self.point["origin"][0]
+        return states
 
     @staticmethod
     def _turn(states: np.ndarray, matrix: np.ndarray) -> np.ndarray:

@@ -27,6 +27,7 @@ def same_tables(a, b, paper, other):
                 same = same and a.stiffness[i, j] == b.stiffness[i, j] and a.damping[i, j] == b.damping[i, j]
             for j in range(3):
                 same = same and a.force[i, j] == b.force[i, j]
+            same = same and a.push[i] == b.push[i]
     return same
 
 
@@ -80,10 +81,11 @@ def to_contact(point, x, stops, other):
         if not point.turned:
             return
         size, speed = 0.0, 0.0
-        for j in range(len(point.T)):
-            size += abs(point.T[0, j] * x[2 * j])
-            speed += abs(point.T[0, j] * x[2 * j + 1])
-        turn(point.T, x, other.row)
+        for j in range(len(point.P)):
+            size += abs(point.P[0, j] * x[2 * j])
+            speed += abs(point.P[0, j] * x[2 * j + 1])
+            x[2 * j] -= point.origin[j]
+        turn(point.P, x, other.row)
         if abs(x[1]) <= ON_STOP * speed:
             x[1] = 0.0
         if abs(x[0] - stops.left) <= ON_STOP * size:
@@ -98,3 +100,5 @@ def to_masses(point, x, other):
     if other is not None:
         if point.turned:
             turn(point.back, x, other.row)
+            for j in range(len(point.P)):
+                x[2 * j] += point.origin[j]

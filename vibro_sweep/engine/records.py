@@ -29,7 +29,7 @@ POINT = np.dtype(
 
 
 def point_of(kind: Kind) -> np.dtype:
-    """A point of any oscillator in contact coordinates y = T x; POINT of the paper's."""
+    """A point of any oscillator in contact coordinates q = P (x - x0); POINT of the paper's."""
     if kind.paper:
         return POINT
     n = kind.masses
@@ -42,12 +42,17 @@ def point_of(kind: Kind) -> np.dtype:
             ("rate", float),  # the fastest of free flight, and
             ("held_rate", float),  # while a stop holds the gap
             ("divergence", float),  # trace of -damping
-            ("stiffness", float, (n, n)),  # y'' + damping y' + stiffness y = force (sin, cos, 1)
+            ("stiffness", float, (n, n)),  # q'' + damping q' + stiffness q = force (sin, cos, 1)
             ("damping", float, (n, n)),
             ("force", float, (n, 3)),
-            ("turned", np.bool_),  # T is not the identity
-            ("T", float, (n, n)),
+            ("apart", np.bool_),  # its flights are computed in twice the digits (engine/tables/twofold.py), with
+            ("low", float, (n, 2 * n + 3)),  # what rounding left of -stiffness, -damping and force, side by side
+            ("held", float, (n, 2 * n + 3)),  # q'' as a function of (q, q', sin, cos, 1) while a stop holds the gap
+            ("push", float, n),  # what an impulse on the gap does to q'
+            ("turned", np.bool_),  # states are others than those of the masses
+            ("P", float, (n, n)),
             ("back", float, (n, n)),
+            ("origin", float, n),  # x0
             ("graze", float, 2 * n),  # the point at which the discontinuity mapping is expanded
             ("steady", float, 2 * n),  # of model/confinement.py, as far as
             ("middle", float),

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.contact import Contact
+from vibro_sweep.model.contact import Contact, rest_force
 from vibro_sweep.model.linear import Linear, amplitudes
 
 SINGULAR = 1e-12  # of the largest eigenvalue of K: a smaller one may be rounding
@@ -25,7 +25,7 @@ def confinement_of(q: Linear, contact: Contact) -> Confinement:
     stiffness = np.linalg.eigvalsh(q.K)
     if not stiffness[0] > SINGULAR * stiffness[-1]:
         return nothing
-    rest = np.linalg.solve(q.K, q.constant)
+    rest = np.linalg.solve(q.K, rest_force(q, contact.origin))  # as seen from x0
     try:
         turning = amplitudes(q) * np.exp(1j * q.tau)
     except np.linalg.LinAlgError:
@@ -34,7 +34,7 @@ def confinement_of(q: Linear, contact: Contact) -> Confinement:
     if not np.isfinite(swing):
         return nothing
     steady, form = np.empty(2 * n), np.zeros((2 * n, 2 * n))
-    steady[0::2], steady[1::2] = contact.T @ (turning.real + rest), contact.T @ (1j * q.omega * turning).real
+    steady[0::2], steady[1::2] = contact.P @ (turning.real + rest), contact.P @ (1j * q.omega * turning).real
     compliance = q.along @ np.linalg.solve(q.K, q.along)
     form[0::2, 0::2] = compliance * contact.back.T @ q.K @ contact.back
     form[1::2, 1::2] = compliance * contact.back.T @ q.M @ contact.back

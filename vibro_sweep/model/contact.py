@@ -1,10 +1,19 @@
-"""Contact coordinates y = T x of a linear oscillator: in them an impact changes the velocity of y1 and nothing else.
+"""Contact coordinates of a linear oscillator with one contact: q = P (x - x0), of which the first is the gap.
 
-The first row of T is n, so that y1 is the gap n.x. The other rows are orthogonal to it and to each other in M^-1, which
-makes the mass matrix of y diagonal; for n = e1 and a diagonal M, T is the identity. An impulse along n then acts on
-y1 alone.
+The others are the positions of the masses themselves but one, which follows from the gap. Left out is the mass that is
+held least, so that a stiffly held mass keeps all digits of its small displacement beside a large gap: combinations of
+both, such as those in which the mass matrix is diagonal, would lose as many digits as their stiffnesses lie apart. An
+impulse on the gap then moves the other masses too,
+
+    q1' -> q1' + D,    qj' -> qj' + p_j D,    p = P M^-1 n/(n.M^-1 n),    p_1 = 1.
+
+For n = e1 the coordinates are those of the masses; if M is diagonal as well, p is e1.
+
+x0 is 0, or where the stops lie on one side of 0 a state whose gap is in the middle of the stops: the state of an orbit
+is rounded as a distance from there, and not as one from a far origin.
 """
 
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -12,51 +21,146 @@ import numpy as np
 from vibro_sweep.model.linear import Linear
 
 
-class Contact(NamedTuple):
-    """y'' + damping y' + stiffness y = force (sin, cos, 1)."""
+class Natural(NamedTuple):
+    """The oscillator w'' + damping w' + stiffness w = ... in coordinates w in which the mass matrix is diagonal."""
 
-    T: np.ndarray  # (N, N)
+    masses: np.ndarray  # (N,): diagonal of the mass matrix
+    stiffness: np.ndarray  # (N, N)
+    damping: np.ndarray  # (N, N)
+    along: np.ndarray  # (N,): the gap is along . w
+    to_contact: np.ndarray | None  # (N, N): q of w; None if they are the same
+    of_masses: np.ndarray | None  # (N, N): L^-1 of M = L L^T; None where M is diagonal and w = x
+
+
+class Contact(NamedTuple):
+    """q'' + damping q' + stiffness q = force (sin, cos, 1)."""
+
+    P: np.ndarray  # (N, N)
     back: np.ndarray  # (N, N): its inverse
-    masses: np.ndarray  # (N,): diagonal of the mass matrix of y
+    origin: np.ndarray  # (N,): x0
+    push: np.ndarray  # (N,): p
     stiffness: np.ndarray  # (N, N)
     damping: np.ndarray  # (N, N)
     force: np.ndarray  # (N, 3)
+    held: np.ndarray  # (N, 2 N + 3): q'' as a function of (q, q', sin, cos, 1) while a stop holds the gap
+
+    @property
+    def own(self) -> bool:
+        """Whether these are the masses' own coordinates, of which an impulse moves the first alone."""
+        return not self.turned and not np.any(self.push[1:])
+
+    @property
+    def turned(self) -> bool:
+        """Whether states are others than those of the masses."""
+        return not np.array_equal(self.P, np.eye(len(self.P))) or bool(np.any(self.origin))
 
 
 def contact_coordinates(q: Linear) -> Contact:
     """The oscillator in contact coordinates."""
-    T = coordinates(q.M, q.along)
-    n = len(T)
-    if np.array_equal(T, np.eye(n)):
-        back, masses = np.eye(n), np.diag(q.M).astype(float)
-    else:
-        across = np.linalg.solve(q.M, T.T)  # M^-1 T^T
-        masses = 1 / np.einsum("ij,ji->i", T, across)
-        back = across * masses
-    stiffness, damping = (back.T @ matrix @ back / masses[:, None] for matrix in (q.K, q.C))
-    force = back.T @ np.stack([q.sine, q.cosine, q.constant], -1) / masses[:, None]
-    return Contact(T, back, masses, stiffness, damping, force)
+    n, origin = len(q.along), origin_of(q)
+    if q.along[0] == 1 and np.count_nonzero(q.along) == 1 and is_diagonal(q.M):
+        eye, masses = np.eye(n), q.M.diagonal()[:, None]
+        stiffness, damping = q.K / masses, q.C / masses
+        force = np.stack([q.sine, q.cosine, rest_force(q, origin)], -1) / masses
+        held = np.concatenate([-stiffness, -damping, force], -1)
+        held[0] = 0.0
+        return Contact(eye, eye, origin, eye[0], stiffness, damping, force, held)
+    P, back = coordinates(q.along, held_least(q))
+    push = push_of(q, P)
+    stiffness, damping = (P @ by_mass(q.M, matrix @ back) for matrix in (q.K, q.C))
+    forces = np.stack([q.sine, q.cosine, rest_force(q, origin)], -1)
+    held = np.zeros((len(P), 2 * len(P) + 3))
+    others = back[:, 1:].T
+    held[1:] = by_mass(others @ q.M @ others.T, others @ np.hstack([-q.K @ back, -q.C @ back, forces]))
+    return Contact(P, back, origin, push, stiffness, damping, P @ by_mass(q.M, forces), held)
 
 
-def coordinates(M: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """T (N, N), by Gram and Schmidt's method in the metric M^-1, begun with n and the unit vectors but one."""
-    n, inverse = len(along), np.linalg.inv(M)
-    if np.count_nonzero(M - np.diag(np.diag(M))) == 0:
-        inverse = np.diag(1 / np.diag(M))
-    shares = np.abs(inverse @ along) / np.sqrt(np.diag(inverse))
-    spare = int(np.argmax(shares))  # the unit vector that is nearest to n
-    rows = [np.array(along, float)]
-    for i in (i for i in range(n) if i != spare):
-        row = np.eye(n)[i]
-        for _ in range(2):  # once more for what rounding left
-            for other in rows:
-                row = row - other * ((other @ inverse @ row) / (other @ inverse @ other))
-        rows.append(row)
-    return np.array(rows)
+def by_mass(M: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """M^-1 rows."""
+    return rows / M.diagonal()[:, None] if is_diagonal(M) else np.linalg.solve(M, rows)
+
+
+def is_diagonal(M: np.ndarray) -> bool:
+    return np.count_nonzero(M) == np.count_nonzero(M.diagonal())
+
+
+def held_least(q: Linear) -> int:
+    """The mass that the gap moves with the least force, by its own spring, damper and mass alone."""
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        size = np.abs(np.diag(q.K)) + q.omega * np.abs(np.diag(q.C)) + q.omega * q.omega * np.abs(np.diag(q.M))
+        return int(np.nanargmin(np.where(q.along != 0, size / q.along / q.along, np.inf)))
+
+
+def coordinates(along: np.ndarray, spare: int) -> tuple[np.ndarray, np.ndarray]:
+    """P (N, N) and its inverse: the gap, and the masses but `spare` in their order."""
+    n = len(along)
+    others = [i for i in range(n) if i != spare]
+    P, back = np.zeros((2, n, n))
+    P[0] = along
+    back[spare, 0] = 1 / along[spare]
+    for row, i in enumerate(others, 1):
+        P[row, i] = back[i, row] = 1.0
+        back[spare, row] = 0.0 - along[i] / along[spare]
+    return P, back
+
+
+def push_of(q: Linear, P: np.ndarray) -> np.ndarray:
+    """p (N,): what an impulse that changes the velocity of the gap by 1 does to q'."""
+    push = by_mass(q.M, q.along[:, None])[:, 0]
+    push = P @ push / (q.along @ push)
+    push[0] = 1.0
+    return push
+
+
+def origin_of(q: Linear) -> np.ndarray:
+    """x0: at rest with the gap in the middle of the stops, as nearly as rounding lets it be; 0 if that lies between."""
+    n, b = len(q.along), min(abs(q.middle - q.low), abs(q.high - q.middle))
+    if not is_far(q.middle, b):
+        return np.zeros(n)
+    bordered = np.block([[q.K, q.along[:, None]], [q.along[None], np.zeros((1, 1))]])
+    scale = 1 / np.sqrt(np.append(np.maximum(np.abs(np.diag(q.K)), q.omega * q.omega * np.diag(q.M)), 1.0))
+    scale[-1] = 1 / max(np.abs(q.along * scale[:-1]).max(), 1e-300)
+    found = np.linalg.lstsq(bordered * np.outer(scale, scale), np.append(q.constant, q.middle) * scale, rcond=None)[0]
+    return (found * scale)[:n]
+
+
+def is_far(offset, b):
+    """Whether the stops, which are b from the offset, lie on one side of 0. Also of arrays."""
+    return np.abs(offset) > np.abs(b)
+
+
+def rest_force(q: Linear, origin: np.ndarray) -> np.ndarray:
+    """constant - K x0 (N,), of which no digit is lost."""
+    if not origin.any():
+        return q.constant
+    return np.array([exact_sum([f, *(-q.K[i])], [1.0, *origin]) for i, f in enumerate(q.constant)])
+
+
+def distance(q: Linear, origin: np.ndarray, gap: float) -> float:
+    """`gap` as seen from x0, rounded once."""
+    if not (origin.any() and np.isfinite(gap)):
+        return gap
+    return exact_sum([gap, *(-q.along)], [1.0, *origin])
+
+
+def exact_sum(a, b) -> float:
+    """a . b, rounded once."""
+    return float(sum(Fraction(float(x)) * Fraction(float(y)) for x, y in zip(a, b, strict=True)))
+
+
+def natural_coordinates(q: Linear, contact: Contact) -> Natural:
+    """Those of the masses where M is diagonal; else w = L^T x, with M = L L^T."""
+    if is_diagonal(q.M):
+        masses = np.diag(q.M).astype(float)
+        to_contact = None if np.array_equal(contact.P, np.eye(len(masses))) else contact.P
+        return Natural(masses, by_mass(q.M, q.K), by_mass(q.M, q.C), q.along.astype(float), to_contact, None)
+    inverse = np.linalg.inv(np.linalg.cholesky(q.M))
+    stiffness, damping = (inverse @ matrix @ inverse.T for matrix in (q.K, q.C))
+    return Natural(np.ones(len(inverse)), stiffness, damping, inverse @ q.along, contact.P @ inverse.T, inverse)
 
 
 def flight_matrix(stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
-    """A (2 N, 2 N) of (y1, v1, y2, v2, ...)' = A (y1, v1, ...) without forces."""
+    """A (2 N, 2 N) of (q1, q1', q2, q2', ...)' = A (q1, q1', ...) without forces."""
     n = len(stiffness)
     A = np.zeros((2 * n, 2 * n))
     A[0::2, 1::2] = np.eye(n)

@@ -18,11 +18,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.contact import Contact, flight_matrix
+from vibro_sweep.model.contact import Natural, flight_matrix
 
 CLASSICAL = 1e-13  # of the matrices: what may couple modes and be neglected
 ROUNDING = 2.0**-48  # of the terms of a sum: what rounding may leave of it, for each mass
 NO_PLANES = 1e10  # condition from which on coordinates that part what is not coupled are tried
+NO_PART = 1e-14  # of the terms of the gap: what is rounding
 UNSEEN = 1e-10  # share of the gap in a plane, in the metric of the masses, that is none
 NO_EASE = 1e6  # condition from which on planes of real roots are tried whose e2 has a part in y1
 MAY_BE_NONE = 1e-6  # of the largest root: one that may be 0
@@ -49,16 +50,17 @@ class _Planes(NamedTuple):
     rounding: float
 
 
-def frame_of(contact: Contact, omega: float) -> Frame:
+def frame_of(natural: Natural, omega: float) -> Frame:
     """omega: a rate for planes that have none. `to` is NaN, and so are exponents, where roots cannot be parted."""
-    A = flight_matrix(contact.stiffness, contact.damping)
-    root = np.sqrt(contact.masses)
-    K, C = (_in_the_metric(contact, matrix) for matrix in (contact.stiffness, contact.damping))
+    A = flight_matrix(natural.stiffness, natural.damping)
+    root = np.sqrt(natural.masses)
+    K, C = (_in_the_metric(natural, matrix) for matrix in (natural.stiffness, natural.damping))
     planes = _modes(root, K, C)
     if planes is None:
-        planes = _planes(A, root, K, C)
+        planes = _planes(A, root, K, C, natural.along)
     eta, square, seconds, rounding = planes
-    order = np.argsort(np.abs(seconds[1]) * np.sqrt(contact.masses[0]) > UNSEEN, kind="stable")
+    effective = 1 / (natural.along @ (natural.along / natural.masses))
+    order = np.argsort(np.abs(natural.along @ seconds[1::2]) * np.sqrt(effective) > UNSEEN, kind="stable")
     eta, square, seconds = eta[order], square[order], seconds[:, order]
     product = square + eta**2
     scale = np.maximum(np.sqrt(np.abs(square)), LEAST_SCALE * np.sqrt(np.maximum(product, 0)))
@@ -67,6 +69,10 @@ def frame_of(contact: Contact, omega: float) -> Frame:
     back[:, 1::2] = seconds
     back[:, 0::2] = (A @ seconds + eta * seconds) / scale
     parted = np.linalg.cond(back) < NO_PLANES
+    if natural.to_contact is not None:
+        unseen = np.abs(natural.along @ seconds[0::2]) <= NO_PART * (np.abs(natural.along) @ np.abs(seconds[0::2]))
+        back = np.kron(natural.to_contact, np.eye(2)) @ back
+        back[0, 1::2][unseen] = 0.0
     return Frame(eta, square, scale, rounding, np.linalg.inv(back) if parted else np.full(back.shape, np.nan), back)
 
 
@@ -77,13 +83,13 @@ class _Matrix(NamedTuple):
     terms: np.ndarray  # (N, N): sums of the moduli of the terms that each number is the sum of
 
 
-def _in_the_metric(contact: Contact, matrix: np.ndarray) -> _Matrix:
-    root, back = np.sqrt(contact.masses), np.abs(contact.back)
+def _in_the_metric(natural: Natural, matrix: np.ndarray) -> _Matrix:
+    root = np.sqrt(natural.masses)
     values = root[:, None] * matrix / root
-    if (contact.T == np.eye(len(root))).all():
+    if natural.of_masses is None:
         return _Matrix(values, np.abs(values))
-    of_the_masses = contact.T.T @ (contact.masses[:, None] * matrix) @ contact.T
-    return _Matrix(values, back.T @ np.abs(of_the_masses) @ back / (root[:, None] * root))
+    to, back = natural.of_masses, np.linalg.inv(natural.of_masses)
+    return _Matrix(values, np.abs(to) @ np.abs(back @ values @ back.T) @ np.abs(to.T))
 
 
 def _parts(vectors: np.ndarray, matrix: _Matrix) -> tuple[np.ndarray, np.ndarray]:
@@ -127,7 +133,7 @@ def moved(eta: np.ndarray, square: np.ndarray, of_eta: np.ndarray, of_product: n
     return of_eta + np.divide(more, apart + np.sqrt(apart**2 + more), where=more > 0, out=np.zeros(more.shape))
 
 
-def _planes(A: np.ndarray, root: np.ndarray, K: _Matrix, C: _Matrix) -> _Planes:
+def _planes(A: np.ndarray, root: np.ndarray, K: _Matrix, C: _Matrix, along: np.ndarray) -> _Planes:
     """Planes of pairs of roots, whatever the damping.
 
     Modes with neither stiffness nor damping are taken apart first: their two roots 0 have one eigenvector only.
@@ -138,11 +144,11 @@ def _planes(A: np.ndarray, root: np.ndarray, K: _Matrix, C: _Matrix) -> _Planes:
     idle = (squares == 0) & (dampings == 0)
     free, others = vectors[:, idle], vectors[:, ~idle]
     if not idle.any():
-        condition, planes = _pairs(A, np.eye(len(A)), np.eye(len(A)), np.repeat(root, 2), others, K, C)
+        condition, planes = _pairs(A, np.eye(len(A)), np.eye(len(A)), np.repeat(root, 2), others, K, C, along)
         if condition < NO_PLANES:
             return planes
     to, back = np.kron(others.T * root, np.eye(2)), np.kron(others / root[:, None], np.eye(2))
-    _, (eta, square, seconds, rounding) = _pairs(A, to, back, np.repeat(root, 2), others, K, C)
+    _, (eta, square, seconds, rounding) = _pairs(A, to, back, np.repeat(root, 2), others, K, C, along)
     drifting = np.zeros((len(A), free.shape[1]))
     drifting[1::2] = free / root[:, None]
     nothing = np.zeros(free.shape[1])
@@ -164,12 +170,15 @@ def _moved(roots: np.ndarray, x: np.ndarray, K: _Matrix, C: _Matrix) -> np.ndarr
 
 
 def _pairs(
-    A: np.ndarray, to: np.ndarray, back: np.ndarray, root: np.ndarray, space: np.ndarray, K: _Matrix, C: _Matrix
-):
+    A: np.ndarray, to: np.ndarray, back: np.ndarray, root: np.ndarray, space: np.ndarray, K: _Matrix, C: _Matrix,
+    along: np.ndarray,
+):  # fmt: skip
     """(condition, planes) of pairs of roots in the space of `back`, that of these modes (N, m).
 
     root: square roots of masses, (2 N,)
     """
+    gap = np.kron(along, [1.0, 0.0])
+    effective = 1 / np.linalg.norm(gap / root)
     roots, vectors = _roots(to @ A @ back, space, K)
     vectors = back @ vectors
     rounding = _moved(roots, vectors[0::2] * root[::2, None], K, C)
@@ -179,12 +188,12 @@ def _pairs(
     upper, real = np.flatnonzero(roots.imag > 0), np.flatnonzero(roots.imag == 0)
     real = real[np.argsort(roots[real].real)]
     sizes = np.linalg.norm(vectors * root[:, None], axis=0)
-    seen = np.abs(vectors[0, real]) * root[0] > UNSEEN * sizes[real]
+    seen = np.abs(gap @ vectors[:, real]) * effective > UNSEEN * sizes[real]
     groups = [real[seen], real[~seen]] if np.sum(seen) % 2 == 0 else [real]  # one of each kind makes no plane
 
     def planes(partners, any_of=None):
-        found = [_plane(roots[i], np.stack([vectors[:, i].real, vectors[:, i].imag], -1), root) for i in upper]
-        found += [_plane_of_two(roots[pair].real, vectors[:, pair].real, root, any_of) for pair in partners]
+        found = [_plane(roots[i], np.stack([vectors[:, i].real, vectors[:, i].imag], -1), root, gap) for i in upper]
+        found += [_plane_of_two(roots[pair].real, vectors[:, pair].real, root, gap, any_of) for pair in partners]
         eta, square, seconds = (np.stack(part, -1) for part in zip(*found, strict=True))
         firsts = A @ seconds + eta * seconds
         sizes = np.linalg.norm(firsts * root[:, None], axis=0)
@@ -227,27 +236,28 @@ def _partners(real: np.ndarray, outwards: bool) -> np.ndarray:
     return np.stack([real[:half], real[::-1][:half]], -1) if outwards else real.reshape(-1, 2)
 
 
-def _plane(one: complex, span: np.ndarray, root: np.ndarray):
-    return -one.real, one.imag**2, _unseen(span, root, [0.0, 1.0])
+def _plane(one: complex, span: np.ndarray, root: np.ndarray, gap: np.ndarray):
+    return -one.real, one.imag**2, _unseen(span, root, gap, [0.0, 1.0])
 
 
-def _plane_of_two(pair: np.ndarray, span: np.ndarray, root: np.ndarray, any_of: list[float] | None):
+def _plane_of_two(pair: np.ndarray, span: np.ndarray, root: np.ndarray, gap: np.ndarray, any_of: list[float] | None):
     """any_of : parts in `span` of e2; None: such that it has no part in y1"""
     if any_of is None:
-        second = _unseen(span, root, [1.0, 1.0])
+        second = _unseen(span, root, gap, [1.0, 1.0])
     else:
         second = span @ any_of
         second = second / np.linalg.norm(second * root)
     return -pair.sum() / 2, -(((pair[0] - pair[1]) / 2) ** 2), second
 
 
-def _unseen(span: np.ndarray, root: np.ndarray, any_of: list[float]) -> np.ndarray:
+def _unseen(span: np.ndarray, root: np.ndarray, gap: np.ndarray, any_of: list[float]) -> np.ndarray:
     """The vector of a plane without a part in y1, of length one in the metric; span (2 N, 2).
 
     any_of : its parts in `span` where no vector of the plane has a part in y1
     """
-    first, second = span[0]
+    first, second = gap @ span
     vector = span @ ([second, -first] if first or second else any_of)
     vector = vector / np.linalg.norm(vector * root)
-    vector[0] = 0.0
+    if np.count_nonzero(gap) == 1:
+        vector[gap != 0] = 0.0
     return vector

@@ -15,7 +15,7 @@ import numpy as np
 
 DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
 FORCED = ("M", "K", "C", "along", "constant", "sine", "cosine", "omega")  # fields that move the steady motion
-CONTACT = ("low", "high", "R_low", "R_high")  # fields of the stops, the last ones of a `Linear`
+CONTACT = ("low", "high", "R_low", "R_high", "middle")  # fields of the stops, the last ones of a `Linear`
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 
 
@@ -35,6 +35,7 @@ class Linear(NamedTuple):
     high: float
     R_low: float
     R_high: float
+    middle: float = 0.0  # the offset about which the stops lie
 
     @property
     def symmetric(self) -> bool:
@@ -222,6 +223,7 @@ def contact(b, offset, R, R_left, stops) -> dict:
         "high": offset + b if stops != "left" else np.inf,
         "R_low": R if R_left is None else R_left,
         "R_high": R,
+        "middle": offset,
     }
 
 

@@ -103,17 +103,12 @@ class Track:
 
     def _masses(self, p: np.ndarray, states: np.ndarray) -> np.ndarray:
         """x1 v1 .. xN vN from contact coordinates."""
-        N = states.shape[1] // 2
         slope = self.walk.family.derivative(self.walk.name)
         if np.any(slope.M) or np.any(slope.along):
             values = [self.walk.family.replace(**{self.walk.name: value}).linear for value in p.tolist()]
-            inverse = np.array([contact_coordinates(q).inverse for q in values]).reshape(-1, N, N)
-        else:
-            inverse = contact_coordinates(self.walk.family.linear).inverse[None]
-        result = np.empty_like(states)
-        result[:, ::2] = np.einsum("pij,pj->pi", np.broadcast_to(inverse, (len(p), N, N)), states[:, :N])
-        result[:, 1::2] = np.einsum("pij,pj->pi", np.broadcast_to(inverse, (len(p), N, N)), states[:, N:])
-        return result
+            found = [contact_coordinates(q).to_masses(state) for q, state in zip(values, states, strict=True)]
+            return np.reshape(found, states.shape)
+        return contact_coordinates(self.walk.family.linear).to_masses(states)
 
     def accept(self) -> None:
         """Go on from b."""

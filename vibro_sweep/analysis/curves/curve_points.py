@@ -80,7 +80,7 @@ def _state(q: Linear, f: Flow, sigma: int, P: float, t: np.ndarray, D: np.ndarra
     room, N = new_room(len(f.B)), len(q.along)
     free_part(f, h, t, D, P, later * P, room)
     y = (room.state[: 2 * N] + steady_motion(q, later * P)) * (1 if sigma == 1 or later % 2 == 0 else -1)
-    return np.reshape([contact_coordinates(q).inverse @ y[:N], contact_coordinates(q).inverse @ y[N:]], -1, "F")
+    return contact_coordinates(q).to_masses(y)
 
 
 def _flows(oscillators: list[Linear]) -> list[Flow]:

@@ -5,9 +5,10 @@ from numpy.polynomial import chebyshev
 
 from vibro_sweep.analysis.periodic.impulse_equations import flow
 from vibro_sweep.engine.impulses import plane
+from vibro_sweep.engine.impulses.extended import extended, identity, zeros
 from vibro_sweep.engine.impulses.flow import rates
 from vibro_sweep.engine.impulses.plane import NUMBERS
-from vibro_sweep.engine.impulses.tables import ORDER, REAL
+from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.model.linear import Family, Linear
 
 DECAYED = 4e-15  # relative size of the last coefficients
@@ -133,18 +134,17 @@ class Oscillators:
 def exact_tables(r, A) -> None:
     """The flight's tables of A (n, n + 1), in extended precision."""
     n = len(A)
-    B = np.vstack([A, np.zeros(n + 1)]).astype(REAL)
-    series = [np.eye(n + 1).astype(REAL)]
+    B = extended(np.vstack([A, np.zeros(n + 1)]))
+    series = [identity(n + 1)]
     for k in range(1, ORDER + 1):
         series.append(series[-1] @ B / k)
-    power = np.zeros_like(B)
-    term = np.eye(n + 1).astype(REAL)
+    power, term = zeros(B.shape), identity(n + 1)
     for k in range(1, 24):
         power += term
-        term = term @ B * REAL(r["width"]) / k
-    r["series"] = np.array(series)[:, :n]
+        term = term @ B * extended(r["width"]) / k
+    r["series"] = np.stack(series)[:, :n].astype(float)
     for bit in range(int(r["bits"])):
-        r["powers"][bit] = power[:n]
+        r["powers"][bit] = power[:n].astype(float)
         power = power @ power
 
 

@@ -126,11 +126,7 @@ class PeriodicOrbit:
 
     def _masses(self, states) -> np.ndarray:
         """States (m, 2N) as x1 v1 .. xN vN from contact coordinates."""
-        q = self._solution.family.linear
-        inverse, N = contact_coordinates(q).inverse, len(q.along)
-        result = np.empty_like(states)
-        result[:, ::2], result[:, 1::2] = states[:, :N] @ inverse.T, states[:, N : 2 * N] @ inverse.T
-        return result
+        return contact_coordinates(self._solution.family.linear).to_masses(states)
 
     @property
     def half_multipliers(self) -> np.ndarray | None:

@@ -211,18 +211,16 @@ class RestEquations:
 
     def starts(self, sides, u):
         """[(kind, side, begin, end, zeta in contact coordinates)] of each piece; see flow.py."""
-        T = contact_coordinates(self.q).T
-        N, found = len(self.q.along), self._repeated(sides, u)
+        to, found, n = contact_coordinates(self.q), self._repeated(sides, u), 2 * len(self.q.along)
         return [
-            (kind, sides[k], begin, end, np.concatenate([T @ zeta[:N], T @ zeta[N : 2 * N], zeta[2 * N :]]))
+            (kind, sides[k], begin, end, np.concatenate([to.of_masses(zeta), zeta[n:]]))
             for (kind, k, begin, end), zeta in zip(self.pieces(sides, u), found.after, strict=True)
         ]
 
     def fly(self, sides, u) -> tuple[np.ndarray, np.ndarray]:
         """As `Equations.fly`."""
-        T, found = contact_coordinates(self.q).T, self._repeated(sides, u)
-        N = len(self.q.along)
-        states = np.hstack([found.before[:, :N] @ T.T, found.before[:, N : 2 * N] @ T.T, found.before[:, 2 * N :]])
+        to, found, n = contact_coordinates(self.q), self._repeated(sides, u), 2 * len(self.q.along)
+        states = np.hstack([to.of_masses(found.before), found.before[:, n:]])
         nearest = np.array([np.inf, 0.0, 0.0])
         released = False
         for kind, _, begin, end, zeta in self.starts(sides, u):

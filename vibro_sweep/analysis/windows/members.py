@@ -76,7 +76,4 @@ def _own(q: Linear, solution: Solution, states: np.ndarray) -> np.ndarray:
 
 def _masses(q: Linear, states: np.ndarray) -> np.ndarray:
     """States (.., 2N) as x1 v1 .. xN vN from contact coordinates."""
-    inverse, N = contact_coordinates(q).inverse, len(q.along)
-    result = np.empty_like(states)
-    result[..., ::2], result[..., 1::2] = states[..., :N] @ inverse.T, states[..., N:] @ inverse.T
-    return result
+    return contact_coordinates(q).to_masses(states)

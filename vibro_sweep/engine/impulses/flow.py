@@ -1,7 +1,9 @@
 """The oscillator's free flight as tables, in contact coordinates, for the kernels of flights.py.
 
-State zeta = (y, y', cos(omega t + tau), sin(omega t + tau), 1) in contact coordinates y = T x (physics.md): y_1 is the
-gap, and an impulse changes y_1' and nothing else. zeta' = B zeta.
+State zeta = (q, u, cos(omega t + tau), sin(omega t + tau), 1): q are the contact coordinates of model/contact.py, of
+which the first is the gap, and u1 = q1', uj = qj' - p_j q1': an impulse changes u_1 and nothing else.
+
+    q' = W u,    W u = u + (0, p_2, p_3, ..) u_1,    zeta' = B zeta
 """
 
 from functools import lru_cache
@@ -9,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.green import (
     MOST_CELLS,
@@ -18,41 +21,57 @@ from vibro_sweep.engine.impulses.green import (
     free_modes,
     has_free_gap,
 )
-from vibro_sweep.engine.impulses.tables import ORDER, REAL, exponential, power, taylor_rows
+from vibro_sweep.engine.impulses.tables import ORDER, exponential, power, taylor_rows
+from vibro_sweep.model.contact import coordinates, push_of
 from vibro_sweep.model.linear import Keyed, Linear, amplitudes, forcing_period
 
 DOUBLINGS = 18
 
 
 class Coordinates(NamedTuple):
-    """y = T x, x = inverse y."""
+    """q = P x and u = U x', and back."""
 
-    T: np.ndarray  # (N, N)
-    inverse: np.ndarray
-    by_force: np.ndarray  # T M^-1: y'' by the force
+    P: np.ndarray  # (N, N)
+    P_back: np.ndarray
+    U: np.ndarray
+    U_back: np.ndarray
+    by_force: np.ndarray  # U M^-1: u' by the force
+
+    def of_masses(self, states: np.ndarray) -> np.ndarray:
+        """(..., 2 N) contact coordinates (q, u) of states (x, x')."""
+        n = len(self.P)
+        return np.concatenate([states[..., :n] @ self.P.T, states[..., n : 2 * n] @ self.U.T], -1)
+
+    def to_masses(self, states: np.ndarray) -> np.ndarray:
+        """(..., 2 N) x1 v1 .. xN vN of contact coordinates (q, u)."""
+        n = len(self.P)
+        result = np.empty((*states.shape[:-1], 2 * n))
+        result[..., ::2] = states[..., :n] @ self.P_back.T
+        result[..., 1::2] = states[..., n : 2 * n] @ self.U_back.T
+        return result
 
 
 def contact_coordinates(q: Linear) -> Coordinates:
-    """T with first row n and other rows w_i, w_i M^-1 n = 0; the identity where n = e_1 and M is diagonal."""
+    """Those of the masses where n = e_1 and M is diagonal. Which mass is left out depends on n alone: what follows from
+    the coordinates stays smooth along branches."""
     return _coordinates(Keyed(q, ("M", "along")))
 
 
 @lru_cache(maxsize=16)
 def _coordinates(key: Keyed) -> Coordinates:
     q = key.q
-    N = len(q.along)
-    direction = np.linalg.solve(q.M, q.along)
-    T = np.eye(N)
-    T[0] = q.along
-    if np.count_nonzero(q.along[1:]) or np.count_nonzero(direction[1:]):
-        T[1:] = np.linalg.qr(np.column_stack([direction, np.eye(N)]))[0].T[1:]
-    return Coordinates(T, np.linalg.inv(T), T @ np.linalg.inv(q.M))
+    P, back = coordinates(q.along, int(np.argmax(np.abs(q.along))))
+    W, inverse = np.eye(len(P)), np.eye(len(P))
+    push = push_of(q, P)
+    W[1:, 0], inverse[1:, 0] = push[1:], 0.0 - push[1:]
+    U = inverse @ P
+    return Coordinates(P, back, U, back @ W, U @ np.linalg.inv(q.M))
 
 
 def steady_motion(q: Linear, t: float) -> np.ndarray:
-    """(2N,) the part of (y, y') that the harmonic force drives, at the time t."""
-    swing = contact_coordinates(q).T @ amplitudes(q) * np.exp(1j * (q.omega * t + q.tau))
-    return np.concatenate([swing.real, -q.omega * swing.imag])
+    """(2N,) the part of (q, u) that the harmonic force drives, at the time t."""
+    to, swing = contact_coordinates(q), amplitudes(q) * np.exp(1j * (q.omega * t + q.tau))
+    return np.concatenate([(to.P @ swing).real, -q.omega * (to.U @ swing).imag])
 
 
 class Flow(NamedTuple):
@@ -73,14 +92,23 @@ class Flow(NamedTuple):
 def rates(q: Linear) -> np.ndarray:
     """B of zeta' = B zeta, (m, m)."""
     N = len(q.along)
-    _, inverse, to_y = contact_coordinates(q)
+    to = contact_coordinates(q)
     n = 2 * N
     B = np.zeros((n + 3, n + 3))
-    B[:N, N:n] = np.eye(N)
-    B[N:n, :N], B[N:n, N:n] = -to_y @ q.K @ inverse, -to_y @ q.C @ inverse
-    B[N:n, n], B[N:n, n + 1], B[N:n, n + 2] = to_y @ q.cosine, to_y @ q.sine, to_y @ q.constant
+    B[:n, :n] = free_rates(q)
+    B[N:n, n], B[N:n, n + 1], B[N:n, n + 2] = (to.by_force @ force for force in (q.cosine, q.sine, q.constant))
     B[n, n + 1], B[n + 1, n] = -q.omega, q.omega
     return B
+
+
+def free_rates(q: Linear) -> np.ndarray:
+    """The part of it that knows no force, (n, n)."""
+    N = len(q.along)
+    to = contact_coordinates(q)
+    A = np.zeros((2 * N, 2 * N))
+    A[:N, N:] = to.P @ to.U_back
+    A[N:, :N], A[N:, N:] = -to.by_force @ q.K @ to.P_back, -to.by_force @ q.C @ to.U_back
+    return A
 
 
 def flow(q: Linear) -> Flow:
@@ -103,15 +131,15 @@ def _flow(q: Linear, B: np.ndarray, row: np.ndarray) -> Flow:
     cells = 2 * cells_needed(q)
     if cells > MOST_CELLS:
         raise TooStiffError(f"a forcing period needs {cells} cells, at most {MOST_CELLS} are allowed")
-    width = REAL(forcing_period(q)) / cells
-    step = exponential(B.astype(REAL), width)
+    width = extended(forcing_period(q)) / cells
+    step = exponential(extended(B), width)
     powers = []
     with np.errstate(over="ignore", invalid="ignore"):  # beyond a bound of the parameter flights may grow
         for _ in range(DOUBLINGS):
             powers.append(step.astype(float))
             step = step @ step
-    series = taylor_rows(B.astype(REAL), np.eye(len(B), dtype=REAL))
-    rows = (row.astype(REAL) @ series).astype(float)
+    series = taylor_rows(extended(B), identity(len(B)))
+    rows = np.stack([extended(row) @ term for term in series]).astype(float)
     middle, rest = middle_weights(float(width))
     decays = np.linalg.eigvals(B[:n, :n]).real
     return Flow(
@@ -135,19 +163,16 @@ def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
     """
     N = len(q.along)
     n = 2 * N
-    T, inverse, to_y = contact_coordinates(q)
-    A = np.zeros((n, n), REAL)
-    A[:N, N:] = np.eye(N)
-    A[N:, :N], A[N:, N:] = -to_y @ q.K @ inverse, -to_y @ q.C @ inverse
+    to, A = contact_coordinates(q), extended(free_rates(q))
     cells = cells_needed(q)
-    half = power(exponential(A, REAL(forcing_period(q)) / 2 / cells), cells)
+    half = power(exponential(A, extended(forcing_period(q)) / 2 / cells), cells)
     matrix = (sigma * np.eye(n) - power(half, halves)).astype(float)
     result = np.zeros((n, n + 1))
     if sigma == 1 and has_free_gap(q):
         shapes, _ = free_modes(q)
         count = shapes.shape[1]
-        momentum = np.block([[inverse.T @ q.C @ shapes], [inverse.T @ q.M @ shapes]])
-        gauge = np.concatenate([T @ shapes, np.zeros_like(shapes)]).T
+        momentum = np.block([[to.P_back.T @ q.C @ shapes], [to.U_back.T @ q.M @ shapes]])
+        gauge = np.concatenate([to.P @ shapes, np.zeros_like(shapes)]).T
         gauge[0] = np.eye(n)[0]
         bordered = np.block([[matrix, momentum], [gauge, np.zeros((count, count))]])
         result[:] = np.linalg.inv(bordered)[:n, : n + 1]

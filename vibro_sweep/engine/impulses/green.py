@@ -18,10 +18,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.impulses.extended import extended, identity, zeros
 from vibro_sweep.engine.impulses.tables import (
     ORDER,
     REACH,
-    REAL,
     exponential,
     nodes,
     power,
@@ -157,8 +157,10 @@ def _bordered(q: Linear, s: Space, matrix: np.ndarray) -> np.ndarray:
     right = np.concatenate([shapes, np.zeros_like(shapes)]).T
     if np.any(seen):
         right[0] = s.e_g
-    zero = np.zeros((len(right), len(right)))
-    return np.block([[matrix, left.astype(REAL)], [right.astype(REAL), zero.astype(REAL)]])
+    n, size = len(matrix), len(matrix) + len(right)
+    result = zeros((size, size))
+    result[:n, :n], result[:n, n:], result[n:, :n] = matrix, left, right
+    return result
 
 
 def train(q: Linear, ratio: float, halves: int, slope: Linear | None = None) -> Train:
@@ -206,40 +208,40 @@ def _train(M, K, C, along, omega, ratio, halves, changes) -> Train:
     n = len(s.e_g)
     P = forcing_period(q) / 2 * halves
     dP = -P * slope.omega / q.omega if slope is not None else 0.0
-    width = REAL(P) / cells
+    width = extended(P) / cells
     free = int(ratio == 1 and has_free_gap(q))
     # z, then the constant force -e_v/P of impulses that balance, then the derivative of both
     size = n + free
-    A = np.zeros((size * (1 + (ds is not None)),) * 2, REAL)
+    A = zeros((size * (1 + (ds is not None)),) * 2)
     A[:n, :n] = s.A
     if free:
-        A[:n, n] = -s.e_v / REAL(P)
+        A[:n, n] = -s.e_v / extended(P)
     if ds is not None:
         A[size:, size:] = A[:size, :size]
         A[size : size + n, :n] = ds.A
         if free:
-            A[size : size + n, n] = -ds.e_v / REAL(P) + s.e_v * REAL(dP) / REAL(P) ** 2
+            A[size : size + n, n] = -ds.e_v / extended(P) + s.e_v * extended(dP) / extended(P) ** 2
     E = exponential(A, width)
     EP = power(E, cells)
-    matrix = np.eye(n, dtype=REAL) - REAL(ratio) * EP[:n, :n]
+    matrix = identity(n) - extended(ratio) * EP[:n, :n]
     singular = ratio == 1 and free_modes(q)[0].shape[1] > 0
     system = _bordered(q, s, matrix) if singular else matrix
     if not _regular(system.astype(float)):
         raise ResonanceError(f"an undamped mode repeats itself, with sign {ratio:+g}, after {halves} half periods")
-    right = s.e_v + EP[:n, n] if free else s.e_v.astype(REAL)
-    extra = np.zeros(len(system) - n, REAL)
+    right = s.e_v + EP[:n, n] if free else extended(s.e_v)
+    extra = zeros(len(system) - n)
     w = solve_refined(system, np.concatenate([right, extra]))[:n]
-    start = np.concatenate([w, np.ones(free, REAL)])
-    row = np.concatenate([s.e_g, np.zeros(free)]).astype(REAL)
+    start = np.concatenate([w, np.ones(free)])
+    row = extended(np.concatenate([s.e_g, np.zeros(free)]))
     jumps, jump_slopes = _jumps(s), np.zeros(4)
     slopes = np.zeros((0, ORDER + 1))
     if ds is not None:
         moved = EP[size : size + n, :size] @ start + dP * (A[:n, :size] @ EP[:size, :size] @ start)
-        extra = np.zeros(len(system) - n, REAL)
+        extra = zeros(len(system) - n)
         if free:
             extra[0] = -(ds.e_g @ w)
         dw = solve_refined(system, np.concatenate([ds.e_v + ratio * moved, extra]))[:n]
-        both = np.concatenate([start, dw, np.zeros(free, REAL)])
+        both = np.concatenate([start, dw, np.zeros(free)])
         d_row = np.concatenate([ds.e_g, np.zeros(free), row])
         table = nodes(E, both, cells)
         slopes = np.ascontiguousarray((table @ taylor_rows(A, d_row).T).astype(float))

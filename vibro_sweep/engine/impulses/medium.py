@@ -24,7 +24,7 @@ BITS = 18
 
 @cache
 def medium_of(masses: int) -> np.dtype:
-    """zeta' = B zeta for zeta = (y, y', cos(omega t + tau), sin(omega t + tau), 1), n = 2N, m = n + 3 (flow.py)."""
+    """zeta' = B zeta for zeta = (q, u, cos(omega t + tau), sin(omega t + tau), 1), n = 2N, m = n + 3 (flow.py)."""
     n, m = 2 * masses, 2 * masses + 3
     return record([
         ("centre", float),  # of the interval of the parameter

@@ -106,7 +106,7 @@ def salt(f, gain, v, a, split, Y, order, T, product, columns):
     for k in range(n):
         g, speed = Y[0, k], Y[N, k]
         Y[0, k] -= gain * g  # A e_v has the gap component 1
-        for i in range(N, n):
+        for i in range(1, n):
             Y[i, k] -= gain * f.B[i, N] * g
         Y[N, k] += shear * g - gain * speed
 

@@ -1,7 +1,8 @@
 """The oscillator over a plane of two parameters: its free flight, forced motion and stops, with exact derivatives.
 
-In contact coordinates z = (y, y') the motion is z = h + Re(Z e^{i(omega t + tau)}), where the flight h' = A (h, 1)
-knows the constant force alone. tau is kept while the parameters move: a change of it shifts the times and nothing else.
+In contact coordinates z = (q, u) (flow.py) the motion is z = h + Re(Z e^{i(omega t + tau)}), where the flight
+h' = A (h, 1) knows the constant force alone. tau is kept while the parameters move: a change of it shifts the times
+and nothing else.
 
 All numbers are polynomials of the two parameters (analysis/curves/oscillators.py fits them), so that kernels may go to
 any point of the plane. Where A changes there, the tables of the flight are built anew at each point.
@@ -109,11 +110,12 @@ def spread(f):
     if f.moves[0] > 0 or f.moves[1] > 0:
         build_series(f)
         build_powers(f)
-    # (-omega^2 - i omega A_vv - A_vy) Z_y = cosine - i sine, Z_v = i omega Z_y
+    # Z_q = W Y, Z_u = i omega Y,    (-omega^2 - i omega A_uu - A_uq W) Y = cosine - i sine
     omega, S = f.numbers[OMEGA], f.stiffness
     for r in range(N):
         for c in range(N):
             S[r, c] = -f.A[N + r, c] - 1j * omega * f.A[N + r, N + c]
+        S[r, 0] -= by_push(f, f.A, f.A, r)
         S[r, r] -= omega * omega
         f.Z[r] = f.values[size + r] - 1j * f.values[size + N + r]
     if square(factorise(S, N, f.order)) == 0.0:
@@ -128,11 +130,25 @@ def spread(f):
             for k in range(N):
                 change += f.A_slopes[j, N + r, k] * f.Z[k]
                 change += 1j * (turn * f.A[N + r, N + k] + omega * f.A_slopes[j, N + r, N + k]) * f.Z[k]
+            change += (by_push(f, f.A_slopes[j], f.A, r) + by_push(f, f.A, f.A_slopes[j], r)) * f.Z[0]
             f.Z_slopes[j, r] = change
         substitute(S, N, f.order, f.Z_slopes[j])
         for r in range(N):
             f.Z_slopes[j, N + r] = 1j * (turn * f.Z[r] + omega * f.Z_slopes[j, r])
+        for r in range(1, N):
+            f.Z_slopes[j, r] += f.A[r, N] * f.Z_slopes[j, 0] + f.A_slopes[j, r, N] * f.Z[0]
+    for r in range(1, N):
+        f.Z[r] += f.A[r, N] * f.Z[0]
     return True
+
+
+@jit
+def by_push(f, A, W, r):
+    """Row r of the first column of A_uq (W - 1): of both matrices, or of the slope of one of them."""
+    N, total = f.n // 2, 0.0
+    for k in range(1, N):
+        total += A[N + r, k] * W[k, N]
+    return total
 
 
 @jit

@@ -110,6 +110,10 @@ def set_impulse(q, u, c):
         _, s, c_eta_s, rate = decaying(eta, omega_squared, u)
         a = -(2.0 * eta * rate + omega_squared * s)
         p, w = q.to_frame[2 * j, 1], q.to_frame[2 * j + 1, 1]
+        for m in range(1, len(c)):
+            if q.push[m] != 0.0:
+                p += q.push[m] * q.to_frame[2 * j, 2 * m + 1]
+                w += q.push[m] * q.to_frame[2 * j + 1, 2 * m + 1]
         for m in range(len(c)):
             x2, v2 = q.from_frame[2 * m, 2 * j + 1], q.from_frame[2 * m + 1, 2 * j + 1]
             c[m, 0] += w * v2 * s

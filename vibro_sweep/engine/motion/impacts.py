@@ -74,7 +74,7 @@ def watch_rebound(q, o, records, k, d, side, v, impulse):
     take_samples(o, records, k, 0.0, q.width)
     for i in range(first, o.samples_taken):
         for j in range(len(q.series)):
-            x, v = evaluate(q.series[j, 1], times[i, 1] - d)
+            x, v = evaluate(q.impulse[j], times[i, 1] - d)
             samples[i, 2 * j] += impulse * x
             samples[i, 2 * j + 1] += impulse * v
 
@@ -87,6 +87,9 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
     log_impact(o, records, k, s, side, before, X)
     count_impact(o, side, before)
     X[1] = -R * before
+    for j in range(1, len(o.c)):
+        if q.push[j] != 0.0:
+            X[2 * j + 1] -= q.push[j] * ((1.0 + R) * before)
     if t.wanted:
         a, states = q.force, 2 * len(o.c)
         after = a[0] * X[0] + a[1] * X[1]
@@ -96,8 +99,8 @@ def impact(f, stops, o, records, t, k, s, side, sin, cos):
         if len(a) > states + 2:
             after += a[states + 2]
         tangent_flight.fly_to(t, o.lane, q, f.nodes, k, s)
-        # a1+ + R a1-, since a1+ - a1- = 2 zeta (1 + R) v1-, with a[1] = -2 zeta
-        steepness = (1.0 + R) * (after / before + a[1] * R)
+        # a1+ + R a1-, since a1+ - a1- = -drag (1 + R) v1-; of the paper's oscillator drag = -2 zeta
+        steepness = (1.0 + R) * (after / before + q.drag * R)
         tangent.saltate(t, tangent_flight.only(o.lane), alike(steepness), alike(R))
 
 
@@ -113,6 +116,9 @@ def end_chatter(q, stops, o, records, k, s, side, w):
     advance(o, w)
     for j in range(1, len(o.c)):
         X[2 * j + 1] -= q.kappa[j] * (X[0] - wall)
+        if q.push[j] != 0.0:
+            X[2 * j] -= q.push[j] * (X[0] - wall)
+            X[2 * j + 1] -= q.push[j] * X[1]
     X[0] = wall
     o.chatters += 1
 

@@ -46,7 +46,7 @@ def begin_rest(f, o, records, t, k, s, side, w):
     if t.wanted:
         q = f.oscillator[0]
         tangent_flight.fly_to(t, o.lane, q, f.nodes, k, s - w)
-        held.rest(t, o.lane, q.kappa)
+        held.rest(t, o.lane, q.kappa, q.push)
         carry_tangent(t, o.lane, q, w)
         t.cell[o.lane], t.offset[o.lane] = k, s
 

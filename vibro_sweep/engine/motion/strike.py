@@ -71,10 +71,10 @@ def set_oscillator(strikes, i, q):
             x, v = flight.evaluate(q.series[m, j], q.width)
             strikes.end[states * j + 2 * m, i], strikes.end[states * j + 2 * m + 1, i] = x, v
     for m in range(masses):
-        economise(TO_FEWER_TERMS, q, q.series[m, 1], strikes.impulses[:], FEWER_TERMS * m, i)
+        economise(TO_FEWER_TERMS, q, q.impulse[m], strikes.impulses[:], FEWER_TERMS * m, i)
     for n in range(TAIL):
         strikes.third[n, i] = q.third[n]
-    strikes.width[i], strikes.drag[i], strikes.impulse_third[i] = q.width, -q.force[1], q.impulse_third
+    strikes.width[i], strikes.drag[i], strikes.impulse_third[i] = q.width, -q.drag, q.impulse_third
 
 
 @jit

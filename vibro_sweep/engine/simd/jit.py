@@ -160,6 +160,11 @@ def aside(function):
     return _Part(function, AsideCompiler)
 
 
+def exactly(function):
+    """`jit` for sums and products whose rounding errors are computed: none may be fused."""
+    return _Part(function, PartCompiler, fastmath=False)
+
+
 class entry:  # noqa: N801  # a decorator
     """`numba.njit` for a kernel that Python calls, too: one for Python, cached, and a `jit` for other kernels."""
 
@@ -191,7 +196,8 @@ def _compiled(function, compiler, forceinline=False, **options):
         options["_nrt"] = False
     if compiler:
         options["pipeline_class"] = compiler
-    options |= {"nogil": True, "fastmath": {"contract"}, "error_model": "numpy", "no_cfunc_wrapper": True}
+    options = {"fastmath": {"contract"}} | options
+    options |= {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
     kernel = numba.njit(forceinline=forceinline, **options)(function)  # said, or a kernel would have it from its caller
     template = kernel.get_call_template
     # one kernel for all numbers that stand in calls of it, where numba compiles one for each

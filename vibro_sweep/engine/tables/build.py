@@ -4,12 +4,11 @@ from vibro_sweep.engine.motion.coast import fill_coasting
 from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.engine.tables.close_modes import CLOSE
 from vibro_sweep.engine.tables.control_points import fill_scan
-from vibro_sweep.engine.tables.flight import ORDER
 from vibro_sweep.engine.tables.forced import fill_motion, fill_phases
 from vibro_sweep.engine.tables.frame import fill_frame
 from vibro_sweep.engine.tables.free import fill_coupling, fill_flight, gap_of
 from vibro_sweep.engine.tables.resting import fill_rest
-from vibro_sweep.engine.tables.series import fill_equations, fill_series, set_grid
+from vibro_sweep.engine.tables.series import fill_equations, fill_impulse, fill_series, set_grid
 from vibro_sweep.engine.tables.stiff import rate_of
 
 
@@ -27,9 +26,7 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
     fill_equations(q, scratch, mu_m, mu_k, f2)
     fill_series(q, scratch)
     fill_rest(q, mu_m, mu_k, f2)
-    q.impulse_third = 0.0
-    for n in range(ORDER):
-        q.impulse_third += q.third[n] * abs(q.series[0, 1, n])
+    fill_impulse(q)
     fill_flight(q, f.nodes, psi, omega_squared, mu_m)
     gap = gap_of(mu_m, mu_k)
     if gap < CLOSE * omega_squared[1]:

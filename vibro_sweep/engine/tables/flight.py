@@ -45,6 +45,7 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         ("series", float, (masses, inputs, ORDER)),  # Taylor coefficients of x1, x2, ... of the inputs
         # while M1 rests, of (x1, x2, v2, x3, ..., sin, cos): its free acceleration, and x2, ...
         ("resting", float, (masses, inputs - 1, ORDER)),
+        ("impulse", float, (masses, ORDER)),  # Taylor coefficients of x1, x2, ... after a unit impulse on M1
         ("reach", float, ORDER),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
         ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell, and
         ("fourth", float, ORDER),  # on the fourth
@@ -60,6 +61,8 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
             float,
             masses,
         ),  # what a step of x1 by 1 at once moves v1 (nothing), v2 (by 2 zeta/mu_m), ... by dampers
+        ("push", float, masses),  # what a unit impulse on M1 does to v1 (1), v2, ... at once (model/contact.py), and
+        ("drag", float),  # to the acceleration of M1
         ("graze", float, states),  # the point at which the discontinuity mapping is expanded
         ("remainder", float, states + 1),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
         ("slow", float, states),  # part of the slow modes in x1; of a stiff system

@@ -20,11 +20,17 @@ class Scratch(NamedTuple):
     A: np.ndarray  # (inputs, inputs)
     row: np.ndarray  # (inputs,)
     turned: np.ndarray  # (2, 2 N + 3)
+    twofold: np.ndarray  # (4, 2, inputs, inputs)
 
 
 def new_scratch(masses: int, constant: bool) -> Scratch:
     inputs = inputs_of(masses, constant)
-    return Scratch(np.empty((inputs, inputs)), np.empty(inputs), np.empty((2, 2 * masses + 3)))
+    return Scratch(
+        np.empty((inputs, inputs)),
+        np.empty(inputs),
+        np.empty((2, 2 * masses + 3)),
+        np.empty((4, 2, inputs, inputs)),
+    )
 
 
 @entry
@@ -33,15 +39,11 @@ def build_any(f, w, point):
     q = f.oscillator[0]
     set_grid(q, point.cells, point.omega, max(point.omega, point.rate))
     q.zeta, q.rest_square = 0.0, 0.0
-    for i in range(len(q.kappa)):
-        q.kappa[i] = -point.damping[i, 0] if i > 0 else 0.0
     fill_equations(w.A, point, len(q.force))
     fill_flight_series(q, w)
-    fill_rest_series(q, w, max(point.omega, point.held_rate))
-    q.impulse_third = 0.0
-    for n in range(ORDER):
-        q.impulse_third += q.third[n] * abs(q.series[0, 1, n])
-    fill_products(q, f.nodes)
+    fill_impulse(q, point)
+    fill_rest_series(q, w, point, max(point.omega, point.held_rate))
+    fill_products(q, f.nodes, point, w.twofold)
     fill_forced_motion(q, f.nodes, point.tau, point.begin)
     if q.stiff:
         fill_stiff_exclusion(q, f.nodes, f.scan, point, w.turned)
@@ -82,9 +84,47 @@ def fill_flight_series(q, w):
 
 
 @jit
-def fill_rest_series(q, w, rate):
+def fill_impulse(q, point):
+    """What an impulse on the gap does: to all velocities at once, and to the positions in the flight that follows.
+
+    An impact leaves qj - p_j q1 as it is. Its derivative changes by -kappa_j where dampers feel a step of q1 by 1.
+    """
+    masses, damping, p = len(q.series), point.damping, point.push
+    q.drag = 0.0
+    for j in range(masses):
+        q.push[j] = p[j]
+        q.drag += q.force[2 * j + 1] * p[j]
+    for i in range(masses):
+        q.kappa[i] = 0.0
+        if i > 0:
+            for j in range(masses):
+                q.kappa[i] -= (damping[i, j] - p[i] * damping[0, j]) * p[j]
+        for n in range(ORDER):
+            q.impulse[i, n] = q.series[i, 1, n]
+            for j in range(1, masses):
+                if p[j] != 0.0:
+                    q.impulse[i, n] += p[j] * q.series[i, 2 * j + 1, n]
+    q.impulse_third = 0.0
+    for n in range(ORDER):
+        q.impulse_third += q.third[n] * abs(q.impulse[0, n])
+
+
+@jit
+def fill_held(A, point, inputs):
+    """z' = A z while a stop holds the gap."""
+    masses = len(point.damping)
+    for i in range(1, masses):
+        for j in range(masses):
+            A[2 * i + 1, 2 * j], A[2 * i + 1, 2 * j + 1] = point.held[i, j], point.held[i, masses + j]
+        for j in range(2 * masses, inputs):
+            A[2 * i + 1, j] = point.held[i, j]
+
+
+@jit
+def fill_rest_series(q, w, point, rate):
     """The same while a stop holds the gap: without v1 among the inputs. Takes A apart. rate: the fastest meanwhile."""
     A, row, count = w.A, w.row, len(q.force) - 1
+    fill_held(A, point, len(q.force))
     for j in range(count):
         row[j] = A[1, j + 1 if j > 0 else 0]
     for i in range(count):

@@ -13,6 +13,7 @@ import math
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER
 from vibro_sweep.engine.tables.series import clear
+from vibro_sweep.engine.tables.twofold import fill_doubled
 
 
 @jit
@@ -56,18 +57,38 @@ def join(a, b, out, states, inputs, angle):
 
 
 @jit
-def fill_products(q, nodes):
-    """E at all nodes, and what each force does from rest.
+def fill_products(q, nodes, point, room):
+    """E at all nodes, and what each force does from rest. room: scratch of twofold.py.
 
     The flight to node k = rest + step, with step its lowest binary digit, is one to `rest` and one of `step` cells:
     rounding errors grow with the number of digits of k, not with k.
     """
-    states, inputs, cells = 2 * len(q.series), len(q.force), q.cells
+    states, inputs, cells, doubled = 2 * len(q.series), len(q.force), q.cells, point.apart
+    clear(nodes[0].E[:])
+    if doubled:
+        fill_doubled(q, nodes, point, room)
+    else:
+        fill_first(q, nodes)
+    for k in range(2, cells + 1):
+        if doubled and k & (k - 1) == 0:
+            continue
+        step = k & -k if k & (k - 1) else k // 2
+        clear(nodes[k].E[:])
+        angle = 2.0 * math.pi * ((k - step) / cells)
+        join(nodes[k - step].E, nodes[step].E, nodes[k].E, states, inputs, angle)
+    for k in range(cells + 1):
+        for j in range(states):
+            nodes[k].E[j, j] += 1.0
+
+
+@jit
+def fill_first(q, nodes):
+    """D of a cell, by the series."""
+    states, inputs = 2 * len(q.series), len(q.force)
     halvings, u = 0, q.width
     while u > 1.001 * q.step:
         u *= 0.5
         halvings += 1
-    clear(nodes[0].E[:])
     fill_short(q, nodes[1].E, u)
     for _ in range(halvings):
         clear(nodes[2].E[:])
@@ -76,14 +97,6 @@ def fill_products(q, nodes):
             for i in range(states):
                 nodes[1].E[j, i] = nodes[2].E[j, i]
         u *= 2.0
-    for k in range(2, cells + 1):
-        step = k & -k if k & (k - 1) else k // 2
-        clear(nodes[k].E[:])
-        angle = 2.0 * math.pi * ((k - step) / cells)
-        join(nodes[k - step].E, nodes[step].E, nodes[k].E, states, inputs, angle)
-    for k in range(cells + 1):
-        for j in range(states):
-            nodes[k].E[j, j] += 1.0
 
 
 @jit

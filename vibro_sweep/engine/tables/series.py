@@ -100,3 +100,13 @@ def fill_series(q, w):
         for i in range(5):  # without v1
             j = i + 1 if i > 0 else 0
             q.resting[0, i, n], q.resting[1, i, n] = number(pull, j), number(held_x2, j)
+
+
+@jit
+def fill_impulse(q):
+    """What an impulse on M1 does: it moves no other mass at once."""
+    q.push[0], q.push[1], q.drag = 1.0, 0.0, q.force[1]
+    q.impulse_third = 0.0
+    for n in range(ORDER):
+        q.impulse[0, n], q.impulse[1, n] = q.series[0, 1, n], q.series[1, 1, n]
+        q.impulse_third += q.third[n] * abs(q.impulse[0, n])

@@ -6,19 +6,23 @@ from vibro_sweep.engine.variational.tangent_flight import apply_flight, only
 
 
 @jit
-def rest(t, i, kappa):
+def rest(t, i, kappa, p):
     """Z when M1 comes to rest on a stop: dx1 = dv1 = 0, and two dimensions are lost for good.
 
     The others receive through dampers what moves M1 to the stop at once: dv2 -> dv2 - kappa dx1, with kappa = 2
-    zeta/mu_m.
+    zeta/mu_m. Impulses on M1 move them by p at once (model/contact.py).
     """
     apply_flight(t, only(i))
     t.lost[i] = 2.0
     Z, to, size = t.Z, t.to_frame, len(t.growth)
     for j in range(size):
-        dx, _ = motion_in(t, i, 0, j)
+        dx, dv = motion_in(t, i, 0, j)
         for k in range(1, len(t.scale)):
             push = kappa[k] * dx
+            if p[k] != 0.0:
+                push += p[k] * dv
+                for m in range(size):
+                    Z[size * m + j, i] -= to[size * m + 2 * k, i] * (p[k] * dx)
             for m in range(size):
                 Z[size * m + j, i] -= to[size * m + 2 * k + 1, i] * push
     for m in range(size):

@@ -50,7 +50,8 @@ def end_warm_up(e, count):
 def keep_at_rest(e, i):
     """Where M1 rests on a stop, two of the four directions are lost already."""
     if e.orbits[i].resting != 0.0:
-        held.rest(e.tangent[0], i, e.flights.oscillator[e.orbits[i].table, 0].kappa)
+        q = e.flights.oscillator[e.orbits[i].table, 0]
+        held.rest(e.tangent[0], i, q.kappa, q.push)
 
 
 @jit

@@ -34,7 +34,8 @@ def tangents_of(masses: int, paper: bool) -> np.dtype:
         ("square", float, (masses, LANES)),  # omega_dj^2
         ("to_frame", float, (n * n, LANES)),
         ("from_frame", float, (n * n, LANES)),
-        ("kick", float, (n, LANES)),  # to_frame of a step of x1 by 1, and of what it does to v2, ... (kappa)
+        ("kick", float, (n, LANES)),  # to_frame of a step of x1 by 1, and of what it does to x2, ... and v2, ...
+        ("push", float, (n, LANES)),  # to_frame of a unit impulse on M1
         # of the orbit
         ("lost", float, LANES),  # dimensions: two by sticking, one by an impact without restitution
         ("cell", np.int64, LANES),  # the cell, counted from the section, and
@@ -77,9 +78,12 @@ def set_frame(t, i, q):
     for j in range(len(t.scale)):
         t.scale[j, i], t.square[j, i] = q.frame_scale[j], q.frame_square[j]
     for m in range(size):
-        t.kick[m, i] = q.to_frame[m, 0]
+        t.kick[m, i], t.push[m, i] = q.to_frame[m, 0], q.to_frame[m, 1]
         for j in range(1, len(t.scale)):
             t.kick[m, i] += q.kappa[j] * q.to_frame[m, 2 * j + 1]
+            if q.push[j] != 0.0:
+                t.kick[m, i] += q.push[j] * q.to_frame[m, 2 * j]
+                t.push[m, i] += q.push[j] * q.to_frame[m, 2 * j + 1]
         if len(t.both) > 1 and m % 2 == 1 and q.from_frame[0, m] != 0.0:
             t.both[1] = 1
 
@@ -150,12 +154,12 @@ def motion_of(t, mass, j):
 @inline
 def strike_vector(t, who, j, dx, dv, steepness, R):
     """Tangent vector j, which moves the mass that hits by dx and dv, across an impact."""
-    Z, to, size = t.Z, t.to_frame, len(t.growth)
+    Z, size = t.Z, len(t.growth)
     to_x1 = -(1.0 + R) * dx
     to_v1 = steepness * dx - (1.0 + R) * dv
     for m in range(size):
         z = row(Z, size * m + j)
-        after = z + row(t.kick, m) * to_x1 + row(to, size * m + 1) * to_v1
+        after = z + row(t.kick, m) * to_x1 + row(t.push, m) * to_v1
         put(Z, size * m + j, select(who, after, z))
 
 

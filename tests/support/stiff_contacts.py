@@ -1,0 +1,213 @@
+"""Oscillators with masses held stiffly and softly, and stops far from the origin; and how exact their impacts are.
+
+The reference works in the coordinates of the masses, in 50 digits: a flight is a sum of exponentials, whose contact
+nearest to the impact that was found is its root. Moved by one rounding in all its numbers, and at each impact anew in
+the stop that is hit (as a gap of the size of b cannot be known better), it says what the data allow.
+"""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+from mpmath import mp, mpf
+
+import vibro_sweep as vs
+from vibro_sweep.model.linear import amplitudes
+from vibro_sweep.model.parameters import ParameterError
+
+DIGITS = 50
+COUNT = 6  # impacts compared
+MOVES = 4
+CHAOS = 1e-8  # part of a time by which rounding moves it, from which on nothing is compared
+SAMPLES = 2000  # of a flight, at which the reference says that it stays between the stops
+
+
+def positive(rng, n):
+    A = rng.normal(size=(n, n))
+    return A @ A.T / n + 0.3 * np.eye(n)
+
+
+def drawn(seed):
+    """Oscillator number `seed`, its state at t = 0, and what it is."""
+    rng = np.random.default_rng([28, seed])
+    n = int(rng.choice([2, 2, 3, 4]))
+    ratio, far = 10.0 ** rng.uniform(0, 12), 10.0 ** rng.uniform(0, 3) * rng.choice([-1, 1]) * (rng.random() < 0.7)
+    stiff = rng.permutation(n) < rng.integers(1, n)  # at least one mass, but not all
+    M = np.diag(rng.uniform(0.5, 2, n)) if rng.random() < 0.6 else positive(rng, n)
+    springs = np.where(stiff, ratio * rng.uniform(0.5, 1, n), 0.0)
+    K = positive(rng, n) + np.diag(springs)
+    C = rng.choice([0.0, 0.05]) * positive(rng, n)
+    damper = rng.choice(["none", "little", "critical", "strong"])
+    share = {"none": 0.0, "little": 0.05, "critical": 2.0, "strong": 10.0 ** rng.uniform(0.5, 2)}[damper]
+    C = C + np.diag(share * np.sqrt(springs * np.diag(M)))
+    if rng.random() < 0.7:
+        i, j = rng.choice(np.flatnonzero(stiff)), rng.choice(np.flatnonzero(~stiff))
+        along = (np.arange(n) == i) - 1.0 * (np.arange(n) == j)
+    else:
+        along = rng.normal(size=n)
+    force = np.where(stiff & (rng.random(n) < 0.5), 0.0, rng.normal(size=n))
+    soft = np.linalg.eigvalsh(np.linalg.solve(np.diag(np.sqrt(np.diag(M))), K) / np.sqrt(np.diag(M)))[0]
+    omega = float(np.sqrt(max(soft, 0.1)) * 10.0 ** rng.uniform(-0.3, 0.3))
+    numbers = dict(M=M, K=K, C=C, along=along, force=force, omega=omega, tau=float(rng.uniform(-3, 3)),
+                   R=float(rng.uniform(0.5, 0.95)), b=1.0)  # fmt: skip
+    if rng.random() < 0.3:
+        numbers["R_left"] = float(rng.uniform(0.5, 0.95))
+    if rng.random() < 0.2:
+        numbers["stops"] = "right"
+    q = vs.Oscillator(**numbers).linear
+    size = abs(q.along @ amplitudes(q))
+    b = float(size * 10.0 ** rng.uniform(-1.5, -0.3))
+    offset = far * b
+    x = along * 0.0
+    if offset:
+        soft_held = np.linalg.solve(K, along)
+        x = soft_held * (offset / (along @ soft_held))
+        numbers["constant"] = K @ x
+    system = vs.Oscillator(**numbers | {"b": b, "offset": float(offset)})
+    state = np.zeros(2 * n)
+    state[0::2] = x
+    return system, state, {"masses": n, "ratio": ratio, "offset/b": far, "damper": str(damper)}
+
+
+class Flight:
+    """All flights of one oscillator, of mpf: sums of exponentials."""
+
+    def __init__(self, q):
+        n = len(q.along)
+        self.n, self.along = n, [mpf(a) for a in q.along]
+        M, rows = mp.matrix(q.M.tolist()), np.hstack([-q.K, -q.C, np.stack([q.sine, q.cosine, q.constant], -1)])
+        push = mp.lu_solve(M, mp.matrix(self.along))
+        self.push = push / mp.fdot(self.along, push)
+        rows = mp.inverse(M) * mp.matrix(rows.tolist())
+        A = mp.zeros(2 * n + 3)
+        for i in range(n):
+            A[i, n + i] = 1
+            for j in range(2 * n + 3):
+                A[n + i, j] = rows[i, j]
+        A[2 * n, 2 * n + 1], A[2 * n + 1, 2 * n] = q.omega, -q.omega
+        self.roots, self.V = mp.eig(A)
+        self.W = mp.inverse(self.V)
+        self.tau, self.omega = q.tau, q.omega
+
+    def parts(self, state, t):
+        """Factors of e^{l s} in the flight from `state` at the time t."""
+        phase = self.omega * t + self.tau
+        z = mp.matrix([*state, mp.sin(phase), mp.cos(phase), mpf(1)])
+        return self.W * z
+
+    def at(self, parts, s):
+        """State after the time s."""
+        z = self.V * mp.matrix([c * mp.exp(root * s) for c, root in zip(parts, self.roots, strict=True)])
+        return [z[i].real for i in range(2 * self.n)]
+
+    def gap(self, z):
+        return mp.fdot(self.along, z[: self.n]), mp.fdot(self.along, z[self.n :])
+
+    def gaps(self, parts, times):
+        """The gap at these times, rounded."""
+        row = [mp.fdot(self.along, [self.V[i, k] for i in range(self.n)]) for k in range(len(self.roots))]
+        factors = np.array([complex(a * c) for a, c in zip(row, parts, strict=True)])
+        return (factors @ np.exp(np.outer([complex(root) for root in self.roots], times))).real
+
+
+def impacts_of(q, state, guesses, sides, walls=None, look=False):
+    """Impacts (time, speed, state) next to those guessed; None where there is none. look: none is before it.
+
+    walls : by how much the stop that is hit is moved
+    """
+    flight, found = Flight(q), []
+    n, t, z = flight.n, mpf(0), [mpf(x) for x in [*state[0::2], *state[1::2]]]
+    for i, (guess, side) in enumerate(zip(guesses, sides, strict=True)):
+        wall, R = (q.high, q.R_high) if side > 0 else (q.low, q.R_low)
+        wall += walls[i] if walls is not None else 0
+        parts, s = flight.parts(z, t), mpf(float(guess)) - t
+        if look:
+            times = np.linspace(0, float(s), SAMPLES)[1:-1]
+            gaps = flight.gaps(parts, times)
+            margin = 1e-9 * max(abs(float(wall)), np.abs(gaps).max())
+            if gaps.max() > float(q.high) + margin or gaps.min() < float(q.low) - margin:
+                return None
+        for _ in range(60):
+            there = flight.at(parts, s)
+            x, v = flight.gap(there)
+            step = (x - wall) / v
+            s -= step
+            if abs(step) < mpf(10) ** -35 * (abs(s) + abs(t)):
+                break
+        else:
+            return None
+        there = flight.at(parts, s)
+        x, v = flight.gap(there)
+        t += s
+        found.append((t, v, there))
+        z = there[:n] + [a - (1 + R) * v * p for a, p in zip(there[n:], flight.push, strict=True)]
+    return found
+
+
+def moved(q, state, rng):
+    """All numbers moved by one part in 2^53, up or down; without rng as they are."""
+    part = mp.ldexp(1, -53)
+
+    def one(value):
+        value = np.atleast_1d(value)
+        signs = rng.choice([-1, 1], value.shape) if rng else np.zeros(value.shape, int)
+        if value.ndim == 2:
+            signs = np.triu(signs) + np.triu(signs, 1).T
+        return np.vectorize(lambda x, sign: mpf(float(x)) * (1 + int(sign) * part), otypes=[object])(value, signs)
+
+    numbers = {name: one(value) if np.ndim(value) else one(value)[0] for name, value in q._asdict().items()}
+    return SimpleNamespace(**numbers), list(one(state))
+
+
+def compared(seed):
+    """What is wrong with the first impacts of oscillator `seed`, in units of what rounding its numbers does."""
+    system, state, report = drawn(seed)
+    report |= {"seed": seed, "errors": {}}
+    try:
+        orbit = vs.simulate(system, state, 4)
+    except ParameterError as error:
+        return report | {"refused": error.key}
+    if orbit.status != "ok":
+        return report | {"refused": str(orbit.status)}
+    hits = orbit.impacts[:COUNT]
+    if len(orbit.sticking):
+        hits = hits[hits["t"] < orbit.sticking["t_on"][0]]
+    report["impacts"] = len(hits)
+    with mp.workdps(DIGITS):
+        true = impacts_of(*moved(system.linear, state, None), hits["t"], hits["side"], look=True)
+        if true is None:
+            return report | {"defect": "another impact"}
+        errors, count = errors_of(system, state, hits, true, seed, MOVES)
+        if max(errors.values()) > 10:  # few moves may by accident do next to nothing to one of the numbers
+            errors, count = errors_of(system, state, hits, true, seed, 4 * MOVES)
+    return report | {"errors": errors, "compared": count}
+
+
+def errors_of(system, state, hits, true, seed, moves):
+    """Largest errors of times, speeds, positions and velocities, and of how many impacts: those before chaos."""
+    rng, step, others = np.random.default_rng(seed), mpf(system.b) * mp.ldexp(1, -53), []
+    for _ in range(moves):
+        walls = [int(sign) * step for sign in rng.choice([-1, 1], len(hits))]
+        others.append(impacts_of(*moved(system.linear, state, rng), hits["t"], hits["side"], walls))
+    errors, n = {"t": 0.0, "v": 0.0, "x": 0.0, "xdot": 0.0}, len(system.linear.along)
+    if any(other is None for other in others):  # a graze that rounding takes away
+        hits = hits[:0]
+    for i, (hit, (t, v, z)) in enumerate(zip(hits, true, strict=False)):
+        effects = {"t": _largest([other[i][0] - t for other in others])}
+        if effects["t"] > CHAOS * t:
+            return errors, i
+        effects["v"] = _largest([other[i][1] - v for other in others])
+        found = {"t": ([hit["t"]], [t]), "v": ([hit["v1"]], [v]), "x": (hit["x"], z[:n]), "xdot": (hit["xdot"], z[n:])}
+        for name, part in (("x", slice(0, n)), ("xdot", slice(n, 2 * n))):
+            effects[name] = _largest(
+                [a - b for other in others for a, b in zip(other[i][2][part], z[part], strict=True)]
+            )
+        for name, (values, exact) in found.items():
+            unit = effects[name] + math.ulp(_largest([float(a) for a in exact]))
+            apart = _largest([mpf(float(a)) - b for a, b in zip(values, exact, strict=True)])
+            errors[name] = max(errors[name], float(apart / unit))
+    return errors, len(hits)
+
+
+def _largest(values):
+    return max(map(abs, values))
