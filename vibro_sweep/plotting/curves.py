@@ -115,11 +115,11 @@ def handles(curves: list[Drawn], frame=None) -> list[Line2D]:
 
     frame : ((left, right), (low, high)) of the picture, where that is not all
     """
+    by_period = _by_period(curves)
     if frame is not None:
         curves = [_within(curve, *frame) for curve in curves]
         curves = [curve for curve in curves if len(curve.p)]
     found = {}
-    by_period = _by_period(curves)
     for curve in sorted(curves, key=lambda curve: (list(COLOURS).index(curve.type), curve.period)):
         colour, label = _style(curve, by_period)
         found.setdefault(label, Line2D([], [], color=colour, lw=1.2, label=label))

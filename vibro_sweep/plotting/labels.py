@@ -27,25 +27,35 @@ def name_beside(ax, names, places, lines=(), taken=(), most=None) -> list[np.nda
     scale, to_pixels = ax.figure.dpi / 72, ax.transData.transform
     marks, lines = (to_pixels(np.reshape(points, (-1, 2))) for points in (places, lines))
     frame, boxes, written = ax.transAxes.transform([(0, 0), (1, 1)]), list(taken), []
-    halo = [patheffects.withStroke(linewidth=1.8, foreground="white")]
+    sizes = {name: _size(ax, name) for name in dict.fromkeys(names)}
     for name, place, mark in zip(names, places, marks, strict=True):
         if most is not None and len(written) >= most:
             break
         if any(name == other and np.hypot(*(mark - at)) < scale * SAME for other, at in written):
             continue
-        style = {"textcoords": "offset points", "size": 6, "path_effects": halo, "zorder": 5, "gid": "name"}
-        text = ax.annotate(name, place, (0, 0), **style, clip_on=True, annotation_clip=True)
-        extent = text.get_window_extent()
-        found = _free_corner(np.array([extent.width, extent.height]), mark, scale * GAP, marks, lines, frame, boxes)
+        found = _free_corner(sizes[name], mark, scale * GAP, marks, lines, frame, boxes)
         if found is None:
-            text.remove()
             continue
         (right, up), box = found
-        text.set(ha="left" if right > 0 else "right", va="bottom" if up > 0 else "top")
-        text.set_position((right * GAP, up * GAP))
+        style = _NAME | {"ha": "left" if right > 0 else "right", "va": "bottom" if up > 0 else "top"}
+        ax.annotate(name, place, (right * GAP, up * GAP), textcoords="offset points", annotation_clip=True, **style)
         boxes.append(box)
         written.append((name, mark))
     return boxes
+
+
+_NAME = {
+    "size": 6, "zorder": 5, "gid": "name", "clip_on": True,
+    "path_effects": [patheffects.withStroke(linewidth=1.8, foreground="white")],
+}  # fmt: skip
+
+
+def _size(ax, name: str) -> np.ndarray:
+    """Width and height of a name in pixels."""
+    text = ax.text(0, 0, name, **_NAME)
+    size = text.get_window_extent().size
+    text.remove()
+    return size
 
 
 def _free_corner(size, mark, gap, marks, lines, frame, taken):
@@ -77,6 +87,8 @@ def thin_ticks(bar, first: float = 0.0) -> None:
     """Keep of the ticks of a horizontal colour bar those whose labels do not overlap: `first`, both ends, and what
     has room in between."""
     scale = APART * bar.ax.figure.dpi / 72
+    if (locator := bar.ax.get_axes_locator()) is not None:  # the arrows at the ends take a part of its place
+        bar.ax.apply_aspect(locator(bar.ax, None))
     low, high = bar.ax.get_xlim()
     labelled = [(place, text) for place, text in zip(bar.ax.get_xticks(), bar.ax.get_xticklabels(), strict=True)]
     labelled = [(place, text) for place, text in labelled if low <= place <= high]
