@@ -7,7 +7,7 @@ import pytest
 from support.pictures import SETTINGS, drawn, exponents, write
 
 from vibro_sweep import plotting
-from vibro_sweep.plotting import Look, decades, style
+from vibro_sweep.plotting import Look, branches, decades, style
 
 
 def entries(fig):
@@ -33,6 +33,16 @@ def test_the_whole_is_a_density_and_a_part_of_few_points_is_dots(large):
     few = plotting.figure(large, look=Look(xlim=(2, 2.05))).axes[0]
     (dots,) = (line for line in few.lines if line.get_linestyle() == "None")
     assert dots.get_markersize() > 2.5
+
+
+def test_dots_of_periodic_orbits_are_counted_once(tmp_path):
+    x1 = np.tile(np.random.default_rng(0).uniform(0, 1, (30, 4)), 50)
+    sizes = []
+    for name, period in (("periodic", 4), ("other", 0)):
+        quantities = {"x1": x1, "period": np.full(30, period)}
+        ax = plotting.figure(write(tmp_path / f"{name}.h5", {"b": np.linspace(1, 2, 30)}, quantities)).axes[0]
+        sizes += [line.get_markersize() for line in ax.lines if line.get_linestyle() == "None"]
+    assert sizes[0] > 1.5 * sizes[1]
 
 
 def test_columns_of_many_points_are_a_density_also_if_they_are_few(tmp_path):
@@ -156,3 +166,38 @@ def test_dots_of_a_part_are_those_of_the_file(large):
     ax = plotting.figure(large, look=Look(xlim=(2, 2.5))).axes[0]
     points = drawn(ax)
     assert len(points) % 200 == 0 and points[:, 0].min() >= 2 and points[:, 0].max() <= 2.5
+
+
+class Branches(dict):
+    """Two branches along b = 0 .. 10, x1 = b and x1 = -b, as a file has them; both have the same fold at b = 0."""
+
+    name, parameters, title = "made up", ["b"], "made up"
+
+    def __init__(self):
+        b = np.concatenate([np.linspace(0, 10, 40)] * 2)
+        kinds = ("fold", "flip", "sticking", "fold", "nonsmooth_fold")
+        points = np.array([0, 10, 39, 40, 79])
+        arrays = {"b": b, "x1": np.where(np.arange(80) < 40, b, -b), "unstable": np.zeros(80, int)}
+        arrays |= {"branch_period": np.ones(2, int), "branch_row_size": np.full(2, 40), "special_point": points}
+        arrays |= {"special_value": b[points][:, None], "special_branch": np.array([0, 0, 0, 1, 1])}
+        arrays |= {"branch_begins": np.array([0, 3]), "branch_ends": np.array([2, 4])}
+        super().__init__(arrays)
+        self.arrays, self.kinds = arrays, kinds
+
+    def types(self):
+        return list(self.kinds)
+
+
+def test_branches(monkeypatch):
+    """Each point is named once, the onset of sticking has a line; of a part the axis and the legend are those of it."""
+    monkeypatch.setattr(branches, "FlatFile", lambda *_: Branches())
+    fig = branches.branches("made up", Look())
+    (ax,) = fig.axes
+    assert sorted(text.get_text() for text in ax.texts) == ["GR", "LP", "PD", "ST"]
+    (line,) = (line for line in ax.lines if line.get_gid() == "sticking")
+    assert set(line.get_xdata()) == {10.0}
+    assert len(entries(fig)) == 6
+    fig = branches.branches("made up", Look(xlim=(-0.1, 3)))
+    (ax,) = fig.axes
+    assert 2.5 < ax.get_ylim()[1] < 3.5 and sorted(text.get_text() for text in ax.texts) == ["LP", "PD"]
+    assert entries(fig)[2:] == ["LP fold", "PD flip"]
