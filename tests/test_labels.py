@@ -213,6 +213,21 @@ def test_a_part_of_a_plane_has_its_own_numbers_and_colours(tmp_path):
     assert fig.axes[0].images[0].norm.vmin == pytest.approx(-0.1)
 
 
+def test_a_part_of_a_plane_of_uneven_steps(tmp_path):
+    """The cells keep the borders that they have in the whole, also where there is one of them."""
+    b = np.array([1.0, 2.0, 4.0, 8.0])
+    file = write(tmp_path / "p.h5", {"b": b, "R": np.array([0.1, 0.2])}, {"period": np.ones((4, 2), int)})
+    (image,) = plotting.figure(file, look=Look(xlim=(1.6, 2.9))).axes[0].images
+    assert image.get_extent()[:2] == (1.5, 3.0)
+
+
+def test_a_map_without_numbers_is_left_out(tmp_path):
+    coordinates = {"b": np.arange(4.0), "R": np.linspace(0, 1, 5)}
+    quantities = {"lyapunov": np.full((4, 5, 4), np.nan), "period": np.ones((4, 5), int)}
+    fig = plotting.figure(write(tmp_path / "p.h5", coordinates, quantities))
+    assert len(fig.axes) == 2 and "period" in bars(fig)[0].get_xlabel()
+
+
 def test_labels_have_their_size_before_they_find_their_places(tmp_path):
     """On a page of 4 x 3 inches the labels of both colour bars would overlap; 0 and both ends stay."""
     file, _ = planes_of(np.random.default_rng(5), tmp_path, "p.h5")
@@ -229,7 +244,7 @@ def test_two_orbits_have_titles_beside_each_other(tmp_path):
     quantities = {"lyapunov_running": running, "lyapunov": running[:, :, -1]}
     quantities["lyapunov_error"] = np.full((2, 2, 4), 0.002)
     coordinates = {"b": np.array([6.51234, 6.6789]), "omega": np.array([0.634567, 0.641234])}
-    fig = plotting.figure(write(tmp_path / "c.h5", coordinates, quantities), "convergence")
+    fig = plotting.figure(write(tmp_path / "c.h5", coordinates, quantities), "convergence", Look(size=(5, 4)))
     fig.draw_without_rendering()
     assert not overlaps([ax.title for ax in fig.axes])
 

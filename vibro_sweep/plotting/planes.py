@@ -72,10 +72,12 @@ def plane(result: Result, overlay: Overlay | None = None):
     grid = fig.subplots(1, len(maps), sharex=True, sharey=True, squeeze=False)[0]
     (x_key, x), (y_key, y) = result.sweep.items()
     relative = result.look.relative
-    columns, rows = (_in_range(values, limits) for values, limits in ((x, result.look.xlim), (y, result.look.ylim)))
     if relative:
         columns, rows = np.argsort(x), np.argsort(y)
-    corners = (edges(x[columns]), edges(y[rows])) if not relative else _relative_corners(result, columns, rows)
+        corners = _relative_corners(result, columns, rows)
+    else:
+        (columns, across), (rows, up) = _in_range(x, result.look.xlim), _in_range(y, result.look.ylim)
+        corners = across, up
     shown = [np.ma.masked_invalid(values[np.ix_(columns, rows)].T) for _, values in maps]
     for ax, (draw, _), values in zip(grid, maps, shown, strict=True):
         draw(ax, *corners, values)
@@ -101,15 +103,16 @@ def plane(result: Result, overlay: Overlay | None = None):
     return fig
 
 
-def _in_range(values, limits) -> np.ndarray:
-    """The order in which values rise (a sweep may run downwards; an axis does not); between the limits of the picture,
-    if there are any."""
+def _in_range(values, limits) -> tuple[np.ndarray, np.ndarray]:
+    """The order (n,) in which values rise (a sweep may run downwards; an axis does not), and the borders (n + 1,) of
+    their cells; of those between the limits of the picture, if there are any."""
     order = np.argsort(values)
-    if not limits:
-        return order
     borders = edges(values[order])
-    inside = order[(borders[1:] > limits[0]) & (borders[:-1] < limits[1])]
-    return inside if len(inside) else order
+    low, high = limits or (-np.inf, np.inf)
+    inside = np.flatnonzero((borders[1:] > low) & (borders[:-1] < high))
+    if not len(inside):
+        return order, borders
+    return order[inside], borders[inside[0] : inside[-1] + 2]
 
 
 def _relative_corners(result, columns, rows) -> tuple[np.ndarray, np.ndarray]:
@@ -188,7 +191,7 @@ def _maps(result):
     if not maps:
         impacts = result.array("impacts_right") + result.array("impacts_left")
         maps.append((_amount("impacts in the recorded periods"), impacts[..., 0]))
-    return maps, note
+    return [one for one in maps if np.isfinite(one[1]).any()] or maps[:1], note
 
 
 def _exponent(ax, x, y, values):

@@ -5,7 +5,7 @@ from matplotlib import patheffects
 
 from vibro_sweep.plotting.style import INK
 
-STEP = 1.5  # points (1/72 inch) between the places that are tried
+STEP, MOST = 1.5, 400  # points (1/72 inch) between the places that are tried, at most so many along an axis
 MARGIN = 1.0  # points around a text
 DIGIT = 0.75  # the height of a digit over the size of its type
 
@@ -20,8 +20,8 @@ def name_regions(ax, x, y, values, taken=()) -> None:
     """
     from scipy import ndimage  # slow to import
 
-    step = STEP * ax.figure.dpi / 72  # in pixels
     low, high = ax.transAxes.transform([(0, 0), (1, 1)])
+    step = max(STEP * ax.figure.dpi / 72, (high - low).max() / MOST)  # in pixels
     across, up = (np.arange(one + step / 2, other, step) for one, other in zip(low, high, strict=True))
     X, Y = (_numbers(ax, places, axis) for axis, places in enumerate((across, up)))
     shown = _at(X, Y, x, y, values.filled(-1).astype(int))
@@ -30,7 +30,7 @@ def name_regions(ax, x, y, values, taken=()) -> None:
     for period in np.unique(shown[shown > 0]):
         text = ax.text(X[0], Y[0], f"{period}", **_STYLE)
         size = text.get_window_extent().width * 72 / ax.figure.dpi, DIGIT * text.get_fontsize()
-        width, height = (int(np.ceil((length + 2 * MARGIN) / STEP)) for length in size)
+        width, height = (int(np.ceil((length + 2 * MARGIN) * ax.figure.dpi / 72 / step)) for length in size)
         inside = np.pad(shown == period, 1)  # the frame is a border, too
         fits = ndimage.minimum_filter(inside, (height, width), mode="constant", cval=0)
         if not fits.any():
