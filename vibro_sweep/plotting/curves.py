@@ -74,7 +74,7 @@ def draw(ax, curves: list[Drawn], halo: bool = False) -> None:
             p, q = (np.where(_joined(shown), values, np.nan) for values in (curve.p, curve.q))
             if shown.any():
                 ax.plot(p, q, color=_style(curve, by_period)[0], **style)
-    size = {"ms": 0.7, "mew": 0} if many else {"ms": 2.2 if halo else 3.5}
+    size = {"ms": 0.7, "mew": 0, "mfc": INK} if many else {"ms": 2.2 if halo else 3.5}
     for _, place in points_of(curves):
         ax.plot(*place, zorder=4, gid="special", **_dot(3.5) | size)
 
@@ -130,7 +130,7 @@ def handles(curves: list[Drawn], frame=None) -> list[Line2D]:
         found.append(Line2D([], [], color=INK, ls=VIRTUAL, lw=0.8, label="virtual"))
     there = {kind for kind, _ in points_of(curves)}
     if there and len(curves) > MANY:
-        found.append(Line2D([], [], **_dot(2.0), label="points of codimension two"))
+        found.append(Line2D([], [], **_dot(2.0) | {"mfc": INK}, label="points of codimension two"))
     else:
         named = [one for one in CODIMENSION_TWO if one.name in there]
         found += [Line2D([], [], **_dot(3.0), label=f"{one.label} {_words(one.name)}") for one in named]
