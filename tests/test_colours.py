@@ -28,6 +28,8 @@ XYZ = np.array(
 
 PERIODS = (style.NO_PERIOD, *style.PERIODS, style.LONGER)
 
+_TYPES = [colour for name, colour in curves.COLOURS.items() if name != "graze"]
+
 # Pairs of colours, and the least distance of all in CIE Lab (2.3 is just noticeable where areas touch).
 LEGENDS = {
     "periods": (itertools.combinations((*PERIODS, style.NOT_COMPUTED), 2), 19),
@@ -36,6 +38,7 @@ LEGENDS = {
     "kinds of attractors": (itertools.combinations([colour for _, colour in families.KINDS.values()], 2), 32),
     "branches": (itertools.combinations((*style.BRANCHES.values(), style.INK), 2), 45),
     "curves": (itertools.combinations(curves.COLOURS.values(), 2), 26),
+    "curves by period": (itertools.combinations((*curves.ORBITS, *_TYPES), 2), 18),
     "sides": ([(style.RIGHT, style.LEFT)], 82),
     "portrait": (itertools.combinations((style.INK, style.SECTION, style.IMPACT, style.FAINT), 2), 32),
 }

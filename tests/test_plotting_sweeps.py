@@ -232,7 +232,7 @@ def test_several_starts_are_all_there(tmp_path):
 def test_a_partial_file_shows_what_is_there(tmp_path):
     b = np.linspace(1, 2, 10)
     done = np.arange(10) < 4
-    quantities = {"x1": np.ones((10, 3)), "lyapunov": np.zeros((10, 4)), "impacts_right": np.zeros(10, int)}
+    quantities = {"x1": np.ones((10, 3)), "lyapunov": np.zeros((10, 4)), "impacts_right": np.ones(10, int)}
     quantities["impacts_left"] = quantities["impacts_right"]
     file = write(tmp_path / "p.h5.part", {"b": b}, quantities, done=done)
     fig = plotting.figure(file)

@@ -9,14 +9,14 @@ from vibro_sweep.model.branch_file import BRANCHES
 from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import joined, sweeps
 from vibro_sweep.plotting.flat import FlatFile, check_over
+from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.result import PlotError, Result
-from vibro_sweep.plotting.style import DASHES, INK, LEFT, SPECIAL, axis_name, limits, page, special_mark, symbol
+from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, SPECIAL, axis_name, limits, special_mark, symbol
 
 LINES = (LEFT, "#c26a00", "#446644", "#7b3294", "#77541f", "#1a1a2e")  # of branches, in turn
 MOST = 3.0  # modulus of a multiplier that is shown: at a graze it is infinite
 ON_CIRCLE = ("fold", "flip", "pitchfork", "neimark_sacker")  # special points with a multiplier of modulus 1
-NEAR = 0.012  # of the axis: special points nearer than that have one label
 
 
 def variables(file: FlatFile) -> tuple[str, ...]:
@@ -36,24 +36,38 @@ def branches(path, look: Look, ax=None):
         raise PlotError(f"{file.name}: nothing to show, it has no branches")
     fig = None
     if ax is None:
-        fig = page(5.0, f"Branches of periodic orbits: {file.title}")
+        fig = look.page(5.0, f"Branches of periodic orbits: {file.title}")
         ax = fig.subplots()
     if look.over is not None:
         _sweep(ax, look, file, name)
     values = values_of(file, name)
     together = joined.margins(file, _sections(file)) if name == "margin" else np.ones(len(values), bool)
     _lines(ax, file, _drawn(file, name, values, look.over is not None), together)
-    _marks(ax, file, values)
+    marks = _marks(ax, file, values)
     ax.set_xlabel(axis_name(file.parameters[0]))
+    if look.xlim:
+        ax.set_xlim(look.xlim)
     if look.over is None:
-        finite = values[np.isfinite(values)]
-        ax.set_ylim(limits(finite) if finite.size else None)
+        finite = values[_inside(file[file.parameters[0]], look.xlim)]
+        finite = finite[np.isfinite(finite)]
+        ax.set_ylim(look.ylim or (limits(finite) if finite.size else None))
         ax.set_ylabel(_label(name))
     if name == "multiplier":
         ax.axhline(1, color=INK, lw=0.5)
         ax.set_ylim(0, min(1.05 * np.nanmax(values), MOST))
-    _legend(fig or ax, ax, file)
+    there = [(kind, place) for kind, place in marks if all(map(_inside, place, (ax.get_xlim(), ax.get_ylim())))]
+    _legend(fig or ax, ax, {kind for kind, _ in there})
+    arrange(ax.figure)
+    there.sort(key=lambda mark: mark[0] != "sticking")  # where many accumulate, what they lead to is named
+    y = np.reshape(values, (len(values), -1))
+    lines = np.column_stack([np.repeat(file[file.parameters[0]], y.shape[1]), y.ravel()])
+    name_beside(ax, [SPECIAL[kind][0] for kind, _ in there], [place for _, place in there], lines)
     return fig or ax.figure
+
+
+def _inside(values, limits):
+    """Which numbers lie between two limits; all, where there are none."""
+    return (limits[0] <= values) & (values <= limits[1]) if limits else np.ones(np.shape(values), bool)
 
 
 def values_of(file: FlatFile, name: str) -> np.ndarray:
@@ -109,23 +123,20 @@ def _drawn(file: FlatFile, name: str, values: np.ndarray, all_sections: bool) ->
     return [part.reshape(-1, count).T for part, count in zip(parts, counts, strict=True)]
 
 
-def _marks(ax, file: FlatFile, values: np.ndarray) -> None:
-    """Special points, with the labels of those that stand alone."""
-    x = file["special_value"][:, 0]
-    y = values[_places(file)]
+def _marks(ax, file: FlatFile, values: np.ndarray) -> list[tuple[str, tuple[float, float]]]:
+    """Special points: (type, place). A line at the onset of sticking, where points accumulate."""
+    x, y = file["special_value"][:, 0], values[_places(file)]
     if y.ndim == 2:
-        kinds = file.types()
-        y = np.array([joined.at_circle(m, kind in ON_CIRCLE) for m, kind in zip(y, kinds, strict=True)])
-    width, height = (np.ptp(one[np.isfinite(one)]) or 1.0 for one in (file[file.parameters[0]], values))
-    labelled = []
+        y = np.array([joined.at_circle(m, kind in ON_CIRCLE) for m, kind in zip(y, file.types(), strict=True)])
+    found = []
     for kind, at_x, at_y in zip(file.types(), x, y, strict=True):
         if kind not in SPECIAL or not np.isfinite(at_y):
             continue
-        ax.plot(at_x, at_y, zorder=4, gid="special", **special_mark(kind, 4.0))
-        place = np.array([at_x / width, at_y / height])
-        if all(np.abs(place - other).max() > NEAR for other in labelled):
-            labelled.append(place)
-            ax.annotate(SPECIAL[kind][0], (at_x, at_y), (3, 3), textcoords="offset points", fontsize=6, zorder=5)
+        if kind == "sticking":
+            ax.axvline(at_x, color=SPECIAL[kind][3], lw=0.6, ls=":", zorder=1, gid="sticking")
+        ax.plot(at_x, at_y, gid="special", **special_mark(kind, 4.0), zorder=4.5 if kind == "sticking" else 4)
+        found.append((kind, (at_x, at_y)))
+    return found
 
 
 def _places(file: FlatFile) -> np.ndarray:
@@ -137,8 +148,7 @@ def _places(file: FlatFile) -> np.ndarray:
     return point
 
 
-def _legend(where, ax, file: FlatFile) -> None:
-    there = set(file.types())
+def _legend(where, ax, there: set[str]) -> None:
     handles = [Line2D([], [], color=INK, lw=1.2, label="stable")]
     handles.append(Line2D([], [], color=INK, lw=0.7, ls=DASHES, label="unstable"))
     handles += [
@@ -147,16 +157,18 @@ def _legend(where, ax, file: FlatFile) -> None:
     if where is ax:
         ax.legend(handles=handles, loc="best", frameon=True)
     else:
-        where.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 5))
+        legend_below(where, handles, 5)
 
 
 def _sweep(ax, look: Look, file: FlatFile, name: str) -> None:
     """The section points of a sweep, below everything."""
     check_over(look.over)
-    with Result(look.over, Look(variable=name)) as result:
+    with Result(look.over, Look(variable=name, xlim=look.xlim, ylim=look.ylim)) as result:
         if list(result.sweep) != file.parameters or name not in sweeps.section_variables(result):
             raise PlotError(f"over: {result.path} is no sweep over {file.parameters[0]} with section points {name}")
         ((_, values),) = result.sweep.items()
-        order = np.argsort(values)
+        order = sweeps.in_range(result)
         sweeps.section(ax, result, values[order], order)
-        ax.set_xlim(values.min(), values.max())
+        for dots in (line for line in ax.lines if line.get_ls() == "None" and not result.follow):
+            dots.set_color(FAINT)  # the branches over them are dark
+        ax.set_xlim(values[order[0]], values[order[-1]])

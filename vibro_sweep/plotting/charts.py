@@ -1,5 +1,6 @@
 """Files of bifurcation curves as charts in two parameters: alone, or over the plane of a sweep."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,10 +10,10 @@ from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.plotting import planes
 from vibro_sweep.plotting.curves import Drawn, draw, handles, name_points
 from vibro_sweep.plotting.flat import FlatFile, check_over
+from vibro_sweep.plotting.labels import arrange, legend_below
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.relative import axis_label, check_relative
 from vibro_sweep.plotting.result import PlotError, Result
-from vibro_sweep.plotting.style import page
 
 NAMED = 14  # points of codimension two that are named over a plane
 
@@ -30,14 +31,17 @@ def chart(path: str | Path, look: Look, ax=None):
     curves = drawn(file, names, look.relative)
     fig = None
     if ax is None:
-        fig = page(5.0, f"Bifurcation curves: {file.title}")
+        fig = look.page(5.0, f"Bifurcation curves: {file.title}")
         ax = fig.subplots()
     draw(ax, curves)
+    ax.set(xlim=look.xlim or ax.get_xlim(), ylim=look.ylim or ax.get_ylim())
+    found = handles(curves, _frame(ax))
     ax.set(xlabel=axis_label(names[0], look.relative), ylabel=axis_label(names[1], look.relative))
     if fig is None:
-        ax.legend(handles=handles(curves), loc="best", frameon=True)
+        ax.legend(handles=found, loc="best", frameon=True)
     else:
-        fig.legend(handles=handles(curves), loc="outside lower center", ncols=6)
+        legend_below(fig, found, 6, grow=look.size is None, columnspacing=1.2)
+    arrange(ax.figure)
     name_points(ax, curves)
     return fig or ax.figure
 
@@ -53,6 +57,7 @@ def drawn(file: FlatFile, names: list[str], relative: bool = False) -> list[Draw
         axis = names.index("b")
         values[:, axis] /= file["b_star"]
         places[:, axis] /= file["b_star"][file["special_point"]]
+    periods = file["branch_period"].tolist()
     kinds = [CODIMENSION_TWO[code].name for code in file["special_type"].tolist()]
     ends = np.cumsum(file["branch_row_size"])
     result = []
@@ -61,14 +66,14 @@ def drawn(file: FlatFile, names: list[str], relative: bool = False) -> list[Draw
         own = np.flatnonzero(file["special_branch"] == i)
         special = [(kinds[s], *places[s].tolist()) for s in own]
         virtual, bounds = file["status"][along] != 0, file["unstable"][along] == 0
-        result.append(Drawn(CURVES[code], *values[along].T, virtual, special, bounds))
+        result.append(Drawn(CURVES[code], *values[along].T, virtual, special, bounds, periods[i]))
     return result
 
 
 def _over(file: FlatFile, look: Look, ax):
     """Over the plane of a sweep in the same two numbers."""
     check_over(look.over)
-    with Result(look.over, Look(variable=look.variable, size=look.size, relative=look.relative), ax) as result:
+    with Result(look.over, replace(look, over=None), ax) as result:
         if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
             raise PlotError(f"over: {result.path} is no plane over {' and '.join(file.parameters)}")
         if look.variable is not None and look.variable not in planes.variables(result):
@@ -76,10 +81,16 @@ def _over(file: FlatFile, look: Look, ax):
             raise PlotError(f"variable {look.variable!r} is not allowed; there are {told}")
         curves = drawn(file, list(result.sweep), look.relative)
 
-        def overlay(panel):
+        def over(panel):
             frame = panel.get_xlim(), panel.get_ylim()
             draw(panel, curves, halo=True)
             panel.set(xlim=frame[0], ylim=frame[1])
-            name_points(panel, curves, NAMED)
 
-        return planes.plane(result, overlay, handles(curves))
+        def named(panel):
+            return name_points(panel, curves, NAMED)
+
+        return planes.plane(result, planes.Overlay(over, lambda panel: handles(curves, _frame(panel)), named))
+
+
+def _frame(ax):
+    return ax.get_xlim(), ax.get_ylim()

@@ -8,6 +8,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 
 from vibro_sweep.model.catalogue import BY_NAME
 from vibro_sweep.plotting.families import KINDS, MARKERS, kind
+from vibro_sweep.plotting.labels import arrange, overlap
 from vibro_sweep.plotting.result import Point, Result
 from vibro_sweep.plotting.style import at_section, axis_name, edges, marked
 from vibro_sweep.plotting.sweeps import mark_grazing
@@ -40,15 +41,15 @@ def coexistence(result: Result):
     above, below = axes = fig.subplots(2, sharex=True, height_ratios=(1.6, 1))
     _points(above, result, values, found)
     _stacks(below, values, found)
-    _name_windows(below, values, found)
     if key == "b":
-        mark_grazing(axes, result)
+        mark_grazing(axes, result, values[0], values[-1])
     below.set(xlim=edges(values)[[0, -1]], ylim=(0, 1), xlabel=axis_name(key), ylabel=BY_NAME["share"].label)
     there = {one.kind for one in found}
     named = {name: marked(colour, MARKERS.get(which, "")) for which, (name, colour) in KINDS.items() if which in there}
     named |= {line.get_label(): line for line in above.lines if line.get_gid() == "grazing"}
     fig.legend(named.values(), named.keys(), loc="outside lower center", ncols=3)
     fig.align_ylabels(axes)
+    _name_windows(below, values, found)
     return fig
 
 
@@ -109,11 +110,17 @@ def _name_windows(ax, values, found):
     for one in found:
         if one.place not in widest or one.share > widest[one.place].share:
             widest[one.place] = one
-    borders = edges(values)
+    arrange(ax.figure)
+    borders, taken = edges(values), []
     for period, window in itertools.groupby(widest.values(), key=lambda one: one.period):
         places = [one.place for one in window]
         left, right = borders[places[0]], borders[places[-1] + 1]
         if period > 0 and right - left > NARROW * (borders[-1] - borders[0]):
             above = {"xy": ((left + right) / 2, 1.0), "xycoords": ax.get_xaxis_transform(), "xytext": (0, 2)}
-            ax.annotate(f"{period}", **above, textcoords="offset points", ha="center", fontsize=7)
+            text = ax.annotate(f"{period}", **above, textcoords="offset points", ha="center", fontsize=7)
+            box = text.get_window_extent().get_points()
+            if any(overlap(box, other) for other in taken):
+                text.remove()
+            else:
+                taken.append(box)
     ax.annotate("period", (1.012, 1.0), (0, 2), xycoords="axes fraction", textcoords="offset points", fontsize=7)

@@ -30,7 +30,7 @@ def convergence(result: Result):
         largest.plot(periods, running[:, order[0]], color=exponent_colour(order[0]))
         text = point.label
         if "lyapunov" in result:
-            text = ", ".join(filter(None, [text, _final_values((largest, spectrum), result, point)]))
+            text = "\n".join(filter(None, [text, _final_values((largest, spectrum), result, point)]))
         largest.axhline(0, color=INK, lw=0.6)
         largest.set_title(text)
         spectrum.set_xlabel("forcing periods recorded")
@@ -63,7 +63,7 @@ def _final_values(panels, result, point) -> str:
                 label = "_" if i else errors
                 ax.axhspan(value - spread, value + spread, color=colour, alpha=0.15, lw=0, label=label)
     value = rf"{_scientific(final[0], 2)} \pm {_scientific(reach[0], 0)}" if known else _scientific(final[0], 2)
-    return exponent(1, f" = {value}") + (f" ({errors})" if known else "")
+    return exponent(1, f" = {value}")
 
 
 def _scientific(value, digits) -> str:

@@ -1,5 +1,6 @@
 """Charts: bifurcation curves in the plane of two parameters, with their points of codimension two."""
 
+from collections import Counter
 from typing import NamedTuple
 
 import matplotlib as mpl
@@ -8,6 +9,7 @@ from matplotlib import patheffects
 from matplotlib.lines import Line2D
 
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO
+from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.style import FAINT, INK, STYLE, axis_name, page
 
 COLOURS = {
@@ -19,8 +21,9 @@ COLOURS = {
     "sticking": "#9600fa",
 }
 LABELS = {"neimark_sacker": "Neimark-Sacker"}
-LETTER, LINE, GAP = 4.8, 7.5, 2.5  # points: width of a letter of a name, its height, its distance from what is beside
-CORNERS = ((1, 1), (-1, 1), (1, -1), (-1, -1))  # of a mark, where its name may stand
+# of orbits of different periods, beside the colours of the types but for the graze's
+ORBITS = ("#8a8a96", "#5ce4ff", "#521433", "#9aca91", "#425a8a", "#ff5c5c", "#8a425a", "#660099", "#ff00d5")
+MOSTLY, DIFFERENT = 0.6, 3  # from this part of the curves on, and so many periods, one type is told apart by periods
 VIRTUAL = (0, (1, 1.5))  # dots of what is no motion
 MANY = 100  # curves
 SHORT = {one.name: one.label for one in CODIMENSION_TWO if one.label}
@@ -28,7 +31,7 @@ SHORT = {one.name: one.label for one in CODIMENSION_TWO if one.label}
 
 class Drawn(NamedTuple):
     """A curve: its type, both parameters and `virtual` (points,), points of codimension two as (type, p, q); whether it
-    bounds attractors (points,), or None where that is not shown."""
+    bounds attractors (points,), or None where that is not shown; the period of its orbits."""
 
     type: str
     p: np.ndarray
@@ -36,6 +39,7 @@ class Drawn(NamedTuple):
     virtual: np.ndarray
     special: list[tuple[str, float, float]]
     bounds: np.ndarray | None = None
+    period: int = 1
 
 
 def plot_curves(curves: list[Drawn], names: tuple[str, str]):
@@ -45,16 +49,19 @@ def plot_curves(curves: list[Drawn], names: tuple[str, str]):
         ax = fig.subplots()
         draw(ax, curves)
         ax.set(xlabel=axis_name(names[0]), ylabel=axis_name(names[1]))
-        fig.legend(handles=handles(curves), loc="outside lower center", ncols=6)
+        legend_below(fig, handles(curves), 6, grow=True)
+        arrange(fig)
         name_points(ax, curves)
         return fig
 
 
 def draw(ax, curves: list[Drawn], halo: bool = False) -> None:
-    """The lines: virtual parts dotted, parts that bound no attractor thin. halo: with a white rim, over a picture.
+    """The lines: virtual parts dotted, parts that bound no attractor thin; points of codimension two.
 
+    halo : with a white rim and small points, over a picture.
     Many curves have thin lines and no rims.
     """
+    by_period = _by_period(curves)
     many = len(curves) > MANY
     rim = [patheffects.withStroke(linewidth=2.4, foreground="white")] if halo and not many else []
     for curve in curves:
@@ -66,7 +73,10 @@ def draw(ax, curves: list[Drawn], halo: bool = False) -> None:
         ):
             p, q = (np.where(_joined(shown), values, np.nan) for values in (curve.p, curve.q))
             if shown.any():
-                ax.plot(p, q, color=COLOURS[curve.type], **style)
+                ax.plot(p, q, color=_style(curve, by_period)[0], **style)
+    size = {"ms": 0.7, "mew": 0, "mfc": INK} if many else {"ms": 2.2 if halo else 3.5}
+    for _, place in points_of(curves):
+        ax.plot(*place, zorder=4, gid="special", **_dot(3.5) | size)
 
 
 def _joined(shown: np.ndarray) -> np.ndarray:
@@ -76,52 +86,22 @@ def _joined(shown: np.ndarray) -> np.ndarray:
     return result
 
 
-def name_points(ax, curves: list[Drawn], most: int | None = None) -> None:
-    """Points of codimension two, and names of those that stand alone. most : over a picture, where few have room."""
+def name_points(ax, curves: list[Drawn], most: int | None = None) -> list[np.ndarray]:
+    """Names of the points of codimension two that stand alone; the boxes in which they stand (`labels.name_beside`).
+
+    most : over a picture, where few have room
+    """
+    if len(curves) > MANY:  # no room for names
+        return []
+    points = points_of(curves)
+    lines = np.concatenate([_filled(curve) for curve in curves])
+    return name_beside(ax, [SHORT[kind] for kind, _ in points], [place for _, place in points], lines, most=most)
+
+
+def points_of(curves: list[Drawn]) -> list[tuple[str, tuple[float, float]]]:
+    """Points of codimension two that have a label, each once: (type, place)."""
     places = {(kind, f"{p:.9g}", f"{q:.9g}"): (p, q) for curve in curves for kind, p, q in curve.special}
-    points = [(SHORT[kind], place) for (kind, _, _), place in places.items() if kind in SHORT]
-    many = len(curves) > MANY
-    size = {"ms": 0.7, "mew": 0} if many else {"ms": 3.5 if most is None else 2.2, "mew": 0.6, "mfc": "white"}
-    for _, place in points:
-        ax.plot(*place, "o", color=INK, zorder=4, gid="special", **size)
-    if many:  # no room for names
-        return
-    ax.autoscale_view()  # else transforms know neither the limits yet,
-    if (layout := ax.figure.get_layout_engine()) is not None:
-        layout.execute(ax.figure)  # nor where the axes will be
-    to_points, scale = ax.transData.transform, 72 / ax.figure.dpi
-    marks = scale * to_points([place for _, place in points]).reshape(-1, 2)
-    lines = scale * np.concatenate([to_points(_filled(curve)) for curve in curves])
-    frame = scale * ax.transAxes.transform([(0, 0), (1, 1)])
-    taken: list[np.ndarray] = []  # boxes (2, 2) of names, from the lower left to the upper right
-    for (name, place), mark in zip(points, marks, strict=True):
-        found = _free_corner(name, mark, marks, lines, frame, taken)
-        if found is None or len(taken) >= (most or len(points)):
-            continue
-        (right, up), box = found
-        halo = [patheffects.withStroke(linewidth=1.8, foreground="white")] if most is not None else None
-        ax.annotate(
-            name, place, (right * GAP, up * GAP), textcoords="offset points", size=6, path_effects=halo, zorder=5,
-            ha="left" if right > 0 else "right", va="bottom" if up > 0 else "top", clip_on=True, annotation_clip=True,
-        )  # fmt: skip
-        taken.append(box)
-
-
-def _free_corner(name: str, mark, marks, lines, frame, taken):
-    """((+-1, +-1), box) of the corner of a mark where its name covers no mark and no other name, and the fewest points
-    of lines; None where there is no such corner within the frame. All in points of the page."""
-    size, best = np.array([LETTER * len(name) + GAP, LINE]), None
-    for corner in CORNERS:
-        ends = mark + GAP * np.array(corner), mark + (GAP + size) * corner
-        box = np.array([np.minimum(*ends), np.maximum(*ends)])
-        inside = np.all((frame[0] <= box) & (box <= frame[1]))
-        apart = all(np.any((box[1] < other[0]) | (other[1] < box[0])) for other in taken)
-        if not inside or not apart or _within(marks, box):
-            continue
-        covered = _within(lines, box)
-        if best is None or covered < best[0]:
-            best = covered, corner, box
-    return best and best[1:]
+    return [(kind, place) for (kind, _, _), place in places.items() if kind in SHORT]
 
 
 def _filled(curve: Drawn, pieces: int = 8) -> np.ndarray:
@@ -130,16 +110,72 @@ def _filled(curve: Drawn, pieces: int = 8) -> np.ndarray:
     return np.concatenate([((1 - share) * at[:-1] + share * at[1:]).reshape(-1, 2), at[-1:]])
 
 
-def _within(points: np.ndarray, box: np.ndarray) -> int:
-    return int(np.count_nonzero(np.all((box[0] <= points) & (points <= box[1]), axis=1)))
+def handles(curves: list[Drawn], frame=None) -> list[Line2D]:
+    """Of a legend: the types, what thin and dotted lines mean where there are any, and the names of points.
 
-
-def handles(curves: list[Drawn]) -> list[Line2D]:
-    """Of a legend: the types, and what thin and dotted lines mean where there are any."""
-    there = [kind for kind in COLOURS if any(curve.type == kind for curve in curves)]
-    found = [Line2D([], [], color=COLOURS[kind], lw=1.2, label=LABELS.get(kind, kind)) for kind in there]
+    frame : ((left, right), (low, high)) of the picture, where that is not all
+    """
+    by_period = _by_period(curves)
+    if frame is not None:
+        curves = [_within(curve, *frame) for curve in curves]
+        curves = [curve for curve in curves if len(curve.p)]
+    found = {}
+    for curve in sorted(curves, key=lambda curve: (list(COLOURS).index(curve.type), curve.period)):
+        colour, label = _style(curve, by_period)
+        found.setdefault(label, Line2D([], [], color=colour, lw=1.2, label=label))
+    found = list(found.values())
     if any(curve.bounds is not None and not curve.bounds.all() for curve in curves):
         found.append(Line2D([], [], color=INK, lw=0.5, label="of unstable orbits"))
     if any(curve.virtual.any() for curve in curves):
         found.append(Line2D([], [], color=INK, ls=VIRTUAL, lw=0.8, label="virtual"))
+    there = {kind for kind, _ in points_of(curves)}
+    if there and len(curves) > MANY:
+        found.append(Line2D([], [], **_dot(2.0) | {"mfc": INK}, label="points of codimension two"))
+    else:
+        named = [one for one in CODIMENSION_TWO if one.name in there]
+        found += [Line2D([], [], **_dot(3.0), label=f"{one.label} {_words(one.name)}") for one in named]
     return found
+
+
+def _words(name: str) -> str:
+    """The name of a type of point, as texts have it."""
+    words = name.replace("neimark_sacker", "Neimark-Sacker").replace("resonance_1_", "resonance 1:").split("_")
+    return (" + " if words[0] in COLOURS or words[0] == LABELS["neimark_sacker"] else " ").join(words)
+
+
+def _dot(size: float) -> dict:
+    return {"ls": "none", "marker": "o", "color": INK, "ms": size, "mew": 0.6, "mfc": "white"}
+
+
+def _within(curve: Drawn, across, up) -> Drawn:
+    """The part of a curve that lies in a frame."""
+    inside = (across[0] <= curve.p) & (curve.p <= across[1]) & (up[0] <= curve.q) & (curve.q <= up[1])
+    special = [one for one in curve.special if across[0] <= one[1] <= across[1] and up[0] <= one[2] <= up[1]]
+    bounds = None if curve.bounds is None else curve.bounds[inside]
+    return curve._replace(
+        p=curve.p[inside], q=curve.q[inside], virtual=curve.virtual[inside], special=special, bounds=bounds
+    )
+
+
+def _by_period(curves: list[Drawn]) -> dict[int, str]:
+    """period -> colour, where most curves have one type and a legend of types would tell nothing apart; else none.
+
+    The shortest periods have a colour each, all others the one of their type.
+    """
+    if len(curves) > MANY:
+        return {}
+    types = Counter(curve.type for curve in curves)
+    ((common, count),) = types.most_common(1) or [("", 0)]
+    periods = sorted({curve.period for curve in curves if curve.type == common})
+    if count <= MOSTLY * len(curves) or len(periods) < DIFFERENT:
+        return {}
+    return {common: dict(zip(periods, ORBITS, strict=False))}
+
+
+def _style(curve: Drawn, by_period) -> tuple[str, str]:
+    """Colour and label of a curve."""
+    name = LABELS.get(curve.type, curve.type)
+    if curve.type not in by_period:
+        return COLOURS[curve.type], name
+    colour = by_period[curve.type].get(curve.period)
+    return (colour, f"{name}, period {curve.period}") if colour else (COLOURS[curve.type], f"{name}, longer periods")

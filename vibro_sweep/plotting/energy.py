@@ -3,6 +3,7 @@
 import numpy as np
 
 from vibro_sweep.model.state import MOST_MASSES
+from vibro_sweep.plotting.impacts import NONE
 from vibro_sweep.plotting.result import Result
 from vibro_sweep.plotting.spectrum import curve
 from vibro_sweep.plotting.style import BRANCHES, FAINT, INK, LEFT, RIGHT, axis_name, edges, symbol
@@ -25,15 +26,13 @@ def energy(result: Result):
     """Power lost in impacts over the parameter; below, the root mean square of each displacement, or one variable."""
     ((key, values),) = result.sweep.items()
     order = np.argsort(values)  # a sweep may run downwards; an axis does not
-    fig = result.page(4.6, result.title("Energy"))
-    above, below = fig.subplots(2, sharex=True)
     power = result.array("impact_power")[order]
-    if result.follow:
-        for i, (name, colour) in enumerate(BRANCHES.items()):
-            curve(above, values[order], power[:, i], color=colour, label=name)
-    else:
-        curve(above, values[order], power, color=INK)
-    above.set_ylabel("power lost in impacts")
+    struck = bool(np.any(power > 0)) or result.failed
+    fig = result.page(4.6 if struck else 3.0, result.title("Energy" if struck else f"Energy; {NONE}"))
+    axes = fig.subplots(1 + struck, sharex=True, squeeze=False)[:, 0]
+    if struck:
+        _power(axes[0], values[order], power, result.follow)
+    below = axes[-1]
     chosen = result.look.variable
     shown = [chosen] if chosen else [name for name in variables(result) if name.startswith("rms_x")]
     for i, name in enumerate(shown):
@@ -42,9 +41,19 @@ def energy(result: Result):
     size = "largest size" if chosen and chosen.startswith("peak") else "root mean square"
     below.set(ylabel=f"{size} of {symbol(chosen.partition('_')[2])}" if chosen else size, xlabel=axis_name(key))
     below.set_xlim(*edges(values[order])[[0, -1]])
-    for ax in (above, below):
+    for ax in axes:
         ax.set_ylim(bottom=0)
     if len(shown) > 1:
         below.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=min(8, len(shown)), borderaxespad=0.1)
-    fig.align_ylabels((above, below))
+    fig.align_ylabels(axes)
     return fig
+
+
+def _power(ax, values, power, follow) -> None:
+    """power : (values, starts)"""
+    ax.set_ylabel("power lost\nin impacts")
+    if not follow:
+        curve(ax, values, power, color=INK)
+        return
+    for i, (name, colour) in enumerate(BRANCHES.items()):
+        curve(ax, values, power[:, i], color=colour, label=name)

@@ -5,8 +5,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from vibro_sweep.plotting.source import PlotError
+from vibro_sweep.plotting.style import page
 
 SIZES = (2.0, 100.0)  # inches
 RESOLUTIONS = (10, 2400)  # pixels an inch
@@ -45,14 +47,9 @@ class Look:
         if self.dpi is not None and not RESOLUTIONS[0] <= self.dpi <= RESOLUTIONS[1]:
             raise PlotError(f"dpi: {self.dpi:g} is not allowed; it must be {RESOLUTIONS[0]} to {RESOLUTIONS[1]}")
 
-    def applied(self, fig) -> None:
-        """Give a figure that is drawn its limits, size and resolution."""
-        panels = [ax for ax in fig.axes if ax.get_label() != "<colorbar>"]
-        for ax in panels:
-            if self.xlim:
-                ax.set_xlim(self.xlim)
-            if self.ylim and ax.get_ylabel() == panels[0].get_ylabel():
-                ax.set_ylim(self.ylim)
+    def page(self, height: float, title: str) -> Figure:
+        """An empty figure, of the size and the resolution that are asked for: texts find their places in these."""
+        fig = page(height, title)
         if self.size:
             fig.set_size_inches(self.size)
         if self.dpi:
@@ -61,6 +58,16 @@ class Look:
         if width * height > MOST_PIXELS:
             pixels = f"{width:.0f} x {height:.0f} pixels"
             raise PlotError(f"size and dpi: {pixels} are not allowed; there may be {MOST_PIXELS:.0e} in all")
+        return fig
+
+    def applied(self, fig) -> None:
+        """Give a figure that is drawn its limits."""
+        panels = [ax for ax in fig.axes if ax.get_label() != "<colorbar>"]
+        for ax in panels:
+            if self.xlim:
+                ax.set_xlim(self.xlim)
+            if self.ylim and ax.get_ylabel() == panels[0].get_ylabel():
+                ax.set_ylim(self.ylim)
 
 
 def _told(numbers) -> str:

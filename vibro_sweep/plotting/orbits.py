@@ -5,6 +5,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from vibro_sweep.model.state import MOST_MASSES, state
+from vibro_sweep.plotting import rests
+from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.paths import GAP, gap_of, path
 from vibro_sweep.plotting.result import Result
 from vibro_sweep.plotting.style import (
@@ -80,6 +82,7 @@ def phase_portrait(result: Result):
         first = x_name == displacements(result)[0]
         way = way if first or result.along is not None else way.joined()
         _line(ax, way[x_name], way[v_name], way)
+        rests.along(ax, way, x_name, v_name)
         if first:
             for stop, before, after in way.jumps:
                 ax.plot([stop, stop], [before, after], color=IMPACT, lw=1.2, ls=(0, (1, 1)), label="impact")
@@ -96,6 +99,7 @@ def configuration(result: Result):
     for ax, point in panels:
         way = path(result, point).joined()
         _line(ax, way["x1"], way["x2"], way)
+        rests.along(ax, way, "x1", "x2")
         if result.along is None:
             _walls(ax, result, point)
         elif not result.along[2:].any():
@@ -213,6 +217,8 @@ def history(result: Result):
             jumps = name.startswith("v") and (name == "v1" or result.along is not None)
             shown = way if jumps else way.joined()
             ax.plot(shown.t, shown[name], label=_symbol(name), **styles[min(i, len(styles) - 1)])
+            if name == displacements(result)[0]:
+                rests.along(ax, shown, "t", name)
         for side, stop in stops.items() if displacements(result)[0] in names else ():
             ax.axhline(stop, color=FAINT, lw=0.9, ls=DASHES if side > 0 else ":", label=stop_name(result, side))
         ax.margins(x=0)
@@ -269,9 +275,4 @@ def legend(fig):
     if any(text.get_gid() == "time" for ax in fig.axes for text in ax.texts):
         named["direction of time"] = Line2D([], [], color=INK, lw=0, marker=">", markersize=5)
     if named:
-        fig.legend(
-            named.values(),
-            named.keys(),
-            loc="outside lower center",
-            ncols=len(named) if len(named) < 7 else -(-len(named) // 2),
-        )
+        legend_below(fig, list(named.values()), len(named), labels=list(named))

@@ -15,16 +15,23 @@ class Path(NamedTuple):
     """A sampled motion: t in forcing periods (n,), with NaN in each jump.
 
     `states`: name -> (n,), NaN where not stored; `gap` and `gap_velocity` beside them where the gap is not x1. `jumps`:
-    rows (gap, gap velocity before, after), one an impact. `complete`: they are in the file.
+    rows (gap, gap velocity before, after), one an impact. `complete`: they are in the file. `stops`: the gap at each.
     """
 
     t: np.ndarray
     states: dict[str, np.ndarray]
     jumps: np.ndarray
     complete: bool
+    stops: tuple[float, ...] = ()
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self.t if name == "t" else self.states[name]
+
+    @property
+    def rests(self) -> np.ndarray:
+        """Where the mass rests on a stop, bool (n,)."""
+        gap, rate = ("gap", "gap_velocity") if "gap" in self.states else ("x1", "v1")
+        return np.isin(self[gap], self.stops) & (self[rate] == 0)
 
     def joined(self) -> "Path":
         """Without the gaps in the jumps: positions go on through an impact, and velocities that it does not change."""
@@ -62,7 +69,7 @@ def path(result: Result, point: Point) -> Path:
         name: np.insert(values, at, np.stack(rows[name], axis=1).ravel())
         for name, values in (motion | {"t": t}).items()
     }
-    return Path(put.pop("t"), put, np.stack([stop, speed, after], axis=1), True)
+    return Path(put.pop("t"), put, np.stack([stop, speed, after], axis=1), True, tuple(stops.values()))
 
 
 def gap_of(motion: dict[str, np.ndarray], along: np.ndarray, letter: str) -> np.ndarray:

@@ -1,14 +1,19 @@
 """Pictures over two swept parameters: where the motion is periodic, with which period, and where chaotic."""
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
-from matplotlib import colormaps, patheffects
+from matplotlib import colormaps
 from matplotlib.colors import BoundaryNorm, CenteredNorm, ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from vibro_sweep.model.observables import VARIABLES
-from vibro_sweep.plotting import strip
+from vibro_sweep.plotting import decades, rests, strip
+from vibro_sweep.plotting.labels import arrange, legend_below, thin_ticks
+from vibro_sweep.plotting.regions import name_regions
 from vibro_sweep.plotting.relative import axis_label, check_relative
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import (
@@ -31,9 +36,15 @@ from vibro_sweep.plotting.style import (
 _OF_A_POINT = {one.name: one.label for one in VARIABLES if not one.dimensions}
 
 CURVES = {"b_star": DASHES, "b_right": DASHES, "b_left": ":"}
-ROOM = 4.5  # points (1/72 inch) around a period that is written into the plane
-LETTERS = 140  # in a line of the legend
-COARSE = 400  # cells a side among which places for the periods are sought
+
+
+class Overlay(NamedTuple):
+    """What lies over a plane: `draw(ax)`; `handles(ax)` for the legend; and `name(ax)`, which writes its names when the
+    axes have their places, and returns the boxes (2, 2), in pixels, in which they stand."""
+
+    draw: Callable
+    handles: Callable
+    name: Callable
 
 
 def shows(result: Result) -> bool:
@@ -46,14 +57,14 @@ def variables(result: Result) -> tuple[str, ...]:
     return tuple(name for name in ("lyapunov", *_OF_A_POINT) if name in result)
 
 
-def plane(result: Result, overlay=None, more=()):
+def plane(result: Result, overlay: Overlay | None = None):
     """lambda_1 and the period over the two parameters, side by side; the impacts where neither is stored.
 
     Of several starts the one with the largest lambda_1 is shown, point by point; beside it how many attractors they
     reach, where that is stored. A variable that is chosen is shown alone. Raises PlotError where the look wants b in
     parts of b*, and b* is not known.
 
-    overlay(ax) draws on each panel, `more` are its handles for the legend.
+    overlay : drawn on each panel
     """
     maps, note = _maps(result)
     maps = maps if result.ax is None else maps[:1]
@@ -62,25 +73,50 @@ def plane(result: Result, overlay=None, more=()):
     fig = result.page(4.4 if len(maps) > 1 else 5.4, result.title(what + note))
     grid = fig.subplots(1, len(maps), sharex=True, sharey=True, squeeze=False)[0]
     (x_key, x), (y_key, y) = result.sweep.items()
-    columns, rows = np.argsort(x), np.argsort(y)  # a sweep may run downwards; an axis does not
     relative = result.look.relative
-    corners = (edges(x[columns]), edges(y[rows])) if not relative else _relative_corners(result, columns, rows)
-    for ax, (draw, values) in zip(grid, maps, strict=True):
-        draw(ax, *corners, np.ma.masked_invalid(values[np.ix_(columns, rows)].T))
+    if relative:
+        columns, rows = np.argsort(x), np.argsort(y)
+        corners = _relative_corners(result, columns, rows)
+    else:
+        (columns, across), (rows, up) = _in_range(x, result.look.xlim), _in_range(y, result.look.ylim)
+        corners = across, up
+    shown = [np.ma.masked_invalid(values[np.ix_(columns, rows)].T) for _, values in maps]
+    for ax, (draw, _), values in zip(grid, maps, shown, strict=True):
+        draw(ax, *corners, values)
         ax.set_xlabel(axis_label(x_key, relative))
         ax.patch.set(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="///")
+        ax.set(xlim=result.look.xlim or ax.get_xlim(), ylim=result.look.ylim or ax.get_ylim())
+        rests.cells(ax, result, columns, rows, corners)
         _grazing_curve(ax, result)
         if result.look.windows is not None:
             strip.ends_over(ax, result)
         if overlay is not None:
-            overlay(ax)
+            overlay.draw(ax)
     grid[0].set_ylabel(axis_label(y_key, relative))
-    shown = [line for line in grid[0].lines if line.get_gid() == "window end"]
-    if "lyapunov_error" in result and any(draw is _exponent and (values == 0).any() for draw, values in maps):
-        errors = f"{result.significant:.2g} standard errors"
-        shown.append(Patch(facecolor=NEUTRAL, edgecolor=FAINT, label=f"{exponent(1)} within {errors} of 0"))
-    _legend(fig, grid, any(np.isnan(values).any() for _, values in maps), [*shown, *more])
+    zero = "lyapunov_error" in result and any(draw is _exponent and (values == 0).any() for draw, values in maps)
+    more = [_within_errors(result)] if zero else []
+    _legend(fig, grid, any(values.mask.any() for values in shown), result.look, overlay, more)
+    arrange(grid[0].figure)
+    for ax, (draw, _), values in zip(grid, maps, shown, strict=True):
+        taken = [] if overlay is None else overlay.name(ax)
+        if draw is _period:
+            name_regions(ax, *corners, values, taken)
+        for image in (*ax.images, *ax.collections):
+            if image.colorbar is not None:
+                thin_ticks(image.colorbar)
     return fig
+
+
+def _in_range(values, limits) -> tuple[np.ndarray, np.ndarray]:
+    """The order (n,) in which values rise (a sweep may run downwards; an axis does not), and the borders (n + 1,) of
+    their cells; of those between the limits of the picture, if there are any."""
+    order = np.argsort(values)
+    borders = edges(values[order])
+    low, high = limits or (-np.inf, np.inf)
+    inside = np.flatnonzero((borders[1:] > low) & (borders[:-1] < high))
+    if not len(inside):
+        return order, borders
+    return order[inside], borders[inside[0] : inside[-1] + 2]
 
 
 def _relative_corners(result, columns, rows) -> tuple[np.ndarray, np.ndarray]:
@@ -111,17 +147,33 @@ def _grazing_curve(ax, result):
     ax.set(xlim=frame[0], ylim=frame[1])
 
 
-def _legend(fig, grid, gaps, more):
-    handles = list(more)
-    curves = {line.get_label(): line.get_linestyle() for line in grid[0].lines if line.get_gid() == "grazing"}
+def _within_errors(result) -> Patch:
+    """What the neutral colour of exponents means."""
+    text = f"{exponent(1)} within {result.significant:.2g} standard errors of 0"
+    return Patch(facecolor=NEUTRAL, edgecolor=FAINT, label=text)
+
+
+def _legend(fig, grid, gaps, look, overlay, more):
+    handles = [line for line in grid[0].lines if line.get_gid() == "window end"]
+    handles += more
+    handles += [] if overlay is None else overlay.handles(grid[0])
+    curves = {}
+    for line in grid[0].lines:
+        if line.get_gid() == "grazing" and _visible(grid[0], line):
+            curves[line.get_label()] = line.get_linestyle()
     handles += [Line2D([], [], color=INK, lw=1.0, ls=style, label=label) for label, style in curves.items()]
-    if gaps:
-        handles.append(Patch(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="////", label="no number"))
+    if any(one.get_gid() == "rest" for one in grid[0].collections):
+        handles.append(rests.patch())
+    hatched = [text for text, there in (("outside of the sweep", look.relative), ("no number", gaps)) if there]
+    if hatched:
+        handles.append(Patch(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="////", label=" or ".join(hatched)))
     if handles:
-        columns = min(4 if more else 3, len(handles))
-        while columns > 1 and sum(sorted(len(handle.get_label()) for handle in handles)[-columns:]) > LETTERS:
-            columns -= 1
-        fig.legend(handles=handles, loc="outside lower center", ncols=columns)
+        legend_below(fig, handles, 4, grow=look.size is None)
+
+
+def _visible(ax, line) -> bool:
+    """Whether a part of a line lies within the frame."""
+    return line.get_path().intersects_bbox(ax.viewLim, filled=False)
 
 
 def _maps(result):
@@ -150,7 +202,7 @@ def _maps(result):
     if not maps:
         impacts = result.array("impacts_right") + result.array("impacts_left")
         maps.append((_amount("impacts in the recorded periods"), impacts[..., 0]))
-    return maps, note
+    return [one for one in maps if np.isfinite(one[1]).any()] or maps[:1], note
 
 
 def _exponent(ax, x, y, values):
@@ -170,32 +222,6 @@ def _period(ax, x, y, values):
     bar = _bar(ax, image, "period in $T$; 0: none found", ticks=range(LONGEST + 2))
     bar.ax.set_xticklabels([*range(LONGEST + 1), f">{LONGEST}"])
     bar.ax.tick_params(length=0)
-    _name_regions(ax, x, y, values)
-
-
-def _name_regions(ax, x, y, values):
-    """The period, written where there is room for it: into the widest place of its regions."""
-    from scipy import ndimage  # slow to import
-
-    steps = [max(1, length // COARSE) for length in values.shape]
-    part = values.filled(-1)[:: steps[0], :: steps[1]].astype(int)
-    width, height = 72 * ax.get_window_extent().size / ax.figure.dpi  # in points, before the layout
-    inside = np.zeros(part.shape, bool)  # not beside another period, nor at the frame
-    inner = part[1:-1, 1:-1]
-    inside[1:-1, 1:-1] = np.logical_and.reduce(
-        [inner == side for side in (part[2:, 1:-1], part[:-2, 1:-1], part[1:-1, 2:], part[1:-1, :-2])]
-    )
-    sampling = height / part.shape[0], width / part.shape[1]
-    room = ndimage.distance_transform_edt(inside, sampling=sampling)
-    periods = np.unique(part[part > 0])
-    X, Y = np.meshgrid(x, y) if x.ndim == 1 else (x, y)
-    for period, (row, column) in zip(periods, ndimage.maximum_position(room, part, periods), strict=True):
-        if room[row, column] > ROOM:
-            cell = slice(row * steps[0], row * steps[0] + 2), slice(column * steps[1], column * steps[1] + 2)
-            at = X[cell].mean(), Y[cell].mean()
-            halo = [patheffects.withStroke(linewidth=2, foreground="white")]
-            style = {"fontsize": 7, "ha": "center", "va": "center", "path_effects": halo, "color": INK}
-            ax.text(*at, f"{period}", **style, clip_on=True, gid="period")
 
 
 def _number(ax, x, y, values):
@@ -209,7 +235,7 @@ def _amount(label):
     """Draws values on an even scale."""
 
     def draw(ax, x, y, values):
-        _bar(ax, _image(ax, x, y, values, cmap="viridis"), label)
+        _bar(ax, _image(ax, x, y, values, cmap="viridis", norm=decades.norm(values.filled(np.nan))), label)
 
     return draw
 

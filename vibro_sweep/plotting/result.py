@@ -13,7 +13,7 @@ from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.source import PlotError, source_of
-from vibro_sweep.plotting.style import equation, page
+from vibro_sweep.plotting.style import equation
 from vibro_sweep.store.settings import settings_of
 
 LONGEST_LINE = 150  # letters of TeX
@@ -214,7 +214,7 @@ class Result:
 
     def page(self, height: float, title: str) -> Figure | Panel:
         """Where a picture is drawn."""
-        return page(height, title) if self.ax is None else Panel(self.ax, title)
+        return self.look.page(height, title) if self.ax is None else Panel(self.ax, title)
 
     def title(self, what="") -> str:
         """What is shown, the numbers that are the same at every point, and how much is there if not all."""

@@ -5,6 +5,7 @@ from matplotlib.collections import PolyCollection
 
 from vibro_sweep.plotting.style import ARROWS, BRANCHES, CHAOS, INK, PER_TIME, edges, exponent, exponent_colour
 
+STRIP = 0.05  # of the panel's height: what stands for an exponent of -infinity
 MOST_NAMED = 8  # exponents beside their curves
 _BRANCH_LINES = {
     "up": {"lw": 1.6, "alpha": 0.5},
@@ -14,13 +15,15 @@ _BRANCH_LINES = {
 
 def spectrum(ax, result, values, order):
     exponents = result.array("lyapunov")[order]  # (values, starts, 2 N)
+    lost = np.isneginf(exponents).any(axis=1)
     exponents[~np.isfinite(exponents)] = np.nan  # directions lost by sticking leave a gap
     error = result.array("lyapunov_error")[order] if "lyapunov_error" in result else np.zeros(exponents.shape)
-    _tint(ax, values, result.is_chaotic()[order].any(axis=1))
+    spans(ax, values, result.is_chaotic()[order].any(axis=1), color=CHAOS, gid="chaos")
     ax.axhline(0, color=INK, lw=0.6, zorder=1)
     ax.set_ylabel(f"{exponent(1 if result.follow else 'i')} {PER_TIME}")
     if result.follow:
         branches(ax, values, exponents[:, :, 0])
+        _strips(ax, values, lost[:, :1], [INK])
         for i, name in enumerate(BRANCHES):
             _error_band(ax, values, exponents[:, i, 0], result.interval(error[:, i, 0]), BRANCHES[name])
         return
@@ -29,6 +32,7 @@ def spectrum(ax, result, values, order):
         if len(result.starts) == 1:
             _error_band(ax, values, exponents[:, 0, i], result.interval(error[:, 0, i]), exponent_colour(i))
     _keep_the_leading_ones_legible(ax, exponents)
+    _strips(ax, values, lost, [exponent_colour(i) for i in range(lost.shape[1])])
     if not result.failed:
         _name_curves(ax, exponents)
 
@@ -40,6 +44,18 @@ def _keep_the_leading_ones_legible(ax, exponents):
         span = max(known.max(), 0.0) - known.min()
         low, high = ax.get_ylim()
         ax.set_ylim(bottom=max(low, known.min() - 1.5 * span) if span > 0 else low, top=high)
+
+
+def _strips(ax, values, lost, colours):
+    """At the bottom, which exponents are -infinity: their directions are lost. lost : (values, exponents)"""
+    rows = np.flatnonzero(lost.any(axis=0))
+    if not len(rows):
+        return
+    low, high = ax.get_ylim()
+    ax.set_ylim(low - 1.2 * STRIP * len(rows) * (high - low), high)
+    for place, i in enumerate(reversed(rows)):  # the last one lowest
+        bottom = STRIP * (place + 0.2)
+        spans(ax, values, lost[:, i], (bottom, bottom + 0.8 * STRIP), color=colours[i], gid="lost", zorder=2)
 
 
 def _error_band(ax, values, ordinates, reach, colour):
@@ -55,18 +71,19 @@ def branches(ax, values, ordinates):
         curve(ax, values, ordinates[:, i], color=BRANCHES[name], label=ARROWS[name], **_BRANCH_LINES[name])
 
 
-def _tint(ax, values, chosen):
-    """The cells of the chosen values, from bottom to top; neighbours are one rectangle."""
+def spans(ax, values, chosen, between=(0, 1), **style):
+    """Colour the cells of the chosen values, bool (n,), between two heights of the axes; neighbours are one area."""
     borders = edges(values)
     first, last = np.diff(np.concatenate([[False], chosen, [False]]).astype(int)).nonzero()[0].reshape(-1, 2).T
     if len(first):
+        low, high = between
         cells = [
-            [(left, 0), (right, 0), (right, 1), (left, 1)]
+            [(left, low), (right, low), (right, high), (left, high)]
             for left, right in zip(borders[first], borders[last], strict=True)
         ]
         transform = ax.get_xaxis_transform()
-        tint = PolyCollection(cells, color=CHAOS, linewidth=0, transform=transform, zorder=0, gid="chaos")
-        ax.add_collection(tint, autolim=False)
+        style = {"linewidth": 0, "zorder": 0} | style
+        ax.add_collection(PolyCollection(cells, transform=transform, **style), autolim=False)
 
 
 def curve(ax, values, ordinates, **style):

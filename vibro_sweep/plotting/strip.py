@@ -43,11 +43,11 @@ def windows(ax, result: Result, values, order):
     unseen = _unseen(ax, file, shown, lanes, (left, right))
     _ends(ax, file, shown, lanes, (left, right))
     _periods(ax, file, shown, lanes, lo, hi, 0.03 * (right - left))
-    _reasons(ax, result, file, values, order)
+    reasons = _reasons(ax, result, file, values, order)
     ax.set_ylim(max(lanes, default=0) + 0.7, -1.6)
     ax.set_yticks([])
     ax.set_ylabel("windows")
-    _legend(ax, file, shown, unseen)
+    _legend(ax, file, shown, unseen, (left, right), reasons)
 
 
 def _windows_of(result: Result) -> FlatFile:
@@ -115,21 +115,28 @@ def _periods(ax, file, shown, lanes, lo, hi, least):
             ax.text((lo[w] + hi[w]) / 2, lane, text, ha="center", va="center", fontsize=6, clip_on=True)
 
 
-def _reasons(ax, result, file, values, order):
-    """A band of the orbits that lie in no window."""
+def _reasons(ax, result, file, values, order) -> list[str]:
+    """A band of the orbits that lie in no window; which reasons there are."""
     (swept,) = result.sweep.values()  # of which the picture may show a part
     reasons = file["orbit_reason"].reshape(len(swept), -1)[order]
-    borders = edges(values)
+    borders, named = edges(values), []
     for code, name in enumerate(REASONS):
         there = np.flatnonzero((reasons == code).any(axis=1))
         if code and len(there):
+            named.append(name)
             spans = [(borders[i], borders[i + 1] - borders[i]) for i in there]
             ax.broken_barh(spans, (-1.4, 0.6), facecolor=REASON_COLOURS[name], linewidth=0)
+    return named
 
 
-def _legend(ax, file, shown, unseen):
+def _legend(ax, file, shown, unseen, limits, reasons):
     types = file.types()
-    there = {types[file[end][w]] for w in shown for end in ("window_lower", "window_upper")}
+    there = {
+        types[file[f"window_{end}"][w]]
+        for w in shown
+        for end, at in (("lower", "window_lo"), ("upper", "window_hi"))
+        if limits[0] <= file[at][w] <= limits[1]
+    }
     handles = [
         Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in there
     ]
@@ -138,8 +145,7 @@ def _legend(ax, file, shown, unseen):
     handles += [Patch(facecolor=colour, label=name) for name, (colour, who) in colours.items() if who.any()]
     if unseen:
         handles.append(Patch(facecolor=BAR, edgecolor=HATCHES, linewidth=0, hatch=HATCH, label="missed by all starts"))
-    named = [name for code, name in enumerate(REASONS) if code and (file["orbit_reason"] == code).any()]
-    handles += [Patch(facecolor=REASON_COLOURS[name], label=name.replace("_", " ")) for name in named]
+    handles += [Patch(facecolor=REASON_COLOURS[name], label=name.replace("_", " ")) for name in reasons]
     ax.legend(
         handles=handles, loc="upper left", bbox_to_anchor=(1.005, 1.05), fontsize=6, handlelength=1.2, labelspacing=0.25
     )

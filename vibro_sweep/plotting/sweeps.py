@@ -5,9 +5,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from vibro_sweep.model.state import MOST_MASSES, state
-from vibro_sweep.plotting import density, strip
+from vibro_sweep.plotting import density, rests, strip
+from vibro_sweep.plotting.impacts import NONE, impact_counts, there_are
+from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.result import PlotError, Result
-from vibro_sweep.plotting.spectrum import branches, curve, margin_note, spectrum
+from vibro_sweep.plotting.spectrum import spectrum
 from vibro_sweep.plotting.style import (
     ARROWS,
     BRANCHES,
@@ -16,8 +18,6 @@ from vibro_sweep.plotting.style import (
     FAINT,
     GRAZING,
     INK,
-    LEFT,
-    RIGHT,
     at_section,
     axis_name,
     before_impact,
@@ -28,7 +28,9 @@ from vibro_sweep.plotting.style import (
     symbol,
 )
 
-MANY = 100_000  # from here on single points make a blot, and are counted instead
+MANY = 100_000  # from here on single points make a blot, and are counted instead,
+COLUMN = 400  # points (1/72 inch): the width of a diagram, which its values share
+WIDE = 360  # in a picture of so many values; of fewer, each has as much room, and dots lie above each other
 GRAZES = {  # the stop, and how it is drawn
     "b_right": (1, (0, (4, 2))),
     "b_left": (-1, (0, (1, 1))),
@@ -57,9 +59,13 @@ def bifurcation(result: Result):
         panels.append((strip.HEIGHT, strip.windows))
     if shows_lyapunov(result):
         panels.append((1.7, spectrum))
+    note = ""
     if shows_impacts(result):
-        panels.append((0.9, _impact_counts))
-    return _stack(result, panels if result.ax is None else panels[:1], "Bifurcation diagram")
+        if there_are(result, in_range(result)):
+            panels.append((0.9, impact_counts))
+        elif not result.failed:
+            note = f"; {NONE}"
+    return _stack(result, panels if result.ax is None else panels[:1], f"Bifurcation diagram{note}")
 
 
 def lyapunov(result: Result):
@@ -69,7 +75,7 @@ def lyapunov(result: Result):
 
 def impacts(result: Result):
     """Impacts at each stop over the parameter."""
-    return _stack(result, [(2.8, _impact_counts)], "Impacts")
+    return _stack(result, [(2.8, impact_counts)], "Impacts")
 
 
 def section_variables(result: Result) -> tuple[str, ...]:
@@ -89,17 +95,12 @@ def _stack(result, panels, what):
     fig = result.page(sum(heights) + 1.2, result.title(what + note))
     axes = fig.subplots(len(panels), sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     ((key, values),) = result.sweep.items()
-    order = np.argsort(values)  # a sweep may run downwards; an axis does not
-    if result.look.xlim:
-        low, high = result.look.xlim
-        order = order[(low <= values[order]) & (values[order] <= high)]
-        if not len(order):
-            raise PlotError(f"xlim: the file has no {key} from {low:g} to {high:g}")
+    order = in_range(result)
     values = values[order]
     for ax, (_, draw) in zip(axes, panels, strict=True):
         draw(ax, result, values, order)
     if key == "b":
-        mark_grazing(axes, result)
+        mark_grazing(axes, result, *(result.look.xlim or values[[0, -1]]))
     borders = edges(values)
     most = 0.02 * (values[-1] - values[0]) or np.inf
     axes[-1].set_xlim(max(borders[0], values[0] - most), min(borders[-1], values[-1] + most))
@@ -110,14 +111,26 @@ def _stack(result, panels, what):
     return fig
 
 
-def mark_grazing(axes, result):
-    """In each panel over b: where the free motion touches the stops, and where else the map was expanded."""
+def in_range(result) -> np.ndarray:
+    """The order in which the values rise, of those that the picture shows. Raises PlotError where there are none."""
+    ((key, values),) = result.sweep.items()
+    order = np.argsort(values)  # a sweep may run downwards; an axis does not
+    if result.look.xlim:
+        low, high = result.look.xlim
+        order = order[(low <= values[order]) & (values[order] <= high)]
+        if not len(order):
+            raise PlotError(f"xlim: the file has no {key} from {low:g} to {high:g}")
+    return order
+
+
+def mark_grazing(axes, result, low, high):
+    """In each panel over b from low to high: where the free motion touches the stops, and where else the map was
+    expanded."""
     marks = [("b_star", f"grazing, {symbol('b_star')}", (0, (4, 2)))]
     marks += [
         (name, f"grazing, {symbol(name)}", style) for name, (side, style) in GRAZES.items() if side in result.sides
     ]
     marks.append(("expand_at", "expansion of the mapping", ":"))
-    low, high = sorted((min(result.sweep["b"]), max(result.sweep["b"])))
     for name, label, style in marks:
         b = result.number(name)
         if b is not None and low <= b <= high:
@@ -146,11 +159,13 @@ def _explanations(fig, axes, result):
     handles = {
         "chaos": Patch(color=CHAOS, label=f"{exponent(1)} > 0{certain}: chaos"),
         "error": Patch(color=FAINT, alpha=0.4, label=f"exponent ± {errors}"),
+        "lost": Patch(color=FAINT, label=rf"strips: $\lambda_i = -\infty$, lost at {rests.NOUN}"),
+        "rest": rests.handle(),
         "periodic": Line2D([], [], color=INK, lw=0.8, label="line: periodic orbit"),
     }
     shown = [handle for name, handle in handles.items() if name in found]
     if shown:
-        fig.legend(handles=shown, loc="outside lower center", ncols=len(shown))
+        legend_below(fig, shown, len(shown))
 
 
 def section(ax, result, values, order):
@@ -158,27 +173,31 @@ def section(ax, result, values, order):
     name = result.look.variable or section_variables(result)[0]
     at_impact = "phase" in result
     points = result.array(name)[order]  # (values, starts, samples)
-    count = np.isfinite(points).sum()
     if at_impact:
         ax.set_ylabel(f"{before_impact(name)}, {result.settings.get('section_stop', 'right')} stop")
     else:
         ax.set_ylabel(at_section(name))
     if result.failed:
         return
-    if not count:
+    there = np.isfinite(points)
+    low, high = limits(points) if there.any() else (0, 1)
+    bottom, top = result.look.ylim or (low, high)
+    ax.set_ylim(bottom, top)
+    there &= (bottom <= points) & (points <= top)
+    if not there.any():
         ax.text(0.5, 0.5, "no section points", transform=ax.transAxes, ha="center", color=FAINT)
         return
-    low, high = limits(points)
-    ax.set_ylim(result.look.ylim or (low, high))
-    if count >= MANY:
-        cloud = density.Cloud(values, points, result.repeats(points, order), high - low)
+    repeats = result.repeats(points, order)
+    count = _distinct(points, there, repeats)
+    if there.sum() >= MANY * min(1, len(values) / WIDE) / (4 if result.follow else 1):  # of wide dots fewer
+        cloud = density.Cloud(values, points, repeats, high - low)
         if result.follow:
             density.two(ax, cloud, list(BRANCHES.values()))
         else:
             density.one(ax, cloud)
     elif result.follow:
         # Where the branches agree the wide dot shows as a rim around the narrow one.
-        for i, (start, scale) in enumerate({"up": 2.4, "down": 1.1}.items()):
+        for i, (start, scale) in enumerate({"up": 2.0, "down": 0.9}.items()):
             _dots(ax, values, points[:, i], count, scale, color=BRANCHES[start])
     else:
         _dots(ax, values, points, count, color=INK)
@@ -186,10 +205,18 @@ def section(ax, result, values, order):
         _stop_lines(ax, result, values, order)
 
 
+def _distinct(points, there, repeats) -> float:
+    """How many points one can tell apart of those that are there, bool (values, starts, samples): of a periodic orbit
+    those of one period."""
+    known = np.maximum(np.isfinite(points).sum(axis=-1), 1)
+    return float((there.sum(axis=-1) * np.where(repeats > 0, repeats / known, 1)).sum())
+
+
 def _dots(ax, values, points, count, scale=1.0, **style):
     there = np.isfinite(points)
     x = np.broadcast_to(np.expand_dims(values, tuple(range(1, points.ndim))), points.shape)
-    size = scale * np.clip(3.5 * (count / 1000) ** -0.25, 1.2, 4)
+    widest = np.clip(COLUMN / len(values), 1.5, 4)
+    size = scale * np.clip(3.5 * (count / 1000) ** -0.25, 1.2, widest)
     ax.plot(x[there], points[there], ".", markersize=size, markeredgewidth=0, rasterized=True, **style)
 
 
@@ -203,24 +230,3 @@ def _stop_lines(ax, result, values, order):
             style = DASHES if side > 0 else ":"
             label = stop_name(result, side)
             ax.plot(values, gap, color=FAINT, lw=0.9, ls=style, zorder=1, gid="stop", label=label)
-
-
-def _impact_counts(ax, result, values, order):
-    per = result.number("record") or 1
-    # (values, starts)
-    right, left = (result.array(f"impacts_{side}")[order] / per for side in ("right", "left"))
-    of_both = "\nboth stops" if len(result.starts) > 1 and len(result.sides) > 1 else ""
-    ax.set_ylabel(("impacts" if per == 1 else "impacts / $T$") + of_both)
-    if result.follow:
-        branches(ax, values, right + left)
-    elif len(result.starts) > 1:  # mirror images exchange right and left: only the sum is worth comparing
-        curve(ax, values, right + left, color=INK)
-    else:
-        curve(ax, values, right, color=RIGHT, label="right", lw=1.6, alpha=0.6)
-        curve(ax, values, left, color=LEFT, label="left", lw=0.8)
-        stops = result.settings.get("stops")
-        if stops != "left":
-            margin_note(ax, 0.75, "right", RIGHT, fontsize=8)
-        if stops != "right":
-            margin_note(ax, 0.25, "left", LEFT, fontsize=8)
-    ax.set_ylim(bottom=0)

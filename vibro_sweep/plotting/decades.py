@@ -1,0 +1,51 @@
+"""Logarithmic scales for what spans decades: an even one would show its largest numbers only."""
+
+import numpy as np
+from matplotlib.colors import LogNorm, Normalize, SymLogNorm
+from matplotlib.ticker import FixedLocator, NullLocator
+
+SPAN = 10.0  # the largest of the numbers over their lower quartile, from which on they span decades
+FEW = 1.5  # decades of an axis on which 2 and 5 are named as well
+ZERO = 0.5  # the part of the axis from 0 to the least number above it, in decades
+
+
+def spans(values) -> bool:
+    """Whether numbers (any shape, NaN among them) that are not below 0 differ so much, zeros left out."""
+    known = np.asarray(values)[np.isfinite(values)]
+    above = known[known > 0]
+    return above.size > 0 and bool((known >= 0).all()) and above.max() >= SPAN * np.quantile(above, 0.25)
+
+
+def scale_axis(ax, values) -> None:
+    """The y axis from zero on; logarithmic for values that span decades, with a place for zero where there is one."""
+    if not spans(values):
+        ax.set_ylim(bottom=0)
+        return
+    least, most, zero = _ends(values)
+    if zero:
+        ax.set_yscale("symlog", linthresh=least, linscale=ZERO)
+        ax.set_ylim(0, 1.2 * most)
+    else:
+        ax.set_yscale("log")
+        ax.set_ylim(least / 1.2, 1.2 * most)
+    steps = (1, 2, 5) if np.log10(most / least) <= FEW else (1,)
+    powers = range(int(np.floor(np.log10(least))), int(np.log10(most)) + 1)
+    ticks = [step * 10.0**power for power in powers for step in steps]
+    ax.yaxis.set_major_locator(FixedLocator([0] * zero + [tick for tick in ticks if least <= 1.001 * tick]))
+    ax.yaxis.set_minor_locator(NullLocator())
+    ax.yaxis.set_major_formatter("{x:g}")
+
+
+def norm(values) -> Normalize | None:
+    """Of a colour scale for these values, None for an even one."""
+    if not spans(values):
+        return None
+    least, most, zero = _ends(values)
+    return SymLogNorm(least, linscale=ZERO, vmin=0, vmax=most, base=10) if zero else LogNorm(least, most)
+
+
+def _ends(values) -> tuple[float, float, bool]:
+    """The least and the largest number above zero, and whether there is a zero."""
+    known = np.asarray(values)[np.isfinite(values)]
+    above = known[known > 0]
+    return float(above.min()), float(above.max()), len(above) < len(known)

@@ -1,0 +1,42 @@
+"""How often a mass strikes each stop, over a parameter."""
+
+import numpy as np
+
+from vibro_sweep.plotting import decades, rests
+from vibro_sweep.plotting.spectrum import branches, curve, margin_note
+from vibro_sweep.plotting.style import FAINT, INK, LEFT, RIGHT
+
+NONE = "no impacts"
+
+
+def there_are(result, order) -> bool:
+    """Whether an orbit of these values strikes a stop."""
+    return any(np.any(result.array(f"impacts_{side}")[order] > 0) for side in ("right", "left"))
+
+
+def impact_counts(ax, result, values, order):
+    """Impacts in a forcing period; logarithmic where they span decades. Where masses rest on a stop there is a tint."""
+    per = result.number("record") or 1
+    # (values, starts)
+    right, left = (result.array(f"impacts_{side}")[order] / per for side in ("right", "left"))
+    of_both = "\nboth stops" if len(result.starts) > 1 and len(result.sides) > 1 else ""
+    ax.set_ylabel(("impacts" if per == 1 else "impacts / $T$") + of_both)
+    rests.tint(ax, result, values, order)
+    if result.follow:
+        shown = right + left
+        branches(ax, values, shown)
+    elif len(result.starts) > 1:  # mirror images exchange right and left: only the sum is worth comparing
+        shown = right + left
+        curve(ax, values, shown, color=INK)
+    else:
+        shown = np.stack([{1: right, -1: left}[side] for side in result.sides])
+        wide = {"lw": 1.6, "alpha": 0.6} if len(result.sides) > 1 else {"lw": 0.8}
+        if 1 in result.sides:
+            curve(ax, values, right, color=RIGHT, label="right", **wide)
+            margin_note(ax, 0.75, "right", RIGHT, fontsize=8)
+        if -1 in result.sides:
+            curve(ax, values, left, color=LEFT, label="left", lw=0.8)
+            margin_note(ax, 0.25, "left", LEFT, fontsize=8)
+    decades.scale_axis(ax, shown)
+    if not np.any(shown > 0) and not result.failed:
+        ax.text(0.5, 0.5, NONE, transform=ax.transAxes, ha="center", color=FAINT)
