@@ -12,7 +12,7 @@ from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.model import frame
-from vibro_sweep.model.contact import contact_coordinates
+from vibro_sweep.model.contact import contact_coordinates, natural_coordinates
 from vibro_sweep.model.exponents import CERTAIN, sign_of
 
 BEYOND = (2.0, 5.0)  # errors
@@ -57,7 +57,8 @@ def test_roots_of_frames(count):
     compared = zeros = 0
     for seed in range(count):
         system = zero_exponents.free(seed)
-        found = frame.frame_of(contact_coordinates(system.linear), system.omega)
+        q = system.linear
+        found = frame.frame_of(natural_coordinates(q, contact_coordinates(q)), system.omega)
         if np.isnan(found.to).any():
             continue
         apart = np.sqrt(np.maximum(-found.square, 0.0))
