@@ -101,11 +101,7 @@ def solution_of(flat: Flat, system, t, v, t_off) -> Solution:
     u = np.concatenate([t[:K], D, t_off[list(rests)]])
     sigma, halves = (-1, period) if symmetric else (1, 2 * period)
     found = Solution(family, sigma, halves, sides, u, 0.0, rests)
-    if K and not rests and found.equations.free:
-        u = np.append(u, 0.0)
-        u[-1] = -np.mean(found.equations.evaluate(sides, u)[0][:K])
-        found = Solution(family, sigma, halves, sides, u, 0.0, rests)
-    return found
+    return found.with_mean() if K and not rests and found.equations.free else found
 
 
 def orbit_at(flat: Flat, point: int, system) -> PeriodicOrbit:
