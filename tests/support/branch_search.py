@@ -143,6 +143,7 @@ if __name__ == "__main__":
     for seed in range(first, last):
         begun = time.monotonic()
         report = study(seed, models)
+        print("#", seed, sum(report.counted[key] for key in ("branches",)), flush=True)
         done.append(report)
         for line in report.wrong:
             print(*line, sep=" | ", flush=True)

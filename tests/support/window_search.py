@@ -16,23 +16,28 @@ from support import conditions
 from support.branch_search import Report, summary
 from support.drawn_branches import MODELS, drawn_number, drawn_oscillator
 from support.windows import check_end
+from vibro_sweep import store
 from vibro_sweep.analysis.branches.generations import alike
 from vibro_sweep.analysis.periodic.orbit import orbit_of
-from vibro_sweep.analysis.windows.job import lies_on
+from vibro_sweep.analysis.windows.job import Job, lies_on, window_of
 from vibro_sweep.analysis.windows.members import solution_in
+from vibro_sweep.driver.windows import rows_in
 from vibro_sweep.model.bifurcations import REASONS
 
+NEAR_ENDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # shares of a window from its ends
 CLOSE = 1e-9  # of the range: ends of one window differ by less
 NARROW = 1e-11  # of the range: a window found from a value of a sweep is wider
 _CODES = {name: code for code, name in enumerate(REASONS)}
 
 
 def swept(system, name, values, seed, folder):
-    """(Dataset, windows) of a sweep with two random starts."""
+    """(Dataset, windows, the bounds within which they are followed) of a sweep with two random starts."""
     path = Path(folder) / f"{len(values)}-{seed}.h5"
     start = {"random": 2, "seed": seed}
     data = vs.sweep(system, {name: values}, start=start, transient=600, record=100, output=path, workers=1)
-    return data, vs.windows(path)
+    with store.contents(path) as contents:
+        (row,) = rows_in(contents, name)
+    return data, vs.windows(path), row.bounds
 
 
 def at(window, value):
@@ -61,15 +66,17 @@ def study(seed: int) -> Report:
                 found.append(swept(system, name, chosen, start, folder))
             except Exception as error:
                 wrong(f"raises {type(error).__name__}", f"{len(chosen)} values, starts {start}: {error!r:.200}")
-        for data, windows in found:
+        for data, windows, bounds in found:
             size = hi - lo
             report.counted["sweeps"] += 1
             report.counted["windows"] += len(windows)
             for window in windows:
                 one_window(report, wrong, window, size)
+                if data is found[0][0] and not window.orbit.sticking.size:
+                    other_starts(report, wrong, window, bounds)
             covered(report, wrong, data, windows, name)
             data.close()
-        for (_, one), (_, other) in itertools.combinations(found, 2):
+        for (_, one, _), (_, other, _) in itertools.combinations(found, 2):
             for a in one:
                 for b in other:
                     same_window(report, wrong, a, b, hi - lo)
@@ -115,6 +122,28 @@ def one_window(report, wrong, window, size) -> None:
             wrong("not an orbit inside", f"{words}: at {value!r} off {found.off[0]:.1e}, {inner.status}")
         elif not largest < 1 + 1e-9:
             wrong("not stable inside", f"{words}: at {value!r} {largest!r}")
+
+
+def other_starts(report, wrong, window, bounds) -> None:
+    """The window again, from its orbits near both ends and in the middle."""
+    size = bounds[1] - bounds[0]
+    for share in (0.5, *NEAR_ENDS, *(1 - share for share in NEAR_ENDS)):
+        value = window.lo + share * (window.hi - window.lo)
+        if not window.lo < value < window.hi:
+            continue
+        inner = at(window, value)
+        if not (inner.ok and inner.stable) or (inner.itinerary, inner.period) != (window.orbit.itinerary, window.period):
+            report.counted["starts not found"] += 1
+            continue
+        result = window_of(Job(inner.system, inner.state, inner.period, window.parameter, bounds))
+        words = f"{window.itinerary or 'free'} of period {window.period}, {window.lo!r} .. {window.hi!r}, from {value!r}"
+        report.counted["starts"] += 1
+        if result.flat is None:
+            wrong(f"start in the window: {result.reason}", words)
+            continue
+        ends = result.flat["special_value"]
+        if not np.abs(ends[[0, -1]] - (window.lo, window.hi)).max() <= CLOSE * size:
+            wrong("start: ends differ", f"{words}: {ends[0]!r} .. {ends[-1]!r}")
 
 
 def covered(report, wrong, data, windows, name) -> None:
