@@ -8,7 +8,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.births import criticality, doubled
-from vibro_sweep.analysis.branches.crossings import is_torus
+from vibro_sweep.analysis.branches.crossings import counts_of, is_torus
 from vibro_sweep.analysis.branches.events import bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.locating import Event
 from vibro_sweep.analysis.branches.looking import hidden_between, touches
@@ -27,7 +27,7 @@ FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 6e-4, 0.05, 1e-11
 STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
 MOST_POINTS = 20_000
 BEFORE = 1e-8  # share of the way to a graze
-BEFORE_BIRTH = 0.02  # share of the way to the birth of a doubled orbit: its distance is known to second order
+BEFORE_BIRTH = 0.02, 0.1, 0.4  # the same to the birth of a doubled orbit, where a multiplier must not be 1 to rounding
 DIVISIONS = 40  # of a step in which more happens than its tests tell
 
 
@@ -184,7 +184,7 @@ class Way:
         birth = own_birth(self.walk, self.system, a, last, reach) if turns else None
         before = None
         if birth:
-            before = self.walk.step(a, (1 - BEFORE_BIRTH) * birth[0])
+            before = self._before_birth(a, birth[0])
         elif end and end[0].type == "graze" and end[0].index is not None:
             before = self.walk.step(a, (1 - BEFORE) * reach, last.x)
         found = [] if birth else bifurcations(self.walk, a, last, reach)
@@ -210,6 +210,14 @@ class Way:
         if end:
             self.special.append(self._end(end[0], last, end[3]))
         return end is not None
+
+    def _before_birth(self, a: Point, distance: float) -> Point | None:
+        """A point on the way to a birth; None where a itself is too near to it."""
+        for share in BEFORE_BIRTH:
+            point = self.walk.step(a, (1 - share) * distance)
+            if point is not None and counts_of(point).on_circle <= counts_of(a).on_circle:
+                return point
+        return None
 
     def _bifurcate(self, found: list) -> bool:
         """Record bifurcations. True where the way ends at the first."""
