@@ -41,15 +41,13 @@ class Way:
     first_step = FIRST_STEP
 
     def __init__(self, walk: Walk, forwards: float, lo: float, hi: float, system, progress=None):
+        """walk : of `start_of_walk`, or another one that has a first point."""
         self.walk, self.system = walk, system
         self.bounds, self.progress = (lo, hi), progress
         self.special: list[SpecialPoint] = []
         self.closed = False
         self.rows: list[Rows] = []
-        first = walk.first(forwards)
-        if first is None:
-            raise ValueError("orbit: it cannot be corrected; at a fold start from an orbit beside it")
-        self.first = first
+        self.first = walk.first(forwards)
 
     @cached_property
     def frame(self) -> tuple[int, int]:
@@ -126,10 +124,7 @@ class Way:
         self._add_solution(point.p, point.solution)
 
     def _add_solution(self, p: float, s: Solution) -> None:
-        state = PeriodicOrbit(s.family, "ok", s, self.frame).state
-        t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
-        values = p, t, D, s.ends, motion, s.margin, s.change, state
-        self.rows.append(Rows(*(np.array([value], float) for value in values)))
+        self.rows.append(row_of(p, s, self.frame))
 
     def _comes_back(self, a: Point, length: float) -> bool:
         offset = self.first.x - a.x
@@ -241,7 +236,10 @@ class Way:
         parent = whole.part(2, sigma, alike=0.1)
         if parent is None:
             return None
-        way = Way(Walk(parent, w.name, self.bounds[1] - self.bounds[0]), 1.0, *self.bounds, self.system)
+        walk = Walk(parent, w.name, self.bounds[1] - self.bounds[0])
+        if walk.first(1.0) is None:
+            return None
+        way = Way(walk, 1.0, *self.bounds, self.system)
         kind = "pitchfork" if sigma == -1 else "flip"
         reach = 1e-6
         while reach < 0.05:
@@ -255,6 +253,14 @@ class Way:
                 return replace(special, criticality=criticality(special))
             reach *= 4
         return None
+
+
+def row_of(p: float, s: Solution, frame: tuple[int, int]) -> Rows:
+    """A point alone."""
+    state = PeriodicOrbit(s.family, "ok", s, frame).state
+    t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
+    values = p, t, D, s.ends, motion, s.margin, s.change, state
+    return Rows(*(np.array([value], float) for value in values))
 
 
 def halves_apart(solution: Solution, sigma: int) -> np.ndarray | None:
