@@ -7,7 +7,7 @@ from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.flat import outline
-from vibro_sweep.analysis.branches.forest import passes, seed_of
+from vibro_sweep.analysis.branches.recognising import passes
 from vibro_sweep.analysis.branches.switching import mirrored
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 
@@ -47,7 +47,7 @@ def test_no_branch_comes_twice(tree):
 
 def test_orbits_are_recognised_on_their_branch(tree):
     def on(item, orbit):
-        return passes(outline(item.branch), "b", seed_of(orbit))
+        return passes(outline(item.branch), "b", orbit.system, orbit._solution)
 
     points = tree[2].branch.points
     i = points.sizes["point"] // 2

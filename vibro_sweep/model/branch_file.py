@@ -46,7 +46,7 @@ OF_BRANCHES = (
         ("branch",),
         "i1",
         "status",
-        "whether it was followed to both its ends; of one that could not be followed at all its orbit is the only point",
+        "whether it was followed to both ends; of one that could not be followed at all its orbit is the only point",
         "1",
         BRANCH_STATUSES,
     ),

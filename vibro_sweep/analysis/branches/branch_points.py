@@ -51,7 +51,9 @@ def columns(walk: Walk, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:
 
 def impacts(walk: Walk, frame: tuple[int, int], rows: Rows) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Times (points, K), sides (K,) and velocities (points, K) of the impacts, as `columns` has them."""
-    T = np.array([[forcing_period(q)] for q in walk.oscillators(rows.p)])
+    T = np.array([[forcing_period(walk.family.linear)]])
+    if walk.family.derivative(walk.name).omega:
+        T = np.array([[forcing_period(q)] for q in walk.oscillators(rows.p)])
     return _impacts(walk.start, frame, rows, T)
 
 

@@ -1,7 +1,7 @@
 """Branches from branches, as tasks that any worker can do: the same branches in the same order however many there are.
 
-A task follows one branch and switches at its special points. Of the orbits that it finds beyond these, those that lie on
-a branch that is known are left out; so is a branch of the same generation that an earlier one has passed.
+A task follows one branch and switches at its special points. Of the orbits that it finds beyond these, those that lie
+on a branch that is known are left out; so is a branch of the same generation that an earlier one has passed.
 """
 
 import json
@@ -11,17 +11,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches.continuation import Branch, continue_orbit, not_followed
-from vibro_sweep.analysis.branches.flat import Flat, flatten, orbit_at, section_states, solution_of
+from vibro_sweep.analysis.branches.flat import Flat, flatten, orbit_at, section_states
+from vibro_sweep.analysis.branches.recognising import clearest, passes, point_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import switch
-from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import family_of
 
 LEAST = 1e-4  # distance of a graze from the onset of sticking, as a part of the range, to which branches are followed
-SAME = 1e-7  # relative difference of the impact speeds of one orbit, found twice
 
 
 class Seed(NamedTuple):
@@ -81,8 +80,8 @@ def followed(task: Task, progress=None) -> Branch:
 def beyond(branch: Branch, task: Task) -> list[Seed]:
     """The orbits within the bounds beyond the special points of a branch at which others are looked for.
 
-    Towards an onset of sticking branches without end follow each other, with one impact more on each: beyond grazes that
-    are nearer to it than a small part of the range nothing is looked for.
+    Towards an onset of sticking branches without end follow each other, with one impact more on each: beyond grazes
+    that are nearer to it than a small part of the range nothing is looked for.
     """
     lo, hi = task.bounds
     found = []
@@ -114,8 +113,8 @@ def _sections(flat: Flat, task: Task) -> np.ndarray:
 
 
 class Tree(NamedTuple):
-    """A branch that is known: the name of its task, its arrays, its seed, and how many special points away from the first
-    branches it is."""
+    """A branch that is known: the name of its task, its arrays, its seed, and how many special points lie between it
+    and the first branches."""
 
     name: str
     flat: Flat
@@ -138,8 +137,8 @@ def forest(
     """All branches, generation by generation.
 
     evaluate : gives the arrays of branches, `outline` (flat.py) and `beyond` at least, of tasks by their names
-    at_once : tasks that it is given together; None: all of a generation. The branches do not depend on it, but those that
-        an earlier one of their generation has passed need not be followed if it is 1
+    at_once : tasks that it is given together; None: all of a generation. The branches do not depend on it; if it is 1,
+        those that an earlier one of their generation has passed are not followed
     """
     known: list[Tree] = []
     for generation in range(depth + 1):
@@ -150,7 +149,7 @@ def forest(
             todo = [(name, task) for name, task in batch if not _lies_on(known[first:], parameter, task.seed)]
             flats = evaluate([name for name, _ in todo], [task for _, task in todo])
             for (name, task), flat in zip(todo, flats, strict=True):
-                if not _lies_on(known[first:], parameter, task.seed) and not _lies_on(known, *_middle(flat, task)):
+                if not _lies_on(known[first:], parameter, task.seed) and not _is_known(known, flat, task):
                     known.append(Tree(name, flat, task.seed, generation))
         seeds = [seed for i in range(first, len(known)) for seed in _beyond(known[i], i, parameter)]
     return known
@@ -170,56 +169,15 @@ def _beyond(tree: Tree, parent: int, parameter: str) -> list[Seed]:
     return result
 
 
-def _middle(flat: Flat, task: Task) -> tuple[str, Seed]:
-    """An orbit of a branch where it is farthest from a fold: next to one Newton's method tells orbits badly apart."""
-    p, names = flat["value"], ("impact_t", "impact_v", "impact_t_off")
-    i = int(np.argmax(np.abs(p[2:] - p[:-2]))) + 1 if len(p) > 2 else 0
-    system = task.seed.system.replace(**{task.parameter: float(p[i])})
-    s = solution_of(flat, system, *(flat[name][i] for name in names))
-    return task.parameter, Seed(system, s.sigma, s.halves, s.sides, tuple(s.u.tolist()), s.rests)
-
-
 def _lies_on(trees: list[Tree], parameter: str, seed: Seed) -> bool:
-    return any(passes(tree.flat, parameter, seed) for tree in trees)
-
-
-def passes(flat: Flat, parameter: str, seed: Seed) -> bool:
-    """Whether an orbit, or its mirror image, lies on a branch: by Newton's method from its points on both sides."""
     s = seed.solution
-    if _kind_on(flat, s.family.linear.symmetric) != _kind_of(s):
-        return False
-    offset = flat["value"] - s.family.numbers[parameter]
-    names = ("impact_t", "impact_v", "impact_t_off")
-    if len(offset) == 1:  # a branch that could not be followed
-        return not offset[0] and alike(solution_of(flat, seed.system, *(flat[name][0] for name in names)), s)
-    for i in np.flatnonzero(offset[:-1] * offset[1:] <= 0):
-        share = offset[i] / (offset[i] - offset[i + 1]) if offset[i] != offset[i + 1] else 0.0
-        parts = [(1 - share) * flat[name][i] + share * flat[name][i + 1] for name in names]
-        found = solution_of(flat, seed.system, *parts).corrected()
-        if found is not None and alike(found, s):
-            return True
-    return False
+    return any(passes(tree.flat, parameter, seed.system, s) for tree in trees)
 
 
-def _kind_of(s: Solution) -> tuple:
-    """Equal for orbits that may be rotations or mirror images of each other."""
-    sides, period = (s.sides, s.halves // 2) if s.sigma == 1 else ((*s.sides, *(-side for side in s.sides)), s.halves)
-    rests = len(s.rests) * (1 if s.sigma == 1 else 2)
-    return _least_word(sides, s.family.linear.symmetric), period, s.sigma == -1, rests
-
-
-def _kind_on(flat: Flat, mirrors: bool) -> tuple:
-    """`_kind_of` the orbits of a branch."""
-    rests = int(np.isfinite(flat["impact_t_off"][0]).sum())
-    return _least_word(flat["impact_side"], mirrors), int(flat["branch_period"]), bool(flat["branch_symmetric"]), rests
-
-
-def _least_word(sides, mirrors: bool) -> str:
-    """Of all rotations and, if orbits have mirror images, of those of the other sides."""
-    words = [word(sides)] + ([word(-np.asarray(sides))] if mirrors else [])
-    return min(one[k:] + one[:k] for one in words for k in range(max(len(one), 1)))
-
-
-def alike(a: Solution, b: Solution) -> bool:
-    speeds = [np.sort(np.abs(s.jumps)) for s in (a, b)]
-    return bool(np.abs(speeds[0] - speeds[1]).max(initial=0.0) <= SAME * max(speeds[0].max(initial=0.0), 1e-300))
+def _is_known(trees: list[Tree], flat: Flat, task: Task) -> bool:
+    """Whether a branch is one of these, also where that could not be told from its seed, which lies next to a birth or
+    a fold."""
+    i = clearest(flat)
+    system = task.seed.system.replace(**{task.parameter: float(flat["value"][i])})
+    s = point_of(flat, i, system)
+    return any(passes(tree.flat, task.parameter, system, s) for tree in trees)

@@ -242,7 +242,11 @@ def found_orbit(system, solution: Solution | None) -> PeriodicOrbit:
 
     Whatever looks for an orbit ends here: an orbit that lost an impact may be symmetric, or a shorter one repeated.
     """
-    return orbit_of(system, solution and solution.reduced())
+    if solution is None:
+        return orbit_of(system, None)
+    least = solution.reduced()
+    same = (least.sigma, least.halves) == (solution.sigma, solution.halves)
+    return orbit_of(system, solution if same else least)
 
 
 def orbit_of(system, solution: Solution | None) -> PeriodicOrbit:
