@@ -6,7 +6,8 @@ from support.branches import types
 from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.generations import passes
+from vibro_sweep.analysis.branches.flat import outline
+from vibro_sweep.analysis.branches.recognising import passes
 from vibro_sweep.analysis.branches.switching import mirrored
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 
@@ -45,18 +46,20 @@ def test_no_branch_comes_twice(tree):
 
 
 def test_orbits_are_recognised_on_their_branch(tree):
-    branch = tree[2].branch
-    points = branch.points
+    def on(item, orbit):
+        return passes(outline(item.branch), "b", orbit.system, orbit._solution)
+
+    points = tree[2].branch.points
     i = points.sizes["point"] // 2
     point = points.isel(point=i)
     b = float(point.b) * (1 + 1e-5)
     guess = list(zip(point.impact_t.values, point.impact_side.values, point.impact_v.values, strict=True))
     orbit = vs.periodic_orbit(PAPER.replace(b=b), guess=guess)
-    assert orbit.ok and passes(branch, orbit) and not passes(tree[0].branch, orbit)
+    assert orbit.ok and on(tree[2], orbit) and not on(tree[0], orbit)
     image = orbit_of(orbit.system, mirrored(orbit._solution))
-    assert passes(branch, image)
+    assert on(tree[2], image)
     other = vs.periodic_orbit(PAPER.replace(b=b), itinerary="LR")
-    assert other.ok and other.symmetric and not passes(branch, other) and passes(tree[0].branch, other)
+    assert other.ok and other.symmetric and not on(tree[2], other) and on(tree[0], other)
 
 
 def test_period_doubling_cascade():

@@ -94,7 +94,10 @@ def monodromy(oscillators, sigma, periods, t, sides, v):
     if K == 0:
         L, c = flown[:, 0], drive[:, 0, :, 0]
     scale = np.concatenate([np.ones((m, N)), np.broadcast_to(1 / omega[:, None], (m, N))], axis=1)
-    rows = np.concatenate([np.array(rows).reshape(2 * K, m, 2 * N).transpose(1, 0, 2), scale[..., None] * (L - sigma * np.eye(2 * N))], axis=1)
+    rows = np.concatenate(
+        [np.array(rows).reshape(2 * K, m, 2 * N).transpose(1, 0, 2), scale[..., None] * (L - sigma * np.eye(2 * N))],
+        axis=1,
+    )
     sums = np.concatenate([np.array(sums).reshape(2 * K, m).T, -scale * c], axis=1)
     x = np.array([np.linalg.lstsq(a, b, rcond=1e-13)[0] for a, b in zip(rows, sums, strict=True)])
     left = np.abs((rows @ x[..., None])[..., 0] - sums).max(axis=1)

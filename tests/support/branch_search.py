@@ -56,7 +56,10 @@ def examine(report: Report, where: str, case, rng):
         report.counted["too long"] += 1
         return None
     except Exception as error:
-        wrong(f"raises {type(error).__name__}", f"{error!r:.200}" + traceback.format_exc()[-400:] * (not isinstance(error, ValueError)))
+        wrong(
+            f"raises {type(error).__name__}",
+            f"{error!r:.200}" + traceback.format_exc()[-400:] * (not isinstance(error, ValueError)),
+        )
         return None
     report.counted["branches"] += 1
     for kind, words in conditions.not_reduced(case.orbit, case.name):
@@ -118,7 +121,11 @@ def check(report, wrong, branch, case) -> None:
     if len(off) and not np.nanmax(off) < OFF:
         k = int(np.nanargmax(off)) + 1
         wrong("not an orbit", f"point {k}, {pieces.values[k]!r}: {pieces.off[k]:.1e}")
-    for kind, words in [*conditions.unexplained(pieces), *conditions.passing(pieces), *conditions.free_passes(branch, case)]:
+    for kind, words in [
+        *conditions.unexplained(pieces),
+        *conditions.passing(pieces),
+        *conditions.free_passes(branch, case),
+    ]:
         wrong(kind, words)
     own = branch.points.multiplier_re.values + 1j * branch.points.multiplier_im.values
     theirs = pieces.multipliers**2 if pieces.symmetric else pieces.multipliers

@@ -86,7 +86,12 @@ def unexplained(pieces: Pieces) -> list[tuple[str, str]]:
         inner = [kind for k, kind in specials if a < k < b and kind in ("fold", "flip", "pitchfork", "neimark_sacker")]
         if not explains(counts[a], counts[b], inner):
             value = pieces.values
-            found.append(("change of stability", f"above, below, pairs {counts[a]} to {counts[b]} between {value[a]!r} and {value[b]!r} (points {a}, {b}) with {inner or 'nothing'}"))
+            found.append(
+                (
+                    "change of stability",
+                    f"above, below, pairs {counts[a]} to {counts[b]} between {value[a]!r} and {value[b]!r} (points {a}, {b}) with {inner or 'nothing'}",
+                )
+            )
     return found
 
 
@@ -95,7 +100,9 @@ def explains(before, behind, kinds) -> bool:
     sets = {tuple(map(int, before))}
     for kind in kinds:
         moves = {"fold": (1, 0, 0), "flip": (0, 1, 0), "pitchfork": (0, 1, 0), "neimark_sacker": (0, 0, 1)}[kind]
-        sets = _met({tuple(x + sign * y for x, y in zip(one, moves, strict=True)) for one in _met(sets) for sign in (-1, 1)})
+        sets = _met(
+            {tuple(x + sign * y for x, y in zip(one, moves, strict=True)) for one in _met(sets) for sign in (-1, 1)}
+        )
     return tuple(map(int, behind)) in _met(sets)
 
 
@@ -103,7 +110,9 @@ def _met(sets):
     """With all that collisions outside the circle make of them: two real ones of one sign become a pair, or reverse."""
     sets = {one for one in sets if min(one) >= 0}
     while True:
-        more = {(a + x, b + y, c + z) for a, b, c in sets for x, y, z in ((2, 0, -1), (-2, 0, 1), (0, 2, -1), (0, -2, 1))}
+        more = {
+            (a + x, b + y, c + z) for a, b, c in sets for x, y, z in ((2, 0, -1), (-2, 0, 1), (0, 2, -1), (0, -2, 1))
+        }
         more = {one for one in more if min(one) >= 0} - sets
         if not more:
             return sets
@@ -159,7 +168,7 @@ def flown(found, q, t, sides, v, period, k, lengths):
         x, at = found.states[0, 0], 0.0
     phase = q.omega * at + q.tau
     z = np.concatenate([x, [np.sin(phase), np.cos(phase), 1.0]])
-    return (expm(field(q)[None] * np.asarray(lengths)[:, None, None]) @ z)
+    return expm(field(q)[None] * np.asarray(lengths)[:, None, None]) @ z
 
 
 def _nearest(found, q, t, sides, v, period) -> float:
@@ -192,7 +201,9 @@ def passing(pieces: Pieces) -> list[tuple[str, str]]:
     A = np.array([field(q) for q in pieces.oscillators])
     push = np.array([np.linalg.solve(q.M, q.along) for q in pieces.oscillators])
     push /= np.sum(push * along, axis=1)[:, None]
-    omega, tau, low, high = (np.array([getattr(q, name) for q in pieces.oscillators], float) for name in ("omega", "tau", "low", "high"))
+    omega, tau, low, high = (
+        np.array([getattr(q, name) for q in pieces.oscillators], float) for name in ("omega", "tau", "low", "high")
+    )
     t = pieces.t if K else np.zeros((m, 1))
     ends = np.concatenate([t[:, 1:], (t[:, 0] + pieces.periods)[:, None]], axis=1)
     worst = np.full(m, -np.inf)
@@ -226,7 +237,9 @@ def free_passes(branch, case) -> list[tuple[str, str]]:
         middle = q.along @ np.linalg.lstsq(q.K, q.constant)[0]
         over = max(middle + size - q.high, q.low - middle + size)
         if over > 1e-9 * size:
-            return [("free motion beyond a stop", f"at {value!r} by {over:.1e}, between {values[0]!r} and {values[-1]!r}")]
+            return [
+                ("free motion beyond a stop", f"at {value!r} by {over:.1e}, between {values[0]!r} and {values[-1]!r}")
+            ]
     return []
 
 
@@ -241,6 +254,12 @@ def not_reduced(orbit, parameter) -> list[tuple[str, str]]:
         if np.abs(orbit.sample(t + part * T) - x)[:, ::2].max() < 1e-9 * size:
             found.append(("period not reduced", f"{orbit.itinerary} of period {n} has {part}"))
     mirrored = keeps_symmetry(family_of(orbit.system), parameter)  # else the branch is of orbits without it
-    if mirrored and q.symmetric and n % 2 and not orbit.symmetric and np.abs(orbit.sample(t + n * T / 2) + x)[:, ::2].max() < 1e-9 * size:
+    if (
+        mirrored
+        and q.symmetric
+        and n % 2
+        and not orbit.symmetric
+        and np.abs(orbit.sample(t + n * T / 2) + x)[:, ::2].max() < 1e-9 * size
+    ):
         found.append(("symmetry not seen", f"{orbit.itinerary} of period {n}"))
     return found

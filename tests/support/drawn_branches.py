@@ -73,8 +73,10 @@ def drawn_oscillator(model: str, rng):
 def recorded(system, rng):
     """A periodic orbit that attracts, or None."""
     q = system.linear
-    low, high = (edge if np.isfinite(edge) else other + sign * 2 * system.b
-                 for edge, other, sign in ((q.low, q.high, -1), (q.high, q.low, 1)))
+    low, high = (
+        edge if np.isfinite(edge) else other + sign * 2 * system.b
+        for edge, other, sign in ((q.low, q.high, -1), (q.high, q.low, 1))
+    )
     state = rng.normal(size=2 * len(q.along)) * system.b * np.tile([1.0, q.omega], len(q.along))
     state[::2] += q.along * (rng.uniform(low, high) - q.along @ state[::2]) / (q.along @ q.along)
     if not q.low < q.along @ state[::2] < q.high:

@@ -64,7 +64,14 @@ def rows(branch, case: Case, k: int) -> PeriodicOrbit:
     """The orbit at a point of a branch, by Newton's method from its impacts."""
     point = branch.points.isel(point=k)
     system = case.orbit.system.replace(**{case.name: float(point[case.name])})
-    guess = list(zip(point.impact_t.values.tolist(), point.impact_side.values.tolist(), point.impact_v.values.tolist(), strict=True))
+    guess = list(
+        zip(
+            point.impact_t.values.tolist(),
+            point.impact_side.values.tolist(),
+            point.impact_v.values.tolist(),
+            strict=True,
+        )
+    )
     if not guess:
         return vs.periodic_orbit(system, itinerary="")
     return vs.periodic_orbit(system, guess=guess, periods=case.orbit.period)
@@ -127,4 +134,6 @@ def _missing(one, other, size) -> list[tuple[str, str]]:
             left.remove(a)
     words = [f"{a.type} {a.value:.12g}" for a in left], [f"{a.type} {a.value:.12g}" for a in right]
     kinds = sorted({a.type for a in left + right})
-    return [(f"list: {', '.join(kinds) or 'order'}", f"only here {words[0]}; only there {words[1]}")] * (1 + len(left) + len(right))
+    return [(f"list: {', '.join(kinds) or 'order'}", f"only here {words[0]}; only there {words[1]}")] * (
+        1 + len(left) + len(right)
+    )

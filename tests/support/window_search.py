@@ -132,11 +132,16 @@ def other_starts(report, wrong, window, bounds) -> None:
         if not window.lo < value < window.hi:
             continue
         inner = at(window, value)
-        if not (inner.ok and inner.stable) or (inner.itinerary, inner.period) != (window.orbit.itinerary, window.period):
+        if not (inner.ok and inner.stable) or (inner.itinerary, inner.period) != (
+            window.orbit.itinerary,
+            window.period,
+        ):
             report.counted["starts not found"] += 1
             continue
         result = window_of(Job(inner.system, inner.state, inner.period, window.parameter, bounds))
-        words = f"{window.itinerary or 'free'} of period {window.period}, {window.lo!r} .. {window.hi!r}, from {value!r}"
+        words = (
+            f"{window.itinerary or 'free'} of period {window.period}, {window.lo!r} .. {window.hi!r}, from {value!r}"
+        )
         report.counted["starts"] += 1
         if result.flat is None:
             wrong(f"start in the window: {result.reason}", words)
@@ -149,8 +154,14 @@ def other_starts(report, wrong, window, bounds) -> None:
 def covered(report, wrong, data, windows, name) -> None:
     """Each periodic orbit of the sweep is in a window, or has a reason that holds."""
     period = data["period"].transpose(name, ...).values
-    last = [data[key].isel({d: -1 for d in data[key].dims if d not in (name, "start")}).transpose(name, ...).values
-            for key in [f"{kind}{i + 1}" for i in range(len(windows[0]._system.linear.along) if len(windows) else 0) for kind in "xv"]]
+    last = [
+        data[key].isel({d: -1 for d in data[key].dims if d not in (name, "start")}).transpose(name, ...).values
+        for key in [
+            f"{kind}{i + 1}"
+            for i in range(len(windows[0]._system.linear.along) if len(windows) else 0)
+            for kind in "xv"
+        ]
+    ]
     values = data[name].values
     for place in np.argwhere(period > 0).tolist():
         reason = list(REASONS)[int(windows.reason[tuple(place)])]

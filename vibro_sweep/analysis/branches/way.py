@@ -38,16 +38,14 @@ class Way:
     first_step = FIRST_STEP
 
     def __init__(self, walk: Walk, forwards: float, lo: float, hi: float, system, progress=None):
+        """walk : of `start_of_walk`, or another one that has a first point."""
         self.walk, self.system = walk, system
         self.bounds, self.progress = (lo, hi), progress
         self.special: list[SpecialPoint] = []
         self.closed = False
         self.rows: list[Rows] = []
         self._passed: tuple[Point, int, int] | None = None  # where the last step began; rows and special points then
-        first = walk.first(forwards)
-        if first is None:
-            raise ValueError("orbit: it cannot be corrected; at a fold start from an orbit beside it")
-        self.first = first
+        self.first = walk.first(forwards)
 
     @cached_property
     def frame(self) -> tuple[int, int]:
@@ -152,10 +150,7 @@ class Way:
         self._add_solution(point.p, point.solution)
 
     def _add_solution(self, p: float, s: Solution) -> None:
-        state = PeriodicOrbit(s.family, "ok", s, self.frame).state
-        t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
-        values = p, t, D, s.ends, motion, s.margin, s.change, state
-        self.rows.append(Rows(*(np.array([value], float) for value in values)))
+        self.rows.append(row_of(p, s, self.frame))
 
     def _comes_back(self, a: Point, length: float) -> bool:
         offset = self.first.x - a.x
@@ -265,6 +260,14 @@ class Way:
             "graze", point, error, stop=side, kind=graze.kind, impact=impact,
             direction=1 if graze.distance_slope > 0 else -1,
         )  # fmt: skip
+
+
+def row_of(p: float, s: Solution, frame: tuple[int, int]) -> Rows:
+    """A point alone."""
+    state = PeriodicOrbit(s.family, "ok", s, frame).state
+    t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
+    values = p, t, D, s.ends, motion, s.margin, s.change, state
+    return Rows(*(np.array([value], float) for value in values))
 
 
 def stop_and_impact(solution: Solution, index: int) -> tuple[int, int]:

@@ -140,7 +140,7 @@ class Solution:
     def with_mean(self) -> "Solution":
         """With the mean gap, which a free mode leaves open, as last unknown: what the gaps at impacts lack.
 
-        Newton's method would find it too, but not where the orbit is singular, as one with a mirror is at its pitchfork.
+        Newton's method would find it too, but not where the orbit is singular, as a symmetric one is at its pitchfork.
         """
         found = replace(self, u=np.append(self.u, 0.0))
         found.u[-1] = -np.mean(found.equations.evaluate(found.sides, found.u)[0][: found.K])
