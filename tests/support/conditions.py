@@ -178,7 +178,7 @@ def _nearest(found, q, t, sides, v, period) -> float:
     for k in range(len(ends) - 1):
         s = np.linspace(0, ends[k + 1] - ends[k], 400)
         z = flown(found, q, t, sides, v, period, k, s)
-        rate, gap = z[:, N : 2 * N] @ q.along, z[:, :N] @ q.along
+        rate = z[:, N : 2 * N] @ q.along
         turns = np.flatnonzero(rate[:-1] * rate[1:] <= 0)
         for i in turns.tolist():
             low, high = s[i], s[i + 1]

@@ -17,7 +17,6 @@ from support.branch_search import Report, summary
 from support.drawn_branches import MODELS, drawn_number, drawn_oscillator
 from support.windows import check_end
 from vibro_sweep import store
-from vibro_sweep.analysis.branches.generations import alike
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.windows.job import Job, lies_on, window_of
 from vibro_sweep.analysis.windows.members import solution_in
@@ -189,7 +188,8 @@ def same_window(report, wrong, a, b, size) -> None:
     if not hi - lo > NARROW * size:
         return
     orbits = [at(one, (lo + hi) / 2) for one in (a, b)]
-    if not all(orbit.ok for orbit in orbits) or not alike(orbits[0]._solution, orbits[1]._solution):
+    speeds = [np.sort(np.abs(orbit.impacts["v1"])) for orbit in orbits]
+    if not all(orbit.ok for orbit in orbits) or np.ptp(speeds, axis=0).max(initial=0.0) > 1e-7 * np.max(speeds, initial=0.0):
         return
     report.counted["pairs"] += 1
     for end in ("lower", "upper"):
