@@ -1,7 +1,6 @@
 """The same branch followed from several of its orbits, with shorter and longer steps: what is different."""
 
 import contextlib
-import time
 from typing import NamedTuple
 
 import numpy as np
@@ -13,31 +12,36 @@ from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows import stretch
 
 CLOSE = 1e-9  # relative to the parameter or its range: values of one special point differ by less
-MOST_SECONDS = 30
+MOST_POINTS = 4000
 ATTRIBUTES = ("stop", "kind", "direction", "criticality")
 
 
 class TooLongError(Exception):
-    """A branch that takes longer than MOST_SECONDS."""
+    """A branch with more points than MOST_POINTS, each way."""
 
 
 @contextlib.contextmanager
 def steps(factor: float):
-    """First and longest steps so many times as long."""
-    kept = way.LONGEST_STEP, way.Way.first_step, stretch.StableWay.first_step
-    way.LONGEST_STEP = factor * kept[0]
-    way.Way.first_step, stretch.StableWay.first_step = factor * kept[1], factor * kept[2]
+    """First and longest steps, and the turn that a step may make, so many times as large.
+
+    The first step is bound to the class when it is made: there it is changed.
+    """
+    places = (
+        (way, "LONGEST_STEP"), (way, "STRAIGHT"), (way.Way, "first_step"), (stretch.StableWay, "first_step"),
+    )  # fmt: skip
+    kept = [(place, name, getattr(place, name)) for place, name in places]
+    for place, name, value in kept:
+        setattr(place, name, factor * value)
     try:
         yield
     finally:
-        way.LONGEST_STEP, way.Way.first_step, stretch.StableWay.first_step = kept
+        for place, name, value in kept:
+            setattr(place, name, value)
 
 
 def follow(case: Case, factor: float = 1.0):
-    begun = time.monotonic()
-
     def look(points, value):
-        if time.monotonic() - begun > MOST_SECONDS:
+        if points > MOST_POINTS:
             raise TooLongError(str(case))
 
     with steps(factor):
