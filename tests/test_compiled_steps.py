@@ -115,10 +115,9 @@ def test_tests_have_the_signs_of_the_precise_ones(system, itinerary, name, bound
             assert n[places.BELOW] == np.count_nonzero(out & real & (mu.real < 0))
             assert 2 * n[places.PAIRS] == np.count_nonzero(out & ~real)
             assert n[places.ON_CIRCLE] == 0
-            assert n[places.FLIP] == pytest.approx(np.prod((1 + mu) / np.hypot(1, abs(mu))).real, rel=1e-6, abs=1e-9)
-            i, j = np.triu_indices(len(mu), 1)
-            products = mu[i] * mu[j]
-            crossing = np.prod((1 - products) / np.hypot(1, abs(products))).real if len(mu) > 2 else 1.0
+            r, (i, j) = np.prod(np.hypot(1, abs(mu))), np.triu_indices(len(mu), 1)
+            crossing = np.prod(1 - mu[i] * mu[j]).real / r ** (len(mu) - 1) if len(mu) > 2 else 1.0
+            assert n[places.FLIP] == pytest.approx(np.prod(1 + mu).real / r, rel=1e-6, abs=1e-9)
             assert n[places.CROSSING] == pytest.approx(crossing, rel=1e-6, abs=1e-9)
 
 

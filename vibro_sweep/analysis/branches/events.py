@@ -112,16 +112,16 @@ def torus_test(a: Point, b: Point, scaled: bool = False):
     """prod_{i<j} (1 - mu_i mu_j), zero at a Neimark-Sacker point and at a neutral saddle; None without losses.
 
     Without factors that are zero both at a and at b, to rounding, as of a mode without losses that the contact does not
-    see. scaled : each factor over (1 + |mu_i mu_j|^2)^(1/2), so that the product has no poles
+    see. scaled : over prod_i (1 + |mu_i|^2)^((n - 1)/2), so that the product has no poles
     """
     if len(a.solution.multipliers) < 3 or a.torus == 1.0 or b.torus == 1.0:
         return None
     left_out = min(int(np.sum(np.abs(1 - _products(point)) < ON_CIRCLE)) for point in (a, b))
 
     def test(point: Point) -> float:
-        products = _products(point)
-        factors = (1 - products) / (np.hypot(1, np.abs(products)) if scaled else 1.0)
-        return float(np.prod(factors[np.argsort(np.abs(factors))[left_out:]] if left_out else factors).real)
+        factors, mu = 1 - _products(point), point.solution.multipliers
+        product = np.prod(factors[np.argsort(np.abs(factors))[left_out:]] if left_out else factors).real
+        return float(product / np.prod(np.hypot(1, np.abs(mu))) ** (len(mu) - 1) if scaled else product)
 
     return test
 

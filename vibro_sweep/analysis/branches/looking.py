@@ -94,10 +94,10 @@ def _crossing(walk: Walk, a: Point, b: Point) -> list[tuple[str, Test]]:
 
 
 def _flip(point: Point) -> float:
-    """prod_i (1 + mu_i)/(1 + |mu_i|^2)^(1/2), without what is -1 at all points."""
+    """prod_i (1 + mu_i)/(1 + |mu_i|^2)^(1/2), without factors that are zero at all points."""
     mu = point.solution.multipliers
-    mu = mu[np.abs(1 + mu) > ON_CIRCLE]
-    return float(np.prod((1 + mu) / np.hypot(1, np.abs(mu))).real)
+    factors = 1 + mu
+    return float(np.prod(factors[np.abs(factors) > ON_CIRCLE]).real / np.prod(np.hypot(1, np.abs(mu))))
 
 
 def _touched(walk: Walk, beside: tuple, places: list[Point], found: list) -> Point | None:

@@ -176,8 +176,10 @@ def walk(media, sides, sigma, steps, size, origin, passed, first, a, b, record, 
     f = media[0]
     K, n = a.z.shape
     count, corrections = 0, 0
-    if begins and not start(f, sides, sigma, steps, a, w):
-        return NO_START, count, corrections
+    if begins:
+        w.past[LENGTH] = 0.0
+        if not start(f, sides, sigma, steps, a, w):
+            return NO_START, count, corrections
     length, shifts = a.numbers[LENGTH], 0
     while count < len(record.t):
         if not abs(a.numbers[P] - f.centre) <= f.reach:

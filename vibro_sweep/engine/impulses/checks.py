@@ -24,7 +24,7 @@ from vibro_sweep.engine.impulses.places import (
     P,
 )
 from vibro_sweep.engine.impulses.tables import ORDER
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import number
 from vibro_sweep.engine.simd.memory import put
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
@@ -96,8 +96,7 @@ def test(f, sides, sigma, place, room, strikes):
         after = strikes[i].motion[1] + place.D[i] * f.B[n // 2, n // 2]
         place.releases[i] = -sides[i] * after if gain == 1.0 else np.inf
     x = place.numbers
-    x[TORUS], x[ABOVE], x[BELOW], x[PAIRS], x[ON_CIRCLE], x[AWAY] = 1.0, -1.0, 0.0, 0.0, 0.0, np.inf
-    x[FLIP] = x[CROSSING] = 1.0
+    x[TORUS], x[ABOVE], x[ON_CIRCLE], x[FLIP], x[CROSSING] = 1.0, -1.0, 0.0, 1.0, 1.0
     # multipliers: eigenvalues of -sigma ahead^-1 behind
     a = room.pair
     for r in range(n):
@@ -110,51 +109,64 @@ def test(f, sides, sigma, place, room, strikes):
             room.matrix[r, j] = a[r, n + j]
     if not eigenvalues(room.matrix, n, room.re, room.im):
         return
-    x[ABOVE] = 0.0
+    above, below, pairs, on, away, squares = 0.0, 0.0, 0.0, 0.0, np.inf, 1.0
     for i in range(n):
-        size = room.re[i] * room.re[i] + room.im[i] * room.im[i]
+        re, im = room.re[i], room.im[i]
+        size = re * re + im * im
+        squares *= 1.0 + size
         if abs(size - 1.0) < ON_SQUARE:
-            x[ON_CIRCLE] += 1.0
+            on += 1.0
         elif size > 1.0:
-            x[AWAY] = min(x[AWAY], size - 1.0)
-            if room.im[i] != 0.0:
-                x[PAIRS] += 0.5
-            elif room.re[i] > 0.0:
-                x[ABOVE] += 1.0
+            away = min(away, size - 1.0)
+            if im != 0.0:
+                pairs += 0.5
+            elif re > 0.0:
+                above += 1.0
             else:
-                x[BELOW] += 1.0
-    x[FLIP] = flip(room.re, room.im)
+                below += 1.0
+    x[ABOVE], x[BELOW], x[PAIRS], x[ON_CIRCLE], x[AWAY] = above, below, pairs, on, away
+    root = math.sqrt(squares)
+    if on > 0.0:
+        without_zeros(room.re, room.im, root, x)
+        return
+    p, q = 1.0 + room.re[0], room.im[0]
+    for i in range(1, n):
+        p, q = p + p * room.re[i] - q * room.im[i], q + p * room.im[i] + q * room.re[i]
+    x[FLIP] = p / root
     if n > 2:
-        x[TORUS], x[CROSSING] = torus(room.re, room.im)
-
-
-@jit
-def flip(re, im):
-    """prod_i (1 + mu_i)/(1 + |mu_i|^2)^(1/2), zero at a flip; without what is -1 at all points."""
-    x, y, squares = 1.0, 0.0, 1.0
-    for i in range(len(re)):
-        p, q = 1.0 + re[i], im[i]
-        if p * p + q * q > ZERO:
-            x, y = x * p - y * q, x * q + y * p
-            squares *= 1.0 + re[i] * re[i] + q * q
-    return x / math.sqrt(squares)
+        x[TORUS] = torus(room.re, room.im)
+        x[CROSSING] = x[TORUS] / root ** (n - 1)
 
 
 @jit
 def torus(re, im):
-    """prod_{i<j} (1 - mu_i mu_j): zero at a Neimark-Sacker point, and at a neutral saddle; the same with each factor
-    over (1 + |mu_i mu_j|^2)^(1/2). Without pairs on the circle at all points; 1 without losses."""
-    x, y, u, v, squares = 1.0, 0.0, 1.0, 0.0, 1.0
+    """prod_{i<j} (1 - mu_i mu_j): zero at a Neimark-Sacker point, and at a neutral saddle. 1 without losses."""
+    x, y, u, v = 1.0, 0.0, 1.0, 0.0
     for i in range(len(re)):
         u, v = u * re[i] - v * im[i], u * im[i] + v * re[i]
         for j in range(i):
             p, q = 1.0 - re[i] * re[j] + im[i] * im[j], -re[i] * im[j] - im[i] * re[j]
-            if p * p + q * q > ZERO:
-                x, y = x * p - y * q, x * q + y * p
-                squares *= 1.0 + (1.0 - p) * (1.0 - p) + q * q
-    if abs(math.hypot(u, v) - 1.0) > 1e-9:
-        return x, x / math.sqrt(squares)
-    return 1.0, 1.0
+            x, y = x * p - y * q, x * q + y * p
+    return x if abs(math.hypot(u, v) - 1.0) > 1e-9 else 1.0
+
+
+@aside
+def without_zeros(re, im, root, numbers):
+    """FLIP, TORUS and CROSSING where multipliers are on the circle: without factors that are zero, at all points."""
+    x, y, p, q, u, v = 1.0, 0.0, 1.0, 0.0, 1.0, 0.0
+    n = len(re)
+    for i in range(n):
+        u, v = u * re[i] - v * im[i], u * im[i] + v * re[i]
+        r, s = 1.0 + re[i], im[i]
+        if r * r + s * s > ZERO:
+            p, q = p * r - q * s, p * s + q * r
+        for j in range(i):
+            r, s = 1.0 - re[i] * re[j] + im[i] * im[j], -re[i] * im[j] - im[i] * re[j]
+            if r * r + s * s > ZERO:
+                x, y = x * r - y * s, x * s + y * r
+    numbers[FLIP] = p / root
+    if n > 2 and abs(math.hypot(u, v) - 1.0) > 1e-9:
+        numbers[TORUS], numbers[CROSSING] = x, x / root ** (n - 1)
 
 
 @jit
@@ -188,13 +200,9 @@ def dips(x, y, z, before, behind):
 
 
 @jit
-def turns_back(a, b, i, side, length):
-    """Whether the impulse i may be zero between two points at which it pushes: where its tangents meet it pulls."""
-    x, y = -side * a.D[i], -side * b.D[i]
-    slope, later = -side * a.tangent_jump[i], -side * b.tangent_jump[i]
-    if not slope < 0.0 < later:
-        return False
-    return x + slope * (y - x - later * length) / (slope - later) < 0.0
+def turns_back(x, slope, y, later, length):
+    """Whether a number that is positive at two points may be negative between them: where its tangents meet it is."""
+    return slope < 0.0 < later and x * (slope - later) + slope * (y - x - later * length) > 0.0
 
 
 @jit
@@ -212,7 +220,10 @@ def happens(sides, steps, a, b, length, passed):
     pushing = True
     for i in range(len(a.t)):
         pushing = pushing and sides[i] * b.D[i] < 0.0
-        if a.releases[i] > 0.0 >= b.releases[i] or turns_back(a, b, i, sides[i], length):
+        if a.releases[i] > 0.0 >= b.releases[i]:
+            return True
+        rate, later = -sides[i] * a.tangent_jump[i], -sides[i] * b.tangent_jump[i]
+        if turns_back(-sides[i] * a.D[i], rate, -sides[i] * b.D[i], later, length):
             return True
     if not pushing or x[MARGIN] > 0.0 >= y[MARGIN] or y[MARGIN] < -passed or x[TANGENT] * y[TANGENT] < 0.0:
         return True

@@ -22,7 +22,8 @@ class Place(NamedTuple):
 
 # Of `numbers`. LENGTH: of the step to it. Multipliers, apart from the ON_CIRCLE: ABOVE 1, BELOW -1, complex PAIRS
 # outside of the unit circle; ABOVE is -1 where they are not known. AWAY: the least |mu|^2 - 1 of those outside. FLIP,
-# CROSSING: prod (1 + mu) and prod (1 - mu_i mu_j), of a size that poles of the multipliers do not change
+# CROSSING: prod_i (1 + mu_i) over r = prod_i (1 + |mu_i|^2)^(1/2), prod_{i<j} (1 - mu_i mu_j) over r^(n - 1), which
+# poles of multipliers leave finite
 (
     P, TANGENT, REFLECTION, TORUS, MARGIN, DEFECT_HERE, LENGTH, ABOVE, BELOW, PAIRS, ON_CIRCLE, AWAY, FLIP, CROSSING,
     NUMBERS,
