@@ -6,7 +6,8 @@ from support.branches import types
 from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.flat import outline
+from vibro_sweep.analysis.branches import forest
+from vibro_sweep.analysis.branches.flat import flatten, outline, special_point
 from vibro_sweep.analysis.branches.recognising import passes
 from vibro_sweep.analysis.branches.switching import mirrored
 from vibro_sweep.analysis.periodic.orbit import orbit_of
@@ -77,6 +78,31 @@ def test_what_is_refused():
     with pytest.raises(ValueError, match="depth"):
         vs.follow_branches(orbit, "b", BOUNDS, depth=-1)
     assert len(vs.follow_branches(orbit, "b", BOUNDS, depth=0)) == 1
+
+
+def test_one_branch_that_fails_loses_no_other(monkeypatch):
+    """A seed whose orbit has no real neighbour within the bounds; here the first that is born at the pitchfork, whose
+    mirror image is then followed."""
+    orbit, count = vs.periodic_orbit(PAPER, itinerary="LR"), 0
+    whole = vs.follow_branches(orbit, "b", BOUNDS)
+
+    def second_fails(*args):
+        nonlocal count
+        count += 1
+        if count == 2:
+            raise ValueError("orbit: it is a special point")
+        return vs.continue_orbit(*args)
+
+    monkeypatch.setattr(forest, "continue_orbit", second_fails)
+    found = vs.follow_branches(orbit, "b", BOUNDS)
+    assert [item.branch.status for item in found] == ["ok", "ok", "failed", "ok", "ok"]
+    assert [types(item.branch) for item in (*found[:2], found[4])] == [types(whole[i].branch) for i in (0, 1, 3)]
+    assert types(found[3].branch) == [(kind, pytest.approx(value, abs=1e-12)) for kind, value in types(whole[2].branch)]
+    assert types(found[2].branch) == [("failed", found[2].branch.begins.orbit.system.b)]
+    flat = flatten(found[2].branch, found[2].branch.begins.orbit.system.b)
+    assert flat["branch_status"] == 1 and len(flat["value"]) == 1 and flat["branch_ends"] == flat["branch_begins"] == 0
+    again = special_point(flat, 0, "b", PAPER)
+    np.testing.assert_allclose(again.orbit.state, found[2].branch.begins.orbit.state, rtol=1e-12)
 
 
 def test_progress_is_told():

@@ -168,7 +168,7 @@ def _switched(report: Report, where: str, special, name: str, bounds) -> None:
         _simulated(report, here, orbit)
         value = orbit.system.parameters()[name]
         if bounds[0] < value < bounds[1]:
-            reach = 0.1 * (bounds[1] - bounds[0])
+            reach = bounds[1] - bounds[0]
             near = max(bounds[0], value - reach), min(bounds[1], value + reach)
             branch = vs.continue_orbit(orbit, name, near)
             report.followed += 1
