@@ -1,4 +1,4 @@
-"""Branches drawn at random: oscillators of all models, orbits on them that attract or not, numbers to follow them in."""
+"""Branches drawn at random: oscillators of all models, orbits that attract or not, numbers to follow them in."""
 
 from typing import NamedTuple
 
@@ -24,7 +24,8 @@ class Case(NamedTuple):
     def __str__(self) -> str:
         o = self.orbit
         lo, hi = self.bounds
-        return f"{self.name} {lo:.9g} .. {hi:.9g} from period {o.period}, {o.itinerary or 'free'}{' symmetric' * o.symmetric}"
+        word = (o.itinerary or "free") + " symmetric" * o.symmetric
+        return f"{self.name} {lo:.9g} .. {hi:.9g} from period {o.period}, {word}"
 
 
 def drawn_restitution(rng) -> float:

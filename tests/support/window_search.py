@@ -152,7 +152,9 @@ def other_starts(report, wrong, window, bounds) -> None:
         if max(abs(lo - window.lo), abs(hi - window.hi)) <= CLOSE * size:
             continue
         found = solution_in(result.flat, (lo + hi) / 2, inner.system.replace(**{window.parameter: (lo + hi) / 2}))
-        matrix = conditions.at_point(orbit_of(inner.system.replace(**{window.parameter: (lo + hi) / 2}), found))[0].matrix[0]
+        matrix = conditions.at_point(orbit_of(inner.system.replace(**{window.parameter: (lo + hi) / 2}), found))[
+            0
+        ].matrix[0]
         stable = np.abs(np.linalg.eigvals(matrix)).max() < 1
         if beside and stable and min(abs(lo - value), abs(hi - value)) <= CLOSE * size:
             report.counted["neighbours"] += 1  # the window that begins where this one ends
@@ -199,7 +201,9 @@ def same_window(report, wrong, a, b, size) -> None:
         return
     orbits = [at(one, (lo + hi) / 2) for one in (a, b)]
     speeds = [np.sort(np.abs(orbit.impacts["v1"])) for orbit in orbits]
-    if not all(orbit.ok for orbit in orbits) or np.ptp(speeds, axis=0).max(initial=0.0) > 1e-7 * np.max(speeds, initial=0.0):
+    if not all(orbit.ok for orbit in orbits) or np.ptp(speeds, axis=0).max(initial=0.0) > 1e-7 * np.max(
+        speeds, initial=0.0
+    ):
         return
     report.counted["pairs"] += 1
     for end in ("lower", "upper"):
@@ -217,7 +221,15 @@ if __name__ == "__main__":
     for seed in range(first, last):
         begun = time.monotonic()
         done.append(study(seed))
-        print("#", seed, done[-1].counted["sweeps"], done[-1].counted["windows"], done[-1].counted["pairs"], done[-1].counted["starts"], flush=True)
+        print(
+            "#",
+            seed,
+            done[-1].counted["sweeps"],
+            done[-1].counted["windows"],
+            done[-1].counted["pairs"],
+            done[-1].counted["starts"],
+            flush=True,
+        )
         for line in dict.fromkeys(done[-1].wrong):
             print(*line, sep=" | ", flush=True)
         if time.monotonic() - begun > 60:
