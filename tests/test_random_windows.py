@@ -38,7 +38,7 @@ def test_the_same_windows_of_all_sweeps(seeds, capsys):
 
 
 def test_a_window_from_its_ends(few):  # noqa: F811
-    """Also beside a fold and a pitchfork: the walk began on their other side, and the window was the unstable stretch."""
+    """Also beside a fold or pitchfork: the walk began on their other side, and the window was an unstable stretch."""
     windows = vs.windows(few)
     chosen = [window for window in windows if {window.lower.type, window.upper.type} & {"fold", "pitchfork"}]
     assert {end.type for window in chosen for end in (window.lower, window.upper)} == {"graze", "fold", "pitchfork"}

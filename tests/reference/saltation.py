@@ -5,8 +5,8 @@
 in the coordinates of the masses: no modes, no Green function, no contact coordinates. z = (x, x', sin, cos, 1) flies by
 exp(A t), summed here as a Taylor series. The impulses are known from the speeds, so that the state before the first
 impact is the solution of linear equations: after the period the motion is itself (sigma times itself), at each impact
-the gap is the stop and moves with the given speed. By how much they are not met says whether this is an orbit at all. An
-impact multiplies disturbances by DG + (F+ - DG F-) n^T/(n.x'-), F the vector field before and after it.
+the gap is the stop and moves with the given speed. By how much they are not met says whether this is an orbit at
+all. An impact multiplies disturbances by DG + (F+ - DG F-) n^T/(n.x'-), F the vector field before and after it.
 """
 
 from typing import NamedTuple
@@ -57,7 +57,7 @@ class Found(NamedTuple):
 
 
 def monodromy(oscillators, sigma, periods, t, sides, v):
-    """`Found` of m orbits with impacts at the times t (m, K), on sides (K,), with the gap's speeds v (m, K) before them.
+    """`Found` of m orbits with impacts at times t (m, K), on sides (K,), with the gap's speeds v (m, K) before.
 
     oscillators : m with the fields of the equations above, R_low, R_high; tau a number
     periods : (m,) P, after which the motion is sigma times itself

@@ -89,7 +89,8 @@ def unexplained(pieces: Pieces) -> list[tuple[str, str]]:
             found.append(
                 (
                     "change of stability",
-                    f"above, below, pairs {counts[a]} to {counts[b]} between {value[a]!r} and {value[b]!r} (points {a}, {b}) with {inner or 'nothing'}",
+                    f"above, below, pairs {counts[a]} to {counts[b]} between {value[a]!r} and {value[b]!r} "
+                    f"(points {a}, {b}) with {inner or 'nothing'}",
                 )
             )
     return found
@@ -120,7 +121,7 @@ def _met(sets):
 
 
 def at_point(orbit):
-    """(multipliers of the period, or of the half map, off, found, q, t, sides, v) of a periodic orbit, from its impacts."""
+    """(`Found`, q, t, sides, v, P) of a periodic orbit, over half the period where it is symmetric, from its impacts."""
     q, impacts = family_of(orbit.system).linear, orbit.impacts
     sigma = -1 if orbit.symmetric else 1
     K = len(impacts) // 2 if orbit.symmetric else len(impacts)
