@@ -98,7 +98,7 @@ def test_tests_have_the_signs_of_the_precise_ones(system, itinerary, name, bound
         found.append(track.a.numbers.copy())
         precise.append(track.point(track.b))
         found.append(track.b.numbers.copy())
-        track.accept()
+        track.accept(precise[-2], precise[-1])
     signs = {x.reflection[0] * np.sign(n[places.REFLECTION]) for x, n in zip(precise, found, strict=True) if x}
     assert len(signs) == 1
     for x, n in zip(precise, found, strict=True):
@@ -109,7 +109,16 @@ def test_tests_have_the_signs_of_the_precise_ones(system, itinerary, name, bound
                 )
             along = x.tangent[-1] * x.walk.scale[-1]  # of another length where a free mode adds an unknown
             assert n[places.TANGENT] == pytest.approx(along, rel=1e-3 if x.equations.free else 1e-6, abs=1e-9)
-            assert n[places.UNSTABLE] == np.count_nonzero(np.abs(x.solution.multipliers) > 1)
+            mu = x.solution.multipliers
+            out, real = np.abs(mu) > 1, mu.imag == 0
+            assert n[places.ABOVE] == np.count_nonzero(out & real & (mu.real > 0))
+            assert n[places.BELOW] == np.count_nonzero(out & real & (mu.real < 0))
+            assert 2 * n[places.PAIRS] == np.count_nonzero(out & ~real)
+            assert n[places.ON_CIRCLE] == 0
+            r, (i, j) = np.prod(np.hypot(1, abs(mu))), np.triu_indices(len(mu), 1)
+            crossing = np.prod(1 - mu[i] * mu[j]).real / r ** (len(mu) - 1) if len(mu) > 2 else 1.0
+            assert n[places.FLIP] == pytest.approx(np.prod(1 + mu).real / r, rel=1e-6, abs=1e-9)
+            assert n[places.CROSSING] == pytest.approx(crossing, rel=1e-6, abs=1e-9)
 
 
 @pytest.mark.parametrize("count", [4, 30])

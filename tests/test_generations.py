@@ -6,7 +6,9 @@ from support.branches import types
 from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.generations import passes
+from vibro_sweep.analysis.branches import forest
+from vibro_sweep.analysis.branches.flat import flatten, outline, special_point
+from vibro_sweep.analysis.branches.recognising import passes
 from vibro_sweep.analysis.branches.switching import mirrored
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 
@@ -45,18 +47,20 @@ def test_no_branch_comes_twice(tree):
 
 
 def test_orbits_are_recognised_on_their_branch(tree):
-    branch = tree[2].branch
-    points = branch.points
+    def on(item, orbit):
+        return passes(outline(item.branch), "b", orbit.system, orbit._solution)
+
+    points = tree[2].branch.points
     i = points.sizes["point"] // 2
     point = points.isel(point=i)
     b = float(point.b) * (1 + 1e-5)
     guess = list(zip(point.impact_t.values, point.impact_side.values, point.impact_v.values, strict=True))
     orbit = vs.periodic_orbit(PAPER.replace(b=b), guess=guess)
-    assert orbit.ok and passes(branch, orbit) and not passes(tree[0].branch, orbit)
+    assert orbit.ok and on(tree[2], orbit) and not on(tree[0], orbit)
     image = orbit_of(orbit.system, mirrored(orbit._solution))
-    assert passes(branch, image)
+    assert on(tree[2], image)
     other = vs.periodic_orbit(PAPER.replace(b=b), itinerary="LR")
-    assert other.ok and other.symmetric and not passes(branch, other) and passes(tree[0].branch, other)
+    assert other.ok and other.symmetric and not on(tree[2], other) and on(tree[0], other)
 
 
 def test_period_doubling_cascade():
@@ -74,6 +78,31 @@ def test_what_is_refused():
     with pytest.raises(ValueError, match="depth"):
         vs.follow_branches(orbit, "b", BOUNDS, depth=-1)
     assert len(vs.follow_branches(orbit, "b", BOUNDS, depth=0)) == 1
+
+
+def test_one_branch_that_fails_loses_no_other(monkeypatch):
+    """A seed whose orbit has no real neighbour within the bounds; here the first that is born at the pitchfork, whose
+    mirror image is then followed."""
+    orbit, count = vs.periodic_orbit(PAPER, itinerary="LR"), 0
+    whole = vs.follow_branches(orbit, "b", BOUNDS)
+
+    def second_fails(*args):
+        nonlocal count
+        count += 1
+        if count == 2:
+            raise ValueError("orbit: it is a special point")
+        return vs.continue_orbit(*args)
+
+    monkeypatch.setattr(forest, "continue_orbit", second_fails)
+    found = vs.follow_branches(orbit, "b", BOUNDS)
+    assert [item.branch.status for item in found] == ["ok", "ok", "failed", "ok", "ok"]
+    assert [types(item.branch) for item in (*found[:2], found[4])] == [types(whole[i].branch) for i in (0, 1, 3)]
+    assert types(found[3].branch) == [(kind, pytest.approx(value, abs=1e-12)) for kind, value in types(whole[2].branch)]
+    assert types(found[2].branch) == [("failed", found[2].branch.begins.orbit.system.b)]
+    flat = flatten(found[2].branch, found[2].branch.begins.orbit.system.b)
+    assert flat["branch_status"] == 1 and len(flat["value"]) == 1 and flat["branch_ends"] == flat["branch_begins"] == 0
+    again = special_point(flat, 0, "b", PAPER)
+    np.testing.assert_allclose(again.orbit.state, found[2].branch.begins.orbit.state, rtol=1e-12)
 
 
 def test_progress_is_told():

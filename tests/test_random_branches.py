@@ -1,7 +1,19 @@
-"""Branches of attractors of random systems: each stable piece, and both its ends, against simulation."""
+"""Branches of random oscillators: stable pieces against simulation; the same special points from wherever a branch is
+followed, each held against monodromy matrices that do not come from the engine."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
+from reference.monodromy import multipliers
+from support import branch_search, conditions
+from support.branches import NUMBERS
+from support.drawn_branches import MODELS, Case
+from support.oscillators import PAPER
 from support.random_branches import study, summary
+from support.same_branch import differences, follow, listed
+
+import vibro_sweep as vs
 
 
 def slow(kind, seeds, mark):
@@ -26,3 +38,75 @@ def test_stable_pieces_agree_with_simulation(kind, seeds, capsys):
             print("\n" + summary(reports))
     assert sum(report.compared for report in reports) > 15 * len(seeds)
     assert not [line for report in reports for line in report.wrong]
+
+
+@pytest.mark.parametrize(
+    ("seeds", "models", "least"),
+    [
+        pytest.param([7, 14], ("two_mass",), 2, id="two"),
+        pytest.param(range(20), MODELS, 30, marks=pytest.mark.slow, id="twenty"),
+        pytest.param(range(20, 570), MODELS, 1000, marks=pytest.mark.soak, id="all"),
+    ],
+)
+def test_the_same_points_from_all_starts_and_steps(seeds, models, least, capsys):
+    """Lists of special points, the condition of each, and all changes of stability between points."""
+    reports = [branch_search.study(seed, models) for seed in seeds]
+    with capsys.disabled():
+        if len(reports) > 100:
+            print("\n" + branch_search.summary(reports))
+    assert sum(report.counted["branches"] for report in reports) >= least
+    assert not [line for report in reports for line in report.wrong]
+
+
+@pytest.fixture(scope="module")
+def known():
+    """The paper's symmetric branch, with a pitchfork, and the one-sided one, with a Neimark-Sacker point."""
+    cases = [
+        Case(vs.periodic_orbit(PAPER, itinerary="LR"), "b", (0.3, 6.8)),
+        Case(vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R"), "b", (0.3, 6.8)),
+    ]
+    return [(case, follow(case)) for case in cases]
+
+
+def test_the_monodromy_matrix_is_that_of_many_digits(known):
+    """Of the reference against the other one, which has 40 digits and the paper's equation only."""
+    for case, branch in known:
+        pieces = conditions.Pieces(branch, case)
+        assert np.max(pieces.off) < 1e-13
+        for special in branch.special:
+            if special.type == "graze":  # division by a speed of zero
+                continue
+            orbit = special.orbit
+            numbers = {name: getattr(orbit.system, name) for name in NUMBERS}
+            numbers["tau"] = orbit.system.linear.tau
+            exact = np.array(multipliers(numbers, orbit.impacts, orbit.period))
+            found = np.linalg.eigvals(conditions.at_point(orbit)[0].matrix[0])
+            found = found**2 if orbit.symmetric else found
+            assert np.abs(np.sort_complex(found) - np.sort_complex(exact)).max() < 1e-11
+
+
+def test_a_point_that_is_left_out_or_wrong_is_seen(known):
+    """Each check by itself: the list, the changes of stability, the condition, the orbit."""
+    for case, branch in known:
+        (bifurcation,) = (special for special in branch.special if special.type in ("pitchfork", "neimark_sacker"))
+        assert not conditions.unexplained(conditions.Pieces(branch, case))
+        shorter = replace(branch, special=[special for special in branch.special if special is not bifurcation])
+        ((kind, _),) = conditions.unexplained(conditions.Pieces(shorter, case))
+        assert kind == "change of stability"
+        size = case.bounds[1] - case.bounds[0]
+        assert not differences(listed(branch), listed(branch)[::-1], size)
+        assert differences(listed(branch), listed(shorter), size)
+        assert conditions.distance(bifurcation)[0] < 1e-10
+        assert conditions.distance(replace(bifurcation, orbit=case.orbit))[0] > conditions.MEETS
+        for special in (branch.begins, branch.ends):
+            assert conditions.distance(special)[0] < 1e-10
+            assert conditions.distance(replace(special, orbit=case.orbit))[0] > conditions.MEETS
+        assert not conditions.not_reduced(case.orbit, "b") and not conditions.passing(conditions.Pieces(branch, case))
+
+
+def test_steps_are_as_long_as_asked_for(known):
+    """Where nothing happens: a name that is bound elsewhere would change nothing."""
+    case, branch = known[0]
+    counts = [len(follow(case, factor).points[case.name]) for factor in (0.5, 1.0, 2.0)]
+    assert counts[1] == len(branch.points[case.name])
+    assert counts[0] > 1.4 * counts[1] and counts[1] > 1.2 * counts[2]

@@ -1,10 +1,14 @@
 """`switch`: the branches that are born at a pitchfork, at a flip, and at a graze."""
 
+import numpy as np
 import pytest
 from support.branches import types
 from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.branches import beginning, births
+from vibro_sweep.analysis.branches.births import is_steady
+from vibro_sweep.analysis.periodic.orbit import orbit_of
 
 
 def test_asymmetric_branch_is_born_at_the_pitchfork(symmetric_branch):
@@ -93,3 +97,79 @@ def test_restart_from_the_end_of_what_is_allowed():
     branch = vs.continue_orbit(vs.periodic_orbit(PAPER, itinerary="LR"), "f2", (0, 0.5))
     again = vs.continue_orbit(branch.begins.orbit, "f2", (0, 0.5))
     assert [special.parameters for special in again.special] == [{"f2": 0.0}, {"f2": 0.5}]
+
+
+def test_an_orbit_that_loses_an_impact_may_be_symmetric():
+    """LLLLRRR without the impact that vanishes is LLLRRR, to rounding: its half map has a pitchfork, its map none."""
+    system = PAPER.replace(b=0.5)
+    found = vs.follow_branches(vs.periodic_orbit(system, itinerary="LLRR"), "b", (0.05, 0.72), depth=4)
+    ends = [end for item in found for end in (item.branch.begins, item.branch.ends)]
+    ends = [end for end in ends if end.type == "graze" and end.impact is not None]
+    graze = next(end for end in ends if abs(end.parameters["b"] - 0.1773928791) < 1e-9 and not end.orbit.symmetric)
+    assert graze.orbit.itinerary == "LLLLRRR"
+    (orbit,) = vs.switch(graze)
+    assert orbit.itinerary == "LLLRRR" and orbit.symmetric
+    assert np.abs(orbit.sample([0.0]) + orbit.sample([system.period / 2])).max() < 1e-13
+    kinds = [types(item.branch) for item in found if item.branch._walk.start.whole().sides.count(1) == 3]
+    assert sum("pitchfork" in [kind for kind, _ in one] for one in kinds) == 1
+    ends = [{round(value, 9) for kind, value in one if kind == "graze"} for one in kinds]
+    assert len(ends) == len({frozenset(one) for one in ends})
+
+
+FLAT = vs.System(
+    mu_m=8.379769014161136, mu_k=3.8163220400771807, zeta=0.028200222924778515, f2=0.9337335869439435,
+    omega=1.2384170377684125, R=0.639, b=0.08630475621966693, tau=0.25528644319765714, offset=-0.0027889332142134425,
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def flat_flip():
+    """A flip from which the doubled orbits leave with hardly any change of f2."""
+    state = vs.simulate(FLAT, np.zeros(4), 600).section[-1]
+    orbit = vs.periodic_orbit(FLAT, state=state, periods=19)
+    branch = vs.continue_orbit(orbit, "f2", (0.8870469075967463, 0.9804202662911407))
+    return [special for special in branch.special if special.type == "flip"][-1]
+
+
+def test_an_orbit_that_is_born_can_be_followed(flat_flip):
+    """At the usual amplitude it has a multiplier of 0.9999994, and Newton's method does not stand still."""
+    (near,) = births._at_amplitudes(flat_flip, [births.AMPLITUDE])
+    assert not is_steady(near, "f2")
+    (orbit,) = vs.switch(flat_flip)
+    assert orbit.ok and orbit.period == 38 and is_steady(orbit._solution, "f2")
+    value = flat_flip.parameters["f2"]
+    branch = vs.continue_orbit(orbit, "f2", (value - 1e-3, value + 1e-3))
+    assert branch.ok and ("flip", pytest.approx(value, abs=1e-12)) in types(branch)
+
+
+def test_a_branch_that_cannot_be_started_says_so(flat_flip, monkeypatch):
+    """It is started a little farther off; where nothing is found there either, its orbit is all that is left of it."""
+    value = flat_flip.parameters["f2"]
+    bounds = (value - 1e-3, value + 1e-3)
+    (near,) = births._at_amplitudes(flat_flip, [births.AMPLITUDE])
+    orbit = orbit_of(FLAT.replace(f2=near.family.numbers["f2"]), near)
+    assert orbit.ok and vs.continue_orbit(orbit, "f2", bounds).ok
+    monkeypatch.setattr(beginning, "BESIDE", ())
+    branch = vs.continue_orbit(orbit, "f2", bounds)
+    assert branch.status == "failed" and not branch.ok
+    assert branch.points.sizes["point"] == 1 and float(branch.points.f2[0]) == orbit.system.f2
+    assert types(branch) == [("failed", orbit.system.f2)] and branch.begins is branch.ends
+    np.testing.assert_array_equal([float(branch.points[name][0]) for name in ("x1", "v1", "x2", "v2")], orbit.state)
+
+
+def test_a_free_ball_may_rest_anywhere():
+    """Where it strikes no more it may rest or drift between the walls: no orbit is left, and all ways say the same."""
+    numbers = dict(mass_ratio=0.30708370157577386, zeta=0.12333976067052502, F=0.23384453537076677)
+    system = vs.Oscillator.named(
+        "ball_in_cavity", **numbers, omega=0.6568743481690207, R=0.705, b=0.42003497841912407,
+    )  # fmt: skip
+    branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="LR"), "b", (0.336, 0.504))
+    assert branch.begins.type == "graze" and vs.switch(branch.begins) == []
+    beside = system.replace(b=branch.begins.parameters["b"] * 1.01)
+    assert vs.periodic_orbit(beside, itinerary="").status == "resonance"
+    host = vs.simulate(beside.replace(b=50.0), np.zeros(4), 500).section[-1]  # the ball rests in the middle
+    for shift in (0.0, 1e-3):  # both are motions without impacts
+        start = host + np.array([0, 0, shift, 0])
+        run = vs.simulate(beside, start, 5)
+        assert len(run.impacts) == 0 and np.abs(run.section[-1] - start).max() < 1e-9
+        assert vs.periodic_orbit(beside, state=start).status == "resonance"

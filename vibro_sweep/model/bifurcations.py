@@ -50,6 +50,7 @@ CODES_OF_CURVES = {one.name: code for code, one in enumerate(CODIMENSION_TWO)}
 KINDS = ("none", "persistence", "nonsmooth_fold")  # of a graze
 CRITICALITIES = ("none", "super", "sub")
 STATUSES = ("ok", "not_real")  # of points of a branch
+BRANCH_STATUSES = ("ok", "failed")  # failed: it could not be followed to an end, or not at all
 
 EDGES = {  # of a plane between points of different periods: why; what says most comes first
     "curve": "a curve passes between the two points on which one of their orbits ends or loses its stability",

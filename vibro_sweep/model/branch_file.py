@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from vibro_sweep.model.bifurcations import (
+    BRANCH_STATUSES,
     CODIMENSION_TWO,
     CRITICALITIES,
     CURVES,
@@ -40,6 +41,15 @@ OF_BRANCHES = (
     ),
     Column("branch_impacts", ("branch",), "i4", "impacts", "impacts of the orbit at each point of the branch"),
     Column("branch_special", ("branch",), "i4", "special points", "number of its special points, one after another"),
+    Column(
+        "branch_status",
+        ("branch",),
+        "i1",
+        "status",
+        "whether it was followed to both ends; of one that could not be followed at all its orbit is the only point",
+        "1",
+        BRANCH_STATUSES,
+    ),
     Column("branch_begins", ("branch",), "i4", "begin", "index of the special point that it begins at"),
     Column("branch_ends", ("branch",), "i4", "end", "index of the special point that it ends at"),
     Column("branch_origin", ("branch",), "i4", "origin", "index of the point that it was followed from"),

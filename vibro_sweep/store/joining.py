@@ -20,7 +20,7 @@ def joined(flats: list[Arrays], parameters: list[str], others: list[tuple[float,
     points, specials, result = _common(flats, masses)
     first_point = np.append(0, np.cumsum(points))[: len(points)]
     result["branch_origin"] = first_point + np.array([int(flat["branch_origin"]) for flat in flats], int)
-    for name in ("branch_period", "branch_symmetric", "branch_closed"):
+    for name in ("branch_status", "branch_period", "branch_symmetric", "branch_closed"):
         result[name] = np.array([flat[name] for flat in flats])
     for name in _ALONG_IMPACTS:
         result[name] = _stacked([flat[name].ravel() for flat in flats])

@@ -7,16 +7,25 @@ from vibro_sweep.analysis.periodic.long_orbits import is_sparse, residual
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import Family
 
-BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # in units of a walk; near the onset of sticking branches are short
+# in units of a walk; near the onset of sticking branches are short, and a fold may be so flat that only far from it
+# Newton's method stands still
+BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-3, 1e-2)
 NEAR = 1e-6  # of a test, relative to its own size, within which an orbit may be the special point itself
 TOUCHES = 1e-12  # distance from a stop, relative to the gap, and the like of a speed, within which it may be zero
 NARROW = 1e-6  # of the parameter's size: the least range that is a unit of a walk
 
 
-def start_of_walk(solution: Solution, name: str, lo: float, hi: float) -> Walk:
-    """From this orbit, or from its neighbour within the bounds where it is a special point itself.
+class NoStartError(ValueError):
+    """Newton's method stands still neither at an orbit nor beside it."""
 
-    Raises ValueError where no orbit beside a special point is real and within the bounds.
+
+def start_of_walk(solution: Solution, name: str, lo: float, hi: float, stable: bool = False) -> Walk:
+    """From this orbit, or from its neighbour within the bounds where it is a special point itself, or so nearly a fold
+    that Newton's method does not stand still there. stable : only from a stable one, so that a stable orbit and its
+    neighbour lie on the same side of the special point.
+
+    Raises NoStartError where it does not beside it either; ValueError where no orbit beside a special point is real and
+    within the bounds.
     """
     if solution.sigma == -1 and not keeps_symmetry(solution.family, name):
         solution = solution.whole()
@@ -27,9 +36,13 @@ def start_of_walk(solution: Solution, name: str, lo: float, hi: float) -> Walk:
     for length in BESIDE:
         for sign in (1, -1):
             beside = _neighbour(walk, sign * length)
-            if beside is not None and lo <= beside.p <= hi and is_real(beside):
-                return Walk(beside.solution, name, float(walk.scale[-1]))
-    if first is None or not is_real(first, TOUCHES):
+            if beside is not None and lo <= beside.p <= hi and is_real(beside) and (is_stable(beside) or not stable):
+                there = Walk(beside.solution, name, float(walk.scale[-1]))
+                if there.first(1.0) is not None:
+                    return there
+    if first is None:
+        raise NoStartError("orbit: Newton's method does not stand still at it")
+    if not is_real(first, TOUCHES):
         raise ValueError(f"orbit: it is a special point, and no orbit beside it in {name} is real and in bounds")
     return walk
 
@@ -63,6 +76,10 @@ def is_real(point: Point, least: float = 0.0) -> bool:
     length = least * s.size_of_gap
     rests = bool(np.all(point.releases > 0)) and point.stays > 0
     return bool(np.all(s.pushes > s.family.linear.omega * length)) and s.margin > length and rests
+
+
+def is_stable(point: Point) -> bool:
+    return bool(np.all(np.abs(point.solution.multipliers) < 1))
 
 
 def _neighbour(walk: Walk, length: float) -> Point | None:

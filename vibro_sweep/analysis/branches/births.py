@@ -12,11 +12,26 @@ from vibro_sweep.analysis.periodic.long_orbits import critical_direction, is_spa
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 
 AMPLITUDE = 1e-3  # of a branch that is born, in the units of a walk
+LARGER = (4.0, 16.0, 64.0)  # times as large: where the branch leaves nearly along the born orbits
 
 
-def born(special: SpecialPoint, amplitude: float) -> Solution | None:
-    """The solution at this amplitude on the branch that is born at a pitchfork or flip."""
-    return next(_at_amplitudes(special, [amplitude]))
+def born(special: SpecialPoint, sign: int) -> Solution | None:
+    """A solution on the branch that is born at a pitchfork or flip, on one side of its parent.
+
+    The parameter moves like the square of the amplitude. Where it hardly moves, the born orbit is next to a fold, and
+    rounding does not tell it from its neighbours: the amplitude is then larger. None where no orbit can be told.
+    """
+    name = next(iter(special.parameters))
+    for solution in _at_amplitudes(special, [sign * AMPLITUDE * factor for factor in (1.0, *LARGER)]):
+        if solution is not None and is_steady(solution, name):
+            return solution
+    return None
+
+
+def is_steady(solution: Solution, name: str) -> bool:
+    """Whether Newton's method stands still at the solution, so that its branch can be followed from there."""
+    span = max(abs(solution.family.numbers[name]), 1e-3)
+    return Walk(solution, name, span).first(1.0) is not None
 
 
 def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | None]:

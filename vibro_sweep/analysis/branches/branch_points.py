@@ -32,14 +32,7 @@ def columns(walk: Walk, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:
     oscillators = walk.oscillators(rows.p)
     T = np.array([[forcing_period(q)] for q in oscillators])
     multipliers = _multipliers(walk.start, oscillators, rows)
-    states, t, v, sides = rows.state, rows.t, rows.motion[:, :, 0], np.array(start.sides, int)
-    half = T / 2 * start.halves
-    if start.sigma == -1:
-        t, v, sides = np.hstack([t, t + half]), np.hstack([v, -v]), np.append(sides, -sides)
-    first, shift = frame
-    length = half * (2 if start.sigma == -1 else 1)
-    t = np.hstack([t[:, first:], t[:, :first] + length]) - shift * T
-    v, sides = np.roll(v, -first, axis=1), np.roll(sides, -first)
+    states, (t, sides, v) = rows.state, _impacts(start, frame, rows, T)
     names = [f"{kind}{i + 1}" for i in range(states.shape[1] // 2) for kind in "xv"]
     return {
         walk.name: ("point", rows.p),
@@ -54,6 +47,25 @@ def columns(walk: Walk, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:
         "impact_side": (("point", "impact"), np.tile(sides, (len(rows.p), 1))),
         "impact_v": (("point", "impact"), v),
     }
+
+
+def impacts(walk: Walk, frame: tuple[int, int], rows: Rows) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times (points, K), sides (K,) and velocities (points, K) of the impacts, as `columns` has them."""
+    T = np.array([[forcing_period(walk.family.linear)]])
+    if walk.family.derivative(walk.name).omega:
+        T = np.array([[forcing_period(q)] for q in walk.oscillators(rows.p)])
+    return _impacts(walk.start, frame, rows, T)
+
+
+def _impacts(start: Solution, frame: tuple[int, int], rows: Rows, T: np.ndarray):
+    t, v, sides = rows.t, rows.motion[:, :, 0], np.array(start.sides, int)
+    half = T / 2 * start.halves
+    if start.sigma == -1:
+        t, v, sides = np.hstack([t, t + half]), np.hstack([v, -v]), np.append(sides, -sides)
+    first, shift = frame
+    length = half * (2 if start.sigma == -1 else 1)
+    t = np.hstack([t[:, first:], t[:, :first] + length]) - shift * T
+    return t, np.roll(sides, -first), np.roll(v, -first, axis=1)
 
 
 def _multipliers(start: Solution, oscillators: list[Linear], rows: Rows) -> np.ndarray:

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.beginning import changes_rests, start_of_walk
+from vibro_sweep.analysis.branches.beginning import NoStartError, changes_rests, start_of_walk
 from vibro_sweep.analysis.branches.branch_points import dataset
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.sticking import sticking_onset
 from vibro_sweep.analysis.branches.track import Rows, join
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.branches.way import Way
+from vibro_sweep.analysis.branches.way import Way, row_of
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.model.arguments import check_type, is_number
@@ -36,6 +36,7 @@ class Branch:
         gains an impact follows the onset of sticking, where such grazes accumulate; it is the end itself where rounding
         does not tell the two apart
     closed : whether it comes back to itself; then both ends are the orbit it started from, of type "closed"
+    status : "ok", or "failed" where it could not be followed to an end, or not at all: then its orbit is its only point
     """
 
     parameter: str
@@ -46,6 +47,14 @@ class Branch:
     _walk: Walk
     _frame: tuple[int, int]
     _rows: Rows
+
+    @property
+    def status(self) -> str:
+        return "failed" if "failed" in (self.begins.type, self.ends.type) else "ok"
+
+    @property
+    def ok(self) -> bool:
+        return self.status == "ok"
 
     @cached_property
     def points(self) -> "xarray.Dataset":
@@ -59,7 +68,8 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
 
     `progress(points, value)` is called now and then with the points so far, of this way, and where they are.
 
-    A branch that comes to where the number is not allowed any more ends there, with the type "limit".
+    A branch that comes to where the number is not allowed any more ends there, with the type "limit". What fails is
+    told by `.status`.
 
     Raises ValueError for an orbit that is not ok, a name that is no number of the system, bounds that do not hold its
     value, or the restitution of a stop on which the mass rests.
@@ -78,7 +88,10 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
         )
     lo, hi = _checked(bounds, family.numbers[parameter])
     lo, hi = (_allowed(orbit.system, parameter, bound) for bound in (lo, hi))
-    walk = start_of_walk(solution, parameter, lo, hi)
+    try:
+        walk = start_of_walk(solution, parameter, lo, hi)
+    except NoStartError:
+        return not_followed(orbit, parameter)
     down = Way(walk, -1.0, lo, hi, orbit.system, progress)
     down.go()
     if down.closed:
@@ -91,6 +104,15 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     backwards = Rows(*(values[:0:-1] for values in down.points))
     rows = join([backwards, up.points])
     return Branch(parameter, special, begins, ends, False, walk, down.frame, rows)
+
+
+def not_followed(orbit: PeriodicOrbit, parameter: str) -> Branch:
+    """An orbit whose branch cannot be followed, as a branch of one point."""
+    s, frame = orbit._solution, orbit._canonical_frame
+    value = s.family.numbers[parameter]
+    end = SpecialPoint("failed", {parameter: value}, orbit, s.multipliers)
+    walk = Walk(s, parameter, max(abs(value), 1e-3))
+    return Branch(parameter, [end], end, end, False, walk, frame, row_of(value, s, frame))
 
 
 def _checked(bounds, value: float) -> tuple[float, float]:

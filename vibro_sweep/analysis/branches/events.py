@@ -9,7 +9,7 @@ from vibro_sweep.analysis.branches.special import NO_SPEED
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.engine.impulses import branch
 
-ON_CIRCLE = 1e-6  # distance from the unit circle within which a multiplier is on neither side
+ON_CIRCLE = 1e-6  # distance of a product of two multipliers from 1, to which no point comes by chance
 
 
 def ends_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
@@ -69,53 +69,23 @@ def _bifurcations(walk: Walk, a: Point, b: Point) -> list[Event]:
         if a.reflection[0] * b.reflection[0] < 0:
             kind = "pitchfork" if walk.start.sigma == -1 else "flip"
             events.append(Event(kind, reflection_test(a, b)))
-        if np.all(b.solution.pushes > 0) and a.torus * b.torus < 0:
-            events.append(Event("neimark_sacker", lambda point: point.torus))
+        torus = torus_test(a, b) if np.all(b.solution.pushes > 0) else None
+        if torus is not None and torus(a) * torus(b) < 0:
+            events.append(Event("neimark_sacker", torus))
     return events
 
 
 def bifurcations(walk: Walk, a: Point, b: Point, length: float) -> list:
-    """What lies between a and b and ends no branch, as `locate` gives it, in order.
-
-    Also two of a kind, for which no test differs from a to b, if another one lies between them.
-    """
+    """What lies between a and b and ends no branch, as far as tests differ, as `locate` gives it, in order."""
     found = [place for event in _bifurcations(walk, a, b) if (place := locate(walk, event, a, b, length)) is not None]
-    for event, _, c, _ in list(found):
-        known = {event.type, *(other[0].type for other in found)}
-        for x, y in ((a, c), (c, b)):
-            for hidden in _bifurcations(walk, x, y):
-                if hidden.type not in known:
-                    place = locate(walk, hidden, x, y, float((y.x - x.x) @ x.tangent))
-                    if place is not None:
-                        found.append((hidden, float((place[2].x - a.x) @ a.tangent), *place[2:]))
     return sorted(found, key=lambda place: place[1])
 
 
-def unexplained(walk: Walk, a: Point, b: Point, found: list) -> bool:
-    """Whether more multipliers cross the unit circle from a to b than belong to the bifurcations found."""
-    if not walk.start.K:
-        return False
-    sizes = [np.abs(point.solution.multipliers) for point in (a, b)]
-    if any(np.abs(size - 1).min() < ON_CIRCLE for size in sizes):
-        return False
-    crossed = abs(int(np.sum(sizes[1] > 1)) - int(np.sum(sizes[0] > 1)))
-    ones = sum(place[0].type != "neimark_sacker" for place in found)
-    pairs = sum(place[0].type == "neimark_sacker" and is_torus(place[2]) for place in found)
-    return crossed > ones + 2 * pairs or (crossed - ones) % 2 == 1
-
-
-def is_torus(point: Point) -> bool:
-    """Whether two multipliers with product 1 are a complex pair; else it is a neutral saddle, or a pole at a graze.
-
-    At the graze itself an undamped mode has such a pair for any parameter: nothing is born there.
-    """
+def is_outside(walk: Walk, bounds, point: Point) -> bool:
+    """Whether a point lies beyond an end of its branch by more than rounding."""
     s = point.solution
-    mu = s.multipliers
-    if np.any(s.pushes < NO_SPEED * s.family.linear.omega * s.size_of_gap):
-        return False
-    i, j = np.triu_indices(len(mu), 1)
-    k = np.argmin(np.abs(1 - mu[i] * mu[j]))
-    return abs(1 - mu[i[k]] * mu[j[k]]) < ON_CIRCLE and abs(mu[i[k]].imag) > 1e-9
+    slow = -NO_SPEED * s.family.linear.omega * s.size_of_gap
+    return not bounds[0] <= point.p <= bounds[1] or _passes(point) or bool(np.any(s.pushes < slow))
 
 
 def _positive_at(inside: Point, value):
@@ -136,3 +106,28 @@ def _beyond(limit: float, side: int, inside: Point):
 def reflection_test(a: Point, b: Point):
     size = max(a.reflection[1], b.reflection[1])
     return lambda point: point.reflection[0] * math.exp(point.reflection[1] - size)
+
+
+def torus_test(a: Point, b: Point, scaled: bool = False):
+    """prod_{i<j} (1 - mu_i mu_j), zero at a Neimark-Sacker point and at a neutral saddle; None without losses.
+
+    Without factors that are zero both at a and at b, to rounding, as of a mode without losses that the contact does not
+    see. scaled : over prod_i (1 + |mu_i|^2)^((n - 1)/2), so that the product has no poles
+    """
+    if len(a.solution.multipliers) < 3 or a.torus == 1.0 or b.torus == 1.0:
+        return None
+    left_out = min(int(np.sum(np.abs(1 - _products(point)) < ON_CIRCLE)) for point in (a, b))
+
+    def test(point: Point) -> float:
+        factors, mu = 1 - _products(point), point.solution.multipliers
+        product = np.prod(factors[np.argsort(np.abs(factors))[left_out:]] if left_out else factors).real
+        return float(product / np.prod(np.hypot(1, np.abs(mu))) ** (len(mu) - 1) if scaled else product)
+
+    return test
+
+
+def _products(point: Point) -> np.ndarray:
+    """mu_i mu_j, i < j."""
+    mu = point.solution.multipliers
+    i, j = np.triu_indices(len(mu), 1)
+    return mu[i] * mu[j]

@@ -3,7 +3,7 @@
 Arrays of a branch with n points, K impacts, s special points and N masses, by the names that they have in files:
 
     branch_period, branch_symmetric, branch_closed, branch_origin (the point that it was followed from), branch_begins,
-    branch_ends (indices among the special points)    ()
+    branch_ends (indices among the special points), branch_status    ()
     value, margin, min_impact_speed, residual, unstable, status    (n,), value: of the parameter
     state, multiplier_re, multiplier_im    (n, 2N)
     impact_t, impact_v, impact_t_off    (n, K): as `orbit.impacts`; t_off is the end of the rest after an impact, or NaN
@@ -16,42 +16,51 @@ Words are codes of model/bifurcations.py. An index that does not exist is -1.
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_points import columns
+from vibro_sweep.analysis.branches.branch_points import columns, impacts
 from vibro_sweep.analysis.branches.continuation import Branch
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.model.bifurcations import CODES, CRITICALITIES, KINDS, TYPES
+from vibro_sweep.model.bifurcations import BRANCH_STATUSES, CODES, CRITICALITIES, KINDS, TYPES
 from vibro_sweep.model.linear import family_of, forcing_period
 from vibro_sweep.model.state import state
 
 Flat = dict[str, np.ndarray]
 
 
-def flatten(branch: Branch, origin: float) -> Flat:
-    """The arrays of a branch; origin: the parameter of the orbit that it was followed from."""
+def outline(branch: Branch) -> Flat:
+    """Of the arrays of a branch those that say which orbits lie on it."""
     start = branch._walk.start
-    data = {name: values for name, (_, values) in columns(branch._walk, branch._frame, branch._rows).items()}
-    p, t = data[branch.parameter], data["impact_t"]
-    words = state(data["multiplier_re"].shape[1] // 2)
-    result = {
+    t, sides, v = impacts(branch._walk, branch._frame, branch._rows)
+    return {
         "branch_period": np.int32(start.halves if start.sigma == -1 else start.halves // 2),
         "branch_symmetric": np.int8(start.sigma == -1),
+        "value": branch._rows.p,
+        "impact_t": t,
+        "impact_v": v,
+        "impact_t_off": _rest_ends(branch, t),
+        "impact_side": sides.astype(np.int8),
+    }
+
+
+def flatten(branch: Branch, origin: float) -> Flat:
+    """The arrays of a branch; origin: the parameter of the orbit that it was followed from."""
+    data = {name: values for name, (_, values) in columns(branch._walk, branch._frame, branch._rows).items()}
+    p = data[branch.parameter]
+    words = state(data["multiplier_re"].shape[1] // 2)
+    result = {
+        "branch_status": np.int8(BRANCH_STATUSES.index(branch.status)),
         "branch_closed": np.int8(branch.closed),
         "branch_origin": np.int32(np.argmin(np.abs(p - origin))),
         "branch_begins": np.int32(branch.special.index(branch.begins)),
         "branch_ends": np.int32(len(branch.special) - 1 - branch.special[::-1].index(branch.ends)),
-        "value": p,
         "state": np.stack([data[name] for name in words], axis=-1),
         **{name: data[name] for name in ("multiplier_re", "multiplier_im", "margin", "min_impact_speed", "residual")},
         "unstable": data["unstable"].astype(np.int32),
         "status": np.zeros(len(p), np.int8),
-        "impact_t": t,
-        "impact_v": data["impact_v"],
-        "impact_t_off": _rest_ends(branch, t),
-        "impact_side": data["impact_side"][0].astype(np.int8),
     }
-    return {name: np.asarray(values) for name, values in (result | _special_points(branch, p)).items()}
+    result |= outline(branch) | _special_points(branch, p)
+    return {name: np.asarray(values) for name, values in result.items()}
 
 
 def _rest_ends(branch: Branch, t: np.ndarray) -> np.ndarray:
@@ -101,11 +110,7 @@ def solution_of(flat: Flat, system, t, v, t_off) -> Solution:
     u = np.concatenate([t[:K], D, t_off[list(rests)]])
     sigma, halves = (-1, period) if symmetric else (1, 2 * period)
     found = Solution(family, sigma, halves, sides, u, 0.0, rests)
-    if K and not rests and found.equations.free:
-        u = np.append(u, 0.0)
-        u[-1] = -np.mean(found.equations.evaluate(sides, u)[0][:K])
-        found = Solution(family, sigma, halves, sides, u, 0.0, rests)
-    return found
+    return found.with_mean() if K and not rests and found.equations.free else found
 
 
 def orbit_at(flat: Flat, point: int, system) -> PeriodicOrbit:

@@ -1,23 +1,26 @@
-"""Branches from branches, as jobs that any worker can do: the same branches in the same order however many there are.
+"""Branches from branches, as tasks that any worker can do: the same branches in the same order however many there are.
 
-A job follows one branch and switches at its special points. Of the orbits that it finds beyond these, those that lie on
-a branch that is known are left out; so is a branch of the same generation that an earlier one has passed.
+A task follows one branch and switches at its special points. Of the orbits that it finds beyond these, those that lie
+on a branch that is known are left out; so is a branch of the same generation that an earlier one has passed.
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.continuation import continue_orbit
-from vibro_sweep.analysis.branches.flat import Flat, flatten, orbit_at, section_states, solution_of
-from vibro_sweep.analysis.branches.generations import alike, kind_of
+from vibro_sweep.analysis.branches.continuation import Branch, continue_orbit, not_followed
+from vibro_sweep.analysis.branches.flat import Flat, flatten, orbit_at, section_states
+from vibro_sweep.analysis.branches.recognising import clearest, passes, point_of
+from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import switch
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import family_of
+
+LEAST = 1e-4  # distance of a graze from the onset of sticking, as a part of the range, to which branches are followed
 
 
 class Seed(NamedTuple):
@@ -58,23 +61,49 @@ class Task(NamedTuple):
 
 @one_thread()
 def grow(task: Task) -> Flat:
-    """The branch of a task, with `beyond`: the orbits found at its special points, as JSON; empty without a branch."""
-    try:
-        branch = continue_orbit(task.seed.orbit(), task.parameter, task.bounds)
-    except ValueError:  # an orbit that cannot be corrected
-        return {"beyond": np.zeros(0, np.uint8)}
-    beyond = []
-    for index, special in enumerate(branch.special):
-        if special.type not in task.follow:
-            continue
-        for orbit in switch(special):
-            value = orbit._solution.family.numbers[task.parameter]
-            if task.bounds[0] <= value <= task.bounds[1]:
-                beyond.append([index, value, *seed_of(orbit)[1:6]])
-    origin = task.seed.orbit()._solution.family.numbers[task.parameter]
-    flat = flatten(branch, origin)
+    """The branch of a task, with `section`, and with `beyond`, as `written` has it."""
+    branch = followed(task)
+    flat = flatten(branch, task.seed.solution.family.numbers[task.parameter])
     flat["section"] = _sections(flat, task)
-    return flat | {"beyond": np.frombuffer(json.dumps(beyond).encode(), np.uint8)}
+    return flat | written(beyond(branch, task), task.parameter)
+
+
+def followed(task: Task, progress=None) -> Branch:
+    """The branch of a task; with the status failed where it cannot be followed, so that the others are not lost."""
+    orbit = task.seed.orbit()
+    try:
+        return continue_orbit(orbit, task.parameter, task.bounds, progress)
+    except ValueError:  # no orbit beside a special point is within the bounds
+        return not_followed(orbit, task.parameter)
+
+
+def beyond(branch: Branch, task: Task) -> list[Seed]:
+    """The orbits within the bounds beyond the special points of a branch at which others are looked for.
+
+    Towards an onset of sticking branches without end follow each other, with one impact more on each: beyond grazes
+    that are nearer to it than a small part of the range nothing is looked for.
+    """
+    lo, hi = task.bounds
+    found = []
+    for index, special in enumerate(branch.special):
+        if special.type in task.follow and not accumulates(branch, special, LEAST * (hi - lo)):
+            orbits = [orbit for orbit in switch(special) if lo <= orbit._solution.family.numbers[task.parameter] <= hi]
+            found += [seed_of(orbit)._replace(special=index) for orbit in orbits]
+    return found
+
+
+def written(seeds: list[Seed], parameter: str) -> Flat:
+    """`beyond`: seeds as JSON, with their numbers to the last bit."""
+    text = json.dumps([[seed.solution.family.numbers[parameter], *seed[1:6], seed.special] for seed in seeds])
+    return {"beyond": np.frombuffer(text.encode(), np.uint8)}
+
+
+def accumulates(branch: Branch, end: SpecialPoint, reach: float) -> bool:
+    """Whether `end` is a graze of this branch within `reach` of the onset of sticking beyond it."""
+    for outermost, last in ((branch.special[0], branch.begins), (branch.special[-1], branch.ends)):
+        if end is last and outermost is not last:
+            return abs(outermost.parameters[branch.parameter] - end.parameters[branch.parameter]) < reach
+    return False
 
 
 def _sections(flat: Flat, task: Task) -> np.ndarray:
@@ -84,8 +113,10 @@ def _sections(flat: Flat, task: Task) -> np.ndarray:
 
 
 class Tree(NamedTuple):
-    """A branch that is known: its arrays, its seed, and how many special points away from the first it is."""
+    """A branch that is known: the name of its task, its arrays, its seed, and how many special points lie between it
+    and the first branches."""
 
+    name: str
     flat: Flat
     seed: Seed
     generation: int
@@ -101,44 +132,52 @@ def forest(
     follow: tuple[str, ...],
     depth: int,
     evaluate: Evaluate,
+    at_once: int | None = None,
 ) -> list[Tree]:
-    """All branches, generation by generation. evaluate : gives `grow` of tasks, which it may know by their names."""
+    """All branches, generation by generation.
+
+    evaluate : gives the arrays of branches, `outline` (flat.py) and `beyond` at least, of tasks by their names
+    at_once : tasks that it is given together; None: all of a generation. The branches do not depend on it; if it is 1,
+        those that an earlier one of their generation has passed are not followed
+    """
     known: list[Tree] = []
     for generation in range(depth + 1):
-        seeds = [seed for seed in seeds if not any(passes(tree.flat, parameter, seed) for tree in known)]
-        looked = follow if generation < depth else ()
-        tasks = [Task(seed, parameter, bounds, looked) for seed in seeds]
-        names = [f"{generation}:{i}" for i in range(len(tasks))]
-        new = []
-        for seed, flat in zip(seeds, evaluate(names, tasks), strict=True):
-            if "value" in flat and not any(passes(tree.flat, parameter, seed) for tree in new):
-                new.append(Tree(flat, seed, generation))
-        seeds = [seed for i, tree in enumerate(new) for seed in _beyond(tree, len(known) + i, parameter)]
-        known += new
+        looked, first = follow if generation < depth else (), len(known)
+        seeds = [seed for seed in seeds if not _lies_on(known, parameter, seed)]
+        named = [(f"{generation}:{i}", Task(seed, parameter, bounds, looked)) for i, seed in enumerate(seeds)]
+        for batch in _batches(named, at_once):
+            todo = [(name, task) for name, task in batch if not _lies_on(known[first:], parameter, task.seed)]
+            flats = evaluate([name for name, _ in todo], [task for _, task in todo])
+            for (name, task), flat in zip(todo, flats, strict=True):
+                if not _lies_on(known[first:], parameter, task.seed) and not _is_known(known, flat, task):
+                    known.append(Tree(name, flat, task.seed, generation))
+        seeds = [seed for i in range(first, len(known)) for seed in _beyond(known[i], i, parameter)]
     return known
+
+
+def _batches(items: list, size: int | None) -> Iterator[list]:
+    size = size or max(len(items), 1)
+    for begin in range(0, len(items), size):
+        yield items[begin : begin + size]
 
 
 def _beyond(tree: Tree, parent: int, parameter: str) -> list[Seed]:
     result = []
-    text = tree.flat["beyond"].tobytes().decode()
-    for index, value, sigma, halves, sides, u, rests in json.loads(text) if text else ():
+    for value, sigma, halves, sides, u, rests, special in json.loads(tree.flat["beyond"].tobytes().decode()):
         system = tree.seed.system.replace(**{parameter: value})
-        result.append(Seed(system, sigma, halves, tuple(sides), tuple(u), tuple(rests), parent, index))
+        result.append(Seed(system, sigma, halves, tuple(sides), tuple(u), tuple(rests), parent, special))
     return result
 
 
-def passes(flat: Flat, parameter: str, seed: Seed) -> bool:
-    """Whether an orbit, or its mirror image, lies on a branch: by Newton's method from its points on both sides."""
-    s = seed.orbit()._solution
-    value = s.family.numbers[parameter]
-    offset = flat["value"] - value
-    names = ("impact_t", "impact_v", "impact_t_off")
-    if not len(offset) or kind_of(solution_of(flat, seed.system, *(flat[name][0] for name in names))) != kind_of(s):
-        return False
-    for i in np.flatnonzero(offset[:-1] * offset[1:] <= 0):
-        share = offset[i] / (offset[i] - offset[i + 1]) if offset[i] != offset[i + 1] else 0.0
-        parts = [(1 - share) * flat[name][i] + share * flat[name][i + 1] for name in names]
-        found = solution_of(flat, seed.system, *parts).corrected()
-        if found is not None and alike(found, s):
-            return True
-    return False
+def _lies_on(trees: list[Tree], parameter: str, seed: Seed) -> bool:
+    s = seed.solution
+    return any(passes(tree.flat, parameter, seed.system, s) for tree in trees)
+
+
+def _is_known(trees: list[Tree], flat: Flat, task: Task) -> bool:
+    """Whether a branch is one of these, also where that could not be told from its seed, which lies next to a birth or
+    a fold."""
+    i = clearest(flat)
+    system = task.seed.system.replace(**{task.parameter: float(flat["value"][i])})
+    s = point_of(flat, i, system)
+    return any(passes(tree.flat, task.parameter, system, s) for tree in trees)

@@ -128,6 +128,13 @@ def _at_zero(walk: Walk, event: Event, a: Point, b: Point, length: float):
     return event, abs(s) if length > 0 else s, point, float(error)
 
 
+def zero_between(walk: Walk, test: Callable[[Point], float], a: Point, b: Point) -> Point | None:
+    """The point of a branch between a and b where a test vanishes, which has different signs there."""
+    seen = [_Seen(0.0, a, test(a)), _Seen(float((b.x - a.x) @ a.tangent), b, test(b))]
+    found = _zero(walk, test, seen)
+    return None if found is None else found.point
+
+
 def _zero(walk: Walk, test: Callable[[Point], float], seen: list[_Seen]) -> _Seen | None:
     """The point of a branch where a test vanishes, between the two of `seen`, which all others are added to.
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.births import AMPLITUDE, born
+from vibro_sweep.analysis.branches.births import born, is_steady
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, slopes
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.model.arguments import check_type
 
@@ -22,7 +22,7 @@ def switch(special: SpecialPoint) -> list[PeriodicOrbit]:
     """
     check_type("special", special, SpecialPoint, "a special point of a branch")
     if special.type in ("pitchfork", "flip"):
-        found = [born(special, sign * AMPLITUDE) for sign in ((1, -1) if special.type == "pitchfork" else (1,))]
+        found = [born(special, sign) for sign in ((1, -1) if special.type == "pitchfork" else (1,))]
     elif special.type == "graze":
         found = _beyond_graze(special)
     else:
@@ -30,7 +30,7 @@ def switch(special: SpecialPoint) -> list[PeriodicOrbit]:
     system = special.orbit.system
     name = next(iter(special.parameters))
     orbits = [
-        orbit_of(system.replace(**{name: solution.family.numbers[name]}), solution)
+        found_orbit(system.replace(**{name: solution.family.numbers[name]}), solution)
         for solution in found
         if solution is not None
     ]
@@ -70,7 +70,8 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
         family = solution.family.replace(**{name: value + step})
         guess = replace(target, family=family, u=target.u + step * du)
         found = guess.corrected()
-        if found is not None and found.real and np.abs(found.u - guess.u).max(initial=0.0) < 0.1:
+        near = found is not None and found.real and np.abs(found.u - guess.u).max(initial=0.0) < 0.1
+        if near and is_steady(found, name):
             return found
         step /= 2
     return None

@@ -110,21 +110,40 @@ class Track:
             return np.reshape(found, states.shape)
         return contact_coordinates(self.walk.family.linear).to_masses(states)
 
-    def accept(self) -> None:
-        """Go on from b."""
+    def accept(self, a: Point, b: Point) -> None:
+        """Go on from b, after the step from a to b was looked at.
+
+        Where signs have changed in compiled steps but not from point to point, rounding decides: the next step is to
+        look for the change again.
+        """
+        past, numbers = self.a.numbers, self.b.numbers
+        for i, change in ((places.TANGENT, a.tangent[-1] * b.tangent[-1]),
+                          (places.REFLECTION, a.reflection[0] * b.reflection[0])):  # fmt: skip
+            if past[i] * numbers[i] < 0 < change:
+                numbers[i] *= -1
+        self.work.past[:] = past
+        self.work.past[places.LENGTH] = numbers[places.LENGTH]
         for here, there in zip(self.b, self.a, strict=True):
             there[...] = here
 
     def point(self, place: Place) -> Point | None:
         """The same point, corrected with the walk's own equations."""
-        w, K = self.walk, len(self.sides)
-        u = np.concatenate([place.t, place.D])
         tangent = np.concatenate([place.tangent_t, place.tangent_jump])
-        p = float(place.numbers[places.P])
+        return self._corrected(place.t, place.D, float(place.numbers[places.P]), tangent, place.numbers[places.TANGENT])
+
+    def point_of(self, rows: Rows, near: Point) -> Point | None:
+        """The last of recorded points; `near`: a point of the branch behind it."""
+        K, scale = len(self.sides), self.walk.scale
+        tangent = near.tangent * scale
+        return self._corrected(rows.t[-1], rows.D[-1], float(rows.p[-1]), tangent[: 2 * K], tangent[-1])
+
+    def _corrected(self, t, D, p: float, tangent: np.ndarray, tangent_p: float) -> Point | None:
+        w, K = self.walk, len(self.sides)
+        u = np.concatenate([t, D])
         if w.start.equations.free:
             e = w.equations(p)
             u, tangent = np.append(u, 0.0), np.append(tangent, 0.0)
             u[-1] = -np.mean(e.evaluate(w.start.sides, u)[0][:K])
         x = np.append(u, p) / w.scale
-        direction = np.append(tangent, place.numbers[places.TANGENT]) / w.scale
+        direction = np.append(tangent, tangent_p) / w.scale
         return w.correct(x, direction, direction)

@@ -77,6 +77,10 @@ class Chord:
             zero = moved
         return zero if abs(self.value(zero)) <= NOISE * abs(slope) else None
 
+    def at(self, share: float, exact: bool = True) -> Place:
+        """The point of the curve at a share of the chord, without keeping it."""
+        return self._point(share, self.seen, exact)
+
     def _point(self, share: float, seen: dict[float, Place], exact: bool) -> Place:
         near = min(seen, key=lambda other: abs(other - share))
         guess = self.tracer.shifted(seen[near], self.a, self.b, share - near)

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches.births import doubled
+from vibro_sweep.analysis.branches.own_birth import halves_apart
 from vibro_sweep.analysis.branches.special import bare, inserted
-from vibro_sweep.analysis.branches.way import halves_apart
 from vibro_sweep.analysis.curves.events import Found, event_near
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.curves.tracer import Tracer

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.curves.chord import root
+from vibro_sweep.analysis.curves.errors import error_of
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.engine.impulses import curve_tests
 from vibro_sweep.engine.impulses.curve_tests import RESIDUAL
@@ -181,19 +182,18 @@ def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
 
     A test may change its sign at a pole as well, where an impact vanishes.
 
-    The error: what two locations from both ends differ by, and rounding.
+    The error (`error_of`) is an estimate from several locations and from what rounding of the equations does.
     """
-    there, back = root(tracer, a, b, event.value), root(tracer, b, a, event.value)
-    if there is None or back is None or max(there[1].tests[RESIDUAL], back[1].tests[RESIDUAL]) > SETTLED:
+    found = root(tracer, a, b, event.value)
+    if found is None or found[1].tests[RESIDUAL] > SETTLED:
         return None
-    share, place = there
+    share, place = found
     if event.test is not None:
         at, *ends = (abs(float(one.tests[event.test])) for one in (place, a, b))
         if at > max(0.5 * min(ends), VANISHED) or not is_sharp(tracer, event, place):
             return None
-    error = np.abs(place.p[:2] - back[1].p[:2]).max()
-    rounding = 64 * np.finfo(float).eps * np.abs(place.p[:2]).max()
-    return Found(event, share, place, float(4 * error + rounding))
+    error = error_of(tracer, a, b, event.value, share, place)
+    return None if error is None else Found(event, share, place, error)
 
 
 def is_sharp(tracer: Tracer, event: Event, place: Place) -> bool:

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from vibro_sweep.analysis.periodic.itinerary import SIDES, is_mirrored, repetitions, word
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit, orbit_of
 from vibro_sweep.analysis.periodic.seeds_of_rests import evenly, with_rests
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.orbit import simulate
@@ -109,7 +109,7 @@ def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
         return PeriodicOrbit(system, "sticking")
     u = np.concatenate([impacts["t"], -(1 + R(impacts["side"])) * impacts["v1"], resting["t_off"]])
     found = Solution(family, 1, 2 * periods, tuple(map(int, impacts["side"])), u, 0.0, rests).corrected()
-    return orbit_of(system, found and found.reduced())
+    return found_orbit(system, found)
 
 
 def _from_guess(system, family, rows, periods) -> PeriodicOrbit:
@@ -118,9 +118,7 @@ def _from_guess(system, family, rows, periods) -> PeriodicOrbit:
     t, v = np.array([row[0] for row in rows]), np.array([row[2] for row in rows])
     u = np.concatenate([t, -(1 + R) * v])
     start = Solution(family, 1, 2 * periods, sides, u)
-    if start.equations.free:
-        if not sides:
-            return PeriodicOrbit(system, "resonance")
+    if start.equations.free and sides:
         u = np.append(u, 0.0)
         u[-1] = -np.mean(start.equations.evaluate(sides, u)[0][: len(sides)])
         start = Solution(family, 1, 2 * periods, sides, u)
@@ -129,7 +127,7 @@ def _from_guess(system, family, rows, periods) -> PeriodicOrbit:
     found = start.corrected()
     if (found is None or not found.real) and np.any(R == 0):
         found = with_rests(found or start) or found
-    return orbit_of(system, found and found.reduced())
+    return found_orbit(system, found)
 
 
 def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
@@ -155,7 +153,7 @@ def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
             for guess in evenly(start):
                 found = with_rests(guess)
                 if found is not None and len(found.reduced().whole().sides) == len(sides):
-                    return orbit_of(system, found.reduced())
+                    return found_orbit(system, found)
     return orbit_of(system, virtual)
 
 

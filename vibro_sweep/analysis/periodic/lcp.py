@@ -15,7 +15,7 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.impulse_equations import Equations
 from vibro_sweep.analysis.periodic.itinerary import canonical_start
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.green import has_free_gap
 from vibro_sweep.model.arguments import checked_count
@@ -183,7 +183,7 @@ def _confirmed(system, family, graze: _Graze, n: int, hit, d, side: int) -> Born
         found = Solution(changed, 1, 2 * n, tuple(map(int, sides)), u).corrected()
         if found is None or np.abs(found.jumps / u[len(t) :] - 1).max() > NEAR:
             continue
-        orbit = orbit_of(system.replace(b=changed.numbers["b"]), found.reduced())
+        orbit = found_orbit(system.replace(b=changed.numbers["b"]), found)
         if orbit.ok:
             break
     first = canonical_start(sides, t if found is None else found.times, P / n, P)

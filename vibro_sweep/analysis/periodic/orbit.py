@@ -12,6 +12,7 @@ from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import contact_coordinates
+from vibro_sweep.engine.impulses.green import ResonanceError
 from vibro_sweep.engine.one_system import IMPACT, STICKING
 from vibro_sweep.model.arguments import LATEST, checked_times
 from vibro_sweep.model.general import Oscillator
@@ -232,8 +233,31 @@ class PeriodicOrbit:
         return save_orbit(self, path)
 
 
-def orbit_of(system, solution: Solution | None, status: str | None = None) -> PeriodicOrbit:
-    """The orbit of a solution, certified."""
+def found_orbit(system, solution: Solution | None) -> PeriodicOrbit:
+    """The orbit of a solution that was found: with its least period, as half an orbit where it is symmetric, certified.
+
+    Whatever looks for an orbit ends here: an orbit that lost an impact may be symmetric, or a shorter one repeated.
+    """
     if solution is None:
-        return PeriodicOrbit(system, status or "not_converged")
-    return PeriodicOrbit(system, status or ("ok" if solution.real else "not_real"), solution)
+        return orbit_of(system, None)
+    least = solution.reduced()
+    same = (least.sigma, least.halves) == (solution.sigma, solution.halves)
+    return orbit_of(system, solution if same else least)
+
+
+def orbit_of(system, solution: Solution | None) -> PeriodicOrbit:
+    """The orbit of a solution as it is, certified."""
+    if solution is None:
+        return PeriodicOrbit(system, "not_converged")
+    if solution.K == 0 and not is_isolated(solution):
+        return PeriodicOrbit(system, "resonance")
+    return PeriodicOrbit(system, "ok" if solution.real else "not_real", solution)
+
+
+def is_isolated(free_motion: Solution) -> bool:
+    """Whether a motion without impacts is the only one near it: a free mode may be at rest anywhere between the stops,
+    and an undamped mode that repeats itself after the forcing period has any amplitude."""
+    try:
+        return not free_motion.whole().equations.free
+    except ResonanceError:
+        return False

@@ -138,10 +138,16 @@ class Solution:
         sides = (*self.sides, *(-side for side in self.sides))
         rests = (*self.rests, *(k + self.K for k in self.rests))
         whole = Solution(self.family, 1, 2 * self.halves, sides, u, self.change, rests)
-        if whole.equations.free:
-            whole = Solution(self.family, 1, 2 * self.halves, sides, np.append(u, 0.0), self.change)
-            whole = whole.corrected() or whole
-        return whole
+        return whole.with_mean() if whole.equations.free else whole
+
+    def with_mean(self) -> "Solution":
+        """With the mean gap, which a free mode leaves open, as last unknown: what the gaps at impacts lack.
+
+        Newton's method would find it too, but not where the orbit is singular, as a symmetric one is at its pitchfork.
+        """
+        found = replace(self, u=np.append(self.u, 0.0))
+        found.u[-1] = -np.mean(found.equations.evaluate(found.sides, found.u)[0][: found.K])
+        return found
 
     def part(self, count: int, sigma: int, alike: float = ALIKE, exact: bool = True) -> "Solution | None":
         """The first of `count` equal parts (mirrored ones for sigma = -1), if they are equal to the share `alike`.

@@ -21,6 +21,7 @@ from vibro_sweep.model.bifurcations import ATTRACTORS, REASONS
 
 FAR = 8  # values without a point of the same period end a group
 SAME = 1e-9  # of the range: ends that differ by less, of windows of the same itinerary and period, are one
+UNDECIDED = ("not_settled", "failed")  # reasons that say nothing of where an orbit went to
 _CODES = {name: code for code, name in enumerate(REASONS)}
 
 Point = tuple[int, int, int]  # row, value, start
@@ -65,10 +66,12 @@ class Cover:
                 elif (found := self._added(r, self.rows[r].values[i], result.flat)) is not None:
                     new.append(found)
             for w in new:
-                self._take_points(w)
+                self._take_points(w, self._open[self.found[w].row])
             for r, i, j in jobs:  # a point that its own window does not pass, which has moved to another orbit
                 if self._open[r][i, j]:
                     self._close(r, i, j, "not_settled")
+        for w in range(len(self.found)):
+            self._take_back(w)
         self._sort()
 
     @property
@@ -131,18 +134,27 @@ class Cover:
         self.found.append(found)
         return len(self.found) - 1
 
-    def _take_points(self, w: int) -> None:
-        """Assign to a window the points whose recorded orbits are its own."""
+    def _take_back(self, w: int) -> None:
+        """Assign to a window the points that had no window of their own, as an orbit at an end of a window, and lie in
+        this one."""
+        r = self.found[w].row
+        left = np.isin(self.reason[r], [_CODES[name] for name in UNDECIDED]) & (self.rows[r].period > 0)
+        taken = self._take_points(w, left)
+        self.reason[r][taken] = _CODES["in_a_window"]
+
+    def _take_points(self, w: int, still: np.ndarray) -> np.ndarray:
+        """Assign to a window the points whose recorded orbits are its own, among those that are `still` without one:
+        which, (values, starts). They are taken from `still`."""
         found = self.found[w]
-        row, still = self.rows[found.row], self._open[found.row]
+        row = self.rows[found.row]
         lo, hi = found.ends
         inside = (lo <= row.values) & (row.values <= hi)
         wanted = still & inside[:, None] & (row.period % int(found.flat["branch_period"]) == 0)
         places = np.flatnonzero(wanted.any(axis=1))
-        on = members(found.flat, row.system, row.parameter, row.values[places], row.states[places])
-        for i, here in zip(places, on & wanted[places], strict=True):
-            still[i, here] = False
-            self.window[found.row][i, here] = w
+        wanted[places] &= members(found.flat, row.system, row.parameter, row.values[places], row.states[places])
+        still[wanted] = False
+        self.window[found.row][wanted] = w
+        return wanted
 
     def _sort(self) -> None:
         """Windows by row, then by their lower ends."""

@@ -5,12 +5,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches.beginning import changes_rests
+from vibro_sweep.analysis.branches.continuation import Branch
 from vibro_sweep.analysis.branches.flat import Flat, flatten, section_states
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows.stretch import representative, stable_stretch
 
+SLACK = 1e-9  # of the range: an orbit that is so far from a window's end may be counted as beyond it
 NEAR = 1e-3  # of the size of the state: a recorded orbit that is farther from the periodic one has not settled
 
 
@@ -50,7 +52,16 @@ def window_of(job: Job) -> Result:
     except ValueError:  # an orbit of hundreds of impacts, which rounding does not let Newton's method correct
         return Result(None, "failed")
     value = chosen._solution.family.numbers[job.parameter]
+    if not holds(branch, value, SLACK * (job.bounds[1] - job.bounds[0])):
+        return Result(None, "not_settled")
     return Result(flatten(branch, value), "in_a_window")
+
+
+def holds(branch: Branch, value: float, slack: float) -> bool:
+    """Whether a stretch has a width, beyond what its ends may be wrong by, and a value lies in it."""
+    lo, hi = (end.parameters[branch.parameter] for end in (branch.begins, branch.ends))
+    width = float(np.nansum([end.error for end in (branch.begins, branch.ends)]))
+    return hi - lo > width and lo - slack <= value <= hi + slack
 
 
 def lies_on(orbit: PeriodicOrbit, state: np.ndarray) -> bool:

@@ -6,9 +6,10 @@ from vibro_sweep.analysis.branches.flat import Flat, section_states, solution_of
 from vibro_sweep.analysis.periodic.impulse_equations import contacts_of, moves_stops_only
 from vibro_sweep.analysis.periodic.long_orbits import is_long
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
-from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.analysis.periodic.solution import ALIKE, Solution
 from vibro_sweep.analysis.windows.job import is_near
 from vibro_sweep.engine.impulses.flow import contact_coordinates
+from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.model.linear import Linear, family_of
 
 
@@ -27,14 +28,38 @@ def solution_in(flat: Flat, value: float, system) -> Solution | None:
 
 
 def _between(flat: Flat, values: np.ndarray) -> list[np.ndarray]:
-    """Times and speeds of impacts, and ends of rests, (m, K) each, from the neighbouring points of the branch."""
+    """Times and speeds of impacts, and ends of rests, (m, K) each, from the neighbouring points of the branch.
+
+    Beside a fold, or where the orbit is born, they move like the square root of the distance from there: on a straight
+    line Newton's method would find the parent.
+    """
     p = flat["value"]
     i = np.clip(np.searchsorted(p, values) - 1, 0, len(p) - 2)
     length = p[i + 1] - p[i]
-    share = np.where(length > 0, (values - p[i]) / np.where(length > 0, length, 1.0), 0.0)[:, None]
+    share = np.where(length > 0, (values - p[i]) / np.where(length > 0, length, 1.0), 0.0)
+    if _turns(flat, 0):
+        share = np.where(i == 0, np.sqrt(np.maximum(share, 0.0)), share)
+    if _turns(flat, -1):
+        share = np.where(i == len(p) - 2, 1 - np.sqrt(np.maximum(1 - share, 0.0)), share)
+    share = share[:, None]
     return [
         (1 - share) * flat[name][i] + share * flat[name][i + 1] for name in ("impact_t", "impact_v", "impact_t_off")
     ]
+
+
+def _turns(flat: Flat, end: int) -> bool:
+    """Whether the branch turns back at an end (0 or -1) of a window: at a fold, and where a doubled or asymmetric orbit
+    is born, whose halves are alike there."""
+    kind = TYPES[int(flat["special_type"][end])].name
+    if kind == "fold":
+        return True
+    K, t, v = len(flat["impact_side"]), flat["impact_t"][end], flat["impact_v"][end]
+    if kind not in ("flip", "pitchfork") or flat["branch_symmetric"] or K % 2:
+        return False
+    sign = -1 if kind == "pitchfork" else 1
+    lengths, speeds = np.diff(t), v[K // 2 :] - sign * v[: K // 2]
+    apart = np.abs(lengths[K // 2 :] - lengths[: K // 2 - 1]).max(initial=0.0)
+    return bool(np.abs(speeds).max() < ALIKE * np.abs(v).max() and apart < ALIKE * lengths.max())
 
 
 def _sections(flat: Flat, system, parameter: str, values: np.ndarray) -> list[np.ndarray]:

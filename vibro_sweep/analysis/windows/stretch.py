@@ -22,7 +22,7 @@ def stable_stretch(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     Raises ValueError for an orbit that cannot be corrected.
     """
     lo, hi = bounds
-    walk = start_of_walk(orbit._solution, parameter, lo, hi)
+    walk = start_of_walk(orbit._solution, parameter, lo, hi, stable=True)
     down, up = (StableWay(walk, forwards, lo, hi, orbit.system) for forwards in (-1.0, 1.0))
     down.go()
     up.go()
@@ -36,7 +36,8 @@ def stable_end(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float]
 
     Raises ValueError for an orbit that cannot be corrected.
     """
-    way = StableWay(start_of_walk(orbit._solution, parameter, *bounds), forwards, *bounds, orbit.system)
+    walk = start_of_walk(orbit._solution, parameter, *bounds, stable=True)
+    way = StableWay(walk, forwards, *bounds, orbit.system)
     way.go()
     return way.special[0]
 

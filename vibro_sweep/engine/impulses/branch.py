@@ -2,7 +2,9 @@
 
 Distances along the branch are measured as analysis/branches/walk.py does: times, impulses and the parameter in units
 `scale`.
-A call ends where something happens between two points, so that the caller can locate it; both points are kept.
+A call ends where something happens between two points, so that the caller can locate it; both points are kept. It ends
+too where something may happen twice between two points, unseen by their tests: then the call goes on from the second of
+three points only when the caller has looked between them.
 """
 
 import math
@@ -10,17 +12,20 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.impulses.blocks import eliminate, finish
-from vibro_sweep.engine.impulses.checks import certify, comes_back, happens, test
+from vibro_sweep.engine.impulses.checks import certify, comes_back, happens, test, touches
 from vibro_sweep.engine.impulses.medium import OMEGA, PERIOD, flight_matrix, move_to, set_phase
-from vibro_sweep.engine.impulses.places import DEFECT_HERE, LENGTH, REFLECTION, TANGENT, P
+from vibro_sweep.engine.impulses.places import DEFECT_HERE, LENGTH, ON_CIRCLE, REFLECTION, TANGENT, P
 from vibro_sweep.engine.simd.jit import entry, jit
 
-FULL, EVENT, CLOSED, FAILED, FAR, NO_START = range(6)  # why a call ends; FAR: beyond the reach of the medium
+# Why a call ends. FAR: beyond the reach of the medium; TOUCH: something may vanish twice beside a
+FULL, EVENT, CLOSED, FAILED, FAR, NO_START, TOUCH = range(7)
 MOST_CORRECTIONS = 8
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
 DEFECT = 1e-10  # largest jump of the motion between its flights, relative to the gap
 PASSED = 1e-13  # distance beyond a stop, relative to the gap, which rounding does not explain
 BEYOND = 1.5  # times the reach of the medium, up to where its polynomials hold
+SHIFTED = 0.8  # of a step, where its end lies on a bifurcation by chance
+MOST_SHIFTS = 5  # of one step
 EARLY = 10  # points before which a branch is not yet taken to be closed
 
 
@@ -171,9 +176,11 @@ def walk(media, sides, sigma, steps, size, origin, passed, first, a, b, record, 
     f = media[0]
     K, n = a.z.shape
     count, corrections = 0, 0
-    if begins and not start(f, sides, sigma, steps, a, w):
-        return NO_START, count, corrections
-    length = a.numbers[LENGTH]
+    if begins:
+        w.past[LENGTH] = 0.0
+        if not start(f, sides, sigma, steps, a, w):
+            return NO_START, count, corrections
+    length, shifts = a.numbers[LENGTH], 0
     while count < len(record.t):
         if not abs(a.numbers[P] - f.centre) <= f.reach:
             a.numbers[LENGTH] = length
@@ -203,14 +210,24 @@ def walk(media, sides, sigma, steps, size, origin, passed, first, a, b, record, 
             continue
         b.numbers[LENGTH] = length
         test(f, sides, sigma, b, w.room[0], w.strikes)
-        if happens(sides, steps, a, b, PASSED * size):
+        if b.numbers[ON_CIRCLE] > a.numbers[ON_CIRCLE] and shifts < MOST_SHIFTS:  # signs there would be rounding
+            length *= SHIFTED
+            shifts += 1
+            continue
+        shifts = 0
+        if happens(sides, steps, a, b, length, PASSED * size):
             return EVENT, count, corrections
+        if touches(w.past, a, b, length):
+            return TOUCH, count, corrections
         if passed + count >= EARLY and comes_back(steps, a, first, length):
             return CLOSED, count, corrections
         keep(f, sigma, b, origin * 2.0 * math.pi / f.numbers[OMEGA], record, count, w)
         count += 1
         if turn < steps.straight / 3 and made <= 3:
             length = min(1.5 * length, steps.longest)
+        for i in range(len(w.past)):
+            w.past[i] = a.numbers[i]
+        w.past[LENGTH] = b.numbers[LENGTH]
         copy_place(b, a)
         a.numbers[LENGTH] = length
     return FULL, count, corrections

@@ -7,14 +7,31 @@ import numpy as np
 from vibro_sweep.engine.impulses.elimination import sign_of_determinant, solve
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
 from vibro_sweep.engine.impulses.medium import GAIN_HIGH, GAIN_LOW, HIGH, LOW, PERIOD, combined, set_phase
-from vibro_sweep.engine.impulses.places import DEFECT_HERE, MARGIN, REFLECTION, TANGENT, TORUS, UNSTABLE, P
+from vibro_sweep.engine.impulses.places import (
+    ABOVE,
+    AWAY,
+    BELOW,
+    CROSSING,
+    DEFECT_HERE,
+    FLIP,
+    LENGTH,
+    MARGIN,
+    ON_CIRCLE,
+    PAIRS,
+    REFLECTION,
+    TANGENT,
+    TORUS,
+    P,
+)
 from vibro_sweep.engine.impulses.tables import ORDER
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import number
 from vibro_sweep.engine.simd.memory import put
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
-ON_CIRCLE = 1e-6  # of |mu|^2: a multiplier that near to the unit circle is on neither side; UNSTABLE is -1
+ON_SQUARE = 1e-6  # of |mu|^2: a multiplier that near to the unit circle is on neither side
+ZERO = 1e-12  # of |1 + mu|^2 and |1 - mu_i mu_j|^2: what no point of a branch comes to by chance
+FAR_OUTSIDE = 0.5  # of |mu|^2 - 1: multipliers from there on do not reach the circle within a step and go back
 
 
 @jit
@@ -78,7 +95,8 @@ def test(f, sides, sigma, place, room, strikes):
         gain = f.numbers[GAIN_HIGH if sides[i] > 0 else GAIN_LOW]
         after = strikes[i].motion[1] + place.D[i] * f.B[n // 2, n // 2]
         place.releases[i] = -sides[i] * after if gain == 1.0 else np.inf
-    place.numbers[TORUS], place.numbers[UNSTABLE] = 1.0, -1.0
+    x = place.numbers
+    x[TORUS], x[ABOVE], x[ON_CIRCLE], x[FLIP], x[CROSSING] = 1.0, -1.0, 0.0, 1.0, 1.0
     # multipliers: eigenvalues of -sigma ahead^-1 behind
     a = room.pair
     for r in range(n):
@@ -91,16 +109,33 @@ def test(f, sides, sigma, place, room, strikes):
             room.matrix[r, j] = a[r, n + j]
     if not eigenvalues(room.matrix, n, room.re, room.im):
         return
-    outside = 0.0
+    above, below, pairs, on, away, squares = 0.0, 0.0, 0.0, 0.0, np.inf, 1.0
     for i in range(n):
-        size = room.re[i] * room.re[i] + room.im[i] * room.im[i]
-        if size > 1.0:
-            outside += 1.0
-        if abs(size - 1.0) < ON_CIRCLE:
-            outside = -np.inf
-    place.numbers[UNSTABLE] = max(outside, -1.0)
+        re, im = room.re[i], room.im[i]
+        size = re * re + im * im
+        squares *= 1.0 + size
+        if abs(size - 1.0) < ON_SQUARE:
+            on += 1.0
+        elif size > 1.0:
+            away = min(away, size - 1.0)
+            if im != 0.0:
+                pairs += 0.5
+            elif re > 0.0:
+                above += 1.0
+            else:
+                below += 1.0
+    x[ABOVE], x[BELOW], x[PAIRS], x[ON_CIRCLE], x[AWAY] = above, below, pairs, on, away
+    root = math.sqrt(squares)
+    if on > 0.0:
+        without_zeros(room.re, room.im, root, x)
+        return
+    p, q = 1.0 + room.re[0], room.im[0]
+    for i in range(1, n):
+        p, q = p + p * room.re[i] - q * room.im[i], q + p * room.im[i] + q * room.re[i]
+    x[FLIP] = p / root
     if n > 2:
-        place.numbers[TORUS] = torus(room.re, room.im)
+        x[TORUS] = torus(room.re, room.im)
+        x[CROSSING] = x[TORUS] / root ** (n - 1)
 
 
 @jit
@@ -115,10 +150,68 @@ def torus(re, im):
     return x if abs(math.hypot(u, v) - 1.0) > 1e-9 else 1.0
 
 
-@jit
-def happens(sides, steps, a, b, passed):
-    """Whether a test changes its sign between two points, multipliers cross the unit circle, or b is out of the stops.
+@aside
+def without_zeros(re, im, root, numbers):
+    """FLIP, TORUS and CROSSING where multipliers are on the circle: without factors that are zero, at all points."""
+    x, y, p, q, u, v = 1.0, 0.0, 1.0, 0.0, 1.0, 0.0
+    n = len(re)
+    for i in range(n):
+        u, v = u * re[i] - v * im[i], u * im[i] + v * re[i]
+        r, s = 1.0 + re[i], im[i]
+        if r * r + s * s > ZERO:
+            p, q = p * r - q * s, p * s + q * r
+        for j in range(i):
+            r, s = 1.0 - re[i] * re[j] + im[i] * im[j], -re[i] * im[j] - im[i] * re[j]
+            if r * r + s * s > ZERO:
+                x, y = x * r - y * s, x * s + y * r
+    numbers[FLIP] = p / root
+    if n > 2 and abs(math.hypot(u, v) - 1.0) > 1e-9:
+        numbers[TORUS], numbers[CROSSING] = x, x / root ** (n - 1)
 
+
+@jit
+def counts_differ(x, y):
+    """Whether multipliers cross the unit circle between two points, as far as counts tell.
+
+    Two real ones of one sign that become a pair, or the reverse, do so outside of it where all are far from it.
+    """
+    if x[ABOVE] < 0.0 or y[ABOVE] < 0.0:
+        return False
+    above, below, pairs = y[ABOVE] - x[ABOVE], y[BELOW] - x[BELOW], y[PAIRS] - x[PAIRS]
+    if x[ON_CIRCLE] != y[ON_CIRCLE]:
+        return True
+    if above == 0.0 and below == 0.0 and pairs == 0.0:
+        return False
+    collide = above + below + 2.0 * pairs == 0.0 and above % 2.0 == 0.0 and below % 2.0 == 0.0
+    return not (collide and min(x[AWAY], y[AWAY]) > FAR_OUTSIDE)
+
+
+@jit
+def dips(x, y, z, before, behind):
+    """Whether a number with these values at three points, at the distances `before` and `behind` from the middle one,
+    may vanish twice near the middle one: the parabola has an extremum nearer to zero by a quarter or more."""
+    if y < 0.0:
+        x, y, z = -x, -y, -z
+    if not (y <= x and y <= z and x + z < np.inf):
+        return False
+    left, right = (y - x) / before, (z - y) / behind
+    slope, curve = left * behind + right * before, right - left  # both times the distance of the outer points
+    return slope * slope > curve * y * (before + behind)
+
+
+@jit
+def turns_back(x, slope, y, later, length):
+    """Whether a number that is positive at two points may be negative between them: where its tangents meet it is."""
+    return slope < 0.0 < later and x * (slope - later) + slope * (y - x - later * length) > 0.0
+
+
+@jit
+def happens(sides, steps, a, b, length, passed):
+    """Whether a test changes its sign between two points, multipliers cross the unit circle, or b is out of the stops;
+    or whether something may do so twice.
+
+    past: numbers of the point before a
+    length: of the step
     passed: distance beyond a stop that rounding does not explain
     """
     x, y = a.numbers, b.numbers
@@ -129,10 +222,27 @@ def happens(sides, steps, a, b, passed):
         pushing = pushing and sides[i] * b.D[i] < 0.0
         if a.releases[i] > 0.0 >= b.releases[i]:
             return True
+        rate, later = -sides[i] * a.tangent_jump[i], -sides[i] * b.tangent_jump[i]
+        if turns_back(-sides[i] * a.D[i], rate, -sides[i] * b.D[i], later, length):
+            return True
     if not pushing or x[MARGIN] > 0.0 >= y[MARGIN] or y[MARGIN] < -passed or x[TANGENT] * y[TANGENT] < 0.0:
         return True
-    counted = x[UNSTABLE] >= 0.0 and y[UNSTABLE] >= 0.0
-    return (counted and x[UNSTABLE] != y[UNSTABLE]) or x[REFLECTION] * y[REFLECTION] < 0.0 or x[TORUS] * y[TORUS] < 0.0
+    return counts_differ(x, y) or x[REFLECTION] * y[REFLECTION] < 0.0 or x[TORUS] * y[TORUS] < 0.0
+
+
+@jit
+def touches(past, a, b, length):
+    """Whether what is watched may vanish twice beside a; past: numbers of the point before it, length: from a to b."""
+    before = past[LENGTH]
+    if before == 0.0:
+        return False
+    x, y = a.numbers, b.numbers
+    return (
+        dips(past[TANGENT], x[TANGENT], y[TANGENT], before, length)
+        or dips(past[MARGIN], x[MARGIN], y[MARGIN], before, length)
+        or dips(past[FLIP], x[FLIP], y[FLIP], before, length)
+        or dips(past[CROSSING], x[CROSSING], y[CROSSING], before, length)
+    )
 
 
 @jit

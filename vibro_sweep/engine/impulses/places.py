@@ -17,12 +17,17 @@ class Place(NamedTuple):
     tangent_jump: np.ndarray
     tangent_z: np.ndarray  # (K, n)
     releases: np.ndarray  # (K,): acceleration away from the stop after an impact with R = 0, else inf
-    numbers: np.ndarray  # (8,): see below
+    numbers: np.ndarray  # (NUMBERS,): see below
 
 
-P, TANGENT, REFLECTION, TORUS, MARGIN, DEFECT_HERE, LENGTH, UNSTABLE = range(
-    8
-)  # of `numbers`; LENGTH: of the step to it
+# Of `numbers`. LENGTH: of the step to it. Multipliers, apart from the ON_CIRCLE: ABOVE 1, BELOW -1, complex PAIRS
+# outside of the unit circle; ABOVE is -1 where they are not known. AWAY: the least |mu|^2 - 1 of those outside. FLIP,
+# CROSSING: prod_i (1 + mu_i) over r = prod_i (1 + |mu_i|^2)^(1/2), prod_{i<j} (1 - mu_i mu_j) over r^(n - 1), which
+# poles of multipliers leave finite
+(
+    P, TANGENT, REFLECTION, TORUS, MARGIN, DEFECT_HERE, LENGTH, ABOVE, BELOW, PAIRS, ON_CIRCLE, AWAY, FLIP, CROSSING,
+    NUMBERS,
+) = range(15)  # fmt: skip
 
 
 class Steps(NamedTuple):
@@ -44,7 +49,7 @@ class Record(NamedTuple):
     t: np.ndarray  # (most, K)
     D: np.ndarray  # (most, K)
     motion: np.ndarray  # (most, K, 2)
-    numbers: np.ndarray  # (most, 8)
+    numbers: np.ndarray  # (most, NUMBERS)
     state: np.ndarray  # (most, n): at the time `origin`, in contact coordinates
 
 
@@ -57,16 +62,17 @@ class Work(NamedTuple):
     change_p: np.ndarray  # (2,)
     row_t: np.ndarray  # (K,)
     row_jump: np.ndarray  # (K,)
+    past: np.ndarray  # (NUMBERS,) of the point before a; LENGTH: from there to a, 0 where it is not known
 
 
 def new_place(K: int, n: int) -> Place:
-    return Place(*map(np.zeros, [K, K, (K, n), K, K, (K, n), K, 8]))
+    return Place(*map(np.zeros, [K, K, (K, n), K, K, (K, n), K, NUMBERS]))
 
 
 def new_record(most: int, K: int, n: int) -> Record:
-    return Record(*map(np.zeros, [(most, K), (most, K), (most, K, 2), (most, 8), (most, n)]))
+    return Record(*map(np.zeros, [(most, K), (most, K), (most, K, 2), (most, NUMBERS), (most, n)]))
 
 
 def new_work(K: int, n: int) -> Work:
     rooms = np.zeros(1, room_of(n // 2)), np.zeros(K, strike_of(n // 2))
-    return Work(*rooms, *map(np.zeros, [(2, K), (2, K), (2, K, n), 2, K, K]))
+    return Work(*rooms, *map(np.zeros, [(2, K), (2, K), (2, K, n), 2, K, K, NUMBERS]))

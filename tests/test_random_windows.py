@@ -1,0 +1,110 @@
+"""Windows of random sweeps: the same ends with half and twice as many values and from other starts; each held against
+monodromy matrices that do not come from the engine."""
+
+import numpy as np
+import pytest
+from support import window_search
+from support.branch_search import Report, summary
+from support.windows import SYSTEM, few  # noqa: F401
+
+import vibro_sweep as vs
+from vibro_sweep import store
+from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.windows import members
+from vibro_sweep.analysis.windows.cover import Cover
+from vibro_sweep.analysis.windows.job import Result, window_of
+from vibro_sweep.driver.windows import rows_in
+from vibro_sweep.model.bifurcations import REASONS
+
+# an impact damper, of which an asymmetric orbit is born at the upper end of a window, where a symmetric one loses its
+# symmetry; and one whose window ends at the symmetric orbit's own pitchfork
+DAMPER = dict(mass_ratio=0.2747929395913874, zeta=0.11595848024966961, F=0.9895081779106233, omega=0.6493760554424832)
+
+
+@pytest.mark.parametrize(
+    "seeds",
+    [
+        pytest.param(range(3), marks=pytest.mark.slow, id="three"),
+        pytest.param(range(3, 103), marks=pytest.mark.soak, id="all"),
+    ],
+)
+def test_the_same_windows_of_all_sweeps(seeds, capsys):
+    reports = [window_search.study(seed) for seed in seeds]
+    with capsys.disabled():
+        if len(reports) > 10:
+            print("\n" + summary(reports))
+    assert sum(report.counted["windows"] for report in reports) > 5 * len(reports)
+    assert not [line for report in reports for line in report.wrong]
+
+
+def test_a_window_from_its_ends(few):  # noqa: F811
+    """Also beside a fold or pitchfork: the walk began on their other side, and the window was an unstable stretch."""
+    windows = vs.windows(few)
+    chosen = [window for window in windows if {window.lower.type, window.upper.type} & {"fold", "pitchfork"}]
+    assert {end.type for window in chosen for end in (window.lower, window.upper)} == {"graze", "fold", "pitchfork"}
+    with store.contents(few) as data:
+        (row,) = rows_in(data, "b")
+    report, found = Report(), []
+    for window in chosen[:1] + chosen[-2:]:
+        window_search.other_starts(report, lambda *line: found.append(line), window, row.bounds)
+    assert report.counted["starts"] > 20 and not found
+
+
+def test_an_orbit_without_a_window_of_its_own_is_in_the_one_that_covers_it(few):  # noqa: F811
+    """The job of the first point of period 13 says `not_settled`; the window comes from its neighbours."""
+    with store.contents(few) as data:
+        cover = Cover(rows_in(data, "b"))
+    refused = []
+
+    def evaluate(points, jobs):
+        results = []
+        for point, job in zip(points, jobs, strict=True):
+            refuses = job.period == 13 and not refused
+            refused.extend([point] * refuses)
+            results.append(Result(None, "not_settled") if refuses else window_of(job))
+        return results
+
+    cover.search(evaluate)
+    ((row, i, j),) = refused
+    assert cover.rows[row].period[i, j] == 13 and cover.window[row][i, j] >= 0
+    assert list(REASONS)[cover.reason[row][i, j]] == "in_a_window"
+
+
+def test_orbits_of_a_window_beside_its_birth_are_its_own(tmp_path):
+    """On a chord between two points of the branch Newton's method found the symmetric parent, which is unstable."""
+    damper = vs.Oscillator.named("ball_in_cavity", **DAMPER, R=0.9277676484139388, b=1.3055893820201745)
+    values = {"R": [0.88, 0.886, 0.89, 0.8906, 0.892, 0.896, 0.9, 0.905]}
+    vs.sweep(
+        damper, values, start={"random": 4, "seed": 1}, transient=1500, output=tmp_path / "R.h5", workers=1
+    ).close()
+    windows = vs.windows(tmp_path / "R.h5")
+    births = [
+        (window, k)
+        for window in windows
+        for k, end in enumerate((window.lower, window.upper))
+        if not window.symmetric and end.type == "pitchfork"
+    ]
+    assert births
+    for window, k in births:
+        for share in (1e-3, 1e-4, 1e-6):
+            value = (window.hi, window.lo)[1 - k] + (window.lo - window.hi) * share * (1 if k else -1)
+            system = damper.replace(R=value)
+            orbit = orbit_of(system, members.solution_in(window._flat, value, system))
+            t, v = (orbit.impacts[name] for name in ("t", "v1"))
+            half = len(v) // 2
+            assert orbit.stable and np.abs(v[half:] + v[:half]).max() > 1e-6, (share, t)
+
+
+def test_an_own_pitchfork_of_an_orbit_with_a_free_mode_is_the_orbit(tmp_path):
+    """Its whole period was corrected by Newton's method where that is singular, and was no symmetric orbit any more."""
+    damper = vs.Oscillator.named("ball_in_cavity", **DAMPER, R=0.9277676484139388, b=1.3055893820201745)
+    values, start = {"R": np.linspace(0.6494373538897571, 1.0, 17)[10:13]}, {"random": 2, "seed": 1}
+    vs.sweep(damper, values, start=start, transient=600, record=100, output=tmp_path / "R.h5", workers=1).close()
+    ends = [end for window in vs.windows(tmp_path / "R.h5") if window.symmetric for end in (window.lower, window.upper)]
+    pitchforks = [end for end in ends if end.type == "pitchfork"]
+    assert pitchforks
+    for end in pitchforks:
+        assert end.orbit.symmetric and np.abs(end.orbit.half_multipliers + 1).min() < 1e-9
+        whole, half = end.orbit._solution.whole(), end.orbit._solution
+        assert np.array_equal(whole.times[: half.K], half.times) and np.array_equal(whole.jumps[: half.K], half.jumps)
+        assert np.abs(whole.equations.evaluate(whole.sides, whole.u)[0]).max() < 1e-12

@@ -1,0 +1,72 @@
+"""Whether the multipliers that cross the unit circle between two points belong to the bifurcations found there."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.special import NO_SPEED
+from vibro_sweep.analysis.branches.walk import Point
+from vibro_sweep.engine.impulses.checks import FAR_OUTSIDE, ON_SQUARE
+
+PRODUCT_ONE = 1e-6  # of a product of two multipliers: within it, it is 1
+COMPLEX = 1e-9  # imaginary part of a multiplier that is not real
+
+
+class Counts(NamedTuple):
+    """Multipliers outside of the unit circle."""
+
+    above: int  # real, > 1
+    below: int  # real, < -1
+    pairs: int  # complex
+    on_circle: int  # to rounding: neither in nor out
+    squares: np.ndarray  # |mu|^2 of those outside, in order
+
+
+def counts_of(point: Point) -> Counts:
+    mu = point.solution.multipliers
+    squares = np.abs(mu) ** 2
+    on = np.abs(squares - 1) < ON_SQUARE
+    out, real = (squares > 1) & ~on, mu.imag == 0
+    above, below, others = (
+        int(np.sum(out & of_kind)) for of_kind in (real & (mu.real > 0), real & (mu.real < 0), ~real)
+    )
+    return Counts(above, below, others // 2, int(on.sum()), np.sort(squares[out]))
+
+
+def explained(a: Point, b: Point, types: list[str]) -> bool:
+    """Whether at most one bifurcation, or none, explains how the counts differ from a to b.
+
+    A fold takes one multiplier through 1, a flip or pitchfork one through -1, a Neimark-Sacker point one pair. Two real
+    ones of one sign may become a pair, or the reverse, which happens outside where all of them stay far from the
+    circle. Without losses pairs move along the circle: nothing is known of them.
+    """
+    x, y = counts_of(a), counts_of(b)
+    change = tuple(abs(np.subtract(y[:3], x[:3])).tolist())
+    folds, tori = types.count("fold"), types.count("neimark_sacker")
+    crossed = folds, len(types) - folds - tori, tori
+    if x.on_circle != y.on_circle or a.torus == 1.0:
+        return all((one - other) % 2 == 0 for one, other in zip(change[:2], crossed[:2], strict=True))
+    if change == crossed:
+        return True
+    met = change in ((2, 0, 1), (0, 2, 1)) and not types
+    return met and len(x.squares) == len(y.squares) and _far_outside(x.squares, y.squares)
+
+
+def _far_outside(before: np.ndarray, behind: np.ndarray) -> bool:
+    """Whether multipliers stay outside: all are far from the circle, or nearer to it than they move."""
+    least = min(before[0], behind[0]) - 1
+    return bool(least > FAR_OUTSIDE or np.abs(before - behind).max() < 0.5 * least)
+
+
+def is_torus(point: Point) -> bool:
+    """Whether two multipliers with product 1 are a complex pair; else it is a neutral saddle, or a pole at a graze.
+
+    At the graze itself an undamped mode has such a pair for any parameter: nothing is born there.
+    """
+    s = point.solution
+    mu = s.multipliers
+    if np.any(s.pushes < NO_SPEED * s.family.linear.omega * s.size_of_gap):
+        return False
+    i, j = np.triu_indices(len(mu), 1)
+    k = np.argmin(np.abs(1 - mu[i] * mu[j]))
+    return abs(1 - mu[i[k]] * mu[j[k]]) < PRODUCT_ONE and abs(mu[i[k]].imag) > COMPLEX

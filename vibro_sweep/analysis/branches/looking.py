@@ -1,0 +1,185 @@
+"""Where to look between two points of a branch for what their tests do not show."""
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_torus
+from vibro_sweep.analysis.branches.events import ON_CIRCLE, is_outside, torus_test
+from vibro_sweep.analysis.branches.response import touching
+from vibro_sweep.analysis.branches.walk import Point, Walk
+
+SHARES = (0.5, 0.4, 0.6, 0.3)  # of the way to the next point, where the first lies on a bifurcation by chance
+APART = 1e-9  # share of a step: bifurcations that are nearer to each other are not separated
+CLOSE = 1e-6  # share of a step: so near to an end of the branch
+MOST_LOOKS = 8  # for one extremum
+Test = Callable[[Point], float]
+
+
+def hidden_between(walk: Walk, bounds, a: Point, b: Point, found: list, beside: tuple) -> Point | None:
+    """A point between a and b that divides what their tests do not tell apart; None if nothing is hidden.
+
+    found : bifurcations between a and b, as `locate` gives them, in order
+    beside : the points before a and behind b, None where they are not known
+    """
+    if walk.start.K == 0:
+        return touching(walk, a, b)
+    length = float((b.x - a.x) @ a.tangent)
+    for _, at, point, _ in found:
+        if at < (1 - CLOSE) * length and is_outside(walk, bounds, point):
+            return point
+    cuts = [a]
+    for one, other in pairwise(found):
+        if other[1] - one[1] > APART * length:
+            cuts.append(walk.step(a, (one[1] + other[1]) / 2, one[2].x))
+            if cuts[-1] is None:
+                return None
+    cuts.append(b)
+    for x, y in pairwise(cuts):
+        inside = [place for place in found if 0 < (place[2].x - x.x) @ a.tangent < (y.x - x.x) @ a.tangent]
+        if not _are_all(walk, x, y, inside):
+            return y if y is not b else x if x is not a else _middle(walk, a, b, found)
+    places = [a, *(place[2] for place in found), b]
+    return _divided(walk, places, found) or _touched(walk, beside, places, found)
+
+
+def _are_all(walk: Walk, a: Point, b: Point, found: list) -> bool:
+    """Whether nothing but these bifurcations, at one place, lies between a and b, as far as a and b tell."""
+    crossed = [event.type for event, _, point, _ in found if event.type != "neimark_sacker" or is_torus(point)]
+    if not explained(a, b, crossed):
+        return False
+    types = {place[0].type for place in found}
+    return all((test(a) * test(b) < 0) == (kind in types) for kind, test in _crossing(walk, a, b))
+
+
+def _middle(walk: Walk, a: Point, b: Point, found: list) -> Point | None:
+    """A point on the longer side of what was found, with no multiplier on the circle by chance."""
+    length = float((b.x - a.x) @ a.tangent)
+    at = found[0][1] if found else 0.0
+    low, high = (at, length) if at < length / 2 else (0.0, at)
+    for share in SHARES:
+        point = walk.step(a, low + share * (high - low))
+        if point is not None and counts_of(point).on_circle <= counts_of(a).on_circle:
+            return point
+    return None
+
+
+def _divided(walk: Walk, places: list[Point], found: list) -> Point | None:
+    """A point beside a bifurcation at which another test has the other sign than before and behind it."""
+    for (event, _, _, _), a, c, b in zip(found, places, places[1:], places[2:], strict=False):
+        for kind, test in _crossing(walk, a, b):
+            if kind != event.type and test(a) * test(c) < 0 and test(c) * test(b) < 0:
+                return _with_sign(walk, test, c, b)
+    return None
+
+
+def _with_sign(walk: Walk, test: Test, c: Point, b: Point) -> Point | None:
+    """A point between c and b at which the test has the sign that it has at c."""
+    length = float((b.x - c.x) @ c.tangent)
+    for k in range(1, 40):
+        point = walk.step(c, length * 0.5**k)
+        if point is None or test(point) * test(c) > 0:
+            return point
+    return None
+
+
+def _crossing(walk: Walk, a: Point, b: Point) -> list[tuple[str, Test]]:
+    """Tests that vanish where multipliers cross the circle, of a size that poles do not change."""
+    torus = torus_test(a, b, scaled=True)
+    kind = "pitchfork" if walk.start.sigma == -1 else "flip"
+    tests = [("fold", lambda point: float(point.tangent[-1])), (kind, _flip)]
+    return tests if torus is None else [*tests, ("neimark_sacker", torus)]
+
+
+def _flip(point: Point) -> float:
+    """prod_i (1 + mu_i)/(1 + |mu_i|^2)^(1/2), without factors that are zero at all points."""
+    mu = point.solution.multipliers
+    factors = 1 + mu
+    return float(np.prod(factors[np.abs(factors) > ON_CIRCLE]).real / np.prod(np.hypot(1, np.abs(mu))))
+
+
+def _touched(walk: Walk, beside: tuple, places: list[Point], found: list) -> Point | None:
+    """A point between the first and the last of `places` at which a test has changed its sign, to change it again."""
+    a, b = places[0], places[-1]
+    K, pushing = walk.start.K, a.solution.pushes > 0
+    tests = [test for kind, test in _crossing(walk, a, b) if kind not in {place[0].type for place in found}]
+    tests += [lambda point: point.solution.margin]
+    seen = [point for point in (beside[0], *places, beside[1]) if point is not None]
+    for test in tests:
+        for triple in zip(seen, seen[1:], seen[2:], strict=False):
+            point = _beyond_extremum(walk, test, a, b, triple)
+            if point is not None:
+                return point
+    sides, length = np.array(walk.start.sides), float((b.x - a.x) @ a.tangent)
+    slopes = [-sides * point.tangent[K : 2 * K] for point in (a, b)]
+    for i in np.flatnonzero(pushing & (slopes[0] < 0) & (slopes[1] > 0) & (b.solution.pushes > 0)):
+        middle = walk.step(a, length * _least(a, b, K + i))
+        if middle is not None:
+            point = _beyond_extremum(walk, lambda point, i=i: point.solution.pushes[i], a, b, (a, middle, b))
+            if point is not None:
+                return point
+    return None
+
+
+def touches(walk: Walk, before: Point, a: Point, b: Point) -> bool:
+    """Whether a test may vanish twice beside a (as the compiled `touches` of engine/impulses/checks.py)."""
+    if walk.start.K == 0:
+        return False
+    tests = [test for _, test in _crossing(walk, before, b)] + [lambda point: point.solution.margin]
+    lengths = [float((y.x - x.x) @ x.tangent) for x, y in ((before, a), (a, b))]
+    return any(extremum(*lengths, *(test(point) for point in (before, a, b))) is not None for test in tests)
+
+
+def _least(a: Point, b: Point, i: int) -> float:
+    """Where between two points, as a share, the cubic of one unknown has its extremum; its slopes differ in sign."""
+    length = float(np.linalg.norm(b.x - a.x))
+    p, q, rise = a.tangent[i] * length, b.tangent[i] * length, b.x[i] - a.x[i]
+    # slope of the cubic: p + 2 (3 rise - 2 p - q) s + 3 (p + q - 2 rise) s^2
+    roots = np.roots([3 * (p + q - 2 * rise), 2 * (3 * rise - 2 * p - q), p])
+    inside = [root.real for root in roots if abs(root.imag) < 1e-12 and 0 < root.real < 1]
+    return min(inside, default=0.5, key=lambda root: abs(root - 0.5))
+
+
+def _beyond_extremum(walk: Walk, test: Test, a: Point, b: Point, triple) -> Point | None:
+    """The extremum of a test near the middle one of three points, if it lies between a and b with another sign."""
+    seen = [(float((point.x - a.x) @ a.tangent), test(point)) for point in triple]
+    middle, length = triple[1], float((b.x - a.x) @ a.tangent)
+    for _ in range(MOST_LOOKS):
+        (r, x), (s, y), (t, z) = seen
+        at = extremum(s - r, t - s, x, y, z)
+        if at is None:
+            return None
+        at = _apart(s + at, (r, s, t))
+        point = walk.step(a, at, middle.x)
+        if point is None:
+            return None
+        value = test(point)
+        if value * y < 0:
+            return point if 0 < at < length else None
+        if abs(value) < abs(y):
+            seen = [(s, y), (at, value), (t, z)] if at > s else [(r, x), (at, value), (s, y)]
+            middle = point
+        else:
+            seen = [(r, x), (s, y), (at, value)] if at > s else [(at, value), (s, y), (t, z)]
+    return None
+
+
+def extremum(before: float, behind: float, x: float, y: float, z: float) -> float | None:
+    """Where the parabola through three values comes nearer to zero by a quarter than the middle one, from there; None
+    where it does not (`dips` of engine/impulses/checks.py)."""
+    if y < 0:
+        x, y, z = -x, -y, -z
+    if not (0 < y <= x and y <= z and math.isfinite(x + z)):
+        return None
+    left, right = (y - x) / before, (z - y) / behind
+    slope, curve = (left * behind + right * before) / (before + behind), (right - left) / (before + behind)
+    return -slope / (2 * curve) if slope * slope > curve * y else None
+
+
+def _apart(at: float, seen: tuple[float, float, float]) -> float:
+    """`at`, but not nearer to the middle one than a hundredth of the interval."""
+    r, s, t = seen
+    least = 0.01 * (t - s if at > s else s - r)
+    return s + math.copysign(max(abs(at - s), least), at - s)

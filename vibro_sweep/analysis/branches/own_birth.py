@@ -1,0 +1,63 @@
+"""Where the branch of a doubled or asymmetric orbit is born: there it turns into itself.
+
+What tells the two halves of its orbits apart changes its sign as a whole, and the simpler orbit has a flip or a
+pitchfork. On the branch itself that point is singular, so it is located on the parent's.
+"""
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.events import reflection_test
+from vibro_sweep.analysis.branches.locating import Event, locate
+from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.model.linear import family_of
+
+
+def own_birth(walk: Walk, system, a: Point, b: Point, length: float):
+    """(distance from a, event, point of the parent's branch, error) of the birth between a and b; None without one."""
+    for sigma in (1, -1):
+        parts = [halves_apart(point.solution, sigma) for point in (a, b)]
+        if parts[0] is None:
+            continue
+        sizes = [np.linalg.norm(part) for part in parts]
+        if not parts[0] @ parts[1] < -0.5 * sizes[0] * sizes[1]:
+            continue
+        fraction = sizes[0] / sum(sizes)
+        found = _on_parent(walk, system, (1 - fraction) * a.x + fraction * b.x, sigma)
+        if found is not None:
+            return fraction * length, *found
+    return None
+
+
+def _on_parent(walk: Walk, system, x: np.ndarray, sigma: int):
+    system = system.replace(**{walk.name: float(x[-1] * walk.scale[-1])})
+    u = x[:-1] * walk.scale[:-1]
+    whole = Solution(family_of(system), 1, walk.start.halves, walk.start.sides, u, 0.0, walk.start.rests)
+    parent = whole.part(2, sigma, alike=0.1)
+    if parent is None:
+        return None
+    beside = Walk(parent, walk.name, float(walk.scale[-1]))
+    first = beside.first(1.0)
+    kind, reach = "pitchfork" if sigma == -1 else "flip", 1e-6
+    while first is not None and reach < 0.05:
+        ends = [beside.step(first, sign * reach) for sign in (-1, 1)]
+        if None not in ends and ends[0].reflection[0] * ends[1].reflection[0] < 0:
+            found = locate(beside, Event(kind, reflection_test(*ends)), *ends, 2 * reach)
+            return None if found is None else (found[0], *found[2:])
+        reach *= 4
+    return None
+
+
+def halves_apart(solution: Solution, sigma: int) -> np.ndarray | None:
+    """What tells the halves apart, as repetitions (sigma = 1) or mirror images (-1); None: their itineraries do."""
+    whole = solution
+    if whole.sigma != 1 or whole.K % 2 or whole.K == 0:
+        return None
+    half = whole.K // 2
+    if any(a != sigma * b for a, b in zip(whole.sides[:half], whole.sides[half:], strict=True)):
+        return None
+    if whole.halves % 4 != (0 if sigma == 1 else 2) or (sigma == -1 and not whole.family.linear.symmetric):
+        return None
+    t, D, P = whole.times, whole.jumps, whole.equations.P
+    omega, speed = whole.family.linear.omega, np.abs(D).max()
+    return np.concatenate([(t[half:] - t[:half] - P / 2) * omega, (D[half:] - sigma * D[:half]) / speed])

@@ -1,0 +1,56 @@
+"""Whether an orbit lies on a branch that is known, as a rotation or as a mirror image too."""
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.flat import Flat, solution_of
+from vibro_sweep.analysis.periodic.itinerary import word
+from vibro_sweep.analysis.periodic.solution import Solution
+
+SAME = 1e-7  # relative difference of the impact speeds of one orbit, found twice
+IMPACTS = ("impact_t", "impact_v", "impact_t_off")
+
+
+def passes(flat: Flat, parameter: str, system, s: Solution) -> bool:
+    """Whether an orbit of `system`, or its mirror image, lies on a branch: by Newton's method from its points on both
+    sides."""
+    if not _may_pass(flat, s):
+        return False
+    offset = flat["value"] - s.family.numbers[parameter]
+    if len(offset) == 1:  # a branch that could not be followed
+        return not offset[0] and alike(point_of(flat, 0, system), s)
+    for i in np.flatnonzero(offset[:-1] * offset[1:] <= 0):
+        share = offset[i] / (offset[i] - offset[i + 1]) if offset[i] != offset[i + 1] else 0.0
+        parts = [(1 - share) * flat[name][i] + share * flat[name][i + 1] for name in IMPACTS]
+        found = solution_of(flat, system, *parts).corrected()
+        if found is not None and alike(found, s):
+            return True
+    return False
+
+
+def point_of(flat: Flat, i: int, system) -> Solution:
+    """The solution at a point of a branch, not corrected; `system` has the parameter's value there."""
+    return solution_of(flat, system, *(flat[name][i] for name in IMPACTS))
+
+
+def clearest(flat: Flat) -> int:
+    """The point that is farthest from a fold: next to one Newton's method tells orbits badly apart."""
+    p = flat["value"]
+    return int(np.argmax(np.abs(p[2:] - p[:-2]))) + 1 if len(p) > 2 else 0
+
+
+def _may_pass(flat: Flat, s: Solution) -> bool:
+    """Whether the orbit may be a rotation, or a mirror image, of those of a branch: by its period and its impacts."""
+    halves = 1 if s.sigma == 1 else 2  # that the whole orbit consists of
+    sides = [*s.sides, *(-side for side in s.sides)][: halves * s.K]
+    rests = int(np.isfinite(flat["impact_t_off"][0]).sum())
+    known = len(flat["impact_side"]), 2 * int(flat["branch_period"]), 1 + int(flat["branch_symmetric"]), rests
+    if known != (len(sides), halves * s.halves, halves, halves * len(s.rests)):
+        return False
+    rotations = 2 * word(flat["impact_side"])
+    images = [sides, [-side for side in sides]] if s.family.linear.symmetric else [sides]
+    return any(word(image) in rotations for image in images)
+
+
+def alike(a: Solution, b: Solution) -> bool:
+    speeds = [np.sort(np.abs(s.jumps)) for s in (a, b)]
+    return bool(np.abs(speeds[0] - speeds[1]).max(initial=0.0) <= SAME * max(speeds[0].max(initial=0.0), 1e-300))
