@@ -21,6 +21,7 @@ TABLES = {
     "bifurcations",
     "branch_file",
     "catalogue",
+    "exponents",
     "observables",
     "parameters",
     "pictures",
