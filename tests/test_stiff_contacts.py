@@ -62,7 +62,7 @@ def test_far_stops_are_like_near_ones(offset):
 
 def test_a_few_oscillators():
     """Among them those whose stiff masses carry most of the force, and those with far stops."""
-    hold([compared(seed) for seed in (2, 4, 54, 88, 96, 99)])
+    hold([compared(seed) for seed in (4, 54, 99)])
 
 
 @pytest.mark.slow

@@ -14,6 +14,7 @@ from vibro_sweep.model.contact import (
     distance,
     fastest_rate,
     held_least,
+    is_own,
     natural_coordinates,
     origin_of,
 )
@@ -29,7 +30,8 @@ APART = 8.0  # a rate over that of the force from which on tables are computed i
 def kind_of(linears: Iterable[Linear]) -> Kind:
     """What kernels must be compiled for: oscillators with the same number of masses."""
     linears = list(linears)
-    return Kind(len(linears[0].along), any(np.any(q.constant) or np.any(origin_of(q)) for q in linears), False)
+    constant = any(np.any(q.constant) or np.any(origin_of(q)) for q in linears)
+    return Kind(len(linears[0].along), constant, False, all(is_own(q) for q in linears))
 
 
 def any_points(linears: np.ndarray, kind: Kind, frames: bool = True) -> np.ndarray:
@@ -78,7 +80,7 @@ def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
     point["rate"] = fastest_rate(contact.stiffness, contact.damping)
     n = len(contact.push)
     point["held_rate"] = fastest_rate(-contact.held[1:, 1:n], -contact.held[1:, n + 1 : 2 * n])
-    point["apart"] = not contact.own and np.isfinite(point["rate"]) and point["rate"] > APART * q.omega
+    point["apart"] = not is_own(q) and np.isfinite(point["rate"]) and point["rate"] > APART * q.omega
     if point["apart"]:
         rounded, point["low"] = exact_motion(q, contact)
         point["stiffness"], point["damping"], point["force"] = (

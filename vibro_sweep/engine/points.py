@@ -70,7 +70,7 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((LANES, 3, states)),
         np.empty((states, states)),
         series.new_scratch() if kind.paper else None,
-        None if kind.paper else general.new_scratch(kind.masses, kind.constant),
+        None if kind.paper else general.new_scratch(kind.masses, kind.constant, kind.own),
     )
 
 

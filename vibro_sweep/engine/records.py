@@ -15,6 +15,7 @@ class Kind(NamedTuple):
     masses: int
     constant: bool  # whether a constant force acts
     paper: bool  # the paper's oscillator, with tables from its modes
+    own: bool = True  # all in coordinates of the masses themselves, of which an impulse moves the first alone
 
 
 PAPER = Kind(2, False, True)

@@ -45,11 +45,6 @@ class Contact(NamedTuple):
     held: np.ndarray  # (N, 2 N + 3): q'' as a function of (q, q', sin, cos, 1) while a stop holds the gap
 
     @property
-    def own(self) -> bool:
-        """Whether these are the masses' own coordinates, of which an impulse moves the first alone."""
-        return not self.turned and not np.any(self.push[1:])
-
-    @property
     def turned(self) -> bool:
         """Whether states are others than those of the masses."""
         return not np.array_equal(self.P, np.eye(len(self.P))) or bool(np.any(self.origin))
@@ -58,7 +53,7 @@ class Contact(NamedTuple):
 def contact_coordinates(q: Linear) -> Contact:
     """The oscillator in contact coordinates."""
     n, origin = len(q.along), origin_of(q)
-    if q.along[0] == 1 and np.count_nonzero(q.along) == 1 and is_diagonal(q.M):
+    if _same(q):
         eye, masses = np.eye(n), q.M.diagonal()[:, None]
         stiffness, damping = q.K / masses, q.C / masses
         force = np.stack([q.sine, q.cosine, rest_force(q, origin)], -1) / masses
@@ -73,6 +68,15 @@ def contact_coordinates(q: Linear) -> Contact:
     others = back[:, 1:].T
     held[1:] = by_mass(others @ q.M @ others.T, others @ np.hstack([-q.K @ back, -q.C @ back, forces]))
     return Contact(P, back, origin, push, stiffness, damping, P @ by_mass(q.M, forces), held)
+
+
+def is_own(q: Linear) -> bool:
+    """Whether these are the masses' own coordinates, of which an impulse moves the first alone."""
+    return _same(q) and not origin_of(q).any()
+
+
+def _same(q: Linear) -> bool:
+    return bool(q.along[0] == 1) and np.count_nonzero(q.along) == 1 and is_diagonal(q.M)
 
 
 def by_mass(M: np.ndarray, rows: np.ndarray) -> np.ndarray:

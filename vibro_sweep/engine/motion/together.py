@@ -35,7 +35,7 @@ class Readings(NamedTuple):
 
 def new_ensemble(cells: int, kind: Kind, impacts: int = 0, rests: int = 0, samples: int = 0) -> Ensemble:
     """Orbits of oscillators with at most so many cells, and room for what is kept of each."""
-    masses, constant, paper = kind
+    masses, constant, paper, _ = kind
     orbits = new_lines(LANES, orbit_of(masses, constant))
     orbits["lane"] = np.arange(LANES)
     return Ensemble(

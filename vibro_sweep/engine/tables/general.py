@@ -20,16 +20,16 @@ class Scratch(NamedTuple):
     A: np.ndarray  # (inputs, inputs)
     row: np.ndarray  # (inputs,)
     turned: np.ndarray  # (2, 2 N + 3)
-    twofold: np.ndarray  # (4, 2, inputs, inputs)
+    twofold: np.ndarray | None  # (4, 2, inputs, inputs); None where no point needs it, and kernels leave it out
 
 
-def new_scratch(masses: int, constant: bool) -> Scratch:
+def new_scratch(masses: int, constant: bool, own: bool = True) -> Scratch:
     inputs = inputs_of(masses, constant)
     return Scratch(
         np.empty((inputs, inputs)),
         np.empty(inputs),
         np.empty((2, 2 * masses + 3)),
-        np.empty((4, 2, inputs, inputs)),
+        None if own else np.empty((4, 2, inputs, inputs)),
     )
 
 
