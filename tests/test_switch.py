@@ -148,7 +148,7 @@ def test_a_branch_that_cannot_be_started_says_so(flat_flip, monkeypatch):
     (near,) = births._at_amplitudes(flat_flip, [births.AMPLITUDE])
     orbit = orbit_of(FLAT.replace(f2=near.family.numbers["f2"]), near)
     assert orbit.ok and vs.continue_orbit(orbit, "f2", bounds).ok
-    monkeypatch.setattr(beginning, "BESIDE", ())
+    monkeypatch.setattr(beginning, "FARTHER", ())
     branch = vs.continue_orbit(orbit, "f2", bounds)
     assert branch.status == "failed" and not branch.ok
     assert branch.points.sizes["point"] == 1 and float(branch.points.f2[0]) == orbit.system.f2
