@@ -7,9 +7,8 @@ from vibro_sweep.analysis.periodic.long_orbits import is_sparse, residual
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import Family
 
-# in units of a walk; near the onset of sticking branches are short, and a fold may be so flat that only far from it
-# Newton's method stands still
-BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-3, 1e-2)
+BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # in units of a walk; near the onset of sticking branches are short
+FARTHER = (1e-3, 1e-2)  # beside a fold so flat that Newton's method stands still only there
 NEAR = 1e-6  # of a test, relative to its own size, within which an orbit may be the special point itself
 TOUCHES = 1e-12  # distance from a stop, relative to the gap, and the like of a speed, within which it may be zero
 NARROW = 1e-6  # of the parameter's size: the least range that is a unit of a walk
@@ -33,7 +32,7 @@ def start_of_walk(solution: Solution, name: str, lo: float, hi: float, stable: b
     first = walk.first(1.0)
     if first is not None and not is_special(first):
         return walk
-    for length in BESIDE:
+    for length in BESIDE if first is not None else (*BESIDE, *FARTHER):
         for sign in (1, -1):
             beside = _neighbour(walk, sign * length)
             if beside is not None and lo <= beside.p <= hi and is_real(beside) and (is_stable(beside) or not stable):

@@ -59,17 +59,23 @@ def index_in(special: SpecialPoint) -> int:
 
 def _beside(solution: Solution, name: str, impact: int | None) -> Solution | None:
     """The orbit with (without) the grazing impact, a little beside the graze on the side where it exists."""
-    graze = graze_at(solution, name, impact)
-    target = graze.touching if impact is None else graze.without
-    slope = graze.speed_slope if impact is None else graze.distance_slope
     value = solution.family.numbers[name]
-    e = equations_for(target, solution.family.linear, solution.family.derivative(name))
-    du = slopes(e, target)
+    try:
+        graze = graze_at(solution, name, impact)
+        target = graze.touching if impact is None else graze.without
+        e = equations_for(target, solution.family.linear, solution.family.derivative(name))
+        du = slopes(e, target)
+    except np.linalg.LinAlgError:  # a fold as well: no slopes
+        return None
+    slope = graze.speed_slope if impact is None else graze.distance_slope
     step = math.copysign(BESIDE * max(abs(value), 1e-3), slope)
     for _ in range(20):
-        family = solution.family.replace(**{name: value + step})
-        guess = replace(target, family=family, u=target.u + step * du)
-        found = guess.corrected()
+        try:
+            family = solution.family.replace(**{name: value + step})
+            guess = replace(target, family=family, u=target.u + step * du)
+            found = guess.corrected()
+        except ValueError:  # the parameter is beyond its range
+            found = None
         near = found is not None and found.real and np.abs(found.u - guess.u).max(initial=0.0) < 0.1
         if near and is_steady(found, name):
             return found

@@ -15,7 +15,7 @@ from vibro_sweep.engine.impulses import curve
 from vibro_sweep.engine.impulses.locus import STICK, Place
 
 STEPS = (-3e-12, -1e-12, 1e-12, 3e-12)  # of a chord: beside the zero, so near that only rounding differs
-TIMES = 4.0  # the largest difference between locations
+TIMES = 6.0  # the largest difference between locations
 DIGITS = 8 * np.finfo(float).eps  # of the parameters themselves
 ROWS = 2 * np.finfo(float).eps  # of the size of each row
 

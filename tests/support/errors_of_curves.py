@@ -1,0 +1,67 @@
+"""Stated errors of points of codimension two of random systems, held against shooting in 30 digits.
+
+python tests/support/errors_of_curves.py 0 100     # a line for each point, and a summary
+"""
+
+import sys
+
+import numpy as np
+
+import vibro_sweep as vs
+from support.codimension_two import error_of
+from support.curves import exact_codimension_two
+from support.random_branches import attractors, random_system
+
+OF_MONODROMY = (
+    "fold_flip", "resonance_1_1", "resonance_1_2", "resonance_1_3", "resonance_1_4", "fold_neimark_sacker",
+    "flip_neimark_sacker",
+)  # fmt: skip
+OF_GRAZES = ("double_graze", "fold_graze", "flip_graze", "pitchfork_graze", "resonant_graze")
+MOST_IMPACTS = {OF_MONODROMY: 8, OF_GRAZES: 4}  # of the orbit; with more the reference takes minutes
+BIFURCATIONS = ("fold", "flip", "pitchfork", "neimark_sacker", "graze")
+
+
+def points(seed: int, most_curves=3, most_points=8):
+    """Points of codimension two on curves in b and another number, of a random system."""
+    rng = np.random.default_rng([7, seed])
+    system = random_system(rng)
+    for state, periods in attractors(system, rng, most=1, tries=4):
+        orbit = vs.periodic_orbit(system, state=state, periods=periods)
+        if not orbit.ok or not orbit.impacts.size or len(orbit.impacts) > 8:
+            continue
+        name = str(rng.choice(["omega", "R", "zeta", "mu_k"]))
+        value = system.parameters()[name]
+        branch = vs.continue_orbit(orbit, "b", (0.5 * system.b, 1.5 * system.b))
+        for special in [one for one in branch.special if one.type in BIFURCATIONS][:most_curves]:
+            b = special.parameters["b"]
+            box = ((0.5 * b, 1.8 * b), (0.7 * value, min(1.4 * value, 1.0) if name == "R" else 1.4 * value))
+            yield from vs.bifurcation_curve(special, ("b", name), box).special[:most_points]
+
+
+def ratios(seed: int) -> list[float]:
+    """Errors over stated errors, of both parameters together or each by itself."""
+    result = []
+    for special in points(seed):
+        for types, most in MOST_IMPACTS.items():
+            if special.type in types and len(special.orbit.impacts) <= most:
+                exact = exact_codimension_two(special, 30) if types is OF_MONODROMY else {"": error_of(special, 30)}
+                result += [value / special.error for value in exact.values()]
+    return result
+
+
+def summary(found: list[float], tried: int) -> str:
+    found = np.array(found)
+    return (
+        f"{tried} systems tried, {len(found)} numbers counted: {np.sum(found > 1)} beyond the stated error, "
+        f"the largest ratio {found.max():.2f}, median {np.median(found):.3f}"
+    )
+
+
+if __name__ == "__main__":
+    first, last = map(int, sys.argv[1:])
+    total = []
+    for number in range(first, last):
+        here = ratios(number)
+        total += here
+        print(number, np.round(here, 3), flush=True)
+    print(summary(total, last - first))
