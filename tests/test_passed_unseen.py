@@ -86,7 +86,7 @@ def crossings(matrices):
     outside = np.sum(np.abs(mu) > 1, axis=1)
     result = []
     for k in np.flatnonzero((np.diff(fold) != 0) | (np.diff(flip) != 0) | (np.diff(outside) != 0)):
-        one = ["fold"] * (fold[k] != fold[k + 1]) + ["flip"] * (flip[k] != flip[k + 1])
+        one = [kind for kind, sign in (("fold", fold), ("flip", flip)) if sign[k] != sign[k + 1]]
         result.append((k, one if one else ["neimark_sacker"]))
     return mu, result
 
@@ -99,9 +99,8 @@ def test_counts_tell_what_is_missing():
         parts = rng.normal(size=(3, 4, 4)) * [[[0.7]], [[1.0]], [[0.5]]]
         path = parts[0] + s[:, None, None] * parts[1] + (s**2)[:, None, None] * parts[2]
         mu, events = crossings(path)
-        for (before, _), (k, kinds), (behind, _) in zip(
-            [(0, []), *events], events, [*events[1:], (2000, [])], strict=False
-        ):
+        places = [0, *(k for k, _ in events), 2000]
+        for before, (k, kinds), behind in zip(places, events, places[2:], strict=False):
             if len(kinds) != 1 or behind - before < 8:
                 continue
             a, b = Stand(mu[max(k - 3, before + 1)]), Stand(mu[min(k + 4, behind)])
@@ -186,15 +185,20 @@ def test_no_peak_of_the_free_motion_is_passed(count, capsys):
     assert peaks > 0.3 * count
 
 
-def test_two_peaks_within_one_step():
-    """The stop lies just below both resonances, which are narrower than a thousandth of the range."""
-    numbers = {"mu_m": 1.0, "mu_k": 0.02, "zeta": 2e-4, "f2": 0.3, "omega": 0.6}
-    bounds = (0.05, 30.0)
-    for start in (0.6, 3.0):
-        b = 0.999 * max(gap_amplitude(numbers, "omega", value) for value in np.linspace(1.38, 1.46, 40001))
-        expected = stretch(numbers, "omega", start, (0.05, 2.0) if start < 1 else (1.0, 30.0), b)
-        system = vs.System(**numbers | {"omega": start}, R=0.8, b=b)
-        branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary=""), "omega", bounds)
-        nearest = branch.ends if start < 1 else branch.begins
+def test_a_peak_that_is_a_thousand_times_narrower_than_a_step():
+    """One of two resonances passes the stop by a thousandth; steps are a twentieth of the range."""
+    numbers = {"mu_m": 1.0, "mu_k": 0.02, "zeta": 2e-4, "f2": 0.3}
+    fine = np.linspace(1.41, 1.43, 20001)
+    sizes = np.array([gap_amplitude(numbers, "omega", value) for value in fine])
+    b, k = 0.999 * sizes.max(), int(sizes.argmax())
+
+    def beyond(value):
+        return gap_amplitude(numbers, "omega", value) - b
+
+    for start, outer in ((1.0, fine[0]), (3.0, fine[-1])):
+        system = vs.System(**numbers, omega=start, R=0.8, b=b)
+        branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary=""), "omega", (0.5, 10.0))
+        nearest = branch.ends if start == 1.0 else branch.begins
         assert nearest.type == "graze"
-        assert nearest.parameters["omega"] == pytest.approx(expected[1 if start < 1 else 0], rel=1e-9)
+        expected = brentq(beyond, outer, fine[k], xtol=1e-15)
+        assert nearest.parameters["omega"] == pytest.approx(expected, rel=1e-9)
