@@ -8,7 +8,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.births import criticality, doubled
-from vibro_sweep.analysis.branches.crossings import is_torus
+from vibro_sweep.analysis.branches.crossings import counts_of, is_torus
 from vibro_sweep.analysis.branches.events import bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.locating import Event
 from vibro_sweep.analysis.branches.looking import hidden_between, touches
@@ -214,12 +214,17 @@ class Way:
         return end is not None
 
     def _before_birth(self, a: Point, distance: float, parent: Point) -> Point | None:
-        """A point on the way to a birth at which fewer multipliers are 1; None where a is too near to the birth."""
+        """A point on the way to a birth at which fewer multipliers are 1; None where a is too near to the birth.
+
+        The tangent there turns with the multipliers above 1: where it does not, its sign is rounding.
+        """
         most = _ones(parent.solution.multipliers**2) - 1
         for share in BEFORE_BIRTH:
             point = self.walk.step(a, (1 - share) * distance)
             if point is not None and _ones(point.solution.multipliers) <= most:
-                return point
+                turned = (counts_of(point).above - counts_of(a).above) % 2 == 1
+                if turned == (a.tangent[-1] * point.tangent[-1] < 0):
+                    return point
         return None
 
     def _bifurcate(self, found: list) -> bool:
