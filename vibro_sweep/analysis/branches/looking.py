@@ -171,7 +171,7 @@ def extremum(before: float, behind: float, x: float, y: float, z: float) -> floa
     where it does not (`dips` of engine/impulses/checks.py)."""
     if y < 0:
         x, y, z = -x, -y, -z
-    if not (0 < y <= x and y <= z and math.isfinite(x + z)):
+    if not (0 < y <= x and y <= z and math.isfinite(x + z) and before > 0 < behind):
         return None
     left, right = (y - x) / before, (z - y) / behind
     slope, curve = (left * behind + right * before) / (before + behind), (right - left) / (before + behind)

@@ -20,6 +20,7 @@ from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import branch, places
+from vibro_sweep.engine.impulses.checks import ON_SQUARE
 
 # The first step is not AMPLITUDE of births.py: from an orbit that was just born it would end at the birth itself, where
 # the branch has no tangent, and pass it unseen.
@@ -28,7 +29,7 @@ STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
 MOST_POINTS = 20_000
 BEFORE = 1e-8  # share of the way to a graze
 BEFORE_BIRTH = 0.02, 0.1, 0.4  # the same to the birth of a doubled orbit, where a multiplier must not be 1 to rounding
-DIVISIONS = 40  # of a step in which more happens than its tests tell
+DIVISIONS = 60  # of a step in which more happens than its tests tell, in all
 
 
 class Way:
@@ -165,9 +166,10 @@ class Way:
         beside : the points before a and behind b, None where they are not known
         """
         self._passed = a, len(self.rows), len(self.special)
-        return self._divide(a, b, length, beside, DIVISIONS)
+        self._divisions = DIVISIONS
+        return self._divide(a, b, length, beside)
 
-    def _divide(self, a: Point, b: Point, length: float, beside, divisions: int) -> bool:
+    def _divide(self, a: Point, b: Point, length: float, beside) -> bool:
         """`_pass`, in as many parts as it takes until tests at their ends tell what lies in them."""
         ends = ends_between(self.walk, self.bounds, a, b)
         end = first_end(self.walk, ends, a, b, length)
@@ -179,7 +181,7 @@ class Way:
         birth = own_birth(self.walk, self.system, a, last, reach) if turns else None
         before = None
         if birth:
-            before = self._before_birth(a, birth[0])
+            before = self._before_birth(a, birth[0], birth[2])
         elif end and end[0].type == "graze" and end[0].index is not None:
             before = self.walk.step(a, (1 - BEFORE) * reach, last.x)
         found = [] if birth else bifurcations(self.walk, a, last, reach)
@@ -187,13 +189,13 @@ class Way:
             known = {place[0].type for place in found}
             found += [place for place in bifurcations(self.walk, a, before, reach) if place[0].type not in known]
             found.sort(key=lambda place: place[1])
-        if divisions and (before or not birth):
+        if self._divisions and length > SHORTEST_STEP and (before or not birth):
             behind = None if end or birth else beside[1]
             c = hidden_between(self.walk, self.bounds, a, before or last, found, (beside[0], behind))
             if c is not None:
+                self._divisions -= 1
                 one, other = (float((y.x - x.x) @ x.tangent) for x, y in ((a, c), (c, b)))
-                first = self._divide(a, c, one, (beside[0], b), divisions - 1)
-                return first or self._divide(c, b, other, (a, beside[1]), divisions - 1)
+                return self._divide(a, c, one, (beside[0], b)) or self._divide(c, b, other, (a, beside[1]))
         if self._bifurcate(found):
             return True
         if birth:
@@ -206,12 +208,18 @@ class Way:
             self.special.append(self._end(end[0], last, end[3]))
         return end is not None
 
-    def _before_birth(self, a: Point, distance: float) -> Point | None:
-        """A point on the way to a birth; None where a itself is too near to it."""
+    def _before_birth(self, a: Point, distance: float, parent: Point) -> Point | None:
+        """A point on the way to a birth at which fewer multipliers are 1; None where a is too near to the birth.
+
+        The tangent there turns with the multipliers above 1: where it does not, its sign is rounding.
+        """
+        most = _ones(parent.solution.multipliers**2) - 1
         for share in BEFORE_BIRTH:
             point = self.walk.step(a, (1 - share) * distance)
-            if point is not None and counts_of(point).on_circle <= counts_of(a).on_circle:
-                return point
+            if point is not None and _ones(point.solution.multipliers) <= most:
+                turned = (counts_of(point).above - counts_of(a).above) % 2 == 1
+                if turned == (a.tangent[-1] * point.tangent[-1] < 0):
+                    return point
         return None
 
     def _bifurcate(self, found: list) -> bool:
@@ -268,6 +276,10 @@ def row_of(p: float, s: Solution, frame: tuple[int, int]) -> Rows:
     t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
     values = p, t, D, s.ends, motion, s.margin, s.change, state
     return Rows(*(np.array([value], float) for value in values))
+
+
+def _ones(multipliers: np.ndarray) -> int:
+    return int(np.sum(np.abs(multipliers - 1) < ON_SQUARE))
 
 
 def stop_and_impact(solution: Solution, index: int) -> tuple[int, int]:

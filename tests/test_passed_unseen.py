@@ -1,0 +1,203 @@
+"""What lies between two points of a branch although their tests do not tell: bifurcations, births, narrow peaks."""
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from support.branches import exact_of_any, same_points, types
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.branches import way
+from vibro_sweep.analysis.branches.crossings import explained
+from vibro_sweep.analysis.branches.looking import extremum
+
+BESIDE = vs.Oscillator(
+    M=[[1.013195585878699, -0.55204056781175], [-0.55204056781175, 2.637855657462587]],
+    K=[[0.6186294619195736, -0.43531312017067053], [-0.43531312017067053, 0.7490062589269704]],
+    C=[[0.017931341976962122, -0.016782229109168982], [-0.016782229109168982, 0.05128108826042008]],
+    along=[-0.9584651407408522, 1.2063082654617954], force=[0.5414602008133512, -0.4247086091937014],
+    force_cos=[0.21265631867212226, 0.4614742868969503], omega=1.5001755162828383, R=0.669, b=0.2140312390626448,
+    tau=3.8085663752458316,
+)  # fmt: skip
+TURNED = vs.Oscillator.named(
+    "one_mass", zeta=0.009193095240087783, F=1.341737736580175, omega=1.4905, R=0.44, b=0.372790641903939,
+    offset=-0.04156552419734383, tau=0.6194168875425987,
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def beside_fold():
+    """A Neimark-Sacker point beside a fold: the branch entered from both its ends, from the fold, in other steps."""
+    bounds = (0.0856, 0.3425)
+    state = vs.simulate(BESIDE, np.zeros(4), 600).sample([600 * BESIDE.period])[0]
+    short = vs.continue_orbit(vs.periodic_orbit(BESIDE, state=state, periods=5), "b", bounds)
+    orbits = [orbit for end in (short.begins, short.ends) for orbit in vs.switch(end)]
+    branches = [vs.continue_orbit(orbit, "b", bounds) for orbit in orbits]
+    fold = next(special for special in branches[0].special if special.type == "fold")
+    return [*branches, vs.continue_orbit(fold.orbit, "b", bounds)]
+
+
+def test_a_pair_goes_out_where_a_fold_takes_one_in(beside_fold):
+    """As many multipliers lie outside before both points as behind them."""
+    kinds = ["graze", "flip", "neimark_sacker", "fold", "graze"]
+    upwards = [types(branch) if branch.special[1].type == "flip" else types(branch)[::-1] for branch in beside_fold]
+    assert [[kind for kind, _ in one] for one in upwards] == [kinds] * 3
+    values = np.array([[value for _, value in one] for one in upwards])
+    assert np.ptp(values, axis=0).max() < 1e-12
+    torus = next(special for special in beside_fold[0].special if special.type == "neimark_sacker")
+    assert abs(exact_of_any(torus, "b") - torus.parameters["b"]) < 1e-13
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("factor", [0.5, 2])
+def test_they_do_not_depend_on_the_step(beside_fold, factor, monkeypatch):
+    monkeypatch.setattr(way.Way, "first_step", factor * way.FIRST_STEP)
+    for name in ("LONGEST_STEP", "STRAIGHT"):
+        monkeypatch.setattr(way, name, factor * getattr(way, name))
+    for branch in beside_fold[:2]:
+        begun = next(special.orbit for special in branch.special if special.type == "fold")
+        same_points(vs.continue_orbit(begun, "b", (0.0856, 0.3425)), types(beside_fold[2]), 1e-12)
+
+
+@pytest.mark.parametrize("bounds", [(0.3, 2.1), (1.2, 1.8), (1.0, 1.52)])
+def test_a_step_that_lands_on_the_birth(bounds):
+    """With the first bounds a point lies where a multiplier is 1.00000003 and the tangent's sign is rounding."""
+    state = vs.simulate(TURNED, [0, 0], 1500).sample([1500 * TURNED.period])[0]
+    branch = vs.continue_orbit(vs.periodic_orbit(TURNED, state=state, periods=4), "omega", bounds)
+    assert [special.type for special in branch.special] == ["graze", "flip", "flip"]
+    assert branch.ends.orbit.period == 2  # the parent's
+    parent = vs.continue_orbit(branch.ends.orbit, "omega", (1.5, 1.52))
+    flips = [special.parameters["omega"] for special in parent.special if special.type == "flip"]
+    assert branch.ends.parameters["omega"] == pytest.approx(min(flips, key=lambda value: abs(value - 1.508)), abs=1e-12)
+    assert np.all(np.diff(branch.points.omega.values) > 0)
+
+
+class Stand:
+    """A point with multipliers only."""
+
+    def __init__(self, multipliers):
+        self.solution, self.torus = self, np.nan
+        self.multipliers = multipliers
+
+
+def crossings(matrices):
+    """Which bifurcations lie between neighbouring matrices of a path, from their eigenvalues alone."""
+    mu = np.array([np.sort_complex(np.linalg.eigvals(matrix)) for matrix in matrices])
+    fold, flip = (np.sign(np.prod(1 - sign * mu, axis=1).real) for sign in (1, -1))
+    outside = np.sum(np.abs(mu) > 1, axis=1)
+    result = []
+    for k in np.flatnonzero((np.diff(fold) != 0) | (np.diff(flip) != 0) | (np.diff(outside) != 0)):
+        one = [kind for kind, sign in (("fold", fold), ("flip", flip)) if sign[k] != sign[k + 1]]
+        result.append((k, one if one else ["neimark_sacker"]))
+    return mu, result
+
+
+def test_counts_tell_what_is_missing():
+    """On 400 random paths of 4 x 4 matrices: a bifurcation explains the change that it makes, no other one does, nor
+    none; what is not explained although nothing was left out are multipliers that meet near the circle, seldom."""
+    rng, counted, refused, s = np.random.default_rng(4), 0, 0, np.linspace(0, 1, 2001)
+    for _ in range(400):
+        parts = rng.normal(size=(3, 4, 4)) * [[[0.7]], [[1.0]], [[0.5]]]
+        path = parts[0] + s[:, None, None] * parts[1] + (s**2)[:, None, None] * parts[2]
+        mu, events = crossings(path)
+        places = [0, *(k for k, _ in events), 2000]
+        for before, (k, kinds), behind in zip(places, events, places[2:], strict=False):
+            if len(kinds) != 1 or behind - before < 8:
+                continue
+            a, b = Stand(mu[max(k - 3, before + 1)]), Stand(mu[min(k + 4, behind)])
+            if any(np.any(np.abs(np.abs(point.multipliers) ** 2 - 1) < 1e-6) for point in (a, b)):
+                continue
+            counted += 1
+            refused += not explained(a, b, kinds)
+            assert not explained(a, b, [])
+            for other in {"fold", "flip", "neimark_sacker"} - set(kinds):
+                assert not explained(a, b, [other])
+    assert counted > 300
+    assert refused < 0.02 * counted
+
+
+def test_an_extremum_is_looked_for_where_a_parabola_comes_nearer_to_zero():
+    """Of 2000 parabolas at three points those with two zeros within half a step of the middle one, and few others."""
+    rng, looked, hidden = np.random.default_rng(3), 0, 0
+    for _ in range(2000):
+        before, behind = rng.uniform(0.5, 1.5, 2)
+        at, least, curve = rng.uniform(-0.4, 0.4), rng.uniform(-0.2, 2.0), rng.uniform(0.2, 5.0)
+        x, y, z = (least + curve * (place - at) ** 2 for place in (-before, 0.0, behind))
+        if not (0 < y <= x and y <= z):
+            continue
+        found = extremum(before, behind, x, y, z)
+        looked += found is not None
+        if least < 0:
+            hidden += 1
+            assert found == pytest.approx(at, abs=1e-9)
+    assert hidden > 20
+    assert looked < 0.3 * 2000
+
+
+def gap_amplitude(numbers, name, value):
+    """Of x1 without impacts, from eq. (3)."""
+    p = numbers | {name: value}
+    K = np.array([[1, -1], [-1, 1 + p["mu_k"]]])
+    Z = K - p["omega"] ** 2 * np.diag([1, p["mu_m"]]) + 2j * p["zeta"] * p["omega"] * K
+    return abs(np.linalg.solve(Z, [1 - p["f2"], p["f2"]])[0])
+
+
+def stretch(numbers, name, start, bounds, b):
+    """The values around `start` up to which the amplitude stays below b, by many samples."""
+    ends = []
+    for bound in bounds:
+        values = start + (bound - start) * np.linspace(0, 1, 4001)
+        size = np.array([gap_amplitude(numbers, name, value) for value in values]) - b
+        k = int(np.argmax(size > 0))
+        if size[k] > 0:
+            ends.append(
+                brentq(lambda value: gap_amplitude(numbers, name, value) - b, *values[k - 1 : k + 1], xtol=1e-15)
+            )
+        else:
+            ends.append(bound)
+    return ends
+
+
+@pytest.mark.parametrize("count", [15, pytest.param(400, marks=pytest.mark.soak)])
+def test_no_peak_of_the_free_motion_is_passed(count, capsys):
+    """Random oscillators with two narrow resonances, along omega and the ratios: both ends of the branch without
+    impacts, against samples that lie far closer than the peaks are wide."""
+    rng, tried, peaks, wrong = np.random.default_rng(12), 0, 0, []
+    while tried < count:
+        numbers = {
+            "mu_m": 10 ** rng.uniform(-0.3, 1), "mu_k": 10 ** rng.uniform(-0.3, 1), "zeta": 10 ** rng.uniform(-2.7, -1),
+            "f2": rng.uniform(0, 1), "omega": rng.uniform(0.3, 2.0),
+        }  # fmt: skip
+        name = str(rng.choice(["omega", "mu_k", "mu_m"]))
+        start, bounds = numbers[name], (0.4 * numbers[name], 2.5 * numbers[name])
+        b = gap_amplitude(numbers, name, start) * 10 ** rng.uniform(0.02, 1.2)
+        expected = stretch(numbers, name, start, bounds, b)
+        system = vs.System(**numbers, R=0.8, b=b)
+        branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary=""), name, bounds)
+        found = [branch.begins.parameters[name], branch.ends.parameters[name]]
+        tried, peaks = tried + 1, peaks + sum(end not in bounds for end in expected)
+        if not np.allclose(found, expected, rtol=1e-9, atol=0):
+            wrong.append((numbers, name, b, found, expected))
+    with capsys.disabled():
+        if count > 100:
+            print(f"\n{tried} branches of free motion, {peaks} of {2 * tried} ends at grazes, {len(wrong)} wrong")
+    assert not wrong
+    assert peaks > 0.3 * count
+
+
+def test_a_peak_that_is_a_thousand_times_narrower_than_a_step():
+    """One of two resonances passes the stop by a thousandth; steps are a twentieth of the range."""
+    numbers = {"mu_m": 1.0, "mu_k": 0.02, "zeta": 2e-4, "f2": 0.3}
+    fine = np.linspace(1.41, 1.43, 20001)
+    sizes = np.array([gap_amplitude(numbers, "omega", value) for value in fine])
+    b, k = 0.999 * sizes.max(), int(sizes.argmax())
+
+    def beyond(value):
+        return gap_amplitude(numbers, "omega", value) - b
+
+    for start, outer in ((1.0, fine[0]), (3.0, fine[-1])):
+        system = vs.System(**numbers, omega=start, R=0.8, b=b)
+        branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary=""), "omega", (0.5, 10.0))
+        nearest = branch.ends if start == 1.0 else branch.begins
+        assert nearest.type == "graze"
+        expected = brentq(beyond, outer, fine[k], xtol=1e-15)
+        assert nearest.parameters["omega"] == pytest.approx(expected, rel=1e-9)
