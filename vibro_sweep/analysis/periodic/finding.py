@@ -119,9 +119,7 @@ def _from_guess(system, family, rows, periods) -> PeriodicOrbit:
     u = np.concatenate([t, -(1 + R) * v])
     start = Solution(family, 1, 2 * periods, sides, u)
     if start.equations.free and sides:
-        u = np.append(u, 0.0)
-        u[-1] = -np.mean(start.equations.evaluate(sides, u)[0][: len(sides)])
-        start = Solution(family, 1, 2 * periods, sides, u)
+        start = start.with_mean()
     if sides and t[-1] >= t[0] + start.equations.P:
         raise ValueError("guess: the impacts do not fit into one period")
     found = start.corrected()

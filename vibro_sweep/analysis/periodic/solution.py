@@ -144,9 +144,11 @@ class Solution:
         """With the mean gap, which a free mode leaves open, as last unknown: what the gaps at impacts lack.
 
         Newton's method would find it too, but not where the orbit is singular, as a symmetric one is at its pitchfork.
+        Without impacts any mean will do, and it is 0.
         """
         found = replace(self, u=np.append(self.u, 0.0))
-        found.u[-1] = -np.mean(found.equations.evaluate(found.sides, found.u)[0][: found.K])
+        if self.K:
+            found.u[-1] = -np.mean(found.equations.evaluate(found.sides, found.u)[0][: found.K])
         return found
 
     def part(self, count: int, sigma: int, alike: float = ALIKE, exact: bool = True) -> "Solution | None":
