@@ -38,6 +38,8 @@ def changes(text: str) -> dict[int, list[tuple[int, str, str]]]:
     found, numbers, before = {}, {}, None
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         word, (row, column) = token.string, token.start
+        if word == "not" and before.string == "is":
+            found[row][-1:] = [(before.start[1], "is not", "is")]
         unpacks = word == "*" and not (before.type == tokenize.NUMBER or re.search(r"[\w)\]]$", before.string))
         if token.type == tokenize.NUMBER:
             value = ast.literal_eval(word)
