@@ -160,6 +160,24 @@ def test_multipliers_of_the_points_obey_their_sum_rule(symmetric_branch):
     assert float(points.margin.min()) > 0 and float(points.min_impact_speed.min()) > 0
 
 
+@pytest.mark.parametrize(("name", "bounds"), [("omega", (0.75, 0.9)), ("damping", (0.0, 0.2))])
+def test_the_unit_of_length_does_not_matter(name, bounds):
+    """With force and clearance as many times as large every number of the branch is the same, but for rounding."""
+
+    def branch(scale):
+        system = ONE_MASS.replace(F=0.37 * scale, b=scale, omega=0.799)
+        with other_steps(1):  # compiled ones
+            return vs.continue_orbit(vs.periodic_orbit(system, itinerary="R", periods=2), name, bounds)
+
+    expected = branch(1.0)
+    for scale in (2.0**-40, 2.0**40):  # of which no product is rounded
+        found = branch(scale)
+        assert found.points.sizes == expected.points.sizes
+        assert [one.type for one in found.special] == [one.type for one in expected.special]
+        for one, other in zip(found.special, expected.special, strict=True):
+            assert one.parameters[name] == pytest.approx(other.parameters[name], abs=max(one.error, 1e-300), rel=0)
+
+
 def test_branch_in_two_ways_is_one_branch(symmetric_branch):
     for b in (0.8, 5.5):
         orbit = vs.periodic_orbit(PAPER.replace(b=b), itinerary="LR")

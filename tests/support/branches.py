@@ -29,13 +29,14 @@ def same_points(branch, expected, tolerance=1e-12):
 
 @contextmanager
 def other_steps(factor):
-    """Branches are followed by steps `factor` times as long as they are otherwise; compiled steps are seen to be so."""
+    """Branches are followed by steps `factor` times as long as they are otherwise. Compiled steps are seen to do so."""
     longest, straight, first = way.LONGEST_STEP, way.STRAIGHT, way.Way.first_step
     begin, seen = Track.begin, set()
 
     def watched(track, point, length):
-        seen.add((track.steps.longest, track.steps.straight, length))
-        return begin(track, point, length)
+        begins = begin(track, point, length)
+        seen.add((track.steps.longest, track.steps.straight, length, begins))
+        return begins
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(way, "LONGEST_STEP", factor * longest)
@@ -43,7 +44,7 @@ def other_steps(factor):
         patch.setattr(way.Way, "first_step", factor * first)
         patch.setattr(Track, "begin", watched)
         yield
-    assert seen == {(factor * longest, factor * straight, factor * first)}
+    assert seen == {(factor * longest, factor * straight, factor * first, True)}
 
 
 @pytest.fixture(scope="session")
