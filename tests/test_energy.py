@@ -88,7 +88,7 @@ def test_balance_of_a_periodic_orbit():
     lost = (given - taken) / (period * system.period)
     assert data["impact_power"][0] == pytest.approx(lost, rel=1e-9) and lost > 1e-3
     mean = np.sqrt(squares / (period * system.period))
-    assert [data["rms_v1"][0], data["rms_v2"][0]] == pytest.approx(mean, rel=1e-11)
+    assert [float(data[name][0]) for name in ("rms_v1", "rms_v2")] == pytest.approx(mean, rel=1e-11)
 
 
 @pytest.mark.parametrize("start", ["{follow: both}", "{random: 3, seed: 2}"])
