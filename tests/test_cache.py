@@ -47,6 +47,15 @@ def entries(folder, ending):
     return found
 
 
+def test_why_there_is_a_wait_is_said_once(program, tmp_path):
+    """For two kernels one message, and none where both are in the cache."""
+    said = "import logging\nlogging.basicConfig(level=logging.INFO, format='%(message)s')\n"
+    (tmp_path / "program.py").write_text(said + PROGRAM)
+    for hits, messages in ((0, 1), (1, 0)):
+        found, lines = program(NUMBA_CACHE_DIR=str(tmp_path / "cache"))
+        assert found == hits and sum(line.startswith("compiling kernels, once") for line in lines) == messages
+
+
 def test_a_second_start_compiles_nothing_and_loads_nothing_that_compiling_takes(program, tmp_path):
     """numba's own way to a kernel in the cache loads scipy and all of numba's registries: a quarter of a second.
 

@@ -5,12 +5,11 @@ import math
 import numpy as np
 import pytest
 from support import slow_cases
-from support.branches import branch_of, same_points, types
+from support.branches import branch_of, other_steps, same_points, types
 from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
 from support.random_branches import random_oscillator, random_system
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import way
 from vibro_sweep.analysis.branches.walk import Walk
 
 B_STAR = 6.7057167409730219272  # |e_1.(K - omega^2 M + i omega C)^-1 P| in 40 digits
@@ -95,39 +94,45 @@ def test_one_mass_oscillator_of_the_literature():
 
 
 @pytest.mark.parametrize("factor", [0.4, 2.5])
-def test_special_points_do_not_depend_on_the_step(symmetric_branch, one_sided_branch, factor, monkeypatch):
-    for name in ("LONGEST_STEP", "FIRST_STEP", "STRAIGHT"):
-        monkeypatch.setattr(way, name, factor * getattr(way, name))
-    again = vs.continue_orbit(vs.periodic_orbit(PAPER, itinerary="LR"), "b", (0.3, 6.8))
-    same_points(again, types(symmetric_branch), 5e-14)
-    again = vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R"), "b", (0.3, 6.8))
-    same_points(again, types(one_sided_branch), 5e-14)
+def test_special_points_do_not_depend_on_the_step(symmetric_branch, one_sided_branch, factor):
+    with other_steps(factor):
+        again = vs.continue_orbit(vs.periodic_orbit(PAPER, itinerary="LR"), "b", (0.3, 6.8))
+        same_points(again, types(symmetric_branch), 5e-14)
+        again = vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R"), "b", (0.3, 6.8))
+        same_points(again, types(one_sided_branch), 5e-14)
+
+
+def none_between(branch, one, other):
+    """Whether two special points lie in one step: no point of the branch lies between them."""
+    lo, hi = sorted(special.parameters[branch.parameter] for special in (one, other))
+    values = branch.points[branch.parameter].values
+    return lo in values and hi in values and not np.any((lo < values) & (values < hi))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("factor", [1, pytest.param(0.5, marks=pytest.mark.slow), 2, 8])
-def test_bifurcations_in_one_step_do_not_hide_each_other(factor, monkeypatch):
+@pytest.mark.parametrize("factor", [0.5, 1, 2, 8])
+def test_bifurcations_in_one_step_do_not_hide_each_other(factor):
     """Three masses: a flip and a Neimark-Sacker point follow each other within 6e-4 of R_left."""
     system = random_oscillator(np.random.default_rng(2))
     orbit = vs.periodic_orbit(system, itinerary="LRR")
-    for name in ("LONGEST_STEP", "FIRST_STEP", "STRAIGHT"):
-        monkeypatch.setattr(way, name, factor * getattr(way, name))
-    branch = vs.continue_orbit(orbit, "R_left", (0.56, 0.99))
+    with other_steps(factor):
+        branch = vs.continue_orbit(orbit, "R_left", (0.56, 0.99))
     expected = [0.69546726882168, 0.69605952370370, 0.81987655017267, 0.82658501099370]
     assert [s.type for s in branch.special[1:-1]] == ["flip", "neimark_sacker", "neimark_sacker", "flip"]
     assert [s.parameters["R_left"] for s in branch.special[1:-1]] == pytest.approx(expected, abs=1e-13)
+    assert none_between(branch, *branch.special[1:3])
 
 
-@pytest.mark.parametrize("factor", [1, *slow_cases(2, 4)])
-def test_bifurcation_in_the_step_to_a_graze(factor, monkeypatch):
+@pytest.mark.parametrize("factor", [2, *slow_cases(1, 4)])
+def test_bifurcation_in_the_step_to_a_graze(factor):
     """A Neimark-Sacker point 4e-4 beside the graze, where multipliers have a pole."""
     system = random_system(np.random.default_rng(41))
     orbit = vs.periodic_orbit(system, itinerary="L")
-    for name in ("LONGEST_STEP", "FIRST_STEP", "STRAIGHT"):
-        monkeypatch.setattr(way, name, factor * getattr(way, name))
-    branch = vs.continue_orbit(orbit, "omega", (0.7, 0.9))
+    with other_steps(factor):
+        branch = vs.continue_orbit(orbit, "omega", (0.7, 0.9))
     expected = [("graze", 0.86249263869125), ("neimark_sacker", 0.86291307010265), ("flip", 0.86981802910054)]
     assert types(branch)[:3] == [(kind, pytest.approx(value, abs=1e-13)) for kind, value in expected]
+    assert factor == 1 or none_between(branch, *branch.special[:2])
 
 
 @pytest.mark.parametrize("name", ["omega", "zeta", "R", "mu_m", "f2"])
@@ -153,6 +158,24 @@ def test_multipliers_of_the_points_obey_their_sum_rule(symmetric_branch):
     assert product == pytest.approx(PAPER.R**4 * math.exp(PAPER.divergence * PAPER.period), rel=1e-9)
     assert np.all(np.diff(points.b) > 0) and np.all(np.abs(np.diff(points.impact_t, axis=0)) < 1)
     assert float(points.margin.min()) > 0 and float(points.min_impact_speed.min()) > 0
+
+
+@pytest.mark.parametrize(("name", "bounds"), [("omega", (0.75, 0.9)), ("damping", (0.0, 0.2))])
+def test_the_unit_of_length_does_not_matter(name, bounds):
+    """With force and clearance as many times as large every number of the branch is the same, but for rounding."""
+
+    def branch(scale):
+        system = ONE_MASS.replace(F=0.37 * scale, b=scale, omega=0.799)
+        with other_steps(1):  # compiled ones
+            return vs.continue_orbit(vs.periodic_orbit(system, itinerary="R", periods=2), name, bounds)
+
+    expected = branch(1.0)
+    for scale in (2.0**-40, 2.0**40):  # of which no product is rounded
+        found = branch(scale)
+        assert found.points.sizes == expected.points.sizes
+        assert [one.type for one in found.special] == [one.type for one in expected.special]
+        for one, other in zip(found.special, expected.special, strict=True):
+            assert one.parameters[name] == pytest.approx(other.parameters[name], abs=max(one.error, 1e-300), rel=0)
 
 
 def test_branch_in_two_ways_is_one_branch(symmetric_branch):

@@ -30,6 +30,18 @@ def test_bouncing_ball():
         assert curve.begins.parameters["F"] < curve.ends.parameters["F"] and types(curve) == ["limit", "limit"]
 
 
+@pytest.mark.slow
+def test_a_box_is_left_by_the_side_that_is_met_first():
+    """Near a corner one step passes two sides of the box, and the fold above ends on the nearer of them."""
+    fold, corner = first(ball(), "fold"), math.pi * 0.7 / 1.3  # F of the fold at R = 0.3
+    for highest in (corner * (1 + 1e-4), corner * (1 - 1e-4)):
+        curve = vs.bifurcation_curve(fold, ("F", "R"), ((0.05, highest), (0.3, 0.95)))
+        end = max(curve.special, key=lambda one: one.parameters["F"]).parameters
+        F, R = (corner, 0.3) if highest > corner else (highest, (math.pi - highest) / (math.pi + highest))
+        assert types(curve) == ["limit", "limit"] and end == pytest.approx({"F": F, "R": R}, rel=1e-13)
+        assert curve.points.F.values.max() == end["F"] and curve.points.R.values.min() == end["R"]
+
+
 def wall(omega, F):
     return vs.Oscillator.named("one_mass", zeta=0.02, F=F, omega=omega, R=0.9, b=1, stops="right")
 

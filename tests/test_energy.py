@@ -68,7 +68,7 @@ def test_the_free_motion_in_closed_form():
 
 
 def test_balance_of_a_periodic_orbit():
-    """What the force gives in a period is what the dampers and the impacts take."""
+    """What the force gives in a period is what the dampers and the impacts take; mean squares between the impacts."""
     system = PAPER.replace(b=4.2, omega=0.65)
     start = vs.simulate(system, (0, 0, 0, 0), 3000).section[-1]
     data = swept(system, "R", [0.8], start, transient=0, record=60, observe=("energy", "section"))
@@ -76,7 +76,7 @@ def test_balance_of_a_periodic_orbit():
     assert period > 0 and 60 % period == 0
     orbit = vs.simulate(system, start, period)
     cuts = np.concatenate([[0.0], orbit.impacts["t"], [period * system.period]])
-    given = taken = 0.0
+    given = taken = squares = 0.0
     x, w = np.polynomial.legendre.leggauss(60)
     for low, high in itertools.pairwise(cuts):
         t = low + (high - low) * (x + 1) / 2
@@ -84,8 +84,11 @@ def test_balance_of_a_periodic_orbit():
         force = np.outer(np.sin(system.omega * t + system.phase), system.linear.sine)
         given += (force * v).sum(axis=1) @ w * (high - low) / 2
         taken += np.einsum("ti,ij,tj->t", v, system.linear.C, v) @ w * (high - low) / 2
+        squares += w @ v**2 * (high - low) / 2
     lost = (given - taken) / (period * system.period)
     assert data["impact_power"][0] == pytest.approx(lost, rel=1e-9) and lost > 1e-3
+    mean = np.sqrt(squares / (period * system.period))
+    assert [float(data[name][0]) for name in ("rms_v1", "rms_v2")] == pytest.approx(mean, rel=1e-11)
 
 
 @pytest.mark.parametrize("start", ["{follow: both}", "{random: 3, seed: 2}"])

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from support import ROOT
+from support.oscillators import PAPER
 from support.windows import SYSTEM, check_end, few  # noqa: F401
 
 import vibro_sweep as vs
@@ -60,6 +61,14 @@ def test_errors_of_ends_do_not_depend_on_the_last_digits_of_a_start():
         errors.append(found["special_error"])
     assert (np.ptp(values, axis=0) < np.max(errors, axis=0)).all()
     assert (np.ptp(errors, axis=0) < 1e-3 * np.max(errors, axis=0)).all()
+
+
+def test_a_window_is_that_of_a_stable_orbit_which_the_state_lies_on():
+    """The symmetric orbit of the paper is stable below b = 3.89 (orbits.md)."""
+    for b, part, reason in ((3.0, 1.0, "in_a_window"), (3.0, 0.99, "not_settled"), (5.0, 1.0, "not_settled")):
+        orbit = vs.periodic_orbit(PAPER.replace(b=b), itinerary="LR")
+        job = Job(orbit.system, part * orbit.state, 1, "b", (0.98 * b, 1.02 * b))
+        assert orbit.stable == (b < 3.89) and window_of(job).reason == reason
 
 
 def test_free_motion(windows):

@@ -1,5 +1,7 @@
 """Branches of the paper's periodic orbits in b."""
 
+from contextlib import contextmanager
+
 import numpy as np
 import pytest
 from reference.any_shooting import AnyShooting
@@ -7,6 +9,8 @@ from reference.shooting import Shooting
 
 import vibro_sweep as vs
 from support.oscillators import PAPER
+from vibro_sweep.analysis.branches import way
+from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 
@@ -21,6 +25,26 @@ def same_points(branch, expected, tolerance=1e-12):
     found = types(branch)
     assert [kind for kind, _ in found] == [kind for kind, _ in expected]
     assert [value for _, value in found] == pytest.approx([value for _, value in expected], abs=tolerance)
+
+
+@contextmanager
+def other_steps(factor):
+    """Branches are followed by steps `factor` times as long as they are otherwise. Compiled steps are seen to do so."""
+    longest, straight, first = way.LONGEST_STEP, way.STRAIGHT, way.Way.first_step
+    begin, seen = Track.begin, set()
+
+    def watched(track, point, length):
+        begins = begin(track, point, length)
+        seen.add((track.steps.longest, track.steps.straight, length, begins))
+        return begins
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(way, "LONGEST_STEP", factor * longest)
+        patch.setattr(way, "STRAIGHT", factor * straight)
+        patch.setattr(way.Way, "first_step", factor * first)
+        patch.setattr(Track, "begin", watched)
+        yield
+    assert seen == {(factor * longest, factor * straight, factor * first, True)}
 
 
 @pytest.fixture(scope="session")

@@ -161,25 +161,30 @@ class Way:
         return True
 
     def _leave(self, a: Place, b: Place) -> None:
-        """The point where the curve leaves the box."""
-        w, ends = self.tracer, []
-        for j in range(2):
-            for limit, side in zip(w.box[j], (-1, 1), strict=True):
-                if (b.p[j] - limit) * side > 0:
-                    ends.append(((limit - a.p[j]) / (b.p[j] - a.p[j]), j, limit))
-        share, j, limit = min(ends)
-        guess = w.between(a, b, share)
+        """The point where the curve leaves the box; near a corner the step to b passes two sides."""
+        w = self.tracer
+        sides = [(j, limit, side) for j in range(2) for limit, side in zip(w.box[j], (-1, 1), strict=True)]
+        passed = [(j, limit) for j, limit, side in sides if (b.p[j] - limit) * side > 0]
+        found = [place for j, limit in passed if (place := self._at_limit(a, b, j, limit)) is not None]
+        if not found:
+            self.special.append(self._at("failed", a, np.nan))
+            return
+        place = min(found, key=lambda one: max((one.p[j] - limit) * side for j, limit, side in sides))
+        place.tangent[:] *= np.sign(w.row_of(a.tangent) @ place.tangent[: w.size]) or 1.0
+        if not self._ends(a, place, curve.LEFT) and self._pass(a, place):
+            self.special.append(self._at("limit", place, 0.0))
+
+    def _at_limit(self, a: Place, b: Place, j: int, limit: float) -> Place | None:
+        """Where a parameter is at its limit."""
+        w = self.tracer
+        guess = w.between(a, b, (limit - a.p[j]) / (b.p[j] - a.p[j]))
         guess.p[j] = limit
         row = np.zeros(w.size)
         row[w.S + j] = 1.0
         place = w.correct(guess, row) or self._across(a, b, j, limit)
-        if place is None:
-            self.special.append(self._at("failed", a, np.nan))
-            return
-        place.p[j] = limit
-        place.tangent[:] *= np.sign(w.row_of(a.tangent) @ place.tangent[: w.size]) or 1.0
-        if not self._ends(a, place, curve.LEFT) and self._pass(a, place):
-            self.special.append(self._at("limit", place, 0.0))
+        if place is not None:
+            place.p[j] = limit
+        return place
 
     def _across(self, a: Place, b: Place, j: int, limit: float) -> Place | None:
         """The same, where the curve is nearly parallel to that side of the box."""

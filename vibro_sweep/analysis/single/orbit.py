@@ -147,8 +147,7 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
     while done <= periods and outcome == status.OK:
         before = engine.orbit.copy()
         records = orbits.new_records(1, impacts=room, rests=room, masses=engine.kind.masses)
-        count = min(CHUNK, len(section) - done)
-        outcome = engine.carry(records, section[done : done + count])
+        outcome = engine.carry(records, section[done : done + CHUNK])
         logged = max(engine.orbit["impacts_logged"][0], engine.orbit["rests_logged"][0])
         if logged > room:
             engine.orbit[:] = before
@@ -158,7 +157,7 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
         rests.append(records.rests[0, : engine.orbit["rests_logged"][0]])
         chatters += int(engine.orbit["chatters"][0])
         engine.orbit["impacts_logged"] = engine.orbit["rests_logged"] = engine.orbit["chatters"] = 0
-        done += count
+        done += CHUNK
     if outcome != status.OK:
         reached = int(engine.orbit["period"][0]) - math.ceil(start_time / engine.period)
         section[max(reached + 1, 0) :] = np.nan
