@@ -6,8 +6,12 @@ Files and workers are compared by it. The folder of compiled kernels is named by
 
 import functools
 import hashlib
+import platform
 from importlib.metadata import version
 from pathlib import Path
+
+from numba.core import config
+from numba.core.codegen import get_host_cpu_features
 
 from vibro_sweep.engine.simd import jit
 
@@ -38,9 +42,20 @@ def sources() -> list[Path]:
 
 @functools.cache  # of the sources as they were imported
 def identity() -> str:
-    """A hash of the sources that numbers depend on, of the libraries that compute them and of how kernels compile."""
+    """A hash of the sources that numbers depend on, of the libraries that compute them and of how kernels compile.
+
+    A product and a sum are rounded once where the processor has fused multiply-adds, and twice elsewhere.
+    """
     digest = hashlib.sha256()
     for path in sources():
         digest.update(path.relative_to(HOME).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
-    digest.update(repr([*(version(name) for name in LIBRARIES), jit.AS_ONE]).encode())
+    digest.update(repr([*(version(name) for name in LIBRARIES), jit.AS_ONE, has_fused_multiply_add()]).encode())
     return digest.hexdigest()[:16]
+
+
+def has_fused_multiply_add() -> bool:
+    """Whether kernels are compiled with fused multiply-adds; what `NUMBA_CPU_FEATURES` says counts."""
+    if platform.machine().lower() in ("aarch64", "arm64"):
+        return True
+    features = get_host_cpu_features() if config.CPU_FEATURES is None else config.CPU_FEATURES
+    return "+fma" in features.split(",")

@@ -36,7 +36,7 @@ def test_a_flipped_bit(scene, path, whole, name, capsys):
     box = flip(path, name)
     with pytest.raises(OSError, match="read data"), h5py.File(path) as file:
         file[name][()]
-    with pytest.raises(StoreError, match=rf"damaged: {name} \(1 chunk\); `run --resume`"):
+    with pytest.raises(StoreError, match=rf"damaged: {name} \(1 chunk\); `--resume`"):
         vs.open(path)
     assert f"damaged      {name} (1 chunk)" in describe(path)
     if name != "lyapunov":  # which the picture of the section does not need
