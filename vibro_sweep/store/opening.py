@@ -256,7 +256,7 @@ def check_version(file: h5py.File, path: Path) -> None:
     if old.get("code") != code:
         raise StoreError(
             f"{begun}, code {old.get('code')}, and this is vibro_sweep {__version__} with other code, {code}, "
-            "or another numpy or numba; overwrite it"
+            "another numpy or numba, or a processor that rounds otherwise (README, Tested); overwrite it"
         )
 
 
