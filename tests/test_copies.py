@@ -76,7 +76,8 @@ def objects():
         "grazing": vs.grazing(SYSTEM),
         "periodic orbit": orbit,
         "branch": branch,
-        "special point": branch.special[0],
+        "special point": next(one for one in branch.special if one.type == "pitchfork"),
+        "mapping": vs.discontinuity_map(SYSTEM),
         "born": vs.born_at_grazing(SYSTEM)[0],
         "scene": vs.load_scene(Path(__file__).parents[1] / "configs" / "quickstart.yaml"),
         "dataset": vs.sweep(SYSTEM, {"b": [0.4]}, observe=["section"], transient=10, record=10),
@@ -92,6 +93,11 @@ def test_objects(objects):
     orbit, again = objects["orbit"], copy.deepcopy(objects["orbit"])
     assert np.array_equal(orbit.sample([1.0]), again.sample([1.0]))
     assert (orbit.status.code, orbit.status.note) == (again.status.code, again.status.note)
+    mapping, again = objects["mapping"], pickle.loads(pickle.dumps(objects["mapping"]))
+    assert np.array_equal(mapping(mapping.graze), again(again.graze))
+    point, again = objects["special point"], copy.deepcopy(objects["special point"])
+    assert np.array_equal(point.orbit.sample([1.0]), again.orbit.sample([1.0]))
+    assert len(vs.switch(point)) == len(vs.switch(again))
     branch, again = objects["branch"], pickle.loads(pickle.dumps(objects["branch"]))
     assert [one.parameters for one in branch.special] == [one.parameters for one in again.special]
 
