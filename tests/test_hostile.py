@@ -122,7 +122,7 @@ def test_a_part_with_a_second_name(folder, capsys):
 
 def test_the_scene_is_not_its_own_part(folder, capsys):
     os.rename("scene.yaml", "out.h5.part")
-    refused(capsys, ["run", "out.h5.part", "-o", "out.h5", "--overwrite"], "out.h5.part", "the scene itself")
+    refused(capsys, ["run", "out.h5.part", "-o", "out.h5", "--overwrite"], "out.h5.part", "this run reads")
     assert Path("out.h5.part").read_text() == TEXT
 
 

@@ -123,3 +123,12 @@ def test_the_compiled_kernels_are_those_of_the_engine_alone(tmp_path):
     with (home / "model" / "status.py").open("a") as file:
         file.write("# another\n")
     assert folder() != jit.source_hash()
+
+
+@pytest.mark.parametrize("setting", ["NUMBA_CPU_FEATURES=+avx2", "OPENBLAS_CORETYPE=Prescott"])
+def test_processors_that_round_otherwise_have_other_identities(setting):
+    """One without fused multiply-adds, one for which BLAS adds in another order; told by a setting."""
+    code = "from vibro_sweep.identity import identity; print(identity())"
+    name, _, value = setting.partition("=")
+    run = subprocess.run([sys.executable, "-c", code], env=os.environ | {name: value}, capture_output=True, text=True)
+    assert len(run.stdout.strip()) == 16 and run.stdout.strip() != identity.identity()

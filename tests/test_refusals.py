@@ -160,7 +160,7 @@ def test_bad_scene(scene_folder, capsys, name, command):
         (["run", "good.yaml", "--resume", "--overwrite"], ["--resume", "--overwrite", "exclude"]),
         (["run", "good.yaml", "-o", "old.h5"], ["old.h5", "exists", "--overwrite"]),
         (["run", "good.yaml", "-o", "half.h5"], ["half.h5.part", "in the way", "move it away"]),
-        (["run", "good.yaml", "-o", "good.yaml", "--overwrite"], ["good.yaml", "the scene itself"]),
+        (["run", "good.yaml", "-o", "good.yaml", "--overwrite"], ["good.yaml", "must not end in .yaml"]),
         (["run", "good.yaml", "-o", "none/new.h5"], ["none/new.h5", "no folder"]),
         (["run", "good.yaml", "-o", "."], [".", "is a folder"]),
         (["run", "good.yaml", "-o", "/proc/new.h5"], ["/proc/new.h5", "cannot write"]),

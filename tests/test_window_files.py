@@ -64,7 +64,7 @@ def test_a_run_that_is_interrupted_goes_on(few, file, tmp_path):  # noqa: F811
     with pytest.raises(KeyboardInterrupt):
         run_windows(few, tmp_path / "w.h5", progress=stop)
     assert not (tmp_path / "w.h5").exists()
-    with pytest.raises(vs.StoreError, match="is an interrupted run of windows"):
+    with pytest.raises(vs.StoreError, match="is a run of windows that is not complete"):
         vs.open(tmp_path / "w.h5.part")
     with pytest.raises(vs.StoreError, match="interrupted run; `resume` continues it"):
         run_windows(few, tmp_path / "w.h5")

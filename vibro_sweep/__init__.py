@@ -1,4 +1,4 @@
-"""Bifurcation sweeps of impact oscillators, with certified impacts and Lyapunov exponents.
+"""Bifurcation sweeps of linear oscillators that strike stops, with certified impacts and Lyapunov exponents.
 
 At a prompt
     System, Oscillator, grazing, simulate, lyapunov, discontinuity_map
@@ -15,7 +15,7 @@ Errors
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-__version__ = "0.1.0"
+__version__ = "0.2.0.dev0"
 
 __all__ = [
     "Oscillator",

@@ -87,7 +87,7 @@ def run(
     with input_errors(SceneError):
         of_branches = is_continuation_file(scene_file)
         scene = load_continuation(scene_file) if of_branches else load_scene(scene_file)
-    work.check_places(scene_file)
+    work.check_places(scene.inputs)
     bad = False
     if of_branches:
         compute_pieces(work, _follow(scene, output))
@@ -133,7 +133,7 @@ def windows_command(
     command = ("windows", str(file), *(("--along", along) if along else ()))
     work = Work(output, workers, scheduler, resume, overwrite, plot, quiet, command)
     work.announce()
-    work.check_places(file)
+    work.check_places([file])
     from .driver.windows import run_windows
 
     compute_pieces(work, partial(run_windows, file, output, along))

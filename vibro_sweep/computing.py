@@ -1,7 +1,7 @@
 """What commands that compute a file have in common: where it may go, how to continue it, progress, what is printed."""
 
 import shlex
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -52,13 +52,13 @@ class Work:
         # until the run has begun, what is to be overwritten is there, and would be taken for its result
         interrupt.tells(self.advice("--overwrite" if self.overwrite else "--resume"))
 
-    def check_places(self, source: Path) -> None:
-        """Raises InputError where something is in the way."""
+    def check_places(self, inputs: Collection[Path]) -> None:
+        """Raises InputError where something is in the way. inputs : files that are read, and must not be written."""
         from .places import check_output
         from .store import StoreError
 
         with input_errors(StoreError):
-            check_output(self.output, source, self.picture, self.mode)
+            check_output(self.output, inputs, self.picture, self.mode)
 
     @contextmanager
     def under_way(self, total: int, *errors: type[Exception]) -> Iterator[tuple]:

@@ -1,4 +1,4 @@
-"""What numbers depend on, in one word: equal identities give equal numbers on equal machines.
+"""What numbers depend on, in one word: equal identities give equal numbers.
 
 Files and workers are compared by it. The folder of compiled kernels is named by the engine's sources alone
 (engine/simd/jit.py), so that other edits compile nothing anew.
@@ -6,8 +6,13 @@ Files and workers are compared by it. The folder of compiled kernels is named by
 
 import functools
 import hashlib
+import platform
 from importlib.metadata import version
 from pathlib import Path
+
+from numba.core import config
+from numba.core.codegen import get_host_cpu_features
+from threadpoolctl import threadpool_info
 
 from vibro_sweep.engine.simd import jit
 
@@ -38,9 +43,29 @@ def sources() -> list[Path]:
 
 @functools.cache  # of the sources as they were imported
 def identity() -> str:
-    """A hash of the sources that numbers depend on, of the libraries that compute them and of how kernels compile."""
+    """A hash of the sources that numbers depend on, of the libraries that compute them and of how kernels compile.
+
+    The processor is part of it where last digits depend on it: a product and a sum are rounded once where it has fused
+    multiply-adds, twice elsewhere, and BLAS, which makes the tables of general oscillators, adds in another order.
+    """
     digest = hashlib.sha256()
     for path in sources():
         digest.update(path.relative_to(HOME).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
-    digest.update(repr([*(version(name) for name in LIBRARIES), jit.AS_ONE]).encode())
+    digest.update(
+        repr([*(version(name) for name in LIBRARIES), jit.AS_ONE, has_fused_multiply_add(), blas_kernels()]).encode()
+    )
     return digest.hexdigest()[:16]
+
+
+def has_fused_multiply_add() -> bool:
+    """Whether kernels are compiled with fused multiply-adds; what `NUMBA_CPU_FEATURES` says counts."""
+    if platform.machine().lower() in ("aarch64", "arm64"):
+        return True
+    features = get_host_cpu_features() if config.CPU_FEATURES is None else config.CPU_FEATURES
+    return "+fma" in features.split(",")
+
+
+def blas_kernels() -> list[str]:
+    """The processors that NumPy's BLAS computes for, as "Haswell"; the variable OPENBLAS_CORETYPE chooses another."""
+    found = threadpool_info()
+    return sorted({one["architecture"] for one in found if one["user_api"] == "blas" and "architecture" in one})

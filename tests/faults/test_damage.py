@@ -36,7 +36,7 @@ def test_a_flipped_bit(scene, path, whole, name, capsys):
     box = flip(path, name)
     with pytest.raises(OSError, match="read data"), h5py.File(path) as file:
         file[name][()]
-    with pytest.raises(StoreError, match=rf"damaged: {name} \(1 chunk\); `run --resume`"):
+    with pytest.raises(StoreError, match=rf"damaged: {name} \(1 chunk\); `--resume`"):
         vs.open(path)
     assert f"damaged      {name} (1 chunk)" in describe(path)
     if name != "lyapunov":  # which the picture of the section does not need
@@ -74,7 +74,7 @@ def test_a_damaged_file_of_other_code_is_left_alone(scene, path, monkeypatch):
     flip(path, "x1")
     before = path.read_bytes()
     monkeypatch.setattr("vibro_sweep.identity.identity", lambda: "0123456789abcdef")
-    with pytest.raises(StoreError, match="other code, 0123456789abcdef, or another numpy or numba; overwrite it"):
+    with pytest.raises(StoreError, match="other code, 0123456789abcdef, another numpy or numba, or a processor"):
         vs.run(scene, path, mode="resume")
     assert path.read_bytes() == before and os.listdir(path.parent) == [path.name]
 

@@ -34,7 +34,7 @@ def run_branches(
     """
     subject = Subject(BRANCHES, scene.name, scene.text, attributes_of(scene, source_of(scene)))
     ((key, bounds),) = scene.along.items()
-    with pieces(subject, Path(output), mode) as file:
+    with pieces(subject, Path(output), mode, scene.inputs) as file:
         if file.complete:
             return
         with workers_of(workers, executor) as pool:

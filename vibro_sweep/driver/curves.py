@@ -40,7 +40,7 @@ def run_curves(
     of_plane, more = plane_of(scene), {}
     subject = Subject(CHART, scene.name, scene.text, attributes_of(scene, source_of(scene)))
     names, box = tuple(scene.along), tuple(scene.along.values())
-    with pieces(subject, Path(output), mode) as file:
+    with pieces(subject, Path(output), mode, scene.inputs) as file:
         if file.complete:
             return
         with workers_of(workers, executor) as pool:

@@ -66,7 +66,7 @@ def run_windows(
     with store.contents(path) as data:
         rows = rows_in(data, key)
         subject = _subject(data, rows[0].parameter)
-    with pieces(subject, Path(output), mode) as file:
+    with pieces(subject, Path(output), mode, [Path(path)]) as file:
         if file.complete:
             return
         with workers_of(workers, executor) as pool:

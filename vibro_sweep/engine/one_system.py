@@ -112,6 +112,7 @@ class Engine:
     """
 
     def __init__(self, system, later: float = 0.0):
+        self._made_of = system, later
         self.point, self.kind = point_of_one(system, later)
         self.states = 2 * self.kind.masses
         self.is_system = isinstance(system, System)
@@ -128,6 +129,10 @@ class Engine:
         self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
         self.orbit = self.ensemble.orbits[:1]
         self.flight = Flight(*(table[0] for table in self.ensemble.flights))
+
+    def __reduce__(self):
+        """A copy is made anew: kernels need memory that begins at a cache line, and `orbit` is a part of `ensemble`."""
+        return Engine, self._made_of
 
     def _run(self, step: int, count: int, section: np.ndarray | None = None, **kept) -> None:
         """One step of `run_points` for so many orbits. section: (orbits, periods, 2 N), if states are kept there."""

@@ -27,6 +27,8 @@ class Column(NamedTuple):
     text: str  # `description`
     units: str = "1"
     flags: tuple[str, ...] = ()  # words of the codes 0, 1, ...
+    index_in: str = ""  # of an index: the dimension along which it counts
+    optional: bool = False  # of an index: whether it may be -1
 
 
 _TIME = "nondimensional"
@@ -50,10 +52,22 @@ OF_BRANCHES = (
         "1",
         BRANCH_STATUSES,
     ),
-    Column("branch_begins", ("branch",), "i4", "begin", "index of the special point that it begins at"),
-    Column("branch_ends", ("branch",), "i4", "end", "index of the special point that it ends at"),
-    Column("branch_origin", ("branch",), "i4", "origin", "index of the point that it was followed from"),
-    Column("branch_parent", ("branch",), "i4", "parent", "index of the branch from which it was reached"),
+    Column(
+        "branch_begins", ("branch",), "i4", "begin", "index of the special point that it begins at", index_in="special"
+    ),
+    Column("branch_ends", ("branch",), "i4", "end", "index of the special point that it ends at", index_in="special"),
+    Column(
+        "branch_origin", ("branch",), "i4", "origin", "index of the point that it was followed from", index_in="point"
+    ),
+    Column(
+        "branch_parent",
+        ("branch",),
+        "i4",
+        "parent",
+        "index of the branch from which it was reached",
+        index_in="branch",
+        optional=True,
+    ),
     Column(
         "branch_parent_special", ("branch",), "i4", "parent's point", "index of the special point it was reached at"
     ),
@@ -102,8 +116,10 @@ OF_BRANCHES = (
     Column(
         "special_value", ("special", "parameter"), "f8", "parameters", "the numbers `parameters` at the special point"
     ),
-    Column("special_branch", ("special",), "i4", "branch", "index of the branch that it lies on"),
-    Column("special_point", ("special",), "i4", "point", "index of the point that it is"),
+    Column("special_branch", ("special",), "i4", "branch", "index of the branch that it lies on", index_in="branch"),
+    Column(
+        "special_point", ("special",), "i4", "point", "index of the point that it is", index_in="point", optional=True
+    ),
     Column("special_stop", ("special",), "i1", "stop", "of a graze: +1 right, -1 left; 0: no graze"),
     Column("special_kind", ("special",), "i1", "kind", "of a graze", "1", KINDS),
     Column(
@@ -139,11 +155,11 @@ BRANCH_SECTIONS = Column(
 OF_WINDOWS = (
     Column("window_lo", ("window",), "f8", "lower end", "the parameter at the lower end"),
     Column("window_hi", ("window",), "f8", "upper end", "the parameter at the upper end"),
-    Column("window_lower", ("window",), "i4", "what ends it below", "index of the special point"),
-    Column("window_upper", ("window",), "i4", "what ends it above", "index of the special point"),
+    Column("window_lower", ("window",), "i4", "what ends it below", "index of the special point", index_in="special"),
+    Column("window_upper", ("window",), "i4", "what ends it above", "index of the special point", index_in="special"),
     Column("window_period", ("window",), "i4", "period in T", "in forcing periods"),
     Column("window_symmetric", ("window",), "i1", "symmetric", "whether the orbit is", "1", ("no", "yes")),
-    Column("window_branch", ("window",), "i4", "branch", "index of the branch between the two ends"),
+    Column("window_branch", ("window",), "i4", "branch", "index of the branch between the two ends", index_in="branch"),
     Column("window_row", ("window",), "i4", "row", "of a plane: index of the row along the parameter"),
     Column("window_orbits", ("window",), "i4", "orbits", "orbits of the sweep that lie in it"),
     Column("window_missed", ("window",), "i4", "missed", "orbits at its values that went to another attractor"),
@@ -153,6 +169,8 @@ OF_WINDOWS = (
         "i4",
         "window",
         "of each orbit of the sweep in the order of its file: index of its window",
+        index_in="window",
+        optional=True,
     ),
     Column(
         "orbit_reason", ("orbit",), "i1", "reason", "why an orbit of the sweep lies in no window", "1", tuple(REASONS)
@@ -160,7 +178,9 @@ OF_WINDOWS = (
 )
 
 UNSEEN = {  # of a stretch of a window on which the sweep shows other attractors only
-    "window": Column("unseen_window", ("unseen",), "i4", "window", "whose orbit is stable there: its index"),
+    "window": Column(
+        "unseen_window", ("unseen",), "i4", "window", "whose orbit is stable there: its index", index_in="window"
+    ),
     "lo": Column("unseen_lo", ("unseen",), "f8", "from", "the parameter where the sweep begins to miss the orbit"),
     "hi": Column("unseen_hi", ("unseen",), "f8", "to", "the parameter up to which the sweep misses the orbit"),
     "values": Column("unseen_values", ("unseen",), "i4", "values", "values of the sweep that show other attractors"),
@@ -214,7 +234,15 @@ OF_EDGES = (  # of curves that begin at the edges of a plane
     Column("edge_from", ("edge", "parameter"), "f8", "from", "the numbers `parameters` at one point of the sweep"),
     Column("edge_to", ("edge", "parameter"), "f8", "to", "at its neighbour, whose orbit has another period"),
     Column("edge_reason", ("edge",), "i1", "reason", "why the two differ", "1", tuple(EDGES)),
-    Column("edge_curve", ("edge",), "i4", "curve", "index of the curve that passes between them"),
+    Column(
+        "edge_curve",
+        ("edge",),
+        "i4",
+        "curve",
+        "index of the curve that passes between them",
+        index_in="branch",
+        optional=True,
+    ),
 )
 
 
@@ -230,3 +258,11 @@ def columns(kind: str, parameters: list[str], states: list[str]) -> list[Column]
         return [*own, *OF_BRANCHES, *OF_WINDOWS, *UNSEEN.values(), *starts]
     sections = [Column(f"section_{name}", ("section",), "f8", name, f"{name} at t = 0 mod T") for name in states]
     return [*own, *OF_BRANCHES, BRANCH_SECTIONS, *sections]
+
+
+RAGGED = {  # dimension -> (counts of each branch, what each of them counts for): one branch after another
+    "point": ("branch_row_size",),
+    "impact": ("branch_row_size", "branch_impacts"),
+    "special": ("branch_special",),
+    "section": ("branch_row_size", "branch_sections"),
+}

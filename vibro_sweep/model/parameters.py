@@ -173,8 +173,11 @@ class ParameterError(ValueError):
     """A parameter outside its range; carries `key`, `value` and `allowed`."""
 
     def __init__(self, key: str, value: object, allowed: str):
-        super().__init__(f"{key}: {value!r} is not allowed; it must be {allowed}")
+        super().__init__(key, value, allowed)
         self.key, self.value, self.allowed = key, value, allowed
+
+    def __str__(self):
+        return f"{self.key}: {self.value!r} is not allowed; it must be {self.allowed}"
 
 
 def range_of(parameter: Parameter, stops: str) -> Range:

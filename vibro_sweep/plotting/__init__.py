@@ -104,18 +104,17 @@ def plot(path, output=None, kind: str | None = None, overwrite: bool = False, lo
     output = Path(default_name(path)) if output is None else Path(output)
     if output.suffix.lower() not in SUFFIXES:
         raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
-    if output.resolve() == path.resolve():
-        raise PlotError(f"output {output}: that is the result file itself")
+    inputs = [path, *(Path(one) for one in (look.windows, look.over) if one is not None)] if look else [path]
     if flat_kind(path) is not None:
-        check_output(output, overwrite)
-        return [save(figure(path, kind, look), output, overwrite)]
+        check_output(output, overwrite, inputs)
+        return [save(figure(path, kind, look), output, overwrite, inputs)]
     with Result(path, look) as result:
         chosen = _chosen(result, kind)
         many = kind == "all"
         places = [output.with_stem(f"{output.stem}-{one}") if many else output for one in chosen]
         for place in places:  # before the work of drawing
-            check_output(place, overwrite)
-        return [save(_draw(result, one), place, overwrite) for one, place in zip(chosen, places, strict=True)]
+            check_output(place, overwrite, inputs)
+        return [save(_draw(result, one), place, overwrite, inputs) for one, place in zip(chosen, places, strict=True)]
 
 
 def _check_flat(path, of: str, kind: str | None, look: Look) -> None:

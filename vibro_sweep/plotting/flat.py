@@ -41,7 +41,7 @@ class FlatFile:
 def check_over(path: str | Path) -> None:
     """Raise PlotError for a file of branches, curves or windows, over which nothing can be drawn."""
     try:
-        with opened(Path(path), ()) as (file, _):
+        with opened(Path(path), (), content=False) as (file, _):
             kind = text(file, "kind") if is_flat(file) else None
     except StoreError as error:
         raise PlotError(str(error)) from error
@@ -54,7 +54,7 @@ def flat_kind(data) -> str | None:
     if not isinstance(data, (str, Path)):
         return None
     try:
-        with opened(Path(data), ()) as (file, _):
+        with opened(Path(data), (), content=False) as (file, _):
             kind = text(file, "kind") if is_flat(file) else None
     except StoreError:  # whoever draws it as a sweep says what is wrong
         return None

@@ -9,6 +9,7 @@ import io
 import re
 import secrets
 import zlib
+from collections.abc import Collection
 from pathlib import Path
 
 import matplotlib
@@ -24,9 +25,12 @@ _DIGEST = re.compile(rb"sha256:([0-9a-f]{64})")
 _END = 12  # bytes of the last chunk of a PNG file, which the seal comes before
 
 
-def save(fig: Figure, output: Path, overwrite: bool) -> Path:
-    """Write a picture. Raises PlotError for an output that exists and is not to be replaced, or cannot be written."""
-    old = _replaceable(output, overwrite)
+def save(fig: Figure, output: Path, overwrite: bool, inputs: Collection[Path]) -> Path:
+    """Write a picture. Raises PlotError for an output that exists and is not to be replaced, or cannot be written.
+
+    inputs : files from which it was drawn; none of them is replaced, by whatever name or link
+    """
+    old = _replaceable(output, overwrite, inputs)
     suffix = output.suffix.lower()
     picture = io.BytesIO()
     with matplotlib.rc_context(STYLE):  # some settings are looked up only when the picture is written
@@ -46,12 +50,15 @@ def save(fig: Figure, output: Path, overwrite: bool) -> Path:
     return output
 
 
-def check_output(output: Path, overwrite: bool) -> None:
+def check_output(output: Path, overwrite: bool, inputs: Collection[Path]) -> None:
     """Raise PlotError where `save` would, as far as it can be told before."""
-    _replaceable(output, overwrite)
+    _replaceable(output, overwrite, inputs)
 
 
-def _replaceable(output: Path, overwrite: bool) -> names.Stamp | None:
+def _replaceable(output: Path, overwrite: bool, inputs: Collection[Path]) -> names.Stamp | None:
+    for source in inputs:
+        if names.same_file(output, source):
+            raise PlotError(f"output {output}: that is {source}, which is read for it; name another file")
     if why := names.obstacle(output):
         raise PlotError(f"output {output} {why}")
     found = names.stamp(output)

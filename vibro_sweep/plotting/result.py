@@ -76,6 +76,9 @@ class Result:
                 raise PlotError(f"at: {key!r} is not swept; allowed: {', '.join(names) or 'nothing, it is one point'}")
             if np.ndim(value) or np.asarray(value).dtype.kind not in "fiu" or not np.isfinite(value):
                 raise PlotError(f"at: {key} = {value!r} is not allowed; it must be a finite number")
+            least, most = self.sweep[key].min(), self.sweep[key].max()
+            if not least <= value <= most:
+                raise PlotError(f"at: {key} = {value:g} is not allowed; the sweep has {key} from {least:g} to {most:g}")
         return {names.index(key): int(np.argmin(np.abs(self.sweep[key] - value))) for key, value in at.items()}
 
     def __enter__(self):

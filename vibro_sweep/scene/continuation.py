@@ -1,6 +1,6 @@
 """From a YAML text with `continue` to a `Continuation`: branches or curves to be followed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +47,13 @@ class Continuation:
     of: tuple[str, ...]
     follow: tuple[str, ...]
     depth: int
+    source: Path | None = None  # the file that it was read from
+
+    @property
+    def inputs(self) -> list[Path]:
+        """The files that its run must not write to: its own, and that in which its orbits are."""
+        given = [Path(self.begin)] if self.origin in _IN_FILES else []
+        return [*([self.source] if self.source else []), *given]
 
     def __str__(self) -> str:
         """What is followed, in a few lines."""
@@ -164,7 +171,7 @@ def _outside(system: AnyOscillator, key: str, value: float) -> list[str]:
 
 def load_continuation(path: str | Path) -> Continuation:
     """Read a scene of branches from a YAML file. Raises SceneError, OSError where the file cannot be read."""
-    return parse_continuation(*text_of(path))
+    return replace(parse_continuation(*text_of(path)), source=Path(path).absolute())
 
 
 def is_continuation_file(path: str | Path) -> bool:

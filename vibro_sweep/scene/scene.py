@@ -24,6 +24,8 @@ from .system import kind_of, sweep_of, system_of
 from .written import changed, data_of, yaml_of
 from .yaml_text import YAMLTextError, lines_of, read_yaml
 
+_ABOUT = ("name", "given", "source")  # fields that say nothing of what is computed
+
 
 @dataclass(frozen=True)
 class Section:
@@ -59,6 +61,7 @@ class Scene:
     observe: frozenset[str]
     trajectory: Trajectory | None
     picture: str | None = None  # kind that is drawn by default
+    source: Path | None = None  # the file that it was read from
 
     @cached_property
     def text(self) -> str:
@@ -81,14 +84,19 @@ class Scene:
 
         Raises SceneError for what is no scene.
         """
-        known = [field.name for field in fields(self) if field.name not in ("name", "given")]
+        known = [field.name for field in fields(self) if field.name not in _ABOUT]
         for key in changes:
             if key not in known:
                 raise SceneError(self.name, [f"{key}: unknown; allowed here: {', '.join(known)}"])
         data = data_of(self)
         if "sweep" in changes:  # what is swept no longer keeps its first value
             data["system"] = data_of(replace(self, sweep={}))["system"]
-        return scene_of(changed(data, changes), self.name)
+        return replace(scene_of(changed(data, changes), self.name), source=self.source)
+
+    @property
+    def inputs(self) -> list[Path]:
+        """The files that its run must not write to."""
+        return [self.source] if self.source else []
 
     @property
     def n_starts(self) -> int:
@@ -172,12 +180,12 @@ def load_scene(path: str | Path) -> Scene:
 
     Raises SceneError for what is wrong with it, OSError where the file cannot be read.
     """
-    return parse_scene(*text_of(path))
+    return replace(parse_scene(*text_of(path)), source=Path(path).absolute())
 
 
 def _equal(one: Scene, other: Scene) -> bool:
     """Whether two scenes say the same; their names and texts do not count."""
-    names = [field.name for field in fields(one) if field.name not in ("name", "given", "sweep")]
+    names = [field.name for field in fields(one) if field.name not in (*_ABOUT, "sweep")]
     return (
         all(getattr(one, name) == getattr(other, name) for name in names)
         and list(one.sweep) == list(other.sweep)

@@ -103,6 +103,17 @@ def hold(path: Path) -> HeldPart:
     return _held(path, os.O_RDWR)
 
 
+def is_held(path: Path) -> bool:
+    """Whether a run is writing this part now."""
+    try:
+        hold(path).close()
+    except BlockingIOError:
+        return True
+    except (OSError, PartError):
+        return False
+    return False
+
+
 def _held(path: Path, flags: int) -> HeldPart:
     while True:
         file = parts.open_regular(path, flags | getattr(os, "O_NOFOLLOW", 0))

@@ -67,3 +67,14 @@ def check_numbers(file: h5py.File) -> None:
     found = {name: text(file, name) for name in WORDS if name in file.attrs}
     if found.get("model") == "map":
         file.attrs["order"]  # without which nobody can tell what was iterated
+
+
+def check_dataset(file: h5py.File, name: str) -> None:
+    """Raise where it is missing, or leads to another place: links, virtual datasets, external storage."""
+    if not isinstance(file.get(name, getlink=True), h5py.HardLink):
+        raise KeyError(f"`{name}` is missing, or is a link")
+    dataset = file[name]
+    if not isinstance(dataset, h5py.Dataset):
+        raise ValueError(f"`{name}` is no dataset")
+    if dataset.is_virtual or dataset.external:
+        raise ValueError(f"the numbers of `{name}` are in another file")

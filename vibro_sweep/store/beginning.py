@@ -3,7 +3,7 @@
 import contextlib
 import json
 import shutil
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import h5py
@@ -30,12 +30,13 @@ from vibro_sweep.store.parts import FORMAT, Head, PartError
 from vibro_sweep.store.writing import Complete, Writer, said, unfinished
 
 MODES = ("new", "resume", "overwrite")
+NO_DATA = (".png", ".svg", ".pdf", ".yaml", ".yml")  # endings of other files of this program
 
 
 @contextlib.contextmanager
 def writer(scene: Scene, path: Path, mode: str) -> Iterator[Writer | Complete]:
     """The `Writer` of a scene's file; `mode` is "new", "resume" or "overwrite". Raises StoreError."""
-    part = check_places(path, mode)
+    part = check_places(path, mode, scene.inputs)
     with contextlib.ExitStack() as stack:
         try:
             if mode == "new" and names.stamp(path):
@@ -57,20 +58,33 @@ def writer(scene: Scene, path: Path, mode: str) -> Iterator[Writer | Complete]:
         yield result
 
 
-def check_places(path: Path, mode: str) -> Path:
-    """Raise StoreError where a run must not write, before anything is touched. Returns the name of the part."""
+def check_places(path: Path, mode: str, inputs: Collection[Path]) -> Path:
+    """Raise StoreError where a run must not write, before anything is touched. Returns the name of the part.
+
+    inputs : files that the run reads; none of them is written, by whatever name or link
+    """
     if mode not in MODES:
         raise StoreError(f"mode {mode!r}: must be one of {', '.join(map(repr, MODES))}")
+    if path.suffix.lower() in NO_DATA:
+        raise StoreError(f"output {path}: the name of a data file must not end in {path.suffix}")
     part = Path(f"{path}.part")
     for place in (path, part):
+        for source in inputs:
+            if names.same_file(place, source):
+                also = "" if place == path else f" (the run is kept in {part} until it is complete)"
+                raise StoreError(f"output {path}: this run reads {source}{also}; name another file")
         if why := names.obstacle(place):
             raise StoreError(f"{place} {why}")
+    if not path.parent.is_dir():
+        raise StoreError(f"output {path}: there is no folder {path.parent}")
     if names.stamp(part):
         try:
             _check_part(part, path, mode)
         except PartError as error:
             raise StoreError(f"{part} {error}") from None
     if mode == "new" and names.stamp(part):
+        if appending.is_held(part):
+            raise StoreError(f"{part} is being written by another run")
         raise StoreError(f"{part} is an interrupted run; `resume` continues it, `overwrite` replaces it")
     return part
 

@@ -38,6 +38,14 @@ def obstacle(path: Path) -> str | None:
     return None if stat.S_ISREG(mode) else "is a device, a pipe or a socket; it must be a file"
 
 
+def same_file(one: Path, other: Path) -> bool:
+    """Whether two names lead to one file, also through links; not where nothing stands at one of them."""
+    try:
+        return one.samefile(other)
+    except OSError:
+        return False
+
+
 def publish(new: Path, path: Path, old: Stamp | None) -> None:
     """Give a finished file its name, in the same folder and in one step; it may replace `old` and nothing else.
 

@@ -15,7 +15,8 @@ import numpy as np
 
 from vibro_sweep import __version__
 from vibro_sweep.store import heap, parts
-from vibro_sweep.store.attributes import check_numbers, text, texts
+from vibro_sweep.store.attributes import check_dataset, check_numbers, text, texts
+from vibro_sweep.store.flat_checks import damage_of
 from vibro_sweep.store.image import Index, frame_of
 from vibro_sweep.store.parts import FORMAT, PartError
 from vibro_sweep.store.sink import Sink, changing
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from vibro_sweep.scene import Scene
 
 IN_MEMORY = 2**26  # bytes of a part as HDF5; what is larger goes through a temporary file without a name
+REMEDY = "`--resume` computes that again"
 TEXTS = ("title", "history", "scene", "provenance")
 
 
@@ -50,20 +52,23 @@ class Opened(NamedTuple):
 
 
 @contextlib.contextmanager
-def opened(path: Path, names: Collection[str] | None = None) -> Iterator[Opened]:
-    """A file for reading, or what a part holds; of the part only the datasets in `names`. Raises StoreError."""
-    result = open_file(path, names)
+def opened(path: Path, names: Collection[str] | None = None, content: bool = True) -> Iterator[Opened]:
+    """A file for reading, or what a part holds; of the part only the datasets in `names`. Raises StoreError.
+
+    content : as of `checked`
+    """
+    result = open_file(path, names, content)
     with result.file:
         yield result
 
 
-def open_file(path: Path, names: Collection[str] | None = None) -> Opened:
+def open_file(path: Path, names: Collection[str] | None = None, content: bool = True) -> Opened:
     """As `opened`, for those who close it themselves."""
     try:
         with parts.open_regular(path) as raw:
             if parts.is_part(raw):
                 return _from_part(raw, path, names)
-            return Opened(checked(path, path, raw), 0)
+            return Opened(checked(path, path, raw, content), 0)
     except FileNotFoundError:
         raise MissingError(path) from None
     except PartError as error:
@@ -78,7 +83,11 @@ def _from_part(raw: BinaryIO, path: Path, names: Collection[str] | None) -> Open
         parts.copy_skeleton(raw, head, image)
         with checked(image, path, image) as file:
             if is_flat(file):
-                raise StoreError(f"{path} is an interrupted run of {text(file, 'kind')}; `--resume` continues it")
+                kind = text(file, "kind")
+                raise StoreError(
+                    f"{path} is a run of {kind} that is not complete; where it is not being written, `--resume` "
+                    "continues it"
+                )
             index = Index(raw, head, frame_of(file, quantities_of(file)))
         sink = Sink(image)
         with changing(sink) as file:
@@ -98,8 +107,11 @@ def skeleton(raw: BinaryIO, path: Path) -> h5py.File:
     return checked(image, path, image)
 
 
-def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO) -> h5py.File:
-    """A file, if it is one of ours; `raw` are its bytes. Raises StoreError."""
+def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO, content: bool = True) -> h5py.File:
+    """A file, if it is one of ours; `raw` are its bytes. Raises StoreError.
+
+    content : whether branches, windows and curves must hold what such files do; else they only say what they are
+    """
     try:
         result = h5py.File(source, "r")
     except OSError as error:
@@ -116,6 +128,8 @@ def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO) -> h5py.File:
             )
         _check_heap(result, raw)
         _check(result)
+        if content and is_flat(result) and (found := damage_of(result)):
+            raise StoreError(f"{path} is damaged: {found}; {REMEDY}")
         return result
     except StoreError:
         result.close()
@@ -148,7 +162,6 @@ def _check(file: h5py.File) -> None:
         raise ValueError("its provenance is no JSON object")
     check_numbers(file)
     if is_flat(file):
-        _check_flat(file)
         return
     axes = texts(file, "sweep_dimensions")
     for name in [*axes, *quantities_of(file)]:
@@ -176,28 +189,6 @@ def _check(file: h5py.File) -> None:
 def is_flat(file: h5py.File) -> bool:
     """Whether it holds branches or windows, and no sweep."""
     return "kind" in file.attrs
-
-
-def _check_flat(file: h5py.File) -> None:
-    """As `_check`, of a file of branches or windows; a run that has not ended has no datasets."""
-    for name in quantities_of(file) if "status" in file else []:
-        check_dataset(file, name)
-        if file[name].dtype.kind not in "if":
-            raise ValueError(f"`{name}` holds no numbers")
-        for axis, extent in zip(dimensions_of(file, name), file[name].shape, strict=True):
-            if file[axis].shape != (extent,):
-                raise ValueError(f"its datasets do not fit together: `{name}` and its dimension `{axis}`")
-
-
-def check_dataset(file: h5py.File, name: str) -> None:
-    """Raise where it is missing, or leads to another place: links, virtual datasets, external storage."""
-    if not isinstance(file.get(name, getlink=True), h5py.HardLink):
-        raise KeyError(f"`{name}` is missing, or is a link")
-    dataset = file[name]
-    if not isinstance(dataset, h5py.Dataset):
-        raise ValueError(f"`{name}` is no dataset")
-    if dataset.is_virtual or dataset.external:
-        raise ValueError(f"the numbers of `{name}` are in another file")
 
 
 def dimensions_of(file: h5py.File, name: str) -> list[str]:
@@ -265,7 +256,7 @@ def check_version(file: h5py.File, path: Path) -> None:
     if old.get("code") != code:
         raise StoreError(
             f"{begun}, code {old.get('code')}, and this is vibro_sweep {__version__} with other code, {code}, "
-            "or another numpy or numba; overwrite it"
+            "another numpy or numba, or a processor that rounds otherwise (README, Tested); overwrite it"
         )
 
 

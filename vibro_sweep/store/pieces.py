@@ -6,7 +6,7 @@ A piece is what one worker returns: arrays by name, kept under a key. The file i
 import contextlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from vibro_sweep.store import appending, names, parts
 from vibro_sweep.store.appending import HeldPart
 from vibro_sweep.store.attributes import text
 from vibro_sweep.store.beginning import check_places
+from vibro_sweep.store.flat_checks import damage_of
 from vibro_sweep.store.flat_files import Subject, image_of
 from vibro_sweep.store.opening import StoreError, check_version, made_by, opened, skeleton
 from vibro_sweep.store.parts import PartError, Scan
@@ -79,13 +80,21 @@ class Made:
 
 
 @contextlib.contextmanager
-def pieces(subject: Subject, path: Path, mode: str) -> Iterator[Pieces | Made]:
-    """A run of a subject into `path`; `mode` is "new", "resume" or "overwrite". Raises StoreError."""
-    part = check_places(path, mode)
+def pieces(subject: Subject, path: Path, mode: str, inputs: Collection[Path]) -> Iterator[Pieces | Made]:
+    """A run of a subject into `path`; `mode` is "new", "resume" or "overwrite". Raises StoreError.
+
+    inputs : files that the run reads, which it must not write
+    """
+    part = check_places(path, mode, inputs)
+    replaces = names.stamp(path) if mode == "overwrite" else None
     if mode != "overwrite" and names.stamp(path) and not names.stamp(part):
-        _check_made(subject, path)
-        yield Made()
-        return
+        damage = _damage_of_made(subject, path)
+        if not damage:
+            yield Made()
+            return
+        if mode == "new":
+            raise StoreError(f"{path} exists, and is damaged: {damage}; `resume` computes it again")
+        replaces = names.stamp(path)
     try:
         held = appending.hold(part) if names.stamp(part) else appending.make(part)
     except (BlockingIOError, FileExistsError):
@@ -96,7 +105,7 @@ def pieces(subject: Subject, path: Path, mode: str) -> Iterator[Pieces | Made]:
                 known = _continued(held, subject, path)
             else:
                 known = {}
-                _begin(held, subject, names.stamp(path) if mode == "overwrite" else None)
+                _begin(held, subject, replaces)
         except PartError as error:
             raise StoreError(f"{part} {error}") from None
         yield Pieces(held, path, subject, known)
@@ -134,11 +143,13 @@ def _arrays(file, record: parts.Record) -> Arrays:
     return result
 
 
-def _check_made(subject: Subject, path: Path) -> None:
+def _damage_of_made(subject: Subject, path: Path) -> str:
+    """What is damaged in a file that exists already, in words. Raises StoreError where it is of another subject."""
     try:
-        with opened(path) as (file, _):
+        with opened(path, content=False) as (file, _):
             _check_subject(file, subject, path)
             check_version(file, path)
+            return damage_of(file)
     except StoreError as error:
         raise StoreError(f"{path} exists, and is not what this makes; `overwrite` replaces it\n{error}") from None
 

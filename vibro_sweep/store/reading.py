@@ -17,15 +17,15 @@ from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STANDING, meanin
 from vibro_sweep.store import checks
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.attributes import text, texts
+from vibro_sweep.store.flat_checks import damage_of
 from vibro_sweep.store.flat_tables import curves_table, special_table, windows_table
-from vibro_sweep.store.opening import StoreError, blocks_lost, is_flat, open_file, opened, quantities_of
+from vibro_sweep.store.opening import REMEDY, StoreError, blocks_lost, is_flat, open_file, opened, quantities_of
 
 if TYPE_CHECKING:
     import xarray
 
 # what `describe` reads
 ACCURACY = ("status", "lyapunov", "lyapunov_error", "lyapunov_residual", "contact_error", "min_impact_speed")
-REMEDY = "`run --resume` computes that again"
 
 
 class Description(NamedTuple):
@@ -70,6 +70,8 @@ def _whole(path: str | Path, made: Callable[[h5py.File], Any]) -> Any:
 
 def _damage(file: h5py.File, lost: int) -> str:
     """What is damaged, in words; of a part, blocks."""
+    if is_flat(file):
+        return damage_of(file)
     return blocks_lost(lost) if lost else checks.summary(checks.damaged(file))
 
 
@@ -87,7 +89,7 @@ def tables(path: str | Path) -> list[str]:
 def examine(path: str | Path) -> Description:
     """As `describe`, and whether the file is damaged."""
     path = Path(path)
-    with opened(path, ACCURACY) as (file, lost):
+    with opened(path, ACCURACY, content=False) as (file, lost):
         try:
             return _examined(file, path, lost)
         except (OSError, RuntimeError, ValueError, KeyError, TypeError) as error:
@@ -98,7 +100,7 @@ def _examined(file: h5py.File, path: Path, lost: int) -> Description:
     lines = [f"{path}: {text(file, 'title')}"]
     found = _damage(file, lost)
     if is_flat(file):
-        lines += [f"damaged      {found}"] if found else [*_tables(file), "checksums    all hold"]
+        lines += [f"damaged      {found}; {REMEDY}"] if found else [*_tables(file), "checksums    all hold"]
         return Description("\n".join([*lines, *_made_by(file)]), bool(found))
     for name in texts(file, "sweep_dimensions"):
         lines.append(f"  {name:<10} {_ends(file[name])}({len(file[name]):,} values)")

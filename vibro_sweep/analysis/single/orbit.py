@@ -29,18 +29,26 @@ MAX_RECORD = 10**7 * 5 // 4  # of these with all section points in memory: 400 M
 
 
 class Status(str):
-    """The name of an outcome ("ok", ...), with its `code` and a `note`."""
+    """The name of an outcome ("ok", ...), with its `code` and a `note`; `chatters`: sequences that were summed up."""
 
     code: int
-    note: str
+    chatters: int
 
     def __new__(cls, code: int, chatters: int) -> Status:
         status_name = super().__new__(cls, status.meaning(code))
-        status_name.code = code
-        status_name.note = (
-            f"{chatters} chatter sequences end in a closed-form sum of impacts that are not listed" if chatters else ""
-        )
+        status_name.code, status_name.chatters = code, chatters
         return status_name
+
+    def __getnewargs__(self) -> tuple[int, int]:
+        """What a copy is made of."""
+        return self.code, self.chatters
+
+    @property
+    def note(self) -> str:
+        """How many chatter sequences ended in a closed-form sum."""
+        if not self.chatters:
+            return ""
+        return f"{self.chatters} chatter sequences end in a closed-form sum of impacts that are not listed"
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -1,0 +1,170 @@
+"""No output is a file that the run reads, by any name or link; a damaged file does not count as complete."""
+
+import os
+import re
+from pathlib import Path
+
+import h5py
+import pytest
+
+import vibro_sweep as vs
+from vibro_sweep.cli import main
+from vibro_sweep.driver.branches import run_branches
+from vibro_sweep.driver.windows import run_windows
+from vibro_sweep.scene import load_continuation
+
+SYSTEM = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}\n"
+SWEEP = (
+    SYSTEM
+    + """
+sweep: {b: {values: [0.39, 0.4, 0.41]}}
+orbit: {transient: 300, record: 20}
+observe: [section]
+"""
+)
+ALONG = "  along: {b: {start: 0.38, stop: 0.415}}\n  depth: 0\n"
+FROM_SWEEP = f"{SYSTEM}continue:\n  from: {{sweep: s.h5}}\n{ALONG}"
+FROM_BRANCHES = f"{SYSTEM}continue:\n  from: {{branches: br.h5, special: 0}}\n{ALONG}"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("made")
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        Path("s.yaml").write_text(SWEEP)
+        Path("br.yaml").write_text(FROM_SWEEP)
+        vs.run(vs.load_scene("s.yaml"), "s.h5")
+        run_branches(load_continuation("br.yaml"), "br.h5")
+        run_windows("s.h5", "w.h5")
+    finally:
+        os.chdir(before)
+    return folder
+
+
+@pytest.fixture
+def folder(made, tmp_path, monkeypatch):
+    for path in made.iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    monkeypatch.chdir(tmp_path)
+    Path("more.yaml").write_text(FROM_BRANCHES)
+    os.link("s.h5", "hard.h5")
+    os.link("br.h5", "again.h5")
+    os.link("s.yaml", "scene.h5")
+    Path("deep").mkdir()
+    return tmp_path
+
+
+def contents(folder) -> dict[str, bytes]:
+    return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "run br.yaml -o s.h5 --overwrite",
+        "run br.yaml -o hard.h5 --overwrite",
+        "run br.yaml -o deep/../s.h5 --overwrite",
+        "run more.yaml -o br.h5 --overwrite",
+        "run more.yaml -o again.h5 --resume",
+        "run s.yaml -o scene.h5 --overwrite",
+        "run scene.h5 -o s.yaml --overwrite",
+        "windows s.h5 -o s.h5 --overwrite",
+        "windows s.h5 -o hard.h5 --overwrite",
+        "run br.yaml -o nowhere/x.h5",
+    ],
+)
+def test_a_command_leaves_its_inputs_alone(folder, capsys, command):
+    before = contents(folder)
+    assert main(command.split()) == 2
+    error = capsys.readouterr().err
+    assert command.split()[3] in error and "Traceback" not in error
+    assert contents(folder) == before
+
+
+def test_python_leaves_its_inputs_alone(folder):
+    before = contents(folder)
+    scene, branches = vs.load_scene("s.yaml"), load_continuation("br.yaml")
+    for one in (scene, scene.replace(record=30)):
+        for output in ("s.yaml", "scene.h5"):
+            with pytest.raises(vs.StoreError, match=re.escape(output)):
+                vs.run(one, output, mode="overwrite")
+    with pytest.raises(vs.StoreError, match=r"this run reads s\.h5"):
+        run_branches(branches, "hard.h5", mode="overwrite")
+    with pytest.raises(vs.StoreError, match=r"this run reads s\.h5"):
+        run_windows("s.h5", "hard.h5", mode="overwrite")
+    assert contents(folder) == before
+
+
+def test_a_picture_replaces_nothing_that_it_shows(folder, capsys):
+    for name in ("s.h5", "w.h5"):
+        os.link(name, f"{name}.png")
+    before = contents(folder)
+    for output in ("s.h5.png", "w.h5.png"):
+        assert main(["plot", "s.h5", "--windows", "w.h5", "-o", output, "--overwrite"]) == 2
+        assert output in capsys.readouterr().err
+    assert contents(folder) == before
+
+
+@pytest.mark.parametrize(
+    "name, dataset, command",
+    [
+        ("w.h5", "window_lo", "windows s.h5"),
+        ("w.h5", "window_lower", "windows s.h5"),
+        ("br.h5", "b", "run br.yaml"),
+        ("br.h5", "branch_ends", "run br.yaml"),
+    ],
+)
+def test_a_damaged_file_is_not_complete_and_resume_mends_it(folder, capsys, name, dataset, command):
+    whole = numbers(name)
+    flip(name, dataset)
+    with pytest.raises(vs.StoreError, match=f"{name} is damaged: `{dataset}`.*--resume"):
+        vs.open(name)
+    for reader in (f"info {name}", f"plot {name}" if name == "br.h5" else f"plot s.h5 --windows {name}"):
+        assert main(reader.split()) == 2
+        said = capsys.readouterr()
+        assert dataset in said.out + said.err and name in said.out + said.err
+    assert main([*command.split(), "-o", name]) == 2
+    assert dataset in capsys.readouterr().err
+    assert main([*command.split(), "-o", name, "--resume", "--quiet"]) == 0
+    assert numbers(name) == whole
+
+
+@pytest.mark.parametrize(
+    "name, edit",
+    [
+        ("br.h5", lambda file: file.__delitem__("unstable")),
+        ("br.h5", lambda file: file["special_point"].__setitem__(0, 10**6)),
+        ("br.h5", lambda file: file["special_type"].__setitem__(0, 99)),
+        ("br.h5", lambda file: file["branch_row_size"].__setitem__(0, 1)),
+        ("w.h5", lambda file: file["window_lower"].__setitem__(0, 10**6)),
+        ("w.h5", lambda file: file["orbit_reason"].__setitem__(0, -1)),
+        ("w.h5", lambda file: file.__delitem__("window_symmetric")),
+    ],
+)
+def test_an_edited_file_is_refused(folder, capsys, name, edit):
+    with h5py.File(name, "r+") as file:
+        edit(file)
+    for reader in (f"info {name}", f"plot {name}" if name == "br.h5" else f"plot s.h5 --windows {name}"):
+        assert main(reader.split()) == 2
+        said = capsys.readouterr()
+        assert "damaged" in said.out + said.err and name in said.out + said.err
+    with pytest.raises(vs.StoreError, match="damaged"):
+        vs.open(name)
+
+
+def numbers(path) -> dict[str, bytes]:
+    with h5py.File(path) as data:
+        return {name: data[name][()].tobytes() for name in data}
+
+
+def flip(path, dataset) -> None:
+    """One bit of the first chunk."""
+    with h5py.File(path) as file:
+        chunk = file[dataset].id.get_chunk_info(0)
+    with open(path, "r+b") as file:
+        file.seek(chunk.byte_offset + chunk.size // 2)
+        byte = file.read(1)[0]
+        file.seek(-1, 1)
+        file.write(bytes([byte ^ 4]))
