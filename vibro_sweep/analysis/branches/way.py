@@ -14,7 +14,7 @@ from vibro_sweep.analysis.branches.locating import Event
 from vibro_sweep.analysis.branches.looking import hidden_between, touches
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, over_birth, own_birth
 from vibro_sweep.analysis.branches.response import longest_step
-from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, is_free
+from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
 from vibro_sweep.analysis.branches.track import Rows, Track, join
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
@@ -257,9 +257,13 @@ class Way:
         if event.type != "graze":
             return self._at(event.type, point, error)
         index = event.index
-        if index is not None and is_free(point.solution):
-            index = orbit_of(None, point.solution)._canonical_frame[0] % point.solution.K
-        graze = graze_at(point.solution, self.walk.name, index)
+        if index is not None:  # of those that vanish at once the first
+            first = orbit_of(None, point.solution)._canonical_frame[0]
+            index = min(vanishing(point.solution, index).tolist(), key=lambda i: (i - first) % point.solution.K)
+        try:
+            graze = graze_at(point.solution, self.walk.name, index)
+        except np.linalg.LinAlgError:  # a fold of the orbits without the impact as well: no slopes
+            return self._at("failed", point, error)
         side = graze.touching.sides[graze.index]
         slope = abs(graze.distance_slope)
         if slope > 0:
