@@ -58,7 +58,7 @@ def locate(walk: Walk, event: Event, a: Point, b: Point, length: float):
     return _at_zero(walk, event, a, b, length)
 
 
-def _rounding(point: Point, normal: np.ndarray) -> float:
+def rounding(point: Point, normal: np.ndarray) -> float:
     """What rounding of the gap does to the parameter of a point that was found on the plane with this normal."""
     return float(16 * np.finfo(float).eps * (abs(point.p) + point.sensitivity(normal)))
 
@@ -79,7 +79,7 @@ def _at_value(walk: Walk, unknown: tuple[int, float], a: Point, b: Point) -> tup
     guess, normal = _between(a, b, before / (before - behind)), np.zeros(len(a.x))
     guess[index], normal[index] = value, 1.0
     point = walk.correct(guess, normal, a.tangent)
-    return None if point is None else (point, _rounding(point, normal))
+    return None if point is None else (point, rounding(point, normal))
 
 
 def _at_touch(walk: Walk, a: Point, b: Point) -> tuple[Point, float] | None:
@@ -98,7 +98,7 @@ def _at_touch(walk: Walk, a: Point, b: Point) -> tuple[Point, float] | None:
     point = walk.correct(np.delete(found.x, [new[0], new[1] + 1]), a.tangent, a.tangent)
     if point is None or abs(point.solution.margin) > branch.PASSED * point.solution.size_of_gap:
         return None
-    return point, _rounding(found, normal)
+    return point, rounding(found, normal)
 
 
 class _Seen(NamedTuple):
@@ -120,11 +120,11 @@ def _at_zero(walk: Walk, event: Event, a: Point, b: Point, length: float):
     near = min(beside, key=lambda one: abs(one.s - s), default=found)
     slope = abs((near.test - found.test) / (near.s - s)) if near is not found else 0.0
     again = walk.step(b, float((point.x - b.x) @ b.tangent), point.x)
-    rounding, apart = _rounding(point, point.tangent), math.nan
+    rounded, apart = rounding(point, point.tangent), math.nan
     if again is not None and slope > 0:
         missed = event.test(again) / slope * point.tangent[-1] * walk.scale[-1]
         apart = abs(again.p - point.p) + abs(missed)
-    error = rounding if apart <= rounding else rounding + 4 * (apart - rounding)
+    error = rounded if apart <= rounded else rounded + 4 * (apart - rounded)
     return event, abs(s) if length > 0 else s, point, float(error)
 
 

@@ -4,13 +4,22 @@ What tells the two halves of its orbits apart changes its sign as a whole, and t
 pitchfork. On the branch itself that point is singular, so it is located on the parent's.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
+from vibro_sweep.analysis.branches.crossings import counts_of
 from vibro_sweep.analysis.branches.events import reflection_test
-from vibro_sweep.analysis.branches.locating import Event, locate
+from vibro_sweep.analysis.branches.locating import Event, locate, rounding
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses.checks import ON_SQUARE
 from vibro_sweep.model.linear import family_of
+
+BEFORE = 0.02, 0.1, 0.4  # of the way to a birth, beside which a multiplier is 1 to rounding
+NEAR = 0.1  # in scaled units: a birth that rounding beside it may hide
+LANDS = 0.3  # of what tells the halves apart before a step, at its end
+APART = 4.0  # times its rounding: so far a point lies from a birth at least, to be told from it
 
 
 def own_birth(walk: Walk, system, a: Point, b: Point, length: float):
@@ -27,6 +36,54 @@ def own_birth(walk: Walk, system, a: Point, b: Point, length: float):
         if found is not None:
             return fraction * length, *found
     return None
+
+
+def before_birth(walk: Walk, a: Point, distance: float, parent: Point) -> Point | None:
+    """A point on the way to a birth at which fewer multipliers are 1; None where a is too near to the birth.
+
+    Beside the birth rounding moves a point along its branch. The tangent turns with the multipliers above 1: where it
+    does not, its sign is rounding.
+    """
+    most = _ones(parent.solution.multipliers**2) - 1
+    for share in BEFORE:
+        point = walk.step(a, (1 - share) * distance)
+        if point is None or abs(point.p - parent.p) < APART * rounding(point, point.tangent):
+            continue
+        if _ones(point.solution.multipliers) <= most:
+            turned = (counts_of(point).above - counts_of(a).above) % 2 == 1
+            if turned == (a.tangent[-1] * point.tangent[-1] < 0):
+                return point
+    return None
+
+
+def over_birth(walk: Walk, system, a: Point) -> tuple[Point, Point] | None:
+    """The point beyond the birth to which a leads, and the parent; None where it leads to none within `NEAR`."""
+    ahead = replace(a.solution, u=a.solution.u + a.tangent[:-1] * walk.scale[:-1])
+    for sigma in (1, -1):
+        here, there = (halves_apart(solution, sigma) for solution in (a.solution, ahead))
+        if here is None or not here @ (there - here) < 0:
+            continue
+        distance = float(here @ here / (here @ (here - there)))
+        b = walk.step(a, 2 * distance) if distance < NEAR else None
+        birth = None if b is None else own_birth(walk, system, a, b, 2 * distance)
+        if birth is not None:
+            return b, birth[2]
+    return None
+
+
+def lands_on_birth(walk: Walk, system, a: Point, b: Point) -> Point | None:
+    """The point beyond the birth to which a leads, where rounding does not tell b from the birth."""
+    for sigma in (1, -1):
+        parts = [halves_apart(point.solution, sigma) for point in (a, b)]
+        if parts[0] is not None and np.linalg.norm(parts[1]) < LANDS * np.linalg.norm(parts[0]):
+            over = over_birth(walk, system, a)
+            if over is not None and abs(b.p - over[1].p) < APART * rounding(b, b.tangent):
+                return over[0]
+    return None
+
+
+def _ones(multipliers: np.ndarray) -> int:
+    return int(np.sum(np.abs(multipliers - 1) < ON_SQUARE))
 
 
 def _on_parent(walk: Walk, system, x: np.ndarray, sigma: int):

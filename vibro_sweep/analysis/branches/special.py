@@ -71,6 +71,7 @@ class Graze:
 
 
 NO_SPEED = 1e-9  # impulse, relative to omega times the gap, of an impact that is none
+AT_ONCE = 1e-11  # the same, of impacts that vanish with another one, for all that rounding does
 
 
 def is_free(solution: Solution) -> bool:
@@ -78,10 +79,19 @@ def is_free(solution: Solution) -> bool:
     return bool(np.all(solution.pushes < NO_SPEED * solution.family.linear.omega * solution.size_of_gap))
 
 
+def vanishing(solution: Solution, impact: int) -> np.ndarray:
+    """Indices of the impacts that vanish with `impact`: all where the free motion grazes, and where a simpler orbit
+    does its repetitions."""
+    if is_free(solution):
+        return np.arange(solution.K)
+    slow = AT_ONCE * solution.family.linear.omega * solution.size_of_gap
+    return np.union1d(np.flatnonzero(solution.pushes < slow), [impact])
+
+
 def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
     """Unfold a graze: `impact` vanishes, or (None) the turning point nearest to its stop becomes an impact.
 
-    Where the free motion grazes, no impact has a speed, and all vanish together.
+    Raises LinAlgError where the orbit without the impact is at a fold.
     """
     rests = np.array(solution.rests, int)
     if impact is None:
@@ -89,10 +99,10 @@ def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
         side, gone = touching.sides[index], np.array([index])
     else:
         index, side = impact, solution.sides[impact]
-        gone = np.arange(solution.K) if is_free(solution) else np.array([impact])
+        gone = vanishing(solution, impact)
         sides = tuple(np.delete(solution.sides, gone).tolist())
         u = np.delete(solution.u, [*gone, *(solution.K + gone)])
-        without, touching = _with(solution, sides, u, rests - (rests > impact)), solution
+        without, touching = _with(solution, sides, u, rests - np.searchsorted(gone, rests)), solution
     q, slope = solution.family.linear, solution.family.derivative(name)
     e = equations_for(touching, q, slope)
     du = slopes(e, touching)
@@ -137,7 +147,9 @@ def _with(solution: Solution, sides, u, rests) -> Solution:
 
 
 def slopes(e: Equations, solution: Solution) -> np.ndarray:
-    """du/dp of an orbit that is not at a fold."""
+    """du/dp of an orbit that is not at a fold. Without impacts a free mode may stand anywhere: it stays."""
+    if solution.K == 0 and e.free:
+        return np.zeros(solution.size)
     if solution.size == 0:
         return np.zeros(0)
     if not solution.rests and long_orbits.is_sparse(e, solution.sides):

@@ -128,22 +128,19 @@ class Track:
 
     def point(self, place: Place) -> Point | None:
         """The same point, corrected with the walk's own equations."""
-        tangent = np.concatenate([place.tangent_t, place.tangent_jump])
-        return self._corrected(place.t, place.D, float(place.numbers[places.P]), tangent, place.numbers[places.TANGENT])
+        return self._corrected(place.t, place.D, float(place.numbers[places.P]), place)
 
-    def point_of(self, rows: Rows, near: Point) -> Point | None:
-        """The last of recorded points; `near`: a point of the branch behind it."""
-        K, scale = len(self.sides), self.walk.scale
-        tangent = near.tangent * scale
-        return self._corrected(rows.t[-1], rows.D[-1], float(rows.p[-1]), tangent[: 2 * K], tangent[-1])
+    def point_of(self, rows: Rows) -> Point | None:
+        """The last of recorded points, which lies before the place a."""
+        return self._corrected(rows.t[-1], rows.D[-1], float(rows.p[-1]), self.a)
 
-    def _corrected(self, t, D, p: float, tangent: np.ndarray, tangent_p: float) -> Point | None:
+    def _corrected(self, t, D, p: float, along: Place) -> Point | None:
         w, K = self.walk, len(self.sides)
-        u = np.concatenate([t, D])
+        u, tangent = np.concatenate([t, D]), np.concatenate([along.tangent_t, along.tangent_jump])
         if w.start.equations.free:
             e = w.equations(p)
             u, tangent = np.append(u, 0.0), np.append(tangent, 0.0)
             u[-1] = -np.mean(e.evaluate(w.start.sides, u)[0][:K])
         x = np.append(u, p) / w.scale
-        direction = np.append(tangent, tangent_p) / w.scale
+        direction = np.append(tangent, along.numbers[places.TANGENT]) / w.scale
         return w.correct(x, direction, direction)

@@ -8,19 +8,18 @@ import numpy as np
 
 from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.births import criticality, doubled
-from vibro_sweep.analysis.branches.crossings import counts_of, is_torus
+from vibro_sweep.analysis.branches.crossings import is_torus
 from vibro_sweep.analysis.branches.events import bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.locating import Event
 from vibro_sweep.analysis.branches.looking import hidden_between, touches
-from vibro_sweep.analysis.branches.own_birth import own_birth
+from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, over_birth, own_birth
 from vibro_sweep.analysis.branches.response import longest_step
-from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, is_free
+from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
 from vibro_sweep.analysis.branches.track import Rows, Track, join
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import branch, places
-from vibro_sweep.engine.impulses.checks import ON_SQUARE
 
 # The first step is not AMPLITUDE of births.py: from an orbit that was just born it would end at the birth itself, where
 # the branch has no tangent, and pass it unseen.
@@ -28,7 +27,7 @@ FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 6e-4, 0.05, 1e-11
 STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
 MOST_POINTS = 20_000
 BEFORE = 1e-8  # share of the way to a graze
-BEFORE_BIRTH = 0.02, 0.1, 0.4  # the same to the birth of a doubled orbit, where a multiplier must not be 1 to rounding
+BACK = 16  # points, at most, to one that lies before what rounding does beside a birth
 DIVISIONS = 60  # of a step in which more happens than its tests tell, in all
 
 
@@ -84,11 +83,13 @@ class Way:
                 self._step(a, passed)
                 return
             if reason == branch.FAILED or a is None or b is None:
+                if self._over_birth(track):
+                    return
                 break
             if reason == branch.CLOSED:
                 self._close()
                 return
-            before = self._point_before(track, a) if reason == branch.TOUCH else None
+            before = self._point_before(track) if reason == branch.TOUCH else None
             if before is not None and self._again(before, a, b):
                 return
             if self._pass(a, b, float((b.x - a.x) @ a.tangent), beside=(before, None)):
@@ -120,17 +121,31 @@ class Way:
             self._tell(passed, a.p)
         self.special.append(self._at("failed", a, math.nan))
 
-    def _point_before(self, track: Track, a: Point) -> Point | None:
-        """The last point of the branch before a."""
+    def _point_before(self, track: Track) -> Point | None:
+        """The last point of the branch before the place a."""
         if self._passed is not None:
             return self._passed[0]
-        last = next(rows for rows in reversed(self._without_last()) if len(rows.p))
-        return track.point_of(last, a)
+        last = next((rows for rows in reversed(self._without_last()) if len(rows.p)), None)
+        return None if last is None else track.point_of(last)
+
+    def _over_birth(self, track: Track) -> bool:
+        """Pass a birth beside which rounding leaves no points, from one of the last points. False: there is none."""
+        last = self.rows[-1]
+        for count in range(len(last.p), max(0, len(last.p) - BACK), -1) if self._passed is None else ():
+            rows = Rows(*(values[:count] for values in last))
+            a = track.point_of(rows)
+            over = None if a is None else over_birth(self.walk, self.system, a)
+            if over is not None:
+                self.rows[-1] = rows
+                return self._pass(a, over[0], float((over[0].x - a.x) @ a.tangent))
+        a = self._passed[0] if self._passed else None
+        over = None if a is None else over_birth(self.walk, self.system, a)
+        return over is not None and self._again(a, over[0], None)
 
     def _without_last(self) -> list[Rows]:
         return [*self.rows[:-1], Rows(*(values[:-1] for values in self.rows[-1]))]
 
-    def _again(self, before: Point, a: Point, b: Point) -> bool:
+    def _again(self, before: Point, a: Point, b: Point | None) -> bool:
         """Pass the step from `before` to a once more, knowing b behind it. True where the branch ends there."""
         if self._passed is None:
             self.rows = self._without_last()
@@ -167,6 +182,9 @@ class Way:
         """
         self._passed = a, len(self.rows), len(self.special)
         self._divisions = DIVISIONS
+        over = lands_on_birth(self.walk, self.system, a, b)
+        if over is not None:
+            b, length, beside = over, float((over.x - a.x) @ a.tangent), (beside[0], None)
         return self._divide(a, b, length, beside)
 
     def _divide(self, a: Point, b: Point, length: float, beside) -> bool:
@@ -177,11 +195,10 @@ class Way:
             self.special.append(self._at("failed", a, math.nan))
             return True
         last, reach = (end[2], end[1]) if end else (b, length)
-        turns = a.tangent[-1] * last.tangent[-1] < 0
-        birth = own_birth(self.walk, self.system, a, last, reach) if turns else None
+        birth = own_birth(self.walk, self.system, a, last, reach)
         before = None
         if birth:
-            before = self._before_birth(a, birth[0], birth[2])
+            before = before_birth(self.walk, a, birth[0], birth[2])
         elif end and end[0].type == "graze" and end[0].index is not None:
             before = self.walk.step(a, (1 - BEFORE) * reach, last.x)
         found = [] if birth else bifurcations(self.walk, a, last, reach)
@@ -207,20 +224,6 @@ class Way:
         if end:
             self.special.append(self._end(end[0], last, end[3]))
         return end is not None
-
-    def _before_birth(self, a: Point, distance: float, parent: Point) -> Point | None:
-        """A point on the way to a birth at which fewer multipliers are 1; None where a is too near to the birth.
-
-        The tangent there turns with the multipliers above 1: where it does not, its sign is rounding.
-        """
-        most = _ones(parent.solution.multipliers**2) - 1
-        for share in BEFORE_BIRTH:
-            point = self.walk.step(a, (1 - share) * distance)
-            if point is not None and _ones(point.solution.multipliers) <= most:
-                turned = (counts_of(point).above - counts_of(a).above) % 2 == 1
-                if turned == (a.tangent[-1] * point.tangent[-1] < 0):
-                    return point
-        return None
 
     def _bifurcate(self, found: list) -> bool:
         """Record bifurcations. True where the way ends at the first."""
@@ -254,9 +257,13 @@ class Way:
         if event.type != "graze":
             return self._at(event.type, point, error)
         index = event.index
-        if index is not None and is_free(point.solution):
-            index = orbit_of(None, point.solution)._canonical_frame[0] % point.solution.K
-        graze = graze_at(point.solution, self.walk.name, index)
+        if index is not None:  # of those that vanish at once the first
+            first = orbit_of(None, point.solution)._canonical_frame[0]
+            index = min(vanishing(point.solution, index).tolist(), key=lambda i: (i - first) % point.solution.K)
+        try:
+            graze = graze_at(point.solution, self.walk.name, index)
+        except np.linalg.LinAlgError:  # a fold of the orbits without the impact as well: no slopes
+            return self._at("failed", point, error)
         side = graze.touching.sides[graze.index]
         slope = abs(graze.distance_slope)
         if slope > 0:
@@ -276,10 +283,6 @@ def row_of(p: float, s: Solution, frame: tuple[int, int]) -> Rows:
     t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
     values = p, t, D, s.ends, motion, s.margin, s.change, state
     return Rows(*(np.array([value], float) for value in values))
-
-
-def _ones(multipliers: np.ndarray) -> int:
-    return int(np.sum(np.abs(multipliers - 1) < ON_SQUARE))
 
 
 def stop_and_impact(solution: Solution, index: int) -> tuple[int, int]:
