@@ -11,7 +11,12 @@ from support.oscillators import CHAIN, PAPER
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic import long_orbits
+from vibro_sweep.analysis.periodic.flight_slopes import rate_slopes
 from vibro_sweep.analysis.periodic.solution import equations_for
+from vibro_sweep.engine.impulses.flow import rates
+from vibro_sweep.model.linear import family_of
+
+DAMPER = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.27, zeta=0.116, F=0.99, omega=0.65, R=0.9, b=1.3)
 
 
 @pytest.mark.parametrize("system", [PAPER, CHAIN])
@@ -34,8 +39,10 @@ def test_sparse_equations_are_the_dense_ones(system, count):
         assert found[1] == pytest.approx(size + np.log(abs(states)), abs=1e-8)
 
 
-@pytest.mark.parametrize("name", ["R", "b", "omega"])
-@pytest.mark.parametrize("system", [PAPER, CHAIN])
+@pytest.mark.parametrize(
+    ("system", "name"),
+    [(system, name) for system in (PAPER, CHAIN) for name in ("R", "b", "omega")] + [(PAPER, "mu_m"), (CHAIN, "c")],
+)
 def test_flights_leave_the_residual_of_the_sums(system, name):
     """Beside an orbit of 160 impacts, where nothing vanishes; and the slopes of all unknowns on it."""
     solution = repeated(vs.periodic_orbit(system, itinerary="LR"), 80)
@@ -53,6 +60,21 @@ def test_flights_leave_the_residual_of_the_sums(system, name):
     inverse = np.linalg.inv(np.vstack([np.column_stack([J, column]), row]))
     found = long_orbits.influence(e, sides, solution.u, motion, column, row)
     assert found == pytest.approx(inverse[-1], rel=1e-7, abs=1e-9 * np.abs(inverse[-1]).max())
+
+
+@pytest.mark.parametrize("system", [PAPER, CHAIN, DAMPER])
+def test_slopes_of_the_rates_are_those_of_differences(system):
+    """Of all numbers that move the flights; the damper's contact coordinates are not those of the masses."""
+    family = family_of(system)
+    names = [name for name, value in family.numbers.items() if isinstance(value, float) and name not in ("R", "b")]
+    for name in names:
+        value = family.numbers[name]
+        step = 1e-4 * max(abs(value), 0.1)
+        one, two = ([rates(family.replace(**{name: value + k * h}).linear) for k in (1, -1)] for h in (step, 2 * step))
+        expected = (8 * (one[0] - one[1]) - (two[0] - two[1])) / (12 * step)
+        found = rate_slopes(family.linear, family.derivative(name))
+        assert found == pytest.approx(expected, abs=1e-10 * max(np.abs(expected).max(), 1.0)), name
+    assert len(names) > 3
 
 
 def test_chatter_is_left_to_the_sums(monkeypatch):

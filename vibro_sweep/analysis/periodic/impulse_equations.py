@@ -1,13 +1,23 @@
 """The equations of periodic orbits for one oscillator, period and symmetry: tables, Newton, motion, multipliers."""
 
 from copy import copy
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from vibro_sweep.engine.impulses import equations, flights, multipliers, sections
 from vibro_sweep.engine.impulses import flow as free_flight
-from vibro_sweep.engine.impulses.green import ResonanceError, free_modes, has_free_gap, space, space_slopes, train
+from vibro_sweep.engine.impulses.green import (
+    MOST_CELLS,
+    ResonanceError,
+    Train,
+    cells_needed,
+    free_modes,
+    has_free_gap,
+    space,
+    space_slopes,
+    train,
+)
 from vibro_sweep.model.linear import CONTACT, Family, Keyed, Linear, amplitude_slopes, amplitudes, forcing_period
 
 
@@ -18,12 +28,18 @@ class Equations:
     Raises ResonanceError, TooStiffError (green.py).
     """
 
-    def __init__(self, q: Linear, sigma: int, halves: int, slope: Linear | None = None):
+    def __init__(self, q: Linear, sigma: int, halves: int, slope: Linear | None = None, many: bool = False):
+        """many : of orbits with many impacts, whose equations hardly use the tables: they are made when they are."""
         self.q, self.sigma, self.halves, self.slope = q, sigma, halves, slope
         self.P = forcing_period(q) / 2 * halves
-        self.train = train(q, sigma, halves, slope)
+        if not many or cells_needed(q) * halves > MOST_CELLS:
+            self.train = train(q, sigma, halves, slope)
         moved = slope is not None and not moves_stops_only(slope)
         self.steady = steady(q, sigma, halves, slope) if moved else _steady(Keyed(q, TABLES), sigma, halves)
+
+    @cached_property
+    def train(self) -> Train:
+        return train(self.q, self.sigma, self.halves, self.slope)
 
     def with_stops(self, q: Linear, slope: Linear) -> "Equations":
         """The same tables for an oscillator that differs in its stops or restitution only."""

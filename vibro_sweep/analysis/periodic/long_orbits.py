@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.analysis.periodic.flight_slopes import state_slopes
 from vibro_sweep.analysis.periodic.impulse_equations import Equations, flow, moves_stops_only
 from vibro_sweep.analysis.periodic.media import still_medium
 from vibro_sweep.engine.impulses import branch, equations, flights
+from vibro_sweep.engine.impulses.green import cells_needed
 from vibro_sweep.engine.impulses.places import Steps, new_place, new_work
 
 if TYPE_CHECKING:
@@ -53,7 +55,7 @@ def newton(e: Equations, sides, u, states) -> tuple[np.ndarray, float] | None:
 
 
 def residual(e: Equations, sides, u):
-    """`Equations.residual`, where the parameter moves stops and restitutions only: from flight to flight.
+    """`Equations.residual` from flight to flight, with the derivative by any parameter.
 
     Sums over all impacts at each impact take seconds for thousands of them. In chatter they hold more digits, and at
     R = 0 a flight does not begin with what the unknowns say: there they are kept.
@@ -61,14 +63,17 @@ def residual(e: Equations, sides, u):
     contacts = e.contacts(sides)
     t, D, gain = u[: len(sides)], u[len(sides) :], contacts[:, equations.GAIN]
     again = contacts[1:, equations.STOP] == contacts[:-1, equations.STOP]
-    short = np.any(again & (np.diff(t) < equations.SHORT * e.train.width))
-    if short or not np.all(gain > 1) or (e.slope is not None and not moves_stops_only(e.slope)):
+    width = e.P / e.halves / cells_needed(e.q)  # of a cell
+    if np.any(again & (np.diff(t) < equations.SHORT * width)) or not np.all(gain > 1):
         return e.residual(sides, u)
     states, B = e.fly(sides, u)[0], flow(e.q).B
     N, rates = (len(B) - 3) // 2, states @ B.T
     v = states[:, N]
     F = np.concatenate([states[:, 0] - contacts[:, equations.STOP], D + gain * v])
     Fp = np.concatenate([-contacts[:, equations.STOP_SLOPE], contacts[:, equations.GAIN_SLOPE] * v])
+    if e.slope is not None and not moves_stops_only(e.slope):
+        moved = state_slopes(e, u, states)
+        Fp += np.concatenate([moved[:, 0], gain * moved[:, N]])
     return F, Fp, np.stack([v, rates[:, N], rates @ B[N]], axis=1)
 
 

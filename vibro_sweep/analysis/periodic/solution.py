@@ -200,4 +200,4 @@ def equations_for(s: Solution, q: Linear, slope: Linear | None = None) -> Equati
     """Of orbits like `s`, for the oscillator q; derivatives where it changes by `slope`."""
     if s.rests:
         return RestEquations(q, s.sigma, s.halves, slope, s.rests)
-    return Equations(q, s.sigma, s.halves, slope)
+    return Equations(q, s.sigma, s.halves, slope, s.K >= long_orbits.SPARSE)
