@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from vibro_sweep.plotting import curves, families, style
+from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.plotting import curves, families, strip, style
 
 # Machado, Oliveira, Fernandes, IEEE Trans. Vis. Comput. Graph. 15 (2009) 1291, table 1: severity 1.0, on linear sRGB
 VISIONS = {
@@ -39,6 +40,7 @@ LEGENDS = {
     "branches": (itertools.combinations((*style.BRANCHES.values(), style.INK), 2), 45),
     "curves": (itertools.combinations(curves.COLOURS.values(), 2), 26),
     "curves by period": (itertools.combinations((*curves.ORBITS, *_TYPES), 2), 18),
+    "orbits without a window": (itertools.combinations(strip.REASON_COLOURS.values(), 2), 11),
     "sides": ([(style.RIGHT, style.LEFT)], 82),
     "portrait": (itertools.combinations((style.INK, style.SECTION, style.IMPACT, style.FAINT), 2), 32),
 }
@@ -74,3 +76,7 @@ def test_colours_of_a_legend_are_far_apart(legend, vision):
 
 def test_there_is_a_colour_for_each_period():
     assert len(set(style.PERIODS)) == style.LONGEST
+
+
+def test_there_is_a_colour_for_each_reason_of_no_window():
+    assert set(strip.REASON_COLOURS) == set(REASONS) - {"in_a_window"}

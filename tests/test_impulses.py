@@ -1,6 +1,7 @@
 """The compiled equations of periodic orbits: Green function, Jacobian, flights, multipliers."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from scipy.linalg import expm
 from support.oscillators import BALL, CAVITY, CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic.impulse_equations import Equations
 from vibro_sweep.engine.impulses.green import MOST_CELLS, ResonanceError, TooStiffError, space, train
 from vibro_sweep.model.linear import family_of, forcing_period
@@ -129,3 +131,28 @@ def test_undamped_mode_that_repeats_itself_is_named():
 def test_rates_too_far_apart_are_named():
     with pytest.raises(TooStiffError, match=str(MOST_CELLS)):
         train(PAPER_FAMILY.replace(mu_m=1e-12, tau=0.0).linear, 1, 2)
+
+
+def test_kernels_are_not_given_arrays_that_are_too_short():
+    """The mean gap of a free mode was left out: a kernel wrote beyond its arrays, and the interpreter died."""
+    numbers = dict(mass_ratio=0.2747929395913874, zeta=0.11595848024966961, F=0.9895081779106233)
+    damper = vs.Oscillator.named("ball_in_cavity", **numbers, omega=0.6493760554424832, R=0.7, b=1.0)
+    orbit = vs.periodic_orbit(damper, itinerary="LR")
+    whole = orbit._solution.whole()
+    short = replace(whole, u=whole.u[: 2 * whole.K])
+    with pytest.raises(AssertionError, match="unknowns"):
+        short.equations.evaluate(short.sides, short.u)
+    walk = Walk(whole, "b", 1.0)
+    axis = np.eye(2 * whole.K + 1)[-1]
+    with pytest.raises(AssertionError, match="unknowns"):
+        walk.correct(np.append(short.u, damper.b) / np.delete(walk.scale, -2), axis, axis)
+
+
+def test_impacts_out_of_order_have_no_multipliers():
+    """Their flights are longer than the period, in which there is room for the factors."""
+    orbit = vs.periodic_orbit(vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=5.3), itinerary="LR")
+    s = orbit._solution.whole()
+    moved = s.u.copy()
+    moved[0] += 100 * s.equations.P
+    assert np.isnan(s.equations.multipliers(s.sides, moved, s.motion)).all()
+    assert np.isfinite(s.equations.multipliers(s.sides, s.u, s.motion)).all()

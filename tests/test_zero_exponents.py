@@ -12,6 +12,7 @@ from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.model import frame
+from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.contact import contact_coordinates, natural_coordinates
 from vibro_sweep.model.exponents import CERTAIN, sign_of
 
@@ -45,10 +46,28 @@ def test_without_losses_no_exponent_differs_from_zero():
     assert (exponents == 0.0).all() and np.all(exponents.error < 1e-12)
 
 
-def test_periods_of_a_sweep_without_impacts_are_all_one():
-    ball = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.59, zeta=0.01, F=1, omega=0.9, b=1e3, tau=0, R=0.6)
-    sweep = vs.sweep(ball, {"omega": np.linspace(0.5, 1.5, 16)}, transient=1300, observe=["section", "lyapunov"])
-    assert (sweep.period == 1).all() and (sweep.lyapunov[:, 0] == 0).all() and (sweep.status == 0).all()
+@pytest.mark.parametrize("count", [3, *slow_cases(20), *soak(200)])
+def test_a_ball_at_rest_in_its_cavity_is_one_of_a_family(count, tmp_path):
+    """Whatever is observed: period 1, exponent 0, and no window."""
+    rng = np.random.default_rng(5)
+    for n in range(count):
+        numbers = dict(mass_ratio=10 ** rng.uniform(-1.5, 0), zeta=10 ** rng.uniform(-2.5, 0), F=rng.uniform(0.3, 1.2))
+        ball = vs.Oscillator.named("ball_in_cavity", **numbers, omega=0.9, b=1e3, tau=rng.uniform(0, 6), R=0.6)
+        for observed in (["section"], ["section", "lyapunov"]):
+            file = tmp_path / f"{n}-{len(observed)}.h5"
+            values = {"omega": rng.uniform(0.5, 1.5) * np.linspace(1, 1.5, 7)}
+            with vs.sweep(ball, values, transient=1300, observe=observed, output=file, workers=1) as sweep:
+                assert (sweep.period == 1).all() and (sweep.status == 0).all(), (n, observed)
+                assert "lyapunov" not in sweep or (sweep.lyapunov[:, 0] == 0).all()
+            windows = vs.windows(file)
+            assert not windows and {list(REASONS)[code] for code in windows.reason.ravel()} == {"not_isolated"}
+
+
+def test_a_ball_that_flies_towards_a_stop_is_on_its_way(tmp_path):
+    ball = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.59, zeta=0.01, F=1, omega=0.9, b=1e6, tau=0, R=0.6)
+    start = dict(x1=0.0, v1=0.0, x2=0.0, v2=0.01)
+    vs.sweep(ball, {"omega": [0.5, 0.9]}, start=start, transient=1300, output=tmp_path / "a.h5", workers=1).close()
+    assert {list(REASONS)[code] for code in vs.windows(tmp_path / "a.h5").reason.ravel()} == {"not_settled"}
 
 
 @pytest.mark.parametrize("count", [60, *slow_cases(400), *soak(1000)])

@@ -177,7 +177,7 @@ def covered(report, wrong, data, windows, name) -> None:
     for place in np.argwhere(period > 0).tolist():
         reason = list(REASONS)[int(windows.reason[tuple(place)])]
         report.counted[f"periodic: {reason}"] += 1
-        if reason in ("in_a_window", "sticking"):
+        if reason in ("in_a_window", "sticking", "not_isolated"):
             continue
         value = float(values[place[0]])
         state = np.array([one[tuple(place)] for one in last])

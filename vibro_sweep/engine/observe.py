@@ -19,7 +19,6 @@ from vibro_sweep.engine.variational.spectrum import (
     close_spectrum,
     end_warm_up,
     is_free,
-    keeps_energy,
     period_of,
     periods_read,
     time_average,
@@ -98,7 +97,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
                 section[n, j] = states[n, j]
     result.resting = o.resting
     if plan.states:
-        result.period = find_period(states, o, w.axes[o.lane], rounding_of(e, o, plan))
+        result.period = find_period(states, o, w.axes[o.lane], rounding_of(o, plan))
     for n in range(len(running)):
         for j in range(numbers):
             running[n, j] = growth[n, j] / (periods_read(n, len(running), plan.record) * T)
@@ -107,13 +106,13 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
 
 
 @jit
-def rounding_of(e, o, plan):
+def rounding_of(o, plan):
     """How far from each other rounding may leave points that repeat themselves.
 
-    A free mode that keeps its energy adds up what rounding gives it, and drifts.
+    Motion without impacts is linear: what repeats itself has no other period, and a free mode that keeps its energy
+    adds up what rounding gives it, and drifts.
     """
-    drifts = is_free(o, plan) and keeps_energy(e.flights.oscillator[o.table, 0])
-    return REPEAT if drifts else ROUNDING
+    return REPEAT if is_free(o, plan) else ROUNDING
 
 
 @jit
@@ -145,7 +144,7 @@ def close(e, w, plan, points, results):
         if plan.states and o.status == status.OK:
             states = w.section[i]
             settled = has_settled(
-                result.period, states, o, w.axes[i], rounding_of(e, o, plan), result.lyapunov, result.lyapunov_error
+                result.period, states, o, w.axes[i], rounding_of(o, plan), result.lyapunov, result.lyapunov_error
             )
             result.period = max(result.period, 0)
             if settled and plan.attractors:

@@ -69,5 +69,6 @@ REASONS = {  # why a point of a sweep lies in no window; 0: it lies in one
     "not_settled": "neither periodic within the record nor known to be anything else, or not yet where it attracts to",
     "failed": "the orbit, or the equations of its impacts, could not be computed",
     "not_computed": "the file has no orbit there",
+    "not_isolated": "one of a family of orbits: of a mass that nothing holds, or of a mode without losses in resonance",
 }
 ATTRACTORS = ("chaos", "quasi_periodic", "sticking")  # reasons that say where an orbit went to

@@ -23,6 +23,7 @@ REASON_COLOURS = {
     "not_settled": "#8a8a96",
     "failed": "#000000",
     "not_computed": "#f2f2f5",
+    "not_isolated": "#f0a030",
 }
 
 

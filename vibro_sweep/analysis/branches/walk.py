@@ -12,6 +12,7 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.impulse_equations import (
     Equations,
+    check_unknowns,
     contacts_of,
     moves_stops_only,
     moves_stops_straight,
@@ -209,6 +210,7 @@ class Walk:
     def _corrected_at_once(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
         """`correct` by a kernel (engine/impulses/across.py)."""
         n, e = len(guess) - 1, self.start.equations
+        check_unknowns(guess[:-1], e.size(self.start.sides))
         x, J, motion = np.empty(n + 1), np.empty((n, n + 1)), np.empty((self.start.K, 3))
         count, change = across.correct(
             e.train, e.steady, self._contacts, float(self.family.numbers[self.name]), np.empty((self.start.K, 4)),

@@ -20,6 +20,8 @@ from vibro_sweep.engine.impulses.green import (
 )
 from vibro_sweep.model.linear import CONTACT, Family, Keyed, Linear, amplitude_slopes, amplitudes, forcing_period
 
+UNORDERED = 1e-9  # of the period: by so much rounding may exchange impacts
+
 
 class Equations:
     """Orbits of `q` with z(t + P) = sigma z(t), P = halves T/2; derivatives where q changes by `slope`.
@@ -70,6 +72,7 @@ class Equations:
 
     def _filled(self, sides, u, J):
         n = self.size(sides)
+        check_unknowns(u, n)
         F, Fp, motion = np.empty(n), np.empty(n), np.empty((len(sides), 3))
         equations.evaluate(self.train, self.steady, self.contacts(sides), u, F, J, Fp, motion, np.empty((2, 4)))
         return F, Fp, motion
@@ -140,13 +143,23 @@ def multipliers_of(f: free_flight.Flow, sigma: int, P: float, contacts: np.ndarr
     if len(contacts) == 0:
         values = sigma * np.exp(np.linalg.eigvals(f.B[:n, :n]).astype(complex) * P)
         return values[np.lexsort((-values.imag, -np.abs(values)))]
+    t = u[: len(contacts)]
+    if not (np.all(t[1:] - t[:-1] > -UNORDERED * P) and t[-1] - t[0] < (1 + UNORDERED) * P):  # no orbit
+        return np.full(n, np.nan, complex)
     product, columns, couplings = np.empty((n, n)), np.empty((n, n)), np.zeros(n)
     order, work, room = np.empty(n, np.int64), np.empty((3, n, n)), flights.new_room(n + 3)
-    factors = np.empty((len(contacts) + int(P * f.spread / multipliers.STRETCH), n, n))
+    pieces = int((1 + len(t) * UNORDERED) * P * f.spread / multipliers.STRETCH)
+    factors = np.empty((len(t) + pieces + 1, n, n))  # a piece more than the flights need but for rounding
     motion = np.ascontiguousarray(motion)
     multipliers.multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work, room)
     values = sigma * multipliers.eigenvalues(product, columns, couplings)
     return values[np.lexsort((-values.imag, -np.abs(values)))]
+
+
+def check_unknowns(u: np.ndarray, size: int) -> None:
+    """Kernels write where they are told to, beyond the ends of arrays that are too short."""
+    if len(u) != size:
+        raise AssertionError(f"{len(u)} unknowns for {size} equations: the mean gap of a free mode is one of them")
 
 
 def contacts_of(q: Linear, slope: Linear | None, sides) -> np.ndarray:

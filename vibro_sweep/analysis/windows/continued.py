@@ -7,11 +7,13 @@ import numpy as np
 from vibro_sweep.analysis.single.tables import table_of
 from vibro_sweep.analysis.windows.rows import Row
 from vibro_sweep.engine import points
+from vibro_sweep.engine.impulses.green import has_free_gap
 from vibro_sweep.engine.one_system import plan_of
 from vibro_sweep.engine.records import new_results
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.exponents import sign_of
+from vibro_sweep.model.linear import family_of
 from vibro_sweep.model.status import NOT_SETTLED, stands
 
 WARM_UP = 200  # forcing periods, for tangent vectors
@@ -58,7 +60,12 @@ def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Con
     points.run_points(table.reshape(1, n), starts, results, unused, nothing, unused, workspace, plan, None)
     found = results[0]
     period = np.where(stands(found["status"]) & (found["period"] <= LONGEST), found["period"], 0)
-    return Continued(period, found["end"].copy(), _reasons(found))
+    reasons = _reasons(found)
+    free = found["impacts_left"] + found["impacts_right"] == 0
+    for m in np.flatnonzero(free & (reasons == _CODES["quasi_periodic"])):
+        if has_free_gap(family_of(row.system_at(row.values[i[m]])).linear):  # a mass that flies towards a stop
+            reasons[m] = _CODES["not_settled"]
+    return Continued(period, found["end"].copy(), reasons)
 
 
 def _reasons(found: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from vibro_sweep.analysis.windows.stretch import representative, stable_stretch
 
 SLACK = 1e-9  # of the range: an orbit that is so far from a window's end may be counted as beyond it
 NEAR = 1e-3  # of the size of the state: a recorded orbit that is farther from the periodic one has not settled
+WITHOUT = {"sticking": "sticking", "resonance": "not_isolated"}  # statuses of orbits that have no window, and why
 
 
 class Job(NamedTuple):
@@ -41,7 +42,7 @@ def window_of(job: Job) -> Result:
     except ValueError:  # impacts of the recorded orbit that are none of a period
         return Result(None, "failed")
     if not orbit.ok:
-        return Result(None, "sticking" if orbit.status == "sticking" else "failed")
+        return Result(None, WITHOUT.get(str(orbit.status), "failed"))
     if not orbit.stable or not lies_on(orbit, job.state):
         return Result(None, "not_settled")
     if changes_rests(orbit._solution, job.parameter):  # at any other R the rest begins after infinitely many impacts
