@@ -148,7 +148,7 @@ def test_growth_of_tangent_vectors(masses):
         periods = 2
         jacobian = monodromy(system.linear, state, periods)
         point = vs.simulate(system, state, 0)._engine.point[0]
-        turned = np.kron(point["T"], np.eye(2))
+        turned = np.kron(point["P"], np.eye(2))
         frame = point["to_frame"] @ turned
         lengths = np.abs(np.diag(np.linalg.qr(frame @ jacobian @ np.linalg.inv(frame))[1]))
         exponents = vs.lyapunov(system, state, transient=0, periods=periods)

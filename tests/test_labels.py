@@ -11,7 +11,7 @@ from support.pictures import exponents, write
 from vibro_sweep import plotting
 from vibro_sweep.plotting import Look, curves, labels
 from vibro_sweep.plotting.curves import Drawn, plot_curves
-from vibro_sweep.plotting.style import STYLE
+from vibro_sweep.plotting.style import STYLE, edges
 
 
 def boxes(texts):
@@ -76,7 +76,7 @@ def period_at(file, points, relative, period):
         star = result.grazing("omega")["b_star"] if relative else np.ones(len(omega))
     x, y = points.T
     column = np.abs(omega[:, None] - y).argmin(axis=0)
-    row = np.abs(b[:, None] - x * star[column]).argmin(axis=0)
+    row = np.abs(b[:, None] - x * np.interp(y, edges(omega), edges(star))).argmin(axis=0)  # cells are quadrilaterals
     return period[row, column]
 
 

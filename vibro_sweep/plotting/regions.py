@@ -30,7 +30,8 @@ def name_regions(ax, x, y, values, taken=()) -> None:
     for period in np.unique(shown[shown > 0]):
         text = ax.text(X[0], Y[0], f"{period}", **_STYLE)
         size = text.get_window_extent().width * 72 / ax.figure.dpi, DIGIT * text.get_fontsize()
-        width, height = (int(np.ceil((length + 2 * MARGIN) * ax.figure.dpi / 72 / step)) for length in size)
+        # odd numbers of places: they reach as far to one side as to the other
+        width, height = (int(np.ceil((length + 2 * MARGIN) * ax.figure.dpi / 72 / step)) | 1 for length in size)
         inside = np.pad(shown == period, 1)  # the frame is a border, too
         fits = ndimage.minimum_filter(inside, (height, width), mode="constant", cval=0)
         if not fits.any():
