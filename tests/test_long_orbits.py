@@ -13,6 +13,7 @@ from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic import long_orbits
 from vibro_sweep.analysis.periodic.flight_slopes import rate_slopes
 from vibro_sweep.analysis.periodic.solution import equations_for
+from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.engine.impulses.flow import rates
 from vibro_sweep.model.linear import family_of
 
@@ -129,3 +130,47 @@ def test_newton_with_states_finds_what_the_dense_one_finds(system):
     found = long_orbits.newton(far.equations, far.sides, far.u, far.states)
     if found is not None:
         assert np.abs(far.equations.evaluate(far.sides, found[0])[0]).max() < 1e-9
+
+
+# from random sweeps of chains of three: system, its swept number, period, bounds, a state of the recorded orbit
+LONG = {
+    "R, 131 impacts": (
+        dict(m=[1.7276, 0.8218, 1.5047], k=[1.8371, 0.3211, 0.3475, 0.6318], c=[0.21198, 0.03705, 0.0401, 0.07291],
+             stop_at=2, stops="right", force=[1.344, 0.404, -0.262], omega=1.841, R=0.47798657718120807, b=0.05378),
+        "R", 131, (0.0, 1.0), [0.178625296, -0.0579101815, 0.0438598766, -0.20547138, -0.10164796, 0.132249013],
+    ),
+    "R, 121 impacts": (
+        dict(m=[0.4523, 1.7795, 0.4199], k=[1.2338, 0.8002, 1.1728, 0.9952], c=[0.02913, 0.01889, 0.02769, 0.0235],
+             stop_at=1, stops="both", force=[1.303, 1.947, 0.282], omega=0.9541, R=0.2948993288590604, b=0.82182),
+        "R", 41, (0.0, 1.0), [0.608929966, 0.137846139, 3.8751717, 0.147350898, 2.35514408, 0.0822432731],
+    ),
+    "b, 189 impacts": (
+        dict(m=[2.9864, 1.2041, 2.3856], k=[0.3268, 2.8437, 0.4974, 2.1373], c=[0.00652, 0.05675, 0.00993, 0.04266],
+             stop_at=3, stops="both", force=[0.251, -1.031, -0.49], omega=0.7291, R=0.8, b=0.2093810134228188),
+        "b", 98, (0.01239975, 0.446391),
+        [-0.634863674, 0.0508487612, -0.274988504, 0.00420478308, 0.125366312, -0.124083108],
+    ),
+    "omega, 311 impacts": (
+        dict(m=[2.3455, 1.5973, 1.0771], k=[1.1261, 0.3628, 2.0928, 1.425], c=[0.05434, 0.0175, 0.10099, 0.06876],
+             stop_at=2, stops="both", force=[0.252, 0.549, 1.056], omega=0.7157600000000001, R=0.8, b=2.0248),
+        "omega", 139, (0.313145, 1.52099), [-1.4671242, -1.5309865, -1.38154746, -2.23157547, -1.07039699, -0.55767385],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", LONG)
+def test_windows_of_long_orbits_are_those_of_the_dense_equations(case, monkeypatch):
+    """And their ends differ by no more than the stated errors; K = 121 to 311."""
+    numbers, name, period, bounds, state = LONG[case]
+    job = Job(vs.Oscillator.named("chain", **numbers), np.array(state), period, name, bounds)
+    flat = window_of(job).flat
+    assert len(flat["impact_side"]) == int(case.split()[1]) >= long_orbits.SPARSE and not flat["branch_symmetric"]
+    monkeypatch.setattr(long_orbits, "SPARSE", 10**9)
+    monkeypatch.setattr(long_orbits, "MANY", 10**9)
+    dense = window_of(job).flat
+    assert np.array_equal(flat["special_type"], dense["special_type"])
+    assert np.array_equal(flat["impact_side"], dense["impact_side"])
+    apart = np.abs(flat["special_value"] - dense["special_value"])
+    assert np.all(apart <= flat["special_error"] + dense["special_error"])
+    assert np.all(flat["special_error"] < 1e-11)

@@ -25,6 +25,8 @@ from vibro_sweep.engine.impulses.equations import ROUNDING
 from vibro_sweep.engine.impulses.green import space
 from vibro_sweep.model.linear import CONTACT, Linear
 
+PHASE = 1 / 16  # of the rounding of the gap: that of 1 radian of the force, twice what is lost at most
+
 
 @dataclass(eq=False)
 class Point:
@@ -77,11 +79,16 @@ class Point:
 
     def sensitivity(self, normal: np.ndarray) -> float:
         """By how much the parameter moves, on the plane with this normal, where all gaps at impacts are off by their
-        size."""
+        size. Of a long orbit also where gaps and speeds are off, each by chance, as far as rounding of omega t moves
+        the force: that grows with t."""
         w, K = self.walk, self.walk.start.K
         if is_sparse(self.equations, w.start.sides):
             u, column = self.x[:-1] * w.scale[:-1], self.J[:, -1] / w.scale[-1]
             weights = influence(self.equations, w.start.sides, u, self.motion, column, normal / w.scale)
+            late = PHASE * np.abs(u[:K]) * self.equations.q.omega
+            speed = self.solution.size_of_gap * self.equations.q.omega
+            turned = np.hypot(weights[:K] * self.solution.size_of_gap, weights[K : 2 * K] * speed) * late
+            return float(np.abs(weights[:K]).sum() * self.solution.size_of_gap + np.linalg.norm(turned))
         else:
             axis = np.zeros(len(self.x))
             axis[-1] = w.scale[-1]
