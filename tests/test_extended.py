@@ -91,13 +91,3 @@ def test_tables_are_the_same_but_for_rounding(narrow):
     slope = np.abs(tables[3][:, :3]).max(axis=0) * [1.0, 1.0, 2.0]
     assert np.abs(residual - other).max() < steps * (terms[0] + D * slope[:2].max()) + 2.0**-53 * np.abs(residual).max()
     assert abs(pull - pulls) < steps * (terms[1] + D * slope[2]) + 2.0**-52 * abs(pull)
-    print(
-        np.abs(residual - other).max(),
-        steps * (terms[0] + D * slope[:2].max()),
-        2.0**-53 * np.abs(residual).max(),
-        abs(pull - pulls),
-        steps * (terms[1] + D * slope[2]),
-        2.0**-52 * abs(pull),
-        cells,
-        K,
-    )
