@@ -8,7 +8,7 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.branches import precise
 from vibro_sweep.analysis.periodic import impulse_equations
 from vibro_sweep.engine.impulses import extended, flow, green
-from vibro_sweep.engine.impulses.tables import exponential, power
+from vibro_sweep.engine.impulses.tables import ORDER, exponential, power
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=3.0, tau=0.1)
 
@@ -84,4 +84,10 @@ def test_tables_are_the_same_but_for_rounding(narrow):
     others, other, pulls = all_of_it()
     for table, same in zip(tables, others, strict=True):
         np.testing.assert_allclose(same, table, rtol=0, atol=4e-16 * np.abs(table).max())
-    assert np.abs(residual - other).max() < 5e-17 and abs(pull - pulls) < 5e-17
+    # each product of flights and each term of a sum rounds to 2^-64; the numbers given back are floats
+    K, cells = s.K, len(tables[3])
+    steps, D = (cells + K + ORDER) * 2.0**-64, np.abs(s.jumps).sum()
+    terms = np.hypot(s.equations.steady.real, s.equations.steady.imag) * np.array([1.0, s.family.linear.omega**2])
+    slope = np.abs(tables[3][:, :3]).max(axis=0) * [1.0, 1.0, 2.0]
+    assert np.abs(residual - other).max() < steps * (terms[0] + D * slope[:2].max()) + 2.0**-53 * np.abs(residual).max()
+    assert abs(pull - pulls) < steps * (terms[1] + D * slope[2]) + 2.0**-52 * abs(pull)

@@ -12,7 +12,7 @@ from vibro_sweep import store
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.windows import members
 from vibro_sweep.analysis.windows.cover import Cover
-from vibro_sweep.analysis.windows.job import Result, window_of
+from vibro_sweep.analysis.windows.job import Job, Result, window_of
 from vibro_sweep.driver.windows import rows_in
 from vibro_sweep.model.bifurcations import REASONS
 
@@ -48,6 +48,22 @@ def test_a_window_from_its_ends(few):  # noqa: F811
     for window in chosen[:1] + chosen[-2:]:
         window_search.other_starts(report, lambda *line: found.append(line), window, row.bounds)
     assert report.counted["starts"] > 20 and not found
+
+
+@pytest.mark.parametrize(
+    ("b", "state"),
+    [
+        (0.18060386953185800, [0.4933727630742184, -0.030895433382960653, 0.646373977898661, -0.13250451231487853]),
+        (0.18060386953224267, [0.4933727531365303, -0.030895426053686132, 0.6463739899453994, -0.13250456487256382]),
+        (0.18060386953228300, [0.49337274963698363, -0.030895423472705796, 0.6463739941875544, -0.13250458338065946]),
+    ],
+)
+def test_a_window_from_an_orbit_at_its_fold(b, state):
+    """3e-11 to 2e-13 of its width inside: the walk began on the unstable side, and came to 0.1622 .. 0.1806."""
+    ball = dict(mass_ratio=0.11034866750723367, zeta=0.030816339144821438, F=0.28850344990689725, b=b)
+    ball |= dict(omega=0.6214661466051168, tau=1.838287462997773, R=0.4039709200133826)
+    flat = window_of(Job(vs.Oscillator.named("ball_in_cavity", **ball), np.array(state), 1, "b", (4e-4, 0.98))).flat
+    assert np.abs(flat["special_value"][[0, -1]] - [0.16708787864496785, 0.18060386953228552]).max() < 1e-12
 
 
 def test_an_orbit_without_a_window_of_its_own_is_in_the_one_that_covers_it(few):  # noqa: F811
