@@ -14,6 +14,8 @@ import pytest
 import vibro_sweep as vs
 from vibro_sweep.store.opening import MissingError
 
+pytest.importorskip("distributed")  # whose tblib changes how every error is pickled
+
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=0.4)
 
 

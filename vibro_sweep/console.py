@@ -76,8 +76,8 @@ def _refused(error: Exception) -> int:
     text = str(error) or ("not enough memory" if isinstance(error, MemoryError) else type(error).__name__)
     if isinstance(error, OSError) and error.filename is not None and error.strerror:
         text = f"{error.filename}: {error.strerror}"
-    for mode in ("resume", "overwrite"):  # in Python an argument, here an option
-        text = text.replace(f"`{mode}`", f"--{mode}")
+    for name in ("output", "resume", "overwrite"):  # in Python an argument, here an option
+        text = text.replace(f"`{name}`", f"--{name}")
     print_error(f"error: {text}")
     return BAD_INPUT
 

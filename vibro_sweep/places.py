@@ -10,8 +10,16 @@ from .console import InputError, input_errors
 def check_output(output: Path, inputs: Collection[Path], picture: Path | None, mode: str) -> None:
     """Raise InputError or StoreError, before anything is computed, where results could not be written in the end."""
     from .store.beginning import check_places
+    from .store.opening import StoreError
 
-    check_places(output, mode, inputs)
+    try:
+        check_places(output, mode, inputs)
+    except StoreError as error:
+        from .plotting import SUFFIXES
+
+        if output.suffix.lower() in SUFFIXES:
+            raise InputError(f"{error}; --plot draws a picture beside it") from None
+        raise
     if picture:
         from .plotting import PlotError
         from .plotting import check_output as check_picture

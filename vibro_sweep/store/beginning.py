@@ -66,17 +66,17 @@ def check_places(path: Path, mode: str, inputs: Collection[Path]) -> Path:
     if mode not in MODES:
         raise StoreError(f"mode {mode!r}: must be one of {', '.join(map(repr, MODES))}")
     if path.suffix.lower() in NO_DATA:
-        raise StoreError(f"output {path}: the name of a data file must not end in {path.suffix}")
+        raise StoreError(f"`output` {path}: the name of a data file must not end in {path.suffix}")
     part = Path(f"{path}.part")
     for place in (path, part):
         for source in inputs:
             if names.same_file(place, source):
                 also = "" if place == path else f" (the run is kept in {part} until it is complete)"
-                raise StoreError(f"output {path}: this run reads {source}{also}; name another file")
+                raise StoreError(f"`output` {path}: this run reads {source}{also}; name another file")
         if why := names.obstacle(place):
             raise StoreError(f"{place} {why}")
     if not path.parent.is_dir():
-        raise StoreError(f"output {path}: there is no folder {path.parent}")
+        raise StoreError(f"`output` {path}: there is no folder {path.parent}")
     if names.stamp(part):
         try:
             _check_part(part, path, mode)

@@ -36,6 +36,10 @@ class StoreError(ValueError):
 class MissingError(StoreError, FileNotFoundError):
     """There is no such file."""
 
+    __new__ = (
+        FileNotFoundError.__new__
+    )  # of the two bases' the one that Python takes; tblib, which Dask has, asks for it
+
     def __init__(self, path: Path):
         super().__init__(path)
         self.errno, self.strerror, self.filename = errno.ENOENT, "there is no such file", str(path)
