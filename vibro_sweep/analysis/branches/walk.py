@@ -26,6 +26,7 @@ from vibro_sweep.engine.impulses.green import space
 from vibro_sweep.model.linear import CONTACT, Linear
 
 PHASE = 1 / 16  # of the rounding of the gap: that of 1 radian of the force, twice what is lost at most
+STILL = 1e-5  # in units of a walk: an orbit that Newton's method takes farther off is another one
 
 
 @dataclass(eq=False)
@@ -240,7 +241,10 @@ class Walk:
         return solve_bordered(e, self.start.sides, u, motion, J[:, -1] / scale[-1], row / scale, F, last) / scale
 
     def first(self, forwards: float) -> Point | None:
-        """`start` itself; `forwards`: sign of the parameter's change."""
+        """`start` itself; `forwards`: sign of the parameter's change.
+
+        None where Newton's method fails, or leads to another orbit, as at a fold to that from which it was born.
+        """
         point = self._first
         return point if point is None or forwards == 1 else point.backwards()
 
@@ -251,8 +255,9 @@ class Walk:
         axis = np.zeros(len(x))
         axis[-1] = 1.0
         point = self.correct(x, axis, axis)
-        if point is not None:
-            point.hold(value)
+        if point is None or np.abs(point.x - x).max() > STILL:
+            return None
+        point.hold(value)
         return point
 
     def step(self, point: Point, length: float, secant: np.ndarray | None = None) -> Point | None:
