@@ -73,6 +73,9 @@ def contents(folder) -> dict[str, bytes]:
         "windows s.h5 -o s.h5 --overwrite",
         "windows s.h5 -o hard.h5 --overwrite",
         "run br.yaml -o nowhere/x.h5",
+        "run s.yaml -o new/",
+        "windows s.h5 -o new/",
+        "plot s.h5 -o new/",
     ],
 )
 def test_a_command_leaves_its_inputs_alone(folder, capsys, command):
@@ -90,6 +93,13 @@ def test_python_leaves_its_inputs_alone(folder):
         for output in ("s.yaml", "scene.h5"):
             with pytest.raises(vs.StoreError, match=re.escape(output)):
                 vs.run(one, output, mode="overwrite")
+    for call in (
+        lambda: vs.run(scene, "new/"),
+        lambda: run_branches(branches, "new/"),
+        lambda: run_windows("s.h5", "new/"),
+    ):
+        with pytest.raises(ValueError, match="output: 'new/' is not allowed; it names a folder"):
+            call()
     with pytest.raises(vs.StoreError, match=r"this run reads s\.h5"):
         run_branches(branches, "hard.h5", mode="overwrite")
     with pytest.raises(vs.StoreError, match=r"this run reads s\.h5"):

@@ -15,6 +15,7 @@ from . import interrupt
 from .computing import Work, compute_pieces, compute_sweep
 from .console import BAD_INPUT, BAD_POINTS, all_is_imported, ended, input_errors, messages, say
 from .options import key_and_value, number_in, positive
+from .options import output as output_option
 from .usage import called
 
 app = typer.Typer(
@@ -64,10 +65,7 @@ def _program(
 @app.command()
 def run(
     scene_file: SceneFile,
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="FILE.h5", help="By default SCENE.h5 in the current folder."),
-    ] = None,
+    output: Annotated[Path | None, output_option("FILE.h5", "SCENE.h5 in the current folder")] = None,
     workers: Annotated[
         int | None,
         typer.Option(parser=positive, metavar="N", help="Threads; by default one for each core."),
@@ -109,10 +107,7 @@ def _follow(scene, output: Path):
 @app.command("windows")
 def windows_command(
     file: DataFile,
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="FILE.h5", help="By default FILE.windows.h5 in the current folder."),
-    ] = None,
+    output: Annotated[Path | None, output_option("FILE.h5", "FILE.windows.h5 in the current folder")] = None,
     along: Annotated[
         str | None, typer.Option(metavar="KEY", help="The swept number, of a plane; by default the first.")
     ] = None,
@@ -144,12 +139,7 @@ def windows_command(
 @app.command("plot")
 def plot_command(
     file: DataFile,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="FIGURE.png|.svg|.pdf", help="By default FILE.png in the current folder."
-        ),
-    ] = None,
+    output: Annotated[Path | None, output_option("FIGURE.png|.svg|.pdf", "FILE.png in the current folder")] = None,
     kind: Annotated[
         str | None,
         typer.Option(help=f"One of {', '.join(PICTURES)} or all; by default the first that the file has data for."),

@@ -1,8 +1,11 @@
 """Values of the command line's options: what their texts mean, and what is wrong with them."""
 
 import contextlib
+import os
+from pathlib import Path
 
 import typer
+from typer.models import OptionInfo
 
 from .console import InputError
 
@@ -13,6 +16,17 @@ def positive(text: str) -> int:
     if not text.isdecimal() or len(text) > 9 or not 1 <= int(text) <= MOST_WORKERS:
         raise typer.BadParameter(f"{text!r} is not a whole number >= 1 and <= {MOST_WORKERS}")
     return int(text)
+
+
+def output_file(text: str) -> Path:
+    if text.endswith(("/", os.sep)):
+        raise typer.BadParameter(f"{text!r} names a folder; it must name a file")
+    return Path(text)
+
+
+def output(metavar: str, default: str) -> OptionInfo:
+    """The option that names the file to be written."""
+    return typer.Option("-o", "--output", parser=output_file, metavar=metavar, help=f"By default {default}.")
 
 
 def executor_of(scheduler: str | None) -> contextlib.AbstractContextManager:

@@ -10,6 +10,7 @@ from vibro_sweep.analysis.branches.forest import Tree, forest, grow
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.model.arguments import file_to_write
 from vibro_sweep.model.branch_file import BRANCHES, columns
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
@@ -34,7 +35,7 @@ def run_branches(
     """
     subject = Subject(BRANCHES, scene.name, scene.text, attributes_of(scene, source_of(scene)))
     ((key, bounds),) = scene.along.items()
-    with pieces(subject, Path(output), mode, scene.inputs) as file:
+    with pieces(subject, file_to_write("output", output), mode, scene.inputs) as file:
         if file.complete:
             return
         with workers_of(workers, executor) as pool:

@@ -15,6 +15,7 @@ from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of, specials_of
 from vibro_sweep.driver.planes import edges_in_file, plane_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.model.arguments import file_to_write
 from vibro_sweep.model.branch_file import CHART, OF_EDGES, columns
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
@@ -40,7 +41,7 @@ def run_curves(
     of_plane, more = plane_of(scene), {}
     subject = Subject(CHART, scene.name, scene.text, attributes_of(scene, source_of(scene)))
     names, box = tuple(scene.along), tuple(scene.along.values())
-    with pieces(subject, Path(output), mode, scene.inputs) as file:
+    with pieces(subject, file_to_write("output", output), mode, scene.inputs) as file:
         if file.complete:
             return
         with workers_of(workers, executor) as pool:

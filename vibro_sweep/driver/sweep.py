@@ -30,7 +30,7 @@ from vibro_sweep.driver.cost import (
 from vibro_sweep.driver.memory import available_cores, blocks_under_way, orbits_per_block
 from vibro_sweep.driver.pool import as_computed
 from vibro_sweep.driver.provenance import provenance
-from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.arguments import check_type, file_to_write
 from vibro_sweep.model.status import STANDING, meaning
 from vibro_sweep.scene import Scene
 from vibro_sweep.store.datasets import write_following
@@ -85,14 +85,14 @@ def run(
     """
     began = time.perf_counter()
     check_type("scene", scene, Scene, "a Scene, as `load_scene` returns it")
-    check_type("output", output, (str, Path), "the path of a file")
+    output = file_to_write("output", output)
     if executor is not None and not callable(getattr(executor, "submit", None)):
         raise TypeError(f"executor: {executor!r} is not allowed; it must be a concurrent.futures.Executor")
     if progress is not None and not callable(progress):
         raise TypeError(f"progress: {progress!r} is not allowed; it must be callable as progress(done, total)")
     if workers is not None and (type(workers) is not int or not 1 <= workers <= MOST_WORKERS):
         raise ValueError(f"workers: {workers!r} is not allowed; it must be a whole number from 1 to {MOST_WORKERS}")
-    with store.writer(scene, Path(output), mode) as file:
+    with store.writer(scene, output, mode) as file:
         total, done = scene.n_points, file.done()
         missing = total - done
         if progress:

@@ -14,6 +14,7 @@ from vibro_sweep.analysis.windows.unseen import unseen_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.driver.jobs import results, workers_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.model.arguments import file_to_write
 from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.branch_file import UNSEEN, WINDOWS, columns
 from vibro_sweep.model.built import BUILD
@@ -66,7 +67,7 @@ def run_windows(
     with store.contents(path) as data:
         rows = rows_in(data, key)
         subject = _subject(data, rows[0].parameter)
-    with pieces(subject, Path(output), mode, [Path(path)]) as file:
+    with pieces(subject, file_to_write("output", output), mode, [Path(path)]) as file:
         if file.complete:
             return
         with workers_of(workers, executor) as pool:

@@ -1,5 +1,8 @@
 """Arguments of the Python functions, checked: what is wrong is named before anything is computed."""
 
+import os
+from pathlib import Path
+
 import numpy as np
 
 from vibro_sweep.model.state import state as names
@@ -49,6 +52,14 @@ def checked_count(name: str, value, least: int, most: int = MAX_COUNT) -> int:
     if not (is_number(value) and least <= value <= most and value == int(value)):
         raise ValueError(f"{name}: {value!r} is not allowed; it must be a whole number >= {least} and <= {most}")
     return int(value)
+
+
+def file_to_write(name: str, value: str | Path) -> Path:
+    """The path of a file. Raises TypeError for what is no path, ValueError for the name of a folder."""
+    check_type(name, value, (str, Path), "the path of a file")
+    if str(value).endswith(("/", os.sep)):
+        raise ValueError(f"{name}: {str(value)!r} is not allowed; it names a folder, and must name a file")
+    return Path(value)
 
 
 def check_type(name: str, value: object, kinds: type | tuple[type, ...], allowed: str) -> None:
