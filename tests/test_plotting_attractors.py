@@ -204,8 +204,7 @@ def test_words():
         "sweep: {x1: {values: [0, 1]}, v1: {values: [0, 1]}}\nobserve: [attractors]",
     ],
 )
-@pytest.mark.filterwarnings("error")
-@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # the lowest matplotlib calls the newest pyparsing so
+@pytest.mark.filterwarnings("error", "ignore::DeprecationWarning")  # of the lowest matplotlib
 def test_empty_axes_say_why(tmp_path, text):
     scene = f"{PAPER}\norbit: {{transient: 5, record: 5}}\n{text}".replace("0.05", "1.0e+6")
     path = tmp_path / "failed.h5"
