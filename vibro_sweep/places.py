@@ -9,9 +9,14 @@ from .console import InputError, input_errors
 
 def check_output(output: Path, inputs: Collection[Path], picture: Path | None, mode: str) -> None:
     """Raise InputError or StoreError, before anything is computed, where results could not be written in the end."""
+    from .model.files import file_to_write
     from .store.beginning import check_places
     from .store.opening import StoreError
 
+    try:
+        file_to_write("--output", str(output))
+    except ValueError as error:
+        raise InputError(str(error)) from None
     try:
         check_places(output, mode, inputs)
     except StoreError as error:

@@ -28,6 +28,7 @@ from vibro_sweep.model.arguments import is_number
 from vibro_sweep.model.linear import Linear, steady_gain
 from vibro_sweep.model.oscillator import System, checked_system
 from vibro_sweep.model.parameters import NAMES
+from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.sensitivity import grazing_state, grazing_state_slopes, motion, motion_slopes
 
 
@@ -68,7 +69,7 @@ class PeriodMap:
     def __init__(self, system: AnyOscillator, order: int = 0, expand_at: float | None = None):
         checked_system(system)
         if order not in (0, 1, 2):
-            raise ValueError(f"order: {order!r} is not allowed; it must be 0 (the flow), 1 or 2")
+            raise ValueError(not_allowed("order", order, "0 (the flow), 1 or 2"))
         self.system = system if order == 0 else system.replace(tau="grazing")
         self.order, self.expand_at = order, expand_at
         given = NAMES if isinstance(system, System) else tuple(self.system.numbers)
@@ -87,7 +88,7 @@ class PeriodMap:
         """
         halves = 2 * periods
         if not (math.isfinite(halves) and halves >= 0 and halves == int(halves)):
-            raise ValueError(f"periods: {periods!r} is not allowed; it must be a multiple of 1/2, and not negative")
+            raise ValueError(not_allowed("periods", periods, "a multiple of 1/2, and not negative"))
         start, count = np.array(states, float), self._engine.states
         if start.ndim != 2 or start.shape[1] != count:
             raise ValueError(f"states: shape {start.shape} is not allowed; it must be (n, {count})")
@@ -231,7 +232,7 @@ def _check_symmetric(system: AnyOscillator) -> None:
     """What the discontinuity mapping needs: the two halves of a period are mirror images, and a steady motion."""
     q = system.linear
     if getattr(system, "offset", 0.0) != 0 or q.R_low != q.R_high or np.any(q.constant):
-        allowed = "its stops must be equal and about 0, without a constant force, for the discontinuity mapping"
-        raise ValueError(f"system: {system!r} is not allowed; {allowed}")
+        allowed = "one with equal stops about 0 and without a constant force, for the discontinuity mapping"
+        raise ValueError(not_allowed("system", system, allowed))
     if not steady_gain(q):
-        raise ValueError(f"system: {system!r} is not allowed; its gap must have a steady motion, which grazes")
+        raise ValueError(not_allowed("system", system, "one whose gap has a steady motion, which grazes"))

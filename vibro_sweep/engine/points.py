@@ -144,6 +144,8 @@ def run_points(points, starts, results, sections, phases, running, w, plan, mapp
     for first in range(0, points.shape[1], LANES):
         last = min(first + LANES, points.shape[1])
         for n in range(len(points)):
+            if e.halt[0] != 0:
+                return
             if plan.step != WAY:
                 set_orbits(points, starts, results, n, first, w, plan)
             if plan.step == TABLES:

@@ -23,6 +23,8 @@ from vibro_sweep.engine.tables.flight import load
 from vibro_sweep.engine.variational import tangent, tangent_flight
 from vibro_sweep.model import status
 
+STRETCH = 2**21  # cells over which orbits are carried, some tenths of a second, before a look at `halt`
+
 
 class Mapping(NamedTuple):
     """The discontinuity mapping in place of the flow: a type of its own, so that it is compiled only if asked for."""
@@ -33,7 +35,7 @@ class Mapping(NamedTuple):
 @inline
 def under_way(o):
     """Whether an orbit has periods to go."""
-    return o.done < o.periods and o.status == status.OK
+    return o.done < o.goal and o.status == status.OK
 
 
 @aside
@@ -72,7 +74,7 @@ def go_long_way(e, o, f, readings):
             return
         if o.cell == q.cells:
             end_period_here(e, o, f, readings)
-            if o.done == o.periods:
+            if o.done == o.goal:
                 return
 
 
@@ -112,7 +114,7 @@ def coast(e, o, f, readings):
 def glide(e, o, f, readings):
     """Find the next suspect cell, over a section if none is before it; the last section is left to `seek`."""
     o.suspect = first_suspect(f, o)
-    if o.suspect == o.ends and o.done + 1 < o.periods:
+    if o.suspect == o.ends and o.done + 1 < o.goal:
         X = state_at(o, f.nodes, o.ends)
         if is_inside(o, number(X, 0)):  # else the last cell is suspect
             end_period(e, o, f.oscillator[0], f.nodes, X, readings)
@@ -149,7 +151,7 @@ def seek(e, seeking, readings):
                     continue
                 if k == o.ends:
                     end_period(e, o, q, f.nodes, X, readings)
-                    if o.done < o.periods:
+                    if o.done < o.goal:
                         if q.middle + q.swing < o.stops[1] and not sampled:
                             coast(e, o, f, readings)
                         continue
@@ -210,6 +212,22 @@ def settle(e, waiting, free, struck, readings):
     return waiting
 
 
+@aside
+def begin(e, readings):
+    """Begin a stretch, unless nobody waits for the orbits any more. Returns who has periods to go, as bits."""
+    waiting = 0
+    for i in range(LANES):
+        o = e.orbits[i]
+        if e.halt[0] != 0:
+            o.status = status.NOT_COMPUTED
+        elif o.done >= o.goal and o.status == status.OK:
+            o.goal = min(o.periods, o.done + max(1, STRETCH // o.cells))
+        if under_way(o) and (o.offset > 0.0 or o.resting != 0.0):
+            go_long_way(e, o, flight_of(e, o), readings)
+        waiting |= int(under_way(o)) << i
+    return waiting
+
+
 @jit
 def carry(e, mapping, readings):
     """Carry each orbit over its `periods`, of forcing or iterations of the discontinuity mapping; see its `status`.
@@ -217,11 +235,11 @@ def carry(e, mapping, readings):
     mapping: None for the flow, or the `Mapping` that takes its place.
     """
     t, strikes = e.tangent[0], e.strike[0]
-    careful = waiting = 0
+    careful = 0
     for i in range(LANES):
         o = e.orbits[i]
-        o.done = o.read = 0
-        if under_way(o):  # of others there may be no tables
+        o.done = o.read = o.goal = 0
+        if o.periods > 0 and o.status == status.OK:  # of others there may be no tables
             know(o, flight_of(e, o).oscillator[0])
             careful |= o.careful << i
     clear_counts(strikes)
@@ -229,15 +247,14 @@ def carry(e, mapping, readings):
         for i in range(LANES):
             iterate(e, e.orbits[i], mapping, readings)
         return
-    for i in range(LANES):
-        o = e.orbits[i]
-        if under_way(o) and (o.offset > 0.0 or o.resting != 0.0):
-            go_long_way(e, o, flight_of(e, o), readings)
-        waiting |= int(under_way(o)) << i
+    waiting = begin(e, readings)
     while True:
         waiting = seek(e, waiting, readings)
         if waiting == 0:
-            break
+            waiting = begin(e, readings)
+            if waiting == 0:
+                break
+            continue
         if waiting & careful != 0:
             put_carefully(e, waiting & careful)
         free, struck = strike(strikes, lanes_of(waiting))
@@ -261,7 +278,9 @@ def iterate(e, o, mapping, readings):
     """Carry one orbit over its `periods` of the discontinuity mapping."""
     f = flight_of(e, o)
     stops, records = stops_of(o), records_of(e, o)
-    while o.done < o.periods and o.status == status.OK:
+    while o.done < o.periods and o.status == status.OK and e.halt[0] == 0:
         o.status = map_period(f, stops, o, records, e.tangent[0], mapping.order == 2)
         if o.status == status.OK:
             end_period_here(e, o, f, readings)
+    if e.halt[0] != 0:
+        o.status = status.NOT_COMPUTED

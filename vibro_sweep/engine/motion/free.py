@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import ROUNDING, first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import advance, is_finite, place, take_off, wall_of
+from vibro_sweep.engine.motion.orbits import advance, advance_exactly, is_finite, place, round_off, take_off, wall_of
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.motion.scan import state_at
 from vibro_sweep.engine.simd.jit import entry, jit
@@ -46,7 +46,10 @@ def load_series(f, o):
 def go_on(f, o, length, last, from_node):
     """To the end of the series. from_node: the flight since node `base` is the closed form. Returns it for the next."""
     q = f.oscillator[0]
-    advance(o, length)
+    if q.exact:
+        advance_exactly(o, length)
+    else:
+        advance(o, length)
     o.offset += length
     if not last:
         return from_node
@@ -54,6 +57,7 @@ def go_on(f, o, length, last, from_node):
     o.cell += 1
     if from_node:
         put(o.X, 0, state_at(o, f.nodes, o.cell))
+        round_off(o)
     if o.cell == q.cells:
         o.cell = 0
         o.period += 1

@@ -5,12 +5,21 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import advance, is_finite, restitution_of, take_samples, wall_of
+from vibro_sweep.engine.motion.orbits import (
+    advance,
+    advance_exactly,
+    is_finite,
+    restitution_of,
+    round_off,
+    take_samples,
+    wall_of,
+)
 from vibro_sweep.engine.motion.rest import begin_rest, chatter, first_nonzero, stay_at_rest
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.simd.lanes import alike
 from vibro_sweep.engine.simd.memory import row
 from vibro_sweep.engine.tables.flight import ORDER, bounds, evaluate, load
+from vibro_sweep.engine.tables.twofold import add
 from vibro_sweep.engine.variational import tangent, tangent_flight
 from vibro_sweep.model import status
 
@@ -157,11 +166,12 @@ def is_beyond(stops, o, f, k):
 def cross_cell(f, stops, o, records, t, k, s):
     """Follow the orbit from offset s in cell k to the cell's end, through all that happens. Returns a status."""
     q, node, X, c1 = f.oscillator[0], f.nodes[k], o.X, o.c[0]
-    released = False
+    released, s_low = False, 0.0
+    round_off(o)
     if s == 0.0 and is_beyond(stops, o, f, k):
         return status.BEYOND_STOP
     while o.events < MOST_EVENTS:
-        left = q.width - s
+        left = (q.width - s) - s_low
         last = left <= 1.001 * q.step
         left = left if last else q.step
         sin, cos = node.z[2 * len(o.c)], node.z[2 * len(o.c) + 1]
@@ -178,6 +188,8 @@ def cross_cell(f, stops, o, records, t, k, s):
             released = True
             continue
         side = 1.0 if X[0] >= stops.right else (-1.0 if X[0] <= stops.left else 0.0)
+        if side != 0.0:
+            round_off(o)
         if side * X[1] > 0.0:
             impact(f, stops, o, records, t, k, s, side, sin, cos)
         load(q.series, row(X, 0), sin, cos, o.c)
@@ -199,10 +211,16 @@ def cross_cell(f, stops, o, records, t, k, s):
         if d != d:
             return status.UNRESOLVED
         take_samples(o, records, k, s, s + min(d, left))
-        advance(o, min(d, left))
+        if q.exact:
+            advance_exactly(o, min(d, left))
+        else:
+            advance(o, min(d, left))
         if d == np.inf and (last or not is_finite(o)):
             return status.OK if is_finite(o) else status.NOT_FINITE
-        s += min(d, left)
+        if q.exact:
+            s, s_low = add(s, s_low, min(d, left), 0.0)
+        else:
+            s += min(d, left)
         released = False
         if d == np.inf:
             continue

@@ -9,6 +9,8 @@ from vibro_sweep.engine.simd.jit import aside, entry, inline, jit
 from vibro_sweep.engine.simd.lanes import state_and_rest
 from vibro_sweep.engine.simd.memory import put, record, row
 from vibro_sweep.engine.tables.flight import ORDER, evaluate, width_of
+from vibro_sweep.engine.tables.products import change_within
+from vibro_sweep.engine.tables.twofold import add
 from vibro_sweep.model import status
 
 FARTHEST = 2.0**127  # where a stop is at most for the search, which is in single precision: an infinite x1 is outside
@@ -52,6 +54,7 @@ def orbit_of(masses: int, constant: bool = False) -> np.dtype:
         ("status", np.int64),
         ("periods", np.int64),  # to carry it over
         ("done", np.int64),  # of these
+        ("goal", np.int64),  # of these those after which to look whether to go on (ensemble.py)
         ("read", np.int64),  # readings of the growth of tangent vectors
         ("cell", np.int64),
         ("offset", float),
@@ -68,6 +71,7 @@ def orbit_of(masses: int, constant: bool = False) -> np.dtype:
         ("c", float, (masses, ORDER)),  # Taylor coefficients of x1, x2, ...; of M1 at rest the free acceleration
         ("held", float, width),  # what series begin with while M1 rests: x1, x2, v2, x3, ..., sin, cos
         ("gap", float, ORDER),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
+        ("finer", float, 2 * masses),  # what rounding left of X, from series to series (`advance_exactly`)
     ]
     counts = [
         ("period", np.int64),
@@ -118,6 +122,7 @@ def place(o, nodes, stops, cell, offset, state):
     o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
     take_off(o, nodes, row(o.X, 0))
     reset_counts(o)
+    round_off(o)
 
 
 @jit
@@ -181,6 +186,33 @@ def advance(o, u):
             v = v * u + x
             x = x * u + c[i, n]
         X[2 * i], X[2 * i + 1] = x, v
+
+
+@jit
+def round_off(o):
+    """X is the state, and nothing is left of it."""
+    for j in range(len(o.finer)):
+        o.finer[j] = 0.0
+
+
+@jit
+def add_change(o, i, u):
+    """Position and velocity of mass i at offset u of its series, and what rounding leaves of them."""
+    X, finer = o.X, o.finer
+    x, v = change_within(o.c[i], u)
+    X[2 * i], finer[2 * i] = add(X[2 * i], finer[2 * i], x, 0.0)
+    X[2 * i + 1], finer[2 * i + 1] = add(X[2 * i + 1], finer[2 * i + 1], v, 0.0)
+
+
+@jit
+def advance_exactly(o, u):
+    """`advance` where a cell of a stiff oscillator takes thousands of series: else the roundings of all would add up.
+
+    What is left of X does not fly on by itself: of a slow motion it hardly moves in the time u, of a fast one it is
+    gone before there are many.
+    """
+    for i in range(len(o.c)):
+        add_change(o, i, u)
 
 
 @aside

@@ -5,10 +5,11 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import restitution_of, take_samples
+from vibro_sweep.engine.motion.orbits import add_change, restitution_of, take_samples
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, evaluate
 from vibro_sweep.engine.tables.resting import bound_third_over, carry_over_rest, state_after
+from vibro_sweep.engine.tables.twofold import add
 from vibro_sweep.engine.variational import held, tangent_flight
 
 CHATTER = 2.0**-53  # of a period: the error allowed in time when the rest of a chatter sequence is summed up
@@ -99,20 +100,26 @@ def first_release(o, left):
 def stay_at_rest(f, o, records, t, k, s, sin, cos):
     """M1 rests from offset s of cell k on. Returns the time to the release, infinite if not in this cell."""
     q, X = f.oscillator[0], o.X
-    x2, v2, sin_there, cos_there, w = X[2], X[3], sin, cos, 0.0
+    x2, v2, sin_there, cos_there, w, w_low = X[2], X[3], sin, cos, 0.0, 0.0
     one_series = q.rest_step == q.width
     while True:
         load_rest(q, o, sin_there, cos_there)
-        left = q.width - s - w
+        left = (q.width - s - w) - w_low
         last = left <= 1.001 * q.rest_step
         left = left if last else q.rest_step
         d = first_release(o, left)
         end = min(d, left)
         take_samples(o, records, k, s + w, s + w + end)
-        w += end
+        if q.exact:
+            w, w_low = add(w, w_low, end, 0.0)
+        else:
+            w += end
         if one_series or q.rest_square == 0.0:
             for m in range(1, len(o.c)):
-                X[2 * m], X[2 * m + 1] = evaluate(o.c[m], end)
+                if q.exact:
+                    add_change(o, m, end)
+                else:
+                    X[2 * m], X[2 * m + 1] = evaluate(o.c[m], end)
             swing, turn = math.sin(q.omega * w), math.cos(q.omega * w)
             sin_there, cos_there = sin * turn + cos * swing, cos * turn - sin * swing
         else:

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.halting import halt_of_thread
 from vibro_sweep.engine.motion.orbits import Records, Stops, new_records, orbit_of
 from vibro_sweep.engine.motion.strike import strikes_of
 from vibro_sweep.engine.records import Kind
@@ -22,6 +23,7 @@ class Ensemble(NamedTuple):
     strike: np.ndarray  # (1,) `strikes_of`
     tangent: np.ndarray  # (1,) `tangents_of`
     records: Records  # with a first axis: one for each orbit
+    halt: np.ndarray  # (1,): not 0 where nobody waits for them any more (engine/halting.py)
 
 
 class Readings(NamedTuple):
@@ -44,6 +46,7 @@ def new_ensemble(cells: int, kind: Kind, impacts: int = 0, rests: int = 0, sampl
         new_lines(1, strikes_of(masses, constant)),
         new_lines(1, tangents_of(masses, paper)),
         new_records(LANES, impacts, rests, samples, masses),
+        halt_of_thread(),
     )
 
 

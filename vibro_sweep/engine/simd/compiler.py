@@ -12,6 +12,9 @@ from llvmlite.binding import Linkage, parse_assembly, set_option
 from numba.core.codegen import CPUCodegen, JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
 
+from vibro_sweep.engine import simd
+from vibro_sweep.engine.halting import heard
+
 NEEDED = {JITCodeLibrary: "_optimize_functions", CPUCodegen: "_pass_builder", Flags(): "_values"}
 if not all(hasattr(where, name) for where, name in NEEDED.items()):
     raise ImportError("this numba is another inside")
@@ -108,6 +111,15 @@ class _Whole(JITCodeLibrary):
             set_option("vibro_sweep", "-align-all-functions=0")
 
 
+def _keep_what_is_there() -> None:
+    """Or the search for garbage takes as long again: what compiling leaves goes where it looks last, or never."""
+    if simd.OWN_PROCESS:
+        gc.freeze()
+    elif gc.get_freeze_count() == 0:  # else what others have frozen would be so no more
+        gc.freeze()
+        gc.unfreeze()
+
+
 ROOM = 2**16  # words
 
 
@@ -163,11 +175,11 @@ class WholeCompiler(Compiler):
         collecting = gc.isenabled()
         gc.disable()  # a tenth of the time, and there is little to collect
         try:
-            with _lean().lean():
+            with _lean().lean(), heard():
                 return super().compile_extra(func)
         finally:
             if collecting:
-                gc.freeze()  # or to look through what is left takes as long again
+                _keep_what_is_there()
                 gc.enable()
 
 

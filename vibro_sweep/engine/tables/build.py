@@ -23,6 +23,7 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
     rate = max(omega, max(rate_of(omega_squared[0], zeta), rate_of(omega_squared[1], zeta)))
     fill_phases(q, f.nodes, cells, tau)
     set_grid(q, cells, omega, rate)
+    q.exact = False
     fill_equations(q, scratch, mu_m, mu_k, f2)
     fill_series(q, scratch)
     fill_rest(q, mu_m, mu_k, f2)

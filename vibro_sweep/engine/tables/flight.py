@@ -79,7 +79,8 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         ("frame_square", float, masses),  # omega_dj^2
         ("to_frame", float, (states, states)),
         ("from_frame", float, (states, states)),
-        ("stiff", np.bool_),  # cells do not resolve every rate
+        ("stiff", np.bool_),  # cells do not resolve every rate, and
+        ("exact", np.bool_),  # what rounding leaves is kept from series to series (orbits.advance_exactly)
         ("largest", float),  # |x1| of the motion r
         ("steady", float, states),  # of coast.py, like all that follow: the steady motion at node 0
         ("middle", float),  # of the gap of the steady motion, and

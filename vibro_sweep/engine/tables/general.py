@@ -45,6 +45,7 @@ def build_any(f, w, point):
     fill_rest_series(q, w, point, max(point.omega, point.held_rate))
     fill_products(q, f.nodes, point, w.twofold)
     fill_forced_motion(q, f.nodes, point.tau, point.begin)
+    q.exact = q.stiff and point.apart
     if q.stiff:
         fill_stiff_exclusion(q, f.nodes, f.scan, point, w.turned)
     else:

@@ -1,0 +1,46 @@
+"""What a prompt says by itself: that kernels compile, and warnings; unless logging takes it, or silences it."""
+
+import subprocess
+import sys
+
+import pytest
+
+COMPILE = "from vibro_sweep.engine.simd import jit; jit._announce('FOLDER')"
+MESSAGE = "compiling kernels, once: they are kept in FOLDER\n"
+WARN = "logging.getLogger('vibro_sweep').warning('beware')"
+WORKER = f"""
+import multiprocessing
+def work():
+    import vibro_sweep
+    {COMPILE}
+if __name__ == "__main__":
+    one = multiprocessing.get_context("spawn").Process(target=work)
+    one.start(), one.join()
+"""
+
+
+def told(tmp_path, program: str) -> str:
+    file = tmp_path / "program.py"
+    file.write_text(program)
+    done = subprocess.run([sys.executable, file], capture_output=True, text=True, check=True, timeout=120)
+    assert not done.stdout
+    return done.stderr
+
+
+@pytest.mark.parametrize(
+    "before, expected",
+    [
+        ("", f"vibro_sweep: {MESSAGE}vibro_sweep: warning: beware\n"),
+        ("logging.getLogger('vibro_sweep').setLevel(logging.WARNING)", "vibro_sweep: warning: beware\n"),
+        ("logging.getLogger('vibro_sweep').setLevel(logging.CRITICAL)", ""),
+        ("logging.getLogger('vibro_sweep').addHandler(logging.NullHandler())", ""),
+        ("logging.basicConfig(format='of mine: %(message)s')", f"of mine: {MESSAGE}of mine: beware\n"),
+    ],
+)
+def test_it_is_said_once_and_can_be_silenced(tmp_path, before, expected):
+    for first, second in (("import vibro_sweep", before), (before, "import vibro_sweep")):
+        assert told(tmp_path, f"import logging\n{first}\n{second}\n{COMPILE}\n{WARN}\n") == expected
+
+
+def test_processes_that_python_starts_say_nothing(tmp_path):
+    assert told(tmp_path, WORKER) == ""

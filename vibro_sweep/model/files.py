@@ -1,0 +1,95 @@
+"""Names of files that a caller gives, checked; and errors of Python's own kinds for what is missing or in the way."""
+
+import errno
+import os
+import stat
+from pathlib import Path
+
+from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.refusals import not_allowed
+
+SUFFIX = ".part"  # of the file of a run that is not complete
+WHAT = "the path of a file"
+
+
+class FileError(ValueError, OSError):
+    """A file that cannot be read or written: its name, and why."""
+
+    # of the two bases' the one that Python takes; tblib, which Dask has, asks for it
+    __new__ = OSError.__new__
+
+    def __init__(self, path: str | Path, reason: str):
+        super().__init__(path, reason)
+        self.filename, self.strerror = str(path), reason
+
+    def __reduce__(self):
+        return type(self), (self.filename, self.strerror)
+
+    def __str__(self):
+        return f"{self.filename}: {self.strerror}"
+
+
+class MissingFileError(FileError, FileNotFoundError):
+    """There is no such file."""
+
+    def __init__(self, path: str | Path, reason: str = "there is no such file"):
+        super().__init__(path, reason)
+        self.errno = errno.ENOENT
+
+
+class ExistingFileError(FileError, FileExistsError):
+    """There is a file already, which is left alone."""
+
+    def __init__(self, path: str | Path, reason: str = "there is a file already"):
+        super().__init__(path, reason)
+        self.errno = errno.EEXIST
+
+
+def checked_path(name: str, value: str | Path) -> Path:
+    """The path of a file. Raises TypeError for what is no path, ValueError for one that no file can have."""
+    check_type(name, value, (str, Path), WHAT)
+    _check_name(name, value, str(value))
+    return Path(value)
+
+
+def file_to_write(name: str, value: str | Path) -> Path:
+    """The path of a file, and ValueError for the name of a folder, too."""
+    path = checked_path(name, value)
+    if str(value).endswith(("/", os.sep)):
+        raise ValueError(not_allowed(name, str(value), f"{WHAT}, and of no folder"))
+    _check_name(name, value, f"{value}{SUFFIX}")
+    return path
+
+
+def _check_name(name: str, value: object, path: str) -> None:
+    if not path:
+        raise ValueError(not_allowed(name, value, f"{WHAT}, and not empty"))
+    try:
+        os.lstat(path)
+    except UnicodeEncodeError:
+        raise ValueError(not_allowed(name, value, f"{WHAT}, of whole characters")) from None
+    except ValueError:
+        raise ValueError(not_allowed(name, value, f"{WHAT}, without a NUL character")) from None
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            raise ValueError(not_allowed(name, value, f"{WHAT}, and shorter")) from None
+
+
+def read_bytes(path: Path, most: int) -> bytes:
+    """What is in a file, or its first bytes. Raises FileError where it is none, or cannot be read."""
+    try:
+        with open(path, "rb", opener=_without_waiting) as file:
+            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                raise FileError(path, "is no regular file")
+            return file.read(most)
+    except FileError:
+        raise
+    except FileNotFoundError:
+        raise MissingFileError(path) from None
+    except OSError as error:
+        raise FileError(path, f"cannot be read: {error.strerror or error}") from None
+
+
+def _without_waiting(path, flags: int) -> int:
+    """A pipe is not waited for."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
