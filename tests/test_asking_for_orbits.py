@@ -28,28 +28,39 @@ def test_failures_are_told_by_status():
     assert vs.periodic_orbit(resting, state=state).status == "sticking"
 
 
+def test_touches_that_hold_a_free_mass_are_no_impacts():
+    """The ball may be at rest anywhere in its cavity, at a stop as well; with impacts it has orbits."""
+    system = vs.Oscillator.named(
+        "ball_in_cavity", mass_ratio=0.3828802628642237, zeta=0.02276833525040379, F=0.45934115344610726,
+        omega=1.1198987551534054, R=0.8111725304055444, b=1.818778311334295, tau=3.8085778862473907,
+    )  # fmt: skip
+    for word, periods in (("", 1), ("RR", 3), ("R", 2)):
+        assert vs.periodic_orbit(system, itinerary=word, periods=periods).status == "resonance"
+    assert vs.periodic_orbit(system, itinerary="LR").ok
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ({}, "give either"),
-        ({"state": (0, 0, 0, 0), "itinerary": "R"}, "give either"),
+        ({}, "state: None is not allowed; it must be given, or an itinerary or a guess"),
+        ({"state": (0, 0, 0, 0), "itinerary": "R"}, "state: .* must be left out where an itinerary"),
         ({"itinerary": "RX"}, "word of R and L"),
         ({"itinerary": "R", "periods": 0}, "whole number"),
-        ({"guess": [(1.0, 1, 0.1), (0.5, -1, -0.1)]}, "must rise"),
+        ({"guess": [(1.0, 1, 0.1), (0.5, -1, -0.1)]}, "in the order of their times"),
         ({"state": (0, 0, 0, 0), "periods": math.inf}, "whole number"),
         ({"state": (0, 0, 0, 0), "periods": math.nan}, "whole number"),
         ({"guess": [(1.0, 2, 0.1)]}, "side 1 or -1"),
         ({"guess": [(1.0, 1.5, 0.1)]}, "side 1 or -1"),
         ({"guess": [(1.0, math.inf, 0.1)]}, "side 1 or -1"),
-        ({"guess": [(1.0, 1, 0.1)], "itinerary": ""}, "differs"),
-        ({"guess": [(1.0, 1, 0.1)], "itinerary": "L"}, "differs"),
+        ({"guess": [(1.0, 1, 0.1)], "itinerary": ""}, "that of the guess"),
+        ({"guess": [(1.0, 1, 0.1)], "itinerary": "L"}, "that of the guess"),
         ({"guess": [(1.0, 1, 0.1), (50.0, 1, 0.1)]}, "one period"),
     ],
 )
 def test_bad_input_is_refused(arguments, said):
     with pytest.raises(ValueError, match=said):
         vs.periodic_orbit(PAPER, **arguments)
-    with pytest.raises(ValueError, match="does not have"):
+    with pytest.raises(ValueError, match="a word of stops that the system has"):
         vs.periodic_orbit(PAPER.replace(stops="right"), itinerary="L")
 
 

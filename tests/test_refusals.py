@@ -166,13 +166,17 @@ def test_bad_scene(scene_folder, capsys, name, command):
         (["run", "good.yaml", "-o", "/proc/new.h5"], ["/proc/new.h5", "cannot write"]),
         (["run", "good.yaml", "--overwrite", "-o", "old.h5/new.h5"], ["old.h5/new.h5", "no folder"]),
         (["run", "binary.yaml"], ["binary.yaml", "not UTF-8"]),
+        (["run", "x" * 5000], ["x" * 57 + "... File name too long"]),
+        (["run", "good.yaml", "-o", "x" * 252], ["--output", "x" * 56 + "...", "and shorter"]),
+        (["run", "good.yaml", "--workers", "x" * 5000], ["--workers", "x" * 50 + "..."]),
+        (["x" * 5000], ["there is no command 'xxx", "..."]),
         (["info", "none.h5"], ["FILE.h5", "none.h5", "does not exist"]),
         (["info", "good.yaml"], ["good.yaml", "HDF5"]),
         (["plot", "good.yaml"], ["good.yaml", "HDF5"]),
         (["plot", "none.h5"], ["FILE.h5", "none.h5", "does not exist"]),
         (["check", "none.yaml"], ["SCENE.yaml", "none.yaml", "does not exist"]),
     ],
-    ids=" ".join,
+    ids=lambda words: " ".join(words)[:60],
 )
 def test_bad_command_line(scene_folder, capsys, arguments, words):
     (scene_folder / "old.h5").write_text("years of work")

@@ -1,10 +1,13 @@
-"""Arguments of the Python functions, checked: what is wrong is named before anything is computed."""
+"""Arguments of the Python functions, checked: what is wrong is named before anything is computed or opened."""
 
-import os
-from pathlib import Path
+import inspect
+from collections.abc import Collection
+from typing import Any, overload
 
 import numpy as np
 
+from vibro_sweep.model.real import array_of, number_of
+from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.state import state as names
 
 _COUNTS = {2: "two", 4: "four", 6: "six"}
@@ -14,55 +17,99 @@ LATEST = 10**9  # forcing periods from t = 0; a time then resolves a millionth o
 
 def checked_state(state, masses: int = 2, name: str = "state") -> np.ndarray:
     """A state (x1, v1, x2, v2, ...) as an array (2 N,). Raises ValueError unless it is so many finite numbers."""
-    try:
-        values = np.asarray(state)
-    except ValueError:  # rows of different lengths
-        values = np.asarray(None)
-    good = values.shape == (2 * masses,) and values.dtype.kind in "fiu"
-    if not (good and np.isfinite(values.astype(float)).all()):
+    values = array_of(state, 1)
+    if values is None or values.shape != (2 * masses,) or not np.isfinite(values).all():
         count = _COUNTS.get(2 * masses, str(2 * masses))
-        raise ValueError(
-            f"{name}: {state!r} is not allowed; it must be {count} finite numbers ({', '.join(names(masses))})"
-        )
-    return values.astype(float)
+        raise ValueError(not_allowed(name, state, f"{count} finite numbers ({', '.join(names(masses))})"))
+    return values
 
 
 def is_number(value) -> bool:
     """Whether this is one real number, of Python's or NumPy's."""
-    return np.ndim(value) == 0 and np.asarray(value).dtype.kind in "fiu"
+    return number_of(value) is not None
 
 
 def checked_times(times, first: float, last: float, allowed: str) -> np.ndarray:
     """Times (m,) from first to last, of one number or of a sequence of them. ValueError; `allowed` says so in words."""
-    try:
-        values = np.atleast_1d(np.asarray(times))
-    except ValueError:  # rows of different lengths
-        values = np.asarray(None)
-    if values.ndim != 1 or not (values.dtype.kind in "fiu" or values.size == 0):
-        raise ValueError(f"times: {times!r} is not allowed; it must be a number or a sequence of numbers")
-    values = values.astype(float)
+    values = array_of(times, 1)
+    if values is None and is_number(times):
+        values = np.array([number_of(times)])
+    if values is None:
+        raise ValueError(not_allowed("times", times, "a number or a sequence of numbers"))
     outside = ~((values >= first) & (values <= last))
     if outside.any():
-        raise ValueError(f"times: {float(values[outside][0])!r} is not allowed; it must be {allowed}")
+        raise ValueError(not_allowed("times", float(values[outside][0]), allowed))
     return values
+
+
+def checked_interval(name: str, bounds, value: float) -> tuple[float, float]:
+    """(lo, hi) around a value. Raises ValueError."""
+    ends = array_of(bounds, 1)
+    if ends is None or ends.shape != (2,) or not (np.isfinite(ends).all() and ends[0] < ends[1]):
+        raise ValueError(not_allowed(name, bounds, f"(lo, hi), lo < hi, around {value!r}"))
+    lo, hi = ends.tolist()
+    if not lo <= value <= hi:
+        raise ValueError(not_allowed(name, bounds, f"(lo, hi), lo < hi, around {value!r}"))
+    return lo, hi
 
 
 def checked_count(name: str, value, least: int, most: int = MAX_COUNT) -> int:
     """A whole number of at least and at most so many. Raises ValueError."""
-    if not (is_number(value) and least <= value <= most and value == int(value)):
-        raise ValueError(f"{name}: {value!r} is not allowed; it must be a whole number >= {least} and <= {most}")
-    return int(value)
+    number = number_of(value)
+    if number is None or not (least <= number <= most and number == int(number)):
+        raise ValueError(not_allowed(name, value, f"a whole number >= {least} and <= {most}"))
+    return int(number)
 
 
-def file_to_write(name: str, value: str | Path) -> Path:
-    """The path of a file. Raises TypeError for what is no path, ValueError for the name of a folder."""
-    check_type(name, value, (str, Path), "the path of a file")
-    if str(value).endswith(("/", os.sep)):
-        raise ValueError(f"{name}: {str(value)!r} is not allowed; it names a folder, and must name a file")
-    return Path(value)
+@overload
+def checked_word(name: str, value, words: Collection[str]) -> str: ...
+
+
+@overload
+def checked_word(name: str, value, words: Collection[str], optional: bool) -> str | None: ...
+
+
+def checked_word(name, value, words, optional=False):
+    """One of these words, or None where that is allowed too. Raises ValueError."""
+    if value is None and optional:
+        return None
+    if not (isinstance(value, str) and value in words):
+        raise ValueError(not_allowed(name, value, f"{'one of ' if len(words) > 1 else ''}{', '.join(words)}"))
+    return str(value)
+
+
+def checked_flag(name: str, value) -> bool:
+    """Raises ValueError for what is neither True nor False."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError(not_allowed(name, value, "True or False"))
+    return bool(value)
+
+
+def check_call(name: str, value: object, example: str, *given: Any) -> None:
+    """Raise TypeError unless `value` is None, or can be called as in the example, with as many arguments as `given`.
+
+    Nor is it a class, of which each call would only make another object.
+    """
+    if value is not None and (isinstance(value, type) or not accepts(value, *given)):
+        raise TypeError(not_allowed(name, value, f"callable as {example}"))
+
+
+def accepts(function: object, *given: Any, **named: Any) -> bool:
+    """Whether this can be called so, as far as it says."""
+    if not callable(function):
+        return False
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):  # written in C, mostly: it does not say
+        return not isinstance(function, type)
+    try:
+        signature.bind(*given, **named)
+    except TypeError:
+        return False
+    return True
 
 
 def check_type(name: str, value: object, kinds: type | tuple[type, ...], allowed: str) -> None:
     """Raise TypeError unless `value` is one of these kinds; `allowed` says so in words."""
     if not isinstance(value, kinds):
-        raise TypeError(f"{name}: {value!r} is not allowed; it must be {allowed}")
+        raise TypeError(not_allowed(name, value, allowed))

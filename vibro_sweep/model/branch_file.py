@@ -31,7 +31,6 @@ class Column(NamedTuple):
     optional: bool = False  # of an index: whether it may be -1
 
 
-_TIME = "nondimensional"
 _TYPES = tuple(one.name for one in TYPES)
 
 OF_BRANCHES = (
@@ -99,9 +98,7 @@ OF_BRANCHES = (
         "residual", ("point",), "f8", "residual", "largest jump of the gap between two flights, relative to its size"
     ),
     Column("status", ("point",), "i1", "status", "whether the point is a motion", "1", STATUSES),
-    Column(
-        "impact_t", ("impact",), "f8", "impact time", "of each impact of each point, continuous along a branch", _TIME
-    ),
+    Column("impact_t", ("impact",), "f8", "impact time", "of each impact of each point, continuous along a branch"),
     Column("impact_side", ("impact",), "i1", "stop", "+1: right, R of the itinerary; -1: left, L"),
     Column("impact_v", ("impact",), "f8", "impact velocity", "of the gap before the impact"),
     Column(
@@ -110,7 +107,6 @@ OF_BRANCHES = (
         "f8",
         "end of the rest",
         "after an impact at which the mass rests; NaN where it does not",
-        _TIME,
     ),
     Column("special_type", ("special",), "i1", "type", "of a special point", "1", _TYPES),
     Column(

@@ -24,7 +24,7 @@ class Built(AnyOscillator):
     def __init__(self, function: Callable[..., AnyOscillator], numbers: Mapping[str, float]):
         self.function, self.given = function, dict(numbers)
         self.base = function(**self.given)
-        check_type(f"{self.name}(...)", self.base, AnyOscillator, "a System or an Oscillator")
+        check_type(f"system, {self.name}(...)", self.base, AnyOscillator, "a System or an Oscillator")
         named = tuple(
             Parameter(name, rf"\mathrm{{{name}}}", "1", NUMBER, name, name, free_motion=True) for name in numbers
         )
@@ -39,7 +39,7 @@ class Built(AnyOscillator):
 
     def _linear(self, **numbers) -> Linear:
         made = self.function(**numbers)
-        check_type(f"{self.name}(...)", made, AnyOscillator, "a System or an Oscillator")
+        check_type(f"system, {self.name}(...)", made, AnyOscillator, "a System or an Oscillator")
         if made.masses != self.base.masses:
             told = ", ".join(f"{name}={value!r}" for name, value in numbers.items())
             allowed = f"as many as at the first point, {self.base.masses}"

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import is_number
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models import MODELS, model_named
 from vibro_sweep.model.models.declaration import Model, Option, linear_of
 from vibro_sweep.model.parameters import LENGTHS, Parameter, ParameterError, checked_number
+from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.state import MOST_MASSES
 
 
@@ -52,7 +52,7 @@ class Oscillator(AnyOscillator):
         from vibro_sweep.model.oscillator import System
 
         model = model_named(name)
-        return System(**given) if model.name == System.model.name else _again(name, given)
+        return System(**checked(model, given)) if model.name == System.model.name else _again(model.name, given)
 
     def _set(self, model: Model, given: Mapping[str, Any]) -> None:
         object.__setattr__(self, "model", model)
@@ -69,6 +69,10 @@ class Oscillator(AnyOscillator):
         if name in self.described:
             return self.numbers[name]
         raise AttributeError(f"{name!r} is no number of the model {self.model.name}")
+
+    def __dir__(self) -> list[str]:
+        """Its numbers too, those of lists one by one, for a prompt that completes names."""
+        return [*super().__dir__(), *self.given, *self.described]
 
     def __reduce__(self):
         return _again, (self.model.name, self.given)
@@ -186,26 +190,25 @@ def checked(model: Model, given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _checked_list(one: Parameter, value: Any, length: int) -> tuple[float, ...]:
-    if np.ndim(value) == 0 and value == one.default:
+    if one.default is not None and number_of(value) == one.default:
         value = [value] * length  # nothing anywhere
     values = _entries(one, value)
     if len(values) != length:
-        raise ParameterError(one.name, _plain(value), f"a list of {length} numbers, one for each {one.each}")
+        raise ParameterError(one.name, value, f"a list of {length} numbers, one for each {one.each}")
     return tuple(checked_number(one, entry, key=f"{one.name}[{i}]") for i, entry in enumerate(values))
 
 
 def _entries(one: Parameter, value: Any) -> list:
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        value = [value]  # of one mass
-    if not isinstance(value, (list, tuple)):
+    if number_of(value) is not None:
+        return [value]  # of one mass
+    numbers = array_of(value, 1)
+    if numbers is None and not isinstance(value, (list, tuple)):  # of which the entry is named that is no number
         raise ParameterError(one.name, value, f"a list of numbers, one for each {one.each}")
-    return list(value)
+    return list(value) if numbers is None else numbers.tolist()
 
 
 def _option(one: Option, value: Any) -> Any:
-    if one.optional and (value is None or (is_number(value) and value == 0)):  # a matrix of zeros: nothing
+    if one.optional and (value is None or number_of(value) == 0):  # a matrix of zeros: nothing
         return None
     if one.kind == "word":
         if not (isinstance(value, str) and value in one.words):
@@ -215,7 +218,7 @@ def _option(one: Option, value: Any) -> Any:
             raise ParameterError(one.name, value, "true or false")
         return bool(value)
     elif one.kind == "whole":
-        if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
+        if not isinstance(value, (int, np.integer)) or number_of(value) is None:
             raise ParameterError(one.name, value, "a whole number")
         return int(value)
     else:
@@ -226,18 +229,11 @@ def _option(one: Option, value: Any) -> Any:
 def _array(one: Option, value: Any) -> tuple:
     """A matrix or a vector as nested tuples of floats."""
     allowed = "a square matrix of finite numbers" if one.kind == "matrix" else "a list of finite numbers"
-    try:
-        array = np.asarray(value, dtype=None if value is not None else object)
-    except ValueError:  # rows of different lengths
-        raise ParameterError(one.name, value, allowed) from None
-    if array.ndim == 0 and array.dtype.kind in "fiu":
-        array = array.reshape((1, 1) if one.kind == "matrix" else 1)  # of one mass
-    good = array.dtype.kind in "fiu" and array.ndim == (2 if one.kind == "matrix" else 1)
-    if good and one.kind == "matrix":
-        good = array.shape[0] == array.shape[1]
-    if not good or array.size == 0 or not np.isfinite(array.astype(float)).all():
-        raise ParameterError(one.name, value.tolist() if isinstance(value, np.ndarray) else value, allowed)
-    numbers = array.astype(float).tolist()
+    dimensions, one_mass = 2 if one.kind == "matrix" else 1, number_of(value)
+    array = array_of(value, dimensions) if one_mass is None else np.full((1,) * dimensions, one_mass)
+    if array is None or len({*array.shape}) != 1 or array.size == 0 or not np.isfinite(array).all():
+        raise ParameterError(one.name, value, allowed)
+    numbers = array.tolist()
     return tuple(tuple(row) for row in numbers) if one.kind == "matrix" else tuple(numbers)
 
 

@@ -13,6 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.model.refusals import not_allowed
+
 DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
 FORCED = ("M", "K", "C", "along", "constant", "sine", "cosine", "omega")  # fields that move the steady motion
 CONTACT = ("low", "high", "R_low", "R_high", "middle")  # fields of the stops, the last ones of a `Linear`
@@ -232,7 +234,7 @@ def family_of(system) -> Family:
     if isinstance(system, Family):
         return system
     if not isinstance(getattr(system, "family", None), Family):
-        raise TypeError(f"system: {system!r} is not allowed; it must be a System or an Oscillator")
+        raise TypeError(not_allowed("system", system, "a System or an Oscillator"))
     return system.family
 
 

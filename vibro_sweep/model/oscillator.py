@@ -21,9 +21,9 @@ from vibro_sweep.model.parameters import (
     Parameter,
     ParameterError,
     checked_number,
-    number_of,
     physical_range,
 )
+from vibro_sweep.model.real import number_of
 
 Stops = Literal["both", "right", "left"]
 
@@ -47,8 +47,7 @@ class System(AnyOscillator):
     model: ClassVar[Model] = MODEL
 
     def __post_init__(self):
-        if self.stops not in STOPS:
-            raise ParameterError("stops", self.stops, "both, right or left")
+        _check_stops(self.stops)
         for one in PARAMETERS:
             value = getattr(self, one.name)
             if not (isinstance(value, str) and value in one.words) and not (value is None and one.follows):
@@ -99,6 +98,7 @@ class System(AnyOscillator):
 
         The stops stand at B0 - B and B0 + B; R_left, of the left one, is R where it is left out.
         """
+        _check_stops(stops)
         given = dict(M1=M1, M2=M2, K1=K1, K2=K2, C1=C1, C2=C2, P1=P1, P2=P2, Omega=Omega, B=B, B0=B0)
         for name, value in given.items():
             allowed, number = physical_range(name, stops), number_of(value)
@@ -161,6 +161,11 @@ class System(AnyOscillator):
     def parameters(self) -> dict[str, float]:
         """The numbers by name, `tau` resolved, and R_left and mu_c where they follow."""
         return resolved(self.numbers)
+
+
+def _check_stops(stops: object) -> None:
+    if not (isinstance(stops, str) and stops in STOPS):
+        raise ParameterError("stops", stops, f"{', '.join(STOPS[:-1])} or {STOPS[-1]}")
 
 
 def checked_system(system: object) -> None:

@@ -1,10 +1,12 @@
 """The numbers of the oscillator, declared once: records, scene keys, JSON Schema, files and plot labels follow."""
 
-import math
 import operator
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from vibro_sweep.model.real import number_of
+from vibro_sweep.model.refusals import not_allowed
 
 STOPS = ("both", "right", "left")
 
@@ -177,7 +179,7 @@ class ParameterError(ValueError):
         self.key, self.value, self.allowed = key, value, allowed
 
     def __str__(self):
-        return f"{self.key}: {self.value!r} is not allowed; it must be {self.allowed}"
+        return not_allowed(self.key, self.value, self.allowed)
 
 
 def range_of(parameter: Parameter, stops: str) -> Range:
@@ -200,16 +202,6 @@ def check_value(parameter: Parameter, value: object, stops: str = "both", key: s
     if not np.all(good):
         wanted = allowed.text.replace("a number", "a finite number", 1)
         raise ParameterError(key, numbers[~good].flat[0].item(), wanted)
-
-
-def number_of(value: object) -> float | None:
-    """A real number of Python's or NumPy's as a float, infinite beyond the range of the floats; None for no number."""
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
-        return None
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf
 
 
 def checked_number(parameter: Parameter, value: object, stops: str = "both", key: str | None = None) -> float:

@@ -3,17 +3,21 @@
 import json
 import re
 from collections.abc import Iterable, Mapping
+from itertools import islice
 
 from pydantic import ValidationError
 
 from vibro_sweep.model.observables import WORDS
+from vibro_sweep.model.refusals import LONGEST, cut, shown
 
 from . import slips
+from .data import Foreign
 from .fields import Form
 from .form import StepAxis, tagged
 from .slips import meant
 
 MAX_LINES = 20
+LONGEST_HINT = 300  # letters; a longer one repeats a long value
 OBSERVATIONS = tuple(WORDS)
 
 _TAGS = {"tau as a number", "tau as a word"}
@@ -39,15 +43,24 @@ class SceneError(ValueError):
 
 def problem(path: str, value: object, text: str) -> str:
     """One line: the key path, the value as the user would write it, what is wrong and what is allowed."""
-    shown = json.dumps(_whole(value), ensure_ascii=False, default=repr)
+    shown = json.dumps(_told(value), ensure_ascii=False)
     shown = _YAML_WORDS.get(shown, shown)
-    return f"{path} = {shown if len(shown) <= 60 else shown[:57] + '...'}: {text}"
+    hint = value.hint if isinstance(value, Foreign) else ""
+    return f"{cut(path)} = {cut(shown)}: {text}{hint}"
 
 
-def _whole(value):
-    if isinstance(value, list):
-        return [_whole(item) for item in value]
-    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < 1e16 else value
+def _told(value: object, levels: int = LONGEST):
+    """As much of a value as a message shows, for JSON."""
+    if isinstance(value, list) and levels:
+        return [_told(item, levels - 1) for item in value[:LONGEST]]
+    if isinstance(value, dict) and levels:
+        return {cut(str(key)): _told(item, levels - 1) for key, item in islice(value.items(), LONGEST)}
+    if isinstance(value, float):
+        return int(value) if value.is_integer() and abs(value) < 1e16 else value
+    if isinstance(value, str):
+        return value[:LONGEST]
+    small = value is None or isinstance(value, bool) or (isinstance(value, int) and abs(value) < 10**LONGEST)
+    return value if small else repr(value) if isinstance(value, Foreign) else shown(value)
 
 
 def form_problems(error: ValidationError, form: type[Form], data: object = None) -> list[str]:
@@ -106,7 +119,7 @@ def _line(item, form, data) -> str:
 def _unknown(loc, keys: list[str], given, data) -> str:
     """What is wrong with a key that is none, and what it may stand for."""
     key, place = str(loc[-1]), loc[0]
-    if given is None and (hint := slips.key_without_value(key)):
+    if given is None and (hint := slips.key_without_value(cut(key))):
         return hint
     if key in ("step", "num") and {"step", "num"} & set(keys):
         return f"step and num exclude each other; write {_AXIS_FORMS}"
@@ -118,7 +131,7 @@ def _unknown(loc, keys: list[str], given, data) -> str:
 
 
 def _and(hint: str | None) -> str:
-    return f"; {hint}" if hint else ""
+    return f"; {hint}" if hint and len(hint) <= LONGEST_HINT else ""
 
 
 def located(problems: Iterable[str], lines: Mapping[str, int]) -> list[str]:

@@ -1,8 +1,9 @@
 """The text of a scene, from a file."""
 
 import os
-import stat
 from pathlib import Path
+
+from vibro_sweep.model.files import checked_path, read_bytes
 
 from .problems import SceneError
 from .yaml_text import MAX_BYTES
@@ -11,13 +12,10 @@ HDF5 = b"\x89HDF\r\n\x1a\n"  # how such files begin
 
 
 def text_of(path: str | Path) -> tuple[str, str]:
-    """The text of a YAML file, and its name. Raises SceneError for what is no text, OSError."""
-    path = Path(path)
+    """The text of a YAML file, and its name. Raises SceneError for what is no text, and as `read_bytes` does."""
+    path = checked_path("path", path)
     name = os.fsencode(path.name).decode(errors="replace")  # the name of a file need not be text
-    with open(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)), "rb") as file:  # waits for no pipe
-        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise SceneError(name, ["is no regular file"])
-        data = file.read(MAX_BYTES + 1)
+    data = read_bytes(path, MAX_BYTES + 1)
     if data.startswith(HDF5):
         raise SceneError(name, ["is a data file, not a scene: `vibro-sweep info` and `plot` read it"])
     if len(data) > MAX_BYTES:

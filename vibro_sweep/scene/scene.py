@@ -12,11 +12,13 @@ from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import BUILD, Built
 from vibro_sweep.model.grid import digest, grid
 from vibro_sweep.model.models import DEFAULT, MODELS
+from vibro_sweep.model.real import array_of
+from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.state import START, start
 
 from .combinations import combination_problems
 from .form import built_form, scene_form
-from .problems import SceneError, form_problems, located
+from .problems import SceneError, form_problems, located, problem
 from .reading import text_of
 from .size import size_problems
 from .starts import Start, start_of, start_problems, stops_of
@@ -87,11 +89,15 @@ class Scene:
         known = [field.name for field in fields(self) if field.name not in _ABOUT]
         for key in changes:
             if key not in known:
-                raise SceneError(self.name, [f"{key}: unknown; allowed here: {', '.join(known)}"])
+                raise SceneError(self.name, [f"{cut(key)}: unknown; allowed here: {', '.join(known)}"])
         data = data_of(self)
         if "sweep" in changes:  # what is swept no longer keeps its first value
             data["system"] = data_of(replace(self, sweep={}))["system"]
-        return replace(scene_of(changed(data, changes), self.name), source=self.source)
+        result = scene_of(changed(data, changes), self.name)
+        state, count = array_of(changes.get("start"), 1), 2 * result.system.masses
+        if state is not None and len(state) != count:
+            raise SceneError(self.name, [problem("start", state.tolist(), f"must be {count} numbers")])
+        return replace(result, source=self.source)
 
     @property
     def inputs(self) -> list[Path]:
@@ -178,7 +184,8 @@ def _default(scene: Scene, name: str):
 def load_scene(path: str | Path) -> Scene:
     """Read a scene from a YAML file.
 
-    Raises SceneError for what is wrong with it, OSError where the file cannot be read.
+    Raises SceneError for what is wrong with it, and an OSError that is a ValueError too where the file cannot be read;
+    of a missing file it is a FileNotFoundError.
     """
     return replace(parse_scene(*text_of(path)), source=Path(path).absolute())
 

@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from vibro_sweep.model.refusals import cut
+
 PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B", "B0")
 NONDIMENSIONAL = (
     "mu_m = M2/M1, mu_k = K2/K1, zeta = C1/(2 sqrt(K1 M1)), f2 = P2/(P1 + P2), omega = Omega sqrt(M1/K1), "
@@ -57,7 +59,7 @@ AXIS = "{start: 6.5, stop: 6.9, num: 401}"
 
 def meant(word: object, options: Iterable[str]) -> str | None:
     """Which of the options a word stands for, if any: by spelling, or as a synonym."""
-    text, options = str(word), list(options)
+    text, options = cut(str(word)), list(options)
     by_lower = {option.lower(): option for option in reversed(options)}
     if text.lower() in by_lower:
         return by_lower[text.lower()]

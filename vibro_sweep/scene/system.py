@@ -8,6 +8,7 @@ from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import entries
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.parameters import Parameter, ParameterError, check_value
+from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.state import START
 
 from .axes import axis_values
@@ -22,7 +23,7 @@ def kind_of(data: object, name: str) -> tuple[str, int]:
     system = data.get("system") if isinstance(data, dict) else None
     kind = system.get("type", DEFAULT) if isinstance(system, dict) else DEFAULT
     if not (isinstance(kind, str) and kind in MODELS):
-        hint = f"did you mean `{found}`? " if (found := meant(str(kind), MODELS)) else ""
+        hint = f"did you mean `{found}`? " if (found := meant(cut(str(kind)), MODELS)) else ""
         raise SceneError(name, [problem("system.type", kind, f"{hint}allowed: {', '.join(MODELS)}")])
     try:
         return kind, MODELS[kind].masses(system) if isinstance(system, dict) else 2

@@ -1,6 +1,8 @@
 """A scene as the data that its YAML holds, and as YAML: the way back from a `Scene`, and from arguments in Python."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping, Set
+from dataclasses import fields, is_dataclass
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,9 +10,12 @@ import numpy as np
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import Built
 from vibro_sweep.model.models import DEFAULT
+from vibro_sweep.model.observables import WORDS
+from vibro_sweep.model.refusals import shown
 from vibro_sweep.model.state import START, start, state
 
 from .axes import axis_values
+from .data import Foreign, data_from
 from .form import CountAxis
 from .starts import Start
 
@@ -20,6 +25,7 @@ if TYPE_CHECKING:
 _KEYS = {dimension: key for key, dimension in START.items()}  # start_x1 -> x1
 _ORBIT = ("transient", "record")
 SHORTEST_PROGRESSION = 3
+MANY = 10_000  # values, of which each wrong one is named
 
 
 def data_of(scene: "Scene") -> dict[str, Any]:
@@ -49,7 +55,7 @@ def changed(data: dict[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     result = dict(data)
     for key, value in changes.items():
         if key in _ORBIT:
-            result["orbit"] = result.get("orbit", {}) | {key: _plain(value)}
+            result["orbit"] = result.get("orbit", {}) | {key: data_from(value)}
         elif value is None:
             result.pop(key, None)
         else:
@@ -68,33 +74,31 @@ def _as_data(key: str, value):
     if isinstance(value, Start):
         return _start(value, (), len(value.state) // 2)
     if key == "sweep" and isinstance(value, Mapping):
-        return {_KEYS.get(name, name): _axis_data(axis) for name, axis in value.items()}
+        return {
+            _KEYS.get(name, name) if isinstance(name, str) else shown(name): axis_data(axis)
+            for name, axis in value.items()
+        }
+    if key == "observe":
+        found = data_from(list(islice(value, len(WORDS) + 1)) if isinstance(value, (Iterator, Set)) else value)
+        return found[: len(WORDS) + 1] if isinstance(found, list) else found  # of more some are there twice
     if key == "start" and not isinstance(value, (str, Mapping)):
-        values = _plain(value)
+        values = data_from(value)
         if not isinstance(values, list) or len(values) % 2 or len(values) > len(START):
             return values
         return dict(zip(state(len(values) // 2), values, strict=True))
-    if key in ("section", "trajectory") and not isinstance(value, (str, Mapping)):
-        value = {name: getattr(value, name) for name in getattr(value, "__dataclass_fields__", {})} or value
-    return _plain(value)
+    if is_dataclass(value) and not isinstance(value, type):  # a Section or a Trajectory
+        value = {field.name: getattr(value, field.name) for field in fields(value)}
+    return data_from(value)
 
 
-def _axis_data(axis):
-    if isinstance(axis, Mapping):
-        return _plain(axis)
-    values = _plain(axis)
-    return {"values": values} if isinstance(values, list) else values
-
-
-def _plain(value):
-    """Numbers and lists of Python in place of those of NumPy and of other sequences."""
-    if isinstance(value, (np.ndarray, np.generic)):
-        return value.tolist()
-    if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, Iterable) and not isinstance(value, (str, bytes)):
-        return [_plain(item) for item in value]
-    return value
+def axis_data(axis: object) -> object:
+    """An axis as YAML has it."""
+    data = data_from(axis)
+    data = {"values": data} if isinstance(data, list) else data
+    values = data.get("values") if isinstance(data, dict) else None
+    if isinstance(values, list) and len(values) > MANY and any(type(one) not in (int, float) for one in values):
+        data["values"] = Foreign(values)  # it is refused as a whole
+    return data
 
 
 def _system(system: AnyOscillator, swept) -> dict[str, Any]:
@@ -106,11 +110,11 @@ def _system(system: AnyOscillator, swept) -> dict[str, Any]:
     left_out = {one.name: one.default for one in system.model.numbers if one.default is not None}
     left_out["tau"] = None  # always told
     numbers = {
-        name: _plain(value)
+        name: data_from(value)
         for name, value in given.items()
         if value is not None and not np.array_equal(value, left_out.get(name)) and np.any(value != left_out.get(name))
     }
-    return kind | numbers | {name: _plain(value) for name, value in system.options.items() if value is not None}
+    return kind | numbers | {name: data_from(value) for name, value in system.options.items() if value is not None}
 
 
 def _axis(values: np.ndarray) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from importlib import import_module
 
 from vibro_sweep.model.models.declaration import Model
 from vibro_sweep.model.parameters import ParameterError
+from vibro_sweep.model.refusals import cut
 
 _ORDER = ("two_mass", "one_mass", "ball_in_cavity", "chain", "linear")  # others follow by name
 
@@ -22,8 +23,8 @@ DEFAULT = "two_mass"
 
 def model_named(name: str) -> Model:
     """Raises ParameterError where there is none."""
-    if name not in MODELS:
-        close = difflib.get_close_matches(str(name), MODELS, n=1)
+    if not (isinstance(name, str) and name in MODELS):
+        close = difflib.get_close_matches(cut(name), MODELS, n=1) if isinstance(name, str) else ()
         hint = f" (did you mean {close[0]}?)" if close else ""
         raise ParameterError("model", name, f"one of {', '.join(MODELS)}{hint}")
     return MODELS[name]
