@@ -3,10 +3,15 @@
 import numpy as np
 import pytest
 from support.branches import types
+from support.drawn_branches import Case
+from support.same_branch import follow
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.beginning import start_of_walk
 from vibro_sweep.analysis.branches.own_birth import halves_apart
+from vibro_sweep.analysis.branches.passed_births import passed
+from vibro_sweep.analysis.branches.track import Rows
+from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.branches.way import Way
 from vibro_sweep.analysis.windows.stretch import stable_end
 
@@ -97,3 +102,35 @@ def test_a_step_that_lands_before_a_birth_by_less_than_rounding():
             for special in way.special:
                 assert abs(special.parameters["offset"] + 0.0112802354692) < 1e-12
     assert 3 < ended < 10
+
+
+def mirrored_ball(b: float):
+    return vs.Oscillator.named(
+        "ball_in_cavity", mass_ratio=0.017271819450076657, zeta=0.016963990878811692, F=0.7886565590720774,
+        omega=1.0444602350008463, R=0.32567657306994136, b=b, tau="grazing",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("factor", [0.4, 0.5, 0.7, 1.0])
+def test_a_birth_that_steps_went_over_is_seen(factor):
+    """Behind it lies the mirror image of the branch: the way went on there, over a fold that is none."""
+    bounds = (6.0, 8.0)
+    parent = vs.continue_orbit(vs.periodic_orbit(mirrored_ball(7.0), itinerary="LR"), "b", bounds)
+    (birth,) = (special for special in parent.special if special.type == "pitchfork")
+    for orbit in vs.switch(birth):
+        found = types(follow(Case(orbit, "b", bounds), factor))
+        assert [kind for kind, _ in found] == ["graze", "pitchfork"]
+        assert abs(found[1][1] - birth.parameters["b"]) < 1e-12
+
+
+def test_where_halves_turn_round_is_counted():
+    """Of points that pass a birth, and of those beside it on the parent's branch."""
+    orbit = vs.periodic_orbit(mirrored_ball(7.0), itinerary="LR")
+    s = orbit._solution.whole()
+    walk = Walk(s, "b", 1.0)
+    late = np.array([0.1, 0.02, -0.03, -0.1, 1e-14, -1e-14])
+    t = np.tile(s.times, (6, 1)) + late[:, None] * [0, 1]
+    nothing = np.zeros((6, 0))
+    rows = Rows(np.full(6, 7.0), t, np.tile(s.jumps, (6, 1)), nothing, nothing, nothing, nothing, nothing)
+    assert passed(walk, [rows], None) == [2, 4, 5]
+    assert passed(walk, [Rows(*(values[:2] for values in rows)), Rows(*(values[2:3] for values in rows))], None) == [2]

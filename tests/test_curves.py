@@ -38,6 +38,23 @@ def test_free_motion_touches_the_stops_as_theorem_1_says(symmetric_branch):
     )
 
 
+def test_impacts_that_vanish_together_are_one_graze():
+    """An orbit is born where the free motion grazes: its three impacts in four periods have no speed all along."""
+    numbers = dict(mu_m=1.7716559184958023, mu_k=1.811457549080368, zeta=0.014733856601569005, f2=0.31665143637016824)
+    system = vs.System(**numbers, omega=1.2710535099504932, R=0.38741610692212525, b=0.2914798891569992, stops="left")
+    state = [0.16554426549913004, 0.11735437838761553, 0.5648765098892732, 0.12123907138947979]
+    branch = vs.continue_orbit(vs.periodic_orbit(system, state=state, periods=4), "b", (0.2, 0.4))
+    graze = first(branch, "graze")
+    assert graze.orbit.itinerary == "LLL" and not graze.orbit.impacts["v1"].round(12).any()
+    box = ((0.28, 0.32), (0.0103, 0.0206))
+    curve = vs.bifurcation_curve(graze, ("b", "zeta"), box)
+    assert types(curve) == ["limit", "limit"] and curve.points.sizes["impact"] == 1
+    free = vs.continue_orbit(vs.periodic_orbit(system.replace(b=0.35), itinerary=""), "b", (0.2, 0.4))
+    other = vs.bifurcation_curve(first(free, "graze"), ("b", "zeta"), box)
+    for one, same in zip(curve.special, other.special, strict=True):
+        assert one.parameters == pytest.approx(same.parameters, abs=1e-13)
+
+
 def test_refusals(symmetric_branch):
     pitchfork, limit = symmetric_branch.special[1], first(
         vs.continue_orbit(symmetric_branch.special[1].orbit, "b", (3, 4)), "limit"
@@ -47,7 +64,7 @@ def test_refusals(symmetric_branch):
         vs.bifurcation_curve(limit, ("b", "omega"), box)
     with pytest.raises(ValueError, match=r"parameters: \('b', 'b'\) is not allowed; it must be two of mu_m"):
         vs.bifurcation_curve(pitchfork, ("b", "b"), box)
-    with pytest.raises(ValueError, match=r"box: \(5.0, 9.0\) of b is not allowed; it must be \(lo, hi\), lo < hi"):
+    with pytest.raises(ValueError, match=r"box\.b: \[5.0, 9.0\] is not allowed; it must be \(lo, hi\), lo < hi"):
         vs.bifurcation_curve(pitchfork, ("b", "omega"), ((5, 9), (0.5, 0.8)))
     for wrong in (None, (1, 9), ((1, 9),), ((1, 2, 3), (4, 5))):
         with pytest.raises(ValueError, match=r"box: .* is not allowed; it must be \(\(lo, hi\), \(lo, hi\)\) of b and"):
@@ -267,5 +284,5 @@ def test_picture(symmetric_branch):
     first_two, names = np.split([text.get_text() for text in fig.legends[0].get_texts()], [2])
     assert list(first_two) == ["pitchfork", "virtual"]
     assert {name.split()[0] for name in names} >= {"RG", "GPD", "LPPD"}
-    with pytest.raises(ValueError, match=r"others: a curve in .* is not allowed"):
+    with pytest.raises(ValueError, match=r"others: .* is not allowed; it must be curves in"):
         curves[0].plot(curves[1])

@@ -7,6 +7,7 @@ from numpy.random import default_rng
 
 from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
+from vibro_sweep.engine.variational.graded import is_separate
 
 SIZES = (1, 2, 3, 4, 6, 8, 16)
 
@@ -17,6 +18,11 @@ def all_eigenvalues(matrices, n, re, im):
     for k in range(len(matrices)):
         found += eigenvalues(matrices[k], n, re[k], im[k])
     return found
+
+
+@entry
+def is_parted(a, n, size):
+    return is_separate(a, n, size)
 
 
 def ours(matrices):
@@ -85,3 +91,15 @@ def test_small_eigenvalues_of_graded_matrices_keep_their_digits(coupled):
         for value in expected:
             worst = max(worst, np.min(np.abs(found - value)) / abs(value))
     assert worst < 1e-14
+
+
+@pytest.mark.parametrize("order", [(1.0, 1e-9, 0.5), (1e-9, 1.0, 0.5), (1.0, 0.5, 1e-9)])
+def test_blocks_are_parted_only_where_all_before_exceed_all_behind(order):
+    """The first two couple, and so do the last two; the third matrix alone has a gap, behind the second."""
+    a = np.diag(order) + np.array([[0, 1, 1], [1, 0, 1], [0, 1, 0]]) * 1e-3
+    before, parted = a.copy(), order[2] == 1e-9
+    assert is_parted(a, 3, np.array(order)) != parted
+    assert np.array_equal(a, before)
+    a[2, 1] = 1e-30
+    assert is_parted(a, 3, np.array(order))
+    assert a[2, 1] == (0.0 if parted else 1e-30) and a[1, 0] == 1e-3

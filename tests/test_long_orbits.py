@@ -174,3 +174,31 @@ def test_windows_of_long_orbits_are_those_of_the_dense_equations(case, monkeypat
     apart = np.abs(flat["special_value"] - dense["special_value"])
     assert np.all(apart <= flat["special_error"] + dense["special_error"])
     assert np.all(flat["special_error"] < 1e-11)
+
+
+@pytest.mark.slow
+def test_newton_stands_still_at_what_rounding_leaves_of_an_orbit_beside_a_fold():
+    """1e-13 from it, 474 impacts with a free mass: steps came down to 2e-8 and were no solution; beyond it is none."""
+    ball = dict(mass_ratio=0.1742756546125067, zeta=0.04364419731640718, F=0.9339197298888937, tau=1.278286292243059)
+    ball |= dict(omega=1.973006977361091, R=0.9134945151458826, b=0.32)
+    system = vs.Oscillator.named("ball_in_cavity", **ball)
+    branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="LRR", periods=1), "b", (0.3, 0.36))
+    (fold,) = [special for special in branch.special if special.type == "fold"]
+    there, end = fold.orbit._solution, fold.parameters["b"]
+    critical = np.linalg.svd(there.equations.linearised(1, there.sides, there.u, there.motion))[2][-1]
+
+    def beside(distance, amplitude):
+        guess = replace(there, family=family_of(system.replace(b=end + distance)), u=there.u + amplitude * critical)
+        return guess.corrected()
+
+    side = 1 if beside(1e-6, 1e-3) is not None else -1
+    near, far = (beside(side * distance, 1e-3) for distance in (1e-8, 4e-8))
+    if (far.u - near.u) @ critical < 0:
+        critical = -critical
+    one = beside(side * 1e-13, (near.u - there.u) @ critical * 10**-2.5)
+    shifts = np.repeat(np.arange(158) * one.equations.P, one.K)
+    u = np.concatenate([np.tile(one.times, 158) + shifts, np.tile(one.jumps, 158), one.u[-1:]])
+    many = replace(one, halves=158 * one.halves, sides=one.sides * 158, u=u)
+    found = many.corrected()
+    assert 1e-9 < found.change < 1e-7 and np.abs(found.u - many.u).max() < 1e-6
+    assert replace(many, family=family_of(system.replace(b=end - side * 1e-9))).corrected() is None

@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from support import slow_cases
 from support.branches import exact_of_any, same_points, types
+from support.drawn_branches import Case
+from support.same_branch import follow, rows
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import way
@@ -58,7 +61,7 @@ def test_they_do_not_depend_on_the_step(beside_fold, factor, monkeypatch):
         same_points(vs.continue_orbit(begun, "b", (0.0856, 0.3425)), types(beside_fold[2]), 1e-12)
 
 
-@pytest.mark.parametrize("bounds", [(0.3, 2.1), (1.2, 1.8), (1.0, 1.52)])
+@pytest.mark.parametrize("bounds", [(1.2, 1.8), *slow_cases(((0.3, 2.1),), ((1.0, 1.52),))])
 def test_a_step_that_lands_on_the_birth(bounds):
     """With the first bounds a point lies where a multiplier is 1.00000003 and the tangent's sign is rounding."""
     state = vs.simulate(TURNED, [0, 0], 1500).sample([1500 * TURNED.period])[0]
@@ -201,3 +204,43 @@ def test_a_peak_that_is_a_thousand_times_narrower_than_a_step():
         assert nearest.type == "graze"
         expected = brentq(beyond, outer, fine[k], xtol=1e-15)
         assert nearest.parameters["omega"] == pytest.approx(expected, rel=1e-9)
+
+
+def loaded_ball(b: float):
+    return vs.Oscillator.named(
+        "ball_in_cavity", mass_ratio=0.12107258245090825, zeta=0.028718477932176745, F=0.2882207938717394,
+        omega=1.973330563076163, R=0.8257742338315457, b=b, tau="grazing",
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def loaded():
+    """A branch that is born at a pitchfork; then a pair goes out, becomes two real ones, and one comes in."""
+    bounds = (0.01, 0.109)
+    parent = vs.continue_orbit(vs.periodic_orbit(loaded_ball(0.035), itinerary="LLRR"), "b", bounds)
+    (birth,) = (special for special in parent.special if special.type == "pitchfork")
+    return Case(vs.switch(birth)[0], "b", bounds)
+
+
+@pytest.mark.parametrize("factor", [1, 2, 3])
+def test_a_pair_that_becomes_two_of_which_a_flip_takes_one_back(loaded, factor):
+    """All that within one long step: its ends differ by what a flip does, and a neutral saddle hides the torus."""
+    kinds = [kind for kind, _ in types(follow(loaded, factor))]
+    assert kinds == ["graze", "flip", "neimark_sacker", "pitchfork"]
+
+
+@pytest.mark.slow
+def test_a_graze_does_not_depend_on_the_start(loaded):
+    """Of a doubled orbit with a free mode: rounding of its margin is larger than that of the graze."""
+    parent = follow(loaded)
+    (flip,) = (special for special in parent.special if special.type == "flip")
+    case = loaded._replace(orbit=vs.switch(flip)[0])
+    branch = follow(case)
+    orbits = [case.orbit, *(rows(branch, case, k) for k in range(12, len(branch.points.point) - 4, 4))]
+    orbits = [orbit for orbit in orbits if orbit.ok and orbit.period == 2]
+    ends = [end for orbit in orbits for end in follow(case._replace(orbit=orbit)).special if end.type == "graze"]
+    (beyond,) = [orbit for orbit in vs.switch(ends[0]) if len(orbit.impacts) == 9]
+    ends += [end for end in vs.continue_orbit(beyond, "b", loaded.bounds).special if end.impact is not None][:1]
+    values, errors = (np.array(one) for one in zip(*((end.parameters["b"], end.error) for end in ends), strict=True))
+    assert len(ends) > 6
+    assert np.ptp(values) < 2 * errors.min()

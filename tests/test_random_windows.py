@@ -66,6 +66,24 @@ def test_a_window_from_an_orbit_at_its_fold(b, state):
     assert np.abs(flat["special_value"][[0, -1]] - [0.16708787864496785, 0.18060386953228552]).max() < 1e-12
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("b", [0.15244759891086823, 0.15123255104480465])
+def test_a_window_ends_at_the_first_of_three_tori(b):
+    """At 0.15394793 a pair of multipliers goes out, at 0.15396 another, which comes back at 0.15409613: one step led
+    over all three, and found the last."""
+    numbers = dict(omega=1.4299833438838407, R=0.44791766671059696, tau=2.593975858978541, stop_at=4, b=b)
+    numbers |= dict(m=[2.9343685101211254, 0.6270922614406012, 1.1900481292553218, 0.5945551770764302])
+    k = [1.6164380940280878, 1.8547392570285108, 0.8883951340511398, 1.2350500811632625, 0.3417609777096854]
+    c = [0.010325976048293843, 0.010697324916218665, 0.06360229934193973, 0.041250509188522515, 0.09923165777468539]
+    force = [1.7964731625956565, 0.9137049379724049, -0.1459938597395403, 0.7360407425471607]
+    chain = vs.Oscillator.named("chain", **numbers, k=k, c=c, force=force)
+    orbit = vs.periodic_orbit(chain, itinerary="LLLLRRRR", periods=1)
+    assert orbit.ok and orbit.stable and orbit.symmetric
+    job = Job(chain, orbit.state, 1, "b", (0.04355645683167664, 0.479121025148443))
+    ends = window_of(job).flat["special_value"][[0, -1]]
+    assert np.abs(ends - [0.1483689674509671, 0.1539479263887112]).max() < 1e-12
+
+
 def test_an_orbit_without_a_window_of_its_own_is_in_the_one_that_covers_it(few):  # noqa: F811
     """The job of the first point of period 13 says `not_settled`; the window comes from its neighbours."""
     with store.contents(few) as data:

@@ -8,9 +8,18 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from support.stiff_contacts import compared
+from support.stiff_contacts import (
+    Flight,
+    compared,
+    drawn,
+    errors_of_first,
+    first_zero,
+    positive,
+    time_in_units,
+)
 
 import vibro_sweep as vs
+from vibro_sweep.engine.free_flight import FreeFlight
 
 COUNT = 500
 LEAST = 10.0  # errors allowed, in units of what rounding the data does
@@ -46,6 +55,56 @@ def test_between_a_stiffly_and_a_softly_held_mass(k, c, omega, time):
         b=0.1, tau=0.0,
     )  # fmt: skip
     assert abs(vs.simulate(system, [0] * 4, 1).impacts["t"][0] - time) <= 2 * np.spacing(time)
+
+
+@pytest.mark.parametrize(("k", "damper", "omega", "R"), [(1e12, 2.0, 1.0, 0.15), (1e12, 0.05, 2.0, 0.5)])
+def test_thousands_of_series_in_a_cell(k, damper, omega, R):
+    """Slow impacts, one soon after another: each flight begins and ends within a cell."""
+    system = vs.Oscillator(
+        [[1, 0], [0, 2]], [[k, -1], [-1, 3]], [[damper * k**0.5, 0], [0, 0.01]], force=[0, 1], along=[1, -1],
+        omega=omega, R=R, b=0.1, tau=0.0,
+    )  # fmt: skip
+    assert max(errors_of_first(system, [0] * 4, 6).values()) < 2
+
+
+@pytest.mark.slow
+def test_thousands_of_series_in_a_flight_without_stops():
+    """Off a node, and no closed form helps before the next."""
+    system, state, _ = drawn(255)
+    q, hit = system.linear, vs.simulate(system, state, 4).impacts[2]
+    push = np.linalg.solve(q.M, q.along)
+    push *= (1 + (q.R_high if hit["side"] > 0 else q.R_low)) * hit["v1"] / (q.along @ push)
+    after = np.stack([hit["x"], hit["xdot"] - push], -1).ravel()
+    found = FreeFlight(system).first_contact(after[None], hit["t"], system.period)
+    elapsed, side = found.elapsed[0], found.side[0]
+
+    def zero(q, x, shift):
+        wall = (q.high if side > 0 else q.low) + shift
+        return first_zero(Flight(q), list(q.along), wall, [*x[0::2], *x[1::2]], hit["t"], elapsed)
+
+    assert elapsed < 0.01
+    assert time_in_units(system, after, hit["t"], elapsed, zero) < 1.5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(5))
+def test_thousands_of_series_in_a_rest(seed):
+    """A mass that swings on while the gap is held says when that ends."""
+    rng, k = np.random.default_rng(seed), 1e11
+    M, K = np.diag(rng.uniform(0.5, 2, 3)), positive(rng, 3) + np.diag([k, 0, 0])
+    system = vs.Oscillator(
+        M, K, np.diag([2 * np.sqrt(k * M[0, 0]), 0, 0]), along=[1, -1, 0], force=[0, -4, 1], tau=np.pi / 2,
+        omega=rng.uniform(0.5, 1.5), R=0.5, b=0.3,
+    )  # fmt: skip
+    state = [0, 0, -0.3, 0, 0.1 * rng.normal(), 0.2 * rng.normal()]
+    rest = vs.simulate(system, state, 2).sticking[0]
+    assert rest["t_on"] == 0
+
+    def zero(q, x, _):
+        held = Flight(q, held=True)
+        return first_zero(held, held.pull, 0, [*x[0::2], *x[1::2]], 0, rest["t_off"])
+
+    assert time_in_units(system, state, 0, rest["t_off"], zero) < 1.5
 
 
 @pytest.mark.parametrize("offset", [3e1, 3e2, -3e3])

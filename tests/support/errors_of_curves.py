@@ -1,6 +1,6 @@
 """Stated errors of points of codimension two of random systems, held against shooting in 30 digits.
 
-python tests/support/errors_of_curves.py 0 100     # a line for each point, and a summary
+PYTHONPATH=tests python tests/support/errors_of_curves.py 0 100     # a line for each point, and a summary
 """
 
 import sys

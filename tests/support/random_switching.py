@@ -1,7 +1,7 @@
 """Branches of attractors of random oscillators of all models, from branch to branch: what `switch` gives at their
 special points is held against simulation, and no branch may come twice.
 
-python tests/support/random_switching.py 0 100 one_mass     # prints what is wrong, and a summary
+PYTHONPATH=tests python tests/support/random_switching.py 0 100 one_mass     # prints what is wrong, and a summary
 """
 
 import sys
@@ -16,7 +16,7 @@ from support.random_branches import random_oscillator, random_system, within
 
 CLOSE = 1e-9  # of the state after a period of simulation, relative, times the largest multiplier
 TELLS = 1e7  # largest multiplier with which a simulation over one period says something
-APART = 1e-6  # relative: states of one orbit that differ by less are the same
+APART = 1e-6  # of the size of the gap: states of one orbit that differ by less are the same
 MOST_BRANCHES = 12
 
 
@@ -177,27 +177,30 @@ def _switched(report: Report, where: str, special, name: str, bounds) -> None:
 
 
 def _simulated(report: Report, where: str, orbit) -> None:
-    """That the motion comes back after the period and not before, and is its own mirror image if it is said to be."""
+    """That the motion comes back after the period and not before, and is its own mirror image if it is said to be.
+
+    Masses may swing far beyond the stops together: motions are told apart by the size of the gap, not of the state.
+    """
     system, n = orbit.system, orbit.period
     largest = max(1.0, float(np.abs(orbit.multipliers).max()))
     if not largest < TELLS:
         return
     run = vs.simulate(system, orbit.state, n)
-    states = run.section
+    states, q = run.section, system.linear
     size = max(np.abs(states).max(), 1e-300)
+    gap = max(np.abs(states[:, ::2] @ q.along).max(), *(abs(x) for x in (q.low, q.high) if np.isfinite(x)), 1e-300)
     report.simulated += 1
     error = np.abs(states[-1] - orbit.state).max() / size
     if not error < CLOSE * largest:
         report.wrong.append(f"{where}: simulation ends {error:.1e} away, multiplier {largest:.1e}")
         return
     for d in range(1, n):
-        apart = np.abs(states[d] - states[0]).max() / size
+        apart = np.abs(states[d:] - states[:-d]).max() / gap
         if n % d == 0 and apart < APART:
             report.wrong.append(f"{where}: the period is {d}, to {apart:.1e}")
-    q = system.linear
     if q.symmetric and n % 2 == 1:
         half = run.sample([n * system.period / 2])[0]
-        apart = np.abs(half + orbit.state).max() / size
+        apart = np.abs(half + orbit.state).max() / gap
         if (apart < APART) != orbit.symmetric and not APART / 100 < apart < 100 * APART:
             report.wrong.append(f"{where}: symmetric {orbit.symmetric}, mirror images differ by {apart:.1e}")
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, slopes
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic.long_orbits import critical_direction, is_sparse
@@ -30,8 +31,7 @@ def born(special: SpecialPoint, sign: int) -> Solution | None:
 
 def is_steady(solution: Solution, name: str) -> bool:
     """Whether Newton's method stands still at the solution, so that its branch can be followed from there."""
-    span = max(abs(solution.family.numbers[name]), 1e-3)
-    return Walk(solution, name, span).first(1.0) is not None
+    return Walk(solution, name, size_of(solution, name)).first(1.0) is not None
 
 
 def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | None]:
@@ -45,7 +45,7 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
     K, rests = parent.K, len(parent.rests)
     size = 2 * K + rests
     e, sides, twice = parent.equations, parent.sides, doubled(parent)
-    walk = Walk(twice, name, max(abs(value), 1e-3))
+    walk = Walk(twice, name, size_of(parent, name))
     scale = np.concatenate([walk.scale[:K], walk.scale[2 * K : 3 * K], walk.scale[4 * K : 4 * K + rests]])
     if not rests and is_sparse(e, sides):
         critical = critical_direction(e, sides, parent.u, parent.motion, -1, scale)

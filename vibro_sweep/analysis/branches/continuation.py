@@ -5,30 +5,30 @@ born (flip, pitchfork), or at the end of the range. Of several events within a s
 the end of a branch is no motion any more.
 """
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.branches.beginning import NoStartError, changes_rests, start_of_walk
 from vibro_sweep.analysis.branches.branch_points import dataset
+from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.sticking import sticking_onset
-from vibro_sweep.analysis.branches.track import Rows, join
+from vibro_sweep.analysis.branches.track import Rows, join, row_of
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.branches.way import Way, row_of
+from vibro_sweep.analysis.branches.way import Way
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
-from vibro_sweep.model.arguments import check_type, is_number
+from vibro_sweep.model.arguments import check_call, check_type, checked_interval, checked_word
 from vibro_sweep.model.linear import family_of
+from vibro_sweep.model.refusals import not_allowed
 
 if TYPE_CHECKING:
     import xarray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Branch:
     """A branch, from the end that is reached towards smaller parameters first to the other one.
 
@@ -47,6 +47,9 @@ class Branch:
     _walk: Walk
     _frame: tuple[int, int]
     _rows: Rows
+
+    def __repr__(self) -> str:
+        return branch_text.of_branch(self)
 
     @property
     def status(self) -> str:
@@ -75,18 +78,17 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     value, or the restitution of a stop on which the mass rests.
     """
     check_type("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit, as `periodic_orbit` returns it")
+    check_call("progress", progress, "progress(points, value)", 0, 0.0)
     if not orbit.ok:
-        raise ValueError(f"orbit: its status is {orbit.status!r}; only an orbit that is ok can be followed")
+        raise ValueError(f"orbit: its status is {orbit.status!r}; it must be ok to be followed")
     family = family_of(orbit.system)
     names = [name for name, value in family.numbers.items() if isinstance(value, (int, float))]
-    if parameter not in names:
-        raise ValueError(f"parameter: {parameter!r} is not allowed; it must be one of {', '.join(names)}")
+    parameter = checked_word("parameter", parameter, names)
     solution = orbit._solution
     if changes_rests(solution, parameter):
-        raise ValueError(
-            f"parameter: {parameter!r} is not allowed: an orbit that rests after one impact does so at R = 0"
-        )
-    lo, hi = _checked(bounds, family.numbers[parameter])
+        allowed = "another number: an orbit that rests after one impact does so at R = 0"
+        raise ValueError(not_allowed("parameter", parameter, allowed))
+    lo, hi = checked_interval("bounds", bounds, family.numbers[parameter])
     lo, hi = (_allowed(orbit.system, parameter, bound) for bound in (lo, hi))
     try:
         walk = start_of_walk(solution, parameter, lo, hi)
@@ -111,16 +113,8 @@ def not_followed(orbit: PeriodicOrbit, parameter: str) -> Branch:
     s, frame = orbit._solution, orbit._canonical_frame
     value = s.family.numbers[parameter]
     end = SpecialPoint("failed", {parameter: value}, orbit, s.multipliers)
-    walk = Walk(s, parameter, max(abs(value), 1e-3))
+    walk = Walk(s, parameter, size_of(s, parameter))
     return Branch(parameter, [end], end, end, False, walk, frame, row_of(value, s, frame))
-
-
-def _checked(bounds, value: float) -> tuple[float, float]:
-    numbers = list(bounds) if isinstance(bounds, (tuple, list, np.ndarray)) else []
-    lo, hi = map(float, numbers) if len(numbers) == 2 and all(map(is_number, numbers)) else (math.nan, math.nan)
-    if not (math.isfinite(lo) and math.isfinite(hi) and lo < hi and lo <= value <= hi):
-        raise ValueError(f"bounds: {bounds!r} is not allowed; it must be (lo, hi), lo < hi, around {value!r}")
-    return lo, hi
 
 
 def _allowed(system, name: str, bound: float) -> float:

@@ -4,12 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.special import NO_SPEED
 from vibro_sweep.analysis.branches.walk import Point
+from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.impulses.checks import FAR_OUTSIDE, ON_SQUARE
 
 PRODUCT_ONE = 1e-6  # of a product of two multipliers: within it, it is 1
 COMPLEX = 1e-9  # imaginary part of a multiplier that is not real
+MEET = (2, 0, 1), (0, 2, 1)  # two real ones of one sign that become a pair, or the reverse: above, below, pairs
+CROSSES = {"fold": (1, 0, 0), "flip": (0, 1, 0), "pitchfork": (0, 1, 0), "neimark_sacker": (0, 0, 1)}
 
 
 class Counts(NamedTuple):
@@ -48,8 +50,26 @@ def explained(a: Point, b: Point, types: list[str]) -> bool:
         return all((one - other) % 2 == 0 for one, other in zip(change[:2], crossed[:2], strict=True))
     if change == crossed:
         return True
-    met = change in ((2, 0, 1), (0, 2, 1)) and not types
+    met = change in MEET and not types
     return met and len(x.squares) == len(y.squares) and _far_outside(x.squares, y.squares)
+
+
+def stands_alone(a: Point, b: Point, point: Point, kind: str) -> bool:
+    """Whether a bifurcation between a and b explains how the multipliers outside differ from those at a and at b.
+
+    Those that cross there are on the circle, and outside on one side. A pair that leaves, becomes two real ones, and
+    comes back by a flip looks from a to b like a flip alone, but not at the flip.
+    """
+    x, at, y = counts_of(a), counts_of(point), counts_of(b)
+    crossing = CROSSES[kind]
+    if x.on_circle or y.on_circle or at.on_circle != (2 if kind == "neimark_sacker" else 1) or a.torus == 1.0:
+        return True
+    for side in (x, y):
+        more = np.subtract(side[:3], at[:3])
+        changes = [tuple(np.abs(more - moved).tolist()) for moved in ((0, 0, 0), crossing)]
+        if not any(change in ((0, 0, 0), *MEET) for change in changes):
+            return False
+    return True
 
 
 def _far_outside(before: np.ndarray, behind: np.ndarray) -> bool:

@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from vibro_sweep.analysis.branches.locating import Event, locate
-from vibro_sweep.analysis.branches.special import NO_SPEED
 from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.impulses import branch
 
 ON_CIRCLE = 1e-6  # distance of a product of two multipliers from 1, to which no point comes by chance

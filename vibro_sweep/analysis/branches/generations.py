@@ -2,17 +2,19 @@
 
 from dataclasses import dataclass
 
+from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.branches.continuation import Branch, continue_orbit
 from vibro_sweep.analysis.branches.flat import Flat, outline
 from vibro_sweep.analysis.branches.forest import Task, beyond, followed, forest, seed_of, written
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
-from vibro_sweep.model.arguments import check_type, checked_count
+from vibro_sweep.model.arguments import check_call, check_type, checked_count
+from vibro_sweep.model.refusals import not_allowed
 
 WAYS = ("graze", "pitchfork", "flip")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Followed:
     """A branch, and how it was reached.
 
@@ -25,6 +27,9 @@ class Followed:
     generation: int
     parent: int | None
     special: SpecialPoint | None
+
+    def __repr__(self) -> str:
+        return branch_text.of_followed(self)
 
 
 def follow_branches(
@@ -41,8 +46,9 @@ def follow_branches(
     that cannot be followed says so by its status.
     """
     check_type("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit, as `periodic_orbit` returns it")
-    if not isinstance(follow, (tuple, list)) or any(kind not in WAYS for kind in follow):
-        raise ValueError(f"follow: {follow!r} is not allowed; it must be a list of {', '.join(WAYS)}")
+    check_call("progress", progress, "progress(branches, points, value)", 0, 0, 0.0)
+    if not isinstance(follow, (tuple, list)) or any(not isinstance(one, str) or one not in WAYS for one in follow):
+        raise ValueError(not_allowed("follow", follow, f"a list of {', '.join(WAYS)}"))
     depth = checked_count("depth", depth, 0)
     branches: dict[str, Branch] = {}
 
@@ -59,7 +65,8 @@ def follow_branches(
             result.append(outline(branch) | written(beyond(branch, task), parameter))
         return result
 
-    trees = forest([seed_of(orbit)], parameter, tuple(bounds), tuple(follow), depth, evaluate, at_once=1)
+    lo, hi = map(float, bounds)
+    trees = forest([seed_of(orbit)], parameter, (lo, hi), tuple(follow), depth, evaluate, at_once=1)
     found: list[Followed] = []
     for tree in trees:
         parent, special = tree.seed.parent, None

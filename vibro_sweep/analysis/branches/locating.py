@@ -15,11 +15,18 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.special import inserted
 from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import branch
 
 ROUNDED = np.finfo(float).eps  # relative to the coordinates of a point: nearer ones are the same
 MOST_TRIES = 100
+SHARES = (-1, 1, 2)  # of a small step: so far beside a zero points round differently
+NEARBY, LEAST = 1e-9, 1e-12  # that step, of the step in which the zero is, and in units of a walk
+SHAKEN = 1e-10  # in units of a walk: so far from them Newton's method begins
+TIMES = 5.0  # the largest difference between what they say
 BESIDE = 1e-6  # of a step: so far from its zero a test says how steep it is, and not how it rounds
+SAME_TURN = 1e-4  # of omega t: a turning point of a flight this near to another is the same
+TOUCHES = 1e-9  # of the gap: at most so far from its stop a flight that touches it may be by rounding
 WITHIN = 1e-9  # of a step, by which rounding may put an event before its beginning or behind its end
 
 
@@ -42,8 +49,8 @@ class Event:
 def locate(walk: Walk, event: Event, a: Point, b: Point, length: float):
     """(event, distance from a, point, error): where the event lies between a and b; None if it cannot be found.
 
-    The error is what rounding of the gap does to the parameter. The zero of a test is located once more, on planes
-    across the tangent at b; where the two differ by more than rounding, that counts too.
+    The error is what rounding of the gap does to the parameter. Of the zero of a test it is at least several times the
+    difference between this zero and what points beside it say, which round differently.
     """
     found = None
     if event.unknown is not None:
@@ -85,7 +92,7 @@ def _at_value(walk: Walk, unknown: tuple[int, float], a: Point, b: Point) -> tup
 def _at_touch(walk: Walk, a: Point, b: Point) -> tuple[Point, float] | None:
     """The point where the flight that passes its stop at b touches it, and the error of its parameter."""
     before, behind = a.solution.margin, b.solution.margin
-    if not (behind < 0 < before < math.inf) or walk.start.equations.free:
+    if not (behind < 0 < before < math.inf) or (walk.start.equations.free and walk.start.K == 0):
         return None
     touching, index = inserted(b.solution)
     new = [index, walk.start.K + index]  # places of the impact's time and impulse
@@ -96,9 +103,18 @@ def _at_touch(walk: Walk, a: Point, b: Point) -> tuple[Point, float] | None:
     if found is None:
         return None
     point = walk.correct(np.delete(found.x, [new[0], new[1] + 1]), a.tangent, a.tangent)
-    if point is None or abs(point.solution.margin) > branch.PASSED * point.solution.size_of_gap:
+    if point is None or not _touches(point.solution, float(found.x[index] * walk.scale[0])):
         return None
     return point, rounding(found, normal)
+
+
+def _touches(s: Solution, time: float) -> bool:
+    """Whether no flight passes its stop, and one touches it: the one at this time, whose own distance is rounding."""
+    distance, nearest, _ = s.nearest
+    P, size = s.equations.P, s.size_of_gap
+    apart = (nearest - time + P / 2) % P - P / 2
+    same = abs(apart) * s.family.linear.omega < SAME_TURN
+    return abs(distance) <= (TOUCHES if same else branch.PASSED) * size
 
 
 class _Seen(NamedTuple):
@@ -118,14 +134,30 @@ def _at_zero(walk: Walk, event: Event, a: Point, b: Point, length: float):
     s, point, _ = found
     beside = [one for one in seen if abs(one.s - s) > BESIDE * abs(seen[1].s)]
     near = min(beside, key=lambda one: abs(one.s - s), default=found)
-    slope = abs((near.test - found.test) / (near.s - s)) if near is not found else 0.0
-    again = walk.step(b, float((point.x - b.x) @ b.tangent), point.x)
-    rounded, apart = rounding(point, point.tangent), math.nan
-    if again is not None and slope > 0:
-        missed = event.test(again) / slope * point.tangent[-1] * walk.scale[-1]
-        apart = abs(again.p - point.p) + abs(missed)
-    error = rounded if apart <= rounded else rounded + 4 * (apart - rounded)
+    slope = (near.test - found.test) / (near.s - s) if near is not found else 0.0
+    error = rounding(point, point.tangent)
+    if slope != 0:
+        scatter = _scatter(walk, event, a, found, max(NEARBY * abs(seen[1].s), LEAST), slope)
+        error = max(error, TIMES * scatter)  # not their sum: most errors are then the same from whichever start
     return event, abs(s) if length > 0 else s, point, float(error)
+
+
+def _scatter(walk: Walk, event: Event, a: Point, found: _Seen, step: float, slope: float) -> float:
+    """By how much rounding moves the parameter of a zero: what points beside it say, which round differently.
+
+    Each says p - test dp/dtest; a straight line through these takes away what the slope is wrong. The plane on which
+    points are found may hold the parameter itself, as in narrow bounds: then rounding is in the test alone.
+    """
+    rate = found.point.tangent[-1] * walk.scale[-1] / slope
+    said = [(0, -found.test * rate)]
+    shaken = found.point.x + SHAKEN * np.random.default_rng(0).standard_normal((len(SHARES), len(a.x)))
+    for share, guess in zip(SHARES, shaken, strict=True):
+        point = walk.step(a, found.s + share * step, guess)
+        if point is not None:
+            said.append((share, point.p - found.point.p - event.test(point) * rate))
+    shares, apart = np.array(said).reshape(-1, 2).T
+    line = np.polyval(np.polyfit(shares, apart, 1), [*shares, 0.0]) if len(said) > 2 else 0.0
+    return float(np.abs(np.append(apart, 0.0) - line).max())
 
 
 def zero_between(walk: Walk, test: Callable[[Point], float], a: Point, b: Point) -> Point | None:

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_torus
+from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_torus, stands_alone
 from vibro_sweep.analysis.branches.events import ON_CIRCLE, is_outside, torus_test
 from vibro_sweep.analysis.branches.response import touching
 from vibro_sweep.analysis.branches.walk import Point, Walk
@@ -47,8 +47,10 @@ def hidden_between(walk: Walk, bounds, a: Point, b: Point, found: list, beside: 
 
 def _are_all(walk: Walk, a: Point, b: Point, found: list) -> bool:
     """Whether nothing but these bifurcations, at one place, lies between a and b, as far as a and b tell."""
-    crossed = [event.type for event, _, point, _ in found if event.type != "neimark_sacker" or is_torus(point)]
-    if not explained(a, b, crossed):
+    crossed = [(event.type, point) for event, _, point, _ in found if event.type != "neimark_sacker" or is_torus(point)]
+    if not explained(a, b, [kind for kind, _ in crossed]):
+        return False
+    if len(crossed) == 1 and not stands_alone(a, b, crossed[0][1], crossed[0][0]):
         return False
     types = {place[0].type for place in found}
     return all((test(a) * test(b) < 0) == (kind in types) for kind, test in _crossing(walk, a, b))

@@ -26,7 +26,7 @@ def own_birth(walk: Walk, system, a: Point, b: Point, length: float):
     """(distance from a, event, point of the parent's branch, error) of the birth between a and b; None without one."""
     for sigma in (1, -1):
         parts = [halves_apart(point.solution, sigma) for point in (a, b)]
-        if parts[0] is None:
+        if any(part is None for part in parts):
             continue
         sizes = [np.linalg.norm(part) for part in parts]
         if not parts[0] @ parts[1] < -0.5 * sizes[0] * sizes[1]:
@@ -75,7 +75,7 @@ def lands_on_birth(walk: Walk, system, a: Point, b: Point) -> Point | None:
     """The point beyond the birth to which a leads, where rounding does not tell b from the birth."""
     for sigma in (1, -1):
         parts = [halves_apart(point.solution, sigma) for point in (a, b)]
-        if parts[0] is not None and np.linalg.norm(parts[1]) < LANDS * np.linalg.norm(parts[0]):
+        if all(part is not None for part in parts) and np.linalg.norm(parts[1]) < LANDS * np.linalg.norm(parts[0]):
             over = over_birth(walk, system, a)
             if over is not None and abs(b.p - over[1].p) < APART * rounding(b, b.tangent):
                 return over[0]
@@ -106,15 +106,20 @@ def _on_parent(walk: Walk, system, x: np.ndarray, sigma: int):
 
 
 def halves_apart(solution: Solution, sigma: int) -> np.ndarray | None:
-    """What tells the halves apart, as repetitions (sigma = 1) or mirror images (-1); None: their itineraries do."""
-    whole = solution
-    if whole.sigma != 1 or whole.K % 2 or whole.K == 0:
+    """What tells the halves apart, as repetitions (sigma = 1) or mirror images (-1); None: their itineraries do, or the
+    oscillator does, which may be symmetric at one value of the parameter only."""
+    if not may_be_born(solution, sigma):
         return None
+    half, t, D, P = solution.K // 2, solution.times, solution.jumps, solution.equations.P
+    omega, speed = solution.family.linear.omega, np.abs(D).max()
+    return np.concatenate([(t[half:] - t[:half] - P / 2) * omega, (D[half:] - sigma * D[:half]) / speed])
+
+
+def may_be_born(whole: Solution, sigma: int) -> bool:
+    """Whether itineraries allow that the halves become repetitions (sigma = 1) or mirror images (-1) of each other."""
+    if whole.sigma != 1 or whole.K % 2 or whole.K == 0:
+        return False
     half = whole.K // 2
     if any(a != sigma * b for a, b in zip(whole.sides[:half], whole.sides[half:], strict=True)):
-        return None
-    if whole.halves % 4 != (0 if sigma == 1 else 2) or (sigma == -1 and not whole.family.linear.symmetric):
-        return None
-    t, D, P = whole.times, whole.jumps, whole.equations.P
-    omega, speed = whole.family.linear.omega, np.abs(D).max()
-    return np.concatenate([(t[half:] - t[:half] - P / 2) * omega, (D[half:] - sigma * D[:half]) / speed])
+        return False
+    return whole.halves % 4 == (0 if sigma == 1 else 2) and (sigma == 1 or whole.family.linear.symmetric)

@@ -4,10 +4,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.periodic import long_orbits
-from vibro_sweep.analysis.periodic.impulse_equations import Equations
+from vibro_sweep.analysis.periodic.impulse_equations import Equations, flow
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.engine.impulses import flights
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +25,7 @@ class Chatter:
     state: np.ndarray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SpecialPoint:
     """A bifurcation on a branch, or the branch's end.
 
@@ -53,6 +55,9 @@ class SpecialPoint:
     criticality: str | None = None
     _chatter: Chatter | None = field(default=None, repr=False)
 
+    def __repr__(self) -> str:
+        return branch_text.of_special_point(self)
+
 
 @dataclass(frozen=True)
 class Graze:
@@ -70,19 +75,14 @@ class Graze:
         return "persistence" if self.distance_slope * self.speed_slope < 0 else "nonsmooth fold"
 
 
-NO_SPEED = 1e-9  # impulse, relative to omega times the gap, of an impact that is none
+ASIDE = 1e-3  # of 1/omega beside a graze in which its own turning point lies
 AT_ONCE = 1e-11  # the same, of impacts that vanish with another one, for all that rounding does
-
-
-def is_free(solution: Solution) -> bool:
-    """Whether no impact has a speed: the free motion, which grazes."""
-    return bool(np.all(solution.pushes < NO_SPEED * solution.family.linear.omega * solution.size_of_gap))
 
 
 def vanishing(solution: Solution, impact: int) -> np.ndarray:
     """Indices of the impacts that vanish with `impact`: all where the free motion grazes, and where a simpler orbit
     does its repetitions."""
-    if is_free(solution):
+    if solution.only_touches:
         return np.arange(solution.K)
     slow = AT_ONCE * solution.family.linear.omega * solution.size_of_gap
     return np.union1d(np.flatnonzero(solution.pushes < slow), [impact])
@@ -118,10 +118,13 @@ def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
     return Graze(without, touching, index, float(distance_slope), float(speed_slope))
 
 
-def inserted(solution: Solution) -> tuple[Solution, int]:
-    """The same motion with the turning point nearest to its stop as an impact without speed, and its index."""
+def inserted(solution: Solution, slow=()) -> tuple[Solution, int]:
+    """The same motion with the turning point nearest to its stop as an impact without speed, and its index.
+
+    slow : indices of impacts without speed, whose own turning points are left out
+    """
     K, rests = solution.K, np.array(solution.rests, int)
-    _, time, side = solution.nearest
+    _, time, side = _nearest_aside(solution, slow) if len(slow) else solution.nearest
     period = solution.equations.P
     index = int(np.searchsorted(solution.times, time))
     if K == 0 and time >= period:  # found where the period begins again, with the mirror for sigma = -1
@@ -131,6 +134,22 @@ def inserted(solution: Solution) -> tuple[Solution, int]:
     if K == 0 and solution.family.linear.symmetric is False and solution.equations.free:
         u = np.append(u, 0.0)
     return _with(solution, sides, u, rests + (rests >= index)), index
+
+
+def _nearest_aside(solution: Solution, slow) -> tuple[float, float, int]:
+    """`Solution.nearest` of an orbit without rests, but for the turning points within `ASIDE` of the impacts `slow`."""
+    q, K = solution.family.linear, solution.K
+    f, nearest = flow(q), np.array([np.inf, 0.0, 0.0])
+    starts, begins = solution.states.copy(), solution.times
+    starts[:, len(q.along)] += solution.jumps
+    ends = np.append(begins[1:], begins[0] + solution.equations.P)
+    aside = np.isin(np.arange(K), slow) * ASIDE / q.omega
+    first, last = begins + aside, ends - np.roll(aside, -1)
+    flying, room = np.empty_like(starts), flights.new_room(starts.shape[1])
+    flights.sample_flights(f, starts, begins, np.arange(K), first, flying, room)
+    for state, begin, length in zip(flying, first, last - first, strict=True):
+        flights.fly_once(f, state, begin, length, q.low, q.high, nearest, room)
+    return float(nearest[0]), float(nearest[1]), int(nearest[2])
 
 
 def bare(solution: Solution, index: int) -> Solution:

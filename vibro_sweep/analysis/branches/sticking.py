@@ -15,7 +15,8 @@ import math
 import numpy as np
 
 from vibro_sweep.analysis.branches.precise import precise
-from vibro_sweep.analysis.branches.special import Chatter, SpecialPoint, graze_at
+from vibro_sweep.analysis.branches.sizes import least_size
+from vibro_sweep.analysis.branches.special import Chatter, Graze, SpecialPoint, graze_at
 from vibro_sweep.analysis.periodic.impulse_equations import Equations
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -27,6 +28,7 @@ ENOUGH = 40  # of the sequence, at most, to begin with
 UNLIKE = 8  # impacts at the end of a sequence that grazes, which are unlike those of the onset
 MOST_IMPACTS = 400
 GROWTH = 4  # impacts added between two closed sequences
+SETTLED = 1e-8  # of the parameter's scale: an onset of which so much is in doubt, or more, is none
 STEPS = 25
 
 
@@ -52,11 +54,11 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
     R = float(solution.family.linear.restitution(solution.sides[-1:])[0])
     if not 0 < R < 1 or not _chatters(solution) or solution.equations.free:
         return None
-    phi = shrinking(R)
+    phi, scale = shrinking(R), _scale(graze, value)
     least = FIRST_IMPACTS
     onset = value
     while _length(solution) < least:
-        found = _next_graze(solution, name, value, phi)
+        found = _next_graze(solution, name, value, phi, scale)
         if found is None:
             return None
         (solution, value), moved = found, found[1] - value
@@ -67,25 +69,32 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
     solution = Solution(solution.family, solution.sigma, solution.halves, sides, u)
     values, limits, moved = [], [], math.inf
     while solution.K < MOST_IMPACTS:
-        found = _closed(solution, name, value, phi)
-        if found is None:
-            return None
-        solution, value = found
+        found = _closed(solution, name, value, phi, scale)
+        if found is None:  # rounding: no longer sequence is to be had
+            break
+        longest, value = found
         values.append(value)
         if len(values) >= 3:
             limits.append(_limit(*values[-3:]))
         if len(limits) >= 2:
             before, moved = moved, abs(limits[-1] - limits[-2])
-            if before < 1e-8 * abs(value) and moved >= before:  # rounding: the one before was the best
-                onset, error = limits[-2], 2 * moved + 16 * np.finfo(float).eps * abs(value)
-                orbit = PeriodicOrbit(special.orbit.system.replace(**{name: onset}), "sticking")
-                none = np.empty(0, complex)
-                chatter = _chatter(solution, phi)
-                return SpecialPoint(
-                    "sticking", {name: onset}, orbit, none, float(error), special.stop, _chatter=chatter
-                )
-        solution = _longer(solution, phi, GROWTH)
-    return None
+            if before < SETTLED * scale and moved >= before:  # rounding: the one before was the best
+                limits.pop()
+                break
+        solution = _longer(longest, phi, GROWTH)
+    if not moved < SETTLED * scale:
+        return None
+    onset, error = limits[-1], 2 * moved + 16 * np.finfo(float).eps * abs(value)
+    orbit = PeriodicOrbit(special.orbit.system.replace(**{name: onset}), "sticking")
+    none, chatter = np.empty(0, complex), _chatter(longest, phi)
+    return SpecialPoint("sticking", {name: onset}, orbit, none, float(error), special.stop, _chatter=chatter)
+
+
+def _scale(graze: Graze, value: float) -> float:
+    """Of the parameter, to which rounding is compared: its value, or what moves the gap by its size; a value such as an
+    offset or a phase may be 0."""
+    moves = abs(graze.distance_slope)
+    return max(abs(value), graze.touching.size_of_gap / moves if moves > 0 else 0.0)
 
 
 def _limit(a: float, b: float, c: float) -> float:
@@ -132,7 +141,7 @@ def _longer(solution: Solution, phi: float, count: int) -> Solution:
     return Solution(solution.family, solution.sigma, solution.halves, sides, u)
 
 
-def _next_graze(solution: Solution, name: str, value: float, phi: float):
+def _next_graze(solution: Solution, name: str, value: float, phi: float, scale: float):
     """(solution, parameter) with one impact more at the end, whose impulse is the one that vanishes now."""
     K, t, D = solution.K, solution.times, solution.jumps
     # the end of the sequence repeats itself on the next smaller scale
@@ -150,14 +159,15 @@ def _next_graze(solution: Solution, name: str, value: float, phi: float):
         moved, step[held] = step[held], 0.0
         return step, moved
 
-    found = _newton(system, u, value, K + 1)
+    found = _newton(system, u, value, K + 1, scale)
     return found and (_at(solution, name, found[1], sides, found[0]), found[1])
 
 
-def _closed(solution: Solution, name: str, value: float, phi: float):
+def _closed(solution: Solution, name: str, value: float, phi: float, scale: float):
     """(solution, parameter) where the sequence goes on for ever in its own shape."""
     K, sides = solution.K, _with_rest(solution.sides)
     centre, rest, weight = _rest(phi)
+    least = least_size(solution, name)
 
     def reduced(matrix):
         """Columns of all impacts as columns of those written out: chain rule."""
@@ -174,7 +184,7 @@ def _closed(solution: Solution, name: str, value: float, phi: float):
         full = _and_rest(u, K, phi)
         F, J, Fp, motion = e.evaluate(sides, full)
         F[: 2 * K + 4], acceleration = precise(e, sides, full)
-        n, h = K + 2, 1e-6 * max(abs(value), 1e-3)
+        n, h = K + 2, 1e-6 * max(abs(value), least)
         kept = [*range(K), *range(n, n + K), *range(2 * n, len(F))]
         beside = [_equations(solution, name, value + d).evaluate(sides, full)[3][-1, 1] for d in (h, -h)]
         row = reduced(_acceleration_slopes(e, full, n, motion[-1, 2])[None])[0]
@@ -184,7 +194,7 @@ def _closed(solution: Solution, name: str, value: float, phi: float):
         step = np.linalg.solve(matrix, np.append(F[kept], acceleration))
         return step[:-1], step[-1]
 
-    found = _newton(system, solution.u, value, K)
+    found = _newton(system, solution.u, value, K, scale)
     return found and (_at(solution, name, found[1], solution.sides, found[0]), found[1])
 
 
@@ -239,7 +249,7 @@ def _at(solution: Solution, name: str, value: float, sides, u) -> Solution:
     return Solution(solution.family.replace(**{name: value}), solution.sigma, solution.halves, tuple(sides), u)
 
 
-def _newton(system, u, value: float, count: int):
+def _newton(system, u, value: float, count: int, scale: float):
     """(u, value) by Newton's method until the parameter stands still; flights may shrink to a third in a step."""
     change = math.inf
     for _ in range(STEPS):
@@ -252,6 +262,6 @@ def _newton(system, u, value: float, count: int):
         share = min(1.0, reach)
         u, value = u - share * step, value - share * moved
         before, change = change, abs(moved)
-        if share == 1.0 and (change <= 1e-16 * abs(value) or (change < 1e-10 * abs(value) and change > 0.3 * before)):
+        if share == 1.0 and (change <= 1e-16 * abs(value) or (change < 1e-10 * scale and change > 0.3 * before)):
             return u, float(value)
     return None

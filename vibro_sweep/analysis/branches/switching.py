@@ -6,12 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from vibro_sweep.analysis.branches.births import born, is_steady
+from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, slopes
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.model.arguments import check_type
 
 BESIDE = 1e-4  # relative distance of the parameter from a graze
+NEAR = 0.1  # of the orbit beside a graze to what its slopes say, in 1/omega and the speed of the gap
 
 
 def switch(special: SpecialPoint) -> list[PeriodicOrbit]:
@@ -68,7 +70,7 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
     except np.linalg.LinAlgError:  # a fold as well: no slopes
         return None
     slope = graze.speed_slope if impact is None else graze.distance_slope
-    step = math.copysign(BESIDE * max(abs(value), 1e-3), slope)
+    step = math.copysign(BESIDE * size_of(solution, name), slope)
     for _ in range(20):
         try:
             family = solution.family.replace(**{name: value + step})
@@ -76,7 +78,7 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
             found = guess.corrected()
         except ValueError:  # the parameter is beyond its range
             found = None
-        near = found is not None and found.real and np.abs(found.u - guess.u).max(initial=0.0) < 0.1
+        near = found is not None and found.real and np.abs((found.u - guess.u) / target.units).max(initial=0.0) < NEAR
         if near and is_steady(found, name):
             return found
         step /= 2

@@ -6,6 +6,8 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.media import medium_of
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import branch, places
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.engine.impulses.places import Place, Steps, new_place, new_record, new_work
@@ -28,6 +30,14 @@ class Rows(NamedTuple):
 
 def join(parts: list[Rows]) -> Rows:
     return Rows(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+
+
+def row_of(p: float, s: Solution, frame: tuple[int, int]) -> Rows:
+    """A point alone."""
+    state = PeriodicOrbit(s.family, "ok", s, frame).state
+    t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
+    values = p, t, D, s.ends, motion, s.margin, s.change, state
+    return Rows(*(np.array([value], float) for value in values))
 
 
 class Track:
@@ -128,19 +138,28 @@ class Track:
 
     def point(self, place: Place) -> Point | None:
         """The same point, corrected with the walk's own equations."""
-        return self._corrected(place.t, place.D, float(place.numbers[places.P]), place)
+        return self._corrected(place.t, place.D, float(place.numbers[places.P]), *_tangent(place))
 
     def point_of(self, rows: Rows) -> Point | None:
         """The last of recorded points, which lies before the place a."""
-        return self._corrected(rows.t[-1], rows.D[-1], float(rows.p[-1]), self.a)
+        return self._corrected(rows.t[-1], rows.D[-1], float(rows.p[-1]), *_tangent(self.a))
 
-    def _corrected(self, t, D, p: float, along: Place) -> Point | None:
+    def point_behind(self, rows: Rows) -> Point | None:
+        """The last of two or more points; forwards is from the one before."""
+        t, D, p = (values[-1] - values[-2] for values in (rows.t, rows.D, rows.p))
+        return self._corrected(rows.t[-1], rows.D[-1], float(rows.p[-1]), np.concatenate([t, D]), float(p))
+
+    def _corrected(self, t, D, p: float, tangent: np.ndarray, rate: float) -> Point | None:
         w, K = self.walk, len(self.sides)
-        u, tangent = np.concatenate([t, D]), np.concatenate([along.tangent_t, along.tangent_jump])
+        u = np.concatenate([t, D])
         if w.start.equations.free:
             e = w.equations(p)
             u, tangent = np.append(u, 0.0), np.append(tangent, 0.0)
             u[-1] = -np.mean(e.evaluate(w.start.sides, u)[0][:K])
         x = np.append(u, p) / w.scale
-        direction = np.append(tangent, along.numbers[places.TANGENT]) / w.scale
+        direction = np.append(tangent, rate) / w.scale
         return w.correct(x, direction, direction)
+
+
+def _tangent(place: Place) -> tuple[np.ndarray, float]:
+    return np.concatenate([place.tangent_t, place.tangent_jump]), float(place.numbers[places.TANGENT])

@@ -17,7 +17,14 @@ from vibro_sweep.analysis.periodic.impulse_equations import (
     moves_stops_only,
     moves_stops_straight,
 )
-from vibro_sweep.analysis.periodic.long_orbits import influence, is_sparse, residual, sign_and_log_det, solve_bordered
+from vibro_sweep.analysis.periodic.long_orbits import (
+    SPARSE,
+    influence,
+    is_sparse,
+    residual,
+    sign_and_log_det,
+    solve_bordered,
+)
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.engine.impulses import across
 from vibro_sweep.engine.impulses.across import MOST_CORRECTIONS
@@ -141,11 +148,7 @@ class Walk:
     def __init__(self, start: Solution, name: str, span: float):
         self.start, self.name, self.family = start, name, start.family
         self.media: dict[float, np.ndarray | None] = {}  # of compiled steps, by where they are centred
-        K, q = start.K, start.family.linear
-        speed = q.omega * start.size_of_gap
-        self.scale = np.ones(start.size + 1)
-        self.scale[:K], self.scale[K : 2 * K], self.scale[-1] = 1 / q.omega, speed, span
-        self.scale[2 * K : -1] = 1 / q.omega if start.rests else speed / q.omega
+        self.scale = np.append(start.units, span)
         self._contact_only = not start.rests and moves_stops_only(self.family.derivative(name))
         self._straight = self._contact_only and moves_stops_straight(self.family, name, float(span))
 
@@ -186,7 +189,7 @@ class Walk:
     def correct(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
         """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""
         sparse = is_sparse(self.start.equations, self.start.sides)
-        if self._straight and not sparse:
+        if self._straight and self.start.K < SPARSE:  # the kernel eliminates one by one; LAPACK is faster from there on
             return self._corrected_at_once(guess, normal, forwards)
         x, before = guess.copy(), np.inf
         for corrections in range(1, MOST_CORRECTIONS + 1):
@@ -211,9 +214,23 @@ class Walk:
                 return None
             held = np.abs(F[: self.start.K]).max(initial=0.0) <= ROUNDING * self.start.size_of_gap
             if change <= 1e-15 or (change < (1e-7 if held else 1e-9) and change >= 0.3 * before):
-                return Point(self, x, e, rows, motion, change, corrections, forwards)
+                e = self._moved(e, x, np.abs(rows[: self.start.K, -1] * step[-1]).max(initial=0.0))
+                return e and Point(self, x, e, rows, motion, change, corrections, forwards)
             before = change
         return None
+
+    def _moved(self, e: Equations, x: np.ndarray, left: float) -> Equations | None:
+        """The equations at x, after a last correction that leaves `left` of the gaps in those before it, e.
+
+        Rounding moves the parameter of a long, nearly neutral orbit by more than what it leaves of the gaps elsewhere.
+        None where the parameter is beyond its range.
+        """
+        if left <= ROUNDING * self.start.size_of_gap:
+            return e
+        try:
+            return self.equations(float(x[-1] * self.scale[-1]))
+        except ValueError:
+            return None
 
     def _corrected_at_once(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
         """`correct` by a kernel (engine/impulses/across.py)."""

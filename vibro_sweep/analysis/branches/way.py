@@ -12,12 +12,13 @@ from vibro_sweep.analysis.branches.crossings import is_torus
 from vibro_sweep.analysis.branches.events import bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.locating import Event
 from vibro_sweep.analysis.branches.looking import hidden_between, touches
-from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, over_birth, own_birth
+from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
+from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.response import longest_step
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
-from vibro_sweep.analysis.branches.track import Rows, Track, join
+from vibro_sweep.analysis.branches.track import Rows, Track, join, row_of
 from vibro_sweep.analysis.branches.walk import Point, Walk
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import branch, places
 
@@ -27,7 +28,6 @@ FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 6e-4, 0.05, 1e-11
 STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
 MOST_POINTS = 20_000
 BEFORE = 1e-8  # share of the way to a graze
-BACK = 16  # points, at most, to one that lies before what rounding does beside a birth
 DIVISIONS = 60  # of a step in which more happens than its tests tell, in all
 
 
@@ -68,22 +68,26 @@ class Way:
             self._step(self.first, 1)
 
     def _run(self, track: Track) -> None:
-        a, passed = self.first, 1
-        while passed < MOST_POINTS:
-            reason, rows = track.run(passed)
-            passed += len(rows.p)
+        a, count, looked = self.first, 1, 0
+        while count < MOST_POINTS:
+            reason, rows = track.run(count)
+            count += len(rows.p)
             if len(rows.p):
                 self.rows.append(rows)
                 self._passed = None
-            self._tell(passed, track.a.numbers[places.P])
+            self._tell(count, track.a.numbers[places.P])
             if reason in (branch.FULL, branch.FAR):
                 continue
             a, b = track.point(track.a), track.point(track.b)
+            before = self._count(looked)
+            if self._over_birth(track, [before + more for more in passed(self.walk, self.rows[looked:], a)]):
+                return
+            looked = len(self.rows) - 1
             if reason == branch.NO_START and a is not None:
-                self._step(a, passed)
+                self._step(a, count)
                 return
             if reason == branch.FAILED or a is None or b is None:
-                if self._over_birth(track):
+                if self._over_birth(track, [self._count()]):
                     return
                 break
             if reason == branch.CLOSED:
@@ -128,19 +132,21 @@ class Way:
         last = next((rows for rows in reversed(self._without_last()) if len(rows.p)), None)
         return None if last is None else track.point_of(last)
 
-    def _over_birth(self, track: Track) -> bool:
-        """Pass a birth beside which rounding leaves no points, from one of the last points. False: there is none."""
-        last = self.rows[-1]
-        for count in range(len(last.p), max(0, len(last.p) - BACK), -1) if self._passed is None else ():
-            rows = Rows(*(values[:count] for values in last))
-            a = track.point_of(rows)
-            over = None if a is None else over_birth(self.walk, self.system, a)
-            if over is not None:
-                self.rows[-1] = rows
-                return self._pass(a, over[0], float((over[0].x - a.x) @ a.tangent))
-        a = self._passed[0] if self._passed else None
-        over = None if a is None else over_birth(self.walk, self.system, a)
-        return over is not None and self._again(a, over[0], None)
+    def _over_birth(self, track: Track, counts: list[int]) -> bool:
+        """End at the birth that lies behind one of so many points. False: there is none (`before_passed`)."""
+        found = before_passed(self.walk, self.system, track, self.points, counts, self.first) if counts else None
+        if found is None:
+            return False
+        kept, a, b = found
+        self.rows = [kept]
+        del self.special[how_many_on(kept, self.special) :]
+        if not self._pass(a, b, float((b.x - a.x) @ a.tangent)):
+            self.special.append(self._at("failed", a, math.nan))
+        return True
+
+    def _count(self, parts: int | None = None) -> int:
+        """Points in the first parts of its rows."""
+        return sum(len(rows.p) for rows in self.rows[:parts])
 
     def _without_last(self) -> list[Rows]:
         return [*self.rows[:-1], Rows(*(values[:-1] for values in self.rows[-1]))]
@@ -275,14 +281,6 @@ class Way:
             "graze", point, error, stop=side, kind=graze.kind, impact=impact,
             direction=1 if graze.distance_slope > 0 else -1,
         )  # fmt: skip
-
-
-def row_of(p: float, s: Solution, frame: tuple[int, int]) -> Rows:
-    """A point alone."""
-    state = PeriodicOrbit(s.family, "ok", s, frame).state
-    t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
-    values = p, t, D, s.ends, motion, s.margin, s.change, state
-    return Rows(*(np.array([value], float) for value in values))
 
 
 def stop_and_impact(solution: Solution, index: int) -> tuple[int, int]:

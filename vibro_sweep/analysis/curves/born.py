@@ -25,6 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches import torus
+from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.branches.way import stop_and_impact
@@ -88,14 +89,14 @@ def born(special: CurvePoint) -> list[SpecialPoint]:
 def _leads_to(special: CurvePoint, one: SpecialPoint, nearer: SpecialPoint, ratio: int) -> bool:
     """Whether twice the amplitude is `ratio` times as far from the point, as on the curve that begins there."""
     values, far, near = (np.array(list(point.parameters.values())) for point in (special, one, nearer))
-    size = np.maximum(np.abs(values), 1e-3)
+    size = sizes_of(special.orbit._solution, special.parameters)
     return bool(np.linalg.norm((far - values - ratio * (near - values)) / size) < np.linalg.norm((far - values) / size))
 
 
 def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: float, sign: int) -> Entry | None:
     """For orbits with `count` times the period at this amplitude; sign: which of two folds. None: there are none."""
     names, values = tuple(special.parameters), np.array(list(special.parameters.values()))
-    tracer = Tracer(parent, names, _box(values))
+    tracer = Tracer(parent, names, box_around(special))
     place = tracer.first()
     if place is None:
         return None
@@ -129,7 +130,8 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
 
 def _with_amplitude(guess: Solution, change: np.ndarray, name: str, value: float) -> Solution | None:
     """The orbit near a guess with its amplitude in the direction `change`; the parameter is found with it."""
-    walk = Walk(guess, name, max(abs(value), 1e-3))
+    guess = guess.with_mean() if guess.equations.free else guess
+    walk = Walk(guess, name, size_of(guess, name))
     row = np.zeros(len(walk.scale))
     row[: len(change)] = change / walk.scale[: len(change)]
     row /= np.linalg.norm(row)
@@ -148,14 +150,14 @@ def _angle_near_one(solution: Solution) -> float | None:
 def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
     """The point of the curve with the amplitude of the guess, if it is near."""
     names, values = tuple(special.parameters), np.array(list(special.parameters.values()))
-    tracer = Tracer(guess.start, names, _box(values))
+    tracer = Tracer(guess.start, names, box_around(special))
     row = np.zeros(tracer.size)
     row[: len(guess.change)] = guess.change / tracer.curve.unit[: len(guess.change)]
     place = tracer.guess()
     place = place and tracer.settle(place, row / np.linalg.norm(row))
     if place is None:
         return None
-    far = np.abs(place.p[:2] - values) > FARTHEST * np.maximum(np.abs(values), 1e-3)
+    far = np.abs(place.p[:2] - values) > FARTHEST * sizes_of(special.orbit._solution, names)
     if guess.moved is not None:
         far = np.abs(place.p[:2] - values - guess.moved) > ALIKE * np.abs(guess.moved).max()
     if np.any(far):
@@ -173,8 +175,10 @@ def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
     return SpecialPoint("graze", parameters, orbit, without.multipliers, error, stop=stop, impact=impact)
 
 
-def _box(values: np.ndarray) -> np.ndarray:
-    reach = REACH * np.maximum(np.abs(values), 1e-3)
+def box_around(special: CurvePoint) -> np.ndarray:
+    """(2, 2) of both parameters, around the point."""
+    values = np.array(list(special.parameters.values()))
+    reach = REACH * sizes_of(special.orbit._solution, special.parameters)
     return np.column_stack([values - reach, values + reach])
 
 

@@ -5,12 +5,14 @@ from collections.abc import Callable
 from scipy.optimize import brentq
 
 from vibro_sweep.analysis.curves.tracer import Tracer
+from vibro_sweep.analysis.periodic.long_orbits import MANY
 from vibro_sweep.engine.impulses.locus import Place
 
 ROUNDING = 1e-15  # of tests, in their units
 ASIDE = 1e-7  # of a chord: a zero found by polynomials is exact to far less
 LEAST = 1e-14  # of a chord, far below what rounding of tests leaves of a zero
 NOISE = 1e-11  # of a chord: nearer to a zero rounding of a test may lie
+COARSE = 1e3  # times both, of orbits of many impacts: their tests round by more, and each point takes long
 STEPS = 4
 
 
@@ -22,7 +24,7 @@ def root(tracer: Tracer, a: Place, b: Place, test: Callable[[Place], float]) -> 
             return None
         share = chord.near_zero()
         if share is None:
-            share = brentq(chord.value, 0.0, 1.0, xtol=LEAST, rtol=1e-15, maxiter=100)
+            share = brentq(chord.value, 0.0, 1.0, xtol=chord.coarse * LEAST, rtol=1e-15, maxiter=100)
             chord.value(share)
     except (ArithmeticError, RuntimeError):
         return None
@@ -35,6 +37,7 @@ class Chord:
     def __init__(self, tracer: Tracer, a: Place, b: Place, test: Callable[[Place], float]):
         self.tracer, self.a, self.b, self.test = tracer, a, b, test
         self.row = tracer.row_of(tracer.difference(a, b))
+        self.coarse = COARSE if tracer.K >= MANY else 1.0
         self.seen = {0.0: a, 1.0: b}
 
     def value(self, share: float) -> float:
@@ -67,7 +70,7 @@ class Chord:
         zero = begin
         for _ in range(STEPS):
             left = self.value(zero)
-            if abs(left) <= LEAST * abs(slope):
+            if abs(left) <= self.coarse * LEAST * abs(slope):
                 break
             moved = zero - left / slope
             if not (0.0 <= moved <= 1.0 and abs(moved - begin) <= ASIDE):
@@ -75,7 +78,7 @@ class Chord:
             if not abs(self.value(moved)) < 0.5 * abs(left):
                 break
             zero = moved
-        return zero if abs(self.value(zero)) <= NOISE * abs(slope) else None
+        return zero if abs(self.value(zero)) <= self.coarse * NOISE * abs(slope) else None
 
     def at(self, share: float, exact: bool = True) -> Place:
         """The point of the curve at a share of the chord, without keeping it."""

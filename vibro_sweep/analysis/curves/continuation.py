@@ -4,12 +4,12 @@ The curve goes on where an impact of its orbit grazes: behind that point the orb
 say so (`virtual`).
 """
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.curves import curve_text
 from vibro_sweep.analysis.curves.chatter import written_out
 from vibro_sweep.analysis.curves.curve_points import dataset
 from vibro_sweep.analysis.curves.events import is_real
@@ -19,14 +19,16 @@ from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint, Way
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.engine.impulses.locus import Place
-from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.arguments import check_call, check_type, checked_flag, checked_interval
 from vibro_sweep.model.linear import family_of
+from vibro_sweep.model.real import array_of
+from vibro_sweep.model.refusals import not_allowed
 
 if TYPE_CHECKING:
     import xarray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class BifurcationCurve:
     """A bifurcation curve, from the end that is reached towards a smaller first parameter to the other one.
 
@@ -46,28 +48,32 @@ class BifurcationCurve:
     _tracer: Tracer
     _rows: Rows
 
+    def __repr__(self) -> str:
+        return curve_text.of_curve(self)
+
     @cached_property
     def points(self) -> "xarray.Dataset":
         """Dataset over `point`: parameters, multipliers, whether it is real, impacts (docs of `dataset`)."""
         return dataset(self._tracer, self._rows)
 
-    def plot(self, *others: "BifurcationCurve"):
-        """This curve and `others` in the same parameters, with their points of codimension two: a matplotlib Figure.
+    def plot(self, *others: "BifurcationCurve", width: float | None = None):
+        """This curve and `others` in the same parameters, with their points of codimension two: a matplotlib Figure,
+        `width` mm wide.
 
         Raises ValueError for curves in other parameters.
         """
         from vibro_sweep.plotting.curves import Drawn, plot_curves
 
+        for curve in others:
+            check_type("others", curve, BifurcationCurve, "curves, as `bifurcation_curve` returns them")
         names, drawn = self.parameters, []
         for curve in (self, *others):
             if curve.parameters != names:
-                raise ValueError(
-                    f"others: a curve in {', '.join(curve.parameters)} is not allowed; it must be in {names}"
-                )
+                raise ValueError(not_allowed("others", curve.parameters, f"curves in {', '.join(names)}"))
             special = [(one.type, *(one.parameters[name] for name in names)) for one in curve.special]
             values = (curve.points[name].values for name in (*names, "virtual"))
             drawn.append(Drawn(curve.type, *values, special))
-        return plot_curves(drawn, names)
+        return plot_curves(drawn, names, width)
 
 
 @one_thread()
@@ -90,18 +96,17 @@ def bifurcation_curve(
     family = family_of(special.orbit.system)
     allowed = [name for name, value in family.numbers.items() if isinstance(value, (int, float))]
     names = tuple(parameters) if isinstance(parameters, (tuple, list)) else ()
-    if len(names) != 2 or names[0] == names[1] or any(name not in allowed for name in names):
-        raise ValueError(f"parameters: {parameters!r} is not allowed; it must be two of {', '.join(allowed)}")
-    try:
-        limits = [(float(lo), float(hi)) for lo, hi in box]
-    except (TypeError, ValueError):
-        limits = []
-    if len(limits) != 2:
-        raise ValueError(f"box: {box!r} is not allowed; it must be ((lo, hi), (lo, hi)) of {names[0]} and {names[1]}")
-    values = [family.numbers[name] for name in names]
-    for name, value, ends in zip(names, values, limits, strict=True):
-        if not (all(map(math.isfinite, ends)) and ends[0] < ends[1] and ends[0] <= value <= ends[1]):
-            raise ValueError(f"box: {ends!r} of {name} is not allowed; it must be (lo, hi), lo < hi, around {value!r}")
+    if not (all(isinstance(name, str) and name in allowed for name in names) and len({*names}) == len(names) == 2):
+        raise ValueError(not_allowed("parameters", parameters, f"two of {', '.join(allowed)}"))
+    values = array_of(box, 2)
+    if values is None or values.shape != (2, 2):
+        raise ValueError(not_allowed("box", box, f"((lo, hi), (lo, hi)) of {names[0]} and {names[1]}"))
+    limits = [
+        checked_interval(f"box.{name}", ends, family.numbers[name])
+        for name, ends in zip(names, values.tolist(), strict=True)
+    ]
+    check_call("progress", progress, "progress(points, (p, q))", 0, (0.0, 0.0))
+    virtual = checked_flag("virtual", virtual)
     start = start_at(special, names)
     tracer = Tracer(start, names, limits)
     tracer, first = first_of(tracer)

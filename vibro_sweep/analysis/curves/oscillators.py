@@ -80,7 +80,7 @@ class Oscillators:
         values = np.array(values)
         if not np.all(np.isfinite(values)):
             return None
-        c, size = chebyshev.chebfit(nodes, values, most), _sizes(values)
+        c, size = chebyshev.chebfit(nodes, values, most), _sizes(values, 2 * len(self.family.linear.along))
         seen = np.flatnonzero((np.abs(c) > DECAYED * size).any(axis=1))
         degree = int(seen[-1]) if len(seen) else 0
         return degree if degree <= most - 2 else None
@@ -112,9 +112,9 @@ class Oscillators:
         result = np.zeros(1, plane.plane_of(n // 2))
         r = result[0]
         r["n"] = n
-        flat = values[..., : n * (n + 1)]
+        flat, size = values[..., : n * (n + 1)], _sizes(values.reshape(-1, values.shape[-1]), n)[: n * (n + 1)]
         for j in range(2):
-            r["moves"][j] = bool(np.any(np.ptp(flat, axis=j) > 1e-15 * np.abs(flat).max()))
+            r["moves"][j] = bool(np.any(np.ptp(flat, axis=j) > 1e-15 * size))
         if not r["moves"].any():
             exact = sampled(q)
             c[..., : n * (n + 1)] = 0.0
@@ -152,8 +152,13 @@ def _nodes(degree: int) -> np.ndarray:
     return np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
 
 
-def _sizes(values: np.ndarray) -> np.ndarray:
-    """What is small beside what: matrices and forces as a whole, numbers one by one."""
+def _sizes(values: np.ndarray, n: int) -> np.ndarray:
+    """What is small beside what: matrices and forces, in the unit of length, as wholes, numbers one by one."""
     size = np.abs(values).max(axis=0)
-    size[:-NUMBERS] = size[:-NUMBERS].max()
+    forces = np.zeros(len(size), bool)
+    forces[n : n * (n + 1) : n + 1] = forces[n * (n + 1) : -NUMBERS] = True
+    matrices = ~forces
+    matrices[-NUMBERS:] = False
+    for part in (forces, matrices):
+        size[part] = size[part].max()
     return np.maximum(size, 1e-300)

@@ -9,7 +9,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.special import Chatter, SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.switching import switch as switch_branches
 from vibro_sweep.analysis.branches.way import stop_and_impact
-from vibro_sweep.analysis.curves.born import born
+from vibro_sweep.analysis.curves.born import born, box_around
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint
@@ -23,6 +23,7 @@ SLOW = 1e-9  # impulse, in parts of the gap's size times omega, below which an i
 ON_CIRCLE = 1e-8  # | |mu| - 1 | of a Neimark-Sacker pair
 BESIDE = 0.2  # theta at which the Neimark-Sacker curve of a double multiplier 1 (-1) is entered
 ENDS = ("closed", "limit", "failed")
+STRONG = ("resonance_1_1", "resonance_1_2")
 
 
 @overload
@@ -50,7 +51,7 @@ def switch(special):
     if special.type in ENDS:
         raise ValueError(f"type: {special.type!r} is not allowed; it must be a point of codimension two")
     found = [_special(special, start) for start in _starts(special)]
-    if special.type in ("resonance_1_1", "resonance_1_2"):
+    if special.type in STRONG:
         beside = _beside_strong(special)
         found += [beside] if beside is not None else []
     return found + born(special)
@@ -62,9 +63,8 @@ def _starts(special: CurvePoint) -> list[Start]:
         return _sticking(special._chatter)
     whole = special.orbit._solution
     if special.touches:
-        whole = inserted(whole)[0]
-    omega = whole.family.linear.omega
-    slow = [k for k in range(whole.K) if abs(whole.jumps[k]) < SLOW * omega * whole.size_of_gap]
+        whole = inserted(whole, _slow(whole))[0]
+    slow = _slow(whole)
     starts = []
     for count in range(len(slow) + 1):
         for dropped in combinations(slow, count):
@@ -74,25 +74,31 @@ def _starts(special: CurvePoint) -> list[Start]:
             kept = [k - sum(other < k for other in dropped) for k in slow if k not in dropped]
             starts += [Start("graze", solution, k) for k in kept]
             if solution.K:
-                starts += _smooth(solution, bool(kept))
+                starts += _smooth(solution, bool(kept) or special.type in STRONG)
     return starts
+
+
+def _slow(solution: Solution) -> list[int]:
+    """Indices of the impacts that have no speed."""
+    least = SLOW * solution.family.linear.omega * solution.size_of_gap
+    return np.flatnonzero(np.abs(solution.jumps) < least).tolist()
 
 
 def _sticking(chatter: Chatter) -> list[Start]:
     """The onset of the orbits with and without the impact that has no speed."""
     s = chatter.solution
-    slow = np.abs(s.jumps) < SLOW * s.family.linear.omega * s.size_of_gap
-    (k,) = np.flatnonzero(slow[1:]) + 1  # the first is the end of the chatter
-    return [Start("sticking", solution, state=chatter.state) for solution in (s, bare(s, int(k)))]
+    _, k = _slow(s)  # the first is the end of the chatter
+    return [Start("sticking", solution, state=chatter.state) for solution in (s, bare(s, k))]
 
 
-def _smooth(solution: Solution, grazes: bool) -> list[Start]:
-    """Fold, flip and Neimark-Sacker of an orbit."""
+def _smooth(solution: Solution, no_pair: bool) -> list[Start]:
+    """Fold, flip and Neimark-Sacker of an orbit; no_pair: not the last, as where rounding makes a pair of a double
+    multiplier 1 (-1)."""
     found = []
     for mu, name in ((1, "fold"), (-1, "pitchfork" if solution.sigma == -1 else "flip")):
         if is_singular(solution, mu):
             found.append(Start(name, solution))
-    if not grazes:
+    if not no_pair:
         values = solution.multipliers
         pair = values[(values.imag > 1e-6) & (np.abs(np.abs(values) - 1) < ON_CIRCLE)]
         found += [Start("neimark_sacker", solution, theta=float(np.angle(mu))) for mu in pair]
@@ -103,11 +109,10 @@ def is_singular(solution: Solution, mu: int) -> bool:
     """Whether mu is a multiplier, also where an impact has no speed."""
     q, K = solution.family.linear, solution.K
     J = solution.equations.linearised(mu, solution.sides, solution.u, solution.motion)
-    scale = np.ones(len(J))
+    scale, rows = np.full(len(J), solution.size_of_gap), np.ones(len(J))
     scale[:K] = 1 / q.omega
-    scale[K : 2 * K] = q.omega * solution.size_of_gap
-    rows = np.ones(len(J))
-    rows[K : 2 * K] = q.omega
+    scale[K : 2 * K] *= q.omega
+    rows[K:] = q.omega
     values = np.linalg.svd(J * scale / rows[:, None], compute_uv=False)
     return bool(values[-1] < SINGULAR * values[0])
 
@@ -133,11 +138,7 @@ def _beside_strong(special: CurvePoint) -> SpecialPoint | None:
     solution = special.orbit._solution
     names = tuple(special.parameters)
     theta = BESIDE if special.type == "resonance_1_1" else math.pi - BESIDE
-    values = np.array(list(special.parameters.values()))
-    reach = np.maximum(np.abs(values), 1e-3) * 0.2
-    tracer = Tracer(
-        Start("neimark_sacker", solution, theta=theta), names, np.column_stack([values - reach, values + reach])
-    )
+    tracer = Tracer(Start("neimark_sacker", solution, theta=theta), names, box_around(special))
     axis = np.zeros(tracer.size)
     axis[tracer.S + locus.THETA] = 1.0
     place = tracer.first(axis)

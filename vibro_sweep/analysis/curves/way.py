@@ -23,7 +23,7 @@ CLOSE = 1e-6  # distance, in the units of a curve, from the first point where it
 MOST_POINTS = 50_000
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CurvePoint(SpecialPoint):
     """A point of codimension two on a bifurcation curve, or the end of one.
 

@@ -9,16 +9,23 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses.green import ResonanceError, TooStiffError
+from vibro_sweep.model.arguments import check_type, checked_count
+from vibro_sweep.model.files import ExistingFileError, FileError, checked_path, file_to_write, read_bytes
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import family_of
 from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.real import array_of, number_of
+from vibro_sweep.model.refusals import not_allowed
 
 FORMAT = "vibro_sweep periodic orbit 1"
+MOST_BYTES = 2**28
 
 
 def save_orbit(orbit: PeriodicOrbit, path) -> Path:
-    """Write `orbit`; FileExistsError where there is a file, ValueError for an orbit without a motion or of a Family."""
-    s = orbit._solution
+    """Write `orbit`. ExistingFileError where there is a file, FileError where none can be written, ValueError for an
+    orbit without a motion or of a Family."""
+    path, s = file_to_write("path", path), orbit._solution
     if s is None:
         raise ValueError(f"this orbit has no motion to save: its status is {orbit.status!r}")
     system = orbit.system
@@ -38,28 +45,41 @@ def save_orbit(orbit: PeriodicOrbit, path) -> Path:
         "unknowns": [float(value) for value in s.u],
         "residual": float(s.change),
     }
-    path = Path(path)
-    with path.open("x", encoding="utf-8") as file:
-        json.dump(record, file, indent=1)
-        file.write("\n")
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            json.dump(record, file, indent=1)
+            file.write("\n")
+    except FileExistsError:
+        raise ExistingFileError(path) from None
+    except OSError as error:
+        reason = error.strerror if path.parent.is_dir() else f"there is no folder {path.parent}"
+        raise FileError(path, f"cannot be written: {reason}") from None
     return path
 
 
-def load_orbit(path) -> PeriodicOrbit:
-    """Read what `PeriodicOrbit.save` wrote; its status is checked anew. ValueError where the file is something else."""
+def load_orbit(path: str | Path) -> PeriodicOrbit:
+    """Read what `PeriodicOrbit.save` wrote; its status is checked anew.
+
+    Raises ValueError where the file is something else, MissingFileError where there is none, FileError where it cannot
+    be read.
+    """
+    path = checked_path("path", path)
+    text = read_bytes(path, MOST_BYTES)
     try:
-        record = json.loads(Path(path).read_text(encoding="utf-8"))
-    except (UnicodeDecodeError, json.JSONDecodeError):
+        record = json.loads(text.decode())
+    except (ValueError, RecursionError):  # no UTF-8, no JSON, thousands of digits; nested thousands of times
         record = None
     if not isinstance(record, dict) or record.get("format") != FORMAT:
         raise ValueError(f"{path}: not a file of the format {FORMAT!r}")
     try:
+        check_type("system", record["system"], dict, "an object of numbers")
         numbers = dict(record["system"])
-        model = numbers.pop("type", None)
-        system = System(**numbers) if model is None else Oscillator.named(model, **numbers)
-        sigma, halves, sides = int(record["sigma"]), int(record["halves"]), tuple(map(int, record["sides"]))
-        u, change = np.array(record["unknowns"], float), float(record["residual"])
-        rests = tuple(map(int, record.get("rests", ())))
+        system = Oscillator.named(numbers.pop("type", System.model.name), **numbers)
+        sigma, halves = checked_count("sigma", record["sigma"], -1, 1), checked_count("halves", record["halves"], 1)
+        sides, rests = _whole("sides", record["sides"]), _whole("rests", record.get("rests", []))
+        u, change = array_of(record["unknowns"], 1), number_of(record["residual"])
+        if u is None or change is None:
+            raise ValueError("its unknowns and its residual are no numbers")
         family = family_of(system)
         odd = sigma == -1 and halves % 2 == 1 and family.linear.symmetric
         even = sigma == 1 and halves % 2 == 0
@@ -73,4 +93,15 @@ def load_orbit(path) -> PeriodicOrbit:
             raise ValueError("its impacts are not in order")
     except (KeyError, TypeError, ValueError) as problem:
         raise ValueError(f"{path}: damaged: {problem}") from None
-    return orbit_of(system, Solution(family, sigma, halves, sides, u, change, rests))
+    try:
+        return orbit_of(system, Solution(family, sigma, halves, sides, u, change, rests))
+    except ResonanceError:
+        return PeriodicOrbit(system, "resonance")
+    except TooStiffError:
+        return PeriodicOrbit(system, "too_stiff")
+
+
+def _whole(name: str, values: object) -> tuple[int, ...]:
+    if not isinstance(values, list):
+        raise ValueError(not_allowed(name, values, "a list of whole numbers"))
+    return tuple(checked_count(f"{name}[{i}]", value, -1) for i, value in enumerate(values))

@@ -9,17 +9,22 @@ from itertools import pairwise
 import numpy as np
 
 from vibro_sweep.analysis.periodic.itinerary import SIDES, is_mirrored, repetitions, word
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit, orbit_of
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit, leans, orbit_of
 from vibro_sweep.analysis.periodic.seeds_of_rests import evenly, with_rests
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.orbit import simulate
 from vibro_sweep.engine.impulses.green import ResonanceError, TooStiffError
-from vibro_sweep.model.arguments import checked_count, is_number
+from vibro_sweep.model.arguments import checked_count, checked_state
 from vibro_sweep.model.linear import Family, family_of, forcing_period
+from vibro_sweep.model.real import array_of
+from vibro_sweep.model.refusals import not_allowed
 
 SEEDS = 4000
 MOMENTS = 24
+SAME = 1e-7  # relative difference of solutions from two seeds that are one, and in parts of their units
 NO_ROW = (math.nan, 0.0, math.nan)
+MOST_PERIODS = 10**6
+MOST_IMPACTS = 1000  # of an itinerary: each has thousands of seeds
 
 
 def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None = None, guess=None) -> PeriodicOrbit:
@@ -37,15 +42,23 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
     Raises ValueError for arguments that say nothing or contradict each other. What fails is told by `.status`.
     """
     family = family_of(system)
-    periods = checked_count("periods", periods, 1)
-    if (state is None) == (itinerary is None and guess is None):
-        raise ValueError("give either state, or itinerary or guess")
+    periods = checked_count("periods", periods, 1, MOST_PERIODS)
+    sides = None if itinerary is None else _checked_sides(family.linear, itinerary)
+    rows = None if guess is None else _checked_guess(family.linear, guess, itinerary)
+    if state is not None:
+        state = checked_state(state, len(family.linear.along))
+        if not (sides is None and rows is None):
+            raise ValueError(not_allowed("state", state, "left out where an itinerary or a guess is given"))
+    elif sides is None and rows is None:
+        raise ValueError(not_allowed("state", state, "given, or an itinerary or a guess"))
+    elif rows is None and len(sides) > MOST_IMPACTS:
+        raise ValueError(not_allowed("itinerary", itinerary, f"of at most {MOST_IMPACTS} impacts without a guess"))
     try:
         if state is not None:
             return _from_state(system, family, state, periods)
-        if guess is not None:
-            return _from_guess(system, family, _checked_guess(family.linear, guess, itinerary), periods)
-        return _from_itinerary(system, family, _checked_sides(family.linear, itinerary), periods)
+        if rows is not None:
+            return _from_guess(system, family, rows, periods)
+        return _from_itinerary(system, family, sides, periods)
     except ResonanceError:
         return PeriodicOrbit(system, "resonance")
     except TooStiffError:
@@ -54,36 +67,32 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
 
 def _checked_sides(q, itinerary) -> tuple[int, ...]:
     if not isinstance(itinerary, str) or set(itinerary) - set(SIDES):
-        raise ValueError(f"itinerary: {itinerary!r} is not allowed; it must be a word of R and L")
+        raise ValueError(not_allowed("itinerary", itinerary, "a word of R and L"))
     sides = tuple(SIDES[letter] for letter in itinerary)
     if not np.all(np.isfinite(q.stop(sides))):
-        raise ValueError(f"itinerary: {itinerary!r} hits a stop that the system does not have")
+        raise ValueError(not_allowed("itinerary", itinerary, "a word of stops that the system has"))
     return sides
 
 
 def _checked_guess(q, guess, itinerary):
-    try:
-        rows = [
-            (float(t), float(side), float(v)) if all(map(is_number, (t, side, v))) else NO_ROW for t, side, v in guess
-        ]
-    except (TypeError, ValueError):
-        rows = [NO_ROW]
-    if not np.all(np.isfinite(rows)) or any(side not in (1, -1) for _, side, _ in rows):
-        raise ValueError("guess: must be (t, side, v) for each impact, finite, with side 1 or -1")
+    rows = array_of(guess, 2)
+    none = rows is not None and rows.size == 0
+    if rows is None or not (none or (rows.shape[1] == 3 and np.isfinite(rows).all() and {*rows[:, 1]} <= {1, -1})):
+        raise ValueError(not_allowed("guess", guess, "(t, side, v) for each impact, finite, with side 1 or -1"))
+    rows = [] if none else [tuple(row) for row in rows.tolist()]
     if any(b[0] <= a[0] for a, b in pairwise(rows)):
-        raise ValueError("guess: the times of the impacts must rise")
+        raise ValueError(not_allowed("guess", guess, "(t, side, v) for each impact, in the order of their times"))
     sides = word([side for _, side, _ in rows])
-    _checked_sides(q, sides)
-    if itinerary is not None:  # any rotation of it
-        _checked_sides(q, itinerary)
-        if len(itinerary) != len(sides) or itinerary not in 2 * sides:
-            raise ValueError(f"itinerary: {itinerary!r} differs from the sides of the guess, {sides!r}")
+    if not np.all(np.isfinite(q.stop([int(side) for _, side, _ in rows]))):
+        raise ValueError(not_allowed("guess", guess, "(t, side, v) for each impact on a stop that the system has"))
+    if itinerary is not None and (len(itinerary) != len(sides) or itinerary not in 2 * sides):  # any rotation of it
+        raise ValueError(not_allowed("itinerary", itinerary, f"that of the guess, {sides!r}"))
     return rows
 
 
 def _from_state(system, family, state, periods) -> PeriodicOrbit:
     if isinstance(system, Family):
-        raise ValueError("state: a Family cannot be simulated; give an itinerary or a guess")
+        raise ValueError(not_allowed("state", state, "left out of a Family, which cannot be simulated"))
     simulated = simulate(system, state, periods)
     if str(simulated.status) != "ok":
         return PeriodicOrbit(system, "not_converged")
@@ -121,7 +130,7 @@ def _from_guess(system, family, rows, periods) -> PeriodicOrbit:
     if start.equations.free and sides:
         start = start.with_mean()
     if sides and t[-1] >= t[0] + start.equations.P:
-        raise ValueError("guess: the impacts do not fit into one period")
+        raise ValueError(not_allowed("guess", rows, "(t, side, v) for each impact within one period"))
     found = start.corrected()
     if (found is None or not found.real) and np.any(R == 0):
         found = with_rests(found or start) or found
@@ -143,7 +152,7 @@ def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
             found = found.reduced()
             if least and len(found.whole().sides) != len(sides):
                 continue
-            if found.real:
+            if found.real and not leans(found):
                 return orbit_of(system, found)
             virtual = virtual or found
     if np.any(family.linear.restitution(sides) == 0):
@@ -152,7 +161,7 @@ def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
                 found = with_rests(guess)
                 if found is not None and len(found.reduced().whole().sides) == len(sides):
                     return found_orbit(system, found)
-    return orbit_of(system, virtual)
+    return found_orbit(system, virtual)
 
 
 def _passes_a_stop(s: Solution) -> bool:
@@ -199,8 +208,9 @@ def _seeded(start: Solution):
     ends = ends - np.floor(ends[:, :1] / T) * shift
     pushing = np.all(-np.array(start.sides) * ends[:, K : 2 * K] > 0, axis=1)
     known, count = np.empty_like(ends), 0
+    units = np.repeat([1 / q.omega, size, size / q.omega], [K, K, ends.shape[1] - 2 * K])
     for i in np.argsort(~pushing, kind="stable"):
-        apart = np.abs(known[:count] - ends[i]) > 1e-7 + 1e-7 * np.abs(known[:count])
+        apart = np.abs(known[:count] - ends[i]) > SAME * (units + np.abs(known[:count]))
         if np.all(apart.any(axis=1)):
             known[count] = ends[i]
             count += 1

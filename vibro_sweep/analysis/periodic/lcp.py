@@ -20,6 +20,7 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.green import has_free_gap
 from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.model.linear import family_of, forcing_period
+from vibro_sweep.model.refusals import not_allowed
 
 BESIDE = (1e-4, 1e-5, 1e-6, 1e-7)  # distances from b*, over the amplitude of the gap, at which an orbit is confirmed
 NEAR = 0.1  # relative difference of the impulses there from those of lowest order
@@ -73,15 +74,15 @@ def born_at_grazing(system, periods: int = 6) -> list[Born]:
     family = family_of(system)
     periods = checked_count("periods", periods, 1)
     if "b" not in family.numbers:
-        raise ValueError("system: it must have a clearance b")
+        raise ValueError(not_allowed("system", system, "one with a clearance b"))
     if has_free_gap(family.linear):
-        raise ValueError("system: a free mode has no steady motion that could graze")
+        raise ValueError(not_allowed("system", system, "one without a free mode, which has no steady motion"))
     graze = _graze(family, Equations(family.linear, 1, 2), 1)
     if graze.amplitude == 0:
-        raise ValueError("system: no force moves its gap, so that nothing grazes")
+        raise ValueError(not_allowed("system", system, "one whose gap a force moves, so that it grazes"))
     most = MOST_PLACES // graze.per_period
     if periods > most:
-        raise ValueError(f"periods: {periods} is not allowed; it must be at most {most}")
+        raise ValueError(not_allowed("periods", periods, f"at most {most}"))
     result = []
     for n in range(1, periods + 1):
         result += _of_period(system, family, n)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from vibro_sweep.analysis.periodic import orbit_text
 from vibro_sweep.analysis.periodic.impulse_equations import flow, held_flow
 from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -29,7 +30,7 @@ STATUS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PeriodicOrbit:
     """A periodic orbit of a linear oscillator between stops. Times are absolute and nondimensional.
 
@@ -43,6 +44,9 @@ class PeriodicOrbit:
     status: str
     _solution: Solution | None = field(repr=False, default=None)
     _frame: tuple[int, int] | None = field(repr=False, default=None)  # (first impact, periods to shift by)
+
+    def __repr__(self) -> str:
+        return orbit_text.of_orbit(self)
 
     @property
     def ok(self) -> bool:
@@ -210,8 +214,8 @@ class PeriodicOrbit:
         """(2N,) state x1 v1 .. xN vN at t = 0, before an impact there."""
         return self.sample([0.0])[0]
 
-    def plot(self):
-        """Phase portrait of the gap and its time history, impacts marked. Returns a matplotlib Figure."""
+    def plot(self, width: float | None = None):
+        """Phase portrait of the gap and its time history, impacts marked: a matplotlib Figure, `width` mm wide."""
         from vibro_sweep.plotting.periodic import plot_periodic
 
         q = self._solution.family.linear if self._solution is not None else None
@@ -224,7 +228,7 @@ class PeriodicOrbit:
         R = q.restitution(self._whole[1])
         t, v = self._whole[0] % length, self._whole[3][:, len(q.along)]
         title = f"{self.itinerary or 'free'}, period {self.period}, {'stable' if self.stable else 'unstable'}"
-        return plot_periodic(times, gap, rate, t, self._whole[1], v, -R * v, (q.low, q.high), title)
+        return plot_periodic(times, gap, rate, t, self._whole[1], v, -R * v, (q.low, q.high), title, width=width)
 
     def save(self, path) -> Path:
         """Write the orbit as JSON, for `load_orbit`; nothing is overwritten."""
@@ -240,6 +244,8 @@ def found_orbit(system, solution: Solution | None) -> PeriodicOrbit:
     """
     if solution is None:
         return orbit_of(system, None)
+    if leans(solution):
+        return PeriodicOrbit(system, "resonance")
     least = solution.reduced()
     same = (least.sigma, least.halves) == (solution.sigma, solution.halves)
     return orbit_of(system, solution if same else least)
@@ -252,6 +258,11 @@ def orbit_of(system, solution: Solution | None) -> PeriodicOrbit:
     if solution.K == 0 and not is_isolated(solution):
         return PeriodicOrbit(system, "resonance")
     return PeriodicOrbit(system, "ok" if solution.real else "not_real", solution)
+
+
+def leans(solution: Solution) -> bool:
+    """Whether only impacts without speed keep a free mode at its place: it may be at rest elsewhere as well."""
+    return bool(solution.K) and solution.only_touches and not is_isolated(solution)
 
 
 def is_isolated(free_motion: Solution) -> bool:

@@ -14,6 +14,7 @@ from vibro_sweep.model.linear import Family, Linear
 # Relative difference below which two halves (periods) of an orbit are the same. An orbit that is born at a pitchfork or
 # flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not tell the two orbits apart.
 ALIKE = 1e-6
+NO_SPEED = 1e-9  # impulse, relative to omega times the gap, of an impact that is none
 SLOW = 1e-5  # impulse, relative to the largest, below which impacts follow each other so closely that rounding counts
 
 
@@ -101,6 +102,11 @@ class Solution:
         return -np.asarray(self.sides, float) * self.jumps
 
     @property
+    def only_touches(self) -> bool:
+        """Whether no impact has a speed: the free motion, which grazes."""
+        return bool(np.all(self.pushes < NO_SPEED * self.family.linear.omega * self.size_of_gap))
+
+    @property
     def real(self) -> bool:
         """Whether every impulse pushes and every flight stays inside, to rounding."""
         rounding = 1e-13 * self.size_of_gap
@@ -115,6 +121,15 @@ class Solution:
         q, steady = self.family.linear, self.equations.steady
         moved = np.abs(self.jumps).max(initial=0.0) / q.omega
         return max(np.abs(self.states[:, 0]).max(), float(np.hypot(steady.real, steady.imag)), moved)
+
+    @cached_property
+    def units(self) -> np.ndarray:
+        """(size,) of the unknowns: 1/omega, and omega times the size of the gap; of a mean gap omega times less."""
+        K, q = self.K, self.family.linear
+        speed, units = q.omega * self.size_of_gap, np.empty(self.size)
+        units[:K], units[K : 2 * K] = 1 / q.omega, speed
+        units[2 * K :] = 1 / q.omega if self.rests else speed / q.omega
+        return units
 
     def corrected(self) -> "Solution | None":
         """By Newton's method from here; None without convergence."""

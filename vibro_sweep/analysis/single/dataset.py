@@ -36,7 +36,7 @@ def dataset_of(orbit: "Orbit") -> "xarray.Dataset":
     return xarray.Dataset(variables, {"t": ("section", orbit.section_times)}, attributes)
 
 
-def figure_of(orbit: "Orbit", periods: int) -> "Figure":
+def figure_of(orbit: "Orbit", periods: int, width: float | None) -> "Figure":
     """Phase portrait and time history of the gap over the last forcing periods that were simulated."""
     from vibro_sweep.plotting.periodic import plot_periodic
 
@@ -55,4 +55,5 @@ def figure_of(orbit: "Orbit", periods: int) -> "Figure":
     title = f"{begin:.6g} < t < {end:.6g}, b = {system.b:.6g}"
     jumps = (impacts["t"], impacts["side"], impacts["v1"], -q.restitution(impacts["side"]) * impacts["v1"])
     names = ("$x_1$", "$v_1$") if system.gap_is_x1 else ("$g$", r"$\dot g$")
-    return plot_periodic(times, gap, rate, *jumps, [one for one in (q.high, q.low) if np.isfinite(one)], title, names)
+    stops = [one for one in (q.high, q.low) if np.isfinite(one)]
+    return plot_periodic(times, gap, rate, *jumps, stops, title, names, width)

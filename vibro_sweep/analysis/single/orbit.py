@@ -11,13 +11,16 @@ from numpy.typing import ArrayLike
 
 from vibro_sweep.analysis.single.exponents import Exponents
 from vibro_sweep.engine import points
+from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.one_system import Engine, plan_of
 from vibro_sweep.engine.records import new_results
 from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import LATEST, checked_count, checked_times, is_number
+from vibro_sweep.model.arguments import LATEST, checked_count, checked_state, checked_times
 from vibro_sweep.model.oscillator import checked_system
+from vibro_sweep.model.real import number_of
+from vibro_sweep.model.refusals import not_allowed
 
 if TYPE_CHECKING:
     import xarray
@@ -25,6 +28,7 @@ if TYPE_CHECKING:
 
 CHUNK = 256  # periods computed before a look at how many impacts there were
 ROOM = 4096  # impacts there is room for at first
+MOST_PERIODS = 10**8  # of one orbit, whose section then takes 3 GB
 MAX_RECORD = 10**7 * 5 // 4  # of these with all section points in memory: 400 MB
 
 
@@ -87,14 +91,14 @@ class Orbit:
 
         return dataset_of(self)
 
-    def plot(self, periods: int = 4) -> Figure:
-        """Phase portrait and time history of the last forcing periods, impacts marked.
+    def plot(self, periods: int = 4, width: float | None = None) -> Figure:
+        """Phase portrait and time history of the last forcing periods, impacts marked; so many mm wide.
 
         Raises ValueError where that is no whole number >= 1, or nothing is simulated.
         """
         from vibro_sweep.analysis.single.dataset import figure_of
 
-        return figure_of(self, checked_count("periods", periods, 1))
+        return figure_of(self, checked_count("periods", periods, 1), width)
 
     def sample(self, times: ArrayLike) -> np.ndarray:
         """States (x1, v1, x2, v2) at `times`, (len(times), 4). ValueError for no times, or beyond the simulated ones.
@@ -137,10 +141,12 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
     than 0 periods, or for a start beyond 10^9 of them. What goes wrong on the way is told by `Orbit.status`.
     """
     checked_system(system)
-    periods = checked_count("periods", periods, 0)
-    if not (is_number(start_time) and abs(start_time) <= LATEST * system.period):
+    state, periods = checked_state(state, system.masses), checked_count("periods", periods, 0, MOST_PERIODS)
+    begins = number_of(start_time)
+    if begins is None or not abs(begins) <= LATEST * system.period:
         allowed = f"a number of at most {LATEST} forcing periods: beyond, times resolve no motion"
-        raise ValueError(f"start_time: {start_time!r} is not allowed; it must be {allowed}")
+        raise ValueError(not_allowed("start_time", start_time, allowed))
+    start_time = begins
     engine = Engine(system)
     begin = engine.checked(state)
     first, cell, offset = (value[()] for value in engine.locate(start_time))
@@ -150,9 +156,32 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
     inside = cell > 0 or offset > 0  # the period in which the orbit starts is not recorded, but its impacts are
     if not inside:
         section[0] = begin
-    hits, rests, chatters, room, outcome = [], [], 0, ROOM, status.OK
     done = 0 if inside else 1
-    while done <= periods and outcome == status.OK:
+    hits, rests, chatters, outcome = interruptible(
+        _carried, engine, section[done:], halt=engine.ensemble.halt, cells=engine.cells * periods
+    )
+    if outcome != status.OK:
+        reached = int(engine.orbit["period"][0]) - math.ceil(start_time / engine.period)
+        section[max(reached + 1, 0) :] = np.nan
+    end = (math.ceil(start_time / engine.period) + periods) * engine.period
+    return Orbit(
+        system,
+        start_time,
+        engine.impacts(np.concatenate(hits) if hits else np.empty((0, 3 + engine.states)), start_time),
+        engine.sticking(np.concatenate(rests) if rests else np.empty((0, 4)), end),
+        engine.to_masses(section),
+        Status(outcome, chatters),
+        begin,
+        section,
+        engine,
+    )
+
+
+def _carried(engine: Engine, section: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray], int, int]:
+    """Carry the orbit over as many periods as `section` (n, 2 N) has rows: impacts, rests, chatters, a status."""
+    hits, rests, chatters, room, outcome = [], [], 0, ROOM, status.OK
+    done = 0
+    while done < len(section) and outcome == status.OK:
         before = engine.orbit.copy()
         records = orbits.new_records(1, impacts=room, rests=room, masses=engine.kind.masses)
         outcome = engine.carry(records, section[done : done + CHUNK])
@@ -166,21 +195,7 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
         chatters += int(engine.orbit["chatters"][0])
         engine.orbit["impacts_logged"] = engine.orbit["rests_logged"] = engine.orbit["chatters"] = 0
         done += CHUNK
-    if outcome != status.OK:
-        reached = int(engine.orbit["period"][0]) - math.ceil(start_time / engine.period)
-        section[max(reached + 1, 0) :] = np.nan
-    end = (math.ceil(start_time / engine.period) + periods) * engine.period
-    return Orbit(
-        system,
-        float(start_time),
-        engine.impacts(np.concatenate(hits) if hits else np.empty((0, 3 + engine.states)), float(start_time)),
-        engine.sticking(np.concatenate(rests) if rests else np.empty((0, 4)), end),
-        engine.to_masses(section),
-        Status(outcome, chatters),
-        begin,
-        section,
-        engine,
-    )
+    return hits, rests, chatters, outcome
 
 
 def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, periods: int = 10_000) -> Exponents:
@@ -191,14 +206,19 @@ def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, per
     its Floquet exponents. Raises ValueError as `simulate` does, and for more periods than memory is to be taken for.
     """
     checked_system(system)
-    transient, periods = checked_count("transient", transient, 0), checked_count("periods", periods, 1, MAX_RECORD)
+    state, transient = checked_state(state, system.masses), checked_count("transient", transient, 0)
+    periods = checked_count("periods", periods, 1, MAX_RECORD)
     engine = Engine(system)
     engine.checked(state)
     plan = plan_of(transient, periods, lyapunov=True)
     results, nothing = new_results((1, 1), engine.kind.masses), np.empty((1, 1, 0))
-    starts = np.tile(np.asarray(state, float), (2, 1, 1))
+    starts = np.tile(state, (2, 1, 1))
     workspace = points.new_workspace(plan, engine.cells, 0, orbits=1, kind=engine.kind)
     steps = engine.point.reshape(1, 1)
-    points.run_points(steps, starts, results, nothing[..., None], nothing, nothing[..., None], workspace, plan, None)
+    kept = nothing[..., None], nothing, nothing[..., None]
+    interruptible(
+        points.run_points, steps, starts, results, *kept, workspace, plan, None,
+        halt=workspace.ensemble.halt, cells=engine.cells * (transient + periods),
+    )  # fmt: skip
     point = results[0, 0]
     return Exponents(point["lyapunov"], point["lyapunov_error"], point["lyapunov_residual"])

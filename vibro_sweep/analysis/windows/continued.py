@@ -7,6 +7,7 @@ import numpy as np
 from vibro_sweep.analysis.single.tables import table_of
 from vibro_sweep.analysis.windows.rows import Row
 from vibro_sweep.engine import points
+from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.impulses.green import has_free_gap
 from vibro_sweep.engine.one_system import plan_of
 from vibro_sweep.engine.records import new_results
@@ -57,7 +58,10 @@ def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Con
     starts = np.stack([begin, begin])
     workspace = points.new_workspace(plan, int(table["cells"].max()), 0, min(n, LANES), kind)
     unused = np.empty((1, n, 0, states))
-    points.run_points(table.reshape(1, n), starts, results, unused, nothing, unused, workspace, plan, None)
+    interruptible(
+        points.run_points, table.reshape(1, n), starts, results, unused, nothing, unused, workspace, plan, None,
+        halt=workspace.ensemble.halt, cells=int(table["cells"].sum()) * (plan.transient + plan.record),
+    )  # fmt: skip
     found = results[0]
     period = np.where(stands(found["status"]) & (found["period"] <= LONGEST), found["period"], 0)
     reasons = _reasons(found)

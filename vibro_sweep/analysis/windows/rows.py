@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from vibro_sweep.model.arguments import checked_word
 from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.parameters import range_of
 from vibro_sweep.model.state import state
@@ -77,9 +78,7 @@ def chosen_key(data: Contents, system, key: str | None) -> str:
     able = [name for name in swept if name in system.described and data.sizes[name] > 1]
     if not able:
         raise ValueError(f"sweep: {', '.join(swept) or 'nothing'} is swept; windows need a number of the system")
-    if key is not None and key not in able:
-        raise ValueError(f"key: {key!r} is not allowed; it must be {' or '.join(able)}")
-    return key or able[0]
+    return checked_word("key", key, able, optional=True) or able[0]
 
 
 def check_data(data: Contents) -> None:

@@ -9,12 +9,13 @@ from vibro_sweep.analysis.branches.flat import Flat, orbit_at, special_point
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.windows import window_text
 from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.unseen import Unseen, unseen_in
 from vibro_sweep.model.window_families import Family, families
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Window:
     """A maximal interval of the swept number on which one periodic orbit, with one itinerary, is stable.
 
@@ -33,6 +34,9 @@ class Window:
     missed: int
     _flat: Flat = field(repr=False)
     _system: object = field(repr=False)
+
+    def __repr__(self) -> str:
+        return window_text.of_window(self)
 
     @property
     def period(self) -> int:
@@ -78,6 +82,9 @@ class Windows(list[Window]):
     unseen: list[Unseen]
     window: np.ndarray
     reason: np.ndarray
+
+    def __repr__(self) -> str:
+        return window_text.of_windows(self)
 
     @property
     def families(self) -> list[Family]:

@@ -1,0 +1,100 @@
+"""Stated errors of the points at which doubled and asymmetric orbits are born: the same point located several times.
+
+Once on the branch of the simpler orbit, and from the orbit that `switch` gives, within narrow bounds of two widths:
+other starts, other units, other steps, and for some other equations.
+
+python tests/support/births.py 0 100     # what differs by more than the errors, and a summary
+"""
+
+import sys
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+import vibro_sweep as vs
+from support.drawn_branches import drawn_oscillator
+from support.random_switching import attractor
+
+MODELS = ("two_mass", "one_mass", "linear", "chain", "ball_in_cavity")
+NUMBERS = ("b", "b", "omega", "R")
+WIDTHS = (20.0, 54.0)  # of the bounds, in distances of the born orbit from its birth
+MOST_IMPACTS = 100
+GENERATIONS, MOST_ORBITS = 3, 2
+
+
+class Found(NamedTuple):
+    """Two locations of one point."""
+
+    where: str
+    impacts: int  # of the simpler orbit
+    apart: float
+    error: float  # both together
+    points: tuple
+
+    @property
+    def ratio(self) -> float:
+        return self.apart / self.error
+
+
+def births(seed: int) -> list[Found]:
+    """Of an attractor of a random oscillator, and of the orbits that are born from its branch."""
+    rng = np.random.default_rng([5, seed])
+    model = str(rng.choice(MODELS))
+    system = drawn_oscillator(model, rng)
+    started = attractor(system, rng, tries=3)
+    orbit = vs.periodic_orbit(system, state=started[0], periods=started[1]) if started else None
+    if orbit is None or not orbit.ok or not orbit.impacts.size or orbit.sticking.size:
+        return []
+    name, result, orbits = str(rng.choice(NUMBERS)), [], [orbit]
+    for _ in range(GENERATIONS):
+        born = []
+        for one in orbits[:MOST_ORBITS]:
+            branch = vs.continue_orbit(one, name, _bounds(name, getattr(one.system, name), 0.15))
+            for special in branch.special[1:-1]:
+                if special.type in ("flip", "pitchfork"):
+                    children = [child for child in vs.switch(special)[:1] if child._solution.K <= 2 * MOST_IMPACTS]
+                    born += children
+                    for child in children:
+                        result += _again(f"{seed}: {model}, {special.type} in {name}", special, child, name)
+        orbits = born
+    return result
+
+
+def _bounds(name: str, value: float, share: float) -> tuple[float, float]:
+    return (1 - share) * value, min((1 + share) * value, 1.0) if name == "R" else (1 + share) * value
+
+
+def _again(where: str, special, child, name: str) -> list[Found]:
+    at, value = special.parameters[name], getattr(child.system, name)
+    K, found = special.orbit._solution.K, [special]
+    for width in WIDTHS:
+        share = max(width * abs(value - at) / abs(value), 1e-3 * width / WIDTHS[0])
+        for one in vs.continue_orbit(child, name, _bounds(name, value, share)).special:
+            near = abs(one.parameters[name] - at) < 1e-7 * abs(at)
+            if near and one.type == special.type and one.orbit._solution.K == K:
+                found.append(one)
+    where = f"{where} = {at!r}, {K} impacts"
+    return [
+        Found(where, K, abs(a.parameters[name] - b.parameters[name]), a.error + b.error, (a, b))
+        for a, b in combinations(found, 2)
+    ]
+
+
+def summary(found: list[Found], tried: int) -> str:
+    ratios = np.array([one.ratio for one in found])
+    long = sum(one.impacts >= 8 for one in found)
+    return (
+        f"{tried} oscillators tried, {len(found)} pairs counted, {long} of orbits of 8 impacts and more: "
+        f"{np.sum(ratios > 1)} apart by more than both errors, the largest ratio {ratios.max():.2f}, "
+        f"median error {np.median([one.error / 2 for one in found]):.1e}"
+    )
+
+
+if __name__ == "__main__":
+    first, last = map(int, sys.argv[1:])
+    total = [one for number in range(first, last) for one in births(number)]
+    for one in total:
+        if one.ratio > 1:
+            print(f"{one.where}: {one.apart:.1e} apart, errors {one.error:.1e}", flush=True)
+    print(summary(total, last - first))

@@ -1,0 +1,85 @@
+"""What a prompt and a notebook show of objects: ten lines at most, with what matters, and the names of all numbers."""
+
+import numpy as np
+import pytest
+
+import vibro_sweep as vs
+
+SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=0.4)
+CHAIN = vs.Oscillator.named("chain", m=[1] * 6, k=[1] * 7, c=[0.1] * 7, force=[1, 0, 0, 0, 0, 0], omega=1, R=0.5, b=0.3)
+LINES, LETTERS = 10, 900
+
+
+@pytest.fixture(scope="module")
+def objects(kinds):
+    orbit = vs.periodic_orbit(SYSTEM, itinerary="LLLRRR")
+    branches = vs.follow_branches(orbit, "b", (0.37, 0.42), depth=1)
+    branch = branches[0].branch
+    pitchfork = next(one for one in branch.special if one.type == "pitchfork")
+    curve = vs.bifurcation_curve(pitchfork, ("b", "omega"), ((0.36, 0.39), (0.629, 0.631)))
+    windows = vs.windows(kinds / "sweep.h5")
+    return {
+        "system": SYSTEM,
+        "model": CHAIN,
+        "orbit": vs.simulate(SYSTEM, np.zeros(4), 20),
+        "exponents": vs.lyapunov(SYSTEM, np.zeros(4), 20, 20),
+        "grazing": vs.grazing(SYSTEM),
+        "mapping": vs.discontinuity_map(SYSTEM),
+        "born": vs.born_at_grazing(SYSTEM)[0],
+        "periodic orbit": orbit,
+        "free motion": vs.periodic_orbit(SYSTEM.replace(b=8), itinerary=""),
+        "no motion": vs.periodic_orbit(SYSTEM.replace(zeta=0.0, omega=1e-3), itinerary="R", periods=1),
+        "many impacts": vs.periodic_orbit(SYSTEM.replace(b=6.1), np.zeros(4), 19),
+        "branch": branch,
+        "followed": branches[1],
+        "special point": pitchfork,
+        "curve": curve,
+        "curve point": curve.begins,
+        "windows": windows,
+        "window": windows[0],
+        "scene": vs.load_scene(kinds / "sweep.yaml"),
+    }
+
+
+def test_ten_lines(objects):
+    for name, one in objects.items():
+        text = repr(one)
+        assert len(text.splitlines()) <= LINES and len(text) <= LETTERS, f"{name}: {text}"
+
+
+TOLD = {
+    "periodic orbit": ["LLLRRR", "period 1", "symmetric", ", stable", "multipliers 0.17", "b=0.4"],
+    "free motion": ["no impacts", "period 1", "stable"],
+    "branch": ["LLLRRR", "along b from 0.37 to", "points", "stable at", "pitchfork", "begins with", "ends with", "ok"],
+    "followed": ["generation 1", "pitchfork", "of branch 0"],
+    "special point": [
+        "pitchfork (super) at b = 0.37386950048887",
+        "+-",
+        "multipliers -1",
+        "LLLRRR, period 1, symmetric",
+    ],
+    "curve": ["pitchfork", "omega 0.629 .. 0.631", "points", "begins with limit", "ends with limit"],
+    "curve point": ["CurvePoint limit at b = ", "omega = "],
+    "windows": ["Windows in b: 3", "RRRR, period 8", "5.454438024 .. 5.809346285"],
+    "window": ["RRRR, period 8", "2 orbits of the sweep", "begins with graze (nonsmooth fold, right)", "+-"],
+}
+
+
+@pytest.mark.parametrize("name", TOLD)
+def test_what_matters(objects, name):
+    text = repr(objects[name])
+    assert all(one in text for one in TOLD[name]), text
+
+
+def test_a_long_list_of_windows(objects):
+    windows = objects["windows"]
+    many = type(windows)(list(windows) * 20)
+    many.parameter, many.unseen = windows.parameter, windows.unseen
+    lines = repr(many).splitlines()
+    assert len(lines) == LINES and lines[-1] == "  and 52 more>"
+
+
+def test_names_of_a_model_are_completed():
+    assert {"b", "R", "omega", "m", "m1", "m6", "k7", "offset"} <= set(dir(CHAIN))
+    assert {"b", "R", "mu_m", "tau"} <= set(dir(SYSTEM))
+    assert all(hasattr(CHAIN, name) for name in dir(CHAIN))

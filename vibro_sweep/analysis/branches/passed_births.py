@@ -1,0 +1,70 @@
+"""Births that steps along a branch went over unseen.
+
+Beside its birth a branch is singular: multipliers, tangents and places of points are rounding there. So steps may go on
+behind it, on the mirror image of the branch, or on the branch of its parent, and no test says so. Then what tells the
+two halves of an orbit apart turns round; on the parent's branch, where it is rounding, it does so all the time.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.beginning import keeps_symmetry
+from vibro_sweep.analysis.branches.own_birth import may_be_born, over_birth
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.branches.track import Rows, Track
+from vibro_sweep.analysis.branches.walk import Point, Walk
+
+BACK = 16  # points, at most, to one that lies before what rounding does beside a birth
+
+
+def passed(walk: Walk, rows: list[Rows], behind: Point | None) -> list[int]:
+    """How many of these points lie before each place where what tells the halves apart turns round.
+
+    behind : the point to which steps have led; None where there is none
+    """
+    start, found = walk.start, []
+    signs = [sigma for sigma in (1, -1) if may_be_born(start, sigma)]
+    if -1 in signs and not keeps_symmetry(walk.family, walk.name):
+        signs.remove(-1)
+    if not signs:
+        return found
+    last = [] if behind is None else [behind]
+    p = np.concatenate([*(part.p for part in rows), [point.p for point in last]])
+    t = np.concatenate([*(part.t for part in rows), *(point.solution.times[None] for point in last)])
+    D = np.concatenate([*(part.D for part in rows), *(point.solution.jumps[None] for point in last)])
+    omega = start.family.linear.omega + walk.family.derivative(walk.name).omega * (p - walk.family.numbers[walk.name])
+    half, speed = start.K // 2, start.family.linear.omega * start.size_of_gap
+    delay = omega[:, None] * (t[:, half:] - t[:, :half]) - start.halves * np.pi / 2
+    for sigma in signs:
+        apart = np.hstack([delay, (D[:, half:] - sigma * D[:, :half]) / speed])
+        found += (np.flatnonzero(np.sum(apart[:-1] * apart[1:], axis=1) < 0) + 1).tolist()
+    return sorted(found)
+
+
+def before_passed(walk: Walk, system, track: Track, rows: Rows, counts: Iterable[int], first: Point):
+    """(points before a birth, the last of them, a point behind it); None where no birth is found.
+
+    counts : of points that lie before one perhaps, as `passed` gives them
+    first : the point that the first of `rows` is
+    """
+    for last in counts:
+        for count in range(last, max(0, last - BACK), -1):
+            kept = Rows(*(values[:count] for values in rows))
+            a = track.point_behind(kept) if count > 1 else first
+            over = None if a is None else over_birth(walk, system, a)
+            if over is not None:
+                return kept, a, over[0]
+    return None
+
+
+def how_many_on(rows: Rows, special: list[SpecialPoint]) -> int:
+    """How many special points, which come in order, lie on this part of a branch."""
+    least = 0
+    for count, one in enumerate(special):
+        (value,) = one.parameters.values()
+        there = np.flatnonzero(rows.p[least:] == value)
+        if not len(there):
+            return count
+        least += int(there[0])
+    return len(special)

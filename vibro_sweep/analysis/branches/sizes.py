@@ -1,0 +1,40 @@
+"""How large a change of a parameter is: in parts of what changes the oscillator as a whole, in any units."""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.solution import Solution
+
+LEAST = 1e-3  # of what changes the oscillator as a whole: parameters nearer to 0 are as large
+
+
+def size_of(solution: Solution, name: str) -> float:
+    """The parameter's own size |p|, or near 0, where that says nothing, the least."""
+    return max(abs(solution.family.numbers[name]), least_size(solution, name))
+
+
+def least_size(solution: Solution, name: str) -> float:
+    """A thousandth of what changes the oscillator as a whole: M, K + omega^2 M, C + omega M, n, a force by what moves
+    the gap by its size, omega, tau by 1, R by 1, or a stop by the size of the gap."""
+    q, slope, gap = solution.family.linear, solution.family.derivative(name), solution.size_of_gap
+    M, along, omega = (np.abs(x).max() for x in (q.M, q.along, q.omega))
+    inertia = omega**2 * M
+    parts = {
+        "M": M,
+        "K": np.abs(q.K).max() + inertia,
+        "C": np.abs(q.C).max() + omega * M,
+        "along": along,
+        **dict.fromkeys(("constant", "sine", "cosine"), inertia * gap / along),
+        "omega": omega,
+        **dict.fromkeys(("low", "high"), gap),
+        **dict.fromkeys(("tau", "R_low", "R_high"), 1.0),
+    }
+    rates = [np.abs(getattr(slope, part)).max() / size for part, size in parts.items()]
+    rate = max((rate for rate in rates if math.isfinite(rate)), default=0.0)
+    return float(LEAST / rate) if rate > 0 else LEAST  # of what changes nothing any size will do
+
+
+def sizes_of(solution: Solution, names) -> np.ndarray:
+    """`size_of` each of several parameters."""
+    return np.array([size_of(solution, name) for name in names])

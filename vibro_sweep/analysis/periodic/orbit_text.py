@@ -1,0 +1,65 @@
+"""What `repr` says of a periodic orbit, and of whatever has one: what it is, in ten lines at most."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+
+LINES = 10
+LONGEST_WORD = 24  # impacts of an itinerary that is told in full
+MULTIPLIERS = 4  # of largest modulus
+LONGEST_SYSTEM = 400  # letters
+
+
+def of_orbit(orbit: "PeriodicOrbit") -> str:
+    lines = [f"<PeriodicOrbit {motion(orbit)}"]
+    if len(orbit.multipliers):
+        lines.append(f"multipliers {multipliers_text(orbit.multipliers)}")
+    return told([*lines, system_text(orbit.system)])
+
+
+def told(lines: list[str]) -> str:
+    return "\n  ".join(line for line in lines if line) + ">"
+
+
+def motion(orbit: "PeriodicOrbit") -> str:
+    """Itinerary, period, symmetry, stability; or why there is no motion."""
+    if not orbit.ok and not orbit.period:
+        return f"without a motion, status {orbit.status}"
+    stable = "stable" if orbit.stable else "unstable"
+    status = "" if orbit.ok else f", status {orbit.status}"
+    return f"{itinerary_of(orbit)}, {stable}{status}"
+
+
+def itinerary_of(orbit: "PeriodicOrbit") -> str:
+    if not orbit.period:
+        return f"an orbit with the status {orbit.status}"
+    return f"{shortened(orbit.itinerary)}, period {orbit.period}" + (", symmetric" if orbit.symmetric else "")
+
+
+def shortened(word: str) -> str:
+    if len(word) <= LONGEST_WORD:
+        return word or "no impacts"
+    return f"{word[: LONGEST_WORD - 3]}... ({word.count('R')} R, {word.count('L')} L)"
+
+
+def multipliers_text(values: np.ndarray) -> str:
+    """Those of largest modulus."""
+    told = [complex_text(value) for value in values[:MULTIPLIERS]]
+    return ", ".join([*told, *(["..."] if len(values) > MULTIPLIERS else [])])
+
+
+def complex_text(value: complex) -> str:
+    return f"{value.real:.6g}" if value.imag == 0 else f"{value.real:.6g}{value.imag:+.6g}i"
+
+
+def span(values: np.ndarray) -> str:
+    finite = values[np.isfinite(values)]
+    return f"{finite.min():.6g} .. {finite.max():.6g}" if finite.size else "unknown"
+
+
+def system_text(system: object) -> str:
+    told = repr(system)
+    return told if len(told) <= LONGEST_SYSTEM else f"{told[: LONGEST_SYSTEM - 3]}..."

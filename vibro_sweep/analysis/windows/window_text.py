@@ -1,0 +1,32 @@
+"""What `repr` says of windows."""
+
+from typing import TYPE_CHECKING
+
+from vibro_sweep.analysis.branches.branch_text import event
+from vibro_sweep.analysis.periodic.orbit_text import LINES, shortened, told
+
+if TYPE_CHECKING:
+    from vibro_sweep.analysis.windows.window import Window, Windows
+
+
+def of_window(window: "Window") -> str:
+    held = "".join(f", {name} = {value:.10g}" for name, value in window.held.items())
+    lines = [
+        f"<Window {_window(window)}{held}",
+        f"{window.points:,} orbits of the sweep; {window.missed:,} at its values went to another attractor",
+        f"begins with {event(window.lower)}",
+        f"ends with {event(window.upper)}",
+    ]
+    return told(lines)
+
+
+def of_windows(windows: "Windows") -> str:
+    head = f"<Windows in {windows.parameter}: {len(windows)}; {len(windows.unseen)} stretches that the sweep missed"
+    lines = [_window(one) for one in windows[: LINES - 2]]
+    more = len(windows) - len(lines)
+    return told([head, *lines, *([f"and {more:,} more"] if more else [])])
+
+
+def _window(window: "Window") -> str:
+    kind = ", symmetric" if window.symmetric else ""
+    return f"{window.lo:.10g} .. {window.hi:.10g}: {shortened(window.itinerary)}, period {window.period}{kind}"
