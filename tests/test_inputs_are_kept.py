@@ -98,7 +98,9 @@ def test_python_leaves_its_inputs_alone(folder):
         lambda: run_branches(branches, "new/"),
         lambda: run_windows("s.h5", "new/"),
     ):
-        with pytest.raises(ValueError, match="output: 'new/' is not allowed; it names a folder"):
+        with pytest.raises(
+            ValueError, match="output: 'new/' is not allowed; it must be the path of a file, and of no folder"
+        ):
             call()
     with pytest.raises(vs.StoreError, match=r"this run reads s\.h5"):
         run_branches(branches, "hard.h5", mode="overwrite")

@@ -5,10 +5,12 @@ import h5py
 import numpy as np
 
 from vibro_sweep.model import catalogue
+from vibro_sweep.model.observables import Variable
 
 # the attributes of a file that hold a number, or a word, for all points (`numbers.attributes`)
 NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "record")
 WORDS = ("stops", "model", "type", "section", "section_stop")
+MATRIX = ("row", "column")  # the dimensions of a matrix
 # how HDF5 joins datasets and their dimensions, and how CF names coordinates
 SCALES = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "coordinates")
 
@@ -64,9 +66,19 @@ def check_numbers(file: h5py.File) -> None:
         value = np.asarray(file.attrs.get(name, 0))
         if value.ndim or value.dtype.kind not in "if":
             raise ValueError(f"its attribute `{name}` is no number")
+    along = np.asarray(file.attrs.get("along", [1.0]))
+    if along.ndim != 1 or along.dtype.kind not in "if" or not np.isfinite(along).all():
+        raise ValueError("its attribute `along` is no list of numbers")
     found = {name: text(file, name) for name in WORDS if name in file.attrs}
     if found.get("model") == "map":
         file.attrs["order"]  # without which nobody can tell what was iterated
+
+
+def check_own_dimensions(name: str, own: int) -> None:
+    """Raise ValueError where a quantity has not so many dimensions, besides those of the sweep, as it should have."""
+    known = catalogue.BY_NAME.get(name)
+    if isinstance(known, Variable) and len(known.dimensions) != own:
+        raise ValueError(f"its datasets do not fit together: `{name}` and its own dimensions")
 
 
 def check_dataset(file: h5py.File, name: str) -> None:

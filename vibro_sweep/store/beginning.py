@@ -8,6 +8,7 @@ from pathlib import Path
 
 import h5py
 
+from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import appending, checks, layout, names, parts
 from vibro_sweep.store.appending import HeldPart
@@ -63,8 +64,7 @@ def check_places(path: Path, mode: str, inputs: Collection[Path]) -> Path:
 
     inputs : files that the run reads; none of them is written, by whatever name or link
     """
-    if mode not in MODES:
-        raise StoreError(f"mode {mode!r}: must be one of {', '.join(map(repr, MODES))}")
+    check_mode(mode)
     if path.suffix.lower() in NO_DATA:
         raise StoreError(f"`output` {path}: the name of a data file must not end in {path.suffix}")
     part = Path(f"{path}.part")
@@ -87,6 +87,12 @@ def check_places(path: Path, mode: str, inputs: Collection[Path]) -> Path:
             raise StoreError(f"{part} is being written by another run")
         raise StoreError(f"{part} is an interrupted run; `resume` continues it, `overwrite` replaces it")
     return part
+
+
+def check_mode(mode: object) -> None:
+    """Raise StoreError for a word that is none of `MODES`."""
+    if not (isinstance(mode, str) and mode in MODES):
+        raise StoreError(not_allowed("mode", mode, f"one of {', '.join(map(repr, MODES))}"))
 
 
 def _check_part(part: Path, path: Path, mode: str) -> None:

@@ -14,12 +14,14 @@ from vibro_sweep.model.observables import Dimension, Variable
 from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import numbers
-from vibro_sweep.store.attributes import set_text
+from vibro_sweep.store.attributes import MATRIX, set_text
 from vibro_sweep.store.layout import chunk_shape, coordinates, dimensions, quantities
 
 # To Fletcher-32 two zero bytes are the same as two bytes of ones, so that 0 could become -65536 unseen. Adler-32, which
 # comes with gzip, tells them apart; level 0 compresses nothing, and costs no time.
 CHECKSUMS = {"fletcher32": True, "compression": "gzip", "compression_opts": 0}
+
+_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"  # how netCDF names a mere length
 
 
 def create(file: h5py.File, scene: Scene) -> None:
@@ -34,8 +36,8 @@ def create(file: h5py.File, scene: Scene) -> None:
         file[name].make_scale(name)
         _describe(file[name], scene.system.described.get(name, AXES.get(name)))
     following = _create_following(file, scene)
-    if following:
-        set_text(file, "coordinates", " ".join(following))
+    if told := (*following, *_create_matrices(file, scene)):
+        set_text(file, "coordinates", " ".join(told))
     for name, quantity in quantities(scene).items():
         lead = dimensions(scene, quantity)
         shape = tuple(len(axes[dimension]) for dimension in lead)
@@ -70,6 +72,28 @@ def _create_following(file: h5py.File, scene: Scene) -> tuple[str, ...]:
     if len(numbers.depends_on(scene)) == 1:
         write_following(file, scene)
     return tuple(found)
+
+
+def _create_matrices(file: h5py.File, scene: Scene) -> tuple[str, ...]:
+    """Those of a system that is given by matrices. Returns their names."""
+    found = numbers.matrices(scene)
+    for name, values in found.items():
+        _create_compact(file, name, values.dtype, values.shape)
+        file[name][...] = values
+        option = next(one for one in scene.system.model.options if one.name == name)
+        for attribute, text in (("units", "1"), ("long_name", f"matrix {name}"), ("description", option.text)):
+            set_text(file[name], attribute, text)
+        for axis, length in zip(MATRIX, values.shape, strict=True):
+            if axis not in file:
+                create_length(file, axis, length)
+        for i, axis in enumerate(MATRIX):
+            file[name].dims[i].attach_scale(file[axis])
+    return tuple(found)
+
+
+def create_length(file: h5py.File, name: str, length: int) -> None:
+    """A dimension that has no coordinate."""
+    file.create_dataset(name, (length,), ">f4").make_scale(_NO_VARIABLE.format(length))
 
 
 def write_following(file: h5py.File, scene: Scene) -> None:

@@ -3,6 +3,9 @@
 Its checksums say only that nothing has changed since somebody wrote it.
 """
 
+from collections.abc import Mapping
+from typing import NamedTuple
+
 import h5py
 import numpy as np
 
@@ -14,56 +17,70 @@ KINDS = (BRANCHES, WINDOWS, CHART)
 LATER = {column.dimensions[0] for column in (*OF_EDGES, *UNSEEN.values())}  # dimensions that a file need not have
 
 
+class Stored(NamedTuple):
+    """A variable as a file or a Dataset has it."""
+
+    dimensions: tuple[str, ...]
+    values: np.ndarray
+
+
 def damage_of(file: h5py.File) -> str:
     """What is wrong with the datasets of a file, in words; nothing where all of it can be read."""
     if "status" not in file:  # a run that has not ended has no datasets
         return ""
     try:
-        for name in ("status", *texts(file, "quantities")):
-            _values(file, name)
-        _check(file)
+        names = [*texts(file, "quantities"), "status"]
+        for name in names:
+            check_dataset(file, name)
+        found = {name: Stored(_dimensions(file[name]), _values(file, name)) for name in names}
+        check(text(file, "kind"), texts(file, "parameters"), found)
     except (OSError, RuntimeError, ValueError, KeyError, AttributeError) as error:
         return str(error)
     return ""
 
 
-def _check(file: h5py.File) -> None:
-    """Raise ValueError, KeyError or OSError for a complete file that nobody could read."""
-    kind = text(file, "kind")
+def check(kind: str, parameters: list[str], found: Mapping[str, Stored]) -> None:
+    """Raise ValueError for branches, windows or curves that nobody could read."""
     if kind not in KINDS:
         raise ValueError(f"its kind {kind!r} is unknown")
-    for name in texts(file, "quantities"):
-        check_dataset(file, name)
-    masses = len(file["multiplier"]) // 2
-    for column in (*columns(kind, texts(file, "parameters"), list(state(masses))), *OF_EDGES):
-        if column.name in file:
-            _check_column(file, column)
+    lengths = {}
+    for name, one in found.items():
+        if len(one.dimensions) != one.values.ndim:
+            raise ValueError(f"its datasets do not fit together: `{name}` and its dimensions")
+        for dimension, length in zip(one.dimensions, one.values.shape, strict=True):
+            if lengths.setdefault(dimension, length) != length:
+                raise ValueError(f"its datasets do not fit together: `{name}` and the dimension `{dimension}`")
+    masses = lengths.get("multiplier", 0) // 2
+    for column in (*columns(kind, parameters, list(state(masses))), *OF_EDGES):
+        if column.name in found:
+            _check_column(column, found[column.name], lengths)
         elif column.dimensions[0] not in LATER:
             raise ValueError(f"`{column.name}` is missing")
     for dimension, counts in RAGGED.items():
-        if all(name in file for name in (dimension, *counts)):
-            numbers = np.prod([_values(file, name).astype(np.int64) for name in counts], axis=0)
-            if np.any(numbers < 0) or numbers.sum() != len(file[dimension]):
+        if dimension in lengths and all(name in found for name in counts):
+            numbers = np.prod([found[name].values.astype(np.int64) for name in counts], axis=0)
+            if np.any(numbers < 0) or numbers.sum() != lengths[dimension]:
                 raise ValueError(f"its datasets do not fit together: {', '.join(counts)} and `{dimension}`")
 
 
-def _check_column(file: h5py.File, column: Column) -> None:
-    dataset = file[column.name]
-    if dataset.dtype.kind not in "if":
+def _check_column(column: Column, one: Stored, lengths: Mapping[str, int]) -> None:
+    if one.values.dtype.kind not in "if":
         raise ValueError(f"`{column.name}` holds no numbers")
-    found = tuple(dimension[0].name.removeprefix("/") for dimension in dataset.dims)
-    if found != column.dimensions or dataset.shape != tuple(len(file[name]) for name in found):
+    if one.dimensions != column.dimensions:
         raise ValueError(f"its datasets do not fit together: `{column.name}` and its dimensions")
     if column.index_in:
-        least, most = -1 if column.optional else 0, len(file[column.index_in]) - 1
+        least, most = -1 if column.optional else 0, lengths.get(column.index_in, 0) - 1
     elif column.flags:
         least, most = 0, len(column.flags) - 1
     else:
         return
-    values = _values(file, column.name)
-    wrong = values[~((values >= least) & (values <= most))]
+    wrong = one.values[~((one.values >= least) & (one.values <= most))]
     if wrong.size:
         raise ValueError(f"`{column.name}` has {wrong.flat[0]}; it must be from {least} to {most}")
+
+
+def _dimensions(dataset: h5py.Dataset) -> tuple[str, ...]:
+    return tuple(dimension[0].name.removeprefix("/") for dimension in dataset.dims)
 
 
 def _values(file: h5py.File, name: str) -> np.ndarray:

@@ -7,15 +7,14 @@ import h5py
 import numpy as np
 
 from vibro_sweep import __version__
-from vibro_sweep.model.branch_file import Column
+from vibro_sweep.model.branch_file import RAGGED, Column
 from vibro_sweep.store import heap, parts
 from vibro_sweep.store.attributes import set_text, set_texts
 from vibro_sweep.store.creating import now
-from vibro_sweep.store.datasets import CHECKSUMS
+from vibro_sweep.store.datasets import CHECKSUMS, create_length
 from vibro_sweep.store.sink import LIBVER
 
 CHUNK = 2**14  # numbers
-_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"  # how netCDF names a mere length
 
 
 class Subject(NamedTuple):
@@ -54,7 +53,7 @@ def image_of(
         for column in columns:
             lengths |= dict(zip(column.dimensions, arrays[column.name].shape, strict=True))
         for name, length in lengths.items():
-            file.create_dataset(name, (length,), ">f4").make_scale(_NO_VARIABLE.format(length))
+            create_length(file, name, length)
         for column in columns:
             _create(file, column, arrays[column.name])
     found = [(at, *heap.measured(image, at)) for at in heap.collections(image)]
@@ -76,6 +75,9 @@ def _create(file: h5py.File, column: Column, values: np.ndarray) -> None:
     if column.flags:
         dataset.attrs["flag_values"] = np.arange(len(column.flags), dtype=column.dtype)
         set_text(dataset, "flag_meanings", " ".join(column.flags))
+    for dimension, counts in RAGGED.items():
+        if counts == (column.name,):  # CF, 9.3.3: contiguous ragged arrays
+            set_text(dataset, "sample_dimension", dimension)
     for i, name in enumerate(column.dimensions):
         dataset.dims[i].attach_scale(file[name])
 

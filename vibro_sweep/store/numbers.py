@@ -26,10 +26,11 @@ SLAB = 100_000  # points whose numbers are computed at once
 def attributes(scene: Scene) -> dict[str, Any]:
     """Numbers and words that hold for all points: name -> value.
 
-    The system's numbers, `tau` in radians, `b_star` (`b_right` and `b_left` where these may differ), its options, the
-    `type` of a model and `along` where they are not the paper's; `model` with its `order` and `expand_at`, the initial
-    state (`start_x1`, ...; of a `follow` that of its first point) unless it is random or held by a stop, `transient`
-    and `record` in forcing periods, `section`: `phase`, or `impact` with `section_stop`; `picture` where there is one.
+    The system's numbers, `tau` in radians, `b_star` (`b_right` and `b_left` where these may differ), its options but
+    for matrices, the `type` of a model and `along` where they are not the paper's; `model` with its `order` and
+    `expand_at`, the initial state (`start_x1`, ...; of a `follow` that of its first point) unless it is random or held
+    by a stop, `transient` and `record` in forcing periods, `section`: `phase`, or `impact` with `section_stop`;
+    `picture` where there is one.
     """
     system = scene.system
     result: dict[str, Any] = {name: value for name, value in system.numbers.items() if value not in (None, "grazing")}
@@ -39,6 +40,7 @@ def attributes(scene: Scene) -> dict[str, Any]:
         result |= {name: float(value) for name, value in following(scene, ()).items() if name != "tau"}
     result = {name: value for name, value in result.items() if name not in (*scene.sweep, *dimensions(scene))}
     result |= {name: _plain(value) for name, value in system.options.items() if value is not None}
+    result = {name: value for name, value in result.items() if name not in matrices(scene)}
     if isinstance(system, Built):
         result = {name: value for name, value in result.items() if name != "tau"}
     result |= {} if system.model.name == DEFAULT else {"type": system.model.name}
@@ -54,8 +56,14 @@ def attributes(scene: Scene) -> dict[str, Any]:
     return result | ({"picture": scene.picture} if scene.picture else {})
 
 
+def matrices(scene: Scene) -> dict[str, np.ndarray]:
+    """Those among the system's options: netCDF has no attributes of two dimensions, so they are variables of a file."""
+    found = {name: np.array(value) for name, value in scene.system.options.items() if isinstance(value, tuple)}
+    return {name: value for name, value in found.items() if value.ndim == 2}
+
+
 def _plain(value):
-    """A flag as a number, a matrix as an array."""
+    """A flag as a number, a vector as an array."""
     return int(value) if isinstance(value, bool) else np.array(value) if isinstance(value, tuple) else value
 
 

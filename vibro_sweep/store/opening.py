@@ -2,7 +2,6 @@
 
 import contextlib
 import difflib
-import errno
 import io
 import json
 import tempfile
@@ -14,8 +13,9 @@ import h5py
 import numpy as np
 
 from vibro_sweep import __version__
+from vibro_sweep.model.files import MissingFileError
 from vibro_sweep.store import heap, parts
-from vibro_sweep.store.attributes import check_dataset, check_numbers, text, texts
+from vibro_sweep.store.attributes import MATRIX, check_dataset, check_numbers, check_own_dimensions, text, texts
 from vibro_sweep.store.flat_checks import damage_of
 from vibro_sweep.store.image import Index, frame_of
 from vibro_sweep.store.parts import FORMAT, PartError
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 IN_MEMORY = 2**26  # bytes of a part as HDF5; what is larger goes through a temporary file without a name
 REMEDY = "`--resume` computes that again"
+NETCDF = "_NCProperties"  # the attribute by which a netCDF library says that it has made the file
 TEXTS = ("title", "history", "scene", "provenance")
 
 
@@ -33,19 +34,22 @@ class StoreError(ValueError):
     """A file that is in the way, is none of ours, is damaged or does not fit the scene; or a disk that fails."""
 
 
-class MissingError(StoreError, FileNotFoundError):
+class MissingError(StoreError, MissingFileError):
     """There is no such file."""
 
-    __new__ = (
-        FileNotFoundError.__new__
-    )  # of the two bases' the one that Python takes; tblib, which Dask has, asks for it
 
-    def __init__(self, path: Path):
-        super().__init__(path)
-        self.errno, self.strerror, self.filename = errno.ENOENT, "there is no such file", str(path)
+class ForeignError(StoreError):
+    """Another program has written this file from one of ours (store/foreign.py)."""
+
+    def __init__(self, path: Path, program: str):
+        super().__init__(path, program)
+        self.path, self.program = path, program.replace("=", " ")
 
     def __str__(self):
-        return f"{self.filename}: {self.strerror}"
+        return (
+            f"{self.path} was not written by this program, but by {self.program} from a file of this program: nothing "
+            "tells whether its numbers are still those that were computed"
+        )
 
 
 class Opened(NamedTuple):
@@ -125,6 +129,9 @@ def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO, content: bool = 
     try:
         if not ("status" in result or "kind" in result.attrs) or "scene" not in result.attrs:
             raise StoreError(f"{path} is an HDF5 file, but none that vibro-sweep wrote")
+        if NETCDF in result.attrs:
+            _walk(raw)
+            raise ForeignError(path, text(result, NETCDF).removeprefix("version=2,"))
         if not 1 <= format_of(result) <= FORMAT:
             raise StoreError(
                 f"{path} has the format {format_of(result)} of another version of vibro_sweep; this one, "
@@ -149,12 +156,17 @@ def format_of(file: h5py.File) -> int:
 
 
 def _check_heap(file: h5py.File, raw: BinaryIO) -> None:
-    if format_of(file) == 1:  # which has no checksum; but HDF5 must be able to walk through it
-        for at in heap.collections(raw):
-            heap.measured(raw, at)
+    if format_of(file) == 1:  # which has no checksum
+        _walk(raw)
         return
     for at, last, checksum in np.reshape(file.attrs["heap"], (-1, 3)).tolist():
         heap.verify(raw, at, last, checksum)
+
+
+def _walk(raw: BinaryIO) -> None:
+    """Raise HeapError where HDF5 could not walk through the heap."""
+    for at in heap.collections(raw):
+        heap.measured(raw, at)
 
 
 def _check(file: h5py.File) -> None:
@@ -176,6 +188,7 @@ def _check(file: h5py.File) -> None:
     for name in quantities_of(file):
         if file[name].dtype.kind not in "if" or file[name].shape[: len(shape)] != shape:
             raise ValueError(f"its datasets do not fit together: `status` and `{name}`")
+        check_own_dimensions(name, file[name].ndim - len(shape))
         for axis, extent in zip(dimensions_of(file, name), file[name].shape, strict=True):
             check_dataset(file, axis)
             if file[axis].shape != (extent,):
@@ -183,7 +196,7 @@ def _check(file: h5py.File) -> None:
     for name in text(file, "coordinates").split() if "coordinates" in file.attrs else []:
         check_dataset(file, name)
     for name, along in following_of(file).items():
-        if not set(along) <= set(axes) or file[name].shape != tuple(len(file[axis]) for axis in along):
+        if not set(along) <= {*axes, *MATRIX} or file[name].shape != tuple(len(file[axis]) for axis in along):
             raise ValueError(f"its datasets do not fit together: `{name}` and its axes")
     for name in axes:
         if file[name].dtype.kind not in "if":

@@ -5,9 +5,11 @@ A piece is what one worker returns: arrays by name, kept under a key. The file i
 
 import contextlib
 import json
+import math
 import os
 from collections.abc import Collection, Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -128,19 +130,29 @@ def _continued(held: HeldPart, subject: Subject, path: Path) -> dict[str, Arrays
         raise StoreError(f"{path} stands beside the interrupted run {held.path}; move one of them away")
     scan, known = Scan(held.file, head), {}
     for record in scan:
-        known[record.text["piece"]] = _arrays(held.file, record)
+        if (found := _piece(held.file, record)) is not None:
+            known |= found
     held.go_on(head, scan.end)
     return known
 
 
-def _arrays(file, record: parts.Record) -> Arrays:
+def _piece(file: BinaryIO, record: parts.Record) -> dict[str, Arrays] | None:
+    """A piece as `write` keeps it, under its key; None for any other record, which somebody else has put there."""
+    key, told = record.text.get("piece"), record.text.get("arrays")
+    if not (isinstance(key, str) and isinstance(told, list)):
+        return None
     file.seek(record.at)
     raw, at, result = file.read(record.length), 0, {}
-    for name, dtype, shape in record.text["arrays"]:
-        count = int(np.prod(shape, dtype=int))
-        result[name] = np.frombuffer(raw, dtype, count, at).reshape(shape)
-        at += result[name].nbytes
-    return result
+    try:
+        for name, dtype, shape in told:
+            kind, count = np.dtype(dtype), math.prod(shape)
+            if kind.kind not in "biuf" or count < 0:
+                return None
+            result[str(name)] = np.frombuffer(raw, kind, count, at).reshape(shape)
+            at += result[str(name)].nbytes
+    except (TypeError, ValueError):
+        return None
+    return {key: result} if at == len(raw) else None
 
 
 def _damage_of_made(subject: Subject, path: Path) -> str:

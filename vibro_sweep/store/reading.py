@@ -10,16 +10,25 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import h5py
 import numpy as np
 
-from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.branch_file import CHART, WINDOWS
 from vibro_sweep.model.exponents import CERTAIN, sign_of
+from vibro_sweep.model.files import checked_path
 from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STANDING, meaning
 from vibro_sweep.store import checks
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.attributes import text, texts
 from vibro_sweep.store.flat_checks import damage_of
 from vibro_sweep.store.flat_tables import curves_table, special_table, windows_table
-from vibro_sweep.store.opening import REMEDY, StoreError, blocks_lost, is_flat, open_file, opened, quantities_of
+from vibro_sweep.store.opening import (
+    REMEDY,
+    ForeignError,
+    StoreError,
+    blocks_lost,
+    is_flat,
+    open_file,
+    opened,
+    quantities_of,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -39,25 +48,33 @@ def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray
     """The file, or what is computed in a part, as an `xarray.Dataset` with coordinates; numbers are read when used.
 
     It is read through once, for its checksums. Raises StoreError for a file that is none of ours, and for a damaged
-    one: it names the datasets. Of a missing file the StoreError is a FileNotFoundError too.
+    one: it names the datasets. Of a missing file the StoreError is a FileNotFoundError too. A file that xarray or
+    another program wrote from one of this program is opened too, with a warning in the log: it has no checksums.
     """
-    from vibro_sweep.store.lazy import dataset_of
+    from vibro_sweep.store import foreign, lazy
 
-    return _whole(path, dataset_of)
+    try:
+        data = _whole(path, lazy.dataset_of)
+        data.encoding["source"] = str(path)  # as xarray says it
+        return data
+    except ForeignError as found:
+        return foreign.dataset_of(found)
 
 
 @contextlib.contextmanager
 def contents(path: str | Path) -> Iterator[Contents]:
-    """As `open`, for what computes with the numbers."""
-    file = _whole(path, lambda file: file)
+    """As `open`, for what computes with the numbers: from files without checksums nothing is computed."""
+    try:
+        file = _whole(path, lambda file: file)
+    except ForeignError as found:
+        raise StoreError(f"{found}; nothing is computed from it") from None
     with file:
         yield Contents(file)
 
 
 def _whole(path: str | Path, made: Callable[[h5py.File], Any]) -> Any:
     """What is made of a file, if it is not damaged."""
-    check_type("path", path, (str, Path), "the path of a file")
-    path = Path(path)
+    path = checked_path("path", path)
     file, lost = open_file(path)
     try:
         if found := _damage(file, lost):
@@ -89,6 +106,15 @@ def tables(path: str | Path) -> list[str]:
 def examine(path: str | Path) -> Description:
     """As `describe`, and whether the file is damaged."""
     path = Path(path)
+    try:
+        return _examined_file(path)
+    except ForeignError as found:
+        from vibro_sweep.store import foreign  # xarray takes long to be imported
+
+        return Description(foreign.described(found), False)
+
+
+def _examined_file(path: Path) -> Description:
     with opened(path, ACCURACY, content=False) as (file, lost):
         try:
             return _examined(file, path, lost)
