@@ -10,10 +10,14 @@ Periodic orbits
     windows (of a sweep's file)
 Errors
     ParameterError, SceneError, StoreError, PlotError (each is a ValueError), RunError
+For annotations
+    vibro_sweep.types: Branch, PeriodicOrbit, SpecialPoint, Windows, Scene, ..., what functions take and return
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING
+
+from vibro_sweep import notices
 
 __version__ = "0.2.0.dev0"
 
@@ -100,9 +104,14 @@ else:
 
     def __getattr__(name: str):
         """Import what is asked for when it is asked for: `--help` must not wait for numba."""
+        if name == "types":
+            return import_module(f"{__name__}.types")
         if name not in _HOME:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+
+
+notices.begin()
 
 
 def __dir__() -> list[str]:

@@ -163,6 +163,9 @@ def plot_command(
         tuple[str, str] | None,
         typer.Option(metavar="WIDTH HEIGHT", help="In inches; by default 7 wide."),
     ] = None,
+    width: Annotated[
+        str | None, typer.Option(metavar="MM", help="Width in mm, as 85 for one column; the height follows.")
+    ] = None,
     dpi: Annotated[str | None, typer.Option(metavar="N", help="Pixels an inch; by default 200.")] = None,
     windows: Annotated[
         Path | None,
@@ -191,7 +194,8 @@ def plot_command(
         for name, pair in (("xlim", xlim), ("ylim", ylim), ("size", size))
     ]
     look = (values, variable, *pairs, dpi and number_in("--dpi", dpi))
-    _draw(file, output, kind, overwrite, False, *look, windows=windows, over=over, relative=relative)
+    beside = {"width": width and number_in("--width", width), "windows": windows, "over": over, "relative": relative}
+    _draw(file, output, kind, overwrite, False, *look, **beside)
 
 
 @app.command()
@@ -289,7 +293,7 @@ def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, qu
     from .store import StoreError
 
     all_is_imported()
-    with input_errors(PlotError, StoreError), interrupt.tidied_up():
+    with input_errors(PlotError, StoreError), interrupt.tidied_up(), messages(quiet):
         pictures = plot(file, output, kind, overwrite, Look(*look, **beside))
     if not quiet:
         say("\n".join(str(picture) for picture in pictures))

@@ -7,9 +7,14 @@ import contextlib
 import gc
 import logging
 import os
+import re
 import sys
 import traceback
 from collections.abc import Callable, Iterator
+
+from vibro_sweep.engine import simd
+
+LONGEST_WORD = 300  # letters of what stands on a command line, in a message
 
 BAD_POINTS, BAD_INPUT, INTERNAL, INTERRUPTED = 1, 2, 70, 130
 
@@ -41,6 +46,7 @@ def all_is_imported() -> None:
     Python would look through all of them several times, which takes a tenth of a start.
     """
     if not gc.isenabled():
+        simd.OWN_PROCESS = True
         gc.freeze()
         gc.enable()
 
@@ -73,11 +79,14 @@ def input_errors(*kinds: type[Exception]) -> Iterator[None]:
 
 
 def _refused(error: Exception) -> int:
+    from .model.refusals import cut  # `--help` must not wait for numpy
+
     text = str(error) or ("not enough memory" if isinstance(error, MemoryError) else type(error).__name__)
     if isinstance(error, OSError) and error.filename is not None and error.strerror:
         text = f"{error.filename}: {error.strerror}"
     for name in ("output", "resume", "overwrite"):  # in Python an argument, here an option
         text = text.replace(f"`{name}`", f"--{name}")
+    text = re.sub(rf"\S{{{LONGEST_WORD},}}", lambda word: cut(word[0]), text)
     print_error(f"error: {text}")
     return BAD_INPUT
 

@@ -151,7 +151,7 @@ def _pictures() -> Iterator[str]:
         "`vibro-sweep plot FILE.h5 --kind KIND`; the default is the scene's `picture`, else the first that a file can "
         "show. `--at KEY=VALUE` draws single orbits at that value of the sweep, `--variable NAME` another variable (a "
         "wrong name lists those of the file), `--xlim LOW HIGH` and `--ylim LOW HIGH` a part, `--size WIDTH HEIGHT` "
-        "(inches) and `--dpi N` set how large it is.\n"
+        "(inches), `--width MM` (85: one column of a journal) and `--dpi N` set how large it is.\n"
     )
     rows = ((f"`{kind}`", _summary(one.shows), _summary(one.draw)) for kind, one in KINDS.items())
     yield from _table(("kind", "needs", "what it shows"), rows)

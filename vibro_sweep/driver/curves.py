@@ -15,8 +15,8 @@ from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of, specials_of
 from vibro_sweep.driver.planes import edges_in_file, plane_of
 from vibro_sweep.driver.provenance import provenance
-from vibro_sweep.model.arguments import file_to_write
 from vibro_sweep.model.branch_file import CHART, OF_EDGES, columns
+from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
 from vibro_sweep.scene.continuation import BY_BRANCHES

@@ -56,7 +56,7 @@ def energies_of(
             new_scratch(parts, room, kind.masses), *wanted.values(), outcome,
         )  # fmt: skip
         room *= 8
-        if not (outcome == status.NOT_COMPUTED).any():
+        if workspace.ensemble.halt[0] != 0 or not (outcome == status.NOT_COMPUTED).any():
             break
     known = np.where(status.stands(outcome), 1.0, np.nan)
     time = block.plan.record * 2 * np.pi / flat["omega"]

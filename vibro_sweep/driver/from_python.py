@@ -6,14 +6,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from vibro_sweep import store
-from vibro_sweep.driver.sweep import run
+from vibro_sweep.driver.sweep import check_how, run
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import checked_state, is_number
+from vibro_sweep.model.arguments import accepts, check_type, checked_state
 from vibro_sweep.model.built import Built
+from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.oscillator import checked_system
+from vibro_sweep.model.real import number_of
+from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.state import START
 from vibro_sweep.scene import Section, Start, Trajectory, scene_of
-from vibro_sweep.scene.written import changed
+from vibro_sweep.scene.written import axis_data, changed
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,13 +25,15 @@ if TYPE_CHECKING:
 MOST = 10**9  # bytes of results without a file of the caller's
 
 
-def _first(name: str, values) -> float:
+def _first(name: str, values: object) -> float:
     """The first value of an axis, as it is written. Raises ValueError."""
-    first = values.get("start", next(iter(values.get("values", [])), None)) if isinstance(values, Mapping) else None
-    first = next(iter(values), None) if first is None and not isinstance(values, Mapping) else first
-    if not is_number(first):
-        raise ValueError(f"axes: {name} = {values!r} is not allowed; it must be numbers")
-    return float(first)
+    data = axis_data(values)
+    if not name.isidentifier() or name.startswith("_"):
+        raise ValueError(not_allowed("axes", name, "of names that begin with a letter"))
+    first = number_of(data.get("start", next(iter(data.get("values") or ()), None))) if isinstance(data, dict) else None
+    if first is None:
+        raise ValueError(not_allowed(f"axes.{name}", values, "numbers, or an axis as in YAML"))
+    return first
 
 
 def sweep(
@@ -65,8 +70,19 @@ def sweep(
     scene, ValueError for more results than go without a file, and what `run` raises.
     """
     built = None
+    check_type("axes", axes, Mapping, "a mapping from names to values")
+    for name in axes:
+        check_type("axes", name, str, "of names")
+    check_how(workers, None, progress, mode)
+    if output is not None:
+        output = file_to_write("output", output)
     if callable(system) and not isinstance(system, AnyOscillator):
-        built = Built(system, {name: _first(name, values) for name, values in axes.items() if name not in START})
+        first = {name: _first(name, values) for name, values in axes.items() if name not in START}
+        if not accepts(system, **first):
+            raise TypeError(
+                not_allowed("system", system, f"a System, an Oscillator, or a function of {', '.join(first)}")
+            )
+        built = Built(system, first)
     else:
         checked_system(system)
     if start is not None and not isinstance(start, (str, Mapping, Start)):
@@ -80,8 +96,13 @@ def sweep(
     }
     given |= {"section": section, "observe": observe, "trajectory": trajectory}
     scene = scene_of(changed({}, given), "sweep", built=built)
+    quantities = store.quantities(scene)
+    taken = {"status", *quantities, *(own for one in quantities.values() for own in one.dimensions)}
+    taken |= {"start"} if scene.n_starts > 1 else set()
+    for name in taken.intersection(scene.sweep):
+        raise ValueError(not_allowed("axes", name, f"of other names than {', '.join(sorted(taken))}"))
     if output is None and mode != "new":
-        raise ValueError(f"mode: {mode!r} is not allowed; without a file, `output`, it must be 'new'")
+        raise ValueError(not_allowed("mode", mode, "'new' without a file, `output`"))
     if output is not None:
         run(scene, output, workers, progress=progress, mode=mode)
         return store.open(output)
@@ -94,4 +115,5 @@ def sweep(
         file = Path(folder, "sweep.h5")
         run(scene, file, workers, progress=progress)
         with store.open(file) as data:
+            del data.encoding["source"]  # it does not last
             return data.load()

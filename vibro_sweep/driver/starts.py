@@ -54,7 +54,9 @@ def _random(block: Block, count: int, masses: int) -> np.ndarray:
             if not again.any():
                 break
         else:  # the masses lie around the middle of the stops, their gap does not: it is moved there
-            target = draw.uniform(max(low, high - 2 * abs(b)), min(high, low + 2 * abs(b)), each)
+            bottom = low if high == np.inf else max(low, high - 2 * abs(b))
+            top = high if low == -np.inf else min(high, low + 2 * abs(b))
+            target = draw.uniform(bottom, top, each)
             states[again, 0::2] += np.outer(target - gap, along / (along @ along))[again]
         result[n] = states[block.part]
     return result

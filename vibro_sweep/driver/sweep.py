@@ -30,9 +30,13 @@ from vibro_sweep.driver.cost import (
 from vibro_sweep.driver.memory import available_cores, blocks_under_way, orbits_per_block
 from vibro_sweep.driver.pool import as_computed
 from vibro_sweep.driver.provenance import provenance
-from vibro_sweep.model.arguments import check_type, file_to_write
+from vibro_sweep.engine.halting import heed, interruptible, new_halt
+from vibro_sweep.model.arguments import check_call, check_type
+from vibro_sweep.model.files import file_to_write
+from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.status import STANDING, meaning
 from vibro_sweep.scene import Scene
+from vibro_sweep.store.beginning import check_mode
 from vibro_sweep.store.datasets import write_following
 
 __all__ = ["RunError", "RunReport", "run"]
@@ -81,17 +85,12 @@ def run(
     under way, whatever the size of the sweep. Raises `store.StoreError` for a file that is in the way or does not fit
     the scene, ValueError for a number of workers that cannot be, TypeError for arguments of other kinds, RunError where
     workers fail, and lets KeyboardInterrupt
-    through once the file is safe; threads that are in a block then, end with it.
+    through once the file is safe.
     """
     began = time.perf_counter()
     check_type("scene", scene, Scene, "a Scene, as `load_scene` returns it")
     output = file_to_write("output", output)
-    if executor is not None and not callable(getattr(executor, "submit", None)):
-        raise TypeError(f"executor: {executor!r} is not allowed; it must be a concurrent.futures.Executor")
-    if progress is not None and not callable(progress):
-        raise TypeError(f"progress: {progress!r} is not allowed; it must be callable as progress(done, total)")
-    if workers is not None and (type(workers) is not int or not 1 <= workers <= MOST_WORKERS):
-        raise ValueError(f"workers: {workers!r} is not allowed; it must be a whole number from 1 to {MOST_WORKERS}")
+    check_how(workers, executor, progress, mode)
     with store.writer(scene, output, mode) as file:
         total, done = scene.n_points, file.done()
         missing = total - done
@@ -112,6 +111,16 @@ def run(
     return RunReport(total, bad, named, seconds, missing)
 
 
+def check_how(workers, executor, progress, mode) -> None:
+    """Check the arguments of `run` that say how it computes."""
+    if workers is not None and (type(workers) is not int or not 1 <= workers <= MOST_WORKERS):
+        raise ValueError(not_allowed("workers", workers, f"a whole number from 1 to {MOST_WORKERS}"))
+    if executor is not None and not callable(getattr(type(executor), "submit", None)):
+        raise TypeError(not_allowed("executor", executor, "a concurrent.futures.Executor"))
+    check_call("progress", progress, "progress(done, total)", 0, 0)
+    check_mode(mode)
+
+
 def _complete(scene: Scene, file: h5py.File) -> None:
     """What a file holds besides the results of blocks."""
     write_following(file, scene)
@@ -124,14 +133,15 @@ def _results(
 ) -> Iterator[tuple]:
     """Results of all blocks with one of the missing orbits, as they come."""
     count = workers if executor is None else _worker_count(executor, workers)
-    cost = off_the_main_thread(orbit_cost, scene, count)
+    cost = interruptible(orbit_cost, scene, count)
     orbits = orbits_per_block(scene, count)
     most = blocks_under_way(scene, orbits, here=executor is None)
-    pool = executor or ThreadPoolExecutor(min(workers, most))
+    halt = new_halt()
+    pool = executor or ThreadPoolExecutor(min(workers, most), initializer=heed, initargs=(halt,))
     size = points_per_block(scene, cost.seconds, count, BLOCK_SECONDS if executor is None else SECONDS)
     if executor is None:
         seconds = run_seconds(scene, cost, missing, count)
-        seconds *= off_the_main_thread(crowding, cost, threads_of(scene, count)) if seconds > WORTH_SAYING else 1.0
+        seconds *= interruptible(crowding, cost, threads_of(scene, count)) if seconds > WORTH_SAYING else 1.0
     else:  # on machines of which nothing is known
         seconds = cost.seconds * missing / side_by_side(scene, count)
     if seconds > WORTH_SAYING:
@@ -150,16 +160,8 @@ def _results(
                 yield box, arrays
     finally:
         if executor is None:
+            halt[0] = 1
             pool.shutdown(wait=False, cancel_futures=True)
-
-
-def off_the_main_thread(function: Callable, *arguments):
-    """Its result; meanwhile Ctrl-C is answered, which neither the compiler nor compiled code do."""
-    pool = ThreadPoolExecutor(1)
-    try:
-        return pool.submit(function, *arguments).result()
-    finally:
-        pool.shutdown(wait=False)
 
 
 def _worker_count(pool: Executor, default: int) -> int:

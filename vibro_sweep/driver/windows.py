@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from concurrent.futures import Executor
 from pathlib import Path
+from types import NoneType
 
 import numpy as np
 
@@ -14,10 +15,11 @@ from vibro_sweep.analysis.windows.unseen import unseen_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.driver.jobs import results, workers_of
 from vibro_sweep.driver.provenance import provenance
-from vibro_sweep.model.arguments import file_to_write
+from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.branch_file import UNSEEN, WINDOWS, columns
 from vibro_sweep.model.built import BUILD
+from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.arrays import Contents
@@ -44,6 +46,8 @@ def windows(path: str | Path, key: str | None = None) -> Windows:
 
     Raises StoreError for a file that cannot be read, ValueError for one that has no windows to look for.
     """
+    path = checked_path("path", path)
+    check_type("key", key, (str, NoneType), "the name of a swept number, or None")
     with store.contents(path) as data:
         cover = Cover(rows_in(data, key))
     cover.search(lambda _, jobs: [window_of(job) for job in jobs])

@@ -14,13 +14,14 @@ from matplotlib.figure import Figure
 
 from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.model.pictures import PICTURES
+from vibro_sweep.model.refusals import not_allowed, shown
 from vibro_sweep.plotting import basins, branches, charts, coexistence, convergence, energy, orbits, planes, sweeps
-from vibro_sweep.plotting.flat import flat_kind
+from vibro_sweep.plotting.flat import drawn_kind
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.pictures import check_output, save
 from vibro_sweep.plotting.result import PlotError, Result
-from vibro_sweep.plotting.style import STYLE
+from vibro_sweep.plotting.source import name_of, readable
 
 if TYPE_CHECKING:
     import xarray
@@ -79,10 +80,11 @@ def figure(
     Raises `PlotError` where the data cannot be read or cannot show that kind.
     """
     if ax is not None and not isinstance(ax, Axes):
-        raise TypeError(f"ax: {ax!r} is not allowed; it must be matplotlib axes")
-    if (of := flat_kind(data)) is not None:
+        raise TypeError(not_allowed("ax", ax, "matplotlib axes"))
+    data = readable(data)
+    if (of := drawn_kind(data)) is not None:
         _check_flat(data, of, kind, look or Look())
-        with matplotlib.rc_context(STYLE):
+        with matplotlib.rc_context((look or Look()).style):
             drawn = (charts.chart if of == CHART else branches.branches)(data, look or Look(), ax)
             if ax is None and look is not None:
                 look.applied(drawn)
@@ -105,10 +107,11 @@ def plot(path, output=None, kind: str | None = None, overwrite: bool = False, lo
     if output.suffix.lower() not in SUFFIXES:
         raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
     inputs = [path, *(Path(one) for one in (look.windows, look.over) if one is not None)] if look else [path]
-    if flat_kind(path) is not None:
+    data = readable(path)
+    if drawn_kind(data) is not None:
         check_output(output, overwrite, inputs)
-        return [save(figure(path, kind, look), output, overwrite, inputs)]
-    with Result(path, look) as result:
+        return [save(figure(data, kind, look), output, overwrite, inputs)]
+    with Result(data, look) as result:
         chosen = _chosen(result, kind)
         many = kind == "all"
         places = [output.with_stem(f"{output.stem}-{one}") if many else output for one in chosen]
@@ -123,7 +126,7 @@ def _check_flat(path, of: str, kind: str | None, look: Look) -> None:
     chosen |= {} if of == CHART else {"relative": look.relative}
     for name, value in chosen.items():
         if value:
-            raise PlotError(f"{name}: does not belong to {of}, which {path} holds")
+            raise PlotError(f"{name}: does not belong to {of}, which {name_of(path)} holds")
 
 
 def _kinds(result: Result) -> list[str]:
@@ -144,7 +147,7 @@ def _chosen(result: Result, kind: str | None) -> list[str]:
     if not available:
         raise PlotError(f"{result.path}: nothing to show, there is no picture of {result.contents()} alone")
     if kind not in (None, "all", *available):
-        raise PlotError(f"kind {kind!r}: {result.path} can show {', '.join(available)} (or all)")
+        raise PlotError(f"kind {shown(kind)}: {result.path} can show {', '.join(available)} (or all)")
     candidates = available if kind in (None, "all") else [kind]
     at, variable = result.look.at, result.look.variable
     fitting = [name for name in candidates if not at or KINDS[name].of_orbits]
@@ -160,7 +163,7 @@ def _chosen(result: Result, kind: str | None) -> list[str]:
         fitting = [name for name in fitting if variable in choices[name]]
         if not fitting:
             told = "; ".join(f"{name}: {', '.join(names)}" for name, names in choices.items() if names)
-            raise PlotError(f"variable {variable!r} is not allowed; there are {told or 'none to choose among'}")
+            raise PlotError(f"variable {shown(variable)} is not allowed; there are {told or 'none to choose among'}")
     return fitting if kind == "all" else fitting[:1]
 
 
@@ -170,7 +173,7 @@ def _those(available: list[str], fits: Callable[[str], bool]) -> str:
 
 
 def _draw(result: Result, kind: str) -> Figure | Panel:
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(result.look.style):
         fig = KINDS[kind].draw(result)
         if isinstance(fig, Figure):
             result.look.applied(fig)

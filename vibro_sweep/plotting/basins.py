@@ -6,6 +6,7 @@ from matplotlib.patches import Patch
 
 from vibro_sweep.model.state import MOST_MASSES, START, state
 from vibro_sweep.plotting.families import KINDS, describe, kind
+from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.result import Point, Result
 from vibro_sweep.plotting.style import INK, NOT_COMPUTED, axis_name, edges, equation, marked
 
@@ -50,7 +51,7 @@ def basins(result: Result):
                 _mark(ax, result, label == number, MARKERS[i], stored)
                 handles[i] = marked(colour, MARKERS[i])
         ax.set(xlim=frame[0], ylim=frame[1])
-    fig.legend(handles, [text for _, text in named.values()], loc="outside lower center", ncols=2)
+    legend_below(fig, handles, 2, labels=[text for _, text in named.values()])
     return fig
 
 

@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from vibro_sweep.model.branch_file import BRANCHES
 from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import joined, sweeps
-from vibro_sweep.plotting.flat import FlatFile, check_over
+from vibro_sweep.plotting.flat import FlatFile, sweep_below
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.result import PlotError, Result
@@ -162,8 +162,7 @@ def _legend(where, ax, there: set[str]) -> None:
 
 def _sweep(ax, look: Look, file: FlatFile, name: str) -> None:
     """The section points of a sweep, below everything."""
-    check_over(look.over)
-    with Result(look.over, Look(variable=name, xlim=look.xlim, ylim=look.ylim)) as result:
+    with Result(sweep_below(look.over), Look(variable=name, xlim=look.xlim, ylim=look.ylim)) as result:
         if list(result.sweep) != file.parameters or name not in sweeps.section_variables(result):
             raise PlotError(f"over: {result.path} is no sweep over {file.parameters[0]} with section points {name}")
         ((_, values),) = result.sweep.items()

@@ -9,7 +9,7 @@ from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
 from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.plotting import planes
 from vibro_sweep.plotting.curves import Drawn, draw, handles, name_points
-from vibro_sweep.plotting.flat import FlatFile, check_over
+from vibro_sweep.plotting.flat import FlatFile, sweep_below
 from vibro_sweep.plotting.labels import arrange, legend_below
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.relative import axis_label, check_relative
@@ -72,8 +72,7 @@ def drawn(file: FlatFile, names: list[str], relative: bool = False) -> list[Draw
 
 def _over(file: FlatFile, look: Look, ax):
     """Over the plane of a sweep in the same two numbers."""
-    check_over(look.over)
-    with Result(look.over, replace(look, over=None), ax) as result:
+    with Result(sweep_below(look.over), replace(look, over=None), ax) as result:
         if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
             raise PlotError(f"over: {result.path} is no plane over {' and '.join(file.parameters)}")
         if look.variable is not None and look.variable not in planes.variables(result):

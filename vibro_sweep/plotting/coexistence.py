@@ -8,9 +8,9 @@ from matplotlib.collections import LineCollection, PolyCollection
 
 from vibro_sweep.model.catalogue import BY_NAME
 from vibro_sweep.plotting.families import KINDS, MARKERS, kind
-from vibro_sweep.plotting.labels import arrange, overlap
+from vibro_sweep.plotting.labels import arrange, legend_below, overlap
 from vibro_sweep.plotting.result import Point, Result
-from vibro_sweep.plotting.style import at_section, axis_name, edges, marked
+from vibro_sweep.plotting.style import at_section, axis_name, edges, marked, type_size
 from vibro_sweep.plotting.sweeps import mark_grazing
 
 NARROW = 0.012  # of the axis; the period of a window is written over it where it is wider
@@ -47,7 +47,7 @@ def coexistence(result: Result):
     there = {one.kind for one in found}
     named = {name: marked(colour, MARKERS.get(which, "")) for which, (name, colour) in KINDS.items() if which in there}
     named |= {line.get_label(): line for line in above.lines if line.get_gid() == "grazing"}
-    fig.legend(named.values(), named.keys(), loc="outside lower center", ncols=3)
+    legend_below(fig, list(named.values()), 3, labels=list(named))
     fig.align_ylabels(axes)
     _name_windows(below, values, found)
     return fig
@@ -117,10 +117,12 @@ def _name_windows(ax, values, found):
         left, right = borders[places[0]], borders[places[-1] + 1]
         if period > 0 and right - left > NARROW * (borders[-1] - borders[0]):
             above = {"xy": ((left + right) / 2, 1.0), "xycoords": ax.get_xaxis_transform(), "xytext": (0, 2)}
-            text = ax.annotate(f"{period}", **above, textcoords="offset points", ha="center", fontsize=7)
+            text = ax.annotate(f"{period}", **above, textcoords="offset points", ha="center", fontsize=type_size(7))
             box = text.get_window_extent().get_points()
             if any(overlap(box, other) for other in taken):
                 text.remove()
             else:
                 taken.append(box)
-    ax.annotate("period", (1.012, 1.0), (0, 2), xycoords="axes fraction", textcoords="offset points", fontsize=7)
+    ax.annotate(
+        "period", (1.012, 1.0), (0, 2), xycoords="axes fraction", textcoords="offset points", fontsize=type_size(7)
+    )

@@ -10,7 +10,8 @@ from matplotlib.lines import Line2D
 
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
-from vibro_sweep.plotting.style import FAINT, INK, STYLE, axis_name, page
+from vibro_sweep.plotting.look import Look
+from vibro_sweep.plotting.style import FAINT, INK, axis_name
 
 COLOURS = {
     "fold": "#2f8fd8",
@@ -42,10 +43,11 @@ class Drawn(NamedTuple):
     period: int = 1
 
 
-def plot_curves(curves: list[Drawn], names: tuple[str, str]):
-    """All curves in one panel. Returns a matplotlib Figure."""
-    with mpl.rc_context(STYLE):
-        fig = page(4.2, "bifurcation curves")
+def plot_curves(curves: list[Drawn], names: tuple[str, str], width: float | None = None):
+    """All curves in one panel, so many mm wide. Returns a matplotlib Figure."""
+    look = Look(width=width)
+    with mpl.rc_context(look.style):
+        fig = look.page(4.2, "bifurcation curves")
         ax = fig.subplots()
         draw(ax, curves)
         ax.set(xlabel=axis_name(names[0]), ylabel=axis_name(names[1]))

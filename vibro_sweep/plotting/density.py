@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.colors import LogNorm, to_rgb
 from matplotlib.ticker import LogFormatter
 
-from vibro_sweep.plotting.style import INK, density_colours, edges
+from vibro_sweep.plotting.style import INK, density_colours, edges, type_size
 
 COLUMNS, ROWS = 1200, 450  # a cell is about a pixel wide and a hair line high
 BLOCK = 2**20  # points counted at a time, which stay in the cache
@@ -69,7 +69,7 @@ def one(ax, cloud: Cloud):
     for curve in drawn:
         ax.plot(curve.x, curve.y, color=colours(norm(group * curve.visits)), **_LINE)
     bar = ax.figure.colorbar(image, cax=ax.inset_axes([1.012, 0, 0.016, 1]), format=LogFormatter())
-    bar.set_label("section points per cell", fontsize=9)
+    bar.set_label("section points per cell", fontsize=type_size(9))
 
 
 def two(ax, cloud: Cloud, colours):

@@ -6,7 +6,8 @@ from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.plotting.impacts import NONE
 from vibro_sweep.plotting.result import Result
 from vibro_sweep.plotting.spectrum import curve
-from vibro_sweep.plotting.style import BRANCHES, FAINT, INK, LEFT, RIGHT, axis_name, edges, symbol
+from vibro_sweep.plotting.style import BRANCHES, FAINT, INK, LEFT, RIGHT, axis_name, symbol
+from vibro_sweep.plotting.sweeps import reach
 
 COLOURS = (INK, RIGHT, LEFT, FAINT)
 
@@ -40,11 +41,14 @@ def energy(result: Result):
         curve(below, values[order], result.array(name)[order], **style)
     size = "largest size" if chosen and chosen.startswith("peak") else "root mean square"
     below.set(ylabel=f"{size} of {symbol(chosen.partition('_')[2])}" if chosen else size, xlabel=axis_name(key))
-    below.set_xlim(*edges(values[order])[[0, -1]])
+    below.set_xlim(reach(values[order]))
     for ax in axes:
         ax.set_ylim(bottom=0)
     if len(shown) > 1:
-        below.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=min(8, len(shown)), borderaxespad=0.1)
+        handles, labels = below.get_legend_handles_labels()
+        named = dict(zip(labels, handles, strict=True))  # each start has lines of its own
+        place = {"loc": "lower right", "bbox_to_anchor": (1, 1), "borderaxespad": 0.1}
+        below.legend(named.values(), named.keys(), ncols=min(8, len(shown)), **place)
     fig.align_ylabels(axes)
     return fig
 

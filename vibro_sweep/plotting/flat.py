@@ -1,32 +1,58 @@
-"""Files of branches and windows as pictures take them: all arrays, and what the file says of itself."""
+"""Branches, curves and windows as pictures take them: all arrays, and what their file says of itself."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibro_sweep.model.bifurcations import KINDS, TYPES
 from vibro_sweep.model.branch_file import WINDOWS
-from vibro_sweep.plotting.source import PlotError
+from vibro_sweep.plotting.source import PlotError, name_of, readable
 from vibro_sweep.store.attributes import text, texts
+from vibro_sweep.store.flat_checks import Stored, check
 from vibro_sweep.store.opening import StoreError, is_flat, opened, quantities_of
+
+if TYPE_CHECKING:
+    import xarray
 
 
 class FlatFile:
-    """`arrays`: name -> values; `parameters`: names, that along which branches lead first; `sweep`: identity of the
-    sweep whose windows they are. Raises PlotError for any other file."""
+    """A file of branches, curves or windows, or a Dataset that `vibro_sweep.open` made of one.
 
-    def __init__(self, path: str | Path, kind: str):
+    `arrays`: name -> values; `parameters`: names, that along which branches lead first; `sweep`: identity of the
+    sweep whose windows they are. Raises PlotError for anything else.
+    """
+
+    def __init__(self, given: "str | Path | xarray.Dataset", kind: str):
+        given = readable(given)
+        self.name = name_of(given)
+        if flat_kind_of(given) != kind:
+            raise PlotError(f"{self.name}: holds no {kind}")
+        if isinstance(given, (str, Path)):
+            self._read(Path(given))
+        else:
+            self._take(given, kind)
+
+    def _read(self, path: Path) -> None:
         try:
-            with opened(Path(path)) as (file, _):
-                if not is_flat(file) or text(file, "kind") != kind:
-                    raise PlotError(f"{path}: holds no {kind}")
+            with opened(path) as (file, _):
                 self.arrays = {name: file[name][()] for name in quantities_of(file)}
                 self.parameters = texts(file, "parameters")
                 self.title = text(file, "title").removeprefix("vibro_sweep: ")
                 self.sweep = text(file, "sweep") if "sweep" in file.attrs else ""
         except StoreError as error:
             raise PlotError(str(error)) from error
-        self.name = str(path)
+
+    def _take(self, data: "xarray.Dataset", kind: str) -> None:
+        self.parameters = [str(name) for name in np.atleast_1d(data.attrs.get("parameters", []))]
+        self.title = str(data.attrs.get("title", "")).removeprefix("vibro_sweep: ")
+        self.sweep = str(data.attrs.get("sweep", ""))
+        try:
+            found = {str(name): Stored(one.dims, one.values) for name, one in data.variables.items()}
+            check(kind, self.parameters, found)
+        except (OSError, RuntimeError, ValueError) as error:
+            raise PlotError(f"{self.name} does not hold all that {kind} are: {error}") from error
+        self.arrays = {name: one.values for name, one in found.items()}
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self.arrays[name]
@@ -38,26 +64,31 @@ class FlatFile:
         return [kind if kind == "nonsmooth_fold" else name for name, kind in zip(names, kinds, strict=True)]
 
 
-def check_over(path: str | Path) -> None:
-    """Raise PlotError for a file of branches, curves or windows, over which nothing can be drawn."""
-    try:
-        with opened(Path(path), (), content=False) as (file, _):
-            kind = text(file, "kind") if is_flat(file) else None
-    except StoreError as error:
-        raise PlotError(str(error)) from error
+def sweep_below(path: str | Path) -> "str | Path | xarray.Dataset":
+    """What branches or curves are drawn over. Raises PlotError where it holds branches, curves or windows."""
+    given = readable(path)
+    kind = flat_kind_of(given)
     if kind is not None:
         raise PlotError(f"over: {path} holds {kind}, and no sweep")
+    return given
 
 
-def flat_kind(data) -> str | None:
-    """Of a file of branches or curves its kind, else None; PlotError for one of windows says what shows them."""
-    if not isinstance(data, (str, Path)):
-        return None
+def flat_kind_of(given: "str | Path | xarray.Dataset") -> str | None:
+    """What a file, or a Dataset, holds where that is branches, curves or windows. Raises PlotError."""
+    if not isinstance(given, (str, Path)):
+        kind = getattr(given, "attrs", {}).get("kind")
+        return None if kind is None else str(kind)
     try:
-        with opened(Path(data), (), content=False) as (file, _):
-            kind = text(file, "kind") if is_flat(file) else None
-    except StoreError:  # whoever draws it as a sweep says what is wrong
-        return None
+        with opened(Path(given), (), content=False) as (file, _):
+            return text(file, "kind") if is_flat(file) else None
+    except StoreError as error:
+        raise PlotError(str(error)) from error
+
+
+def drawn_kind(given: "str | Path | xarray.Dataset") -> str | None:
+    """As `flat_kind_of`; PlotError for windows says what shows them."""
+    kind = flat_kind_of(given)
     if kind == WINDOWS:
-        raise PlotError(f"{data} holds the windows of a sweep; `plot SWEEP.h5 --windows {data}` shows them")
+        name = name_of(given)
+        raise PlotError(f"{name} holds the windows of a sweep; `plot SWEEP.h5 --windows {name}` shows them")
     return kind

@@ -3,6 +3,8 @@
 import numpy as np
 from matplotlib import patheffects
 
+from vibro_sweep.plotting.style import type_size
+
 GAP = 2.5  # points (1/72 inch) between a name and what is beside it
 SAME = 4.0  # points between marks of one name, of which nearer ones have it once
 CORNERS = ((1, 1), (-1, 1), (1, -1), (-1, -1))  # of a mark, where its name may stand
@@ -37,7 +39,11 @@ def name_beside(ax, names, places, lines=(), taken=(), most=None) -> list[np.nda
         if found is None:
             continue
         (right, up), box = found
-        style = _NAME | {"ha": "left" if right > 0 else "right", "va": "bottom" if up > 0 else "top"}
+        style = _NAME | {
+            "size": type_size(6),
+            "ha": "left" if right > 0 else "right",
+            "va": "bottom" if up > 0 else "top",
+        }
         ax.annotate(name, place, (right * GAP, up * GAP), textcoords="offset points", annotation_clip=True, **style)
         boxes.append(box)
         written.append((name, mark))
@@ -45,14 +51,14 @@ def name_beside(ax, names, places, lines=(), taken=(), most=None) -> list[np.nda
 
 
 _NAME = {
-    "size": 6, "zorder": 5, "gid": "name", "clip_on": True,
+    "zorder": 5, "gid": "name", "clip_on": True,
     "path_effects": [patheffects.withStroke(linewidth=1.8, foreground="white")],
 }  # fmt: skip
 
 
 def _size(ax, name: str) -> np.ndarray:
     """Width and height of a name in pixels."""
-    text = ax.text(0, 0, name, **_NAME)
+    text = ax.text(0, 0, name, size=type_size(6), **_NAME)
     size = text.get_window_extent().size
     text.remove()
     return size
@@ -111,9 +117,13 @@ def legend_below(fig, handles, most: int, grow: bool = False, **style) -> None:
 
     style : options of matplotlib's legend
 
-    grow : the page becomes higher by all but the first two of its rows
+    grow : the page becomes higher by all but the first two of its rows; a narrow page does, unless its size is given
     """
-    sizes = (None,) if grow else SIZES
+    if not handles:
+        return
+    narrow = getattr(fig, "narrow", False)
+    grow = fig.grows if narrow else grow
+    sizes = (None,) if grow or narrow else SIZES
     for size in sizes:
         for columns in range(min(most, len(handles)), 0, -1):
             where = {"loc": "outside lower center", "ncols": columns, "fontsize": size}
@@ -124,6 +134,9 @@ def legend_below(fig, handles, most: int, grow: bool = False, **style) -> None:
             if columns == 1 or extent.width <= fig.bbox.width:
                 break
             legend.remove()
+        if extent.width > fig.bbox.width:
+            for text in legend.get_texts():
+                text.set_text(text.get_text().replace(", ", ",\n", 1))
         if extent.height <= HIGHEST * fig.bbox.height or size == sizes[-1]:
             break
         legend.remove()

@@ -5,12 +5,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
+from vibro_sweep.model.real import number_of
+from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.plotting.page import Picture, page, style_of
 from vibro_sweep.plotting.source import PlotError
-from vibro_sweep.plotting.style import page
 
 SIZES = (2.0, 100.0)  # inches
+WIDTHS = (50.0, 2500.0)  # mm
+MM = 25.4  # an inch
 RESOLUTIONS = (10, 2400)  # pixels an inch
 MOST_PIXELS = 10**8  # of a whole picture: 400 MB while it is drawn
 
@@ -20,9 +23,10 @@ class Look:
     """What is None is left to the kind of picture.
 
     at: swept key -> value, where single orbits are drawn; variable: what is drawn; xlim, ylim: ranges of the axes, of
-    several panels those of the first and of all that show the same; size: inches; dpi: pixels an inch; windows: a file
-    of the sweep's windows, which are shown below it or on its plane; over: the file of a sweep over which branches or
-    curves are drawn; relative: whether charts and planes show b in parts of the grazing clearance b*.
+    several panels those of the first and of all that show the same; size: inches; width: mm, the height follows; dpi:
+    pixels an inch; windows: a file of the sweep's windows, which are shown below it or on its plane; over: the file of
+    a sweep over which branches or curves are drawn; relative: whether charts and planes show b in parts of the grazing
+    clearance b*.
     Raises `PlotError` for values that none of the kinds can use.
     """
 
@@ -35,6 +39,7 @@ class Look:
     windows: Path | None = None
     over: Path | None = None
     relative: bool = False
+    width: float | None = None
 
     def __post_init__(self):
         for name, limits in (("xlim", self.xlim), ("ylim", self.ylim)):
@@ -44,14 +49,33 @@ class Look:
             raise PlotError(
                 f"size: {_told(self.size)} is not allowed; width and height must be {SIZES[0]:g} to {SIZES[1]:g} inches"
             )
+        if self.width is not None:
+            self._check_width()
         if self.dpi is not None and not RESOLUTIONS[0] <= self.dpi <= RESOLUTIONS[1]:
             raise PlotError(f"dpi: {self.dpi:g} is not allowed; it must be {RESOLUTIONS[0]} to {RESOLUTIONS[1]}")
 
-    def page(self, height: float, title: str) -> Figure:
-        """An empty figure, of the size and the resolution that are asked for: texts find their places in these."""
-        fig = page(height, title)
+    def _check_width(self) -> None:
+        width = number_of(self.width)
+        if width is None or not WIDTHS[0] <= width <= WIDTHS[1]:
+            allowed = f"a number of mm from {WIDTHS[0]:g} to {WIDTHS[1]:g}, as 85 of one column"
+            raise PlotError(not_allowed("width", self.width, allowed))
         if self.size:
-            fig.set_size_inches(self.size)
+            raise PlotError("width and size exclude each other: size is width and height in inches")
+        object.__setattr__(self, "width", width)
+
+    @property
+    def inches(self) -> float | None:
+        """The width that is asked for."""
+        return None if self.width is None else self.width / MM
+
+    @property
+    def style(self) -> dict:
+        """matplotlib's settings for a page of that width."""
+        return style_of(self.inches)
+
+    def page(self, height: float, title: str) -> Picture:
+        """An empty figure, of the size and the resolution that are asked for: texts find their places in these."""
+        fig = page(height, title, self.size, self.inches)
         if self.dpi:
             fig.set_dpi(self.dpi)
         width, height = fig.get_size_inches() * fig.dpi

@@ -3,14 +3,21 @@
 import matplotlib as mpl
 import numpy as np
 
+from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.orbits import ARROWS_AT, arrows, legend
-from vibro_sweep.plotting.style import DASHES, FAINT, IMPACT, INK, LEFT, RIGHT, STYLE, page
+from vibro_sweep.plotting.style import DASHES, FAINT, IMPACT, INK, LEFT, RIGHT
 
 
-def plot_periodic(times, gap, rate, impact_t, side, v_in, v_out, stops, title: str, names=("gap", "gap velocity")):
-    """times, gap, rate: (m,), with the impacts' times among them; impact_t, side, v_in, v_out: (impacts,). A Figure."""
-    with mpl.rc_context(STYLE):
-        fig = page(3.7, title)
+def plot_periodic(
+    times, gap, rate, impact_t, side, v_in, v_out, stops, title: str, names=("gap", "gap velocity"), width=None
+):
+    """times, gap, rate: (m,), with the impacts' times among them; impact_t, side, v_in, v_out: (impacts,). A Figure.
+
+    width : mm
+    """
+    look = Look(width=width)
+    with mpl.rc_context(look.style):
+        fig = look.page(3.7, title)
         portrait, history = fig.subplots(1, 2, width_ratios=(1, 1.4))
         # each flight starts with the velocity after its impact
         at = np.searchsorted(times, impact_t)

@@ -83,7 +83,10 @@ def plane(result: Result, overlay: Overlay | None = None):
     shown = [np.ma.masked_invalid(values[np.ix_(columns, rows)].T) for _, values in maps]
     for ax, (draw, _), values in zip(grid, maps, shown, strict=True):
         draw(ax, *corners, values)
-        ax.set_xlabel(axis_label(x_key, relative))
+        if ax.get_subplotspec().is_last_row():
+            ax.set_xlabel(axis_label(x_key, relative))
+        if ax.get_subplotspec().is_first_col():
+            ax.set_ylabel(axis_label(y_key, relative))
         ax.patch.set(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="///")
         ax.set(xlim=result.look.xlim or ax.get_xlim(), ylim=result.look.ylim or ax.get_ylim())
         rests.cells(ax, result, columns, rows, corners)
@@ -92,7 +95,6 @@ def plane(result: Result, overlay: Overlay | None = None):
             strip.ends_over(ax, result)
         if overlay is not None:
             overlay.draw(ax)
-    grid[0].set_ylabel(axis_label(y_key, relative))
     zero = "lyapunov_error" in result and any(draw is _exponent and (values == 0).any() for draw, values in maps)
     more = [_within_errors(result)] if zero else []
     _legend(fig, grid, any(values.mask.any() for values in shown), result.look, overlay, more)

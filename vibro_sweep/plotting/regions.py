@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib import patheffects
 
-from vibro_sweep.plotting.style import INK
+from vibro_sweep.plotting.style import INK, type_size
 
 STEP, MOST = 1.5, 400  # points (1/72 inch) between the places that are tried, at most so many along an axis
 MARGIN = 1.0  # points around a text
@@ -28,7 +28,7 @@ def name_regions(ax, x, y, values, taken=()) -> None:
     for one, other in taken:
         shown[np.ix_((one[1] <= up) & (up <= other[1]), (one[0] <= across) & (across <= other[0]))] = -1
     for period in np.unique(shown[shown > 0]):
-        text = ax.text(X[0], Y[0], f"{period}", **_STYLE)
+        text = ax.text(X[0], Y[0], f"{period}", fontsize=type_size(7), **_STYLE)
         size = text.get_window_extent().width * 72 / ax.figure.dpi, DIGIT * text.get_fontsize()
         # odd numbers of places: they reach as far to one side as to the other
         width, height = (int(np.ceil((length + 2 * MARGIN) * ax.figure.dpi / 72 / step)) | 1 for length in size)
@@ -43,7 +43,7 @@ def name_regions(ax, x, y, values, taken=()) -> None:
 
 
 _STYLE = {
-    "fontsize": 7, "ha": "center", "va": "center", "color": INK, "clip_on": True, "gid": "period",
+    "ha": "center", "va": "center", "color": INK, "clip_on": True, "gid": "period",
     "path_effects": [patheffects.withStroke(linewidth=2, foreground="white")],
 }  # fmt: skip
 

@@ -8,6 +8,8 @@ from matplotlib.figure import Figure
 
 from vibro_sweep.model.catalogue import OF_A_SYSTEM
 from vibro_sweep.model.exponents import CERTAIN, sign_of
+from vibro_sweep.model.real import number_of
+from vibro_sweep.model.refusals import not_allowed, shown
 from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.plotting.look import Look
@@ -73,9 +75,10 @@ class Result:
         names = list(self.sweep)
         for key, value in at.items():
             if key not in names:
-                raise PlotError(f"at: {key!r} is not swept; allowed: {', '.join(names) or 'nothing, it is one point'}")
-            if np.ndim(value) or np.asarray(value).dtype.kind not in "fiu" or not np.isfinite(value):
-                raise PlotError(f"at: {key} = {value!r} is not allowed; it must be a finite number")
+                allowed = ", ".join(names) or "nothing, it is one point"
+                raise PlotError(f"at: {shown(key)} is not swept; allowed: {allowed}")
+            if number_of(value) is None or not np.isfinite(value):
+                raise PlotError(not_allowed(f"at.{key}", value, "a finite number"))
             least, most = self.sweep[key].min(), self.sweep[key].max()
             if not least <= value <= most:
                 raise PlotError(f"at: {key} = {value:g} is not allowed; the sweep has {key} from {least:g} to {most:g}")

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.store.attributes import text, texts
-from vibro_sweep.store.opening import StoreError, is_dataset, open_file, quantities_of
+from vibro_sweep.store.opening import ForeignError, StoreError, is_dataset, open_file, opened, quantities_of
 
 if TYPE_CHECKING:
     import xarray
@@ -14,6 +15,31 @@ if TYPE_CHECKING:
 
 class PlotError(ValueError):
     """What was asked for cannot be drawn; the message says what can."""
+
+
+def readable(given: "str | Path | xarray.Dataset") -> "str | Path | xarray.Dataset":
+    """A file that another program wrote from one of ours as a Dataset; all else as it is. Raises PlotError."""
+    if not isinstance(given, (str, Path)):
+        return given
+    try:
+        with opened(Path(given), (), content=False):
+            return given
+    except ForeignError as found:
+        from vibro_sweep.store import foreign  # xarray takes long to be imported
+
+        try:
+            return foreign.dataset_of(found)
+        except StoreError as error:
+            raise PlotError(str(error)) from error
+    except StoreError as error:
+        raise PlotError(str(error)) from error
+
+
+def name_of(given: "str | Path | xarray.Dataset") -> str:
+    """What messages call it."""
+    if isinstance(given, (str, Path)):
+        return str(given)
+    return getattr(given, "encoding", {}).get("source", "this dataset")
 
 
 class FileSource:
@@ -70,14 +96,12 @@ class FileSource:
 class DatasetSource:
     """What `vibro_sweep.open` or `vibro_sweep.sweep` returned, or a part of it that `sel` and the like have cut out."""
 
-    name = "this dataset"
-
     def __init__(self, data: "xarray.Dataset"):
         if not hasattr(data, "data_vars"):
-            raise TypeError(f"data: {data!r} is not allowed; it must be the path of a file, or a Dataset")
+            raise TypeError(not_allowed("data", data, "the path of a file, or a Dataset"))
         if "status" not in data or "sweep_dimensions" not in data.attrs:
             raise PlotError("this dataset is none of `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
-        self._data = data
+        self._data, self.name = data, name_of(data)
 
     def close(self) -> None:
         """It stays open for its owner."""
@@ -112,7 +136,10 @@ class DatasetSource:
         return self._data[name].ndim
 
     def read(self, name: str, index=()) -> np.ndarray:
-        return np.asarray(self._in_order(name).values[index])
+        try:
+            return np.asarray(self._in_order(name).values[index])
+        except (OSError, RuntimeError) as error:  # of a file that it reads from
+            raise PlotError(f"{self.name}: `{name}` cannot be read, it is damaged or closed") from error
 
     def _in_order(self, name: str):
         """The dimensions as files have them."""
@@ -122,6 +149,7 @@ class DatasetSource:
 
 def source_of(given) -> FileSource | DatasetSource:
     """A path or a Dataset. Raises PlotError where it is missing or no result."""
+    given = readable(given)
     return FileSource(given) if isinstance(given, (str, Path)) else DatasetSource(given)
 
 

@@ -9,7 +9,7 @@ from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.branch_file import WINDOWS
 from vibro_sweep.plotting.flat import FlatFile
 from vibro_sweep.plotting.result import PlotError, Result
-from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark
+from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark, type_size
 
 HEIGHT = 1.5  # inches
 LANES = 6  # bars of windows that overlap lie above each other
@@ -43,7 +43,7 @@ def windows(ax, result: Result, values, order):
         ax.add_collection(PolyCollection(bars, facecolor=colour, edgecolor=FAINT, linewidth=0.4, label=name))
     unseen = _unseen(ax, file, shown, lanes, (left, right))
     _ends(ax, file, shown, lanes, (left, right))
-    _periods(ax, file, shown, lanes, lo, hi, 0.03 * (right - left))
+    _periods(ax, file, shown, lanes, lo, hi, (0.08 if getattr(ax.figure, "narrow", False) else 0.03) * (right - left))
     reasons = _reasons(ax, result, file, values, order)
     ax.set_ylim(max(lanes, default=0) + 0.7, -1.6)
     ax.set_yticks([])
@@ -113,7 +113,7 @@ def _periods(ax, file, shown, lanes, lo, hi, least):
     for w, lane in zip(shown, lanes, strict=True):
         if hi[w] - lo[w] >= least:
             text = str(file["window_period"][w])
-            ax.text((lo[w] + hi[w]) / 2, lane, text, ha="center", va="center", fontsize=6, clip_on=True)
+            ax.text((lo[w] + hi[w]) / 2, lane, text, ha="center", va="center", fontsize=type_size(6), clip_on=True)
 
 
 def _reasons(ax, result, file, values, order) -> list[str]:
@@ -147,6 +147,11 @@ def _legend(ax, file, shown, unseen, limits, reasons):
     if unseen:
         handles.append(Patch(facecolor=BAR, edgecolor=HATCHES, linewidth=0, hatch=HATCH, label="missed by all starts"))
     handles += [Patch(facecolor=REASON_COLOURS[name], label=name.replace("_", " ")) for name in reasons]
-    ax.legend(
-        handles=handles, loc="upper left", bbox_to_anchor=(1.005, 1.05), fontsize=6, handlelength=1.2, labelspacing=0.25
-    )
+    where = {"loc": "upper left", "bbox_to_anchor": (1.005, 1.05)}
+    page = ax.figure
+    narrow = getattr(page, "narrow", False)
+    if narrow:  # beside it there is no room
+        where = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.1), "ncols": 2, "columnspacing": 0.8}
+    legend = ax.legend(handles=handles, fontsize=type_size(6), handlelength=1.2, labelspacing=0.25, **where)
+    if narrow and page.grows:
+        page.set_figheight(page.get_figheight() + legend.get_window_extent().height / page.dpi)

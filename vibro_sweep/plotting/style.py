@@ -1,15 +1,15 @@
 """How the pictures look: type, colours, the names of the axes."""
 
+import matplotlib
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import ListedColormap, to_rgba
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from vibro_sweep.model.catalogue import BY_NAME, NUMBERS
 
-WIDTH = 7.0  # inches: a page's text width
+TYPE = 8.0  # points: all type of a narrow page
 
 STYLE = {
     "figure.dpi": 200,
@@ -68,6 +68,11 @@ SPECIAL = {
     "neimark_sacker": ("NS", "Neimark-Sacker", "p", "#7b3294", True),
     "sticking": ("ST", "sticking", "X", "#446644", True),
 }
+
+
+def type_size(usual: float) -> float:
+    """Points of a text that is smaller or larger than others, but on narrow pages, where all are alike."""
+    return TYPE if matplotlib.rcParams["font.size"] == TYPE else usual
 
 
 def special_mark(kind: str, size: float = 4.0) -> dict:
@@ -133,13 +138,6 @@ def marked(colour, marker):
     style = {"ls": "none", "markersize": 5, "markeredgewidth": 0.6}
     dot = Line2D([], [], color=INK, marker=marker, markerfacecolor="white", **style)
     return Patch(facecolor=colour, edgecolor=FAINT, linewidth=0.4), dot
-
-
-def page(height, title) -> Figure:
-    """An empty figure of the page's width; needs no display and is known to no pyplot."""
-    fig = Figure(figsize=(WIDTH, height), layout="constrained")
-    fig.suptitle(title)
-    return fig
 
 
 def density_colours() -> ListedColormap:

@@ -101,14 +101,19 @@ def _stack(result, panels, what):
         draw(ax, result, values, order)
     if key == "b":
         mark_grazing(axes, result, *(result.look.xlim or values[[0, -1]]))
-    borders = edges(values)
-    most = 0.02 * (values[-1] - values[0]) or np.inf
-    axes[-1].set_xlim(max(borders[0], values[0] - most), min(borders[-1], values[-1] + most))
+    axes[-1].set_xlim(reach(values))
     axes[-1].set_xlabel(axis_name(key))
     _key(axes[0], result)
     _explanations(fig, axes, result)
     fig.align_ylabels(axes)
     return fig
+
+
+def reach(values) -> tuple[float, float]:
+    """From where to where an axis over rising values leads: half a step beyond them, but not far."""
+    borders = edges(values)
+    most = 0.02 * (values[-1] - values[0]) or np.inf
+    return max(borders[0], values[0] - most), min(borders[-1], values[-1] + most)
 
 
 def in_range(result) -> np.ndarray:

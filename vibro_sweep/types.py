@@ -1,0 +1,52 @@
+"""What functions take and return, for annotations and `isinstance`: `from vibro_sweep.types import Branch`.
+
+`System` and `Oscillator` are in `vibro_sweep` itself; both are an `AnyOscillator`.
+"""
+
+from vibro_sweep.analysis.branches.continuation import Branch
+from vibro_sweep.analysis.branches.generations import Followed
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.curves.continuation import BifurcationCurve
+from vibro_sweep.analysis.curves.way import CurvePoint
+from vibro_sweep.analysis.periodic.lcp import Born
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.single.discontinuity import DiscontinuityMap
+from vibro_sweep.analysis.single.exponents import Exponents
+from vibro_sweep.analysis.single.orbit import Orbit, Status
+from vibro_sweep.analysis.windows.unseen import Unseen
+from vibro_sweep.analysis.windows.window import Window, Windows
+from vibro_sweep.driver.sweep import RunReport
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.grazing import Grazing
+from vibro_sweep.model.linear import Family, Linear
+from vibro_sweep.model.modes import Modes
+from vibro_sweep.model.window_families import Family as WindowFamily
+from vibro_sweep.scene import Scene, Section, Start, Trajectory
+
+__all__ = [
+    "AnyOscillator",
+    "BifurcationCurve",
+    "Born",
+    "Branch",
+    "CurvePoint",
+    "DiscontinuityMap",
+    "Exponents",
+    "Family",
+    "Followed",
+    "Grazing",
+    "Linear",
+    "Modes",
+    "Orbit",
+    "PeriodicOrbit",
+    "RunReport",
+    "Scene",
+    "Section",
+    "SpecialPoint",
+    "Start",
+    "Status",
+    "Trajectory",
+    "Unseen",
+    "Window",
+    "WindowFamily",
+    "Windows",
+]
