@@ -19,7 +19,8 @@ from reference.naive_map import NaiveMap, linear_family, root_family
 from support import paper
 
 import vibro_sweep as vs
-from vibro_sweep.plotting.style import DASHES, EXPONENTS, FAINT, GRAZING, INK, LEFT, RIGHT, STYLE, page
+from vibro_sweep.plotting.page import page
+from vibro_sweep.plotting.style import DASHES, EXPONENTS, FAINT, GRAZING, INK, LEFT, RIGHT, STYLE
 
 CASES = {
     (False, False): "neither stop",

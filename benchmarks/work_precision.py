@@ -11,7 +11,8 @@ from matplotlib.lines import Line2D
 from peers import ENGINE, METHODS, available
 from timing import interleaved
 
-from vibro_sweep.plotting.style import DASHES, FAINT, INK, page
+from vibro_sweep.plotting.page import page
+from vibro_sweep.plotting.style import DASHES, FAINT, INK
 
 TITLE = "Work and precision"
 COMMAND = "python benchmarks/work_precision.py"

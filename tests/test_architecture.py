@@ -18,16 +18,20 @@ ALLOWED = {
 FLOORS = ["single", "attractors", "periodic", "branches", "curves", "windows"]  # of analysis/: in this order
 EVERYWHERE = {"identity", "__version__"}  # what numbers depend on, and the version
 TABLES = {
+    "arguments",
     "bifurcations",
     "branch_file",
     "catalogue",
     "exponents",
+    "files",
     "observables",
     "parameters",
     "pictures",
+    "real",
+    "refusals",
     "state",
     "status",
-}  # of model/: names and labels
+}  # of model/: names and labels, and checks of arguments
 
 
 def imported(path):

@@ -113,6 +113,8 @@ def test_replace(changes, expected):
         (dict(sweep={"b": "all"}), 'sweep.b = "all"'),
         (dict(start="rest"), 'start = "rest"'),
         (dict(start=(1, 2, 3)), "start = [1, 2, 3]"),
+        (dict(start=(1, 2)), "start = [1, 2]: must be 4 numbers"),
+        (dict(start=[]), "start = []: must be 4 numbers"),
         (dict(observe="lyapunov"), 'observe = "lyapunov"'),
         (dict(system=3), "system = 3"),
     ],

@@ -162,7 +162,7 @@ def test_commands(here, file, arguments, kind, look):
     [
         (["--at", "b"], ["--at b: write KEY=VALUE"]),
         (["--at", "b=x"], ["--at b: 'x' is no number"]),
-        (["--at", "b=nan"], ["b = nan", "finite"]),
+        (["--at", "b=nan"], ["at.b: nan", "finite"]),
         (["--at", "R=1"], ["'R' is not swept", "allowed: b"]),
         (["--at", "b=6.6", "--kind", "lyapunov"], ["kind lyapunov shows the whole sweep", "phase-portrait, "]),
         (["--variable", "y"], ["variable 'y'", "bifurcation: x1, v1, x2, v2", "poincare: x1, x2"]),

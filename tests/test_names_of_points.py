@@ -17,7 +17,7 @@ def chart(points):
     return panel, marks, [text.get_window_extent() for text in panel.texts]
 
 
-@pytest.mark.parametrize("points", [1, 12, 200])
+@pytest.mark.parametrize("points", [1, 12, pytest.param(200, marks=pytest.mark.slow)])
 def test_names_stand_alone(points):
     panel, marks, boxes = chart(points)
     assert min(points, 8) <= len(boxes) <= points and (points < 200 or len(boxes) < points)

@@ -180,7 +180,7 @@ def test_every_example_has_its_numbers():
     assert len(scenes) > 10
     for path in scenes:
         scene = load_scene(path)
-        known = {*numbers.attributes(scene), *numbers.dimensions(scene), *scene.sweep}
+        known = {*numbers.attributes(scene), *numbers.dimensions(scene), *numbers.matrices(scene), *scene.sweep}
         told = {name for name, value in scene.system.numbers.items() if value not in (None, 0.0)}
         options = {name for name, value in scene.system.options.items() if value is not None}
         assert {*told, *options, "transient", "record"} <= known, path.name

@@ -166,7 +166,7 @@ def test_a_missing_file(tmp_path):
         (dict(progress="bar"), "progress: 'bar' is not allowed; it must be callable"),
         (dict(scene="q.yaml"), "scene: 'q.yaml' is not allowed; it must be a Scene, as `load_scene` returns it"),
         (dict(output=3), "output: 3 is not allowed; it must be the path of a file"),
-        (dict(mode="again"), "mode 'again': must be one of 'new', 'resume', 'overwrite'"),
+        (dict(mode="again"), "mode: 'again' is not allowed; it must be one of 'new', 'resume', 'overwrite'"),
     ],
     ids=str,
 )

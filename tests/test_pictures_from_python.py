@@ -83,7 +83,7 @@ def test_a_plane_in_the_axes_of_the_caller(variables):
         (lambda data: vs.plot(data, "iteration", ax=Figure().subplots()), "ax: the picture has 2 panels"),
         (lambda data: vs.plot(data, "plane"), "this dataset can show bifurcation, lyapunov, iteration, poincare"),
         (lambda data: vs.plot(data, "iteration", at={"omega": 3}), "at: 'omega' is not swept; allowed: b"),
-        (lambda data: vs.plot(data, "iteration", at={"b": "here"}), "at: b = 'here' is not allowed"),
+        (lambda data: vs.plot(data, "iteration", at={"b": "here"}), "at.b: 'here' is not allowed"),
         (lambda data: vs.plot(xarray.Dataset()), "it has no status"),
     ],
 )

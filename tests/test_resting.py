@@ -135,7 +135,7 @@ def test_ball_that_rests_in_its_cavity():
 
 
 def test_a_rest_after_one_impact_is_not_followed_to_other_restitutions(resting):
-    with pytest.raises(ValueError, match=r"parameter: 'R' is not allowed: .* at R = 0"):
+    with pytest.raises(ValueError, match=r"parameter: 'R' is not allowed; .* at R = 0"):
         vs.continue_orbit(resting[0], "R", (0.0, 0.5))
     orbit, _ = resting
     other = replace(orbit._solution, family=family_of(orbit.system.replace(R=0.1)))
