@@ -53,7 +53,7 @@ TOLD = {
     "branch": ["LLLRRR", "along b from 0.37 to", "points", "stable at", "pitchfork", "begins with", "ends with", "ok"],
     "followed": ["generation 1", "pitchfork", "of branch 0"],
     "special point": [
-        "pitchfork (super) at b = 0.37386950048887",
+        "pitchfork (super) at b = 0.37386950048",
         "+-",
         "multipliers -1",
         "LLLRRR, period 1, symmetric",

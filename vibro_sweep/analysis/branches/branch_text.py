@@ -1,6 +1,7 @@
 """What `repr` says of branches and their special points."""
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,6 @@ if TYPE_CHECKING:
     from vibro_sweep.analysis.branches.continuation import Branch
     from vibro_sweep.analysis.branches.generations import Followed
     from vibro_sweep.analysis.branches.special import SpecialPoint
-    from vibro_sweep.analysis.curves.continuation import BifurcationCurve
 
 
 def of_special_point(point: "SpecialPoint") -> str:
@@ -30,18 +30,18 @@ def of_branch(branch: "Branch") -> str:
     lines = [
         f"<Branch of {itinerary_of(branch.begins.orbit)} along {where}, {len(p):,} points, status {branch.status}",
         f"stable at {stable:,} of {len(p):,} points; largest modulus of multipliers {span(largest)}",
-        *way_of(branch),
+        *way_of(branch.begins, branch.special, branch.ends, branch.closed),
     ]
     return told(lines)
 
 
-def way_of(one: "Branch | BifurcationCurve") -> list[str]:
-    """Where it begins and ends, and what lies between."""
-    inner = [point for point in one.special if point is not one.begins and point is not one.ends]
+def way_of(begins: "SpecialPoint", special: "Sequence[SpecialPoint]", ends: "SpecialPoint", closed: bool) -> list[str]:
+    """Where a branch or a curve begins and ends, and what lies between."""
+    inner = [point for point in special if point is not begins and point is not ends]
     return [
-        f"begins with {event(one.begins)}",
+        f"begins with {event(begins)}",
         *([f"in between {counted(inner)}"] if inner else []),
-        f"ends with {event(one.ends)}" + (", where it began" if one.closed else ""),
+        f"ends with {event(ends)}" + (", where it began" if closed else ""),
     ]
 
 

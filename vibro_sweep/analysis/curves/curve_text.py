@@ -18,6 +18,6 @@ def of_curve(curve: "BifurcationCurve") -> str:
     lines = [
         f"<BifurcationCurve, {curve.type.replace('_', '-')}, {', '.join(spans)}",
         f"{points.sizes['point']:,} points, {real:,} of them a motion; of {itinerary_of(curve.begins.orbit)}",
-        *way_of(curve),
+        *way_of(curve.begins, curve.special, curve.ends, curve.closed),
     ]
     return told(lines)
