@@ -16,7 +16,7 @@ from vibro_sweep.model.parameters import NAMES
 
 # Each number of masses compiles kernels of its own. Models of one mass and of two are in the fast suite, too.
 FAST, SLOW = (3,), (1, 2, 5, 8)
-SMALL = [3, *slow_cases(1, 2)]
+SMALL = slow_cases(1, 2, 3)
 COUNT = 30  # impacts compared
 
 
@@ -172,6 +172,7 @@ def test_unequal_restitution_in_the_sum_rule():
     assert set(sides) == {-1, 1} and abs(exponents.residual) < 1e-13
 
 
+@pytest.mark.slow
 def test_kinds_of_damping_and_of_modes():
     """Free, critical, overdamped, equal and unseen modes: without impacts the exponents are real parts of the roots."""
     chain = np.array([[1.0, -1, 0], [-1, 2, -1], [0, -1, 1]])
@@ -197,6 +198,7 @@ def test_kinds_of_damping_and_of_modes():
         assert abs(found.residual) < 1e-12, name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("R", "K1"), [(0.6, 0.0), (0.6, 4.0), (0.0, 4.0)])
 @pytest.mark.parametrize(("K2", "C2"), [(1.0, 0.1), (0.0, 0.0), (9.0, 0.2)])
 def test_masses_that_the_contact_does_not_see(R, K1, K2, C2):

@@ -201,6 +201,7 @@ def test_one_point_and_what_has_no_attractor(tmp_path):
     assert np.array_equal(data["attractor_id"] == 0, data["attractor"] == 0)
 
 
+@pytest.mark.slow
 def test_many_points_need_little_memory():
     """Of 10^5 points, made as they are read, less than half of what the file holds of them is ever there at once."""
     import tracemalloc

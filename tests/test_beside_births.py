@@ -21,6 +21,7 @@ TURNED = vs.Oscillator.named(
 )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("omega", [1.4695, 1.46952])
 def test_the_way_to_a_birth_turns_round_at_no_fold(omega):
     """An orbit of 20 impacts: at a fiftieth of the way to its birth the sign of the tangent is rounding."""

@@ -111,6 +111,7 @@ def impacts(system, state):
     return vs.simulate(system, state, 5)
 
 
+@pytest.mark.slow
 def test_through_a_pool_of_processes():
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
         orbit = pool.submit(impacts, SYSTEM, np.zeros(4)).result()

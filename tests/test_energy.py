@@ -54,6 +54,7 @@ def test_against_dense_samples(name):
             assert peak * (1 - 1e-8) <= found <= peak * (1 + beyond), coordinate
 
 
+@pytest.mark.slow
 def test_the_free_motion_in_closed_form():
     """x = a cos(omega t + p): the root of a^2/2, and a itself."""
     system = PAPER.replace(b=8.0)

@@ -38,6 +38,7 @@ def test_a_copy_has_the_same_identity(copy):
     assert now() == identity.identity()
 
 
+@pytest.mark.slow
 def test_each_module_that_makes_numbers_changes_it(copy):
     before = now()
     assert len(COUNTED) > 40

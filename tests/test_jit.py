@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numba
 import numpy as np
 import pytest
+from support import slow_cases
 
 from vibro_sweep import identity
 from vibro_sweep.driver import blocks, compute
@@ -66,7 +67,7 @@ def test_a_compilation_within_another_one_leaves_it_lean():
 
 
 @known
-@pytest.mark.parametrize("change, outcome", [("", "yes"), (BROKEN, "no")])
+@pytest.mark.parametrize("change, outcome", [("", "yes"), *slow_cases((BROKEN, "no"))])
 def test_a_small_kernel_tells_whether_numba_is_as_expected_inside(change, outcome, tmp_path):
     def start():
         program = change + "from vibro_sweep.engine.simd import jit; print(jit.AS_ONE)"

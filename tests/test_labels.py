@@ -80,6 +80,7 @@ def period_at(file, points, relative, period):
     return period[row, column]
 
 
+@pytest.mark.slow
 def test_numbers_lie_in_their_regions(tmp_path):
     """On 4 random planes, one of them relative to a random b*; 120 are marked slow."""
     assert searched(np.random.default_rng(0), tmp_path, 4) > 10

@@ -149,6 +149,7 @@ PLANES = (
 )
 
 
+@pytest.mark.slow
 def test_check_allocates_little(tmp_path):
     numbers = dict(part.split(": ") for part in PAPER.split(", ")) | {"zeta": "0"}
     system = ", ".join(f"{name}: {value}" for name, value in numbers.items())

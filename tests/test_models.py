@@ -223,7 +223,8 @@ def test_rest_held_by_a_stop():
     assert held_state(ball.linear).tolist() == [3.0]
 
 
-@pytest.mark.parametrize("stop_at", [1, pytest.param(2, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("stop_at", [1, 2])
 def test_the_mass_at_the_stops_is_the_one_that_stays_between_them(stop_at):
     """Coordinates that are only exchanged are their own inverse, and not the same for that."""
     one = vs.Oscillator.named(

@@ -107,6 +107,7 @@ def test_thousands_of_series_in_a_rest(seed):
     assert time_in_units(system, state, 0, rest["t_off"], zero) < 1.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("offset", [3e1, 3e2, -3e3])
 def test_far_stops_are_like_near_ones(offset):
     """Shifted with all that holds it, an oscillator strikes when it did, to the rounding of a gap of the size of b."""

@@ -99,6 +99,7 @@ def test_an_orbit_of_period_1_shows_one_dot(orbits):
         assert np.array_equal(line.get_xdata(), file["trajectory_section_x1"][2])
 
 
+@pytest.mark.slow
 def test_portraits_reach_the_walls_where_the_orbit_does(orbits):
     """Between samples too, on both sides of each impact, and nowhere else."""
     fig = plotting.figure(orbits[1], "phase-portrait")
