@@ -2,6 +2,7 @@
 
 import h5py
 import numpy as np
+import xarray  # noqa: F401  before a run begins that `done` is to see in the middle: loading it takes a second
 
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks

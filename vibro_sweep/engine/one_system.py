@@ -38,10 +38,10 @@ def unrepeated(values) -> np.ndarray:
     return values[tuple(slice(None) if stride else slice(1) for stride in values.strides)]
 
 
-def points_of(parameters: dict[str, np.ndarray], stops: str = "both") -> np.ndarray:
+def points_of(parameters: dict[str, np.ndarray], stops: str = "both", frames: bool = True) -> np.ndarray:
     """Systems with these numbers (arrays of one shape, tau resolved) as POINTs of the kernels, of that shape.
 
-    stops: both, right or left.
+    stops: both, right or left. frames: whether tangent vectors are wanted.
     """
     result = np.zeros(np.shape(parameters["b"]), POINT)
     for name in NAMES:
@@ -49,9 +49,10 @@ def points_of(parameters: dict[str, np.ndarray], stops: str = "both") -> np.ndar
     few = {name: unrepeated(parameters[name]) for name in NAMES}
     psi, omega_squared = modes(few["mu_m"], few["mu_k"])
     result["psi"], result["omega_squared"] = psi, omega_squared
-    with np.errstate(all="ignore"):  # where there are no modes
-        eta = few["zeta"][..., None] * omega_squared
-        result["rounding"] = moved(eta, omega_squared - eta**2, ROUNDING * eta, ROUNDING * omega_squared).max(axis=-1)
+    if frames:
+        with np.errstate(all="ignore"):  # where there are no modes
+            eta, rounding = few["zeta"][..., None] * omega_squared, ROUNDING * omega_squared
+            result["rounding"] = moved(eta, omega_squared - eta**2, ROUNDING * eta, rounding).max(axis=-1)
     result["cells"] = cells.cells_needed(omega_squared, few["zeta"], few["omega"])
     offset, R = parameters.get("offset", 0.0), parameters["R"]
     result["stops"][..., 0] = offset - parameters["b"] if stops != "right" else -np.inf
@@ -85,8 +86,10 @@ def is_paper(system, axes: dict[str, np.ndarray] | None = None) -> bool:
     axes = axes or {}
     if not isinstance(system, System) or "mu_c" in axes or not (system.mu_c is None or system.mu_c == system.mu_k):
         return False
-    offset, b = (np.abs(axes.get(name, getattr(system, name))) for name in ("offset", "b"))
-    return bool(np.all(axes.get("mu_k", system.mu_k))) and not is_far(np.max(offset), np.min(b))
+    if not np.all(axes.get("mu_k", system.mu_k)):
+        return False
+    offset, b = (axes.get(name, getattr(system, name)) for name in ("offset", "b"))
+    return not np.any(offset) or not is_far(np.max(np.abs(offset)), np.min(np.abs(b)))
 
 
 def point_of_one(system, later: float) -> tuple[np.ndarray, Kind]:

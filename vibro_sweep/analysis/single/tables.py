@@ -12,7 +12,7 @@ from vibro_sweep.model.grid import grid, linears
 def table_of(system: AnyOscillator, axes: dict[str, np.ndarray], frames: bool) -> tuple[np.ndarray, Kind]:
     """Points of a grid of values, of its shape, and the kernels that they need. frames: for tangent vectors."""
     if is_paper(system, axes):
-        return points_of(grid(system, axes), system.stops), PAPER
+        return points_of(grid(system, axes), system.stops, frames), PAPER
     each = linears(system, axes)
     kind = kind_of(each.flat)
     return any_points(each, kind, frames), kind
