@@ -20,8 +20,8 @@ def switch(special: SpecialPoint) -> list[PeriodicOrbit]:
     """Orbits just beyond a pitchfork (two mirror images), a flip (the doubled one) or a graze (with, or without, the
     impact that has no speed there; at the graze of the free motion those that hit one stop or both).
 
-    Orbits that pass a stop are left out, as is free motion that is one of a family (`resonance` in `periodic_orbit`): no
-    branch begins with it. Raises ValueError for a special point of another type.
+    Orbits that pass a stop are left out, as is free motion that is one of a family (`resonance` in `periodic_orbit`):
+    no branch begins with it. Raises ValueError for a special point of another type.
     """
     check_type("special", special, SpecialPoint, "a special point of a branch")
     if special.type in ("pitchfork", "flip"):
