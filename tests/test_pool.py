@@ -16,7 +16,7 @@ import pytest
 from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.driver import blocks, cost, memory, sweep
+from vibro_sweep.driver import blocks, cost, jobs, memory, pool, sweep
 from vibro_sweep.driver.compute import BlockError, RunError, compute
 from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
@@ -216,3 +216,27 @@ def test_size_of_a_block(monkeypatch):
     assert 0.7 < cost.points_per_block(scene, 1e-9, 1000, 4.0) * each / (memory.BYTES_UNDER_WAY / 1000) < 1
     small = scene_of(SCENES["plane"])
     assert cost.points_per_block(small, 1e-9, 1, 4.0) == 35 // cost.BLOCKS_PER_WORKER
+
+
+class Silent(Executor):
+    """Of a scheduler that died when it was sent something: no future is ever done, or all are cancelled."""
+
+    def __init__(self, gone):
+        self.gone = gone
+
+    def submit(self, function, *arguments):
+        future = Future()
+        if not self.gone:
+            future.cancel()
+            future.set_running_or_notify_cancel()
+        return future
+
+
+@pytest.mark.parametrize("gone", [True, False])
+def test_a_scheduler_that_dies_ends_in_one_message(monkeypatch, tmp_path, gone):
+    for module in (jobs, pool):
+        monkeypatch.setattr(module, "PATIENCE", 0.01)
+    with pytest.raises(RunError, match="the scheduler has died"):
+        list(jobs.results(Silent(gone), abs, [("a", -1)]))
+    with pytest.raises(RunError, match="the scheduler has died"):
+        vs.run(scene_of(SCENES["follow"]), tmp_path / "x.h5", executor=Silent(gone))

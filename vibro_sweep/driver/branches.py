@@ -10,6 +10,7 @@ from vibro_sweep.analysis.branches.forest import Tree, forest, grow
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.driver.usable import is_branch
 from vibro_sweep.model.branch_file import BRANCHES, columns
 from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.state import state
@@ -44,7 +45,9 @@ def run_branches(
             except NoOrbitError:
                 file.drop()
                 raise
-            found = forest(seeds, key, bounds, scene.follow, scene.depth, computed(grow, pool, file, progress))
+            found = forest(
+                seeds, key, bounds, scene.follow, scene.depth, computed(grow, is_branch, pool, file, progress)
+            )
         file.finish(provenance(), *_contents(scene, found))
 
 

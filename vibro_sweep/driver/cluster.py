@@ -42,6 +42,11 @@ class ClusterExecutor(ClientExecutor):
             self._last = sum(self._threads().values())
         return self._last
 
+    @property
+    def gone(self) -> bool:
+        """Whether the scheduler has died. A block that was sent at that moment is never answered."""
+        return self._client.status in ("closing", "closed")
+
     def submit(self, function, *arguments, **named):
         try:
             return super().submit(function, *arguments, **named)

@@ -15,6 +15,7 @@ from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of, specials_of
 from vibro_sweep.driver.planes import edges_in_file, plane_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.driver.usable import is_branch, is_curve, is_probe
 from vibro_sweep.model.branch_file import CHART, OF_EDGES, columns
 from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.state import state
@@ -45,9 +46,9 @@ def run_curves(
         if file.complete:
             return
         with workers_of(workers, executor) as pool:
-            evaluate = computed(trace, pool, file, progress)
+            evaluate = computed(trace, is_curve, pool, file, progress)
             if of_plane is not None:
-                probed = computed(probe, pool, file, progress)
+                probed = computed(probe, is_probe, pool, file, progress)
                 found = explain(*of_plane, names, box, scene.of, scene.depth, probed, evaluate)
                 curves, more = found.curves, edges_in_file(of_plane[0], found)
             else:
@@ -74,7 +75,7 @@ def _starts(scene: Continuation, names, box, pool, file, progress) -> list[Curve
 def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint]:
     """All special points of the branches of the scene's orbits along its first number."""
     key, bounds = next(iter(scene.along.items()))
-    keep = computed(grow, pool, file, progress)
+    keep = computed(grow, is_branch, pool, file, progress)
 
     def evaluate(names, jobs):
         return keep([f"branch {name}" for name in names], jobs)

@@ -4,13 +4,14 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from itertools import islice
 from multiprocessing import get_context, parent_process
 from typing import Any
 
 from vibro_sweep.driver.compute import RunError
+from vibro_sweep.driver.pool import GIVEN_UP, PATIENCE
 
 AT_ONCE = 4  # jobs that are sent together
 AHEAD = 2  # times as many as there are workers
@@ -58,34 +59,43 @@ def results(pool: Executor | None, function: Callable, jobs: Iterable[tuple[Any,
                 under_way[future] = [key for key, _ in batch]
             if not under_way:
                 return
-            done, _ = wait(under_way, return_when=FIRST_COMPLETED)
+            done, _ = wait(under_way, PATIENCE, FIRST_COMPLETED)
+            if not done and getattr(pool, "gone", False):
+                raise RunError(GIVEN_UP)
             for future in done:
                 yield from zip(under_way.pop(future), future.result(), strict=True)
     except BrokenExecutor as error:
         raise RunError(f"a worker process died, killed or out of memory ({error})") from error
+    except CancelledError as error:
+        raise RunError(GIVEN_UP) from error
     finally:
         for future in under_way:
             future.cancel()
 
 
-def computed(function: Callable, pool: Executor | None, file, progress=None) -> Callable[[list[str], list], list]:
+def computed(
+    function: Callable, usable: Callable[[Any], bool], pool: Executor | None, file, progress=None
+) -> Callable[[list[str], list], list]:
     """evaluate(names, jobs): the results of `function`, which the run `file` (store/pieces.py) keeps by these names.
 
+    usable : whether what was kept is a result of the function (driver/usable.py)
     progress : called as progress(done, total) in jobs
     """
     done = 0
 
     def evaluate(names: list[str], jobs: list) -> list:
         nonlocal done
-        missing = [(name, job) for name, job in zip(names, jobs, strict=True) if file.get(name) is None]
+        kept = {name: file.get(name, usable) for name in names}
+        missing = [(name, job) for name, job in zip(names, jobs, strict=True) if kept[name] is None]
         total = done + len(jobs)
         done += len(jobs) - len(missing)
         for name, result in results(pool, function, missing):
             file.write(name, result)
+            kept[name] = result
             done += 1
             if progress:
                 progress(done, total)
-        return [file.get(name) for name in names]
+        return list(kept.values())
 
     return evaluate
 

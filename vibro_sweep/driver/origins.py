@@ -25,6 +25,7 @@ from vibro_sweep.driver.windows import cover_of, rows_in
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.bifurcations import CURVES
 from vibro_sweep.model.branch_file import CHART, WINDOWS
+from vibro_sweep.model.refusals import cut, shown
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.joining import branch_of, curve_of
@@ -48,7 +49,7 @@ def source_of(scene: Continuation) -> Source:
     if scene.origin == "sweep":
         with store.contents(Path(scene.begin)) as data:
             if "kind" in data.attrs:
-                raise ValueError(f"continue.from.sweep: {scene.begin} holds {data.attrs['kind']}, no sweep")
+                raise ValueError(f"continue.from.sweep: {scene.begin} holds {cut(str(data.attrs['kind']))}, no sweep")
             own = _rows(scene, data)[0].system
             identity = data.attrs.get("identity", "")
     elif scene.origin == "branches":
@@ -84,7 +85,8 @@ def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[S
     else:
         orbits = [orbit for orbit in _orbits(scene, key) if lo <= orbit._solution.family.numbers[key] <= hi]
     if not orbits:
-        raise NoOrbitError(f"continue.from.{scene.origin}: no orbit with {key} in {lo:g} .. {hi:g}")
+        of = f" of {scene.begin}" if scene.origin in ("sweep", "branches") else ""
+        raise NoOrbitError(f"continue.from.{scene.origin}: no orbit{of} with {key} in {lo:g} .. {hi:g}")
     return [seed_of(orbit) for orbit in orbits]
 
 
@@ -107,7 +109,7 @@ def _check_same(scene: Continuation, own: AnyOscillator, asked: AnyOscillator) -
     ours, theirs = ({"type": one.model.name, **one.numbers, **one.options} for one in (asked, own))
     for name in [*ours, *theirs]:
         if ours.get(name) != theirs.get(name):
-            told = f"{name} = {ours.get(name)!r} in system, and {theirs.get(name)!r} in {scene.begin}"
+            told = f"{name} = {shown(ours.get(name))} in system, and {shown(theirs.get(name))} in {scene.begin}"
             raise ValueError(f"continue.from.{scene.origin}: {told}; branches belong to one oscillator")
 
 

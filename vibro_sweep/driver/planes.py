@@ -9,6 +9,7 @@ from vibro_sweep.analysis.windows.edges import Plane, ends_of
 from vibro_sweep.analysis.windows.explained import Explained
 from vibro_sweep.analysis.windows.rows import check_data
 from vibro_sweep.model.built import BUILD
+from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation, parse_scene
 
@@ -29,7 +30,9 @@ def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
             raise ValueError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
         check_data(data)
         if sorted(keys) != sorted(names):
-            raise ValueError(f"continue.along: {', '.join(names)} is not allowed; {scene.begin} is a plane of {keys}")
+            raise ValueError(
+                f"continue.along: {', '.join(names)} is not allowed; {scene.begin} is a plane of {cut(', '.join(keys))}"
+            )
         if scene.largest is not None:
             raise ValueError(
                 f"continue.from.largest: belongs to windows along one number; {scene.begin} is a plane whose edges are "

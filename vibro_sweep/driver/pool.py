@@ -10,7 +10,8 @@ from vibro_sweep.driver.compute import BlockError, RunError, compute
 
 ATTEMPTS = 3  # at a block whose worker dies: it may be the block that kills them
 FINAL = (BlockError, BrokenExecutor, CancelledError, ImportError)  # another attempt would not help
-PATIENCE = 1.0  # seconds after which to look whether workers have joined
+PATIENCE = 1.0  # seconds after which to look whether workers have joined, or the scheduler has died
+GIVEN_UP = "the executor gave up its work: the scheduler has died, or somebody has cancelled it"
 
 
 def as_computed(
@@ -47,6 +48,8 @@ def as_computed(
             try:
                 future = finished.get(timeout=PATIENCE)
             except queue.Empty:
+                if getattr(pool, "gone", False):
+                    raise RunError(GIVEN_UP) from None
                 continue
             block, attempt = under_way.pop(future)
             error = CancelledError() if future.cancelled() else future.exception()
@@ -71,7 +74,7 @@ def _given_up(block: Block, attempt: int, error: BaseException) -> RunError:
     if isinstance(error, BrokenExecutor):
         return RunError(f"a worker process died, killed or out of memory, and its pool with it ({reason})")
     if isinstance(error, CancelledError):
-        return RunError("the executor gave up its work: the scheduler has died, or somebody has cancelled it")
+        return RunError(GIVEN_UP)
     if isinstance(error, ImportError):
         return RunError(f"a worker cannot load vibro_sweep ({reason}); install it there")
     return RunError(f"{attempt} attempts at {block} were lost with their workers ({reason})")

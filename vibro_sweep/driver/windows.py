@@ -15,6 +15,7 @@ from vibro_sweep.analysis.windows.unseen import unseen_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.driver.jobs import results, workers_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.driver.usable import is_window
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.branch_file import UNSEEN, WINDOWS, columns
@@ -89,12 +90,14 @@ def cover_of(
 
     def evaluate(points, jobs) -> list[Result]:
         named = {":".join(map(str, point)): job for point, job in zip(points, jobs, strict=True)}
-        missing = [(name, job) for name, job in named.items() if file.get(name) is None]
+        kept = {name: file.get(name, is_window) for name in named}
+        missing = [(name, job) for name, job in named.items() if kept[name] is None]
         for name, result in results(pool, window_of, missing):
-            file.write(name, _arrays(result))
+            kept[name] = _arrays(result)
+            file.write(name, kept[name])
             if progress:
                 progress(cover.done, cover.total)
-        return [_result(file.get(name)) for name in named]
+        return [_result(arrays) for arrays in kept.values()]
 
     cover.search(evaluate)
     return cover

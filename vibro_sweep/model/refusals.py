@@ -36,9 +36,9 @@ def shown(value: object) -> str:
     return cut(re.sub(r"\s*\n\s*", " ", _SHORT.repr(value)))
 
 
-def cut(text: str) -> str:
+def cut(text: str, most: int = LONGEST) -> str:
     """The beginning of a text."""
-    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+    return text if len(text) <= most else text[: most - 3] + "..."
 
 
 def not_allowed(name: str, value: object, allowed: str) -> str:

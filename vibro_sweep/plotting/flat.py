@@ -7,6 +7,7 @@ import numpy as np
 
 from vibro_sweep.model.bifurcations import KINDS, TYPES
 from vibro_sweep.model.branch_file import WINDOWS
+from vibro_sweep.model.refusals import cut
 from vibro_sweep.plotting.source import PlotError, name_of, readable
 from vibro_sweep.store.attributes import text, texts
 from vibro_sweep.store.flat_checks import Stored, check
@@ -69,7 +70,7 @@ def sweep_below(path: str | Path) -> "str | Path | xarray.Dataset":
     given = readable(path)
     kind = flat_kind_of(given)
     if kind is not None:
-        raise PlotError(f"over: {path} holds {kind}, and no sweep")
+        raise PlotError(f"over: {path} holds {cut(kind)}, and no sweep")
     return given
 
 

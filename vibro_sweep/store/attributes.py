@@ -6,6 +6,7 @@ import numpy as np
 
 from vibro_sweep.model import catalogue
 from vibro_sweep.model.observables import Variable
+from vibro_sweep.model.refusals import cut
 
 # the attributes of a file that hold a number, or a word, for all points (`numbers.attributes`)
 NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "record")
@@ -84,9 +85,9 @@ def check_own_dimensions(name: str, own: int) -> None:
 def check_dataset(file: h5py.File, name: str) -> None:
     """Raise where it is missing, or leads to another place: links, virtual datasets, external storage."""
     if not isinstance(file.get(name, getlink=True), h5py.HardLink):
-        raise KeyError(f"`{name}` is missing, or is a link")
+        raise ValueError(f"`{cut(name)}` is missing, or is a link")
     dataset = file[name]
     if not isinstance(dataset, h5py.Dataset):
-        raise ValueError(f"`{name}` is no dataset")
+        raise ValueError(f"`{cut(name)}` is no dataset")
     if dataset.is_virtual or dataset.external:
         raise ValueError(f"the numbers of `{name}` are in another file")

@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 
 from vibro_sweep.model.branch_file import BRANCHES, CHART, OF_EDGES, RAGGED, UNSEEN, WINDOWS, Column, columns
+from vibro_sweep.model.refusals import cut, shown
 from vibro_sweep.model.state import state
 from vibro_sweep.store.attributes import check_dataset, text, texts
 
@@ -42,7 +43,7 @@ def damage_of(file: h5py.File) -> str:
 def check(kind: str, parameters: list[str], found: Mapping[str, Stored]) -> None:
     """Raise ValueError for branches, windows or curves that nobody could read."""
     if kind not in KINDS:
-        raise ValueError(f"its kind {kind!r} is unknown")
+        raise ValueError(f"its kind {shown(kind)} is unknown")
     lengths = {}
     for name, one in found.items():
         if len(one.dimensions) != one.values.ndim:
@@ -55,7 +56,7 @@ def check(kind: str, parameters: list[str], found: Mapping[str, Stored]) -> None
         if column.name in found:
             _check_column(column, found[column.name], lengths)
         elif column.dimensions[0] not in LATER:
-            raise ValueError(f"`{column.name}` is missing")
+            raise ValueError(f"`{cut(column.name)}` is missing")
     for dimension, counts in RAGGED.items():
         if dimension in lengths and all(name in found for name in counts):
             numbers = np.prod([found[name].values.astype(np.int64) for name in counts], axis=0)
@@ -68,12 +69,10 @@ def _check_column(column: Column, one: Stored, lengths: Mapping[str, int]) -> No
         raise ValueError(f"`{column.name}` holds no numbers")
     if one.dimensions != column.dimensions:
         raise ValueError(f"its datasets do not fit together: `{column.name}` and its dimensions")
-    if column.index_in:
-        least, most = -1 if column.optional else 0, lengths.get(column.index_in, 0) - 1
-    elif column.flags:
-        least, most = 0, len(column.flags) - 1
-    else:
+    limits = column.limits(lengths)
+    if limits is None:
         return
+    least, most = limits
     wrong = one.values[~((one.values >= least) & (one.values <= most))]
     if wrong.size:
         raise ValueError(f"`{column.name}` has {wrong.flat[0]}; it must be from {least} to {most}")

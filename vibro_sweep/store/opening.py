@@ -14,6 +14,7 @@ import numpy as np
 
 from vibro_sweep import __version__
 from vibro_sweep.model.files import MissingFileError
+from vibro_sweep.model.refusals import LONGEST, cut
 from vibro_sweep.store import heap, parts
 from vibro_sweep.store.attributes import MATRIX, check_dataset, check_numbers, check_own_dimensions, text, texts
 from vibro_sweep.store.flat_checks import damage_of
@@ -43,7 +44,7 @@ class ForeignError(StoreError):
 
     def __init__(self, path: Path, program: str):
         super().__init__(path, program)
-        self.path, self.program = path, program.replace("=", " ")
+        self.path, self.program = path, cut(program.replace("=", " "))
 
     def __str__(self):
         return (
@@ -91,7 +92,7 @@ def _from_part(raw: BinaryIO, path: Path, names: Collection[str] | None) -> Open
         parts.copy_skeleton(raw, head, image)
         with checked(image, path, image) as file:
             if is_flat(file):
-                kind = text(file, "kind")
+                kind = cut(text(file, "kind"))
                 raise StoreError(
                     f"{path} is a run of {kind} that is not complete; where it is not being written, `--resume` "
                     "continues it"
@@ -151,8 +152,11 @@ def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO, content: bool = 
 
 
 def format_of(file: h5py.File) -> int:
-    """1 for files of version 0.1, which do not say it."""
-    return int(file.attrs.get("format", 1))
+    """1 for files of version 0.1, which do not say it. Raises ValueError."""
+    found = np.asarray(file.attrs.get("format", 1))
+    if found.ndim or found.dtype.kind not in "iu":
+        raise ValueError("its attribute `format` is no whole number")
+    return int(found)
 
 
 def _check_heap(file: h5py.File, raw: BinaryIO) -> None:
@@ -252,7 +256,7 @@ def quantities_of(file: h5py.File) -> list[str]:
 def check_scene(file: h5py.File, path: Path, scene: "Scene") -> None:
     """A run is continued by the scene that began it, or its points would not belong together."""
     if is_flat(file):
-        raise StoreError(f"{path} holds {text(file, 'kind')}, and no sweep; name another file, or overwrite it")
+        raise StoreError(f"{path} holds {cut(text(file, 'kind'))}, and no sweep; name another file, or overwrite it")
     old = text(file, "scene")
     if old != scene.text:
         raise StoreError(
@@ -264,7 +268,7 @@ def check_scene(file: h5py.File, path: Path, scene: "Scene") -> None:
 def check_version(file: h5py.File, path: Path) -> None:
     """And by the same format and kernels."""
     old, code = json.loads(text(file, "provenance")), made_by()["code"]
-    begun = f"{path} was begun by vibro_sweep {old.get('vibro_sweep')}"
+    begun = f"{path} was begun by vibro_sweep {cut(str(old.get('vibro_sweep')))}"
     if format_of(file) != FORMAT:
         raise StoreError(
             f"{begun} with the format {format_of(file)}, and this is vibro_sweep {__version__} with the format "
@@ -272,14 +276,14 @@ def check_version(file: h5py.File, path: Path) -> None:
         )
     if old.get("code") != code:
         raise StoreError(
-            f"{begun}, code {old.get('code')}, and this is vibro_sweep {__version__} with other code, {code}, "
-            "another numpy or numba, or a processor that rounds otherwise (README, Tested); overwrite it"
+            f"{begun}, code {cut(str(old.get('code')))}, and this is vibro_sweep {__version__} with other code, "
+            f"{code}, another numpy or numba, or a processor that rounds otherwise (README, Tested); overwrite it"
         )
 
 
 def _differences(old: str, new: str, most: int = 8) -> str:
     lines = difflib.ndiff(old.splitlines(), new.splitlines())
-    changed = [f"  {line}" for line in lines if line[0] in "+-"]
+    changed = [f"  {cut(line, 2 * LONGEST)}" for line in lines if line[0] in "+-"]
     return "\n".join(changed[:most] + (["  ..."] if len(changed) > most else []))
 
 

@@ -7,7 +7,7 @@ import contextlib
 import json
 import math
 import os
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import BinaryIO
 
@@ -35,9 +35,10 @@ class Pieces:
     def __init__(self, part: HeldPart, path: Path, subject: Subject, known: dict[str, Arrays]):
         self._part, self._path, self._subject, self._known = part, path, subject, known
 
-    def get(self, key: str) -> Arrays | None:
-        """A piece that is known already."""
-        return self._known.get(key)
+    def get(self, key: str, usable: Callable[[Arrays], bool]) -> Arrays | None:
+        """A piece that is known already, if it is one of those that can be used."""
+        found = self._known.get(key)
+        return found if found is not None and usable(found) else None
 
     def write(self, key: str, arrays: Arrays) -> None:
         """Keep a piece: once this returns, a kill does not lose it."""

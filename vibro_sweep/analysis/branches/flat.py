@@ -1,17 +1,7 @@
 """A branch as plain arrays, with which it travels between processes and lies in files; and its orbits from these.
 
-Arrays of a branch with n points, K impacts, s special points and N masses, by the names that they have in files:
-
-    branch_period, branch_symmetric, branch_closed, branch_origin (the point that it was followed from), branch_begins,
-    branch_ends (indices among the special points), branch_status    ()
-    value, margin, min_impact_speed, residual, unstable, status    (n,), value: of the parameter
-    state, multiplier_re, multiplier_im    (n, 2N)
-    impact_t, impact_v, impact_t_off    (n, K): as `orbit.impacts`; t_off is the end of the rest after an impact, or NaN
-    impact_side    (K,)
-    special_type, special_value, special_point, special_stop, special_kind, special_impact, special_direction,
-    special_criticality, special_error    (s,), in order along the branch; a sticking onset lies beyond an end
-
-Words are codes of model/bifurcations.py. An index that does not exist is -1.
+The arrays, `SHAPES`, have the names that they have in files. Words are codes of model/bifurcations.py. An index that
+does not exist is -1.
 """
 
 import numpy as np
@@ -26,6 +16,20 @@ from vibro_sweep.model.linear import family_of, forcing_period
 from vibro_sweep.model.state import state
 
 Flat = dict[str, np.ndarray]
+
+# n points, K impacts, s special points, N masses
+SHAPES = {
+    # branch_origin: the point that it was followed from; branch_begins, branch_ends: indices among the special points
+    "": "branch_period branch_symmetric branch_closed branch_origin branch_begins branch_ends branch_status",
+    "n": "value margin min_impact_speed residual unstable status",  # value: of the parameter
+    "n 2N": "state multiplier_re multiplier_im",
+    # as `orbit.impacts`; impact_t_off: the end of the rest after an impact, or NaN
+    "n K": "impact_t impact_v impact_t_off",
+    "K": "impact_side",
+    # in order along the branch; a sticking onset lies beyond an end
+    "s": "special_type special_value special_point special_stop special_kind special_impact special_direction "
+    "special_criticality special_error",
+}
 
 
 def outline(branch: Branch) -> Flat:

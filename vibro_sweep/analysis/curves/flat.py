@@ -1,17 +1,6 @@
 """A bifurcation curve as plain arrays, with which it travels between processes and lies in files; and back.
 
-Arrays of a curve with n points, K impacts of the whole orbit, s special points and N masses, by the names that they
-have in files:
-
-    branch_type, branch_period, branch_symmetric, branch_closed, branch_begins, branch_ends (indices among the special
-    points), branch_grazing (of the impact without speed along a graze curve, or -1)    ()
-    value (n, 2): both parameters; b_star, margin, min_impact_speed, residual, unstable, status    (n,)
-    multiplier_re, multiplier_im    (n, 2N)
-    impact_t, impact_v    (n, K): continuous along the curve
-    impact_side    (K,)
-    special_type, special_value (s, 2), special_point, special_touches, special_error    (s,), in order along the curve
-
-Words are codes of model/bifurcations.py.
+The arrays, `SHAPES`, have the names that they have in files. Words are codes of model/bifurcations.py.
 """
 
 import numpy as np
@@ -28,6 +17,20 @@ from vibro_sweep.engine.impulses.locus import GRAZE
 from vibro_sweep.model.bifurcations import CODES_OF_CURVES, CODIMENSION_TWO, CURVES
 from vibro_sweep.model.linear import Linear, steady_gain
 from vibro_sweep.model.state import state
+
+# n points, K impacts of the whole orbit, s special points, N masses
+SHAPES = {
+    # branch_begins, branch_ends: indices among the special points; branch_grazing: of the impact without speed along a
+    # graze curve, or -1
+    "": "branch_type branch_period branch_symmetric branch_closed branch_begins branch_ends branch_grazing",
+    "n 2": "value",  # both parameters
+    "n": "b_star margin min_impact_speed residual unstable status",
+    "n 2N": "state multiplier_re multiplier_im",
+    "n K": "impact_t impact_v",  # continuous along the curve
+    "K": "impact_side",
+    "s": "special_type special_point special_touches special_error",  # in order along the curve
+    "s 2": "special_value",
+}
 
 
 def flatten(curve: BifurcationCurve) -> Flat:

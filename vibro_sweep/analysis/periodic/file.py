@@ -2,6 +2,7 @@
 
 import json
 import math
+import zlib
 from dataclasses import fields
 from pathlib import Path
 
@@ -45,6 +46,7 @@ def save_orbit(orbit: PeriodicOrbit, path) -> Path:
         "unknowns": [float(value) for value in s.u],
         "residual": float(s.change),
     }
+    record["checksum"] = checksum_of(record)
     try:
         with path.open("x", encoding="utf-8") as file:
             json.dump(record, file, indent=1)
@@ -91,7 +93,11 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
             raise ValueError("its impacts are not complete")
         if np.any(np.diff(u[: len(sides)]) <= 0):
             raise ValueError("its impacts are not in order")
-    except (KeyError, TypeError, ValueError) as problem:
+        if record["checksum"] != checksum_of(record):
+            raise ValueError("its checksum is wrong")
+    except KeyError as missing:
+        raise ValueError(f"{path}: damaged: {missing} is missing") from None
+    except (TypeError, ValueError) as problem:
         raise ValueError(f"{path}: damaged: {problem}") from None
     try:
         return orbit_of(system, Solution(family, sigma, halves, sides, u, change, rests))
@@ -99,6 +105,12 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
         return PeriodicOrbit(system, "resonance")
     except TooStiffError:
         return PeriodicOrbit(system, "too_stiff")
+
+
+def checksum_of(record: dict) -> str:
+    """Of all else that is in it."""
+    rest = {key: value for key, value in record.items() if key != "checksum"}
+    return f"{zlib.crc32(json.dumps(rest, sort_keys=True).encode()):08x}"
 
 
 def _whole(name: str, values: object) -> tuple[int, ...]:
