@@ -6,10 +6,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from support import damage
-from support.changed_files import chunked
-from support.kinds_of_files import KINDS, write_scenes
+from support import damage, slow_cases
+from support.changed_files import LONG, bit_in_chunk, chunked
+from support.kinds_of_files import KINDS, PERIODIC
 
+import vibro_sweep as vs
 from vibro_sweep.cli import main
 from vibro_sweep.store import parts
 from vibro_sweep.store.pieces import Pieces
@@ -17,8 +18,8 @@ from vibro_sweep.store.pieces import Pieces
 BEYOND = [
     pytest.param(name, some, full, id=f"{some} {name}", marks=mark)
     for some, full, mark, names in (
-        (1, False, pytest.mark.slow, ("follow", "branches")),
-        (20, True, pytest.mark.soak, KINDS),
+        (1, False, pytest.mark.slow, (*KINDS, PERIODIC)),
+        (6, True, pytest.mark.soak, (*KINDS, PERIODIC)),
     )
     for name in names
 ]
@@ -35,25 +36,44 @@ def test_never_another_number_and_never_a_traceback(kinds, tmp_path, monkeypatch
     assert counts.total() > 20 * some
 
 
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize("name", ["follow", "windows", *slow_cases(*(set(KINDS) - {"follow", "windows"}))])
 def test_a_flipped_bit_names_file_and_dataset(kinds, tmp_path, monkeypatch, name):
     """In the first chunk of the last dataset that has one."""
     monkeypatch.chdir(tmp_path)
-    shutil.copy(kinds / f"{name}.h5", "x.h5")
+    shutil.copy(kinds(name), "x.h5")
     chosen = chunked(Path("x.h5"))[-1]
-    with h5py.File("x.h5") as file:
-        at = file[chosen].id.get_chunk_info(0).byte_offset
-    content = bytearray(Path("x.h5").read_bytes())
-    content[at + 20] ^= 1
-    Path("x.h5").write_bytes(content)
+    bit_in_chunk(chosen)(Path("x.h5"), np.random.default_rng(1))
     assert chosen in damage.said(["info", "x.h5"]).message
     for told in (damage._opened("x.h5"), damage._plotted_dataset("x.h5")):
         assert told.outcome == damage.REFUSED and "x.h5" in told.message and chosen in told.message
 
 
+def test_a_changed_digit_of_a_periodic_orbit(kinds, tmp_path):
+    """Each digit of its impacts, one after the other."""
+    text, path = kinds(PERIODIC).read_text(), tmp_path / "x.json"
+    begin, end = text.index("unknowns"), text.index("residual")
+    places = [i for i in range(begin, end) if text[i].isdigit()]
+    for i in places[:: len(places) // 20]:
+        path.write_text(text[:i] + str((int(text[i]) + 1) % 10) + text[i + 1 :])
+        with pytest.raises(ValueError, match=r"x\.json: damaged: its "):
+            vs.load_orbit(path)
+
+
+@pytest.mark.parametrize("attribute", ["kind", "scene", "provenance", "quantities", "parameters", "title", "format"])
+def test_long_texts_are_shortened(kinds, tmp_path, monkeypatch, attribute):
+    monkeypatch.chdir(tmp_path)
+    path = Path(shutil.copy(kinds("windows"), "x.h5"))
+    with h5py.File(path, "a") as file:
+        file.attrs.create(attribute, LONG if attribute != "provenance" else f'{{"vibro_sweep": "{LONG}"}}')
+    shutil.copy(kinds("sweep"), "sweep.h5")
+    words = ["windows", "sweep.h5", "-o", "x.h5", "--quiet"]
+    for told in (damage.said(["info", "x.h5"]), damage._opened("x.h5"), damage.said([*words, "--resume"])):
+        assert LONG[:61] not in told.message, told.message
+
+
 def test_a_list_of_numbers_that_is_a_text(kinds, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    shutil.copy(kinds / "linear.h5", "x.h5")
+    shutil.copy(kinds("linear"), "x.h5")
     with h5py.File("x.h5", "a") as file:
         file.attrs.create("along", "no such thing")
     for words in (["info", "x.h5"], ["plot", "x.h5"]):
@@ -63,7 +83,7 @@ def test_a_list_of_numbers_that_is_a_text(kinds, tmp_path, monkeypatch):
 
 def test_a_quantity_without_its_own_dimension(kinds, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    shutil.copy(kinds / "follow.h5", "x.h5")
+    shutil.copy(kinds("follow"), "x.h5")
     with h5py.File("x.h5", "a") as file:
         shape = file["status"].shape
         del file["lyapunov"]
@@ -73,6 +93,7 @@ def test_a_quantity_without_its_own_dimension(kinds, tmp_path, monkeypatch):
         assert told.outcome == damage.REFUSED and "`lyapunov` and its own dimensions" in told.message
 
 
+BYTE = [["a", "|u1", [1]]]
 ODD = {
     "no piece": ({"note": "x"}, b""),
     "a key that is no text": ({"piece": [1], "arrays": []}, b""),
@@ -81,31 +102,74 @@ ODD = {
     "too long": ({"piece": "0:0", "arrays": [["a", "<f8", [1]]]}, b"1234567812345678"),
     "no type of numbers": ({"piece": "0:1", "arrays": [["a", "nonsense", [1]]]}, b"12345678"),
     "objects": ({"piece": "0:1", "arrays": [["a", "O", [1]]]}, b"12345678"),
+    "other names": ({"piece": "0:0", "arrays": BYTE}, b"1"),
+    "a reason that is none": ({"piece": "1:0", "arrays": [["reason", "|i1", []]]}, b"\x7f"),
 }
 
 
-def test_a_part_with_records_of_somebody_else(kinds, tmp_path, monkeypatch):
-    """With their checksums right: they are no pieces, and the run goes on without them."""
-    monkeypatch.chdir(tmp_path)
-    write_scenes(tmp_path)
-    shutil.copy(kinds / "sweep.h5", "sweep.h5")
-    plain, kept = Pieces.write, []
+def begun(words: list[str], part: Path, patch) -> None:
+    """The part of a run that ended at its first piece."""
+    plain = Pieces.write
 
     def stopped(self, key, arrays):
         plain(self, key, arrays)
-        kept.append(key)
         raise OSError("the disk is gone")
 
-    words, part = KINDS["windows"].command("windows"), Path("windows.h5.part")
-    with monkeypatch.context() as patch:
-        patch.setattr(Pieces, "write", stopped)
+    with patch.context() as own:
+        own.setattr(Pieces, "write", stopped)
         assert main(words) == 2
-    good = part.read_bytes()
+    assert part.exists()
+
+
+def edited_part(part: Path, records) -> None:
+    """With more records, their checksums right."""
     with parts.open_regular(part) as file:
         identity = parts.read_head(file).identity
-    for name, (text, data) in ODD.items():
-        part.write_bytes(good + b"".join(map(bytes, parts.record(identity, text, [memoryview(data)]))))
-        assert damage.said(["info", str(part)]).outcome == damage.REFUSED, name
-        assert main([*words, "--resume"]) == 0, name
-        assert damage.contents(Path("windows.h5")) == damage.contents(kinds / "windows.h5"), name
-        Path("windows.h5").unlink()
+    with part.open("ab") as file:
+        for text, data in records:
+            file.writelines(parts.record(identity, text, [memoryview(data)]))
+
+
+def test_a_part_with_records_of_somebody_else(kinds, tmp_path, monkeypatch):
+    """They are no pieces, and the run goes on without them."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(kinds("sweep"), "sweep.h5")
+    words, part = KINDS["windows"].command("windows"), Path("windows.h5.part")
+    begun(words, part, monkeypatch)
+    edited_part(part, ODD.values())
+    assert damage.said(["info", str(part)]).outcome == damage.REFUSED
+    assert main([*words, "--resume"]) == 0
+    assert damage.contents(Path("windows.h5")) == damage.contents(kinds("windows"))
+
+
+def renamed(piece):
+    name, *others = piece
+    return {"x": piece[name]} | {other: piece[other] for other in others}
+
+
+CHANGES = {
+    "another name": renamed,
+    "one more": lambda piece: piece | {"x": np.zeros(2)},
+    "one less": lambda piece: dict(list(piece.items())[1:]),
+    "another shape": lambda piece: piece | {"value": piece["value"][1:]},
+    "an index that is none": lambda piece: piece | {"branch_begins": np.int32(1000)},
+    "no JSON": lambda piece: piece | {"beyond": np.zeros(3, np.uint8)},
+    "other JSON": lambda piece: piece | {"beyond": np.frombuffer(b"[[1]]", np.uint8)},
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize("name", ["branches", "curves"])
+def test_a_part_with_pieces_of_other_arrays(kinds, tmp_path, monkeypatch, name, change):
+    """As another program may have written them: they are computed again."""
+    monkeypatch.chdir(tmp_path)
+    source = KINDS[name].source
+    shutil.copy(kinds(source), f"{source}.h5")
+    shutil.copy(kinds(name).with_suffix(".yaml"), f"{name}.yaml")
+    words, part, plain = KINDS[name].command(name), Path(f"{name}.h5.part"), Pieces.write
+    with monkeypatch.context() as patch:
+        patch.setattr(Pieces, "write", lambda self, key, arrays: plain(self, key, CHANGES[change](arrays)))
+        begun(words, part, patch)
+    assert main([*words, "--resume"]) == 0
+    assert damage.contents(Path(f"{name}.h5")) == damage.contents(kinds(name))

@@ -31,7 +31,7 @@ def lengths_and_variables(file):
 @pytest.mark.parametrize("name", KINDS)
 def test_rules_of_cf_and_netcdf(kinds, name):
     """By hand from the text of CF 1.11: names, units, dimensions, coordinates, flags, counts of ragged arrays."""
-    with h5py.File(kinds / f"{name}.h5") as file:
+    with h5py.File(kinds(name)) as file:
         lengths, variables = lengths_and_variables(file)
         assert file.attrs["Conventions"] == b"CF-1.11"
         for one in (file, *variables.values()):
@@ -59,7 +59,7 @@ def test_rules_of_cf_and_netcdf(kinds, name):
 
 
 def test_matrices_are_variables(kinds):
-    with vs.open(kinds / "linear.h5") as data, xarray.open_dataset(kinds / "linear.h5", engine="h5netcdf") as other:
+    with vs.open(kinds("linear")) as data, xarray.open_dataset(kinds("linear"), engine="h5netcdf") as other:
         for one in (data, other):
             assert np.array_equal(one.M, [[1, 0], [0, 2]]) and np.array_equal(one.K, [[3, -1], [-1, 2]])
             assert one.C.dims == ("row", "column") and "C" in one.coords and "M" not in one.attrs
@@ -68,7 +68,7 @@ def test_matrices_are_variables(kinds):
 def test_matrices_as_attributes_are_still_read(kinds, tmp_path):
     """As in files that were made before."""
     content = tmp_path / "x.h5"
-    content.write_bytes((kinds / "linear.h5").read_bytes())
+    content.write_bytes((kinds("linear")).read_bytes())
     with h5py.File(content, "a") as file:
         file.attrs["coordinates"] = "tau b_star"
         for name in "MKC":
@@ -89,7 +89,7 @@ def written(kinds, tmp_path_factory):
     """A copy of each kind by xarray."""
     folder = tmp_path_factory.mktemp("written")
     for name in KINDS:
-        with xarray.open_dataset(kinds / f"{name}.h5", engine="h5netcdf") as data:
+        with xarray.open_dataset(kinds(name), engine="h5netcdf") as data:
             data.to_netcdf(folder / f"{name}.h5", engine="h5netcdf")
     return folder
 
@@ -104,7 +104,7 @@ def pixels(figure):
 
 @pytest.mark.parametrize("name", KINDS)
 def test_it_opens_and_says_who_wrote_it(kinds, written, name, caplog):
-    with vs.open(kinds / f"{name}.h5") as ours, vs.open(written / f"{name}.h5") as theirs:
+    with vs.open(kinds(name)) as ours, vs.open(written / f"{name}.h5") as theirs:
         assert set(ours.variables) == set(theirs.variables)
         assert all(ours[key].equals(theirs[key]) for key in ours.variables)
         assert theirs.attrs["written_by"].startswith("h5netcdf ") and "written_by" not in ours.attrs
@@ -113,8 +113,8 @@ def test_it_opens_and_says_who_wrote_it(kinds, written, name, caplog):
 
 @pytest.mark.parametrize("name", [name for name in KINDS if name != "windows"])
 def test_one_picture_of_a_file_its_dataset_and_its_copy(kinds, written, name):
-    expected = pixels(vs.plot(kinds / f"{name}.h5"))
-    with vs.open(kinds / f"{name}.h5") as data:
+    expected = pixels(vs.plot(kinds(name)))
+    with vs.open(kinds(name)) as data:
         assert np.array_equal(pixels(vs.plot(data)), expected)
     assert np.array_equal(pixels(vs.plot(written / f"{name}.h5")), expected)
 
@@ -130,7 +130,7 @@ def test_commands_on_it(kinds, written, tmp_path, monkeypatch, capsys):
     assert main(["plot", branches, "-o", "y.png", "--over", sweep]) == 0
     told = capsys.readouterr().err
     assert told.count("warning: ") == told.count("was not written by this program") == 4
-    scene = str(kinds / "sweep.yaml")
+    scene = str(kinds.folder / "sweep.yaml")
     for words in (
         ["windows", sweep, "-o", "w.h5"],
         ["run", scene, "-o", sweep],
@@ -144,10 +144,10 @@ def test_commands_on_it(kinds, written, tmp_path, monkeypatch, capsys):
 
 def test_a_part_of_it(kinds, tmp_path):
     """What a user keeps of a file is drawn as far as it goes; what is lacking is said."""
-    with vs.open(kinds / "sweep.h5") as data:
+    with vs.open(kinds("sweep")) as data:
         data[["x1", "status"]].isel(b=slice(0, 3)).to_netcdf(tmp_path / "few.nc", engine="h5netcdf")
         data.drop_vars("status").to_netcdf(tmp_path / "none.nc", engine="h5netcdf")
-    with vs.open(kinds / "branches.h5") as data:
+    with vs.open(kinds("branches")) as data:
         data.isel(point=slice(0, 5)).to_netcdf(tmp_path / "cut.nc", engine="h5netcdf")
     assert vs.plot(tmp_path / "few.nc").axes
     with pytest.raises(vs.PlotError, match="none that vibro-sweep wrote"):
@@ -157,5 +157,5 @@ def test_a_part_of_it(kinds, tmp_path):
 
 
 def test_windows_as_a_dataset_say_what_shows_them(kinds):
-    with vs.open(kinds / "windows.h5") as data, pytest.raises(vs.PlotError, match="holds the windows of a sweep"):
+    with vs.open(kinds("windows")) as data, pytest.raises(vs.PlotError, match="holds the windows of a sweep"):
         vs.plot(data)

@@ -19,8 +19,8 @@ import h5py
 import numpy as np
 
 import vibro_sweep as vs
-from support.changed_files import damages, edits
-from support.kinds_of_files import KINDS, write_scenes
+from support.changed_files import LONG, Case, damages, edits
+from support.kinds_of_files import KINDS, PERIODIC, SYSTEM, Made, write_scenes
 from vibro_sweep.cli import main
 
 HARMLESS, REFUSED, TOLD, DRAWN = "as the whole file", "refused", "told damaged", "another result"
@@ -41,11 +41,16 @@ class Said(NamedTuple):
 def commands(name: str) -> dict[str, Callable[[str], Said]]:
     """What reads a file of a kind, by its words; each is called with the file's name."""
     found = {"info": lambda file: said(["info", file]), "plot": lambda file: _drawn(["plot", file])}
+    if name == PERIODIC:
+        return found | {"vs.load_orbit": _loaded}
     found |= {"open": _opened, "vs.plot": _plotted, "vs.plot of the dataset": _plotted_dataset}
     found["run --resume" if KINDS[name].scene else "windows --resume"] = lambda file: _resumed(name, file)
     found["again"] = lambda file: said(_of(name, file))
+    found["--overwrite"] = lambda file: _resumed(name, file, "--overwrite")
+    for command, (source, words) in COMPUTING.items():
+        if source == name:
+            found[command] = lambda file, words=words: _made([*words, "-o", "made.h5", *QUIET], "made.h5")
     if name == "sweep":
-        found["windows"] = lambda file: _made(["windows", file, "-o", "w.h5", "--quiet", "--workers", "1"], "w.h5")
         found["plot --over"] = lambda file: _drawn(["plot", "branches.h5", "--over", file])
         found["plot --windows of it"] = lambda file: _drawn(["plot", file, "--windows", "windows.h5"])
         found["vs.windows"] = _windows
@@ -53,12 +58,27 @@ def commands(name: str) -> dict[str, Callable[[str], Said]]:
         found["plot --over"] = lambda file: _drawn(["plot", "curves.h5", "--over", file])
     if name == "windows":
         found["plot --windows"] = lambda file: _drawn(["plot", "sweep.h5", "--windows", file])
-    if name == "branches":
-        found["run of curves"] = lambda file: _made(["run", "curves.yaml", "-o", "c.h5", "--workers", "1"], "c.h5")
     return found
 
 
-SLOW = ("windows", "vs.windows", "run of curves")  # they compute
+QUIET = ("--workers", "1", "--quiet")
+# What is computed from files: the kind of the file, and the words of the command.
+COMPUTING = {
+    "windows": ("sweep", ["windows", "sweep.h5"]),
+    "windows of a plane": ("plane", ["windows", "plane.h5"]),
+    "windows of several starts": ("follow", ["windows", "follow.h5"]),
+    "run of branches": ("sweep", ["run", "branches.yaml"]),
+    "run of curves": ("branches", ["run", "curves.yaml"]),
+    "run of curves from windows": ("windows", ["run", "from_windows.yaml"]),
+    "run of curves of a plane": ("plane", ["run", "of_plane.yaml"]),
+}
+SLOW = (*COMPUTING, "vs.windows", "--overwrite")  # they compute
+BOX = "along: {b: {start: 5.85, stop: 6.2}, omega: {start: 0.6295, stop: 0.6305}}"
+OF_PLANE = "along: {b: {start: 6.5, stop: 6.7}, omega: {start: 0.62, stop: 0.65}}"
+SCENES = {
+    "from_windows": f"{SYSTEM}continue: {{from: {{branches: windows.h5, special: 1}}, {BOX}}}",
+    "of_plane": f"{SYSTEM}continue: {{from: {{sweep: plane.h5}}, {OF_PLANE}}}",
+}
 
 
 def _of(name: str, file: str) -> list[str]:
@@ -103,8 +123,8 @@ def contents(path: Path) -> str:
     return hashlib.sha256(b"".join(numbers)).hexdigest()
 
 
-def _resumed(name: str, file: str) -> Said:
-    found = said([*_of(name, file), "--resume"])
+def _resumed(name: str, file: str, option: str = "--resume") -> Said:
+    found = said([*_of(name, file), option])
     return found._replace(result=contents(Path(file))) if found.outcome == HARMLESS else found
 
 
@@ -142,6 +162,14 @@ def _plotted_dataset(file: str) -> Said:
     return _python(draw)
 
 
+def _loaded(file: str) -> Said:
+    def read() -> str:
+        orbit = vs.load_orbit(file)
+        return repr((orbit.status, orbit.system, orbit.impacts.tobytes(), orbit.multipliers.tobytes()))
+
+    return _python(read)
+
+
 def _windows(file: str) -> Said:
     return _python(lambda: repr(vs.windows(file)))
 
@@ -150,31 +178,35 @@ def _windows(file: str) -> Said:
 
 
 def table(
-    folder: Path, name: str, some: int, slow: bool = False, seed: int = 1
+    kinds: Made, name: str, some: int, slow: bool = False, seed: int = 1
 ) -> tuple[collections.Counter, list[str]]:
     """(damage, command, outcome) -> how often, of a file of this kind in the current folder; and what failed.
 
     some : cases of each kind of damage; of edits a sample of ten times as many. slow: with commands that compute
     """
-    rng = np.random.default_rng(seed)
-    counts, failures = collections.Counter(), []
-    good, file = (folder / f"{name}.h5").read_bytes(), f"{name}.h5"
+    rng, counts, failures = np.random.default_rng(seed), collections.Counter(), []
     write_scenes(Path())
-    for other in KINDS:
-        shutil.copy(folder / f"{other}.h5", f"{other}.h5")
+    for scene, text in SCENES.items():
+        Path(f"{scene}.yaml").write_text(text)
+    for other in KINDS if name != PERIODIC else ():
+        shutil.copy(kinds(other), f"{other}.h5")
+    file = str(shutil.copy(kinds(name), kinds(name).name))
+    good = Path(file).read_bytes()
     chosen = {key: call for key, call in commands(name).items() if slow or key not in SLOW}
-    whole = {key: call(file) for key, call in chosen.items()}
+    whole = {}
+    for key, call in chosen.items():
+        Path(file).write_bytes(good)  # some commands replace it
+        whole[key] = call(file)
     every = list(edits(Path(file)))
     picked = rng.choice(len(every), min(10 * some, len(every)), replace=False)
-    cases = [(kind, change, False) for kind, change in damages(Path(file), some)]
-    cases += [(*every[i], True) for i in sorted(picked)]
-    for number, (kind, change, may_differ) in enumerate(cases):
+    cases = [(case, False) for case in damages(Path(file), some)] + [(every[i], True) for i in sorted(picked)]
+    for number, (case, may_differ) in enumerate(cases):
         Path(file).write_bytes(good)
-        change(Path(file), rng)
+        case.change(Path(file), rng)
         changed = Path(file).read_bytes()
         for key, call in chosen.items():
             Path(file).write_bytes(changed)
-            where = f"{name}, case {number}: {kind}, {key}"
+            where = f"{name}, case {number}: {case.kind}, {key}"
             try:
                 found = call(file)
             except Exception as error:
@@ -187,15 +219,25 @@ def table(
                 outcome = DRAWN
                 if not may_differ and changed != good:
                     failures.append(f"{where}: other numbers, and no word")
-            if outcome == REFUSED and name not in found.message:
-                failures.append(f"{where}: the message does not name the file: {found.message}")
-            if "--resume" not in key and Path(file).read_bytes() != changed:
+            if outcome == REFUSED and whole[key].outcome != REFUSED:
+                failures += [f"{where}: {wrong}: {found.message}" for wrong in _missing(found.message, file, case)]
+            if key not in CHANGING and Path(file).read_bytes() != changed:
                 failures.append(f"{where}: the file was changed")
-            counts[kind, key, outcome] += 1
-            for left in (f"{file}.part", "w.h5.part", "c.h5.part"):
-                Path(left).unlink(missing_ok=True)
+            counts[case.kind, key, outcome] += 1
+            for left in Path().glob("*.part"):
+                left.unlink()
     Path(file).write_bytes(good)
     return counts, failures
+
+
+CHANGING = ("run --resume", "windows --resume", "--overwrite")
+
+
+def _missing(message: str, file: str, case: Case) -> list[str]:
+    """What is wrong with a message about a damaged file."""
+    wrong = [] if file in message else ["the file is not named"]
+    wrong += [] if case.dataset in message else [f"the dataset {case.dataset} is not named"]
+    return wrong + (["a long text"] if LONG[:61] in message else [])
 
 
 def in_words(name: str, counts: collections.Counter) -> str:

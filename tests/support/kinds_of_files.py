@@ -3,11 +3,13 @@
 Each kind has a scene, or the sweep that it is made of; they are small, and have at least one of everything.
 """
 
+import contextlib
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 
+import vibro_sweep as vs
 from vibro_sweep.cli import main
 
 SYSTEM = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6}\n"
@@ -25,6 +27,7 @@ PLANE = "sweep: {omega: {values: [0.62, 0.63, 0.65]}, b: {start: 6.5, stop: 6.7,
 FOLLOW = "sweep: {b: {start: 6.5, stop: 6.7, num: 3}}\nstart: {follow: both}\n"
 ORBIT = "trajectory: {periods: 2, samples: 20}\n"
 SHORT = "orbit: {transient: 5, record: 6}\nobserve: [section, lyapunov, impacts, energy]\n"
+LONG = (("transient: 5, record: 6", "transient: 6000, record: 100"),)
 BRANCHES = "continue: {from: {sweep: sweep.h5}, along: {b: {start: 5.85, stop: 6.2}}, depth: 0}\n"
 CURVES = (
     "continue: {from: {branches: branches.h5, special: 1}, "
@@ -33,10 +36,14 @@ CURVES = (
 
 
 class Kind(NamedTuple):
-    """`scene`: what `run` makes it of; without one it is the windows of the sweep. `source`: a file that it needs."""
+    """`scene`: what `run` makes it of; without one it is the windows of the sweep. `source`: a file that it needs.
+
+    longer : words of the scene, and words in their place with which a run has many blocks or pieces
+    """
 
     scene: str | None
     source: str = ""
+    longer: tuple[tuple[str, str], ...] = ()
 
     def command(self, name: str) -> list[str]:
         """The words of the command line that make NAME.h5, in the folder of all kinds."""
@@ -45,31 +52,65 @@ class Kind(NamedTuple):
 
 
 KINDS = {
-    "sweep": Kind(SYSTEM + SWEEP),
-    "follow": Kind(SYSTEM + FOLLOW + SHORT),
-    "plane": Kind(SYSTEM + PLANE + SHORT),
+    "sweep": Kind(
+        SYSTEM + SWEEP,
+        longer=(
+            ("start: 5.5, stop: 6.1, num: 4", "start: 5.4, stop: 6.2, num: 41"),
+            ("transient: 1000", "transient: 20000"),
+        ),
+    ),
+    "follow": Kind(
+        SYSTEM + FOLLOW + SHORT,
+        longer=(("num: 3", "num: 800"), ("transient: 5, record: 6", "transient: 100, record: 100")),
+    ),
+    "plane": Kind(SYSTEM + PLANE + SHORT, longer=(("num: 2", "num: 150"), *LONG)),
     "orbit": Kind(SYSTEM + ORBIT + SHORT),
-    "linear": Kind(LINEAR),
+    "linear": Kind(LINEAR, longer=(("num: 3", "num: 400"), *LONG)),
     "windows": Kind(None, "sweep"),
-    "branches": Kind(SYSTEM + BRANCHES, "sweep"),
-    "curves": Kind(SYSTEM + CURVES, "branches"),
+    "branches": Kind(SYSTEM + BRANCHES, "sweep", (("depth: 0", "depth: 1"),)),
+    "curves": Kind(
+        SYSTEM + CURVES,
+        "branches",
+        (("branches: branches.h5, special: 1", "sweep: sweep.h5, largest: 4"), ("start: 5.85", "start: 5.4")),
+    ),
 }
 FLAT = ("windows", "branches", "curves")
+PERIODIC = "periodic"  # `PeriodicOrbit.save`
+BOTH_SIDES = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=1)
 
 
-def write_scenes(folder: Path) -> None:
+def write_scenes(folder: Path, longer: bool = False) -> None:
     for name, kind in KINDS.items():
-        if kind.scene is not None:
-            (folder / f"{name}.yaml").write_text(kind.scene)
+        if kind.scene is None:
+            continue
+        text = kind.scene
+        for old, new in kind.longer if longer else ():
+            assert old in text
+            text = text.replace(old, new)
+        (folder / f"{name}.yaml").write_text(text)
+
+
+class Made:
+    """Files of all kinds in a folder, each made when it is first asked for; nobody may change them."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+        write_scenes(folder)
+
+    def __call__(self, name: str) -> Path:
+        """NAME.h5, beside NAME.yaml and the file that it is made from; or the JSON file of a periodic orbit."""
+        if name == PERIODIC:
+            path = self.folder / f"{name}.json"
+            return path if path.exists() else vs.periodic_orbit(BOTH_SIDES, itinerary="LLRR").save(path)
+        path, kind = self.folder / f"{name}.h5", KINDS[name]
+        if not path.exists():
+            if kind.source:
+                self(kind.source)
+            with contextlib.chdir(self.folder):
+                assert main(kind.command(name)) == 0, name
+        return path
 
 
 @pytest.fixture(scope="session")
-def kinds(tmp_path_factory) -> Path:
-    """A folder with a file NAME.h5 of each kind, and NAME.yaml; nobody may change it."""
-    folder = tmp_path_factory.mktemp("kinds")
-    write_scenes(folder)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        for name, kind in KINDS.items():
-            assert main(kind.command(name)) == 0, name
-    return folder
+def kinds(tmp_path_factory) -> Made:
+    return Made(tmp_path_factory.mktemp("kinds"))
