@@ -1,14 +1,35 @@
-"""Runs killed at random moments and resumed."""
+"""Runs of every kind of file killed at random moments and resumed."""
 
 import pytest
 from support import kills
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("by, count", [("1 worker", 4), ("2 workers", 6), ("Dask", 8)])
-def test_killed_at_random_moments(by, count):
-    """Each costs about the block that each worker is at."""
-    found, _, same = kills.measure(count, by, 7)
-    assert same and len(found) == count
-    assert {kill.how for kill in found} & {"KILL", "INT", "KILL the scheduler"}
-    assert all(0 <= kill.blocks <= (1 if by == "1 worker" else 2) for kill in found)
+@pytest.mark.parametrize(
+    "name, by",
+    [
+        ("sweep", "1 worker"),
+        ("follow", "2 workers"),
+        ("plane", "Dask"),
+        ("linear", "2 workers"),
+        ("windows", "2 workers"),
+        ("branches", "1 worker"),
+        ("curves", "Dask"),
+    ],
+)
+def test_killed_at_random_moments(name, by, tmp_path, monkeypatch):
+    """The same numbers; nothing that was kept is computed again, and no file and no process is left."""
+    monkeypatch.chdir(tmp_path)
+    found = kills.measure(tmp_path, name, by, 2, 7)
+    assert any(0 < kill.kept < run.total for run in found for kill in run.kills)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("by", kills.BY)
+@pytest.mark.parametrize("name", kills.KILLED)
+def test_killed_many_times(name, by, tmp_path, monkeypatch, capsys):
+    """63 kills in all."""
+    monkeypatch.chdir(tmp_path)
+    found = kills.measure(tmp_path, name, by, 2, 5)
+    with capsys.disabled():
+        print(*("", *(f"{name}, {by}: {run}" for run in found)), sep="\n")

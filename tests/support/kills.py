@@ -1,14 +1,14 @@
-"""Runs killed at random moments, resumed, and compared bit for bit with one that was left alone.
+"""Runs of every kind of file killed at random moments, resumed, and compared with one that was left alone.
 
-Each time the command line runs a scene of some seconds and gets one of `SIGNALS`, in turn, at a moment drawn uniformly
-from the time that the whole run takes; then it is resumed to its end. By Dask there are two workers of one thread, and
-the scheduler, or a worker, is killed as well. No run may print a traceback, none may leave anything but its file, and
-those that can answer must end with the exit status of an interruption. Every block leaves a line in a log when it is
-begun, so that points computed again are known: about one block of each worker at most.
+The command line runs as a process of its own, with one worker, with two, or with the two of a Dask cluster. It gets one
+of `SIGNALS`, in turn, a moment after some number of blocks or pieces has been kept, both drawn at random, once or
+twice; then it is resumed to its end. By Dask the scheduler, or a worker, is killed as well. No run may print a
+traceback, none may leave anything but its file, or a process, and those that can answer must end with the exit status
+of an interruption. A log says what was begun and what was kept: nothing that was kept may be computed again.
 """
 
 import contextlib
-import os
+import itertools
 import signal
 import subprocess
 import sys
@@ -21,30 +21,36 @@ import h5py
 import numpy as np
 
 from support.clusters import Cluster
+from support.kinds_of_files import KINDS, write_scenes
 
-POINTS = 2000
-SCENE = f"""
-system: {{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}}
-sweep: {{b: {{start: 6.5, stop: 6.9, num: {POINTS}}}}}
-orbit: {{transient: 12000, record: 100}}
-observe: [section, lyapunov, impacts]
-"""
+KILLED = tuple(name for name in KINDS if name != "orbit")  # which is one block
 
-# The program, with a line in a log for each block that is begun, here or by a worker of Dask: its first point, its end.
+# The program, with a line in a log for each block of a sweep that is begun, here or by a worker of Dask, and for each
+# block or piece that is kept: that word, and how many orbits it has.
 PROGRAM = """
-import os, signal, sys
+import math, os, signal, sys
 from vibro_sweep.__main__ import program
-from vibro_sweep.driver import compute
-from vibro_sweep.driver import pool
+from vibro_sweep.driver import compute, pool
+from vibro_sweep.store import pieces, writing
 log = sys.argv[1]
+def write(what, size):
+    file = os.open(log, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+    os.write(file, f"{what} {size}\\n".encode())
+    os.close(file)
 plain = compute.compute
 def logged(block):
-    file = os.open(log, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
-    os.write(file, f"{block.box[0].start} {block.box[0].stop}\\n".encode())
-    os.close(file)
+    write("begun", math.prod(part.stop - part.start for part in block.box))
     return plain(block)
 pool.compute = logged
-sys.argv[:2] = ["vibro-sweep", "run"]
+def told(of):
+    keep = of.write
+    def kept(self, where, arrays):
+        keep(self, where, arrays)
+        write("kept", arrays["status"].size if of is writing.Writer else 1)
+    of.write = kept
+told(writing.Writer)
+told(pieces.Pieces)
+sys.argv[:2] = ["vibro-sweep"]
 signal.signal(signal.SIGINT, signal.default_int_handler)
 program()
 """
@@ -60,14 +66,25 @@ LIMIT = 600  # seconds after which something hangs
 class Kill(NamedTuple):
     how: str
     when: str
-    points: int  # computed again
-    blocks: float  # the same, in the largest of the blocks
+    kept: int  # orbits of a sweep, or pieces
+
+
+class Run(NamedTuple):
+    """A run that was killed and resumed: of how many orbits or pieces; how many blocks of a sweep it began again."""
+
+    kills: list[Kill]
+    total: int
+    again: float
+
+    def __str__(self):
+        told = "; ".join(f"{kill.how}, {kill.when}, {kill.kept} of {self.total} kept" for kill in self.kills)
+        return f"{told}; {self.again:.2f} blocks begun again"
 
 
 class Threads:
-    """A run by threads."""
+    """A run by threads, or by processes of its own."""
 
-    def __init__(self, by):
+    def __init__(self, by: str):
         self.options = ["--workers", by.split()[0]]
 
     def __enter__(self):
@@ -76,7 +93,7 @@ class Threads:
     def __exit__(self, *_):
         pass
 
-    def mend(self):
+    def mend(self) -> None:
         pass
 
 
@@ -92,7 +109,7 @@ class Dask:
         self._cluster.end()
         self._folder.cleanup()
 
-    def mend(self):
+    def mend(self) -> None:
         """Begin again where somebody was killed."""
         if self._cluster:
             if all(process.poll() is None for process in self._cluster.processes):
@@ -104,21 +121,22 @@ class Dask:
         for _ in range(2):
             self._cluster.worker()
 
-    def kill(self, which):
+    def kill(self, which: int) -> None:
         self._cluster.processes[which].kill()
 
 
-def start(log, scene, output, workers):
-    command = [sys.executable, "-c", PROGRAM, log, scene, "-o", output, *workers.options, "--resume", "--quiet"]
+def start(log: Path, name: str, output: Path, workers) -> subprocess.Popen:
+    words = KINDS[name].command(name)[:2]
+    command = [sys.executable, "-c", PROGRAM, log, *words, "-o", output, *workers.options, "--resume", "--quiet"]
     # Python, while it begins, answers Ctrl-C by a traceback
     return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=ignore_interrupts)
 
 
-def ignore_interrupts():
+def ignore_interrupts() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def send(process, workers, how, pause):
+def send(process: subprocess.Popen, workers, how: str, pause: float) -> None:
     """The signals of one of SIGNALS, `pause` seconds between two; or the kills of the cluster."""
     if how in OF_DASK:
         workers.kill(OF_DASK.index(how))
@@ -128,78 +146,101 @@ def send(process, workers, how, pause):
         time.sleep(pause)
 
 
-def ended(process, how, output):
-    """Wait for it; no traceback, and the exit status that the signal asks for.
+def ended(process: subprocess.Popen, how: str, output: Path) -> None:
+    """Wait for it; no traceback, the exit status that the signal asks for, and no process of its own left.
 
     Ctrl-C in Python's own shutdown, when the file is complete, ends the process by the signal: 130 to a shell, too.
     """
+    own = children(process)
     told = process.communicate(timeout=LIMIT)[1]
     allowed = {0, STATUS.get(how, 0)}
     if STATUS.get(how) == INTERRUPTED and output.exists():
         allowed.add(-signal.SIGINT)
-    if "Traceback" in told or process.returncode not in allowed:
-        raise SystemExit(f"a run with {how} ended with the exit status {process.returncode}:\n{told}")
+    assert "Traceback" not in told and process.returncode in allowed, f"{how}: status {process.returncode}\n{told}"
+    limit = time.monotonic() + 20
+    while left := [number for number in own if alive(number)]:
+        assert time.monotonic() < limit, f"{how}: processes {left} outlived their parent"
+        time.sleep(0.05)
 
 
-def killed(scene, place, workers, moment, how, pause):
-    """One run killed after `moment` seconds and resumed: what was lost, and the file."""
-    folder = place / "files"
-    folder.mkdir(parents=True)
-    output, logs = folder / "out.h5", [place / "first", place / "second"]
-    process = start(logs[0], scene, output, workers)
+def children(process: subprocess.Popen) -> list[int]:
+    """Processes that it has started, by their numbers."""
+    with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+        return list(map(int, Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()))
+    return []
+
+
+def alive(number: int) -> bool:
+    """Whether there is such a process, and it has not ended."""
     try:
-        process.wait(moment)
+        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def sizes(log: Path, what: str) -> list[int]:
+    """Of each block or piece that was `begun` or `kept`."""
+    lines = log.read_text().splitlines() if log.exists() else []
+    return [int(size) for word, size in map(str.split, lines) if word == what]
+
+
+def killed(name: str, log: Path, output: Path, workers, how: str, after: int, pause: float) -> Kill:
+    """Start a run and kill it `pause` seconds after so many blocks or pieces are kept."""
+    process = start(log, name, output, workers)
+    while len(sizes(log, "kept")) < after and process.poll() is None:
+        time.sleep(0.002)
+    try:
+        process.wait(pause)
         how = "none, it had ended"
     except subprocess.TimeoutExpired:
         send(process, workers, how, pause)
     ended(process, how, output)
-    part = Path(f"{output}.part")
+    workers.mend()
     if output.exists():
         when = "went on" if how in ("STOP, CONT", "KILL a worker") else "after the end"
-    elif not part.exists():
+    elif not Path(f"{output}.part").exists():
         when = "before the part existed"
     else:
-        when = "while the file was made" if any(folder.glob(".*")) else "in mid-run"
-    workers.mend()
-    ended(start(logs[1], scene, output, workers), "resumed", output)
-    if left := [path.name for path in folder.iterdir() if path != output]:
-        raise SystemExit(f"a run with {how} after {moment} s left {left}")
-    sizes = [size for log in logs for size in blocks(log)]
-    again = sum(sizes) - POINTS
-    return Kill(how, when, again, again / max(sizes)), output
+        when = "while the file was made" if any(output.parent.glob(".*")) else "in mid-run"
+    return Kill(how, when, sum(sizes(log, "kept")))
 
 
-def blocks(log):
-    """Points of each block that was begun."""
-    lines = log.read_text().splitlines() if log.exists() else []
-    return [int(end) - int(first) for first, end in map(str.split, lines)]
-
-
-def arrays(path):
+def contents(path: Path) -> dict:
+    """All numbers and attributes, bit for bit; not when, and by how many workers, they were made."""
     with h5py.File(path) as file:
-        return {name: dataset[()].tobytes() for name, dataset in file.items()}
+        values = {name: dataset[()] for name, dataset in file.items()}
+        attributes = {name: np.asarray(value).tolist() for name, value in file.attrs.items()}
+    for name in ("identity", "history", "provenance", "heap"):
+        attributes.pop(name)
+    found = {name: one.tolist() if one.dtype.kind == "O" else one.tobytes() for name, one in values.items()}
+    return found | {"attributes": attributes}
 
 
-def measure(kills, by, seed):
-    """What each kill cost; seconds of the whole run; whether all arrays are the same."""
-    rng, found, same = np.random.default_rng(seed), [], True
-    with contextlib.ExitStack() as stack:
-        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        workers = stack.enter_context(Dask() if by == "Dask" else Threads(by))
-        scene, whole = folder / "scene.yaml", folder / "whole.h5"
-        scene.write_text(SCENE)
-        for _ in range(2):  # the first one compiles
-            whole.unlink(missing_ok=True)
-            began = time.monotonic()
-            ended(start(os.devnull, scene, whole, workers), "whole", whole)
-            seconds = time.monotonic() - began
-        expected = arrays(whole)
-        for k in range(kills):
-            moment, pause = rng.uniform(0, seconds), rng.uniform(0, 0.1)
-            how = BY[by][k % len(BY[by])]
-            kill, output = killed(scene, folder / str(k), workers, moment, how, pause)
-            same &= arrays(output) == expected
-            found.append(kill)
-            told = f"{kill.how}, {kill.when}, {kill.points} points again, {kill.blocks:.2f} blocks, same bits: {same}"
-            print(f"{by} {k + 1} of {kills}: {told}", file=sys.stderr, flush=True)
-    return found, seconds, same
+def measure(place: Path, name: str, by: str, count: int, seed: int) -> list[Run]:
+    """So many runs of a kind of file, killed once or twice by turns, in the folder `place`, which is the current one.
+
+    Raises AssertionError where one of them did not end as it should, or has made another file.
+    """
+    rng, found = np.random.default_rng([seed, KILLED.index(name)]), []
+    hows = itertools.cycle(rng.permutation(BY[by]).tolist())
+    write_scenes(place, longer=True)
+    with Dask() if by == "Dask" else Threads(by) as workers:
+        if KINDS[name].scene is None or "sweep.h5" in (place / f"{name}.yaml").read_text():
+            ended(start(place / "sweep.log", "sweep", place / "sweep.h5", workers), "sweep", place)
+        log, whole = place / "whole.log", place / "whole.h5"
+        ended(start(log, name, whole, workers), "whole", whole)
+        kept, largest = sizes(log, "kept"), max(sizes(log, "begun"), default=1)
+        for k in range(count):
+            log, output, kills = place / f"{k}.log", place / str(k) / "out.h5", []
+            output.parent.mkdir()
+            for after in np.sort(rng.integers(0, len(kept), size=1 + k % 2)).tolist():
+                kills.append(killed(name, log, output, workers, next(hows), after, rng.uniform(0, 0.02)))
+            ended(start(log, name, output, workers), "resumed", output)
+            again = max(0, sum(sizes(log, "begun")) - sum(kept)) / largest
+            found.append(Run(kills, sum(kept), again))
+            where = f"{name} by {by}: {found[-1]}"
+            assert [path.name for path in output.parent.iterdir()] == [output.name], f"{where}: files are left"
+            assert sum(sizes(log, "kept")) <= sum(kept), f"{where}: what was kept has been computed again"
+            assert name == "follow" or again <= len(kills) * (1 if by == "1 worker" else 2), f"{where}: more is lost"
+            assert contents(output) == contents(whole), f"{where}: another file"
+    return found
