@@ -36,9 +36,7 @@ def test_never_another_number_and_never_a_traceback(kinds, tmp_path, monkeypatch
     assert counts.total() > 20 * some
 
 
-@pytest.mark.parametrize(
-    "name", ["follow", "windows", *slow_cases(*(name for name in KINDS if name not in ("follow", "windows")))]
-)
+@pytest.mark.parametrize("name", ["windows", *slow_cases(*(name for name in KINDS if name != "windows"))])
 def test_a_flipped_bit_names_file_and_dataset(kinds, tmp_path, monkeypatch, name):
     """In the first chunk of the last dataset that has one."""
     monkeypatch.chdir(tmp_path)
@@ -61,7 +59,9 @@ def test_a_changed_digit_of_a_periodic_orbit(kinds, tmp_path):
             vs.load_orbit(path)
 
 
-@pytest.mark.parametrize("attribute", ["kind", "scene", "provenance", "quantities", "parameters", "title", "format"])
+@pytest.mark.parametrize(
+    "attribute", ["kind", "provenance", *slow_cases("scene", "quantities", "parameters", "title", "format")]
+)
 def test_long_texts_are_shortened(kinds, tmp_path, monkeypatch, attribute):
     monkeypatch.chdir(tmp_path)
     path = Path(shutil.copy(kinds("windows"), "x.h5"))
