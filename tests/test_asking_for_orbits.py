@@ -82,6 +82,19 @@ def test_orbit_survives_its_file(tmp_path):
         vs.load_orbit(path)
 
 
+def test_files_of_orbits_from_before_they_had_a_checksum(tmp_path):
+    orbit = vs.periodic_orbit(PAPER.replace(b=1.0), itinerary="LLRR")
+    path = orbit.save(tmp_path / "orbit.json")
+    new = json.loads(path.read_text())
+    old = {key: value for key, value in new.items() if key != "checksum"}
+    path.write_text(json.dumps(old | {"format": "vibro_sweep periodic orbit 1"}))
+    assert vs.load_orbit(path).impacts.tobytes() == orbit.impacts.tobytes()
+    for damaged in (old, new | {"format": "vibro_sweep periodic orbit 1"}, new | {"residual": 1e-9}):
+        path.write_text(json.dumps(damaged))
+        with pytest.raises(ValueError, match="checksum"):
+            vs.load_orbit(path)
+
+
 def test_picture(tmp_path):
     figure = vs.periodic_orbit(PAPER, itinerary="LR").plot()
     portrait, history = figure.axes

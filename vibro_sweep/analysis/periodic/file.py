@@ -19,7 +19,8 @@ from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.refusals import not_allowed
 
-FORMAT = "vibro_sweep periodic orbit 1"
+FORMAT = "vibro_sweep periodic orbit 2"
+WITHOUT_CHECKSUM = "vibro_sweep periodic orbit 1"
 MOST_BYTES = 2**28
 
 
@@ -71,7 +72,7 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
         record = json.loads(text.decode())
     except (ValueError, RecursionError):  # no UTF-8, no JSON, thousands of digits; nested thousands of times
         record = None
-    if not isinstance(record, dict) or record.get("format") != FORMAT:
+    if not isinstance(record, dict) or record.get("format") not in (FORMAT, WITHOUT_CHECKSUM):
         raise ValueError(f"{path}: not a file of the format {FORMAT!r}")
     try:
         check_type("system", record["system"], dict, "an object of numbers")
@@ -93,7 +94,7 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
             raise ValueError("its impacts are not complete")
         if np.any(np.diff(u[: len(sides)]) <= 0):
             raise ValueError("its impacts are not in order")
-        if record["checksum"] != checksum_of(record):
+        if (record["format"] == FORMAT or "checksum" in record) and record["checksum"] != checksum_of(record):
             raise ValueError("its checksum is wrong")
     except KeyError as missing:
         raise ValueError(f"{path}: damaged: {missing} is missing") from None
