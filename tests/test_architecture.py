@@ -31,6 +31,7 @@ TABLES = {
     "refusals",
     "state",
     "status",
+    "units",
 }  # of model/: names and labels, and checks of arguments
 
 

@@ -19,6 +19,7 @@ from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.observables import DIMENSIONS, TRAJECTORY, VARIABLES, WORDS, asked_for
 from vibro_sweep.model.parameters import BY_NAME, NAMES
 from vibro_sweep.model.state import state
+from vibro_sweep.model.units import unit_in
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.creating import skeleton_of
 
@@ -56,7 +57,8 @@ class TestTheTablesThemselves:
 
 class TestWhatFollows:
     def test_the_system_has_each_parameter_with_its_default(self):
-        fields = {one.name: one.default for one in dataclasses.fields(vs.System) if one.name != "stops"}
+        fields = {one.name: one.default for one in dataclasses.fields(vs.System)}
+        assert fields.pop("stops") == "both" and fields.pop("units") is None
         given = {name: one.default for name, one in BY_NAME.items()}
         assert tuple(fields) == tuple(BY_NAME)
         assert {name: None if value is dataclasses.MISSING else value for name, value in fields.items()} == given
@@ -130,7 +132,11 @@ class TestOnlyWhatIsAskedFor:
             assert {"b", "omega", "tau", "b_star", "sample", "elapsed"} <= set(file)
             for name, dataset in file.items():
                 one = by_name[name]
-                for attribute, value in (("long_name", one.long_name), ("description", one.text), ("units", one.units)):
+                for attribute, value in (
+                    ("long_name", one.long_name),
+                    ("description", one.text),
+                    ("units", unit_in(one.units, None)),
+                ):
                     assert dataset.attrs[attribute].decode() == value, name
             assert file["lyapunov_error"].attrs["significant"] == CERTAIN == 2.0
 

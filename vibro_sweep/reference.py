@@ -121,6 +121,10 @@ def _words() -> Iterator[str]:
 
 def _variables() -> Iterator[str]:
     yield "## Variables of a file\n\nDimensions after those of the sweep, and `start` if there are several.\n"
+    yield (
+        "Units are those of a system in SI (`units: SI`). Of `physical`, and of other `units`, they have a factor, as\n"
+        "`0.005 m`; without `units` all but radians are `1`.\n"
+    )
     rows = (
         (f"`{one.name}`", ", ".join(one.dimensions), one.dtype, one.units, one.label, one.text) for one in VARIABLES
     )

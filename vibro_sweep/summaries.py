@@ -105,6 +105,7 @@ def model_text(model: Model) -> str:
 
 def _allowed(one: Option) -> str:
     kinds = {"flag": "true or false", "whole": "a whole number", "matrix": "a matrix", "vector": "a list of numbers"}
+    kinds["units"] = "SI or three numbers"
     return kinds.get(one.kind) or " or ".join(one.words)
 
 

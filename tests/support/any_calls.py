@@ -93,6 +93,8 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
     }
     of_system |= each("tau", "grazing", 0.1, np.str_("grazing")) | each("stops", "both", "right", np.str_("left"))
     of_system |= each("offset", 0.0, 1) | each("R_left", None, 0.5) | each("mu_c", None, 2)
+    units = each("units", None, "SI", np.str_("SI"), (1, 0.1, 2.0), np.ones(3))
+    of_system |= units
     physical = dict(M1=1, M2=10, K1=1, K2=5, C1=0.1, C2=0.5, P1=1, P2=0, Omega=0.63, R=0.8, B=6)
     of_physical = {name: [{name: value}, {name: np.float64(value)}] for name, value in physical.items()}
     of_physical |= each("tau", "grazing", 1) | each("stops", "both") | each("B0", 0.0, 1) | each("R_left", None, 0.5)
@@ -102,7 +104,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
     pair |= each("rayleigh", None, (0.1, 0.0)) | each("force", [1, 0], np.ones(2), 0) | each("force_cos", 0, [0, 1])
     pair |= each("constant", 0, [0, 1]) | each("force_power", 0, 2) | each("along", [1, 0], np.ones(2))
     pair |= each("omega", 1, 1.5) | each("b", 1, np.float32(1)) | each("offset", 0.0, 1) | each("R", 0.5, 1)
-    pair |= each("R_left", None, 0.5) | each("tau", "grazing", 0.0) | each("stops", "both", "right")
+    pair |= each("R_left", None, 0.5) | each("tau", "grazing", 0.0) | each("stops", "both", "right") | units
     of_pair = {name: values for name, values in pair.items() if name not in ("C", "modal_damping")}
     of_pair |= each("force1", 1.0, 0)  # it has rayleigh
     bounds = each("bounds", (0.39, 0.41), [0.39, 0.41], np.array([0.39, 0.41]), xr.DataArray([0.39, 0.41]))

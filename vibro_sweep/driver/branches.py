@@ -11,7 +11,7 @@ from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.usable import is_branch
-from vibro_sweep.model.branch_file import BRANCHES, columns
+from vibro_sweep.model.branch_file import BRANCHES, columns_of
 from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
@@ -67,4 +67,4 @@ def _contents(scene: Continuation, found: list[Tree]) -> tuple:
         "branch_parent_special": np.where(parents >= 0, first[parents] + own, -1) if len(found) else own,
         "branch_generation": np.array([tree.generation for tree in found], int),
     }
-    return columns(BRANCHES, names, list(state(masses))), arrays
+    return columns_of(BRANCHES, names, scene.system), arrays

@@ -16,9 +16,8 @@ from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, so
 from vibro_sweep.driver.planes import edges_in_file, plane_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.usable import is_branch, is_curve, is_probe
-from vibro_sweep.model.branch_file import CHART, OF_EDGES, columns
+from vibro_sweep.model.branch_file import CHART, OF_EDGES, columns_of
 from vibro_sweep.model.files import file_to_write
-from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
 from vibro_sweep.scene.continuation import BY_BRANCHES
 from vibro_sweep.store.flat_files import Subject
@@ -59,7 +58,7 @@ def run_curves(
                     raise
                 curves = network(starts, names, box, scene.of, scene.depth, evaluate)
         arrays = joined_curves([one.flat for one in curves], list(names), scene.system.masses)
-        held = [*columns(CHART, list(names), list(state(scene.system.masses))), *(OF_EDGES if more else ())]
+        held = columns_of(CHART, list(names), scene.system, OF_EDGES if more else ())
         file.finish(provenance(), held, arrays | _origins(curves, arrays) | more)
 
 

@@ -1,5 +1,6 @@
 """A sweep from Python, without YAML: from a system and axes to an `xarray.Dataset`."""
 
+import itertools
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -69,7 +70,7 @@ def sweep(
     Outcomes of points are in `status`. Raises TypeError where `system` is no System, `SceneError` for what is no
     scene, ValueError for more results than go without a file, and what `run` raises.
     """
-    built = None
+    built, first = None, {}
     check_type("axes", axes, Mapping, "a mapping from names to values")
     for name in axes:
         check_type("axes", name, str, "of names")
@@ -96,6 +97,11 @@ def sweep(
     }
     given |= {"section": section, "observe": observe, "trajectory": trajectory}
     scene = scene_of(changed({}, given), "sweep", built=built)
+    if built is not None:
+        for corner in itertools.product(
+            *(values[[0, -1]].tolist() for name, values in scene.sweep.items() if name in first)
+        ):
+            built.compare_units(first | dict(zip(first, corner, strict=True)))
     quantities = store.quantities(scene)
     taken = {"status", *quantities, *(own for one in quantities.values() for own in one.dimensions)}
     taken |= {"start"} if scene.n_starts > 1 else set()

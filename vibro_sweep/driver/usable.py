@@ -21,20 +21,20 @@ def is_window(piece: Arrays) -> bool:
     """Of `window_of`: a branch, or the reason why there is none."""
     if set(piece) == {"reason"}:
         return piece["reason"].shape == () and 0 <= piece["reason"] < len(REASONS)
-    return _fits(piece, branches.SHAPES, columns(WINDOWS, [], []))
+    return _fits(piece, branches.SHAPES, columns(WINDOWS, [], 0))
 
 
 def is_branch(piece: Arrays) -> bool:
     """Of `grow`."""
     shapes = branches.SHAPES | {"n m 2N": "section"} | TEXT
-    return _fits(piece, shapes, columns(WINDOWS, [], [])) and _rows(piece["beyond"], 7)
+    return _fits(piece, shapes, columns(WINDOWS, [], 0)) and _rows(piece["beyond"], 7)
 
 
 def is_curve(piece: Arrays) -> bool:
     """Of `trace`; it returns no more than `beyond` where there is no curve."""
     if set(piece) == {"beyond"}:
         return piece["beyond"].size == 0
-    return _fits(piece, curves.SHAPES | TEXT, columns(CHART, [], [])) and _rows(piece["beyond"], 11)
+    return _fits(piece, curves.SHAPES | TEXT, columns(CHART, [], 0)) and _rows(piece["beyond"], 11)
 
 
 def is_probe(piece: Arrays) -> bool:

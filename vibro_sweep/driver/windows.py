@@ -18,7 +18,7 @@ from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.usable import is_window
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import REASONS
-from vibro_sweep.model.branch_file import UNSEEN, WINDOWS, columns
+from vibro_sweep.model.branch_file import UNSEEN, WINDOWS, columns_of
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.state import state
@@ -155,7 +155,7 @@ def _contents(cover: Cover) -> tuple:
         "orbit_reason": reason.ravel(),
     }
     arrays |= _unseen(cover, masses)
-    return columns(WINDOWS, names, list(state(masses))), arrays
+    return columns_of(WINDOWS, names, first.system), arrays
 
 
 def _unseen(cover: Cover, masses: int) -> dict[str, np.ndarray]:

@@ -8,6 +8,7 @@ import numpy as np
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models.declaration import Model
 from vibro_sweep.model.parameters import Parameter
+from vibro_sweep.model.units import Units
 
 
 class AnyOscillator:
@@ -19,6 +20,7 @@ class AnyOscillator:
     numbers: dict[str, Any]  # their values, as given
     options: dict[str, Any]
     omega: float
+    units: Units | None  # None: its numbers are nondimensional
 
     @property
     def linear(self) -> Linear:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.bifurcations import (
     BRANCH_STATUSES,
     CODIMENSION_TWO,
@@ -16,6 +17,8 @@ from vibro_sweep.model.bifurcations import (
     STATUSES,
     TYPES,
 )
+from vibro_sweep.model.state import coordinates
+from vibro_sweep.model.units import unit_in
 
 BRANCHES, WINDOWS, CHART = "branches", "windows", "curves"  # the kinds of such files
 
@@ -44,6 +47,9 @@ class Column(NamedTuple):
         least, most = self.limits(lengths) or (-np.inf, np.inf)
         return not np.any((values < least) | (values > most))
 
+
+OF_FIRST = "of the first parameter"  # the unit that such a number has
+OF_PARAMETER = "of the parameters"  # that which all of them have; where they differ there is none
 
 _TYPES = tuple(one.name for one in TYPES)
 
@@ -100,31 +106,40 @@ OF_BRANCHES = (
         "of Floquet multipliers; of a pair the positive one first",
     ),
     Column("unstable", ("point",), "i4", "unstable multipliers", "number of multipliers outside the unit circle"),
-    Column("margin", ("point",), "f8", "margin", "least distance of a turning point of the gap from its stop"),
+    Column("margin", ("point",), "f8", "margin", "least distance of a turning point of the gap from its stop", "m"),
     Column(
         "min_impact_speed",
         ("point",),
         "f8",
         "smallest impact speed",
         "smallest speed of the gap before an impact; infinite without impacts",
+        "m s-1",
     ),
     Column(
         "residual", ("point",), "f8", "residual", "largest jump of the gap between two flights, relative to its size"
     ),
     Column("status", ("point",), "i1", "status", "whether the point is a motion", "1", STATUSES),
-    Column("impact_t", ("impact",), "f8", "impact time", "of each impact of each point, continuous along a branch"),
+    Column(
+        "impact_t", ("impact",), "f8", "impact time", "of each impact of each point, continuous along a branch", "s"
+    ),
     Column("impact_side", ("impact",), "i1", "stop", "+1: right, R of the itinerary; -1: left, L"),
-    Column("impact_v", ("impact",), "f8", "impact velocity", "of the gap before the impact"),
+    Column("impact_v", ("impact",), "f8", "impact velocity", "of the gap before the impact", "m s-1"),
     Column(
         "impact_t_off",
         ("impact",),
         "f8",
         "end of the rest",
         "after an impact at which the mass rests; NaN where it does not",
+        "s",
     ),
     Column("special_type", ("special",), "i1", "type", "of a special point", "1", _TYPES),
     Column(
-        "special_value", ("special", "parameter"), "f8", "parameters", "the numbers `parameters` at the special point"
+        "special_value",
+        ("special", "parameter"),
+        "f8",
+        "parameters",
+        "the numbers `parameters` at the special point",
+        OF_PARAMETER,
     ),
     Column("special_branch", ("special",), "i4", "branch", "index of the branch that it lies on", index_in="branch"),
     Column(
@@ -151,7 +166,7 @@ OF_BRANCHES = (
         "1",
         CRITICALITIES,
     ),
-    Column("special_error", ("special",), "f8", "error", "own estimate of the parameter's error"),
+    Column("special_error", ("special",), "f8", "error", "own estimate of the parameter's error", OF_PARAMETER),
 )
 
 BRANCH_SECTIONS = Column(
@@ -163,8 +178,8 @@ BRANCH_SECTIONS = Column(
 )
 
 OF_WINDOWS = (
-    Column("window_lo", ("window",), "f8", "lower end", "the parameter at the lower end"),
-    Column("window_hi", ("window",), "f8", "upper end", "the parameter at the upper end"),
+    Column("window_lo", ("window",), "f8", "lower end", "the parameter at the lower end", OF_FIRST),
+    Column("window_hi", ("window",), "f8", "upper end", "the parameter at the upper end", OF_FIRST),
     Column("window_lower", ("window",), "i4", "what ends it below", "index of the special point", index_in="special"),
     Column("window_upper", ("window",), "i4", "what ends it above", "index of the special point", index_in="special"),
     Column("window_period", ("window",), "i4", "period in T", "in forcing periods"),
@@ -191,10 +206,16 @@ UNSEEN = {  # of a stretch of a window on which the sweep shows other attractors
     "window": Column(
         "unseen_window", ("unseen",), "i4", "window", "whose orbit is stable there: its index", index_in="window"
     ),
-    "lo": Column("unseen_lo", ("unseen",), "f8", "from", "the parameter where the sweep begins to miss the orbit"),
-    "hi": Column("unseen_hi", ("unseen",), "f8", "to", "the parameter up to which the sweep misses the orbit"),
+    "lo": Column(
+        "unseen_lo", ("unseen",), "f8", "from", "the parameter where the sweep begins to miss the orbit", OF_FIRST
+    ),
+    "hi": Column(
+        "unseen_hi", ("unseen",), "f8", "to", "the parameter up to which the sweep misses the orbit", OF_FIRST
+    ),
     "values": Column("unseen_values", ("unseen",), "i4", "values", "values of the sweep that show other attractors"),
-    "at": Column("unseen_at", ("unseen",), "f8", "at", "one of these values, of which `unseen_x1` .. is a start"),
+    "at": Column(
+        "unseen_at", ("unseen",), "f8", "at", "one of these values, of which `unseen_x1` .. is a start", OF_FIRST
+    ),
 }
 
 
@@ -223,7 +244,12 @@ OF_CURVES = (  # branches are curves here, along which an orbit bifurcates
         "number of multipliers outside the unit circle, beside those that the curve is about; 0: it bounds attractors",
     ),
     Column(
-        "b_star", ("point",), "f8", "grazing clearance", "b at which the free motion grazes both stops; NaN: no such"
+        "b_star",
+        ("point",),
+        "f8",
+        "grazing clearance",
+        "b at which the free motion grazes both stops; NaN: no such",
+        "m",
     ),
     Column(
         "special_type",
@@ -241,8 +267,17 @@ OF_CURVES = (  # branches are curves here, along which an orbit bifurcates
 
 
 OF_EDGES = (  # of curves that begin at the edges of a plane
-    Column("edge_from", ("edge", "parameter"), "f8", "from", "the numbers `parameters` at one point of the sweep"),
-    Column("edge_to", ("edge", "parameter"), "f8", "to", "at its neighbour, whose orbit has another period"),
+    Column(
+        "edge_from",
+        ("edge", "parameter"),
+        "f8",
+        "from",
+        "the numbers `parameters` at one point of the sweep",
+        OF_PARAMETER,
+    ),
+    Column(
+        "edge_to", ("edge", "parameter"), "f8", "to", "at its neighbour, whose orbit has another period", OF_PARAMETER
+    ),
     Column("edge_reason", ("edge",), "i1", "reason", "why the two differ", "1", tuple(EDGES)),
     Column(
         "edge_curve",
@@ -256,18 +291,31 @@ OF_EDGES = (  # of curves that begin at the edges of a plane
 )
 
 
-def columns(kind: str, parameters: list[str], states: list[str]) -> list[Column]:
-    """All variables of a file; parameters : the names of numbers along which branches lead, states : x1, v1, ..."""
+def columns(kind: str, parameters: list[str], masses: int) -> list[Column]:
+    """All variables of a file; parameters : the names of numbers along which branches lead."""
+    units = {one.name: one.units for one in coordinates(masses)}
     own = [Column(name, ("point",), "f8", name, f"the parameter {name}") for name in parameters]
-    own += [Column(name, ("point",), "f8", name, f"{name} at t = 0, before an impact there") for name in states]
+    own += [Column(n, ("point",), "f8", n, f"{n} at t = 0, before an impact there", units[n]) for n in units]
     if kind == CHART:
         return [*own, *OF_CURVES]
     if kind == WINDOWS:
         text = "at t = 0 mod T, of a start that stays on the window's orbit at `unseen_at`; NaN where none is known"
-        starts = [Column(f"unseen_{name}", ("unseen",), "f8", name, f"{name} {text}") for name in states]
+        starts = [Column(f"unseen_{n}", ("unseen",), "f8", n, f"{n} {text}", units[n]) for n in units]
         return [*own, *OF_BRANCHES, *OF_WINDOWS, *UNSEEN.values(), *starts]
-    sections = [Column(f"section_{name}", ("section",), "f8", name, f"{name} at t = 0 mod T") for name in states]
+    sections = [Column(f"section_{n}", ("section",), "f8", n, f"{n} at t = 0 mod T", units[n]) for n in units]
     return [*own, *OF_BRANCHES, BRANCH_SECTIONS, *sections]
+
+
+def columns_of(kind: str, parameters: list[str], system: AnyOscillator, more: tuple[Column, ...] = ()) -> list[Column]:
+    """These, and more, in the units of a system."""
+    of_each = {name: system.described[name].units for name in parameters}
+    first, *others = of_each.values()
+    common = {OF_FIRST: first, OF_PARAMETER: first if all(one == first for one in others) else "1"}
+
+    def unit(column: Column) -> str:
+        return unit_in(of_each.get(column.name) or common.get(column.units, column.units), system.units)
+
+    return [one._replace(units=unit(one)) for one in (*columns(kind, parameters, system.masses), *more)]
 
 
 RAGGED = {  # dimension -> (counts of each branch, what each of them counts for): one branch after another

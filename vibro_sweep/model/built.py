@@ -11,6 +11,7 @@ from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models.declaration import Model
 from vibro_sweep.model.parameters import NUMBER, Parameter
+from vibro_sweep.model.units import Units
 
 BUILD = "build"  # the `type` of files of such sweeps
 STORED = {  # of a Linear, with the symbol that it has in files
@@ -23,8 +24,7 @@ class Built(AnyOscillator):
 
     def __init__(self, function: Callable[..., AnyOscillator], numbers: Mapping[str, float]):
         self.function, self.given = function, dict(numbers)
-        self.base = function(**self.given)
-        check_type(f"system, {self.name}(...)", self.base, AnyOscillator, "a System or an Oscillator")
+        self.base, self._same_units = self._made(self.given), True
         named = tuple(
             Parameter(name, rf"\mathrm{{{name}}}", "1", NUMBER, name, name, free_motion=True) for name in numbers
         )
@@ -38,13 +38,25 @@ class Built(AnyOscillator):
         return hash((self.function, tuple(self.given.items())))
 
     def _linear(self, **numbers) -> Linear:
-        made = self.function(**numbers)
-        check_type(f"system, {self.name}(...)", made, AnyOscillator, "a System or an Oscillator")
+        made = self._made(numbers)
         if made.masses != self.base.masses:
             told = ", ".join(f"{name}={value!r}" for name, value in numbers.items())
             allowed = f"as many as at the first point, {self.base.masses}"
             raise ValueError(f"{self.name}({told}): {made.masses} masses are not allowed; there must be {allowed}")
         return made.linear
+
+    def _made(self, numbers: Mapping[str, float]) -> AnyOscillator:
+        made = self.function(**numbers)
+        check_type(f"system, {self.name}(...)", made, AnyOscillator, "a System or an Oscillator")
+        return made
+
+    @property
+    def units(self) -> Units | None:
+        return self.base.units if self._same_units else None
+
+    def compare_units(self, numbers: Mapping[str, float]) -> None:
+        """It has none from now on if those of the oscillator of these numbers are others."""
+        self._same_units = self._same_units and self._made(numbers).units == self.base.units
 
     @property
     def name(self) -> str:
@@ -73,7 +85,9 @@ class Built(AnyOscillator):
     tau = "grazing"  # whatever the function says of it, it may change with every number
 
     def replace(self, **changes: Any) -> "Built":
-        return Built(self.function, self.given | changes)
+        made = Built(self.function, self.given | changes)
+        made._same_units = self._same_units
+        return made
 
 
 def sizes_of(q: Linear) -> dict[str, float]:
@@ -100,13 +114,22 @@ def stored_names(masses: int) -> dict[str, Parameter]:
     """These, as files describe them."""
     square = [f"{i}{j}" for i in range(1, masses + 1) for j in range(i, masses + 1)]
     places = {field: square if field in ("M", "K", "C") else [f"{i}" for i in range(1, masses + 1)] for field in STORED}
+    units = {"M": "kg", "K": "N m-1", "C": "N s m-1", "along": "1"}
     texts = {"low": "left stop", "high": "right stop", "R_low": "restitution, left", "R_high": "restitution, right"}
     texts |= {"omega": "forcing frequency", "tau": "forcing phase"}
     named = {
         f"{field}{place}": Parameter(
-            f"{field}{place}", f"{STORED[field]}_{{{place}}}", "1", NUMBER, "entry", f"{field}, {place}"
+            f"{field}{place}",
+            f"{STORED[field]}_{{{place}}}",
+            units.get(field, "N"),
+            NUMBER,
+            "entry",
+            f"{field}, {place}",
         )
         for field, all_of_it in places.items()
         for place in all_of_it
     }
-    return named | {name: Parameter(name, name, "1", NUMBER, text, text) for name, text in texts.items()}
+    more = {"low": "m", "high": "m", "omega": "rad s-1"}
+    return named | {
+        name: Parameter(name, name, more.get(name, "1"), NUMBER, text, text) for name, text in texts.items()
+    }

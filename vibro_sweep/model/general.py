@@ -16,6 +16,7 @@ from vibro_sweep.model.models.declaration import Model, Option, linear_of
 from vibro_sweep.model.parameters import LENGTHS, Parameter, ParameterError, checked_number
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.state import MOST_MASSES
+from vibro_sweep.model.units import ALLOWED, Units, units_from
 
 
 class Oscillator(AnyOscillator):
@@ -31,6 +32,7 @@ class Oscillator(AnyOscillator):
     R_left : of the left stop; left out: R
     tau : phase in radians, or "grazing": where the gap of the free motion is largest at t = 0
     stops : both, right, left; b may be <= 0 where there is one
+    units : for labels: SI; or what a mass, a length and a time of 1 are in kg, m and s; left out: nondimensional
 
     Numbers are attributes: `force`, and `force1`, `force2`, ... too. Raises ParameterError for what cannot be.
     `Oscillator.named("chain", m=..., ...)` makes the other models (`vibro-sweep models`).
@@ -42,6 +44,7 @@ class Oscillator(AnyOscillator):
         force_power: float = 0, along: ArrayLike, omega: float, b: float, offset: float = 0.0, R: float,
         R_left: float | None = None, tau: float | Literal["grazing"] = "grazing",
         stops: Literal["both", "right", "left"] = "both",
+        units: Literal["SI"] | ArrayLike | None = None,
     ) -> None:  # fmt: skip
         given = {name: value for name, value in locals().items() if name != "self"}
         self._set(MODELS["linear"], given)
@@ -90,7 +93,9 @@ class Oscillator(AnyOscillator):
     @cached_property
     def described(self) -> dict[str, Parameter]:
         """Its numbers, those of lists one by one: m1, m2, ..."""
-        return {name: one for name, one in self.model.flat(self.masses).items() if name in self.numbers}
+        numbers, units = self.numbers, self.model.depending(self.given)
+        flat = self.model.flat(self.masses)
+        return {name: one._replace(units=units.get(name, one.units)) for name, one in flat.items() if name in numbers}
 
     @property
     def numbers(self) -> dict[str, Any]:
@@ -107,6 +112,10 @@ class Oscillator(AnyOscillator):
     @property
     def options(self) -> dict[str, Any]:
         return {one.name: self.given[one.name] for one in self.model.options}
+
+    @property
+    def units(self) -> Units | None:
+        return self.given["units"]
 
     @property
     def masses(self) -> int:
@@ -208,7 +217,9 @@ def _entries(one: Parameter, value: Any) -> list:
 
 
 def _option(one: Option, value: Any) -> Any:
-    if one.optional and (value is None or number_of(value) == 0):  # a matrix of zeros: nothing
+    if one.optional and (
+        value is None or (one.kind == "matrix" and number_of(value) == 0)
+    ):  # a matrix of zeros: nothing
         return None
     if one.kind == "word":
         if not (isinstance(value, str) and value in one.words):
@@ -217,6 +228,10 @@ def _option(one: Option, value: Any) -> Any:
         if not isinstance(value, (bool, np.bool_)):
             raise ParameterError(one.name, value, "true or false")
         return bool(value)
+    elif one.kind == "units":
+        if (units := units_from(value)) is None:
+            raise ParameterError(one.name, value, ALLOWED)
+        return units
     elif one.kind == "whole":
         if not isinstance(value, (int, np.integer)) or number_of(value) is None:
             raise ParameterError(one.name, value, "a whole number")

@@ -112,9 +112,9 @@ def _attractor(name: str, label: str, text: str, dtype: str = "f8") -> Variable:
     return Variable(name, ("attractors",), label, text, (), dtype, in_kernel=False)
 
 
-def _trajectory(name: str, label: str, text: str, dimension: str | None, *more: Any) -> Variable:
+def _trajectory(name: str, label: str, text: str, dimension: str | None, dtype: str = "f8", **more: Any) -> Variable:
     dimensions = (dimension,) if dimension else ()
-    return Variable(f"trajectory_{name}", (TRAJECTORY,), label, text, dimensions, *more, in_kernel=False)
+    return Variable(f"trajectory_{name}", (TRAJECTORY,), label, text, dimensions, dtype, in_kernel=False, **more)
 
 
 _EXPONENTS, _MULTIPLIERS, _IMPACTS, _ENERGY = ("lyapunov",), ("multipliers",), ("impacts",), ("energy",)
@@ -129,8 +129,11 @@ def variables(masses: int, gap: bool = False) -> tuple[Variable, ...]:
     """
     named = coordinates(masses)
     return (
-        *(_section(name, label, f"{text} at the section", symbol=symbol) for name, symbol, label, text in named),
-        *([_section(GAP, "gap g", "gap at the section", symbol="g")] if gap else []),
+        *(
+            _section(one.name, one.label, f"{one.text} at the section", symbol=one.symbol, units=one.units)
+            for one in named
+        ),
+        *([_section(GAP, "gap g", "gap at the section", symbol="g", units="m")] if gap else []),
         *_OF_ANY,
         *_energies(masses),
         *_of_a_trajectory(masses, gap),
@@ -146,15 +149,17 @@ _OF_ANY = (
     ),
     Variable(
         "lyapunov", _EXPONENTS, "Lyapunov exponent", "Lyapunov exponents per unit time, natural logarithm",
-        ("exponent",), symbol=r"\lambda",
+        ("exponent",), symbol=r"\lambda", units="s-1",
     ),
     Variable(
         "lyapunov_error", _EXPONENTS, "error of the exponent",
         "standard error of the exponents; of a periodic orbit what rounding and one more period change", ("exponent",),
+        units="s-1",
         attributes={"significant": CERTAIN},  # so many of these errors tell an exponent from zero
     ),
     Variable(
         "lyapunov_residual", _EXPONENTS, "residual of the sum rule", "sum of the exponents minus its exact value",
+        units="s-1",
     ),
     Variable(
         "multiplier_re", _MULTIPLIERS, "multiplier, real part",
@@ -183,7 +188,7 @@ _OF_ANY = (
     Variable(
         "lyapunov_running", ("convergence",), "Lyapunov exponent",
         "Lyapunov exponents as they converge, in the order of their vectors", ("elapsed", "exponent"),
-        in_kernel=False,
+        units="s-1", in_kernel=False,
     ),
     Variable(
         "impacts_right", _IMPACTS, "impacts on the right", "impacts on the right stop in the recorded periods",
@@ -194,12 +199,13 @@ _OF_ANY = (
     ),
     Variable(
         "min_impact_speed", _IMPACTS, "smallest impact speed",
-        "smallest |v1| before an impact in the recorded periods; NaN without impacts",
+        "smallest |v1| before an impact in the recorded periods; NaN without impacts", units="m s-1",
     ),
     Variable(
         "contact_error", _IMPACTS, "contact error", "largest distance from the stop at which an impact was computed",
+        units="m",
     ),
-    Variable("sticking_time", _IMPACTS, "sticking time", "time at rest on a stop in the recorded periods"),
+    Variable("sticking_time", _IMPACTS, "sticking time", "time at rest on a stop in the recorded periods", units="s"),
 )  # fmt: skip
 
 _STATUS = Variable(
@@ -217,15 +223,15 @@ def _energies(masses: int) -> tuple[Variable, ...]:
     return (
         Variable(
             "impact_power", _ENERGY, "power lost in impacts",
-            "energy lost in impacts in the recorded periods, per unit time", in_kernel=False,
+            "energy lost in impacts in the recorded periods, per unit time", units="W", in_kernel=False,
         ),
         *(
             Variable(
                 f"{name}_{of}", _ENERGY, f"{label} {of}", f"{text.format(what)} in the recorded periods",
-                in_kernel=False,
+                units=units, in_kernel=False,
             )
             for name, label, text in sizes
-            for of, _, _, what in coordinates(masses)
+            for of, _, _, what, units in coordinates(masses)
         ),
     )  # fmt: skip
 
@@ -238,12 +244,12 @@ def _of_a_trajectory(masses: int, gap: bool) -> tuple[Variable, ...]:
     return (
         *(
             variable
-            for name, _, label, text in coordinates(masses)
+            for name, _, label, text, units in coordinates(masses)
             for variable in (
-                _trajectory(name, label, f"{text} along the orbit", along),
+                _trajectory(name, label, f"{text} along the orbit", along, units=units),
                 _trajectory(
                     f"section_{name}", label, f"{text} at the section t = 0 mod T along the orbit",
-                    "trajectory_section",
+                    "trajectory_section", units=units,
                 ),
             )
         ),
@@ -255,15 +261,19 @@ def _of_a_trajectory(masses: int, gap: bool) -> tuple[Variable, ...]:
             at_impacts,
         ),
         _trajectory(
-            "impact_side", "stop of impact", "stop of an impact: 1 right, -1 left; 0: none", at_impacts, "i1", "1", 0,
+            "impact_side", "stop of impact", "stop of an impact: 1 right, -1 left; 0: none", at_impacts, "i1",
+            missing=0,
         ),
-        _trajectory(f"impact_{before(gap)}", f"{speed} before impact", f"velocity {mass} before an impact", at_impacts),
+        _trajectory(f"impact_{before(gap)}", f"{speed} before impact", f"velocity {mass} before an impact", at_impacts,
+            units="m s-1",
+        ),
         _trajectory(
             f"impact_{before(gap)}_after", f"{speed} after impact", f"velocity {mass} after an impact", at_impacts,
+            units="m s-1",
         ),
         *(
-            _trajectory(f"impact_{name}", f"{label} at impact", f"{text} at an impact", at_impacts)
-            for name, _, label, text in other
+            _trajectory(f"impact_{name}", f"{label} at impact", f"{text} at an impact", at_impacts, units=units)
+            for name, _, label, text, units in other
         ),
     )  # fmt: skip
 

@@ -24,6 +24,7 @@ from vibro_sweep.model.parameters import (
     physical_range,
 )
 from vibro_sweep.model.real import number_of
+from vibro_sweep.model.units import ALLOWED, Units, units_from
 
 Stops = Literal["both", "right", "left"]
 
@@ -44,10 +45,15 @@ class System(AnyOscillator):
     offset: float = 0.0
     R_left: float | None = None
     mu_c: float | None = None
+    units: Units | None = None
     model: ClassVar[Model] = MODEL
 
     def __post_init__(self):
         _check_stops(self.stops)
+        if self.units is not None:
+            if (units := units_from(self.units)) is None:
+                raise ParameterError("units", self.units, ALLOWED)
+            object.__setattr__(self, "units", units)
         for one in PARAMETERS:
             value = getattr(self, one.name)
             if not (isinstance(value, str) and value in one.words) and not (value is None and one.follows):
@@ -55,7 +61,7 @@ class System(AnyOscillator):
 
     @property
     def family(self) -> Family:
-        return Family(MODEL.build, {one.name: getattr(self, one.name) for one in fields(self)})
+        return Family(MODEL.build, self.numbers | {"stops": self.stops})
 
     @property
     def described(self) -> dict[str, Parameter]:
@@ -69,7 +75,7 @@ class System(AnyOscillator):
 
     @property
     def options(self) -> dict[str, Any]:
-        return {"stops": self.stops}
+        return {"stops": self.stops, "units": self.units}
 
     masses = 2
     gap_is_x1 = True
@@ -94,8 +100,9 @@ class System(AnyOscillator):
         tau: float | Literal["grazing"] = "grazing",
         stops: Stops = "both",
     ) -> "System":
-        """From physical quantities in any consistent units (section 2 of the paper). Raises `ParameterError`.
+        """From physical quantities in SI units: kg, m, s, N (section 2 of the paper). Raises `ParameterError`.
 
+        Its `units` say what its own, nondimensional numbers are measured in.
         The stops stand at B0 - B and B0 + B; R_left, of the left one, is R where it is left out.
         """
         _check_stops(stops)
@@ -121,7 +128,9 @@ class System(AnyOscillator):
         for name, (key, value) in numbers.items():
             if not math.isfinite(value) or (value == 0) != (given[key] == 0):
                 raise ParameterError(key, given[key], f"such that {name} = {value!r} is in the range of the floats")
-        system = cls(**{name: value for name, (_, value) in numbers.items()}, R=R, R_left=R_left, tau=tau, stops=stops)
+        units = units_from((M1, (P1 + P2) / K1, 1 / frequency))  # none where they leave the range
+        made = {name: value for name, (_, value) in numbers.items()}
+        system = cls(**made, R=R, R_left=R_left, tau=tau, stops=stops, units=units)
         one, other = Fraction(C1) * Fraction(K2), Fraction(C2) * Fraction(K1)
         if abs(one - other) <= max(one, other) / 10**9:  # proportional, but for the rounding of the input
             return system
@@ -177,4 +186,4 @@ def checked_system(system: object) -> None:
 if System.__doc__:
     System.__doc__ += "\n\nParameters\n----------\n"
     System.__doc__ += "\n".join(f"{one.name} : {one.described}; {one.range.text}" for one in PARAMETERS)
-    System.__doc__ += f"\nstops : {', '.join(STOPS)}\n"
+    System.__doc__ += f"\nstops : {', '.join(STOPS)}\nunits : for labels; {ALLOWED}; left out: none\n"

@@ -48,7 +48,7 @@ LENGTHS = {  # of lists, for N masses
 class Parameter(NamedTuple):
     name: str  # of the Python argument, the scene key and the variable of the file
     symbol: str  # TeX, as in the paper
-    units: str
+    units: str  # where the system is given in SI (model/units.py)
     range: Range
     label: str  # short: of an axis
     text: str
@@ -73,11 +73,11 @@ class Parameter(NamedTuple):
 
 # What all oscillators have.
 FREQUENCY = Parameter(
-    "omega", r"\omega", "1", POSITIVE, "forcing frequency", "angular frequency of the force", free_motion=True
+    "omega", r"\omega", "rad s-1", POSITIVE, "forcing frequency", "angular frequency of the force", free_motion=True
 )
 RESTITUTION = Parameter("R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution", "(4)")
 CLEARANCE = Parameter(
-    "b", "b", "1", Range("a number > 0; any number where there is one stop alone", {}), "clearance",
+    "b", "b", "m", Range("a number > 0; any number where there is one stop alone", {}), "clearance",
     "clearance on each side of the middle", "(4)",
 )  # fmt: skip
 PHASE = Parameter(
@@ -86,7 +86,7 @@ PHASE = Parameter(
     {"grazing": "the phase at which the gap of the free motion is largest at t = 0, eq. (18); 0 where there is none"},
 )  # fmt: skip
 OFFSET = Parameter(
-    "offset", "b_0", "1", NUMBER, "offset of the stops",
+    "offset", "b_0", "m", NUMBER, "offset of the stops",
     "middle of the stops: they stand at offset - b and offset + b", default=0.0,
 )  # fmt: skip
 RESTITUTION_LEFT = Parameter(
@@ -107,7 +107,7 @@ PAPER = (
         "share of the force on the second mass, P2/(P1 + P2)", "(3)", free_motion=True,
     ),
     Parameter(
-        "omega", r"\omega", "1", POSITIVE, "forcing frequency", "forcing frequency Omega sqrt(M1/K1)", "(3)",
+        "omega", r"\omega", "rad s-1", POSITIVE, "forcing frequency", "forcing frequency Omega sqrt(M1/K1)", "(3)",
         free_motion=True,
     ),
     RESTITUTION,
@@ -125,25 +125,30 @@ PARAMETERS = (
     ),
 )  # fmt: skip
 
-# Physical quantities, in any consistent units, from which these follow (section 2 of the paper).
+# Physical quantities in SI units, from which these follow (section 2 of the paper).
 PHYSICAL = (
-    Parameter("M1", "M_1", "", POSITIVE, "mass 1", "mass between the stops"),
-    Parameter("M2", "M_2", "", POSITIVE, "mass 2", "second mass"),
-    Parameter("K1", "K_1", "", POSITIVE, "stiffness 1", "stiffness between the masses"),
-    Parameter("K2", "K_2", "", NOT_NEGATIVE, "stiffness 2", "stiffness between the second mass and the ground"),
-    Parameter("C1", "C_1", "", NOT_NEGATIVE, "damping 1", "damping between the masses"),
-    Parameter("C2", "C_2", "", NOT_NEGATIVE, "damping 2", "damping between the second mass and the ground"),
-    Parameter("P1", "P_1", "", NOT_NEGATIVE, "force 1", "amplitude of the force on the first mass"),
-    Parameter("P2", "P_2", "", NOT_NEGATIVE, "force 2", "amplitude of the force on the second mass"),
+    Parameter("M1", "M_1", "kg", POSITIVE, "mass 1", "mass between the stops"),
+    Parameter("M2", "M_2", "kg", POSITIVE, "mass 2", "second mass"),
+    Parameter("K1", "K_1", "N m-1", POSITIVE, "stiffness 1", "stiffness between the masses"),
+    Parameter("K2", "K_2", "N m-1", NOT_NEGATIVE, "stiffness 2", "stiffness between the second mass and the ground"),
+    Parameter("C1", "C_1", "N s m-1", NOT_NEGATIVE, "damping 1", "damping between the masses"),
+    Parameter("C2", "C_2", "N s m-1", NOT_NEGATIVE, "damping 2", "damping between the second mass and the ground"),
+    Parameter("P1", "P_1", "N", NOT_NEGATIVE, "force 1", "amplitude of the force on the first mass"),
+    Parameter("P2", "P_2", "N", NOT_NEGATIVE, "force 2", "amplitude of the force on the second mass"),
     Parameter(
-        "Omega", r"\Omega", "", POSITIVE, "forcing frequency", "angular frequency of the force, 2 pi times that in Hz"
+        "Omega",
+        r"\Omega",
+        "rad s-1",
+        POSITIVE,
+        "forcing frequency",
+        "angular frequency of the force, 2 pi times that in Hz",
     ),
     Parameter("R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution"),
-    CLEARANCE._replace(name="B", symbol="B", units="", text="clearance on each side, from the middle to a stop"),
+    CLEARANCE._replace(name="B", symbol="B", text="clearance on each side, from the middle to a stop"),
     Parameter(
         "B0",
         "B_0",
-        "",
+        "m",
         NUMBER,
         "offset of the stops",
         "middle of the stops, from where the first mass rests without a force",
@@ -153,13 +158,13 @@ PHYSICAL = (
 )
 
 B_STAR = Parameter(
-    "b_star", "b^*", "1", POSITIVE, "grazing clearance",
+    "b_star", "b^*", "m", POSITIVE, "grazing clearance",
     "clearance b* at which the non-impacting motion touches the stops (Theorem 1)", "(16)",
 )  # fmt: skip
 
 B_RIGHT, B_LEFT = (
     Parameter(
-        f"b_{side}", f"b_{{\\mathrm{{{side}}}}}", "1", NUMBER, f"grazing, {side} stop",
+        f"b_{side}", f"b_{{\\mathrm{{{side}}}}}", "m", NUMBER, f"grazing, {side} stop",
         f"clearance at which the free motion touches the {side} stop", "(16)",
     )
     for side in ("right", "left")

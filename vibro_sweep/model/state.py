@@ -13,6 +13,7 @@ class Coordinate(NamedTuple):
     symbol: str  # TeX
     label: str
     text: str
+    units: str
 
 
 @functools.cache
@@ -24,9 +25,10 @@ def coordinates(masses: int) -> tuple[Coordinate, ...]:
             f"{letter}_{mass}" if mass < 10 else f"{letter}_{{{mass}}}",
             f"{word} {letter}{mass}",
             f"{word} of mass {mass}",
+            units,
         )
         for mass in range(1, masses + 1)
-        for letter, word in (("x", "displacement"), ("v", "velocity"))
+        for letter, word, units in (("x", "displacement", "m"), ("v", "velocity", "m s-1"))
     )
 
 
@@ -45,6 +47,6 @@ def start(masses: int) -> tuple[str, ...]:
 # A sweep over x1 has the dimension start_x1, since x1 are section points.
 START = {one.name: f"start_{one.name}" for one in coordinates(MOST_MASSES)}
 INITIAL = tuple(
-    Parameter(START[name], f"{symbol}(0)", "1", NUMBER, f"initial {text.split()[0]}", f"{text} at t = 0")
-    for name, symbol, _, text in coordinates(MOST_MASSES)
+    Parameter(START[name], f"{symbol}(0)", units, NUMBER, f"initial {text.split()[0]}", f"{text} at t = 0")
+    for name, symbol, _, text, units in coordinates(MOST_MASSES)
 )

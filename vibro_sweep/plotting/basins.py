@@ -8,7 +8,7 @@ from vibro_sweep.model.state import MOST_MASSES, START, state
 from vibro_sweep.plotting.families import KINDS, describe, kind
 from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.result import Point, Result
-from vibro_sweep.plotting.style import INK, NOT_COMPUTED, axis_name, edges, equation, marked
+from vibro_sweep.plotting.style import INK, NOT_COMPUTED, edges, equation, marked
 
 NAMED = 11  # attractors that the legend has room for
 NEAR = 0.52  # of the plane's width or height, from its middle
@@ -42,7 +42,7 @@ def basins(result: Result):
         picture[label == number] = colour
     image = picture[np.ix_(columns, rows)].transpose(1, 0, 2)
     ax.pcolorfast(edges(x[columns]), edges(y[rows]), image)
-    ax.set(xlabel=axis_name(x_key), ylabel=axis_name(y_key))
+    ax.set(xlabel=result.axis(x_key), ylabel=result.axis(y_key))
     handles = [Patch(color=colour) for colour, _ in named.values()]
     if numbered:
         frame = ax.get_xlim(), ax.get_ylim()

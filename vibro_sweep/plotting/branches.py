@@ -44,14 +44,14 @@ def branches(path, look: Look, ax=None):
     together = joined.margins(file, _sections(file)) if name == "margin" else np.ones(len(values), bool)
     _lines(ax, file, _drawn(file, name, values, look.over is not None), together)
     marks = _marks(ax, file, values)
-    ax.set_xlabel(axis_name(file.parameters[0]))
+    ax.set_xlabel(axis_name(file.parameters[0], file.unit(file.parameters[0])))
     if look.xlim:
         ax.set_xlim(look.xlim)
     if look.over is None:
         finite = values[_inside(file[file.parameters[0]], look.xlim)]
         finite = finite[np.isfinite(finite)]
         ax.set_ylim(look.ylim or (limits(finite) if finite.size else None))
-        ax.set_ylabel(_label(name))
+        ax.set_ylabel(_label(name) + file.unit("min_impact_speed" if name == "impact_speed" else name))
     if name == "multiplier":
         ax.axhline(1, color=INK, lw=0.5)
         ax.set_ylim(0, min(1.05 * np.nanmax(values), MOST))

@@ -36,7 +36,8 @@ def chart(path: str | Path, look: Look, ax=None):
     draw(ax, curves)
     ax.set(xlim=look.xlim or ax.get_xlim(), ylim=look.ylim or ax.get_ylim())
     found = handles(curves, _frame(ax))
-    ax.set(xlabel=axis_label(names[0], look.relative), ylabel=axis_label(names[1], look.relative))
+    across, up = (axis_label(name, look.relative, file.unit(name)) for name in names)
+    ax.set(xlabel=across, ylabel=up)
     if fig is None:
         ax.legend(handles=found, loc="best", frameon=True)
     else:

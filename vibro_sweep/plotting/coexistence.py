@@ -10,7 +10,7 @@ from vibro_sweep.model.catalogue import BY_NAME
 from vibro_sweep.plotting.families import KINDS, MARKERS, kind
 from vibro_sweep.plotting.labels import arrange, legend_below, overlap
 from vibro_sweep.plotting.result import Point, Result
-from vibro_sweep.plotting.style import at_section, axis_name, edges, marked, type_size
+from vibro_sweep.plotting.style import at_section, edges, marked, type_size
 from vibro_sweep.plotting.sweeps import mark_grazing
 
 NARROW = 0.012  # of the axis; the period of a window is written over it where it is wider
@@ -43,7 +43,7 @@ def coexistence(result: Result):
     _stacks(below, values, found)
     if key == "b":
         mark_grazing(axes, result, values[0], values[-1])
-    below.set(xlim=edges(values)[[0, -1]], ylim=(0, 1), xlabel=axis_name(key), ylabel=BY_NAME["share"].label)
+    below.set(xlim=edges(values)[[0, -1]], ylim=(0, 1), xlabel=result.axis(key), ylabel=BY_NAME["share"].label)
     there = {one.kind for one in found}
     named = {name: marked(colour, MARKERS.get(which, "")) for which, (name, colour) in KINDS.items() if which in there}
     named |= {line.get_label(): line for line in above.lines if line.get_gid() == "grazing"}
@@ -77,7 +77,7 @@ def _shares(result, order) -> list[Share]:
 def _points(ax, result, values, found):
     """x1 at the section, of one orbit on each attractor; its mean where the points are not stored."""
     stored = "x1" in result and "phase" not in result
-    ax.set_ylabel(at_section("x1") if stored else f"mean of {at_section('x1')}")
+    ax.set_ylabel(("" if stored else "mean of ") + at_section("x1") + result.unit("x1"))
     size = np.clip(60 / np.sqrt(len(values)), 1.5, 6) * (0.5 if stored else 1)
     for which, (_, colour) in KINDS.items():
         chosen = [one for one in found if one.kind == which and which != "unsettled"]

@@ -4,7 +4,7 @@ import numpy as np
 
 from vibro_sweep.plotting.orbits import legend
 from vibro_sweep.plotting.result import Result
-from vibro_sweep.plotting.style import DASHES, INK, PER_TIME, exponent, exponent_colour, limits
+from vibro_sweep.plotting.style import DASHES, INK, exponent, exponent_colour, exponents_name, limits
 
 
 def shows_convergence(result: Result) -> bool:
@@ -41,8 +41,9 @@ def convergence(result: Result):
         ]
         finite = np.concatenate([v[np.isfinite(v)] for v in values] + [[0.0]])
         row[0].set_ylim(limits(finite))
-    grid[0, 0].set_ylabel(f"{exponent(1)} {PER_TIME}")
-    grid[1, 0].set_ylabel(f"{exponent('i')} {PER_TIME}")
+    unit = result.unit("lyapunov_running")
+    grid[0, 0].set_ylabel(exponents_name(1, unit))
+    grid[1, 0].set_ylabel(exponents_name("i", unit))
     legend(fig)
     fig.align_ylabels(grid[:, 0])
     return fig

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.look import Look
-from vibro_sweep.plotting.style import FAINT, INK, axis_name
+from vibro_sweep.plotting.style import FAINT, INK, axis_name, with_unit
 
 COLOURS = {
     "fold": "#2f8fd8",
@@ -43,14 +43,16 @@ class Drawn(NamedTuple):
     period: int = 1
 
 
-def plot_curves(curves: list[Drawn], names: tuple[str, str], width: float | None = None):
-    """All curves in one panel, so many mm wide. Returns a matplotlib Figure."""
+def plot_curves(curves: list[Drawn], names: tuple[str, str], system=None, width: float | None = None):
+    """All curves of a system in one panel, so many mm wide. Returns a matplotlib Figure."""
     look = Look(width=width)
     with mpl.rc_context(look.style):
         fig = look.page(4.2, "bifurcation curves")
         ax = fig.subplots()
         draw(ax, curves)
-        ax.set(xlabel=axis_name(names[0]), ylabel=axis_name(names[1]))
+        known = getattr(system, "described", {})  # a Family has numbers without units
+        labels = [with_unit(axis_name(name), known[name].units if name in known else "1", system) for name in names]
+        ax.set(xlabel=labels[0], ylabel=labels[1])
         legend_below(fig, handles(curves), 6, grow=True)
         arrange(fig)
         name_points(ax, curves)

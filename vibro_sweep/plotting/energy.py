@@ -6,7 +6,7 @@ from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.plotting.impacts import NONE
 from vibro_sweep.plotting.result import Result
 from vibro_sweep.plotting.spectrum import curve
-from vibro_sweep.plotting.style import BRANCHES, FAINT, INK, LEFT, RIGHT, axis_name, symbol
+from vibro_sweep.plotting.style import BRANCHES, FAINT, INK, LEFT, RIGHT, symbol
 from vibro_sweep.plotting.sweeps import reach
 
 COLOURS = (INK, RIGHT, LEFT, FAINT)
@@ -32,7 +32,7 @@ def energy(result: Result):
     fig = result.page(4.6 if struck else 3.0, result.title("Energy" if struck else f"Energy; {NONE}"))
     axes = fig.subplots(1 + struck, sharex=True, squeeze=False)[:, 0]
     if struck:
-        _power(axes[0], values[order], power, result.follow)
+        _power(axes[0], values[order], power, result)
     below = axes[-1]
     chosen = result.look.variable
     shown = [chosen] if chosen else [name for name in variables(result) if name.startswith("rms_x")]
@@ -40,7 +40,8 @@ def energy(result: Result):
         style = {"color": COLOURS[min(i, len(COLOURS) - 1)], "label": symbol(name.partition("_")[2])}
         curve(below, values[order], result.array(name)[order], **style)
     size = "largest size" if chosen and chosen.startswith("peak") else "root mean square"
-    below.set(ylabel=f"{size} of {symbol(chosen.partition('_')[2])}" if chosen else size, xlabel=axis_name(key))
+    of = f" of {symbol(chosen.partition('_')[2])}" if chosen else ""
+    below.set(ylabel=f"{size}{of}{result.unit(shown[0])}", xlabel=result.axis(key))
     below.set_xlim(reach(values[order]))
     for ax in axes:
         ax.set_ylim(bottom=0)
@@ -53,10 +54,10 @@ def energy(result: Result):
     return fig
 
 
-def _power(ax, values, power, follow) -> None:
+def _power(ax, values, power, result) -> None:
     """power : (values, starts)"""
-    ax.set_ylabel("power lost\nin impacts")
-    if not follow:
+    ax.set_ylabel(f"power lost\nin impacts{result.unit('impact_power')}")
+    if not result.follow:
         curve(ax, values, power, color=INK)
         return
     for i, (name, colour) in enumerate(BRANCHES.items()):

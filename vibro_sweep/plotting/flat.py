@@ -8,8 +8,9 @@ import numpy as np
 from vibro_sweep.model.bifurcations import KINDS, TYPES
 from vibro_sweep.model.branch_file import WINDOWS
 from vibro_sweep.model.refusals import cut
+from vibro_sweep.model.units import shown_unit
 from vibro_sweep.plotting.source import PlotError, name_of, readable
-from vibro_sweep.store.attributes import text, texts
+from vibro_sweep.store.attributes import attributes, text, texts
 from vibro_sweep.store.flat_checks import Stored, check
 from vibro_sweep.store.opening import StoreError, is_flat, opened, quantities_of
 
@@ -38,6 +39,7 @@ class FlatFile:
         try:
             with opened(path) as (file, _):
                 self.arrays = {name: file[name][()] for name in quantities_of(file)}
+                self._units = {name: attributes(file[name]).get("units") for name in self.arrays}
                 self.parameters = texts(file, "parameters")
                 self.title = text(file, "title").removeprefix("vibro_sweep: ")
                 self.sweep = text(file, "sweep") if "sweep" in file.attrs else ""
@@ -54,9 +56,14 @@ class FlatFile:
         except (OSError, RuntimeError, ValueError) as error:
             raise PlotError(f"{self.name} does not hold all that {kind} are: {error}") from error
         self.arrays = {name: one.values for name, one in found.items()}
+        self._units = {name: data[name].attrs.get("units") for name in self.arrays}
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self.arrays[name]
+
+    def unit(self, name: str) -> str:
+        """That of a variable, for the name of an axis."""
+        return shown_unit(self._units.get(name))
 
     def types(self) -> list[str]:
         """Of all special points; of a graze with its kind: graze or nonsmooth_fold."""

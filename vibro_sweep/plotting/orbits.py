@@ -88,7 +88,11 @@ def phase_portrait(result: Result):
                 ax.plot([stop, stop], [before, after], color=IMPACT, lw=1.2, ls=(0, (1, 1)), label="impact")
             _walls(ax, result, point)
         _mark_sections(ax, result, point, x_name, v_name)
-        ax.set(title=point.label, xlabel=_symbol(x_name), ylabel=_symbol(v_name))
+        ax.set(
+            title=point.label,
+            xlabel=_symbol(x_name) + result.unit(x_name),
+            ylabel=_symbol(v_name) + result.unit(v_name),
+        )
     legend(fig)
     return fig
 
@@ -105,7 +109,7 @@ def configuration(result: Result):
         elif not result.along[2:].any():
             _slanted_walls(ax, result, point)
         _mark_sections(ax, result, point, "x1", "x2")
-        ax.set(title=point.label, xlabel=symbol("x1"), ylabel=symbol("x2"))
+        ax.set(title=point.label, xlabel=symbol("x1") + result.unit("x1"), ylabel=symbol("x2") + result.unit("x2"))
     legend(fig)
     return fig
 
@@ -150,8 +154,9 @@ def poincare(result: Result):
         if x_name == "x1" and result.along is None:
             _walls(ax, result, point)
         name = before_impact if "phase" in result else at_section
-        ax.set(title=point.label, xlabel=r"$\omega t$ mod $2\pi$" if x_name == "phase" else name(x_name))
-        ax.set_ylabel(name(v_name))
+        phase = r"$\omega t$ mod $2\pi$" if x_name == "phase" else None
+        ax.set(title=point.label, xlabel=phase or name(x_name) + result.unit(x_name))
+        ax.set_ylabel(name(v_name) + result.unit(v_name))
     legend(fig)
     return fig
 
@@ -222,7 +227,7 @@ def history(result: Result):
         for side, stop in stops.items() if displacements(result)[0] in names else ():
             ax.axhline(stop, color=FAINT, lw=0.9, ls=DASHES if side > 0 else ":", label=stop_name(result, side))
         ax.margins(x=0)
-        ax.set(title=point.label, ylabel=symbol(chosen) if chosen else "displacement")
+        ax.set(title=point.label, ylabel=(symbol(chosen) if chosen else "displacement") + result.unit(names[0]))
     grid[-1].set_xlabel("$t / T$ (forcing periods)")
     legend(fig)
     return fig
@@ -240,7 +245,7 @@ def iteration(result: Result):
         values = result.one(name, point)
         ax.plot(values, "-", color=FAINT, lw=0.3)
         ax.plot(values, ".", color=INK, markersize=np.clip(60 / np.sqrt(len(values)), 3, 8), markeredgewidth=0)
-        ax.set(title=point.label, ylabel=before_impact(name) if at_impact else symbol(name))
+        ax.set(title=point.label, ylabel=(before_impact if at_impact else symbol)(name) + result.unit(name))
         ax.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1, steps=[1, 2, 2.5, 5, 10]))
         if np.isfinite(values).any():
             ax.set_ylim(limits(values))

@@ -5,17 +5,18 @@ import numpy as np
 
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.orbits import ARROWS_AT, arrows, legend
-from vibro_sweep.plotting.style import DASHES, FAINT, IMPACT, INK, LEFT, RIGHT
+from vibro_sweep.plotting.style import DASHES, FAINT, IMPACT, INK, LEFT, RIGHT, with_unit
 
 
 def plot_periodic(
-    times, gap, rate, impact_t, side, v_in, v_out, stops, title: str, names=("gap", "gap velocity"), width=None
+    times, gap, rate, impact_t, side, v_in, v_out, stops, title: str, system, names=("gap", "gap velocity"), width=None
 ):
     """times, gap, rate: (m,), with the impacts' times among them; impact_t, side, v_in, v_out: (impacts,). A Figure.
 
-    width : mm
+    system : whose units the axes have; width : mm
     """
-    look = Look(width=width)
+    look, declared = Look(width=width), ("m", "m s-1", "s")
+    x_label, v_label, t_label = map(with_unit, (*names, "time $t$"), declared, 3 * [system])
     with mpl.rc_context(look.style):
         fig = look.page(3.7, title)
         portrait, history = fig.subplots(1, 2, width_ratios=(1, 1.4))
@@ -28,7 +29,7 @@ def plot_periodic(
         arrows(portrait, t, x, v, times[0] + np.array(ARROWS_AT) * (times[-1] - times[0]))
         for before, after, where in zip(v_in, v_out, gap[at], strict=True):
             portrait.plot([where, where], [before, after], color=IMPACT, lw=1.2, ls=(0, (1, 1)), label="impact")
-        portrait.set(xlabel=names[0], ylabel=names[1])
+        portrait.set(xlabel=x_label, ylabel=v_label)
         history.plot(times, gap, color=INK, lw=0.7)
         for one, marker, colour, text in ((1, ">", RIGHT, "right"), (-1, "<", LEFT, "left")):
             hit = side == one
@@ -38,6 +39,6 @@ def plot_periodic(
             if np.isfinite(stop):
                 portrait.axvline(stop, color=FAINT, lw=0.6, ls=DASHES, label="stop")
                 history.axhline(stop, color=FAINT, lw=0.6, ls=DASHES)
-        history.set(xlabel="time $t$", ylabel=names[0])
+        history.set(xlabel=t_label, ylabel=x_label)
         legend(fig)
         return fig

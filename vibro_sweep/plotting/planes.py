@@ -26,10 +26,10 @@ from vibro_sweep.plotting.style import (
     NEUTRAL,
     NO_PERIOD,
     NOT_COMPUTED,
-    PER_TIME,
     PERIODS,
     edges,
     exponent,
+    exponents_name,
     grazing_of,
 )
 
@@ -80,13 +80,14 @@ def plane(result: Result, overlay: Overlay | None = None):
     else:
         (columns, across), (rows, up) = _in_range(x, result.look.xlim), _in_range(y, result.look.ylim)
         corners = across, up
+    unit = result.unit(result.look.variable or "lyapunov")
     shown = [np.ma.masked_invalid(values[np.ix_(columns, rows)].T) for _, values in maps]
     for ax, (draw, _), values in zip(grid, maps, shown, strict=True):
-        draw(ax, *corners, values)
+        draw(ax, *corners, values, unit)
         if ax.get_subplotspec().is_last_row():
-            ax.set_xlabel(axis_label(x_key, relative))
+            ax.set_xlabel(axis_label(x_key, relative, result.unit(x_key)))
         if ax.get_subplotspec().is_first_col():
-            ax.set_ylabel(axis_label(y_key, relative))
+            ax.set_ylabel(axis_label(y_key, relative, result.unit(y_key)))
         ax.patch.set(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="///")
         ax.set(xlim=result.look.xlim or ax.get_xlim(), ylim=result.look.ylim or ax.get_ylim())
         rests.cells(ax, result, columns, rows, corners)
@@ -207,17 +208,17 @@ def _maps(result):
     return [one for one in maps if np.isfinite(one[1]).any()] or maps[:1], note
 
 
-def _exponent(ax, x, y, values):
+def _exponent(ax, x, y, values, unit):
     """One unit on both sides of zero; 0 has the neutral colour, and no other value has."""
     finite = np.abs(values[values != 0].compressed())
     norm = CenteredNorm(0, max(np.quantile(finite, 0.995), 1e-300) if finite.size else 1.0)
     least = 1.01 * norm.halfrange / DIVERGING.N
     tinted = np.ma.where(values == 0, 0.0, np.copysign(np.maximum(np.abs(values), least), values))
     image = _image(ax, x, y, tinted, cmap=DIVERGING, norm=norm)
-    _bar(ax, image, f"{exponent(1)} {PER_TIME}; > 0: chaos", extend="both")
+    _bar(ax, image, f"{exponents_name(1, unit)}; > 0: chaos", extend="both")
 
 
-def _period(ax, x, y, values):
+def _period(ax, x, y, values, _):
     colours = ListedColormap([NO_PERIOD, *PERIODS, LONGER])
     norm = BoundaryNorm(np.arange(-0.5, LONGEST + 2), colours.N)
     image = _image(ax, x, y, np.ma.minimum(values, LONGEST + 1), cmap=colours, norm=norm)
@@ -226,7 +227,7 @@ def _period(ax, x, y, values):
     bar.ax.tick_params(length=0)
 
 
-def _number(ax, x, y, values):
+def _number(ax, x, y, values, _):
     most = int(values.max()) if values.count() else 1
     colours = ListedColormap(colormaps["viridis"](np.linspace(0, 1, most + 1)))
     image = _image(ax, x, y, values, cmap=colours, norm=BoundaryNorm(np.arange(-0.5, most + 1), most + 1))
@@ -236,8 +237,9 @@ def _number(ax, x, y, values):
 def _amount(label):
     """Draws values on an even scale."""
 
-    def draw(ax, x, y, values):
-        _bar(ax, _image(ax, x, y, values, cmap="viridis", norm=decades.norm(values.filled(np.nan))), label)
+    def draw(ax, x, y, values, unit):
+        image = _image(ax, x, y, values, cmap="viridis", norm=decades.norm(values.filled(np.nan)))
+        _bar(ax, image, label + unit)
 
     return draw
 

@@ -14,5 +14,5 @@ def check_relative(name: str, keys, b_star) -> None:
         raise PlotError(f"relative: {name} has no grazing clearance to divide by")
 
 
-def axis_label(key: str, relative: bool) -> str:
-    return f"{symbol('b')}$/${symbol('b_star')}" if relative and key == "b" else axis_name(key)
+def axis_label(key: str, relative: bool, unit: str = "") -> str:
+    return f"{symbol('b')}$/${symbol('b_star')}" if relative and key == "b" else axis_name(key, unit)

@@ -12,10 +12,11 @@ from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed, shown
 from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.model.status import NOT_COMPUTED
+from vibro_sweep.model.units import shown_unit
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.source import PlotError, source_of
-from vibro_sweep.plotting.style import equation
+from vibro_sweep.plotting.style import axis_name, equation
 from vibro_sweep.store.settings import settings_of
 
 LONGEST_LINE = 150  # letters of TeX
@@ -96,6 +97,16 @@ class Result:
     def contents(self) -> str:
         """The names of the stored quantities, for a message."""
         return ", ".join(sorted(self._source.quantities))
+
+    def unit(self, name) -> str:
+        """That of a quantity, for the name of an axis; of the gap along a trajectory that of the states."""
+        letter = {"gap": "x1", "gap_velocity": "v1"}.get(name, name)
+        there = next((one for one in (name, letter, f"trajectory_{letter}") if one in self._source), None)
+        return "" if there is None else shown_unit(self._source.attribute(there, "units"))
+
+    def axis(self, key) -> str:
+        """A swept number as an axis label."""
+        return axis_name(key, self.unit(key))
 
     def coordinate(self, name) -> np.ndarray:
         """Values of a dimension."""

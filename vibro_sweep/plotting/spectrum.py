@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.collections import PolyCollection
 
-from vibro_sweep.plotting.style import ARROWS, BRANCHES, CHAOS, INK, PER_TIME, edges, exponent, exponent_colour
+from vibro_sweep.plotting.style import ARROWS, BRANCHES, CHAOS, INK, edges, exponent, exponent_colour, exponents_name
 
 STRIP = 0.05  # of the panel's height: what stands for an exponent of -infinity
 MOST_NAMED = 8  # exponents beside their curves
@@ -20,7 +20,7 @@ def spectrum(ax, result, values, order):
     error = result.array("lyapunov_error")[order] if "lyapunov_error" in result else np.zeros(exponents.shape)
     spans(ax, values, result.is_chaotic()[order].any(axis=1), color=CHAOS, gid="chaos")
     ax.axhline(0, color=INK, lw=0.6, zorder=1)
-    ax.set_ylabel(f"{exponent(1 if result.follow else 'i')} {PER_TIME}")
+    ax.set_ylabel(exponents_name(1 if result.follow else "i", result.unit("lyapunov")))
     if result.follow:
         branches(ax, values, exponents[:, :, 0])
         _strips(ax, values, lost[:, :1], [INK])

@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from vibro_sweep.model.catalogue import BY_NAME, NUMBERS
+from vibro_sweep.model.units import shown_unit, unit_in
 
 TYPE = 8.0  # points: all type of a narrow page
 
@@ -94,9 +95,19 @@ def exponent(i, note="") -> str:
     return f"${BY_NAME['lyapunov'].symbol}_{i}{note}$"
 
 
-def axis_name(key) -> str:
-    """A number of the system or of the start as an axis label: its name and its symbol."""
-    return f"{NUMBERS[key].label} {symbol(key)}" if key in NUMBERS else key
+def exponents_name(i, unit: str) -> str:
+    """The i-th exponent, or any, as an axis label; unit : of the file, if it has one."""
+    return f"{exponent(i)}{unit or f' {PER_TIME}'}"
+
+
+def axis_name(key, unit: str = "") -> str:
+    """A number of the system or of the start as an axis label: its name, its symbol and its unit."""
+    return f"{NUMBERS[key].label} {symbol(key)}{unit}" if key in NUMBERS else f"{key}{unit}"
+
+
+def with_unit(label: str, declared: str, system) -> str:
+    """The label of an axis, with the unit that a system has for what is `declared` in SI; a Family has none."""
+    return label + shown_unit(unit_in(declared, getattr(system, "units", None)))
 
 
 def grazing_of(name) -> str:

@@ -19,7 +19,6 @@ from vibro_sweep.plotting.style import (
     GRAZING,
     INK,
     at_section,
-    axis_name,
     before_impact,
     edges,
     exponent,
@@ -102,7 +101,7 @@ def _stack(result, panels, what):
     if key == "b":
         mark_grazing(axes, result, *(result.look.xlim or values[[0, -1]]))
     axes[-1].set_xlim(reach(values))
-    axes[-1].set_xlabel(axis_name(key))
+    axes[-1].set_xlabel(result.axis(key))
     _key(axes[0], result)
     _explanations(fig, axes, result)
     fig.align_ylabels(axes)
@@ -179,9 +178,9 @@ def section(ax, result, values, order):
     at_impact = "phase" in result
     points = result.array(name)[order]  # (values, starts, samples)
     if at_impact:
-        ax.set_ylabel(f"{before_impact(name)}, {result.settings.get('section_stop', 'right')} stop")
+        ax.set_ylabel(f"{before_impact(name)}, {result.settings.get('section_stop', 'right')} stop{result.unit(name)}")
     else:
-        ax.set_ylabel(at_section(name))
+        ax.set_ylabel(at_section(name) + result.unit(name))
     if result.failed:
         return
     there = np.isfinite(points)

@@ -4,6 +4,7 @@ import functools
 from typing import Any, Literal
 
 from pydantic import ConfigDict, Field, create_model
+from pydantic.config import JsonDict
 
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import WHICH_STOPS, Option
@@ -19,7 +20,7 @@ def _required(one: Parameter) -> tuple[Any, Any]:
 PhysicalNumbers = create_model(
     "PhysicalNumbers",
     __base__=Form,
-    __doc__="Physical quantities in any consistent units, as kg, m, s and N. "
+    __doc__="Physical quantities in SI units: kg, m, s and N. "
     "All but B0 and R_left must be given; a sweep over `omega`, `b`, `offset` or `R` replaces the value that follows "
     "from `Omega`, `B`, `B0` or `R`.",
     **{one.name: number(one) if one.follows or one.default is not None else _required(one) for one in PHYSICAL},
@@ -64,6 +65,14 @@ def form_of(name: str) -> type[Form]:
     )
 
 
+_UNITS: JsonDict = {
+    "anyOf": [
+        {"const": "SI"},
+        {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 3, "maxItems": 3},
+    ]
+}
+
+
 def _number(one: Parameter) -> tuple[Any, Any]:
     if one.name == PHASE.name:
         return TAU
@@ -75,6 +84,8 @@ def _number(one: Parameter) -> tuple[Any, Any]:
 
 
 def _option(one: Option) -> tuple[Any, Any]:
+    if one.kind == "units":
+        return Any, Field(default=None, description=one.text, json_schema_extra=_UNITS)
     kind = {
         "word": Literal[one.words] if one.words else str,
         "flag": bool,

@@ -12,6 +12,7 @@ from vibro_sweep.model.built import stored_names
 from vibro_sweep.model.catalogue import AXES
 from vibro_sweep.model.observables import Dimension, Variable
 from vibro_sweep.model.parameters import Parameter
+from vibro_sweep.model.units import unit_in
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import numbers
 from vibro_sweep.store.attributes import MATRIX, set_text
@@ -34,7 +35,7 @@ def create(file: h5py.File, scene: Scene) -> None:
         else:
             file.create_dataset(name, data=values, chunks=chunk_shape(scene, values.shape, 8), **CHECKSUMS)
         file[name].make_scale(name)
-        _describe(file[name], scene.system.described.get(name, AXES.get(name)))
+        _describe(file[name], scene.system.described.get(name, AXES.get(name)), scene)
     following = _create_following(file, scene)
     if told := (*following, *_create_matrices(file, scene)):
         set_text(file, "coordinates", " ".join(told))
@@ -47,7 +48,7 @@ def create(file: h5py.File, scene: Scene) -> None:
         else:
             _create_compact(file, name, np.dtype(quantity.dtype), (), quantity.fill)
         dataset = file[name]
-        _describe(dataset, quantity)
+        _describe(dataset, quantity, scene)
         if following:
             set_text(dataset, "coordinates", " ".join(following))
         for i, dimension in enumerate(lead):
@@ -66,7 +67,7 @@ def _create_following(file: h5py.File, scene: Scene) -> tuple[str, ...]:
         shape = tuple(len(scene.sweep[key]) for key in lead)
         chunk = chunk_shape(scene, shape, 8)
         dataset = file.create_dataset(name, shape, "f8", chunks=chunk, fillvalue=np.nan, **CHECKSUMS)
-        _describe(dataset, AXES.get(name) or stored_names(scene.system.masses)[name])
+        _describe(dataset, AXES.get(name) or stored_names(scene.system.masses)[name], scene)
         for i, key in enumerate(lead):
             dataset.dims[i].attach_scale(file[key])
     if len(numbers.depends_on(scene)) == 1:
@@ -81,7 +82,8 @@ def _create_matrices(file: h5py.File, scene: Scene) -> tuple[str, ...]:
         _create_compact(file, name, values.dtype, values.shape)
         file[name][...] = values
         option = next(one for one in scene.system.model.options if one.name == name)
-        for attribute, text in (("units", "1"), ("long_name", f"matrix {name}"), ("description", option.text)):
+        units = unit_in(option.units, scene.system.units)
+        for attribute, text in (("units", units), ("long_name", f"matrix {name}"), ("description", option.text)):
             set_text(file[name], attribute, text)
         for axis, length in zip(MATRIX, values.shape, strict=True):
             if axis not in file:
@@ -105,9 +107,9 @@ def write_following(file: h5py.File, scene: Scene) -> None:
             file[name][box] = values[name]
 
 
-def _describe(dataset: h5py.Dataset, of: Parameter | Dimension | Variable) -> None:
+def _describe(dataset: h5py.Dataset, of: Parameter | Dimension | Variable, scene: Scene) -> None:
     """`long_name` is short, for axes; `description` says more."""
-    set_text(dataset, "units", of.units)
+    set_text(dataset, "units", unit_in(of.units, scene.system.units))
     set_text(dataset, "long_name", of.long_name)
     set_text(dataset, "description", of.text)
 

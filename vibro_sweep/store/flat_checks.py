@@ -11,7 +11,6 @@ import numpy as np
 
 from vibro_sweep.model.branch_file import BRANCHES, CHART, OF_EDGES, RAGGED, UNSEEN, WINDOWS, Column, columns
 from vibro_sweep.model.refusals import cut, shown
-from vibro_sweep.model.state import state
 from vibro_sweep.store.attributes import check_dataset, text, texts
 
 KINDS = (BRANCHES, WINDOWS, CHART)
@@ -52,7 +51,7 @@ def check(kind: str, parameters: list[str], found: Mapping[str, Stored]) -> None
             if lengths.setdefault(dimension, length) != length:
                 raise ValueError(f"its datasets do not fit together: `{name}` and the dimension `{dimension}`")
     masses = lengths.get("multiplier", 0) // 2
-    for column in (*columns(kind, parameters, list(state(masses))), *OF_EDGES):
+    for column in (*columns(kind, parameters, masses), *OF_EDGES):
         if column.name in found:
             _check_column(column, found[column.name], lengths)
         elif column.dimensions[0] not in LATER:

@@ -16,6 +16,7 @@ from vibro_sweep.model.grazing import grazing_clearance
 from vibro_sweep.model.grid import grid, linears
 from vibro_sweep.model.linear import static_state, steady_gain
 from vibro_sweep.model.models import DEFAULT
+from vibro_sweep.model.models.declaration import UNITS
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.state import start
 from vibro_sweep.scene import Scene
@@ -27,9 +28,10 @@ def attributes(scene: Scene) -> dict[str, Any]:
     """Numbers and words that hold for all points: name -> value.
 
     The system's numbers, `tau` in radians, `b_star` (`b_right` and `b_left` where these may differ), its options but
-    for matrices, the `type` of a model and `along` where they are not the paper's; `model` with its `order` and
-    `expand_at`, the initial state (`start_x1`, ...; of a `follow` that of its first point) unless it is random or held
-    by a stop, `transient` and `record` in forcing periods, `section`: `phase`, or `impact` with `section_stop`;
+    for matrices, and for units, which the variables have; the `type` of a model and `along` where they are not the
+    paper's; `model` with its `order` and `expand_at`, the initial state (`start_x1`, ...; of a `follow` that of its
+    first point) unless it is random or held by a stop, `transient` and `record` in forcing periods, `section`: `phase`,
+    or `impact` with `section_stop`;
     `picture` where there is one.
     """
     system = scene.system
@@ -40,7 +42,7 @@ def attributes(scene: Scene) -> dict[str, Any]:
         result |= {name: float(value) for name, value in following(scene, ()).items() if name != "tau"}
     result = {name: value for name, value in result.items() if name not in (*scene.sweep, *dimensions(scene))}
     result |= {name: _plain(value) for name, value in system.options.items() if value is not None}
-    result = {name: value for name, value in result.items() if name not in matrices(scene)}
+    result = {name: value for name, value in result.items() if name not in (UNITS.name, *matrices(scene))}
     if isinstance(system, Built):
         result = {name: value for name, value in result.items() if name != "tau"}
     result |= {} if system.model.name == DEFAULT else {"type": system.model.name}

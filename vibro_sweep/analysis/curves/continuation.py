@@ -73,7 +73,7 @@ class BifurcationCurve:
             special = [(one.type, *(one.parameters[name] for name in names)) for one in curve.special]
             values = (curve.points[name].values for name in (*names, "virtual"))
             drawn.append(Drawn(curve.type, *values, special))
-        return plot_curves(drawn, names, width)
+        return plot_curves(drawn, names, self.begins.orbit.system, width)
 
 
 @one_thread()

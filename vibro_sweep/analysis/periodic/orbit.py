@@ -228,7 +228,8 @@ class PeriodicOrbit:
         R = q.restitution(self._whole[1])
         t, v = self._whole[0] % length, self._whole[3][:, len(q.along)]
         title = f"{self.itinerary or 'free'}, period {self.period}, {'stable' if self.stable else 'unstable'}"
-        return plot_periodic(times, gap, rate, t, self._whole[1], v, -R * v, (q.low, q.high), title, width=width)
+        jumps, stops = (t, self._whole[1], v, -R * v), (q.low, q.high)
+        return plot_periodic(times, gap, rate, *jumps, stops, title, self.system, width=width)
 
     def save(self, path) -> Path:
         """Write the orbit as JSON, for `load_orbit`; nothing is overwritten."""

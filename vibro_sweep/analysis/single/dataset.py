@@ -4,7 +4,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.model.models.declaration import UNITS
 from vibro_sweep.model.state import state
+from vibro_sweep.model.units import unit_in
 
 if TYPE_CHECKING:
     import xarray
@@ -12,6 +14,7 @@ if TYPE_CHECKING:
 
     from vibro_sweep.analysis.single.orbit import Orbit
 
+_UNITS = {"t": "s", "xdot": "m s-1", "x": "m", "v": "m s-1"}  # in SI, of fields that begin so
 SAMPLES = 400  # of a picture, in a forcing period
 
 
@@ -30,10 +33,19 @@ def dataset_of(orbit: "Orbit") -> "xarray.Dataset":
         columns = {name: values} if values.ndim == 1 else {f"{name}{i}": one for i, one in enumerate(values.T, 1)}
         variables |= {f"impact_{key}": ("impact", one) for key, one in columns.items()}
     variables |= {f"rest_{name}": ("rest", orbit.sticking[name]) for name in orbit.sticking.dtype.names}
-    options = {name: value for name, value in system.options.items() if value is not None}
+    options = {name: value for name, value in system.options.items() if value is not None and name != UNITS.name}
     attributes = system.parameters() | options | {"start_time": orbit.start_time}
     attributes |= {"status": str(orbit.status), "status_note": orbit.status.note}
-    return xarray.Dataset(variables, {"t": ("section", orbit.section_times)}, attributes)
+    data = xarray.Dataset(variables, {"t": ("section", orbit.section_times)}, attributes)
+    for name, one in data.variables.items():
+        one.attrs["units"] = unit_in(_unit(str(name)), system.units)
+    return data
+
+
+def _unit(name: str) -> str:
+    """In SI, of what a field of `Orbit` holds."""
+    field = name.removeprefix("impact_").removeprefix("rest_")
+    return next((unit for beginning, unit in _UNITS.items() if field.startswith(beginning)), "1")
 
 
 def figure_of(orbit: "Orbit", periods: int, width: float | None) -> "Figure":
@@ -56,4 +68,4 @@ def figure_of(orbit: "Orbit", periods: int, width: float | None) -> "Figure":
     jumps = (impacts["t"], impacts["side"], impacts["v1"], -q.restitution(impacts["side"]) * impacts["v1"])
     names = ("$x_1$", "$v_1$") if system.gap_is_x1 else ("$g$", r"$\dot g$")
     stops = [one for one in (q.high, q.low) if np.isfinite(one)]
-    return plot_periodic(times, gap, rate, *jumps, stops, title, names, width)
+    return plot_periodic(times, gap, rate, *jumps, stops, title, system, names, width)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import Model
+from vibro_sweep.model.models.declaration import UNITS, Model
 from vibro_sweep.model.parameters import (
     CLEARANCE,
     FREQUENCY,
@@ -61,13 +61,13 @@ MODEL = Model(
             free_motion=True,
         ),
         Parameter("zeta", r"\zeta", "1", NOT_NEGATIVE, "damping ratio", "damping ratio of the host", free_motion=True),
-        Parameter("F", "F", "1", NUMBER, "forcing amplitude", "amplitude of the force on the host", free_motion=True),
+        Parameter("F", "F", "N", NUMBER, "forcing amplitude", "amplitude of the force on the host", free_motion=True),
         FREQUENCY,
         RESTITUTION,
         CLEARANCE._replace(text="half of the ball's play", range=POSITIVE),
         PHASE,
     ),
-    options=(),
+    options=(UNITS,),
     masses=lambda given: 2,
     build=ball_in_cavity,
 )

@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import CONTACT, WHICH_STOPS, Model, Option
+from vibro_sweep.model.models.declaration import CONTACT, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, POSITIVE, Parameter, ParameterError
 
 
@@ -36,8 +36,8 @@ def _check(given) -> None:
         raise ParameterError("stop_at", given["stop_at"], f"a whole number from 1 to {masses}, the number of masses")
 
 
-def _list(name: str, symbol: str, range_, each: str, label: str, text: str, default=None) -> Parameter:
-    return Parameter(name, symbol, "1", range_, label, text, default=default, free_motion=True, each=each)
+def _list(name: str, symbol: str, units: str, range_, each: str, label: str, text: str, default=None) -> Parameter:
+    return Parameter(name, symbol, units, range_, label, text, default=default, free_motion=True, each=each)
 
 
 MODEL = Model(
@@ -56,14 +56,14 @@ MODEL = Model(
 """,
     source="S. Natsiavas, J. Sound Vib. 165 (1993) 439",
     numbers=(
-        _list("m", "m", POSITIVE, "mass", "mass", "mass"),
-        _list("k", "k", NOT_NEGATIVE, "spring", "stiffness", "stiffness, from the left wall on; 0: no spring"),
-        _list("c", "c", NOT_NEGATIVE, "spring", "damper", "damping, from the left wall on", 0.0),
-        _list("force", "f", NUMBER, "mass", "force", "amplitude of the force"),
-        _list("constant", r"\bar f", NUMBER, "mass", "constant force", "constant force", 0.0),
+        _list("m", "m", "kg", POSITIVE, "mass", "mass", "mass"),
+        _list("k", "k", "N m-1", NOT_NEGATIVE, "spring", "stiffness", "stiffness, from the left wall on; 0: no spring"),
+        _list("c", "c", "N s m-1", NOT_NEGATIVE, "spring", "damper", "damping, from the left wall on", 0.0),
+        _list("force", "f", "N", NUMBER, "mass", "force", "amplitude of the force"),
+        _list("constant", r"\bar f", "N", NUMBER, "mass", "constant force", "constant force", 0.0),
         *CONTACT,
     ),
-    options=(Option("stop_at", "whole", "the mass that hits the stops, counted from 1", 1), WHICH_STOPS),
+    options=(Option("stop_at", "whole", "the mass that hits the stops, counted from 1", 1), WHICH_STOPS, UNITS),
     masses=lambda given: len(given["m"]),
     build=chain,
     check=_check,

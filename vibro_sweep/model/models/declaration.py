@@ -18,7 +18,7 @@ from vibro_sweep.model.parameters import (
 
 
 class Option(NamedTuple):
-    """What is no number that could be swept. `kind`: "word" | "flag" | "whole" | "matrix" | "vector"."""
+    """What is no number that could be swept. `kind`: "word" | "flag" | "whole" | "matrix" | "vector" | "units"."""
 
     name: str
     kind: str
@@ -26,6 +26,7 @@ class Option(NamedTuple):
     default: Any = None
     words: tuple[str, ...] = ()  # of a word
     optional: bool = False
+    units: str = "1"  # of a matrix, where the system is given in SI
 
 
 class Model(NamedTuple):
@@ -41,6 +42,7 @@ class Model(NamedTuple):
     masses: Callable[[Mapping[str, Any]], int]  # N, from what is given
     build: Callable[..., Linear]  # from all numbers and options by name; analytic in the numbers, also complex ones
     check: Callable[[Mapping[str, Any]], None] = lambda given: None  # raises ParameterError: how they must fit
+    depending: Callable[[Mapping[str, Any]], dict[str, str]] = lambda given: {}  # units of numbers that others decide
 
     def flat(self, masses: int) -> dict[str, Parameter]:
         """The numbers that can be swept; of a list m these are m1, m2, ..."""
@@ -64,7 +66,7 @@ def entries(one: Parameter, masses: int) -> list[Parameter]:
 
 def linear_of(model: Model, given: Mapping[str, Any]) -> Linear:
     """The oscillator with these numbers and options; those of lists may be given one by one, as m1, m2, ..."""
-    masses, whole = model.masses(given), dict(given)
+    masses, whole = model.masses(given), {name: value for name, value in given.items() if name != UNITS.name}
     for one in model.numbers:
         if one.each and whole.get(one.name) is not None:
             values = [
@@ -74,5 +76,9 @@ def linear_of(model: Model, given: Mapping[str, Any]) -> Linear:
     return model.build(**whole)
 
 
+UNITS = Option(
+    "units", "units", "what a mass, a length and a time of 1 are in kg, m and s, for labels; left out: nondimensional",
+    optional=True,
+)  # fmt: skip
 WHICH_STOPS = Option("stops", "word", "which stops there are", "both", STOPS)
 CONTACT = (FREQUENCY, RESTITUTION, RESTITUTION_LEFT, CLEARANCE, OFFSET, PHASE)  # numbers that every model has

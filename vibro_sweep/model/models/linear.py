@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import CONTACT, WHICH_STOPS, Model, Option
+from vibro_sweep.model.models.declaration import CONTACT, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter, ParameterError
 
 ROUNDING = 1e-12  # of a matrix, relative to its largest entry or eigenvalue
@@ -81,13 +81,23 @@ def _check_symmetric(name: str, matrix: np.ndarray) -> None:
         raise ParameterError(name, matrix.tolist(), f"symmetric; {entries}")
 
 
+def _depending(given) -> dict[str, str]:
+    """Of forces that grow like a power of omega, and of the two numbers of `rayleigh`, alpha and beta."""
+    power = given["force_power"]
+    force = f"kg m s{power - 2:.0f}" if power not in (0, 2) else "N" if power == 0 else "kg m"
+    if power != int(power):
+        force = "1"  # CF has whole powers only
+    forces = {f"{name}{i}": force for name in ("force", "force_cos") for i in range(1, len(given["M"]) + 1)}
+    return forces | {"rayleigh1": "s-1", "rayleigh2": "s"}
+
+
 def _plain(value):
     return [_plain(one) for one in value] if isinstance(value, tuple) else value
 
 
 def _list(name: str, symbol: str, label: str, text: str, **more) -> Parameter:
-    more = {"range": NUMBER, "each": "mass", "default": 0.0} | more
-    return Parameter(name, symbol, "1", label=label, text=text, free_motion=True, **more)
+    more = {"units": "1", "range": NUMBER, "each": "mass", "default": 0.0} | more
+    return Parameter(name, symbol, label=label, text=text, free_motion=True, **more)
 
 
 MODEL = Model(
@@ -105,9 +115,9 @@ MODEL = Model(
 """,
     source="docs/model.md",
     numbers=(
-        _list("force", "f", "force", "amplitude of the force with sin(omega t + tau)"),
-        _list("force_cos", r"\tilde f", "force (cos)", "amplitude of the force with cos(omega t + tau)"),
-        _list("constant", r"\bar f", "constant force", "constant force"),
+        _list("force", "f", "force", "amplitude of the force with sin(omega t + tau)", units="N"),
+        _list("force_cos", r"\tilde f", "force (cos)", "amplitude of the force with cos(omega t + tau)", units="N"),
+        _list("constant", r"\bar f", "constant force", "constant force", units="N"),
         Parameter(
             "force_power",
             "p",
@@ -141,13 +151,15 @@ MODEL = Model(
         *CONTACT,
     ),
     options=(
-        Option("M", "matrix", "masses: symmetric, positive definite"),
-        Option("K", "matrix", "stiffnesses: symmetric, positive semidefinite"),
-        Option("C", "matrix", "damping: symmetric, positive semidefinite", optional=True),
+        Option("M", "matrix", "masses: symmetric, positive definite", units="kg"),
+        Option("K", "matrix", "stiffnesses: symmetric, positive semidefinite", units="N m-1"),
+        Option("C", "matrix", "damping: symmetric, positive semidefinite", optional=True, units="N s m-1"),
         Option("along", "vector", "n of the gap g = n . x"),
         WHICH_STOPS,
+        UNITS,
     ),
     masses=lambda given: len(given["M"]),
     build=linear,
+    depending=_depending,
     check=_check,
 )

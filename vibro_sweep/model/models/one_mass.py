@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import CONTACT, WHICH_STOPS, Model, Option
+from vibro_sweep.model.models.declaration import CONTACT, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter
 
 
@@ -41,28 +41,32 @@ MODEL = Model(
     source="S. W. Shaw and P. J. Holmes, J. Sound Vib. 90 (1983) 129; bouncing ball: P. J. Holmes, J. Sound Vib. 84 "
     "(1982) 173; orbits to compare with: arXiv 2510.16218",
     numbers=(
-        Parameter("k", "k", "1", NOT_NEGATIVE, "stiffness", "stiffness of the spring", default=1.0, free_motion=True),
         Parameter(
-            "zeta", r"\zeta", "1", NOT_NEGATIVE, "damping ratio", "half the damping coefficient", free_motion=True
+            "k", "k", "N m-1", NOT_NEGATIVE, "stiffness", "stiffness of the spring", default=1.0, free_motion=True
+        ),
+        Parameter(
+            "zeta", r"\zeta", "N s m-1", NOT_NEGATIVE, "damping ratio", "half the damping coefficient", free_motion=True
         ),
         Parameter(
             "F",
             "F",
-            "1",
+            "N",
             NUMBER,
             "forcing amplitude",
             "amplitude of the force, or of the wall's motion",
             free_motion=True,
         ),
         Parameter(
-            "constant", r"\bar f", "1", NUMBER, "constant force", "constant force", default=0.0, free_motion=True
+            "constant", r"\bar f", "N", NUMBER, "constant force", "constant force", default=0.0, free_motion=True
         ),
         *CONTACT,
     ),
     options=(
         Option("base", "flag", "true: the wall moves, and the force is F omega^2", False),
         WHICH_STOPS,
+        UNITS,
     ),
     masses=lambda given: 1,
     build=one_mass,
+    depending=lambda given: {"F": "m"} if given["base"] else {},  # the wall's motion
 )

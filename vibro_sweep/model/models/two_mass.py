@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import WHICH_STOPS, Model
+from vibro_sweep.model.models.declaration import UNITS, WHICH_STOPS, Model
 from vibro_sweep.model.parameters import PARAMETERS
 
 
@@ -40,7 +40,7 @@ MODEL = Model(
 """,
     source="the paper that this package follows, eqs. (3), (4): docs/model.md",
     numbers=PARAMETERS,
-    options=(WHICH_STOPS,),
+    options=(WHICH_STOPS, UNITS),
     masses=lambda given: 2,
     build=two_mass,
 )

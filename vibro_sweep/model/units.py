@@ -1,0 +1,96 @@
+"""Units: each number declares the one that it has where a system is given in SI; a system says what its own are in SI.
+
+A unit is a text as CF has it, "m s-1". Without a system's `units` its numbers are nondimensional.
+"""
+
+import math
+import re
+from collections import Counter
+from typing import Any, NamedTuple
+
+from vibro_sweep.model.real import array_of
+
+NONE = "1"
+_OF = {"N": {"kg": 1, "m": 1, "s": -2}, "W": {"kg": 1, "m": 2, "s": -3}}
+_PREFIXED = ("m", "s", "N", "W")
+_PREFIXES = {"n": 1e-9, "\N{MICRO SIGN}": 1e-6, "m": 1e-3}  # for those below 1
+_BASE = ("kg", "m", "s")
+_PLAIN = re.compile(r"[\w.+ -]{1,60}")  # of what others write, what can stand in a picture
+
+
+class Units(NamedTuple):
+    """What a mass, a length and a time of 1 are."""
+
+    kg: float
+    m: float
+    s: float
+
+    def __repr__(self) -> str:
+        return repr("SI" if self == SI else tuple(self))
+
+    def __str__(self) -> str:
+        return "SI" if self == SI else str([*self])
+
+
+SI = Units(1.0, 1.0, 1.0)
+ALLOWED = "SI, or three positive numbers: what a mass, a length and a time of 1 are in kg, m and s"
+
+
+def units_from(value: Any) -> Units | None:
+    """None for what is none: neither the word SI nor three positive numbers."""
+    if isinstance(value, str):
+        return SI if value == "SI" else None
+    found = array_of(value, 1)
+    if found is None or found.shape != (3,) or not all(0 < one < math.inf for one in found.tolist()):
+        return None
+    return Units(*found.tolist())
+
+
+def unit_in(declared: str, units: Units | None) -> str:
+    """The unit of a number of a system with these units, with its factor where that is not 1: "0.005 m"."""
+    powers = _powers(declared)
+    if not powers.keys() & {*_BASE}:  # of angles, counts and ratios there is one
+        return declared
+    if units is None:
+        return NONE
+    with_factor = math.prod(getattr(units, one) ** powers[one] for one in _BASE)
+    return declared if with_factor == 1 else f"{with_factor!r} {declared}"
+
+
+def _powers(unit: str) -> Counter:
+    """The powers of kg, m and s; of rad, and of 1, which is none."""
+    found: Counter = Counter()
+    for word in unit.split():
+        name, power = re.fullmatch(r"(\D+?|1)(-?\d*)", word).groups()
+        for base, times in _OF.get(name, {name: 1}).items():
+            found[base] += times * int(power or 1)
+    return found
+
+
+def shown_unit(unit: str | None) -> str:
+    """After the name of an axis: " [m/s]"; nothing where numbers have no unit, or angles."""
+    if not unit or unit in (NONE, "rad", "nondimensional") or not _PLAIN.fullmatch(unit):
+        return ""
+    first, *others = unit.split()
+    factor = _number(first)
+    above, below = [], []
+    for word in unit.split() if factor is None else others:
+        name, _, power = word.partition("-")
+        if power.isdecimal():
+            below.append(name + (power if power != "1" else ""))
+        else:
+            above.append(word)
+    text = "".join([" ".join(above) or "1", *(["/", " ".join(below)] if below else [])])
+    if factor is None:
+        return f" [{text}]"
+    for prefix, least in _PREFIXES.items():
+        if above and above[0] in _PREFIXED and least <= factor < 1000 * least:
+            return f" [{factor / least:.4g} {prefix}{text}]"
+    return f" [{factor:.4g}{text[1:]}]" if not above else f" [{factor:.4g} {text}]"
+
+
+def _number(word: str) -> float | None:
+    try:
+        return float(word)
+    except ValueError:
+        return None
