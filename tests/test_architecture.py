@@ -16,7 +16,7 @@ ALLOWED = {
     "plotting": {"store", "model"},
 }
 FLOORS = ["single", "attractors", "periodic", "branches", "curves", "windows"]  # of analysis/: in this order
-EVERYWHERE = {"identity", "__version__"}  # what numbers depend on, and the version
+EVERYWHERE = {"identity", "progress", "__version__"}  # what numbers depend on, the progress bar, and the version
 TABLES = {
     "arguments",
     "bifurcations",

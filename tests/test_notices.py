@@ -44,3 +44,38 @@ def test_it_is_said_once_and_can_be_silenced(tmp_path, before, expected):
 
 def test_processes_that_python_starts_say_nothing(tmp_path):
     assert told(tmp_path, WORKER) == ""
+
+
+SWEEP = """
+import numpy as np, vibro_sweep as vs
+system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
+vs.sweep(system, {"b": np.linspace(6, 7, 50)}, observe=["section"], transient=5, record=5, PROGRESS)
+"""
+SILENT = "import logging; logging.getLogger('vibro_sweep').setLevel(logging.WARNING)"
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="has no pseudo-terminals")
+@pytest.mark.parametrize(
+    ("before", "progress", "bar"),
+    [("", "", True), (SILENT, "", False), ("", "progress=lambda done, total: None", False)],
+)
+def test_a_bar_on_a_terminal(tmp_path, before, progress, bar):
+    import os
+    import pty
+
+    file, (ours, theirs) = tmp_path / "program.py", pty.openpty()
+    file.write_text(before + SWEEP.replace("PROGRESS", progress))
+    env = os.environ | {"TERM": "xterm"}
+    with subprocess.Popen(
+        [sys.executable, file], stdin=theirs, stdout=subprocess.DEVNULL, stderr=theirs, env=env
+    ) as one:
+        os.close(theirs)
+        shown = b""
+        try:
+            while read := os.read(ours, 4096):
+                shown += read
+        except OSError:  # the other end is closed
+            pass
+    os.close(ours)
+    assert one.returncode == 0 and (b"50/50" in shown) == bar == (b"points" in shown), shown

@@ -1,21 +1,24 @@
 """What the package has to say at a prompt or in a notebook: warnings, and that it compiles, which takes a while.
 
 They are records of the logger `vibro_sweep`, which the command line prints as its own. In Python they go to stderr,
-unless the user's logging takes them; `logging.getLogger("vibro_sweep").setLevel(logging.WARNING)` silences the rest.
+unless the user's logging takes them; `logging.getLogger("vibro_sweep").setLevel(logging.WARNING)` silences the rest,
+and the progress bar.
 """
 
 import logging
 import sys
 
+NAME = "vibro_sweep"
+
 
 class _Notices(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
-        if self._others(record.name) or _is_worker():
+        if self.others(record.name) or _is_worker():
             return
         level = "" if record.levelno < logging.WARNING else f"{record.levelname.lower()}: "
         print(f"vibro_sweep: {level}{record.getMessage()}", file=sys.stderr, flush=True)
 
-    def _others(self, name: str) -> bool:
+    def others(self, name: str) -> bool:
         """Whether somebody else shows what this logger says."""
         logger: logging.Logger | None = logging.getLogger(name)
         while logger is not None:
@@ -32,9 +35,16 @@ def _is_worker() -> bool:
     return multiprocessing.parent_process() is not None
 
 
+def shown() -> bool:
+    """Whether what is no warning goes to stderr: nobody has silenced it, or shows it elsewhere."""
+    logger = logging.getLogger(NAME)
+    own = next((handler for handler in logger.handlers if isinstance(handler, _Notices)), None)
+    return own is not None and logger.isEnabledFor(logging.INFO) and not own.others(NAME) and not _is_worker()
+
+
 def begin() -> None:
     """Once, when the package is imported."""
-    logger = logging.getLogger("vibro_sweep")
+    logger = logging.getLogger(NAME)
     if logger.level == logging.NOTSET:
         logger.setLevel(logging.INFO)
     if not any(isinstance(handler, _Notices) for handler in logger.handlers):

@@ -2,9 +2,9 @@
 
 import contextlib
 import sys
+from collections.abc import Callable, Iterator
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from vibro_sweep import notices
 
 
 @contextlib.contextmanager
@@ -13,6 +13,9 @@ def progress_bar(total: int, quiet: bool):
     if quiet or not sys.stderr.isatty():
         yield None
         return
+    from rich.console import Console  # slow to import
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
     columns = [
         BarColumn(),
         MofNCompleteColumn(),
@@ -30,3 +33,15 @@ def progress_bar(total: int, quiet: bool):
                 bar.update(task, rate=f"{speed:,.0f}/s " if speed >= 10 else f"{speed:.2g}/s ")
 
         yield show
+
+
+@contextlib.contextmanager
+def given_or_bar(
+    progress: Callable[[int, int], None] | None, total: int
+) -> Iterator[Callable[[int, int], None] | None]:
+    """The caller's progress; where there is none, the bar, unless notices are silenced."""
+    if progress is not None:
+        yield progress
+        return
+    with progress_bar(total, not notices.shown()) as bar:
+        yield bar

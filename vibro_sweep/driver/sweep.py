@@ -35,6 +35,7 @@ from vibro_sweep.model.arguments import check_call, check_type
 from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.status import STANDING, meaning
+from vibro_sweep.progress import given_or_bar
 from vibro_sweep.scene import Scene
 from vibro_sweep.store.beginning import check_mode
 from vibro_sweep.store.datasets import write_following
@@ -77,7 +78,8 @@ def run(
     output : the HDF5 file; while it is computed it is `output`.part, which `open`, `info` and `plot` read at any moment
     workers : threads, by default one for each core; of an `executor` that does not say how many it has, its workers
     executor : any `concurrent.futures.Executor` instead
-    progress : called as progress(done, total) in orbits, from this thread
+    progress : called as progress(done, total) in orbits, from this thread; left out: a bar on a terminal, unless the
+        level of the logger `vibro_sweep` is WARNING
     mode : "new" (nothing that exists is replaced), "resume" (continue `output`.part where it stopped) or "overwrite"
 
     An `output` that is complete, and made by the same scene and code, is left as it is: the report is that of its run.
@@ -94,15 +96,16 @@ def run(
     with store.writer(scene, output, mode) as file:
         total, done = scene.n_points, file.done()
         missing = total - done
-        if progress:
-            progress(done, total)
-        if missing:
-            with closing(_results(scene, file, missing, workers or available_cores(), executor)) as results:
-                for box, arrays in results:
-                    file.write(box, arrays)
-                    done += arrays["status"].size
-                    if progress:
-                        progress(min(done, total), total)
+        with given_or_bar(progress, total) as tell:
+            if tell:
+                tell(done, total)
+            if missing:
+                with closing(_results(scene, file, missing, workers or available_cores(), executor)) as results:
+                    for box, arrays in results:
+                        file.write(box, arrays)
+                        done += arrays["status"].size
+                        if tell:
+                            tell(min(done, total), total)
         seconds = file.seconds if isinstance(file, store.Complete) else round(time.perf_counter() - began, 3)
         threads = (workers or available_cores()) if executor is None else None
         statuses = file.finish(_made(scene, threads, executor, seconds), partial(_complete, scene))

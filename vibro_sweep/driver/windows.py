@@ -22,6 +22,7 @@ from vibro_sweep.model.branch_file import UNSEEN, WINDOWS, columns_of
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.state import state
+from vibro_sweep.progress import given_or_bar
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.flat_files import Subject
@@ -51,7 +52,17 @@ def windows(path: str | Path, key: str | None = None) -> Windows:
     check_type("key", key, (str, NoneType), "the name of a swept number, or None")
     with store.contents(path) as data:
         cover = Cover(rows_in(data, key))
-    cover.search(lambda _, jobs: [window_of(job) for job in jobs])
+    with given_or_bar(None, cover.total) as tell:
+
+        def evaluate(_, jobs) -> list[Result]:
+            found = []
+            for job in jobs:
+                found.append(window_of(job))
+                if tell:
+                    tell(cover.done, cover.total)
+            return found
+
+        cover.search(evaluate)
     return windows_of(cover)
 
 
