@@ -2,8 +2,11 @@
 
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
+
+from vibro_sweep import progress
 
 COMPILE = "from vibro_sweep.engine.simd import jit; jit._announce('FOLDER')"
 MESSAGE = "compiling kernels, once: they are kept in FOLDER\n"
@@ -79,3 +82,19 @@ def test_a_bar_on_a_terminal(tmp_path, before, progress, bar):
             pass
     os.close(ours)
     assert one.returncode == 0 and (b"50/50" in shown) == bar == (b"points" in shown), shown
+
+
+@pytest.mark.parametrize(
+    ("shell", "widgets", "expected"),
+    [
+        ("ZMQInteractiveShell", True, True),
+        ("ZMQInteractiveShell", False, False),
+        ("TerminalInteractiveShell", True, False),
+    ],
+)
+def test_a_bar_in_notebooks_that_have_widgets(monkeypatch, shell, widgets, expected):
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=type(shell, (), {})))
+    monkeypatch.setattr(progress.importlib.util, "find_spec", lambda name: (widgets and name == "ipywidgets") or None)
+    assert progress._in_notebook() is expected
+    monkeypatch.delitem(sys.modules, "IPython")
+    assert not progress._in_notebook()

@@ -1,6 +1,7 @@
 """The progress bar: orbits done, their rate and the time left, whoever computes them."""
 
 import contextlib
+import importlib.util
 import sys
 from collections.abc import Callable, Iterator
 
@@ -9,8 +10,8 @@ from vibro_sweep import notices
 
 @contextlib.contextmanager
 def progress_bar(total: int, quiet: bool):
-    """A callable (done, total) that draws on a terminal; None where nobody looks."""
-    if quiet or not sys.stderr.isatty():
+    """A callable (done, total) that draws on a terminal or in a notebook; None where nobody looks."""
+    if quiet or not (sys.stderr.isatty() or _in_notebook()):
         yield None
         return
     from rich.console import Console  # slow to import
@@ -33,6 +34,12 @@ def progress_bar(total: int, quiet: bool):
                 bar.update(task, rate=f"{speed:,.0f}/s " if speed >= 10 else f"{speed:.2g}/s ")
 
         yield show
+
+
+def _in_notebook() -> bool:
+    """Whether this is one that can draw a bar: rich does it with ipywidgets."""
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    return type(shell).__name__ == "ZMQInteractiveShell" and importlib.util.find_spec("ipywidgets") is not None
 
 
 @contextlib.contextmanager
