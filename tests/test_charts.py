@@ -8,7 +8,7 @@ from support.windows import SYSTEM
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.curves.network import is_known, network, seed_at, trace
+from vibro_sweep.analysis.curves.curve_search import Curves, seed_at, trace
 from vibro_sweep.analysis.windows.edges import Plane, edges_of, passing
 from vibro_sweep.cli import main
 from vibro_sweep.driver.curves import run_curves
@@ -67,15 +67,14 @@ def test_the_file_holds_the_curve(file, curve):
 
 
 def test_a_curve_is_known_from_another_of_its_points():
-    known = network(
-        [seed_at(pitchfork(), NAMES)], NAMES, BOX, CURVES, 0, lambda _, tasks: [trace(task) for task in tasks]
-    )
+    curves = Curves(NAMES, BOX, CURVES)
+    known = curves.search([seed_at(pitchfork(), NAMES)], 0, lambda _, tasks: [trace(task) for task in tasks])
     for omega in (0.612, 0.64):
-        assert is_known(known, seed_at(pitchfork(omega), NAMES), NAMES, BOX)
+        assert curves.lies_on(known, seed_at(pitchfork(omega), NAMES))
     beside = pitchfork()
     moved = beside.orbit.system.replace(b=beside.parameters["b"] + 1e-5)
     near = SpecialPoint("pitchfork", {"b": moved.b}, vs.periodic_orbit(moved, itinerary="LR"), beside.multipliers)
-    assert not is_known(known, seed_at(near, NAMES), NAMES, BOX)
+    assert not curves.lies_on(known, seed_at(near, NAMES))
 
 
 def test_edges_between_which_a_line_passes():

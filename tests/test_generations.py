@@ -6,7 +6,7 @@ from support.branches import types
 from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import forest
+from vibro_sweep.analysis.branches import branch_search
 from vibro_sweep.analysis.branches.flat import flatten, outline, special_point
 from vibro_sweep.analysis.branches.recognising import passes
 from vibro_sweep.analysis.branches.switching import mirrored
@@ -93,7 +93,7 @@ def test_one_branch_that_fails_loses_no_other(monkeypatch):
             raise ValueError("orbit: it is a special point")
         return vs.continue_orbit(*args)
 
-    monkeypatch.setattr(forest, "continue_orbit", second_fails)
+    monkeypatch.setattr(branch_search, "continue_orbit", second_fails)
     found = vs.follow_branches(orbit, "b", BOUNDS)
     assert [item.branch.status for item in found] == ["ok", "ok", "failed", "ok", "ok"]
     assert [types(item.branch) for item in (*found[:2], found[4])] == [types(whole[i].branch) for i in (0, 1, 3)]

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.forest import Tree, forest, grow
+from vibro_sweep.analysis.branches.branch_search import Branches, grow
+from vibro_sweep.analysis.branches.search import Node, search
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of
 from vibro_sweep.driver.provenance import provenance
@@ -45,26 +46,25 @@ def run_branches(
             except NoOrbitError:
                 file.drop()
                 raise
-            found = forest(
-                seeds, key, bounds, scene.follow, scene.depth, computed(grow, is_branch, pool, file, progress)
-            )
+            evaluate = computed(grow, is_branch, pool, file, progress)
+            found = search(Branches(key, bounds, scene.follow), seeds, scene.depth, evaluate)
         file.finish(provenance(), *_contents(scene, found))
 
 
-def _contents(scene: Continuation, found: list[Tree]) -> tuple:
+def _contents(scene: Continuation, found: list[Node]) -> tuple:
     """Columns and arrays of the file."""
     names, masses = list(scene.along), scene.system.masses
-    arrays = joined([tree.flat for tree in found], names, [()] * len(found), masses)
-    parents = np.array([tree.seed.parent for tree in found], int)
-    own = np.array([tree.seed.special for tree in found], int)
+    arrays = joined([node.flat for node in found], names, [()] * len(found), masses)
+    parents = np.array([node.seed.parent for node in found], int)
+    own = np.array([node.seed.special for node in found], int)
     first = np.append(0, np.cumsum(arrays["branch_special"]))
-    sections = [tree.flat["section"].reshape(-1, 2 * masses) for tree in found]
+    sections = [node.flat["section"].reshape(-1, 2 * masses) for node in found]
     together = np.concatenate(sections) if sections else np.zeros((0, 2 * masses))
     arrays |= {f"section_{name}": together[:, i] for i, name in enumerate(state(masses))}
     arrays |= {
-        "branch_sections": np.array([tree.flat["section"].shape[1] for tree in found], int),
+        "branch_sections": np.array([node.flat["section"].shape[1] for node in found], int),
         "branch_parent": parents,
         "branch_parent_special": np.where(parents >= 0, first[parents] + own, -1) if len(found) else own,
-        "branch_generation": np.array([tree.generation for tree in found], int),
+        "branch_generation": np.array([node.generation for node in found], int),
     }
     return columns_of(BRANCHES, names, scene.system), arrays

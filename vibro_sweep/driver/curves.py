@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch_search import Branches, grow
 from vibro_sweep.analysis.branches.flat import special_point
-from vibro_sweep.analysis.branches.forest import forest, grow
+from vibro_sweep.analysis.branches.search import Node, search
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.curves.network import CurveSeed, Traced, network, seed_at, trace
+from vibro_sweep.analysis.curves.curve_search import Curves, CurveSeed, seed_at, trace
 from vibro_sweep.analysis.windows.explained import explain, probe
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of, specials_of
@@ -56,7 +57,7 @@ def run_curves(
                 except NoOrbitError:
                     file.drop()
                     raise
-                curves = network(starts, names, box, scene.of, scene.depth, evaluate)
+                curves = Curves(names, box, scene.of).search(starts, scene.depth, evaluate)
         arrays = joined_curves([one.flat for one in curves], list(names), scene.system.masses)
         held = columns_of(CHART, list(names), scene.system, OF_EDGES if more else ())
         file.finish(provenance(), held, arrays | _origins(curves, arrays) | more)
@@ -68,7 +69,7 @@ def _starts(scene: Continuation, names, box, pool, file, progress) -> list[Curve
     specials = _on_branches(scene, pool, file, progress) if on_branches else specials_of(scene, file, pool)
     found = [seed_at(special, names) for special in specials if special.type in scene.of]
     lo, hi = np.transpose(box)
-    return [one for one in found if one is not None and np.all((lo <= (at := one.place(names))) & (at <= hi))]
+    return [one for one in found if one is not None and np.all((lo <= (at := one.orbit.place(names))) & (at <= hi))]
 
 
 def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint]:
@@ -79,15 +80,15 @@ def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint
     def evaluate(names, jobs):
         return keep([f"branch {name}" for name in names], jobs)
 
-    trees = forest(seeds_of(scene, file, pool), key, bounds, scene.follow, scene.depth, evaluate)
+    nodes = search(Branches(key, bounds, scene.follow), seeds_of(scene, file, pool), scene.depth, evaluate)
     return [
-        special_point(tree.flat, i, key, tree.seed.system)
-        for tree in trees
-        for i in range(len(tree.flat["special_type"]))
+        special_point(node.flat, i, key, node.seed.system)
+        for node in nodes
+        for i in range(len(node.flat["special_type"]))
     ]
 
 
-def _origins(curves: list[Traced], arrays) -> dict[str, np.ndarray]:
+def _origins(curves: list[Node], arrays) -> dict[str, np.ndarray]:
     """Where each curve was met."""
     parents = np.array([one.seed.orbit.parent for one in curves], int)
     own = np.array([one.seed.orbit.special for one in curves], int)

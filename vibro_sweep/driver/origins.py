@@ -8,8 +8,8 @@ import numpy as np
 
 from vibro_sweep import store
 from vibro_sweep.analysis.branches.flat import special_point
-from vibro_sweep.analysis.branches.forest import Seed, seed_of
 from vibro_sweep.analysis.branches.generations import WAYS
+from vibro_sweep.analysis.branches.seeds import Seed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import switch
 from vibro_sweep.analysis.curves.flat import point_of_codimension_two

@@ -3,18 +3,18 @@
 A piece that is none is computed again.
 """
 
-import json
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from vibro_sweep.analysis.branches import flat as branches
+from vibro_sweep.analysis.branches import seeds
+from vibro_sweep.analysis.curves import curve_search
 from vibro_sweep.analysis.curves import flat as curves
 from vibro_sweep.model.bifurcations import EDGES, REASONS
 from vibro_sweep.model.branch_file import CHART, WINDOWS, Column, columns
 
 Arrays = Mapping[str, np.ndarray]
-TEXT = {"bytes": "beyond"}  # JSON
 
 
 def is_window(piece: Arrays) -> bool:
@@ -26,23 +26,21 @@ def is_window(piece: Arrays) -> bool:
 
 def is_branch(piece: Arrays) -> bool:
     """Of `grow`."""
-    shapes = branches.SHAPES | {"n m 2N": "section"} | TEXT
-    return _fits(piece, shapes, columns(WINDOWS, [], 0)) and _rows(piece["beyond"], 7)
+    shapes = branches.SHAPES | seeds.SHAPES | {"n m 2N": "section"}
+    return _fits(piece, shapes, columns(WINDOWS, [], 0)) and seeds.fit_together(piece)
 
 
 def is_curve(piece: Arrays) -> bool:
-    """Of `trace`; it returns no more than `beyond` where there is no curve."""
-    if set(piece) == {"beyond"}:
-        return piece["beyond"].size == 0
-    return _fits(piece, curves.SHAPES | TEXT, columns(CHART, [], 0)) and _rows(piece["beyond"], 11)
+    """Of `trace`: nothing, where there is no curve."""
+    return not piece or (
+        _fits(piece, curves.SHAPES | curve_search.SHAPES, columns(CHART, [], 0)) and curve_search.fit_together(piece)
+    )
 
 
 def is_probe(piece: Arrays) -> bool:
     """Of `probe`."""
-    told = _json(piece["answer"]) if set(piece) == {"answer"} else None
-    if not (isinstance(told, list) and len(told) == 2 and told[0] in list(EDGES)):
-        return False
-    return told[1] is None or (isinstance(told[1], list) and len(told[1]) == 10)
+    shapes = curve_search.SHAPES | {"": "reason"}
+    return _fits(piece, shapes, []) and 0 <= piece["reason"] < len(EDGES) and curve_search.fit_together(piece)
 
 
 def _fits(piece: Arrays, shapes: Mapping[str, str], known: Iterable[Column]) -> bool:
@@ -57,18 +55,5 @@ def _fits(piece: Arrays, shapes: Mapping[str, str], known: Iterable[Column]) -> 
         for dimension, length in zip(dimensions, piece[name].shape, strict=True):
             if lengths.setdefault(dimension, length) != length:
                 return False
-    counts = {"point": lengths["n"], "special": lengths["s"]}
+    counts = {"point": lengths.get("n", 0), "special": lengths.get("s", 0)}
     return all(column.holds(piece[column.name], counts) for column in known if column.name in piece)
-
-
-def _rows(text: np.ndarray, length: int) -> bool:
-    """Whether a JSON text is a list of lists of this length."""
-    found = _json(text) if text.size else []
-    return isinstance(found, list) and all(isinstance(row, list) and len(row) == length for row in found)
-
-
-def _json(text: np.ndarray) -> object:
-    try:
-        return json.loads(text.tobytes().decode())
-    except (ValueError, RecursionError):
-        return None

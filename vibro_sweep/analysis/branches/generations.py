@@ -3,9 +3,11 @@
 from dataclasses import dataclass
 
 from vibro_sweep.analysis.branches import branch_text
+from vibro_sweep.analysis.branches.branch_search import Branches, Task, beyond, followed
 from vibro_sweep.analysis.branches.continuation import Branch, continue_orbit
 from vibro_sweep.analysis.branches.flat import Flat, outline
-from vibro_sweep.analysis.branches.forest import Task, beyond, followed, forest, seed_of, written
+from vibro_sweep.analysis.branches.search import search
+from vibro_sweep.analysis.branches.seeds import packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.model.arguments import check_call, check_type, checked_count
@@ -62,15 +64,15 @@ def follow_branches(
         result = []
         for name, task in zip(names, tasks, strict=True):
             branches[name] = branch = followed(task, tell) if branches else first
-            result.append(outline(branch) | written(beyond(branch, task), parameter))
+            result.append(outline(branch) | packed(beyond(branch, task), (parameter,)))
         return result
 
     lo, hi = map(float, bounds)
-    trees = forest([seed_of(orbit)], parameter, (lo, hi), tuple(follow), depth, evaluate, at_once=1)
+    nodes = search(Branches(parameter, (lo, hi), tuple(follow)), [seed_of(orbit)], depth, evaluate, at_once=1)
     found: list[Followed] = []
-    for tree in trees:
-        parent, special = tree.seed.parent, None
+    for node in nodes:
+        parent, special = node.seed.parent, None
         if parent >= 0:
-            special = found[parent].branch.special[tree.seed.special]
-        found.append(Followed(branches[tree.name], tree.generation, parent if parent >= 0 else None, special))
+            special = found[parent].branch.special[node.seed.special]
+        found.append(Followed(branches[node.name], node.generation, parent if parent >= 0 else None, special))
     return found

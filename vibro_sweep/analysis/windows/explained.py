@@ -4,7 +4,6 @@ In a round each connected region of one period sends some of its edges that no c
 followed across the edge, to what ends its stability; from that a curve is followed, which explains other edges as well.
 """
 
-import json
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -12,8 +11,8 @@ import numpy as np
 from scipy import ndimage
 
 from vibro_sweep.analysis.branches.flat import Flat
-from vibro_sweep.analysis.branches.forest import Seed
-from vibro_sweep.analysis.curves.network import CurveSeed, Evaluate, Traced, network, seed_at
+from vibro_sweep.analysis.branches.search import Evaluate, Node
+from vibro_sweep.analysis.curves.curve_search import Curves, CurveSeed, packed_curves, seed_at, unpacked_curves
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.windows.edges import Edges, Plane, edges_of, passing
@@ -40,11 +39,10 @@ class Probe(NamedTuple):
 
 @one_thread()
 def probe(task: Probe) -> Flat:
-    """What ends the stability of an orbit on its way across an edge; as JSON the reason, and a start or null."""
+    """What ends the stability of an orbit on its way across an edge: `reason`, a code of EDGES, and, as `packed_curves`
+    has it, a start of a curve or none."""
     reason, seed = _probed(task)
-    place = None if seed is None else seed.place(task.names).tolist()
-    told = [reason, None if seed is None else [place, *seed[:4], *seed.orbit[1:6]]]
-    return {"answer": np.frombuffer(json.dumps(told).encode(), np.uint8)}
+    return {"reason": np.int8(_CODES[reason])} | packed_curves([] if seed is None else [seed], task.names)
 
 
 def _probed(task: Probe) -> tuple[str, CurveSeed | None]:
@@ -64,9 +62,9 @@ def _probed(task: Probe) -> tuple[str, CurveSeed | None]:
 
 
 class Explained(NamedTuple):
-    """curves : list of Traced; edges; reason : (edges,) codes of EDGES; curve : (edges,) index of the curve or -1."""
+    """curves : list of Node; edges; reason : (edges,) codes of EDGES; curve : (edges,) index of the curve or -1."""
 
-    curves: list[Traced]
+    curves: list[Node]
     edges: Edges
     reason: np.ndarray
     curve: np.ndarray
@@ -89,23 +87,23 @@ def explain(
     count = len(edges.axis)
     reason, curve = np.full(count, _CODES["open"]), np.full(count, -1)
     tried = edges.periods == 0  # (edges, 2): whether the orbits of both points have been followed
-    known: list[Traced] = []
+    known: list[Node] = []
     turn = 0
     while len(picks := _picked(plane, edges, tried)):
         jobs = {f"edge {edge}:{side}": _task(plane, states, system, names, edges, edge, side) for edge, side in picks}
         seeds, before = [], len(known)
         for (edge, side), flat in zip(picks, probed(list(jobs), list(jobs.values())), strict=True):
-            told, start = json.loads(flat["answer"].tobytes().decode())
+            found = unpacked_curves(flat, names, system)
             tried[edge, side] = True
-            reason[edge] = min(reason[edge], _CODES[told])  # what says most comes first
-            if start is not None:
+            reason[edge] = min(reason[edge], flat["reason"])  # what says most comes first
+            if found:
                 tried[edge] = True
-                seeds.append(_seed(start, names, system))
+                seeds += found
 
         def evaluate(keys, tasks, turn=turn):
             return traced([f"{turn}:{key}" for key in keys], tasks)
 
-        known = network([seed for seed in seeds if seed.type in of], names, box, of, depth, evaluate, known)
+        known = Curves(names, box, of).search([seed for seed in seeds if seed.type in of], depth, evaluate, known)
         for i in range(before, len(known)):
             passed = passing(plane, edges, known[i].flat)
             passed = passed[curve[passed] < 0]
@@ -140,11 +138,3 @@ def _task(plane: Plane, states, system, names, edges: Edges, edge: int, side: in
     beyond = float(other + BEYOND * (other - one))
     own = system.replace(**at)
     return Probe(own, states[tuple(here)], int(plane.period[tuple(here)]), names, names[axis], beyond)
-
-
-def _seed(start, names, system) -> CurveSeed:
-    place, kind, index, theta, parameters, sigma, halves, sides, u, rests = start
-    there = system.replace(**dict(zip(names, place, strict=True)))
-    return CurveSeed(
-        kind, index, theta, tuple(parameters), Seed(there, sigma, halves, tuple(sides), tuple(u), tuple(rests))
-    )

@@ -1,22 +1,22 @@
-"""Curves from curves, as jobs that any worker can do: the same curves in the same order however many there are.
+"""Curves from curves: a task follows one, and at its points of codimension two looks for others.
 
-A job follows one curve, and at its points of codimension two looks for others. What lies on a curve that is known is
-not followed again: the same bifurcation of the same orbit, up to rotation and mirror image.
+What lies on a curve that is known is not followed again: the same bifurcation of the same orbit, up to rotation and
+mirror image.
 """
 
-import json
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.analysis.branches import seeds as orbits
 from vibro_sweep.analysis.branches.beginning import keeps_symmetry
 from vibro_sweep.analysis.branches.flat import Flat
-from vibro_sweep.analysis.branches.forest import Seed, seed_of
+from vibro_sweep.analysis.branches.search import Evaluate, Node, search
+from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of, unpacked
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.continuation import bifurcation_curve
 from vibro_sweep.analysis.curves.flat import as_special, flatten, solution_at, start_from
-from vibro_sweep.analysis.curves.start import Start, start_at
+from vibro_sweep.analysis.curves.start import KINDS, Start, start_at
 from vibro_sweep.analysis.curves.switching import ENDS, switch
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.periodic.one_thread import one_thread
@@ -25,6 +25,11 @@ from vibro_sweep.analysis.periodic.solution import Solution
 
 AT_ONCE = 8  # curves that are followed before it is asked again which starts lie on known ones
 NEAR = 0.003  # of the box: farther than that from the chord of two neighbouring points their curve does not lead
+TYPES = tuple(KINDS)
+SHAPES = orbits.SHAPES | {  # of `packed_curves`
+    "q": f"{orbits.SHAPES['q']} beyond_type beyond_index beyond_theta",
+    "q 2": "beyond_parameters",  # whether each of the names is one of a seed's `parameters`
+}
 SAME = 1e-8  # of the box; of impulses a hundred times as much
 
 Box = tuple[tuple[float, float], tuple[float, float]]
@@ -38,24 +43,51 @@ class CurveSeed(NamedTuple):
     theta: float
     parameters: tuple[str, ...]  # those of its special point: one of a branch's, two of a curve's
     orbit: Seed
+    word: tuple  # equal for bifurcations that may be those of one orbit, rotated or mirrored
 
     @property
     def start(self) -> Start:
         return Start(self.type, self.orbit.solution, self.index, self.theta)
 
-    def place(self, names: tuple[str, str]) -> np.ndarray:
-        numbers = self.orbit.system.family.numbers
-        return np.array([numbers[name] for name in names], float)
 
-
-def seed_at(special: SpecialPoint, names: tuple[str, str], parent: int = -1, index: int = -1) -> CurveSeed | None:
-    """None where no curve starts: of a type that has none, or where the mass rests."""
+def seed_at(special: SpecialPoint, names: tuple[str, str], index: int = -1) -> CurveSeed | None:
+    """None where no curve starts: of a type that has none, or where the mass rests. index : of the special point"""
     try:
         start = start_at(special, names)
     except ValueError:
         return None
-    orbit = seed_of(orbit_of(special.orbit.system, start.solution))._replace(parent=parent, special=index)
-    return CurveSeed(start.type, start.index, start.theta, tuple(special.parameters), orbit)
+    orbit = seed_of(orbit_of(special.orbit.system, start.solution))._replace(special=index)
+    return _seed(start.type, start.index, start.theta, tuple(special.parameters), orbit, names)
+
+
+def _seed(kind: str, index: int, theta: float, parameters: tuple[str, ...], orbit: Seed, names) -> CurveSeed:
+    return CurveSeed(kind, index, theta, parameters, orbit, _word(kind, index, orbit.solution, names))
+
+
+def packed_curves(seeds: list[CurveSeed], names: tuple[str, str]) -> Flat:
+    """Arrays `SHAPES` of q seeds that differ from one oscillator in the two parameters `names` alone."""
+    return packed([seed.orbit for seed in seeds], names) | {
+        "beyond_type": np.array([TYPES.index(seed.type) for seed in seeds], int),
+        "beyond_index": np.array([seed.index for seed in seeds], int),
+        "beyond_theta": np.array([seed.theta for seed in seeds], float),
+        "beyond_parameters": np.array([[n in seed.parameters for n in names] for seed in seeds], bool).reshape(-1, 2),
+    }
+
+
+def fit_together(flat: Flat) -> bool:
+    """Whether arrays of these shapes are of seeds."""
+    types = flat["beyond_type"]
+    return orbits.fit_together(flat) and bool(np.all((types >= 0) & (types < len(TYPES))))
+
+
+def unpacked_curves(flat: Flat, names: tuple[str, str], system, parent: int = -1) -> list[CurveSeed]:
+    """The seeds of `packed_curves`. system : one of their oscillators"""
+    seeds = []
+    for i, orbit in enumerate(unpacked(flat, names, system, parent)):
+        own = tuple(name for name, there in zip(names, flat["beyond_parameters"][i], strict=True) if there)
+        kind, index = TYPES[flat["beyond_type"][i]], int(flat["beyond_index"][i])
+        seeds.append(_seed(kind, index, float(flat["beyond_theta"][i]), own, orbit, names))
+    return seeds
 
 
 class CurveTask(NamedTuple):
@@ -69,80 +101,52 @@ class CurveTask(NamedTuple):
 
 @one_thread()
 def trace(task: CurveTask) -> Flat:
-    """The curve of a task, with `beyond`: the starts found on it, as JSON; nothing else where there is no curve."""
+    """The curve of a task, with the seeds on it, as `packed_curves` has them; nothing where there is no curve."""
     seed, names = task.seed, task.names
-    values = dict(zip(names, seed.place(names).tolist(), strict=True))
+    values = dict(zip(names, seed.orbit.place(names).tolist(), strict=True))
     special = as_special(seed.start, {name: values[name] for name in seed.parameters}, seed.orbit.system)
     try:
         curve = bifurcation_curve(special, names, task.box, virtual=False)
     except ValueError:  # it belongs to several curves at once, or there is no motion beside it
-        return {"beyond": np.zeros(0, np.uint8)}
+        return {}
     beyond = []
     for index, one in enumerate(curve.special):
         for other in switch(one) if task.of and one.type not in ENDS else ():
-            found = seed_at(other, names) if other.type in task.of else None
+            found = seed_at(other, names, index) if other.type in task.of else None
             if found is not None:
-                place = found.place(names).tolist()
-                beyond.append([index, place, *found[:4], *found.orbit[1:6]])
-    return flatten(curve) | {"beyond": np.frombuffer(json.dumps(beyond).encode(), np.uint8)}
+                beyond.append(found)
+    return flatten(curve) | packed_curves(beyond, names)
 
 
-class Traced(NamedTuple):
-    """A curve that is known, and how many points of codimension two away from the first ones it is.
+class Curves(NamedTuple):
+    """What a search for curves is told (`Searched`): in the parameters `names` within `box`, of the types `of`."""
 
-    word : equal for bifurcations that may be those of one orbit, rotated or mirrored
-    """
+    names: tuple[str, str]
+    box: Box
+    of: tuple[str, ...]
 
-    flat: Flat
-    seed: CurveSeed
-    generation: int
-    word: tuple
+    def task(self, seed: CurveSeed, look: bool) -> CurveTask:
+        return CurveTask(seed, self.names, self.box, self.of if look else ())
 
+    def lies_on(self, known: list[Node], seed: CurveSeed) -> bool:
+        """A bifurcation, or its mirror image."""
+        alike = (node.flat for node in known if node.seed.word == seed.word)
+        return any(lies_on(flat, seed, self.names, self.box) for flat in alike)
 
-Evaluate = Callable[[list[str], list[CurveTask]], list[Flat]]
+    def is_known(self, known: list[Node], flat: Flat, seed: CurveSeed) -> bool:
+        return False  # a seed lies on its curve
 
+    def beyond(self, node: Node, index: int) -> list[CurveSeed]:
+        return unpacked_curves(node.flat, self.names, node.seed.orbit.system, index)
 
-def network(seeds: list[CurveSeed], names, box: Box, of: tuple[str, ...], depth: int, evaluate: Evaluate, known=()):
-    """All curves, list of Traced, generation by generation, behind those that are `known`.
-
-    evaluate : gives `trace` of tasks by their names
-    """
-    known = list(known)
-    for generation in range(depth + 1):
-        looked = of if generation < depth else ()
-        first = len(known)
-        for at in range(0, len(seeds), AT_ONCE):
-            jobs = {}
-            for i, seed in enumerate(seeds[at : at + AT_ONCE]):
-                if not is_known(known, seed, names, box):
-                    jobs[f"{generation}:{at + i}"] = CurveTask(seed, names, box, looked)
-            for task, flat in zip(jobs.values(), evaluate(list(jobs), list(jobs.values())), strict=True):
-                if "value" in flat and not is_known(known, task.seed, names, box):
-                    known.append(Traced(flat, task.seed, generation, _word(task.seed, names)))
-        seeds = [seed for i in range(first, len(known)) for seed in _beyond(known[i], i, names)]
-    return known
-
-
-def _beyond(one: Traced, parent: int, names) -> list[CurveSeed]:
-    text, result = one.flat["beyond"].tobytes().decode(), []
-    for special, place, kind, index, theta, parameters, sigma, halves, sides, u, rests in (
-        json.loads(text) if text else ()
-    ):
-        system = one.seed.orbit.system.replace(**dict(zip(names, place, strict=True)))
-        orbit = Seed(system, sigma, halves, tuple(sides), tuple(u), tuple(rests), parent, special)
-        result.append(CurveSeed(kind, index, theta, tuple(parameters), orbit))
-    return result
-
-
-def is_known(known: list[Traced], seed: CurveSeed, names, box: Box) -> bool:
-    """Whether a bifurcation, or its mirror image, lies on one of these curves."""
-    word = _word(seed, names)
-    return any(one.word == word and lies_on(one.flat, seed, names, box) for one in known)
+    def search(self, seeds: list[CurveSeed], depth: int, evaluate: Evaluate, known: list[Node] | tuple = ()):
+        """Curves, list of Node, generation by generation, behind those that are `known`; evaluate : gives `trace`"""
+        return search(self, seeds, depth, evaluate, AT_ONCE, known)
 
 
 def lies_on(flat: Flat, seed: CurveSeed, names, box: Box) -> bool:
     """Whether a bifurcation lies on a curve of orbits like its own: by Newton's method from the points beside it."""
-    solution, place, size = seed.orbit.solution, seed.place(names), np.ptp(box, axis=1)
+    solution, place, size = seed.orbit.solution, seed.orbit.place(names), np.ptp(box, axis=1)
     speeds, scale = _speeds(solution), solution.family.linear.omega * solution.size_of_gap
 
     def alike(other: Solution) -> bool:
@@ -180,13 +184,12 @@ def _speeds(solution: Solution) -> np.ndarray:
     return np.sort(np.abs(solution.whole().jumps))
 
 
-def _word(seed: CurveSeed, names) -> tuple:
+def _word(kind: str, grazing: int, solution: Solution, names) -> tuple:
     """Type, period and impacts of a bifurcation, equal for all rotations and mirror images."""
-    solution = seed.orbit.solution
     mirrors = solution.family.linear.symmetric and all(keeps_symmetry(solution.family, name) for name in names)
     sides, symmetric = list(map(int, solution.whole().sides)), solution.sigma == -1
-    letters = _letters(sides, {seed.index} if seed.type == "graze" else set(), symmetric)
-    return seed.type, solution.halves * (2 if symmetric else 1), _least(letters, mirrors)
+    letters = _letters(sides, {grazing} if kind == "graze" else set(), symmetric)
+    return kind, solution.halves * (2 if symmetric else 1), _least(letters, mirrors)
 
 
 def _letters(sides: list[int], grazing: set[int], symmetric: bool) -> list[int]:

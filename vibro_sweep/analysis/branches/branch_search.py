@@ -1,0 +1,102 @@
+"""Branches from branches: a task follows one and switches at its special points.
+
+Of the orbits that it finds beyond these, those that lie on a branch that is known are left out; so is a branch of the
+same generation that an earlier one has passed.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.continuation import Branch, continue_orbit, not_followed
+from vibro_sweep.analysis.branches.flat import Flat, flatten, orbit_at, section_states
+from vibro_sweep.analysis.branches.recognising import clearest, passes, point_of
+from vibro_sweep.analysis.branches.search import Node
+from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of, unpacked
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.branches.switching import switch
+from vibro_sweep.analysis.periodic.one_thread import one_thread
+
+LEAST = 1e-4  # distance of a graze from the onset of sticking, as a part of the range, to which branches are followed
+
+
+class Task(NamedTuple):
+    """A branch to be followed, and the types of special points at which to look for others."""
+
+    seed: Seed
+    parameter: str
+    bounds: tuple[float, float]
+    follow: tuple[str, ...]
+
+
+@one_thread()
+def grow(task: Task) -> Flat:
+    """The branch of a task, with `section`, and with the seeds beyond it, as `packed` has them."""
+    branch = followed(task)
+    flat = flatten(branch, task.seed.solution.family.numbers[task.parameter])
+    flat["section"] = _sections(flat, task)
+    return flat | packed(beyond(branch, task), (task.parameter,))
+
+
+def followed(task: Task, progress=None) -> Branch:
+    """The branch of a task; with the status failed where it cannot be followed, so that the others are not lost."""
+    orbit = task.seed.orbit()
+    try:
+        return continue_orbit(orbit, task.parameter, task.bounds, progress)
+    except ValueError:  # no orbit beside a special point is within the bounds
+        return not_followed(orbit, task.parameter)
+
+
+def beyond(branch: Branch, task: Task) -> list[Seed]:
+    """The orbits within the bounds beyond the special points of a branch at which others are looked for.
+
+    Towards an onset of sticking branches without end follow each other, with one impact more on each: beyond grazes
+    that are nearer to it than a small part of the range nothing is looked for.
+    """
+    lo, hi = task.bounds
+    found = []
+    for index, special in enumerate(branch.special):
+        if special.type in task.follow and not accumulates(branch, special, LEAST * (hi - lo)):
+            orbits = [orbit for orbit in switch(special) if lo <= orbit._solution.family.numbers[task.parameter] <= hi]
+            found += [seed_of(orbit)._replace(special=index) for orbit in orbits]
+    return found
+
+
+def accumulates(branch: Branch, end: SpecialPoint, reach: float) -> bool:
+    """Whether `end` is a graze of this branch within `reach` of the onset of sticking beyond it."""
+    for outermost, last in ((branch.special[0], branch.begins), (branch.special[-1], branch.ends)):
+        if end is last and outermost is not last:
+            return abs(outermost.parameters[branch.parameter] - end.parameters[branch.parameter]) < reach
+    return False
+
+
+def _sections(flat: Flat, task: Task) -> np.ndarray:
+    """(n, m, 2N) all section states of each point: those at t = 0 mod T of the orbit and of its mirror image."""
+    systems = [task.seed.system.replace(**{task.parameter: value}) for value in flat["value"].tolist()]
+    return np.array([section_states(orbit_at(flat, i, system)) for i, system in enumerate(systems)])
+
+
+class Branches(NamedTuple):
+    """What a search for branches is told (`Searched`): along `parameter` within `bounds`, beyond special points of the
+    types `follow`."""
+
+    parameter: str
+    bounds: tuple[float, float]
+    follow: tuple[str, ...]
+
+    def task(self, seed: Seed, look: bool) -> Task:
+        return Task(seed, self.parameter, self.bounds, self.follow if look else ())
+
+    def lies_on(self, known: list[Node], seed: Seed) -> bool:
+        s = seed.solution
+        return any(passes(node.flat, self.parameter, seed.system, s) for node in known)
+
+    def is_known(self, known: list[Node], flat: Flat, seed: Seed) -> bool:
+        """Also where that could not be told from the seed, which lies next to a birth or a fold."""
+        i = clearest(flat)
+        system = seed.system.replace(**{self.parameter: float(flat["value"][i])})
+        s = point_of(flat, i, system)
+        return any(passes(node.flat, self.parameter, system, s) for node in known)
+
+    def beyond(self, node: Node, index: int) -> list[Seed]:
+        return unpacked(node.flat, (self.parameter,), node.seed.system, index)
