@@ -1,5 +1,6 @@
 """What a scene is said to take, by clocks that run as the test says; benchmarks/estimates.py compares real ones."""
 
+import errno
 import logging
 import math
 import threading
@@ -122,6 +123,23 @@ def test_the_load_of_the_machine(monkeypatch, factor, threads):
     monkeypatch.setattr(cost, "compute", compute)
     monkeypatch.setattr(cost.time, "perf_counter", lambda: now[0])
     assert cost.crowding(OrbitCost(1.0, [block], seconds), threads) == pytest.approx(factor)
+
+
+@pytest.mark.parametrize(("size", "expected"), [(10**5, 0.0), (10**7, 2 * 0.25), (10**9, 2 * 0.25 * 10**9 / 16e6)])
+def test_the_time_of_writing_is_that_of_the_disk(monkeypatch, tmp_path, size, expected):
+    """By a disk on which whatever is written takes a quarter of a second; and one that is full."""
+    monkeypatch.chdir(tmp_path)
+    now = [0.0]
+    monkeypatch.setattr(cost.time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(cost.os, "fsync", lambda _: now.__setitem__(0, now[0] + 0.25))
+    assert cost.writing_seconds(size) == pytest.approx(expected)
+    assert not list(tmp_path.iterdir())
+
+    def full(_):
+        raise OSError(errno.ENOSPC, "no space")
+
+    monkeypatch.setattr(cost.os, "fsync", full)
+    assert cost.writing_seconds(size) == 0.0
 
 
 def test_check_says_that_it_compiles_before_it_does(tmp_path, monkeypatch, capsys):

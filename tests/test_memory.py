@@ -131,7 +131,6 @@ def test_an_estimate_knows_what_runs_side_by_side(monkeypatch):
     monkeypatch.setattr(cost, "orbit_cost", lambda *_: OrbitCost(1.0, [], 1.0))
     monkeypatch.setattr(cost, "crowding", lambda *_: 3.0)
     monkeypatch.setattr(cost.time, "perf_counter", lambda: 0.0)
-    monkeypatch.setattr(cost, "WRITING", float("inf"))
     monkeypatch.setattr(cost, "available_cores", lambda: 8)
     one = scene_of("orbit: {transient: 0, record: 1}")
     starts = scene_of("orbit: {transient: 0, record: 1}\nstart: {random: 5, seed: 1}")

@@ -1,7 +1,10 @@
 """What a scene costs, from what its orbits take (measuring.py): the time of a run, and the size of a block."""
 
 import math
+import os
+import tempfile
 import time
+import zlib
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -17,7 +20,8 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.scene import Scene
 
 CROWDED = 0.1  # seconds for which all workers compute, to see how they get on
-WRITING = 5e7  # bytes a second: results are written into the part, and from there into the file
+FEW_BYTES, WRITTEN = 10**6, 16 * 10**6  # of a file: those that take no time worth saying; those that are written to see
+COPIES = 2  # results are written into the part, and from there into the file
 BLOCKS_PER_WORKER = 8  # at least, so that workers end together
 BLOCK_SECONDS = 1.0  # of a thread's block: long enough for its overhead not to count, short enough to lose
 
@@ -51,9 +55,27 @@ def estimate(scene: Scene, workers: int | None = None) -> Estimate:
     beginning = max(0.0, time.perf_counter() - began - sum(compiling))
     alone = run_seconds(scene, cost, orbits, count)
     beside = alone * crowding(cost, threads_of(scene, count))
-    rest = beginning + size / WRITING
+    rest = beginning + writing_seconds(size)
     periods = orbits * (scene.transient + scene.record)
     return Estimate(orbits, orbits, periods, size, rest + beside, rest + alone, sum(compiling))
+
+
+def writing_seconds(size: int) -> float:
+    """What a file of so many bytes takes, with its checksums, by the time of a temporary one in the current folder."""
+    if size < FEW_BYTES:
+        return 0.0
+    some = os.urandom(FEW_BYTES) * (min(size, WRITTEN) // FEW_BYTES)
+    folder = os.curdir if os.access(os.curdir, os.W_OK) else None
+    began = time.perf_counter()
+    try:
+        with tempfile.TemporaryFile(dir=folder) as file:
+            zlib.crc32(some)
+            file.write(some)
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError:  # a full disk: the run will say so
+        return 0.0
+    return COPIES * size / len(some) * (time.perf_counter() - began)
 
 
 def orbit_cost(scene: Scene, workers: int) -> OrbitCost:
