@@ -8,15 +8,8 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from support.stiff_contacts import (
-    Flight,
-    compared,
-    drawn,
-    errors_of_first,
-    first_zero,
-    positive,
-    time_in_units,
-)
+from support.drawn_stiff import drawn, positive
+from support.stiff_contacts import Flight, compared, errors_of_first, first_zero, judged, time_in_units
 
 import vibro_sweep as vs
 from vibro_sweep.engine.free_flight import FreeFlight
@@ -118,6 +111,59 @@ def test_far_stops_are_like_near_ones(offset):
     far = vs.Oscillator(b=1.0, offset=offset, constant=K @ place, **numbers)
     times = [vs.simulate(one, np.kron(x, [1, 0]), 6).impacts["t"][:10] for one, x in ((near, 0 * place), (far, place))]
     np.testing.assert_allclose(times[1], times[0], rtol=0, atol=1e-13)
+
+
+def without(hits, i):
+    return np.delete(hits, i)
+
+
+def with_one_more(hits, i, side):
+    """Halfway between two impacts."""
+    found = np.insert(hits, i, hits[i])
+    found["t"][i], found["side"][i] = (hits["t"][i - 1] + hits["t"][i]) / 2, side
+    return found
+
+
+def on_the_other_stop(hits, i):
+    found = hits.copy()
+    found["side"][i] *= -1
+    return found
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        lambda hits: without(hits, 0), lambda hits: without(hits, 2), lambda hits: without(hits, 5),
+        lambda hits: with_one_more(hits, 2, 1), lambda hits: with_one_more(hits, 2, -1),
+        lambda hits: on_the_other_stop(hits, 2),
+    ],
+)  # fmt: skip
+def test_the_comparison_finds_a_missing_and_an_invented_impact(wrong):
+    system, state, _ = drawn(4)
+    all_hits = vs.simulate(system, state, 4).impacts
+    hits, end = all_hits[:6], all_hits["t"][5:7].mean()
+    assert judged(system, state, hits, 4, end)["compared"] == 6
+    assert "defect" in judged(system, state, wrong(hits), 4, end)
+
+
+@pytest.mark.parametrize(("share", "counts"), [(1e-7, False), (1e-5, True), (1e-3, True)])
+def test_the_comparison_counts_a_graze_only_where_the_data_decide_it(share, counts):
+    """The stiff spring's rounding moves the turning point by 1e-7: the impact there is missed, and invented."""
+    k, turning_point = 1e9, 0.85254776635
+
+    def oscillator(b):
+        return vs.Oscillator(
+            [[1, 0], [0, 1]], [[k, -k], [-k, k + 2]], [[0.05, 0], [0, 0.05]], force=[0, 1], along=[1, 0], omega=0.6,
+            tau=0.0, R=0.8, b=b, stops="right",
+        )  # fmt: skip
+
+    struck, passed = (oscillator(turning_point * (1 + sign * share)) for sign in (-1, 1))
+    with_graze, without_graze = (vs.simulate(one, [0] * 4, 3).impacts[:1] for one in (struck, passed))
+    assert with_graze["t"] < 4 < 20 < without_graze["t"]
+    assert ("defect" in judged(struck, [0] * 4, without_graze, 1)) is counts
+    assert ("defect" in judged(passed, [0] * 4, with_graze, 1)) is counts
+    assert "defect" not in judged(struck, [0] * 4, with_graze, 1)
+    assert "defect" not in judged(passed, [0] * 4, without_graze, 1)
 
 
 def test_a_few_oscillators():

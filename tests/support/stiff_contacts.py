@@ -1,4 +1,4 @@
-"""Oscillators with masses held stiffly and softly, and stops far from the origin; and how exact their impacts are.
+"""How exact the impacts of the oscillators of drawn_stiff.py are, and whether they are the right ones.
 
 The reference works in the coordinates of the masses, in 50 digits: a flight is a sum of exponentials, whose contact
 nearest to the impact that was found is its root. Moved by one rounding in all its numbers, and at each impact anew in
@@ -12,61 +12,17 @@ import numpy as np
 from mpmath import mp, mpf
 
 import vibro_sweep as vs
-from vibro_sweep.model.linear import amplitudes
+from support.drawn_stiff import drawn
 from vibro_sweep.model.parameters import ParameterError
 
 DIGITS = 50
 COUNT = 6  # impacts compared
 MOVES = 4
+BETWEEN = 1e-9  # of the largest gap: so far behind a stop a flight is still between them
 CHAOS = 1e-8  # part of a time by which rounding moves it, from which on nothing is compared
+PERIODS = 4
+NEAR = 0.5  # of a flight: a contact farther than this from the impact that was found is another one
 SAMPLES = 2000  # of a flight, at which the reference says that it stays between the stops
-
-
-def positive(rng, n):
-    A = rng.normal(size=(n, n))
-    return A @ A.T / n + 0.3 * np.eye(n)
-
-
-def drawn(seed):
-    """Oscillator number `seed`, its state at t = 0, and what it is."""
-    rng = np.random.default_rng([28, seed])
-    n = int(rng.choice([2, 2, 3, 4]))
-    ratio, far = 10.0 ** rng.uniform(0, 12), 10.0 ** rng.uniform(0, 3) * rng.choice([-1, 1]) * (rng.random() < 0.7)
-    stiff = rng.permutation(n) < rng.integers(1, n)  # at least one mass, but not all
-    M = np.diag(rng.uniform(0.5, 2, n)) if rng.random() < 0.6 else positive(rng, n)
-    springs = np.where(stiff, ratio * rng.uniform(0.5, 1, n), 0.0)
-    K = positive(rng, n) + np.diag(springs)
-    C = rng.choice([0.0, 0.05]) * positive(rng, n)
-    damper = rng.choice(["none", "little", "critical", "strong"])
-    share = {"none": 0.0, "little": 0.05, "critical": 2.0, "strong": 10.0 ** rng.uniform(0.5, 2)}[damper]
-    C = C + np.diag(share * np.sqrt(springs * np.diag(M)))
-    if rng.random() < 0.7:
-        i, j = rng.choice(np.flatnonzero(stiff)), rng.choice(np.flatnonzero(~stiff))
-        along = (np.arange(n) == i) - 1.0 * (np.arange(n) == j)
-    else:
-        along = rng.normal(size=n)
-    force = np.where(stiff & (rng.random(n) < 0.5), 0.0, rng.normal(size=n))
-    soft = np.linalg.eigvalsh(np.linalg.solve(np.diag(np.sqrt(np.diag(M))), K) / np.sqrt(np.diag(M)))[0]
-    omega = float(np.sqrt(max(soft, 0.1)) * 10.0 ** rng.uniform(-0.3, 0.3))
-    numbers = dict(M=M, K=K, C=C, along=along, force=force, omega=omega, tau=float(rng.uniform(-3, 3)),
-                   R=float(rng.uniform(0.5, 0.95)), b=1.0)  # fmt: skip
-    if rng.random() < 0.3:
-        numbers["R_left"] = float(rng.uniform(0.5, 0.95))
-    if rng.random() < 0.2:
-        numbers["stops"] = "right"
-    q = vs.Oscillator(**numbers).linear
-    size = abs(q.along @ amplitudes(q))
-    b = float(size * 10.0 ** rng.uniform(-1.5, -0.3))
-    offset = far * b
-    x = along * 0.0
-    if offset:
-        soft_held = np.linalg.solve(K, along)
-        x = soft_held * (offset / (along @ soft_held))
-        numbers["constant"] = K @ x
-    system = vs.Oscillator(**numbers | {"b": b, "offset": float(offset)})
-    state = np.zeros(2 * n)
-    state[0::2] = x
-    return system, state, {"masses": n, "ratio": ratio, "offset/b": far, "damper": str(damper)}
 
 
 class Flight:
@@ -151,12 +107,9 @@ def impacts_of(q, state, guesses, sides, walls=None, look=False):
         wall, R = (q.high, q.R_high) if side > 0 else (q.low, q.R_low)
         wall += walls[i] if walls is not None else 0
         parts, s = flight.parts(z, t), mpf(float(guess)) - t
-        if look:
-            times = np.linspace(0, float(s), SAMPLES)[1:-1]
-            gaps = flight.gaps(parts, times)
-            margin = 1e-9 * max(abs(float(wall)), np.abs(gaps).max())
-            if gaps.max() > float(q.high) + margin or gaps.min() < float(q.low) - margin:
-                return found
+        if look and leaves_stops(q, flight, parts, s):
+            return found
+        guessed = s
         for _ in range(60):
             there = flight.at(parts, s)
             x, v = flight.gap(there)
@@ -166,12 +119,36 @@ def impacts_of(q, state, guesses, sides, walls=None, look=False):
                 break
         else:
             return found
+        if abs(s - guessed) > NEAR * guessed:
+            return found
         there = flight.at(parts, s)
         x, v = flight.gap(there)
         t += s
         found.append((t, v, there))
         z = flight.after(there, v, R)
     return found
+
+
+def leaves_stops(q, flight, parts, s):
+    """Whether a flight passes a stop before the time s."""
+    gaps = flight.gaps(parts, np.linspace(0, float(s), SAMPLES)[1:-1])
+    margin = BETWEEN * np.abs(gaps).max()
+    return gaps.max() > float(q.high) + margin or gaps.min() < float(q.low) - margin
+
+
+def strikes_until(q, state, hits, true, end):
+    """Whether the flight after the impacts `true`, which are those of `hits`, passes a stop before `end`."""
+    flight = Flight(q)
+    t, z = after_impacts(flight, q, state, hits, true)
+    return leaves_stops(q, flight, flight.parts(z, t), end - t)
+
+
+def after_impacts(flight, q, state, hits, found):
+    """Time and state after the last of the impacts found next to `hits`; without one, `state` at 0."""
+    if not found:
+        return mpf(0), [*state[0::2], *state[1::2]]
+    t, v, z = found[-1]
+    return t, flight.after(z, v, q.R_high if hits["side"][len(found) - 1] > 0 else q.R_low)
 
 
 def moved(q, state, rng):
@@ -194,23 +171,30 @@ def compared(seed):
     system, state, report = drawn(seed)
     report |= {"seed": seed, "errors": {}}
     try:
-        orbit = vs.simulate(system, state, 4)
+        orbit = vs.simulate(system, state, PERIODS)
     except ParameterError as error:
         return report | {"refused": error.key}
     if orbit.status != "ok":
         return report | {"refused": str(orbit.status)}
     hits = orbit.impacts[:COUNT]
+    end = PERIODS * system.period if len(hits) < COUNT else None
     if len(orbit.sticking):
-        hits = hits[hits["t"] < orbit.sticking["t_on"][0]]
-    report["impacts"] = len(hits)
+        hits, end = hits[hits["t"] < orbit.sticking["t_on"][0]], None
+    return report | {"impacts": len(hits)} | judged(system, state, hits, seed, end)
+
+
+def judged(system, state, hits, seed, end=None):
+    """What is wrong with these impacts, said to be the first ones from `state`; end: and the only ones until then."""
     with mp.workdps(DIGITS):
-        true = impacts_of(*moved(system.linear, state, None), hits["t"], hits["side"], look=True)
-        if len(true) < len(hits) and is_decided(system, state, hits, true, seed):
-            return report | {"defect": "another impact"}
+        numbers = moved(system.linear, state, None)
+        true = impacts_of(*numbers, hits["t"], hits["side"], look=True)
+        missed = len(true) == len(hits) and end is not None and strikes_until(*numbers, hits, true, end)
+        if (missed or len(true) < len(hits)) and is_decided(system, state, hits, true, seed, end):
+            return {"errors": {}, "defect": "another impact"}
         errors, count = errors_of(system, state, hits, true, seed, MOVES)
         if max(errors.values()) > 10:  # few moves may by accident do next to nothing to one of the numbers
             errors, count = errors_of(system, state, hits, true, seed, 4 * MOVES)
-    return report | {"errors": errors, "compared": count}
+    return {"errors": errors, "compared": count}
 
 
 def errors_of_first(system, state, count, periods=2):
@@ -225,8 +209,8 @@ def errors_of_first(system, state, count, periods=2):
     return errors
 
 
-def is_decided(system, state, hits, true, seed):
-    """Whether the data tell that the impact after those of `true` is not the one that was found.
+def is_decided(system, state, hits, true, seed, end=None):
+    """Whether the data tell that the impact after those of `true` is not the one that was found, if there was one.
 
     They do not where rounding moves the gap by a tenth of what is missing: by how much it is past a stop before, or
     away from one where it was found to strike; nor where chaos or a graze comes before.
@@ -235,22 +219,20 @@ def is_decided(system, state, hits, true, seed):
     step = mpf(system.b) * mp.ldexp(1, -53)
     if m and errors_of(system, state, hits[:m], true, seed, MOVES)[1] < m:
         return False
-    times = np.linspace(float(true[-1][0]) if m else 0.0, hits["t"][m], SAMPLES)[1:]
+    times = np.linspace(float(true[-1][0]) if m else 0.0, hits["t"][m] if m < len(hits) else end, SAMPLES)[1:]
     for i in range(1 + MOVES):
         numbers, x = moved(q, state, rng if i else None)
         walls = [int(sign) * bool(i) * step for sign in rng.choice([-1, 1], m)]
-        flight, t, z = Flight(numbers), mpf(0), [*x[0::2], *x[1::2]]
         before = impacts_of(numbers, x, hits["t"][:m], hits["side"][:m], walls)
         if len(before) < m:
             return False
-        if m:
-            t, v, z = before[-1]
-            z = flight.after(z, v, numbers.R_high if hits["side"][m - 1] > 0 else numbers.R_low)
+        flight = Flight(numbers)
+        t, z = after_impacts(flight, numbers, x, hits, before)
         gaps.append(flight.gaps(flight.parts(z, t), times - float(t)))
     past = np.maximum(gaps[0] - float(q.high), float(q.low) - gaps[0])
     at = int(past[:-1].argmax())
     missing = past[at]
-    if missing <= 1e-9 * np.abs(gaps[0]).max():  # it is between the stops until then
+    if missing <= BETWEEN * np.abs(gaps[0]).max():  # it is between the stops until then
         at, missing = -1, abs(gaps[0][-1] - float(q.high if hits["side"][m] > 0 else q.low))
     return missing > 10 * max(abs(gap[at] - gaps[0][at]) for gap in gaps[1:])
 
@@ -262,8 +244,8 @@ def errors_of(system, state, hits, true, seed, moves):
         walls = [int(sign) * step for sign in rng.choice([-1, 1], len(hits))]
         others.append(impacts_of(*moved(system.linear, state, rng), hits["t"], hits["side"], walls))
     errors, n = {"t": 0.0, "v": 0.0, "x": 0.0, "xdot": 0.0}, len(system.linear.along)
-    hits = hits[: min(map(len, others))]  # up to a graze that rounding takes away
-    for i, (hit, (t, v, z)) in enumerate(zip(hits, true, strict=False)):
+    hits = hits[: min(map(len, [true, *others]))]  # up to a graze that rounding takes away
+    for i, (hit, (t, v, z)) in enumerate(zip(hits, true[: len(hits)], strict=True)):
         effects = {"t": _largest([other[i][0] - t for other in others])}
         if effects["t"] > CHAOS * t:
             return errors, i
