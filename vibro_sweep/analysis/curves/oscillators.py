@@ -4,6 +4,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from vibro_sweep.analysis.periodic.impulse_equations import flow
+from vibro_sweep.analysis.periodic.media import sizes_of_rates
 from vibro_sweep.engine.impulses import plane
 from vibro_sweep.engine.impulses.extended import extended, identity, zeros
 from vibro_sweep.engine.impulses.flow import rates
@@ -153,12 +154,9 @@ def _nodes(degree: int) -> np.ndarray:
 
 
 def _sizes(values: np.ndarray, n: int) -> np.ndarray:
-    """What is small beside what: matrices and forces, in the unit of length, as wholes, numbers one by one."""
+    """What is small beside what, of `sampled`: rates, and numbers one by one."""
     size = np.abs(values).max(axis=0)
-    forces = np.zeros(len(size), bool)
-    forces[n : n * (n + 1) : n + 1] = forces[n * (n + 1) : -NUMBERS] = True
-    matrices = ~forces
-    matrices[-NUMBERS:] = False
-    for part in (forces, matrices):
-        size[part] = size[part].max()
+    forces = np.zeros(len(size) - NUMBERS, bool)
+    forces[n : n * (n + 1) : n + 1] = forces[n * (n + 1) :] = True
+    size[:-NUMBERS] = sizes_of_rates(size[:-NUMBERS], forces)
     return np.maximum(size, 1e-300)

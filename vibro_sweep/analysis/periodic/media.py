@@ -39,7 +39,7 @@ def medium_of(family: Family, halves: int, name: str, centre: float, reach: floa
         if np.all(np.isfinite(values)):
             values[:, TAU - NUMBERS] = np.unwrap(values[:, TAU - NUMBERS])
             c, size = chebyshev.chebfit(nodes, values, medium.DEGREE), np.abs(values).max(axis=0)
-            size[:-NUMBERS] = _sizes(size[:-NUMBERS])
+            size[:-NUMBERS] = sizes_of_rates(size[:-NUMBERS], _acts_as_force(len(family.linear.along)))
             size[TAU - NUMBERS] = max(size[TAU - NUMBERS], 1.0)
             left = float(np.max(np.abs(c[-2:]) / np.maximum(size, 1e-300)))
             if left <= DECAYED or (left <= NOISE and left > 0.3 * before):
@@ -50,16 +50,17 @@ def medium_of(family: Family, halves: int, name: str, centre: float, reach: floa
     return None
 
 
-def _sizes(largest: np.ndarray) -> np.ndarray:
-    """Of the entries of B: those that act on states are rates, those of the forces are in the unit of length, too."""
-    m = int(np.sqrt(len(largest)))
-    sizes = largest.reshape(m, m).copy()
-    forces = sizes[: m - 3, m - 3 :]
-    of_forces = forces.max()
-    forces[:] = 0.0
-    sizes[:] = sizes.max()
-    forces[:] = of_forces
-    return sizes.ravel()
+def sizes_of_rates(largest: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Beside what entries of B are small: those of forces, which are in the unit of length too, and all others."""
+    return np.where(forces, largest[forces].max(), largest[~forces].max())
+
+
+def _acts_as_force(masses: int) -> np.ndarray:
+    """Of the entries of B: whether they act on sin, cos and 1."""
+    n = 2 * masses
+    forces = np.zeros((n + 3, n + 3), bool)
+    forces[:n, n:] = True
+    return forces.ravel()
 
 
 def _straight_medium(family: Family, halves: int, name: str, centre: float, reach: float) -> np.ndarray:
