@@ -6,9 +6,11 @@ import numpy as np
 
 from vibro_sweep.engine.impulses.chatter import REACH
 from vibro_sweep.engine.impulses.curve_certificate import certify
-from vibro_sweep.engine.impulses.factors import factorise, square, substitute
+from vibro_sweep.engine.impulses.factors import factorise, square
 from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, STICK, THETA, TORUS
 from vibro_sweep.engine.impulses.normal_form import coefficient
+from vibro_sweep.engine.impulses.plane import GAIN_HIGH, GAIN_LOW
+from vibro_sweep.engine.impulses.turned import put_equations
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
@@ -21,63 +23,53 @@ TOUCHING = 1e-12  # margin, in parts of the size of the gap, that counts as zero
 
 
 @jit
-def reduced(c, place, b, mu, without):
-    """M(mu), scaled, in b.matrix, without the rows and columns of the grazing impact if `without`; its size."""
-    K, S = len(place.t), len(place.w)
-    M, row = b.room.M, 0
-    for i in range(S):
-        if without and (i == c.index or i == K + c.index):
-            continue
-        column = 0
-        for j in range(S):
-            if without and (j == c.index or j == K + c.index):
-                continue
-            b.matrix[row, column] = M[i, j] * c.unit[j] / c.row_unit[i]
-            if i == j and i >= 2 * K:
-                b.matrix[row, column] += c.sigma * mu
-            column += 1
-        row += 1
-    return row
-
-
-@jit
 def determinant(c, place, b, mu, without):
-    size = reduced(c, place, b, mu, without)
-    return factorise(b.matrix, size, b.order)
+    """Of M(mu), scaled; without: of the orbit without the grazing impact."""
+    put_equations(b.matrix, c, b.room.M, len(place.t), 0, mu, c.index if without else -1)
+    return factorise(b.matrix, len(place.w), b.order)
 
 
 @jit
-def pair_test(c, place, b):
+def monodromy(f, c, place, b):
+    """b.pair: what becomes of the state before the first impact in a period, of the orbit without the grazing impact.
+
+    False where an impact has no speed.
+    """
+    K, n = len(place.t), len(place.h)
+    N = n // 2
+    for j in range(n):
+        xi, y = b.re, b.im
+        for r in range(n):
+            xi[r] = 1.0 if r == j else 0.0
+        for i in range(K):
+            dt = dD = 0.0
+            if not (c.kind == GRAZE and i == c.index):
+                v, a = b.room.motion[i]
+                if v == 0.0:
+                    return False
+                dt = -xi[0] / v
+                dD = -f.numbers[GAIN_HIGH if c.sides[i] > 0 else GAIN_LOW] * (a * dt + xi[N])
+            for r in range(n):
+                y[r] = xi[r] - f.A[r, N] * place.D[i] * dt
+            y[N] += dD
+            for r in range(n):
+                xi[r] = 0.0
+                for k in range(n):
+                    xi[r] += b.room.E[i, 0, r, k] * y[k]
+        for r in range(n):
+            b.pair[r, j] = c.sigma * xi[r] * c.unit[2 * K + j] / c.row_unit[2 * K + r]
+    return True
+
+
+@jit
+def pair_test(f, c, place, b):
     """prod_{i<j} (1 - mu_i mu_j) of the multipliers but the critical one; of the orbit without the grazing impact.
 
     Zero where a pair passes the unit circle, and at a neutral saddle. 1 without losses.
     """
-    S = len(place.w)
-    n = S - 2 * len(place.t)
-    size = reduced(c, place, b, 0.0, c.kind == GRAZE)
-    inner = size - n
-    a, image = b.matrix, b.pair
-    if inner > 0:  # -sigma (Y - W U^-1 V) of ((U, V), (W, Y))
-        for r in range(n):
-            for j in range(n):
-                image[r, j] = a[inner + r, inner + j]
-        if factorise(a, inner, b.order) == 0.0:
-            return 1.0
-        for j in range(n):
-            column = b.step
-            for i in range(inner):
-                column[i] = a[i, inner + j]
-            substitute(a, inner, b.order, column)
-            for r in range(n):
-                for i in range(inner):
-                    image[r, j] -= a[inner + r, i] * column[i]
-    else:
-        for r in range(n):
-            for j in range(n):
-                image[r, j] = a[r, j]
-    for r in range(n):
-        for j in range(n):
-            image[r, j] *= -c.sigma
+    n, image = len(place.h), b.pair
+    if not monodromy(f, c, place, b):
+        return 1.0
     re, im = b.re, b.im
     if not eigenvalues(image, n, re, im):
         return 1.0
@@ -133,7 +125,7 @@ def examine(f, c, place, b):
         tests[BARE_PLUS] = determinant(c, place, b, 1.0, True)
         tests[BARE_MINUS] = determinant(c, place, b, -1.0, True)
     if c.kind != TORUS and S - 2 * K > 2:
-        tests[PAIR] = pair_test(c, place, b)
+        tests[PAIR] = pair_test(f, c, place, b)
     if c.kind == FLIP or c.kind == TORUS:  # det M(1) takes away the pole where the orbit has the multiplier 1 as well
         tests[NORMAL] = coefficient(f, c, place, b) * tests[PLUS]
 

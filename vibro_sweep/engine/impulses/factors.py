@@ -28,6 +28,8 @@ def factorise(a, size, order):
             return a[j, j] * 0.0
         inverse = 1.0 / a[j, j]
         for i in range(j + 1, size):
+            if square(a[i, j]) == 0.0:
+                continue
             factor = a[i, j] * inverse
             a[i, j] = factor
             for k in range(j + 1, size):

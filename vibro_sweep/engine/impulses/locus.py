@@ -21,8 +21,10 @@ from vibro_sweep.engine.impulses.chatter_series import Tail, new_tail
 from vibro_sweep.engine.impulses.chatter_steps import Steps, add_tail, follow, new_steps, solve
 from vibro_sweep.engine.impulses.condensed import Room, equations, gradient, new_room
 from vibro_sweep.engine.impulses.extremes import PIECES
-from vibro_sweep.engine.impulses.factors import factorise, square, substitute, substitute_transposed
+from vibro_sweep.engine.impulses.factors import factorise, square
 from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.turned import equation, put_equations, solve_adjoint, turn, unknown
+from vibro_sweep.engine.impulses.turned import solve as solve_turned
 from vibro_sweep.engine.simd.jit import jit
 
 FOLD, FLIP, TORUS, GRAZE, STICK = range(5)
@@ -62,12 +64,13 @@ class Bench(NamedTuple):
     room: Room
     J: np.ndarray  # (S + 3, S + 3)
     step: np.ndarray  # (S + 3,)
-    B: np.ndarray  # (S + 1, S + 1) complex
+    B: np.ndarray  # (S + 1, S + 1) complex, turned (turned.py)
     w: np.ndarray  # (S + 1,) complex
     psi: np.ndarray  # (S + 1,) complex
     slope: np.ndarray  # (S + 2,) complex
     order: np.ndarray  # (S + 3,) integers
-    matrix: np.ndarray  # (S, S)
+    matrix: np.ndarray  # (S + 3, S + 3), turned
+    line: np.ndarray  # (S + 3,)
     pair: np.ndarray  # (n, n)
     re: np.ndarray  # (n,)
     im: np.ndarray  # (n,)
@@ -99,7 +102,9 @@ def new_bench(K: int, n: int) -> Bench:
     vectors = [np.zeros(size, complex) for size in (S + 1, S + 1, S + 2)]
     border = np.zeros((S + 1, S + 1), complex)
     order = np.zeros(S + 3, np.int64)
-    rest = [np.zeros(shape) for shape in ((S, S), (n, n), n, n, ORDER + 1, 3, (PIECES, 2), (2, n), n + 1)]
+    rest = [
+        np.zeros(shape) for shape in ((S + 3, S + 3), S + 3, (n, n), n, n, ORDER + 1, 3, (PIECES, 2), (2, n), n + 1)
+    ]
     series = [np.zeros(shape, complex) for shape in ((S, TERMS), (S, TERMS), (3, n, TERMS), (3, TERMS))]
     first = new_room(K, n), np.zeros((S + 3, S + 3)), np.zeros(S + 3), border
     return Bench(*first, *vectors, order, *rest, *series, new_tail(n), new_steps(K, n))
@@ -124,20 +129,17 @@ def multiplier(c, place):
 def null_vectors(c, place, b):
     """w and psi in `b`, bordered by those of `place`; g. NaN where the bordered matrix is singular."""
     S, K = len(place.w), len(place.t)
-    M, B, mu = b.room.M, b.B, multiplier(c, place)
+    B, size, last = b.B, S + 1, unknown(S, K, S, S + 1)
+    put_equations(B, c, b.room.M, K, 1, multiplier(c, place), -1)
     for i in range(S):
-        for j in range(S):
-            B[i, j] = M[i, j] * c.unit[j] / c.row_unit[i]
-        B[i, S] = place.psi[i].conjugate()
-        B[S, i] = place.w[i].conjugate()
+        B[last, equation(i, K)] = place.psi[i].conjugate()
+        B[unknown(i, K, S, size), S] = place.w[i].conjugate()
         b.w[i] = b.psi[i] = 0.0
-    B[S, S], b.w[S], b.psi[S] = 0.0, 1.0, 1.0
-    for i in range(2 * K, S):
-        B[i, i] += c.sigma * mu * c.unit[i] / c.row_unit[i]
-    if square(factorise(B, S + 1, b.order)) == 0.0:
+    B[last, S], b.w[S], b.psi[S] = 0.0, 1.0, 1.0
+    if square(factorise(B, size, b.order)) == 0.0:
         return complex(np.nan, 0.0)
-    substitute(B, S + 1, b.order, b.w)
-    substitute_transposed(B, S + 1, b.order, b.psi)
+    solve_turned(B, size, b.order, K, S, b.w, b.slope)
+    solve_adjoint(B, size, b.order, K, S, b.psi, b.slope)
     return b.w[S]
 
 
@@ -207,16 +209,17 @@ def assemble(f, c, place, b):
 
 
 @jit
-def solve_on_plane(row, b, size, tangent):
+def solve_on_plane(row, b, size, K, S, tangent):
     """`b.step` becomes Newton's step on the plane across `row`; False: singular."""
+    T = b.matrix
+    turn(b.J, size, K, S, T)
     for j in range(size):
-        b.J[size - 1, j] = row[j]
-        tangent[j] = 0.0
+        T[unknown(j, K, S, size), size - 1], tangent[j] = row[j], 0.0
     b.step[size - 1], tangent[size - 1] = 0.0, 1.0
-    if factorise(b.J, size, b.order) == 0.0:
+    if factorise(T, size, b.order) == 0.0:
         return False
-    substitute(b.J, size, b.order, b.step)
-    substitute(b.J, size, b.order, tangent)
+    solve_turned(T, size, b.order, K, S, b.step, b.line)
+    solve_turned(T, size, b.order, K, S, tangent, b.line)
     return True
 
 
@@ -233,7 +236,7 @@ def newton_step(f, c, place, row, b, tangent):
     if c.kind == STICK:
         if not solve(f, c, place, row, b, tangent):
             return np.nan
-    elif not solve_on_plane(row, b, size, tangent):
+    elif not solve_on_plane(row, b, size, K, S, tangent):
         return np.nan
     change = 0.0
     for j in range(size):

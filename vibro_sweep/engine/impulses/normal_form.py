@@ -15,9 +15,10 @@ J. Differential Equations 218 (2005) 444.)
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.factors import factorise, square, substitute
+from vibro_sweep.engine.impulses.factors import factorise, square
 from vibro_sweep.engine.impulses.locus import FLIP, TERMS, multiplier
 from vibro_sweep.engine.impulses.plane import GAIN_HIGH, GAIN_LOW, OMEGA
+from vibro_sweep.engine.impulses.turned import put_equations, solve
 from vibro_sweep.engine.simd.jit import jit
 
 POWERS = np.array([(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3)])  # j, k of z^j z*^k
@@ -132,15 +133,12 @@ def solve_order(c, place, b, mu, m):
     """The coefficient of order m from its residual. False where mu^j mu*^k is a multiplier."""
     K, S = len(place.t), len(place.w)
     factor = factor_of(mu, m)
-    for i in range(S):
-        for j in range(S):
-            b.B[i, j] = b.room.M[i, j] * c.unit[j] / c.row_unit[i]
-        if i >= 2 * K:
-            b.B[i, i] += c.sigma * factor * c.unit[i] / c.row_unit[i]
-        b.w[i] = -b.left[i, m] / c.row_unit[i]
+    put_equations(b.B, c, b.room.M, K, 0, factor, -1)
     if square(factorise(b.B, S, b.order)) == 0.0:
         return False
-    substitute(b.B, S, b.order, b.w)
+    for i in range(S):
+        b.w[i] = -b.left[i, m] / c.row_unit[i]
+    solve(b.B, S, b.order, K, S, b.w, b.slope)
     set_order(c, place, b, m, b.w)
     return True
 
