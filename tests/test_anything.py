@@ -4,7 +4,6 @@ Work per period is bounded: LONGEST / WIDTH series (engine/tables/cells.py) and 
 """
 
 import math
-import time
 from collections import Counter
 
 import numpy as np
@@ -19,7 +18,6 @@ from vibro_sweep.model.parameters import ParameterError
 EPS = 2.0**-52
 PERIODS = 3
 SLOWEST = 1e-150  # impact, whose saltation matrix has 1/v1, and squares of that
-SECONDS = 20.0  # of processor time, for one example
 
 
 def numbers(low, high):
@@ -85,13 +83,12 @@ def test_anything(count):
     def check(values, start):
         outcomes["examples"] += 1
         system = vs.System(**values)
-        state, began = scaled(start, system.b), time.process_time()
+        state = scaled(start, system.b)
         try:
             orbit = vs.simulate(system, state, periods=PERIODS)
         except ParameterError as error:  # too stiff for the grid, and said so
             assert error.key == "omega"
             return
-        assert time.process_time() - began < SECONDS
         assert len(orbit.impacts) <= PERIODS * MOST_EVENTS
         outcomes[str(orbit.status)] += 1
         if orbit.status != "ok":

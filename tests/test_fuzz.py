@@ -4,7 +4,6 @@ import contextlib
 import io
 import random
 import re
-import time
 from collections import Counter
 
 import h5py
@@ -20,7 +19,6 @@ from vibro_sweep.model.status import STANDING
 from vibro_sweep.scene import SceneError, json_schema, parse_scene
 from vibro_sweep.scene.yaml_text import YAMLTextError, read_yaml
 
-SECONDS = 5.0  # of processor time
 EPS = 2.0**-52
 
 # Reasons that JSON Schema does not say: relations between values, and between keys.
@@ -42,46 +40,33 @@ run_counts = pytest.mark.parametrize(
 )
 
 
-@pytest.fixture(scope="module", autouse=True)
-def compiled():
-    """What the scenes need is compiled before the clock runs."""
-    trajectory, down = "trajectory: {periods: 1, samples: 2}\n", "sweep: {b: {values: [1, 2]}}\nstart: {follow: down}\n"
-    for more in ("model: map\n", trajectory, trajectory + down):
-        system = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}"
-        computed(parse_scene(f"{system}\norbit: {{transient: 0, record: 1}}\n{more}"), 1, None)
-
-
 def contents(folder):
     return {path.name: (path.read_bytes(), path.stat().st_mtime_ns) for path in folder.iterdir()}
 
 
 def checked(path):
-    """Status, output and errors of `check`; and the processor time that it took."""
+    """Status, output and errors of `check`."""
     out, err = io.StringIO(), io.StringIO()
-    began = time.process_time()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         status = main(["check", str(path)])
-    return status, out.getvalue(), err.getvalue(), time.process_time() - began
+    return status, out.getvalue(), err.getvalue()
 
 
 @counts
 def test_every_scene_ends_in_a_result_or_one_message(tmp_path, count):
     path, validator, outcomes = tmp_path / "scene.yaml", jsonschema.Draft7Validator(json_schema()), Counter()
-    slowest = 0.0
     for n in range(count):
         path.write_bytes(broken(n))
         before = contents(tmp_path)
-        status, out, err, seconds = checked(path)
-        slowest = max(slowest, seconds)
+        status, out, err = checked(path)
         assert contents(tmp_path) == before, n
-        assert seconds < SECONDS, n
         assert status in (0, 2), (n, err)
         assert (out == "") == (status == 2) and err.count("error: ") == (status == 2) and "Traceback" not in err, (
             n,
             err,
         )
         outcomes[_agreement(n, validator, status)] += 1
-    print(f"\n{count} scenes, slowest {slowest:.2f} s: {dict(outcomes)}")
+    print(f"\n{count} scenes: {dict(outcomes)}")
     assert outcomes["accepted"] > count / 10 and sum(outcomes.values()) - outcomes["accepted"] > count / 10
 
 
@@ -116,9 +101,7 @@ def test_every_run_keeps_what_every_run_must(tmp_path, count):
             assert BEYOND_THE_SCHEMA.search(str(error)), (n, str(error))
             refused += 1
             continue
-        began = time.process_time()
         whole, _ = computed(one, 10**6, None)
-        assert time.process_time() - began < 6 * SECONDS, n  # hundreds of impacts in each period are work, no hang
         statuses.update(whole["status"].ravel().tolist())
         _hold(one, whole, n)
         parts, _ = computed(one, 1 + n % 3, 1 + n % 11)
