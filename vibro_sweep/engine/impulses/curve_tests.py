@@ -25,7 +25,7 @@ TOUCHING = 1e-12  # margin, in parts of the size of the gap, that counts as zero
 @jit
 def determinant(c, place, b, mu, without):
     """Of M(mu), scaled; without: of the orbit without the grazing impact."""
-    put_equations(b.matrix, c, b.room.M, len(place.t), 0, mu, c.index if without else -1)
+    put_equations(b.matrix, c, b.room.M, len(place.t), mu, c.index if without else -1)
     return factorise(b.matrix, len(place.w), b.order)
 
 

@@ -23,7 +23,7 @@ from vibro_sweep.engine.impulses.condensed import Room, equations, gradient, new
 from vibro_sweep.engine.impulses.extremes import PIECES
 from vibro_sweep.engine.impulses.factors import factorise, square
 from vibro_sweep.engine.impulses.tables import ORDER
-from vibro_sweep.engine.impulses.turned import equation, put_equations, solve_adjoint, turn, unknown
+from vibro_sweep.engine.impulses.turned import place_of, put_equations, solve_adjoint, turn
 from vibro_sweep.engine.impulses.turned import solve as solve_turned
 from vibro_sweep.engine.simd.jit import jit
 
@@ -129,17 +129,17 @@ def multiplier(c, place):
 def null_vectors(c, place, b):
     """w and psi in `b`, bordered by those of `place`; g. NaN where the bordered matrix is singular."""
     S, K = len(place.w), len(place.t)
-    B, size, last = b.B, S + 1, unknown(S, K, S, S + 1)
-    put_equations(B, c, b.room.M, K, 1, multiplier(c, place), -1)
+    B = b.B
+    put_equations(B, c, b.room.M, K, multiplier(c, place), -1)
     for i in range(S):
-        B[last, equation(i, K)] = place.psi[i].conjugate()
-        B[unknown(i, K, S, size), S] = place.w[i].conjugate()
+        B[S, place_of(i, K)] = place.psi[i].conjugate()
+        B[place_of(i, K), S] = place.w[i].conjugate()
         b.w[i] = b.psi[i] = 0.0
-    B[last, S], b.w[S], b.psi[S] = 0.0, 1.0, 1.0
-    if square(factorise(B, size, b.order)) == 0.0:
+    B[S, S], b.w[S], b.psi[S] = 0.0, 1.0, 1.0
+    if square(factorise(B, S + 1, b.order)) == 0.0:
         return complex(np.nan, 0.0)
-    solve_turned(B, size, b.order, K, S, b.w, b.slope)
-    solve_adjoint(B, size, b.order, K, S, b.psi, b.slope)
+    solve_turned(B, S + 1, b.order, K, b.w, b.slope)
+    solve_adjoint(B, S + 1, b.order, K, b.psi, b.slope)
     return b.w[S]
 
 
@@ -209,17 +209,17 @@ def assemble(f, c, place, b):
 
 
 @jit
-def solve_on_plane(row, b, size, K, S, tangent):
+def solve_on_plane(row, b, size, K, tangent):
     """`b.step` becomes Newton's step on the plane across `row`; False: singular."""
     T = b.matrix
-    turn(b.J, size, K, S, T)
+    turn(b.J, size, K, T)
     for j in range(size):
-        T[unknown(j, K, S, size), size - 1], tangent[j] = row[j], 0.0
+        T[place_of(j, K), size - 1], tangent[j] = row[j], 0.0
     b.step[size - 1], tangent[size - 1] = 0.0, 1.0
     if factorise(T, size, b.order) == 0.0:
         return False
-    solve_turned(T, size, b.order, K, S, b.step, b.line)
-    solve_turned(T, size, b.order, K, S, tangent, b.line)
+    solve_turned(T, size, b.order, K, b.step, b.line)
+    solve_turned(T, size, b.order, K, tangent, b.line)
     return True
 
 
@@ -236,7 +236,7 @@ def newton_step(f, c, place, row, b, tangent):
     if c.kind == STICK:
         if not solve(f, c, place, row, b, tangent):
             return np.nan
-    elif not solve_on_plane(row, b, size, K, S, tangent):
+    elif not solve_on_plane(row, b, size, K, tangent):
         return np.nan
     change = 0.0
     for j in range(size):

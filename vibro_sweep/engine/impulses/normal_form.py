@@ -133,12 +133,12 @@ def solve_order(c, place, b, mu, m):
     """The coefficient of order m from its residual. False where mu^j mu*^k is a multiplier."""
     K, S = len(place.t), len(place.w)
     factor = factor_of(mu, m)
-    put_equations(b.B, c, b.room.M, K, 0, factor, -1)
+    put_equations(b.B, c, b.room.M, K, factor, -1)
     if square(factorise(b.B, S, b.order)) == 0.0:
         return False
     for i in range(S):
         b.w[i] = -b.left[i, m] / c.row_unit[i]
-    solve(b.B, S, b.order, K, S, b.w, b.slope)
+    solve(b.B, S, b.order, K, b.w, b.slope)
     set_order(c, place, b, m, b.w)
     return True
 
