@@ -6,8 +6,8 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.any_oscillators import positive
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.model.linear import amplitudes, family_of, static_state
+from vibro_sweep.types import PeriodicOrbit
 
 MODELS = ("two_mass", "one_mass", "ball_in_cavity", "chain", "linear")
 MOST_IMPACTS = 24  # of an orbit: longer ones take long to follow, and there are many of them

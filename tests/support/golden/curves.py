@@ -1,0 +1,82 @@
+"""Bifurcation curves as records, by which way they were reached; and what differs from a record.
+
+A curve is followed in a box, and again in a smaller one: where it leaves that one are two more of its points, to the
+last digits.
+"""
+
+import numpy as np
+
+import vibro_sweep as vs
+from support.golden.branches import followed
+from support.golden.motions import labels
+from support.golden.passing import in_order
+from support.golden.special_points import changed, differences, ends_of, nearest, special_record
+
+POINTS = 50
+
+
+def start_of_curve(record: dict):
+    """The special point from which the curve of a record is followed."""
+    special = nearest(followed(record).special, record["special"])
+    for step in record["then"]:
+        curve = vs.bifurcation_curve(special, tuple(step["names"]), step["box"])
+        special = vs.switch(nearest(curve.special, step["special"]))[step["switch"]]
+    return special
+
+
+def traced(record: dict):
+    """The curve of a record, and that within the smaller box, computed now."""
+    special = start_of_curve(record)
+    return [vs.bifurcation_curve(special, tuple(record["names"]), record[box]) for box in ("box", "inner")]
+
+
+def result_of(curves) -> dict:
+    curve, small = curves
+    points, (p, q) = curve.points, curve.parameters
+    k = np.unique(np.linspace(0, points.sizes["point"] - 1, POINTS).round().astype(int))
+    kept = {name: points[name].values[k].tolist() for name in (p, q, "virtual", "unstable")}
+    return {
+        "type": curve.type,
+        "closed": curve.closed,
+        "ends": ends_of(curve),
+        "special": [special_record(one) for one in curve.special],
+        "inner": [special_record(one) for one in small.special],
+        "switch": switched(curve),
+        "points": kept,
+    }
+
+
+def switched(curve) -> list[list[list]]:
+    """Of each point of codimension two the curves that pass it, or begin there."""
+    ends = ("closed", "limit", "failed")
+    return [
+        [] if one.type in ends else [[start.type, labels(start.orbit)] for start in vs.switch(one)]
+        for one in curve.special
+    ]
+
+
+def compared(record: dict, result: dict, curves) -> list[str]:
+    now = result_of(curves)
+    sizes = {name: hi - lo for name, (lo, hi) in zip(record["names"], record["box"], strict=True)}
+    lines = changed(result, now, ("type", "closed"))
+    for key in ("special", "inner"):
+        lines += [f"{key}: {one}" for one in differences(result[key], now[key], sizes)]
+    lines += [] if result["closed"] else changed(result, now, ("ends", "switch"))
+    return lines + _passed(record["names"], sizes, result["points"], curves[0])
+
+
+def _passed(names, sizes, stored: dict, curve) -> list[str]:
+    a = np.column_stack([np.array(stored[name]) / sizes[name] for name in names])
+    b = np.column_stack([curve.points[name].values / sizes[name] for name in names])
+    if curve.closed:  # from where the record begins, in its direction
+        first = int(np.argmin(np.linalg.norm(b - a[0], axis=1)))
+        ring = np.roll(b[:-1], -first, axis=0)
+        return min((in_order(a, np.vstack([one, one])) for one in (ring, ring[::-1])), key=len)
+    lines = in_order(a, b)
+    for k, point in enumerate(a):  # where both neighbours agree
+        two = np.argsort(np.linalg.norm(b - point, axis=1))[:2]
+        for name in ("virtual", "unstable"):
+            values = set(curve.points[name].values[two].tolist())
+            if len(values) == 1 and values != {stored[name][k]}:
+                lines.append(f"point {k}: {name} {stored[name][k]}, now {values.pop()}")
+    return lines

@@ -1,0 +1,140 @@
+"""Oscillators and periodic orbits as records, and by how much two orbits differ."""
+
+import dataclasses
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+import vibro_sweep as vs
+
+ROUNDING = 2.0**-52
+AGAIN = ((0, 0.0), (0, 1e-9), (8, 1e-9), (-8, 1e-9))  # an orbit is found again: the change of the parameter, in units
+# of its rounding, and that of the impacts from which it is found, relative
+SAFETY = 10.0  # errors are so many times the largest movement that was seen
+LEAST_ERROR = 64 * ROUNDING
+LEAST_MULTIPLIER_ERROR = 1e-9  # relative
+ZERO = 1e-30  # smaller multipliers are not told apart
+
+
+def system_record(system) -> dict:
+    """What `system_of` makes the oscillator of."""
+    if isinstance(system, vs.System):
+        return {"type": "two_mass"} | {one.name: getattr(system, one.name) for one in dataclasses.fields(system)}
+    return {"type": system.model.name} | {name: _plain(value) for name, value in system.given.items()}
+
+
+def system_of(record: dict):
+    numbers = dict(record)
+    return vs.Oscillator.named(numbers.pop("type"), **numbers)
+
+
+def _plain(value):
+    """As JSON has it: numbers and lists."""
+    if isinstance(value, (np.ndarray, np.generic, tuple)):
+        return np.asarray(value).tolist()
+    return value
+
+
+def rows_of(t, sides, v) -> list:
+    """As `periodic_orbit` takes a guess."""
+    return [[float(a), int(side), float(b)] for a, side, b in zip(t, sides, v, strict=True)]
+
+
+def start_of(orbit) -> dict:
+    """Arguments of `periodic_orbit` which give this orbit."""
+    return motion_of(orbit).start
+
+
+def orbit_from(system, start: dict):
+    return vs.periodic_orbit(system, **start)
+
+
+def labels(orbit) -> dict:
+    names = "period", "itinerary", "symmetric"
+    return {name: getattr(orbit, name) for name in names} | {"rests": len(orbit.sticking)}
+
+
+@dataclasses.dataclass
+class Motion:
+    """Impacts of a whole period, from which rests follow; the state at t = 0, of use where there are none."""
+
+    omega: float
+    periods: int
+    t: np.ndarray
+    side: np.ndarray
+    v: np.ndarray
+    state: np.ndarray
+    multipliers: np.ndarray
+
+    @property
+    def start(self) -> dict:
+        if not len(self.t):
+            return {"itinerary": ""}
+        return {"guess": rows_of(self.t, self.side, self.v), "periods": self.periods}
+
+    def disturbed(self, rng, noise: float) -> dict:
+        """`start`, not quite."""
+        start = dict(self.start)
+        if "guess" in start:
+            change = noise * rng.standard_normal((len(self.t), 2))
+            t, v = self.t + change[:, 0] / self.omega, self.v * (1 + change[:, 1])
+            start["guess"] = rows_of(t, self.side, v)
+        return start
+
+
+def motion_of(orbit) -> Motion:
+    i = orbit.impacts
+    return Motion(orbit.system.omega, orbit.period, i["t"], i["side"], i["v1"], orbit.state, orbit.multipliers)
+
+
+def distance(one: Motion, other: Motion) -> float:
+    """Of two motions, relative to their size; impacts may be counted from any one of them, and from any period."""
+    if one.periods != other.periods or len(one.t) != len(other.t):
+        return np.inf
+    if not len(one.t):
+        size = np.abs(one.state).max()
+        return float(np.abs(one.state - other.state).max() / size) if size else float(np.abs(other.state).max())
+    return min(_distance(one, other, first) for first in range(len(one.t)))
+
+
+def _distance(one: Motion, other: Motion, first: int) -> float:
+    if not np.array_equal(one.side, np.roll(other.side, -first)):
+        return np.inf
+    turns = (np.roll(other.t, -first) * other.omega - one.t * one.omega) / (2 * np.pi)
+    turns -= np.round(turns[0])
+    turns -= one.periods * np.round(turns / one.periods)
+    v = np.roll(other.v, -first) - one.v
+    size = np.abs(one.v).max()
+    return float(max(np.abs(turns).max(), np.abs(v).max() / size if size else np.abs(v).max()))
+
+
+def multiplier_distance(one: Motion, other: Motion) -> float:
+    """The largest relative difference of two that belong together."""
+    a, b = one.multipliers, other.multipliers
+    if len(a) != len(b):
+        return np.inf
+    apart = np.abs(a[:, None] - b) / np.maximum(np.abs(a[:, None]), ZERO)
+    small = (np.abs(a) < ZERO)[:, None] & (np.abs(b) < ZERO)
+    apart = np.minimum(np.where(small, 0.0, apart), 1e9)
+    return float(apart[linear_sum_assignment(apart)].max(initial=0.0))
+
+
+def errors_of(system, name: str, value: float, motion: Motion, rng) -> tuple[float, float] | None:
+    """By how much the orbit at `value` of the number `name`, and its multipliers, may differ from `motion`.
+
+    It is found again, from impacts that are not quite its own, and at neighbouring values. None where it is not found.
+    """
+    moved, multipliers = [], []
+    for shift, noise in AGAIN:
+        there = value * (1 + shift * ROUNDING)
+        try:
+            found = vs.periodic_orbit(system.replace(**{name: there}), **motion.disturbed(rng, noise))
+        except ValueError:  # the value is at the end of its range
+            continue
+        if found.status not in ("ok", "not_real"):
+            return None
+        moved.append(distance(motion, motion_of(found)))
+        multipliers.append(multiplier_distance(motion, motion_of(found)))
+    if not moved or max(moved) > 1e-6:  # another orbit
+        return None
+    return max(SAFETY * max(moved), LEAST_ERROR), max(SAFETY * max(multipliers), LEAST_MULTIPLIER_ERROR)

@@ -1,0 +1,44 @@
+"""Makes the sweeps whose windows are part of the record."""
+
+import gzip
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import vibro_sweep as vs
+from support.golden import files, windows
+from support.golden.motions import system_record
+from support.golden.named import PAPER
+from support.models import oscillator
+
+START = {"random": 2, "seed": 1}
+
+
+def sweeps() -> list[tuple]:
+    """Name, oscillator, parameter, values."""
+    return [
+        ("paper in b", PAPER, "b", np.linspace(4.2, 6.9, 55)),
+        ("paper in omega", PAPER.replace(b=0.4, stops="right"), "omega", np.linspace(0.4, 1.2, 25)),
+        ("one mass in omega", oscillator("one_mass"), "omega", np.linspace(0.5, 1.6, 34)),
+        ("chain in b", oscillator("chain", b=0.3), "b", np.linspace(0.1, 0.6, 26)),
+        ("cavity in F", oscillator("ball_in_cavity"), "F", np.linspace(0.1, 0.6, 26)),
+    ]
+
+
+def all_windows(told) -> list[dict]:
+    result = []
+    for name, system, parameter, values in sweeps():
+        file = f"{name.replace(' ', '_')}.h5.gz"
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "sweep.h5"
+            vs.sweep(
+                system, {parameter: values}, start=START, transient=1000, record=60, observe=["section"], output=path,
+                workers=1,
+            )  # fmt: skip
+            (files.FOLDER / file).write_bytes(gzip.compress(path.read_bytes(), 9, mtime=0))
+        found = windows.result_of(windows.windows_in(files.FOLDER / file))
+        record = {"name": name, "system": system_record(system), "file": file, "parameter": parameter}
+        result.append(record | {"bounds": [float(values[0]), float(values[-1])], "result": found})
+        told(f"{name}: {len(found['windows'])} windows")
+    return result

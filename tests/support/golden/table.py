@@ -1,0 +1,70 @@
+"""What the record consists of, counted: the head of its log."""
+
+from collections import Counter
+
+import vibro_sweep as vs
+from support.golden import files
+from support.golden.motions import system_of
+
+
+def table() -> str:
+    made = [kind for kind in files.KINDS if (files.FOLDER / f"{kind}.jsonl.gz").exists()]
+    head = f"The golden record, made by version {vs.__version__}: PYTHONPATH=tests python -m support.golden\n\n"
+    return head + "\n".join(_of_kind(kind, list(files.read(kind).values())) for kind in made)
+
+
+def _of_kind(kind: str, records: list[dict]) -> str:
+    results = [part for one in records for part in _parts(kind, one["result"])]
+    orbits = [one.get("orbit", one) for one in results]
+    counted = {
+        "model": Counter(one["system"]["type"] for one in records),
+        "masses": Counter(system_of(one["system"]).masses for one in records),
+        "stops": Counter(one["system"].get("stops", "both") for one in records),
+        "R": Counter(_restitution(one["system"]) for one in records),
+        "parameter": Counter(" ".join(one.get("names", [one["parameter"]])) for one in records),
+    }
+    if kind != "curves":
+        counted["period"] = Counter(_range(one["period"], (1, 2, 3, 4, 8)) for one in orbits)
+        counted["impacts"] = Counter(_range(len(one["itinerary"]), (0, 1, 2, 3, 4, 8, 16)) for one in orbits)
+        counted["symmetric"] = Counter("yes" if one["symmetric"] else "no" for one in orbits)
+        counted["with rests"] = Counter("yes" if one.get("rests") else "no" for one in orbits)
+    else:
+        counted["type"] = Counter(one["type"] for one in results)
+    specials = [special for one in results for special in one.get("special", one.get("ends"))]
+    counted["special points"] = Counter(one["type"] for one in specials)
+    if kind != "windows":
+        counted["points"] = Counter({"all": sum(_points(one["points"]) for one in results)})
+        errors = [e for one in results for e in one["points"].get("error", [])]
+        if errors:
+            counted["points"]["without an error"] = sum(e is None for e in errors)
+    title = f"{kind}: {len(records)}" + (f", {len(results)} {_PARTS[kind]}" if kind in _PARTS else "")
+    return "\n".join([title, *(f"  {name:15}{_line(one)}" for name, one in counted.items()), ""])
+
+
+_PARTS = {"searches": "branches", "windows": "windows"}
+
+
+def _parts(kind: str, result) -> list[dict]:
+    return {"searches": lambda: result, "windows": lambda: result["windows"]}.get(kind, lambda: [result])()
+
+
+def _points(points: dict) -> int:
+    return len(next(iter(points.values())))
+
+
+def _restitution(system: dict) -> str:
+    values = {value for value in (system.get("R"), system.get("R_left")) if value is not None}
+    return "two of them" if len(values) > 1 else _range(values.pop(), (0, 0.3, 0.6, 0.9999, 1))
+
+
+def _range(value: float, limits) -> str:
+    """Up to which of the limits."""
+    i = next((i for i, limit in enumerate(limits) if value <= limit), len(limits))
+    if i == len(limits):
+        return f"> {limits[-1]}"
+    whole = i == 0 or (isinstance(value, int) and limits[i] == limits[i - 1] + 1) or value == limits[i] == 1
+    return str(limits[i]) if whole else f"{limits[i - 1]} .. {limits[i]}"
+
+
+def _line(counter: Counter) -> str:
+    return ", ".join(f"{name} {count}" for name, count in sorted(counter.items(), key=lambda item: str(item[0])))
