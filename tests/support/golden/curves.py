@@ -9,10 +9,11 @@ import numpy as np
 import vibro_sweep as vs
 from support.golden.branches import followed
 from support.golden.motions import labels
-from support.golden.passing import in_order
+from support.golden.passing import in_order, passed
 from support.golden.special_points import changed, differences, ends_of, nearest, special_record
 
 POINTS = 50
+LEAST_SPEED = 1e-6  # where all impacts graze, speeds are rounding
 
 
 def start_of_curve(record: dict):
@@ -35,6 +36,7 @@ def result_of(curves) -> dict:
     points, (p, q) = curve.points, curve.parameters
     k = np.unique(np.linspace(0, points.sizes["point"] - 1, POINTS).round().astype(int))
     kept = {name: points[name].values[k].tolist() for name in (p, q, "virtual", "unstable")}
+    kept["v"] = _speeds(points)[k].tolist()
     return {
         "type": curve.type,
         "closed": curve.closed,
@@ -65,18 +67,29 @@ def compared(record: dict, result: dict, curves) -> list[str]:
     return lines + _passed(record["names"], sizes, result["points"], curves[0])
 
 
+def _speeds(points) -> np.ndarray:
+    """(points, impacts) velocities of the impacts by size, for they may be counted from any one; none at an onset of
+    sticking, where points have different numbers of them."""
+    v = np.sort(points.impact_v.values, axis=1)
+    return v if np.isfinite(v).all() else v[:, :0]
+
+
 def _passed(names, sizes, stored: dict, curve) -> list[str]:
-    a = np.column_stack([np.array(stored[name]) / sizes[name] for name in names])
-    b = np.column_stack([curve.points[name].values / sizes[name] for name in names])
+    v, now = np.array(stored["v"]), _speeds(curve.points)
+    if v.shape[1] != now.shape[1]:
+        return [f"{v.shape[1]} impacts, now {now.shape[1]}"]
+    size = max(np.abs(v).max(initial=0.0), LEAST_SPEED)
+    a = np.column_stack([*(np.array(stored[name]) / sizes[name] for name in names), v / size])
+    b = np.column_stack([*(curve.points[name].values / sizes[name] for name in names), now / size])
     if curve.closed:  # from where the record begins, in its direction
         first = int(np.argmin(np.linalg.norm(b - a[0], axis=1)))
         ring = np.roll(b[:-1], -first, axis=0)
         return min((in_order(a, np.vstack([one, one])) for one in (ring, ring[::-1])), key=len)
-    lines = in_order(a, b)
-    for k, point in enumerate(a):  # where both neighbours agree
-        two = np.argsort(np.linalg.norm(b - point, axis=1))[:2]
+    lines, steps = passed(a, b)
+    for k, i in enumerate(steps):  # away from where they change: neighbours agree, and so do both ends of the step
         for name in ("virtual", "unstable"):
-            values = set(curve.points[name].values[two].tolist())
-            if len(values) == 1 and values != {stored[name][k]}:
+            values = set(curve.points[name].values[i : i + 2].tolist())
+            sure = len(values) == 1 and len(set(stored[name][max(k - 1, 0) : k + 2])) == 1
+            if i >= 0 and sure and values != {stored[name][k]}:
                 lines.append(f"point {k}: {name} {stored[name][k]}, now {values.pop()}")
     return lines

@@ -45,11 +45,16 @@ def _in_order(values, a, others, b) -> list[str]:
 
 def in_order(a: np.ndarray, b: np.ndarray) -> list[str]:
     """Points a (m, d) that lie aside of the path b (n, d), or that it passes in another order."""
+    return passed(a, b)[0]
+
+
+def passed(a: np.ndarray, b: np.ndarray) -> tuple[list[str], list[int]]:
+    """What `in_order` says, and for each point of a the step of b which passes it, -1 where none does."""
     if len(b) < 2:
-        return ["one point only"] if len(a) else []
+        return (["one point only"] if len(a) else []), [-1] * len(a)
     begin, step = b[:-1], np.diff(b, axis=0)
     length = np.maximum(np.linalg.norm(step, axis=1), 1e-150)
-    lines, last = [], 0.0
+    lines, last, steps = [], 0.0, [-1] * len(a)
     for k, point in enumerate(a):
         share = np.clip(np.sum((point - begin) * step, axis=1) / length**2, 0, 1)
         away = np.linalg.norm(begin + share[:, None] * step - point, axis=1)
@@ -63,5 +68,5 @@ def in_order(a: np.ndarray, b: np.ndarray) -> list[str]:
             lines.append(f"point {k} of the record is passed earlier than the one before")
             continue
         best = near[places >= last - 1e-6][np.argmin(away[near][places >= last - 1e-6])]
-        last = float(best + share[best])
-    return lines
+        last, steps[k] = float(best + share[best]), int(best)
+    return lines, steps
