@@ -17,7 +17,7 @@ def objects(kinds):
     branch = branches[0].branch
     pitchfork = next(one for one in branch.special if one.type == "pitchfork")
     curve = vs.bifurcation_curve(pitchfork, ("b", "omega"), ((0.36, 0.39), (0.629, 0.631)))
-    windows = vs.windows(kinds / "sweep.h5")
+    windows = vs.windows(kinds("sweep"))
     return {
         "system": SYSTEM,
         "model": CHAIN,
@@ -37,7 +37,7 @@ def objects(kinds):
         "curve point": curve.begins,
         "windows": windows,
         "window": windows[0],
-        "scene": vs.load_scene(kinds / "sweep.yaml"),
+        "scene": vs.load_scene(kinds.folder / "sweep.yaml"),
     }
 
 

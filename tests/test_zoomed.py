@@ -184,6 +184,9 @@ class Branches(dict):
         super().__init__(arrays)
         self.arrays, self.kinds = arrays, kinds
 
+    def unit(self, _):
+        return ""
+
     def types(self):
         return list(self.kinds)
 
