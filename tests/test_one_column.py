@@ -40,7 +40,7 @@ def texts_of(fig):
 
 @pytest.mark.parametrize("name", [name for name in KINDS if name != "windows"])
 def test_all_type_is_read_and_on_the_page(kinds, name):
-    for fig in pictures(kinds / f"{name}.h5", name):
+    for fig in pictures(kinds(name), name):
         assert fig.get_figwidth() == pytest.approx(WIDTH / MM)
         found = texts_of(fig)
         assert len(found) > 5 and {text.get_fontsize() for text, _ in found} == {8.0}
@@ -53,27 +53,27 @@ def test_all_type_is_read_and_on_the_page(kinds, name):
 
 
 def test_a_strip_of_windows(kinds):
-    fig = figure(kinds / "sweep.h5", None, Look(width=WIDTH, windows=kinds / "windows.h5"))
+    fig = figure(kinds("sweep"), None, Look(width=WIDTH, windows=kinds("windows")))
     assert {text.get_fontsize() for text, _ in texts_of(fig)} == {8.0}
 
 
 def test_one_option_of_python_and_the_command_line(kinds, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert vs.plot(kinds / "sweep.h5", width=85).get_figwidth() == pytest.approx(85 / MM)
-    assert vs.plot(kinds / "curves.h5", width=120.0).get_figwidth() == pytest.approx(120 / MM)
-    assert main(["plot", str(kinds / "orbit.h5"), "--width", "85", "--dpi", "100"]) == 0
+    assert vs.plot(kinds("sweep"), width=85).get_figwidth() == pytest.approx(85 / MM)
+    assert vs.plot(kinds("curves"), width=120.0).get_figwidth() == pytest.approx(120 / MM)
+    assert main(["plot", str(kinds("orbit")), "--width", "85", "--dpi", "100"]) == 0
     content = (tmp_path / "orbit.png").read_bytes()
     assert int.from_bytes(content[16:20]) == round(85 / MM * 100 - 0.5)
     for words, told in ((["--width", "x"], "'x' is no number"), (["--width", "3"], "width: 3.0 is not allowed")):
-        assert main(["plot", str(kinds / "orbit.h5"), *words]) == 2
+        assert main(["plot", str(kinds("orbit")), *words]) == 2
         assert told in capsys.readouterr().err
     with pytest.raises(vs.PlotError, match="width and size exclude each other"):
         Look(width=85, size=(3, 3))
     for wrong in ("85", [85], float("nan"), None.__class__):
         with pytest.raises(vs.PlotError, match="width: "):
-            vs.plot(kinds / "orbit.h5", width=wrong)
+            vs.plot(kinds("orbit"), width=wrong)
 
 
 def test_wide_pictures_stay_as_they_are(kinds):
-    fig = vs.plot(kinds / "sweep.h5")
+    fig = vs.plot(kinds("sweep"))
     assert fig.get_figwidth() == 7.0 and {text.get_fontsize() for text, _ in texts_of(fig)} != {8.0}
