@@ -245,3 +245,26 @@ def test_a_graze_does_not_depend_on_the_start(loaded):
     values, errors = (np.array(one) for one in zip(*((end.parameters["b"], end.error) for end in ends), strict=True))
     assert len(ends) > 6
     assert np.ptp(values) < 2 * errors.min()
+
+
+@pytest.mark.slow
+def test_a_pair_that_goes_out_and_comes_back_within_a_step():
+    """A chain of four; another pair is as near to the circle, and all the tests have one sign at both ends of the step.
+    From each point of the branch."""
+    chain = vs.Oscillator.named(
+        "chain", stop_at=1, omega=1.694763070173401, R=0.9302849928693322, b=0.15423415238272734,
+        m=[2.1704838438148224, 2.016397624402721, 2.8848289012369, 2.142958785062927],
+        k=[2.443472720324935, 1.118099785501611, 1.9695940019590559, 2.558174347419574, 0.30503480295263985],
+        c=[0.14450005552956577, 0.061569680138501726, 0.06696202112173676, 0.030983872336523267, 0.04770137064485006],
+        force=[-1.0547386729927153, -0.4508916632719665, 0.625012635140836, -2.0385347528666182],
+    )  # fmt: skip
+    orbit = vs.periodic_orbit(chain, itinerary="LLRR")
+    case = Case(orbit, "b", (0.1111128572130296, 1.2222414293433257))
+    branch = follow(case)
+    kinds = [kind for kind, _ in types(branch)]
+    assert kinds.count("neimark_sacker") == 5
+    for k in range(2, len(branch.points.point) - 2, 2):
+        orbit = rows(branch, case, k)
+        if orbit.ok:
+            found = [kind for kind, _ in types(follow(case._replace(orbit=orbit)))]
+            assert found in (kinds, kinds[::-1]), k

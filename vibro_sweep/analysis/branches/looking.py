@@ -10,6 +10,7 @@ from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_tor
 from vibro_sweep.analysis.branches.events import ON_CIRCLE, is_outside, torus_test
 from vibro_sweep.analysis.branches.response import touching
 from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.engine.impulses.checks import BENT, FARTHER
 
 SHARES = (0.5, 0.4, 0.6, 0.3)  # of the way to the next point, where the first lies on a bifurcation by chance
 APART = 1e-9  # share of a step: bifurcations that are nearer to each other are not separated
@@ -134,6 +135,22 @@ def touches(walk: Walk, before: Point, a: Point, b: Point) -> bool:
     return any(extremum(*lengths, *(test(point) for point in (before, a, b))) is not None for test in tests)
 
 
+def bend(before: Point, a: Point, b: Point) -> bool:
+    """Whether steps are too long to tell if a pair of multipliers crosses the unit circle twice from a to b (as the
+    compiled `bend` of engine/impulses/checks.py)."""
+    past, here, there = (point.solution.multipliers for point in (before, a, b))
+    here = here[here.imag > 0]
+    if not len(here) or not len(past):
+        return False
+    past, there = (mu[np.abs(mu - here[:, None]).argmin(axis=1)] for mu in (past, there))
+    pairs = (past.imag > 0) & (there.imag > 0)
+    x, y, z = ((size - 1) / (size + 1) for size in (np.abs(mu[pairs]) ** 2 for mu in (past, here, there)))
+    one, other = (float((q.x - p.x) @ p.tangent) for p, q in ((before, a), (a, b)))
+    side = np.sign(y)
+    away = side * (z - y - (y - x) * other / one)  # from where it was heading
+    return bool(np.any((side * z > 0) & (away > BENT * np.minimum(side * y, side * z))))
+
+
 def _least(a: Point, b: Point, i: int) -> float:
     """Where between two points, as a share, the cubic of one unknown has its extremum; its slopes differ in sign."""
     length = float(np.linalg.norm(b.x - a.x))
@@ -169,15 +186,15 @@ def _beyond_extremum(walk: Walk, test: Test, a: Point, b: Point, triple) -> Poin
 
 
 def extremum(before: float, behind: float, x: float, y: float, z: float) -> float | None:
-    """Where the parabola through three values comes nearer to zero by a quarter than the middle one, from there; None
-    where it does not (`dips` of engine/impulses/checks.py)."""
+    """Where the parabola through three values is nearest to zero, from the middle one; None where it comes no nearer by
+    a quarter, and the middle one is not much nearer than the others (`dips` of engine/impulses/checks.py)."""
     if y < 0:
         x, y, z = -x, -y, -z
     if not (0 < y <= x and y <= z and math.isfinite(x + z) and before > 0 < behind):
         return None
     left, right = (y - x) / before, (z - y) / behind
     slope, curve = (left * behind + right * before) / (before + behind), (right - left) / (before + behind)
-    return -slope / (2 * curve) if slope * slope > curve * y else None
+    return -slope / (2 * curve) if slope * slope > curve * y or min(x, z) > FARTHER * y else None
 
 
 def _apart(at: float, seen: tuple[float, float, float]) -> float:

@@ -133,6 +133,7 @@ class Track:
                 numbers[i] *= -1
         self.work.past[:] = past
         self.work.past[places.LENGTH] = numbers[places.LENGTH]
+        self.work.past_multipliers[:] = self.a.multipliers
         for here, there in zip(self.b, self.a, strict=True):
             there[...] = here
 

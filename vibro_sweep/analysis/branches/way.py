@@ -11,7 +11,7 @@ from vibro_sweep.analysis.branches.births import criticality, doubled
 from vibro_sweep.analysis.branches.crossings import is_torus
 from vibro_sweep.analysis.branches.events import bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.locating import Event
-from vibro_sweep.analysis.branches.looking import hidden_between, touches
+from vibro_sweep.analysis.branches.looking import bend, hidden_between, touches
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.response import longest_step
@@ -109,7 +109,7 @@ class Way:
                 length = min(length, longest_step(a))
             b = self.walk.step(a, length)
             turn = math.acos(min(1.0, a.tangent @ b.tangent)) if b is not None else math.inf
-            if turn > STRAIGHT:
+            if turn > STRAIGHT or (before and length > branch.COARSE * LONGEST_STEP and bend(before, a, b)):
                 length /= 2
                 continue
             if before is not None and touches(self.walk, before, a, b) and self._again(before, a, b):

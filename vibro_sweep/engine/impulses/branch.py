@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.impulses.blocks import eliminate, finish
-from vibro_sweep.engine.impulses.checks import certify, comes_back, happens, test, touches
+from vibro_sweep.engine.impulses.checks import bend, certify, comes_back, happens, test, touches
 from vibro_sweep.engine.impulses.medium import OMEGA, PERIOD, flight_matrix, move_to, set_phase
 from vibro_sweep.engine.impulses.places import DEFECT_HERE, LENGTH, ON_CIRCLE, REFLECTION, TANGENT, P
 from vibro_sweep.engine.simd.jit import entry, jit
@@ -24,6 +24,7 @@ CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
 DEFECT = 1e-10  # largest jump of the motion between its flights, relative to the gap
 PASSED = 1e-13  # distance beyond a stop, relative to the gap, which rounding does not explain
 BEYOND = 1.5  # times the reach of the medium, up to where its polynomials hold
+COARSE = 0.03  # of the longest step: to that they are shortened where multipliers bend
 SHIFTED = 0.8  # of a step, where its end lies on a bifurcation by chance
 MOST_SHIFTS = 5  # of one step
 EARLY = 10  # points before which a branch is not yet taken to be closed
@@ -37,6 +38,8 @@ def copy_place(a, b):
         b.tangent_t[i], b.tangent_jump[i] = a.tangent_t[i], a.tangent_jump[i]
         for j in range(a.z.shape[1]):
             b.z[i, j], b.tangent_z[i, j] = a.z[i, j], a.tangent_z[i, j]
+    for i in range(len(a.multipliers)):
+        b.multipliers[i, 0], b.multipliers[i, 1] = a.multipliers[i, 0], a.multipliers[i, 1]
     for i in range(len(a.numbers)):
         b.numbers[i] = a.numbers[i]
 
@@ -215,6 +218,9 @@ def walk(media, sides, sigma, steps, size, origin, passed, first, a, b, record, 
             shifts += 1
             continue
         shifts = 0
+        if length > COARSE * steps.longest and bend(w.past_multipliers, a, b, w.past[LENGTH], length):
+            length *= 0.5
+            continue
         if happens(sides, steps, a, b, length, PASSED * size):
             return EVENT, count, corrections
         if touches(w.past, a, b, length):
@@ -228,6 +234,8 @@ def walk(media, sides, sigma, steps, size, origin, passed, first, a, b, record, 
         for i in range(len(w.past)):
             w.past[i] = a.numbers[i]
         w.past[LENGTH] = b.numbers[LENGTH]
+        for i in range(n):
+            w.past_multipliers[i, 0], w.past_multipliers[i, 1] = a.multipliers[i, 0], a.multipliers[i, 1]
         copy_place(b, a)
         a.numbers[LENGTH] = length
     return FULL, count, corrections

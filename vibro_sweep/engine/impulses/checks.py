@@ -30,6 +30,8 @@ from vibro_sweep.engine.simd.memory import put
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
 ON_SQUARE = 1e-6  # of |mu|^2: a multiplier that near to the unit circle is on neither side
+BENT = 1.0  # times the distance of multipliers from the unit circle
+FARTHER = 2.0  # times: a number that is so much nearer to zero than at the points beside changes too fast between them
 ZERO = 1e-12  # of |1 + mu|^2 and |1 - mu_i mu_j|^2: what no point of a branch comes to by chance
 FAR_OUTSIDE = 0.5  # of |mu|^2 - 1: multipliers from there on do not reach the circle within a step and go back
 
@@ -97,6 +99,8 @@ def test(f, sides, sigma, place, room, strikes):
         place.releases[i] = -sides[i] * after if gain == 1.0 else np.inf
     x = place.numbers
     x[TORUS], x[ABOVE], x[ON_CIRCLE], x[FLIP], x[CROSSING] = 1.0, -1.0, 0.0, 1.0, 1.0
+    for i in range(n):
+        place.multipliers[i, 0] = place.multipliers[i, 1] = np.nan
     # multipliers: eigenvalues of -sigma ahead^-1 behind
     a = room.pair
     for r in range(n):
@@ -112,6 +116,7 @@ def test(f, sides, sigma, place, room, strikes):
     above, below, pairs, on, away, squares = 0.0, 0.0, 0.0, 0.0, np.inf, 1.0
     for i in range(n):
         re, im = room.re[i], room.im[i]
+        place.multipliers[i, 0], place.multipliers[i, 1] = re, im
         size = re * re + im * im
         squares *= 1.0 + size
         if abs(size - 1.0) < ON_SQUARE:
@@ -189,14 +194,53 @@ def counts_differ(x, y):
 @jit
 def dips(x, y, z, before, behind):
     """Whether a number with these values at three points, at the distances `before` and `behind` from the middle one,
-    may vanish twice near the middle one: the parabola has an extremum nearer to zero by a quarter or more."""
+    may vanish twice near the middle one: the parabola has an extremum nearer to zero by a quarter or more, or steps are
+    too long for it to tell: the outer points are farther from zero by FARTHER."""
     if y < 0.0:
         x, y, z = -x, -y, -z
     if not (y <= x and y <= z and x + z < np.inf):
         return False
     left, right = (y - x) / before, (z - y) / behind
     slope, curve = left * behind + right * before, right - left  # both times the distance of the outer points
-    return slope * slope > curve * y * (before + behind)
+    return slope * slope > curve * y * (before + behind) or min(x, z) > FARTHER * y
+
+
+@jit
+def beside_circle(mu, i):
+    """(|mu|^2 - 1)/(|mu|^2 + 1): zero on the unit circle, finite at poles."""
+    size = mu[i, 0] ** 2 + mu[i, 1] ** 2
+    return (size - 1.0) / (size + 1.0)
+
+
+@jit
+def most_alike(mu, re, im):
+    """The index of the multiplier that is nearest to another one."""
+    least, found = np.inf, 0
+    for i in range(len(mu)):
+        away = (mu[i, 0] - re) ** 2 + (mu[i, 1] - im) ** 2
+        if away < least:
+            least, found = away, i
+    return found
+
+
+@jit
+def bend(past, a, b, before, length):
+    """Whether steps are too long to tell if a pair of multipliers crosses the unit circle twice between two points: the
+    second lies farther from where it was heading at the first, on the outside of a bend, than from the circle.
+
+    past : multipliers of the point before a, at the distance `before`, or 0.0 where it is not known
+    """
+    if before == 0.0:
+        return False
+    for i in range(len(past)):
+        re, im = a.multipliers[i, 0], a.multipliers[i, 1]
+        j, k = most_alike(past, re, im), most_alike(b.multipliers, re, im)
+        if im > 0.0 and past[j, 1] > 0.0 and b.multipliers[k, 1] > 0.0:
+            x, y, z = beside_circle(past, j), beside_circle(a.multipliers, i), beside_circle(b.multipliers, k)
+            side = 1.0 if y > 0.0 else -1.0
+            if side * z > 0.0 and side * (z - y - (y - x) * length / before) > BENT * min(side * y, side * z):
+                return True
+    return False
 
 
 @jit

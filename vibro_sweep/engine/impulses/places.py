@@ -17,6 +17,7 @@ class Place(NamedTuple):
     tangent_jump: np.ndarray
     tangent_z: np.ndarray  # (K, n)
     releases: np.ndarray  # (K,): acceleration away from the stop after an impact with R = 0, else inf
+    multipliers: np.ndarray  # (n, 2): real and imaginary parts; NaN where they are not known
     numbers: np.ndarray  # (NUMBERS,): see below
 
 
@@ -63,10 +64,11 @@ class Work(NamedTuple):
     row_t: np.ndarray  # (K,)
     row_jump: np.ndarray  # (K,)
     past: np.ndarray  # (NUMBERS,) of the point before a; LENGTH: from there to a, 0 where it is not known
+    past_multipliers: np.ndarray  # (n, 2)
 
 
 def new_place(K: int, n: int) -> Place:
-    return Place(*map(np.zeros, [K, K, (K, n), K, K, (K, n), K, NUMBERS]))
+    return Place(*map(np.zeros, [K, K, (K, n), K, K, (K, n), K, (n, 2), NUMBERS]))
 
 
 def new_record(most: int, K: int, n: int) -> Record:
@@ -75,4 +77,4 @@ def new_record(most: int, K: int, n: int) -> Record:
 
 def new_work(K: int, n: int) -> Work:
     rooms = np.zeros(1, room_of(n // 2)), np.zeros(K, strike_of(n // 2))
-    return Work(*rooms, *map(np.zeros, [(2, K), (2, K), (2, K, n), 2, K, K, NUMBERS]))
+    return Work(*rooms, *map(np.zeros, [(2, K), (2, K), (2, K, n), 2, K, K, NUMBERS, (n, 2)]))
