@@ -173,13 +173,13 @@ def test_windows_of_long_orbits_are_those_of_the_dense_equations(case, monkeypat
     assert np.array_equal(flat["impact_side"], dense["impact_side"])
     apart = np.abs(flat["special_value"] - dense["special_value"])
     assert np.all(apart <= flat["special_error"] + dense["special_error"])
-    assert np.all(flat["special_error"] < 1e-11)
+    assert np.all(flat["special_error"] < 2e-11)
 
 
 @pytest.mark.slow
 def test_newton_stands_still_at_what_rounding_leaves_of_an_orbit_beside_a_fold():
-    """1e-13 from it, 474 impacts with a free mass: steps came down to 2e-8 and were no solution; beyond it is none."""
-    ball = dict(mass_ratio=0.1742756546125067, zeta=0.04364419731640718, F=0.9339197298888937, tau=1.278286292243059)
+    """5e-14 from it, 711 impacts with a free mass: steps came down to 2e-8 and were no solution; beyond it is none."""
+    ball = dict(mass_ratio=0.1742756546125067, zeta=0.04364419723740718, F=0.9339197298888937, tau=1.278286292243059)
     ball |= dict(omega=1.973006977361091, R=0.9134945151458826, b=0.32)
     system = vs.Oscillator.named("ball_in_cavity", **ball)
     branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="LRR", periods=1), "b", (0.3, 0.36))
@@ -195,10 +195,10 @@ def test_newton_stands_still_at_what_rounding_leaves_of_an_orbit_beside_a_fold()
     near, far = (beside(side * distance, 1e-3) for distance in (1e-8, 4e-8))
     if (far.u - near.u) @ critical < 0:
         critical = -critical
-    one = beside(side * 1e-13, (near.u - there.u) @ critical * 10**-2.5)
-    shifts = np.repeat(np.arange(158) * one.equations.P, one.K)
-    u = np.concatenate([np.tile(one.times, 158) + shifts, np.tile(one.jumps, 158), one.u[-1:]])
-    many = replace(one, halves=158 * one.halves, sides=one.sides * 158, u=u)
+    one = beside(side * 5e-14, (near.u - there.u) @ critical * 5e-6**0.5)
+    shifts = np.repeat(np.arange(237) * one.equations.P, one.K)
+    u = np.concatenate([np.tile(one.times, 237) + shifts, np.tile(one.jumps, 237), one.u[-1:]])
+    many = replace(one, halves=237 * one.halves, sides=one.sides * 237, u=u)
     found = many.corrected()
     assert 1e-9 < found.change < 1e-7 and np.abs(found.u - many.u).max() < 1e-6
     assert replace(many, family=family_of(system.replace(b=end - side * 1e-9))).corrected() is None
