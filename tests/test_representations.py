@@ -1,12 +1,20 @@
 """What a prompt and a notebook show of objects: ten lines at most, with what matters, and the names of all numbers."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import vibro_sweep as vs
 
+ROOT = Path(__file__).parents[1]
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=0.4)
 CHAIN = vs.Oscillator.named("chain", m=[1] * 6, k=[1] * 7, c=[0.1] * 7, force=[1, 0, 0, 0, 0, 0], omega=1, R=0.5, b=0.3)
+SIXTEEN = np.random.default_rng(16).normal(size=(16, 16))
+LARGE = vs.Oscillator(
+    np.eye(16) + SIXTEEN @ SIXTEEN.T, SIXTEEN.T @ SIXTEEN, modal_damping=[0.01] * 16, force=SIXTEEN[0],
+    along=SIXTEEN[1], omega=1, R=0.5, b=0.3, units="SI",
+)  # fmt: skip
 LINES, LETTERS = 10, 900
 
 
@@ -21,6 +29,11 @@ def objects(kinds):
     return {
         "system": SYSTEM,
         "model": CHAIN,
+        "sixteen masses": LARGE,
+        "sixteen in a chain": vs.Oscillator.named(
+            "chain", m=SIXTEEN[2] ** 2, k=[0.1] * 17, omega=1, R=0.5, b=0.3, force=SIXTEEN[3]
+        ),
+        "motion of sixteen": vs.grazing(LARGE),
         "orbit": vs.simulate(SYSTEM, np.zeros(4), 20),
         "exponents": vs.lyapunov(SYSTEM, np.zeros(4), 20, 20),
         "grazing": vs.grazing(SYSTEM),
@@ -77,6 +90,22 @@ def test_a_long_list_of_windows(objects):
     many.parameter, many.unseen = windows.parameter, windows.unseen
     lines = repr(many).splitlines()
     assert len(lines) == LINES and lines[-1] == "  and 52 more>"
+
+
+def test_of_many_masses_the_sizes():
+    text = repr(LARGE)
+    assert text.startswith("<linear: M=(16 x 16), K=(16 x 16), along=[") and "units='SI'" in text
+    assert "modal_damping=[0.01] * 16, " in text and ", ... of 16], force_cos=[0.0] * 16, " in text
+    few = vs.Oscillator(M=np.eye(2), K=np.eye(2), force=[1, 0], along=[1, 0], omega=1, R=0.5, b=0.3)
+    assert eval(repr(few), {"Oscillator": vs.Oscillator}) == few
+
+
+def test_what_scenes_say_of_them():
+    scene = vs.load_scene(ROOT / "configs" / "quickstart.yaml")
+    told = str(scene.replace(system=LARGE)).splitlines()[1]
+    assert len(told) <= LETTERS and "M = (16 x 16)" in told and "force1 .. force16 = [" in told
+    assert "force_cos1 .. force_cos16 = [0.0] * 16" in told
+    assert "constant6 = 0.0" in str(scene.replace(system=CHAIN, sweep={"k1": [1, 2]}))
 
 
 def test_names_of_a_model_are_completed():

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from vibro_sweep.model import told
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models import MODELS, model_named
@@ -87,8 +88,9 @@ class Oscillator(AnyOscillator):
         return hash((self.model.name, tuple(self.given.values())))
 
     def __repr__(self) -> str:
-        numbers = ", ".join(f"{name}={_plain(value)!r}" for name, value in self.given.items() if value is not None)
-        return f"Oscillator({numbers})" if self.model.name == "linear" else f"<{self.model.name}: {numbers}>"
+        arguments, complete = told.arguments(self.given)
+        by_call = complete and self.model.name == "linear"
+        return f"Oscillator({arguments})" if by_call else f"<{self.model.name}: {arguments}>"
 
     @cached_property
     def described(self) -> dict[str, Parameter]:
@@ -187,7 +189,7 @@ def checked(model: Model, given: Mapping[str, Any]) -> dict[str, Any]:
     masses = model.masses(result)
     if not 1 <= masses <= MOST_MASSES:
         name = "M" if "M" in result else lists[0].name
-        raise ParameterError(name, _plain(result[name]), f"of 1 to {MOST_MASSES} masses")
+        raise ParameterError(name, told.plain(result[name]), f"of 1 to {MOST_MASSES} masses")
     model.check(result)
     for one in model.numbers:
         if not one.each:
@@ -250,7 +252,3 @@ def _array(one: Option, value: Any) -> tuple:
         raise ParameterError(one.name, value, allowed)
     numbers = array.tolist()
     return tuple(tuple(row) for row in numbers) if one.kind == "matrix" else tuple(numbers)
-
-
-def _plain(value):
-    return [_plain(one) for one in value] if isinstance(value, (tuple, list)) else value

@@ -6,6 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from vibro_sweep.model import told
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.parameters import ParameterError
 
@@ -58,7 +59,7 @@ class Continuation:
     def __str__(self) -> str:
         """What is followed, in a few lines."""
         numbers = {name: value for name, value in self.system.numbers.items() if value is not None}
-        system = ", ".join(f"{name} = {value}" for name, value in numbers.items() if name not in self.along)
+        system = told.numbers({name: value for name, value in numbers.items() if name not in self.along})
         ranges = ", ".join(f"{key} = {lo:g} .. {hi:g}" for key, (lo, hi) in self.along.items())
         begin = "the free motion" if self.origin == "free" else f"{self.origin} {self.begin}"
         begin += f", special point {self.special}" if self.special is not None else ""

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import ValidationError
 
+from vibro_sweep.model import told
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import BUILD, Built
 from vibro_sweep.model.grid import digest, grid
@@ -142,8 +143,8 @@ class Scene:
         known = {
             name: value for name, value in self.system.numbers.items() if value not in (None, _default(self, name))
         }
-        system = ", ".join(f"{name} = {value}" for name, value in known.items() if name not in self.sweep)
-        options = ", ".join(f"{name} = {value}" for name, value in self.system.options.items() if value is not None)
+        known |= {name: value for name, value in self.system.options.items() if value is not None}
+        system = told.numbers({name: value for name, value in known.items() if name not in self.sweep})
         kind = "" if self.system.model.name == DEFAULT else f"{self.system.model.name}: "
         axes = [f"{key} = {v[0]:g} .. {v[-1]:g} ({len(v):,} values)" for key, v in self.sweep.items()]
         state = dict(zip(start(self.system.masses), self.start.state, strict=self.start.kind != "random"))
@@ -158,7 +159,7 @@ class Scene:
         section = "t = 0 mod T" if self.section.kind == "phase" else f"impacts on the {self.section.stop} stop"
         lines = [
             " x ".join(axes) or "one point",
-            f"  system    {kind}{', '.join(filter(None, [system, options]))}",
+            f"  system    {kind}{system}",
             f"  orbits    {starts[self.start.kind]}; {self.transient:,} + {self.record:,} forcing periods",
             f"  section   {section}",
             f"  observe   {', '.join(sorted(self.observe)) or 'nothing'}",

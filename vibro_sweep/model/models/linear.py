@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from vibro_sweep.model import told
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import CONTACT, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter, ParameterError
@@ -52,25 +53,25 @@ def _check(given) -> None:
     for name, size in sizes.items():
         if size != masses:
             what = f"a matrix of {masses} x {masses} numbers" if name != "along" else f"a list of {masses} numbers"
-            raise ParameterError(name, _plain(given[name]), f"{what}, as there are {masses} masses in M")
+            raise ParameterError(name, told.plain(given[name]), f"{what}, as there are {masses} masses in M")
         if name != "along":
             _check_symmetric(name, np.array(given[name]))
     if np.linalg.eigvalsh(given["M"]).min() <= 0:
-        raise ParameterError("M", _plain(given["M"]), "positive definite: every motion must have kinetic energy")
+        raise ParameterError("M", told.plain(given["M"]), "positive definite: every motion must have kinetic energy")
     for name in ("K", "C"):
         if given[name] is not None:
             values = np.linalg.eigvalsh(given[name])
             if values.min() < -ROUNDING * np.abs(values).max():
                 raise ParameterError(
-                    name, _plain(given[name]), "positive semidefinite: no motion may gain energy by it"
+                    name, told.plain(given[name]), "positive semidefinite: no motion may gain energy by it"
                 )
     if not np.any(given["along"]):
-        raise ParameterError("along", _plain(given["along"]), "other than zero: it is n of the gap n . x")
+        raise ParameterError("along", told.plain(given["along"]), "other than zero: it is n of the gap n . x")
     if not SMALLEST < np.abs(given["along"]).max() < 1 / SMALLEST:  # its square counts
-        raise ParameterError("along", _plain(given["along"]), f"of a size from {SMALLEST:g} to {1 / SMALLEST:g}")
+        raise ParameterError("along", told.plain(given["along"]), f"of a size from {SMALLEST:g} to {1 / SMALLEST:g}")
     several = [name for name in DAMPING if given[name] is not None]
     if len(several) > 1:
-        raise ParameterError(several[1], _plain(given[several[1]]), f"left out where {several[0]} is given")
+        raise ParameterError(several[1], told.plain(given[several[1]]), f"left out where {several[0]} is given")
 
 
 def _check_symmetric(name: str, matrix: np.ndarray) -> None:
@@ -89,10 +90,6 @@ def _depending(given) -> dict[str, str]:
         force = "1"  # CF has whole powers only
     forces = {f"{name}{i}": force for name in ("force", "force_cos") for i in range(1, len(given["M"]) + 1)}
     return forces | {"rayleigh1": "s-1", "rayleigh2": "s"}
-
-
-def _plain(value):
-    return [_plain(one) for one in value] if isinstance(value, tuple) else value
 
 
 def _list(name: str, symbol: str, label: str, text: str, **more) -> Parameter:

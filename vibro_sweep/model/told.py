@@ -1,0 +1,49 @@
+"""An oscillator in words: all its numbers, or where it has many masses what fits in a few lines."""
+
+from collections.abc import Mapping
+
+LONGEST = 600  # letters of what is told in full
+FEW = 3  # entries of a list that are told otherwise
+
+
+def arguments(given: Mapping[str, object]) -> tuple[str, bool]:
+    """As they are given in Python, and whether these are all of them."""
+    known = {name: value for name, value in given.items() if value is not None}
+    full = ", ".join(f"{name}={plain(value)!r}" for name, value in known.items())
+    if len(full) <= LONGEST:
+        return full, True
+    return ", ".join(f"{name}={_brief(value)}" for name, value in known.items()), False
+
+
+def numbers(known: Mapping[str, object]) -> str:
+    """Numbers by name, those of lists one by one: m1, m2, ..., and options."""
+    full = ", ".join(f"{name} = {value}" for name, value in known.items())
+    if len(full) <= LONGEST:
+        return full
+    lists: dict[str, dict[str, object]] = {}
+    for name, value in known.items():
+        lists.setdefault(name.rstrip("0123456789"), {})[name] = value
+    return ", ".join(_entries(entries) for entries in lists.values())
+
+
+def _entries(entries: dict[str, object]) -> str:
+    if len(entries) <= FEW:
+        return ", ".join(f"{name} = {_brief(value, str)}" for name, value in entries.items())
+    first, *_, last = entries
+    return f"{first} .. {last} = {_brief(tuple(entries.values()))}"
+
+
+def _brief(value: object, text=repr) -> str:
+    """Of a matrix its size, of a list of many numbers the first ones."""
+    if not isinstance(value, tuple) or len(value) <= FEW:
+        return text(plain(value))
+    if isinstance(value[0], tuple):
+        return f"({len(value)} x {len(value)})"
+    if len({*value}) == 1:
+        return f"[{value[0]!r}] * {len(value)}"
+    return f"[{', '.join(map(repr, value[:FEW]))}, ... of {len(value)}]"
+
+
+def plain(value: object) -> object:
+    """As it is given: lists in place of tuples, but of those with a text of their own."""
+    return [plain(one) for one in value] if type(value) in (tuple, list) else value
