@@ -221,6 +221,7 @@ def inside(argument: str, one: Any) -> list[Any]:
         "M": [[[one, 0], [0, 1]], [[1, 0], one]],
         "force": [[one, 1]],
         "along": [(1, one)],
+        "units": [(1, one, 2.0)],
     }
     return found.get(argument, [])
 
