@@ -6,6 +6,7 @@ A unit is a text as CF has it, "m s-1". Without a system's `units` its numbers a
 import math
 import re
 from collections import Counter
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 from vibro_sweep.model.real import array_of
@@ -13,7 +14,7 @@ from vibro_sweep.model.real import array_of
 NONE = "1"
 _OF = {"N": {"kg": 1, "m": 1, "s": -2}, "W": {"kg": 1, "m": 2, "s": -3}}
 _PREFIXED = ("m", "s", "N", "W")
-_PREFIXES = {"n": 1e-9, "\N{MICRO SIGN}": 1e-6, "m": 1e-3}  # for those below 1
+_PREFIXES = {"m": 1e-3, "\N{MICRO SIGN}": 1e-6, "n": 1e-9}  # for those below 1
 _BASE = ("kg", "m", "s")
 _PLAIN = re.compile(r"[\w.+ -]{1,60}")  # of what others write, what can stand in a picture
 
@@ -47,14 +48,22 @@ def units_from(value: Any) -> Units | None:
 
 
 def unit_in(declared: str, units: Units | None) -> str:
-    """The unit of a number of a system with these units, with its factor where that is not 1: "0.005 m"."""
+    """The unit of a number of a system with these units, with its factor where that is not 1: "0.005 m".
+
+    Where the factor is beyond the range of the floats there is none.
+    """
     powers = _powers(declared)
     if not powers.keys() & {*_BASE}:  # of angles, counts and ratios there is one
         return declared
     if units is None:
         return NONE
-    with_factor = math.prod(getattr(units, one) ** powers[one] for one in _BASE)
-    return declared if with_factor == 1 else f"{with_factor!r} {declared}"
+    try:
+        factor = float(math.prod(Fraction(getattr(units, one)) ** powers[one] for one in _BASE))
+    except OverflowError:
+        return NONE
+    if factor == 0:
+        return NONE
+    return declared if factor == 1 else f"{factor!r} {declared}"
 
 
 def _powers(unit: str) -> Counter:
@@ -83,10 +92,17 @@ def shown_unit(unit: str | None) -> str:
     text = "".join([" ".join(above) or "1", *(["/", " ".join(below)] if below else [])])
     if factor is None:
         return f" [{text}]"
+    factor = float(f"{factor:.4g}")  # as it is shown: 9.9999999e-4 m is 1 mm
+    if not above:
+        return f" [{factor:.4g}{text[1:]}]"
     for prefix, least in _PREFIXES.items():
-        if above and above[0] in _PREFIXED and least <= factor < 1000 * least:
-            return f" [{factor / least:.4g} {prefix}{text}]"
-    return f" [{factor:.4g}{text[1:]}]" if not above else f" [{factor:.4g} {text}]"
+        if above[0] in _PREFIXED and least <= factor < 1:
+            return f" [{_times(factor / least)}{prefix}{text}]"
+    return f" [{_times(factor)}{text}]"
+
+
+def _times(factor: float) -> str:
+    return "" if f"{factor:.4g}" == "1" else f"{factor:.4g} "
 
 
 def _number(word: str) -> float | None:
