@@ -8,7 +8,7 @@ from support.pictures import SETTINGS, drawn, exponents, image, write
 
 from vibro_sweep import plotting
 from vibro_sweep.plotting import density, sweeps
-from vibro_sweep.plotting.style import BRANCHES, INK, edges
+from vibro_sweep.plotting.style import BRANCHES, INK, edges, equation
 
 
 def test_bifurcation_shows_every_point_over_the_spectrum(sweep):
@@ -270,3 +270,22 @@ def test_chaos_is_claimed_beyond_two_standard_errors(sweep):
     assert band.max() == pytest.approx(0.004 + 2 * 0.003) and band.min() == pytest.approx(-0.01 - 2 * 0.003)
     named = [text.get_text() for text in ax.figure.legends[0].get_texts()]
     assert named == ["exponent ± 2 standard errors"]
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0395285, "0.0395285"), (1e6, "10^{6}"), (-1e-5, "-10^{-5}"), (2.5e-7, r"2.5 \cdot 10^{-7}"), (0.0, "0")],
+)
+def test_powers_of_ten_in_a_title(value, text):
+    assert equation("b", value) == f"$b = {text}$"
+
+
+def test_lists_of_numbers_in_a_title(tmp_path):
+    """One by one where one of them is swept; else "m = 8" would be the mass of all."""
+    settings = {"type": "chain", "m1": 2.0, "m2": 8.0, "k1": 0.0, "k2": 2000.0, "k3": 1e4, "record": 3}
+    quantities = {"x1": np.zeros((6, 3)), "lyapunov": exponents(6)}
+    whole = write(tmp_path / "b.h5", {"b": np.arange(6.0)}, quantities, settings=settings)
+    swept = write(tmp_path / "m.h5", {"m1": np.arange(1.0, 7.0)}, quantities, settings=settings)
+    whole, swept = (plotting.figure(file).get_suptitle() for file in (whole, swept))
+    assert "$m = 2, 8$, $k = 0, 2000, 10^{4}$" in whole
+    assert "$m_{2} = 8$" in swept and "$m =" not in swept and "$k = 0, 2000, 10^{4}$" in swept

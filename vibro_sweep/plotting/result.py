@@ -16,7 +16,7 @@ from vibro_sweep.model.units import shown_unit
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.source import PlotError, source_of
-from vibro_sweep.plotting.style import axis_name, equation
+from vibro_sweep.plotting.style import axis_name, equation, in_formula
 from vibro_sweep.store.settings import settings_of
 
 LONGEST_LINE = 150  # letters of TeX
@@ -248,16 +248,22 @@ class Result:
     def _numbers(self) -> list[str]:
         """Those of the system as equations; without what has its default, and lists as one."""
         found, lists = [], {}
+        incomplete = {_list_of(key) for key in self.sweep}
         for key, one in OF_A_SYSTEM.items():
-            if key in self.settings and one.each:
-                lists.setdefault(key.rstrip("0123456789"), []).append(self.settings[key])
+            if key in self.settings and one.each and _list_of(key) not in incomplete:
+                lists.setdefault(_list_of(key), []).append(self.settings[key])
             elif key in self.settings and (one.default is None or self.settings[key] != one.default):
                 found.append(equation(key, self.settings[key]))
         for name, values in lists.items():
             if any(value != OF_A_SYSTEM[f"{name}1"].default for value in values):
                 letter = OF_A_SYSTEM[f"{name}1"].symbol.removesuffix("_{1}").removesuffix("{}")
-                found.append(f"${letter} = {', '.join(f'{value:.4g}' for value in values)}$")
+                found.append(f"${letter} = {', '.join(in_formula(value, 4) for value in values)}$")
         return found
+
+
+def _list_of(key: str) -> str:
+    """The name of the list that a number is of."""
+    return key.rstrip("0123456789")
 
 
 def _lines(items: list[str]) -> list[str]:

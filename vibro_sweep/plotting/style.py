@@ -141,7 +141,16 @@ def before_impact(name) -> str:
 
 def equation(key, value) -> str:
     """The value of a number, for a title."""
-    return f"${NUMBERS[key].symbol if key in NUMBERS else key} = {value:.6g}$"
+    return f"${NUMBERS[key].symbol if key in NUMBERS else key} = {in_formula(value)}$"
+
+
+def in_formula(value: float, digits: int = 6) -> str:
+    """A number; with a power of ten in place of Python's e+04."""
+    mantissa, e, exponent = f"{value:.{digits}g}".partition("e")
+    if not e:
+        return mantissa
+    factor = mantissa.removesuffix("1") if mantissa in ("1", "-1") else rf"{mantissa} \cdot "
+    return f"{factor}10^{{{int(exponent)}}}"
 
 
 def marked(colour, marker):
