@@ -10,8 +10,10 @@ import vibro_sweep as vs
 from vibro_sweep import plotting
 from vibro_sweep.cli import main
 from vibro_sweep.model.exponents import sign_of
+from vibro_sweep.plotting import source
 from vibro_sweep.plotting.style import NEUTRAL
 from vibro_sweep.store import describe
+from vibro_sweep.store import opening as opening_of
 
 
 def test_plane_shows_the_start_with_the_largest_exponent(plane):
@@ -130,3 +132,15 @@ def test_planes_relative_to_the_grazing_clearance(tmp_path, monkeypatch, capsys)
     vs.sweep(PAPER, {"b": [3.0, 4.0]}, transient=30, record=10, observe=["section"], output="line.h5").close()
     assert main(["plot", "line.h5", "--relative"]) == 2
     assert "relative: belongs to charts and planes; line.h5 can show bifurcation" in capsys.readouterr().err
+
+
+def test_a_plane_is_opened_twice_and_each_number_read_once(plane, tmp_path, monkeypatch):
+    """To see what the file holds, and to draw it; of the exponents the largest alone. It takes long of 10^6 points."""
+    opened, read = [], []
+    opening, reading = opening_of.checked, source.FileSource.read
+    monkeypatch.setattr(opening_of, "checked", lambda *given: opened.append(given) or opening(*given))
+    monkeypatch.setattr(source.FileSource, "read", lambda self, *given: read.append(given) or reading(self, *given))
+    plotting.plot(plane, tmp_path / "x.png")
+    assert len(opened) == 2
+    assert len(read) == len({*read})
+    assert [given for given in read if given[0] == "lyapunov"] == [("lyapunov", (..., 0))]

@@ -16,12 +16,12 @@ from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.model.pictures import PICTURES
 from vibro_sweep.model.refusals import not_allowed, shown
 from vibro_sweep.plotting import basins, branches, charts, coexistence, convergence, energy, orbits, planes, sweeps
-from vibro_sweep.plotting.flat import drawn_kind
+from vibro_sweep.plotting.flat import drawable
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.pictures import check_output, save
 from vibro_sweep.plotting.result import PlotError, Result
-from vibro_sweep.plotting.source import name_of, readable
+from vibro_sweep.plotting.source import name_of
 
 if TYPE_CHECKING:
     import xarray
@@ -81,8 +81,8 @@ def figure(
     """
     if ax is not None and not isinstance(ax, Axes):
         raise TypeError(not_allowed("ax", ax, "matplotlib axes"))
-    data = readable(data)
-    if (of := drawn_kind(data)) is not None:
+    data, of = drawable(data)
+    if of is not None:
         _check_flat(data, of, kind, look or Look())
         with matplotlib.rc_context((look or Look()).style):
             drawn = (charts.chart if of == CHART else branches.branches)(data, look or Look(), ax)
@@ -107,8 +107,8 @@ def plot(path, output=None, kind: str | None = None, overwrite: bool = False, lo
     if output.suffix.lower() not in SUFFIXES:
         raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
     inputs = [path, *(Path(one) for one in (look.windows, look.over) if one is not None)] if look else [path]
-    data = readable(path)
-    if drawn_kind(data) is not None:
+    data, of = drawable(path)
+    if of is not None:
         check_output(output, overwrite, inputs)
         return [save(figure(data, kind, look), output, overwrite, inputs)]
     with Result(data, look) as result:

@@ -12,7 +12,7 @@ from vibro_sweep.model.units import shown_unit
 from vibro_sweep.plotting.source import PlotError, name_of, readable
 from vibro_sweep.store.attributes import attributes, text, texts
 from vibro_sweep.store.flat_checks import Stored, check
-from vibro_sweep.store.opening import StoreError, is_flat, opened, quantities_of
+from vibro_sweep.store.opening import StoreError, opened, quantities_of
 
 if TYPE_CHECKING:
     import xarray
@@ -26,9 +26,9 @@ class FlatFile:
     """
 
     def __init__(self, given: "str | Path | xarray.Dataset", kind: str):
-        given = readable(given)
+        given, found = readable(given)
         self.name = name_of(given)
-        if flat_kind_of(given) != kind:
+        if found != kind:
             raise PlotError(f"{self.name}: holds no {kind}")
         if isinstance(given, (str, Path)):
             self._read(Path(given))
@@ -74,29 +74,16 @@ class FlatFile:
 
 def sweep_below(path: str | Path) -> "str | Path | xarray.Dataset":
     """What branches or curves are drawn over. Raises PlotError where it holds branches, curves or windows."""
-    given = readable(path)
-    kind = flat_kind_of(given)
+    given, kind = readable(path)
     if kind is not None:
         raise PlotError(f"over: {path} holds {cut(kind)}, and no sweep")
     return given
 
 
-def flat_kind_of(given: "str | Path | xarray.Dataset") -> str | None:
-    """What a file, or a Dataset, holds where that is branches, curves or windows. Raises PlotError."""
-    if not isinstance(given, (str, Path)):
-        kind = getattr(given, "attrs", {}).get("kind")
-        return None if kind is None else str(kind)
-    try:
-        with opened(Path(given), (), content=False) as (file, _):
-            return text(file, "kind") if is_flat(file) else None
-    except StoreError as error:
-        raise PlotError(str(error)) from error
-
-
-def drawn_kind(given: "str | Path | xarray.Dataset") -> str | None:
-    """As `flat_kind_of`; PlotError for windows says what shows them."""
-    kind = flat_kind_of(given)
+def drawable(given: "str | Path | xarray.Dataset") -> tuple["str | Path | xarray.Dataset", str | None]:
+    """As `readable`; PlotError for windows says what shows them."""
+    data, kind = readable(given)
     if kind == WINDOWS:
-        name = name_of(given)
+        name = name_of(data)
         raise PlotError(f"{name} holds the windows of a sweep; `plot SWEEP.h5 --windows {name}` shows them")
-    return kind
+    return data, kind

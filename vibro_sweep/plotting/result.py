@@ -112,9 +112,12 @@ class Result:
         """Values of a dimension."""
         return self._source.read(name)
 
-    def array(self, name) -> np.ndarray:
-        """A quantity as floats, shape (*sweep, starts, its own dimensions); NaN where not computed or failed."""
-        stored = self._with_start(self._source.read(name))
+    def array(self, name, column: int | None = None) -> np.ndarray:
+        """A quantity as floats, shape (*sweep, starts, its own dimensions); NaN where not computed or failed.
+
+        column : of its last dimension, which it has no more; the others are not read
+        """
+        stored = self._with_start(self._source.read(name, () if column is None else (..., column)))
         values = stored.astype(float)
         if not self.done.all():
             values[~self.done] = np.nan
@@ -192,17 +195,17 @@ class Result:
 
     def is_chaotic(self) -> np.ndarray:
         """Where lambda_1 > 0 beyond its errors, if they are stored; bool, shape (*sweep, starts)."""
-        return self._sign_of_the_largest() > 0
+        return self._sign_of(self.array("lyapunov", 0)) > 0
 
     def largest_exponent(self) -> np.ndarray:
         """lambda_1, and 0 where it does not differ from that by more than its errors; shape (*sweep, starts)."""
-        largest = self.array("lyapunov")[..., 0]
-        return np.where((self._sign_of_the_largest() == 0) & np.isfinite(largest), 0.0, largest)
+        largest = self.array("lyapunov", 0)
+        return np.where((self._sign_of(largest) == 0) & np.isfinite(largest), 0.0, largest)
 
-    def _sign_of_the_largest(self) -> np.ndarray:
+    def _sign_of(self, largest: np.ndarray) -> np.ndarray:
         known = "lyapunov_error" in self
-        error, certain = (self.array("lyapunov_error")[..., 0], self.significant) if known else (0.0, CERTAIN)
-        return sign_of(self.array("lyapunov")[..., 0], error, certain)
+        error, certain = (self.array("lyapunov_error", 0), self.significant) if known else (0.0, CERTAIN)
+        return sign_of(largest, error, certain)
 
     def model(self) -> str:
         """What was iterated, for a title: nothing where it is the oscillator itself."""

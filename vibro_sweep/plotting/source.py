@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.store.attributes import text, texts
-from vibro_sweep.store.opening import ForeignError, StoreError, is_dataset, open_file, opened, quantities_of
+from vibro_sweep.store.opening import ForeignError, StoreError, is_dataset, is_flat, open_file, opened, quantities_of
 
 if TYPE_CHECKING:
     import xarray
@@ -17,20 +17,28 @@ class PlotError(ValueError):
     """What was asked for cannot be drawn; the message says what can."""
 
 
-def readable(given: "str | Path | xarray.Dataset") -> "str | Path | xarray.Dataset":
-    """A file that another program wrote from one of ours as a Dataset; all else as it is. Raises PlotError."""
-    if not isinstance(given, (str, Path)):
-        return given
-    try:
-        with opened(Path(given), (), content=False):
-            return given
-    except ForeignError as found:
-        from vibro_sweep.store import foreign  # xarray takes long to be imported
+def readable(given: "str | Path | xarray.Dataset") -> tuple["str | Path | xarray.Dataset", str | None]:
+    """What is read, and what it holds where that is branches, curves or windows. Raises PlotError.
 
-        try:
-            return foreign.dataset_of(found)
-        except StoreError as error:
-            raise PlotError(str(error)) from error
+    A file that another program wrote from one of ours is read as a Dataset.
+    """
+    if not isinstance(given, (str, Path)):
+        kind = getattr(given, "attrs", {}).get("kind")
+        return given, None if kind is None else str(kind)
+    try:
+        with opened(Path(given), (), content=False) as (file, _):
+            return given, text(file, "kind") if is_flat(file) else None
+    except ForeignError as found:
+        return readable(_dataset_of(found))
+    except StoreError as error:
+        raise PlotError(str(error)) from error
+
+
+def _dataset_of(found: ForeignError) -> "xarray.Dataset":
+    from vibro_sweep.store import foreign  # xarray takes long to be imported
+
+    try:
+        return foreign.dataset_of(found)
     except StoreError as error:
         raise PlotError(str(error)) from error
 
@@ -43,14 +51,11 @@ def name_of(given: "str | Path | xarray.Dataset") -> str:
 
 
 class FileSource:
-    """A file of a run, or the part of one that is not complete."""
+    """A file of a run, or the part of one that is not complete. Raises StoreError where there is none."""
 
     def __init__(self, path: str | Path):
         self.name = str(path)
-        try:
-            self._file = open_file(Path(path)).file
-        except StoreError as error:
-            raise PlotError(str(error)) from error
+        self._file = open_file(Path(path)).file
 
     def close(self) -> None:
         self._file.close()
@@ -149,8 +154,14 @@ class DatasetSource:
 
 def source_of(given) -> FileSource | DatasetSource:
     """A path or a Dataset. Raises PlotError where it is missing or no result."""
-    given = readable(given)
-    return FileSource(given) if isinstance(given, (str, Path)) else DatasetSource(given)
+    if not isinstance(given, (str, Path)):
+        return DatasetSource(given)
+    try:
+        return FileSource(given)
+    except ForeignError as found:
+        return DatasetSource(_dataset_of(found))
+    except StoreError as error:
+        raise PlotError(str(error)) from error
 
 
 def _told(value):
