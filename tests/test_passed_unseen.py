@@ -12,6 +12,7 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.branches import way
 from vibro_sweep.analysis.branches.crossings import explained
 from vibro_sweep.analysis.branches.looking import extremum
+from vibro_sweep.engine.impulses.checks import FARTHER
 
 BESIDE = vs.Oscillator(
     M=[[1.013195585878699, -0.55204056781175], [-0.55204056781175, 2.637855657462587]],
@@ -120,7 +121,8 @@ def test_counts_tell_what_is_missing(paths):
 
 
 def test_an_extremum_is_looked_for_where_a_parabola_comes_nearer_to_zero():
-    """Of 2000 parabolas at three points those with two zeros within half a step of the middle one, and few others."""
+    """Of 2000 parabolas at three points those with two zeros within half a step of the middle one, and few others but
+    those of which the middle point is much nearer to zero."""
     rng, looked, hidden = np.random.default_rng(3), 0, 0
     for _ in range(2000):
         before, behind = rng.uniform(0.5, 1.5, 2)
@@ -129,7 +131,7 @@ def test_an_extremum_is_looked_for_where_a_parabola_comes_nearer_to_zero():
         if not (0 < y <= x and y <= z):
             continue
         found = extremum(before, behind, x, y, z)
-        looked += found is not None
+        looked += found is not None and min(x, z) <= FARTHER * y
         if least < 0:
             hidden += 1
             assert found == pytest.approx(at, abs=1e-9)
@@ -268,3 +270,29 @@ def test_a_pair_that_goes_out_and_comes_back_within_a_step():
         if orbit.ok:
             found = [kind for kind, _ in types(follow(case._replace(orbit=orbit)))]
             assert found in (kinds, kinds[::-1]), k
+
+
+def test_counts_do_not_tell_of_a_pair_that_goes_out_and_one_that_comes_in():
+    here = np.array([1.01 * np.exp(2.7j), 0.99 * np.exp(2.3j), 0.5])
+    ends = [Stand(np.array([*mu, *mu.conj()])) for mu in (here, here * [0.98, 1.02, 1], here * [1.001, 0.999, 1])]
+    assert not explained(ends[0], ends[1], []) and not explained(ends[1], ends[0], [])
+    assert explained(ends[0], ends[2], [])
+
+
+@pytest.mark.slow
+def test_a_pair_that_goes_out_where_another_one_comes_in():
+    """Within one step of twice the usual length: as many lie outside before it and behind it."""
+    system = vs.Oscillator(
+        M=[[1.953, -0.0039, 0.3153, 0.0741], [-0.0039, 4.1814, 0.7996, -0.9339],
+           [0.3153, 0.7996, 1.803, 0.2458], [0.0741, -0.9339, 0.2458, 2.0221]],
+        K=[[1.329, 0.0617, -0.0626, -0.9331], [0.0617, 0.626, 0.7021, -0.0803],
+           [-0.0626, 0.7021, 1.8622, -0.0633], [-0.9331, -0.0803, -0.0633, 1.5369]],
+        C=[[0.0010838, 0.0001287, -0.0002303, 0.0018514], [0.0001287, 0.0024827, -0.0011777, 0.0020326],
+           [-0.0002303, -0.0011777, 0.0069247, -0.002277], [0.0018514, 0.0020326, -0.002277, 0.0072971]],
+        along=[-0.09619, -0.55797, 0.45701, -1.33235], force=[-0.77858, 0.98543, -0.08759, 1.04249],
+        force_cos=[0.51296, -0.63732, 1.01827, 1.11931], omega=0.4514226, R=0.9942246, b=9.3101, tau=0.6098279,
+    )  # fmt: skip
+    case = Case(vs.periodic_orbit(system, itinerary="LR"), "b", (0.98, 10.7))
+    usual, longer = (types(follow(case, factor)) for factor in (1.0, 2.0))
+    assert [kind for kind, _ in longer] == ["graze", "neimark_sacker", "neimark_sacker", "graze"]
+    same_points(follow(case, 2.0), usual, 1e-12)

@@ -4,9 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.pairs import exchanged
 from vibro_sweep.analysis.branches.walk import Point
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
-from vibro_sweep.engine.impulses.checks import FAR_OUTSIDE, ON_SQUARE
+from vibro_sweep.engine.impulses.checks import FAR_OUTSIDE
+from vibro_sweep.engine.impulses.pairs import ON_SQUARE
 
 PRODUCT_ONE = 1e-6  # of a product of two multipliers: within it, it is 1
 COMPLEX = 1e-9  # imaginary part of a multiplier that is not real
@@ -48,6 +50,8 @@ def explained(a: Point, b: Point, types: list[str]) -> bool:
     crossed = folds, len(types) - folds - tori, tori
     if x.on_circle != y.on_circle or a.torus == 1.0:
         return all((one - other) % 2 == 0 for one, other in zip(change[:2], crossed[:2], strict=True))
+    if exchanged(a, b):
+        return False
     if change == crossed:
         return True
     met = change in MEET and not types

@@ -10,7 +10,7 @@ from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_tor
 from vibro_sweep.analysis.branches.events import ON_CIRCLE, is_outside, torus_test
 from vibro_sweep.analysis.branches.response import touching
 from vibro_sweep.analysis.branches.walk import Point, Walk
-from vibro_sweep.engine.impulses.checks import BENT, FARTHER
+from vibro_sweep.engine.impulses.checks import FARTHER
 
 SHARES = (0.5, 0.4, 0.6, 0.3)  # of the way to the next point, where the first lies on a bifurcation by chance
 APART = 1e-9  # share of a step: bifurcations that are nearer to each other are not separated
@@ -133,22 +133,6 @@ def touches(walk: Walk, before: Point, a: Point, b: Point) -> bool:
     tests = [test for _, test in _crossing(walk, before, b)] + [lambda point: point.solution.margin]
     lengths = [float((y.x - x.x) @ x.tangent) for x, y in ((before, a), (a, b))]
     return any(extremum(*lengths, *(test(point) for point in (before, a, b))) is not None for test in tests)
-
-
-def bend(before: Point, a: Point, b: Point) -> bool:
-    """Whether steps are too long to tell if a pair of multipliers crosses the unit circle twice from a to b (as the
-    compiled `bend` of engine/impulses/checks.py)."""
-    past, here, there = (point.solution.multipliers for point in (before, a, b))
-    here = here[here.imag > 0]
-    if not len(here) or not len(past):
-        return False
-    past, there = (mu[np.abs(mu - here[:, None]).argmin(axis=1)] for mu in (past, there))
-    pairs = (past.imag > 0) & (there.imag > 0)
-    x, y, z = ((size - 1) / (size + 1) for size in (np.abs(mu[pairs]) ** 2 for mu in (past, here, there)))
-    one, other = (float((q.x - p.x) @ p.tangent) for p, q in ((before, a), (a, b)))
-    side = np.sign(y)
-    away = side * (z - y - (y - x) * other / one)  # from where it was heading
-    return bool(np.any((side * z > 0) & (away > BENT * np.minimum(side * y, side * z))))
 
 
 def _least(a: Point, b: Point, i: int) -> float:

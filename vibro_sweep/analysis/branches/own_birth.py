@@ -13,7 +13,7 @@ from vibro_sweep.analysis.branches.events import reflection_test
 from vibro_sweep.analysis.branches.locating import Event, locate, rounding
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.checks import ON_SQUARE
+from vibro_sweep.engine.impulses.pairs import ON_SQUARE
 from vibro_sweep.model.linear import family_of
 
 BEFORE = 0.02, 0.1, 0.4  # of the way to a birth, beside which a multiplier is 1 to rounding

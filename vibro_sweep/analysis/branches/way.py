@@ -11,8 +11,9 @@ from vibro_sweep.analysis.branches.births import criticality, doubled
 from vibro_sweep.analysis.branches.crossings import is_torus
 from vibro_sweep.analysis.branches.events import bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.locating import Event
-from vibro_sweep.analysis.branches.looking import bend, hidden_between, touches
+from vibro_sweep.analysis.branches.looking import hidden_between, touches
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
+from vibro_sweep.analysis.branches.pairs import bend
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.response import longest_step
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing

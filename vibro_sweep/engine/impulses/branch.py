@@ -12,8 +12,9 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.impulses.blocks import eliminate, finish
-from vibro_sweep.engine.impulses.checks import bend, certify, comes_back, happens, test, touches
+from vibro_sweep.engine.impulses.checks import certify, comes_back, happens, test, touches
 from vibro_sweep.engine.impulses.medium import OMEGA, PERIOD, flight_matrix, move_to, set_phase
+from vibro_sweep.engine.impulses.pairs import bend
 from vibro_sweep.engine.impulses.places import DEFECT_HERE, LENGTH, ON_CIRCLE, REFLECTION, TANGENT, P
 from vibro_sweep.engine.simd.jit import entry, jit
 

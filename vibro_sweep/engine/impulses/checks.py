@@ -7,6 +7,7 @@ import numpy as np
 from vibro_sweep.engine.impulses.elimination import sign_of_determinant, solve
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
 from vibro_sweep.engine.impulses.medium import GAIN_HIGH, GAIN_LOW, HIGH, LOW, PERIOD, combined, set_phase
+from vibro_sweep.engine.impulses.pairs import ON_SQUARE, exchanged
 from vibro_sweep.engine.impulses.places import (
     ABOVE,
     AWAY,
@@ -29,8 +30,6 @@ from vibro_sweep.engine.simd.lanes import number
 from vibro_sweep.engine.simd.memory import put
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
-ON_SQUARE = 1e-6  # of |mu|^2: a multiplier that near to the unit circle is on neither side
-BENT = 1.0  # times the distance of multipliers from the unit circle
 FARTHER = 2.0  # times: a number that is so much nearer to zero than at the points beside changes too fast between them
 ZERO = 1e-12  # of |1 + mu|^2 and |1 - mu_i mu_j|^2: what no point of a branch comes to by chance
 FAR_OUTSIDE = 0.5  # of |mu|^2 - 1: multipliers from there on do not reach the circle within a step and go back
@@ -206,44 +205,6 @@ def dips(x, y, z, before, behind):
 
 
 @jit
-def beside_circle(mu, i):
-    """(|mu|^2 - 1)/(|mu|^2 + 1): zero on the unit circle, finite at poles."""
-    size = mu[i, 0] ** 2 + mu[i, 1] ** 2
-    return (size - 1.0) / (size + 1.0)
-
-
-@jit
-def most_alike(mu, re, im):
-    """The index of the multiplier that is nearest to another one."""
-    least, found = np.inf, 0
-    for i in range(len(mu)):
-        away = (mu[i, 0] - re) ** 2 + (mu[i, 1] - im) ** 2
-        if away < least:
-            least, found = away, i
-    return found
-
-
-@jit
-def bend(past, a, b, before, length):
-    """Whether steps are too long to tell if a pair of multipliers crosses the unit circle twice between two points: the
-    second lies farther from where it was heading at the first, on the outside of a bend, than from the circle.
-
-    past : multipliers of the point before a, at the distance `before`, or 0.0 where it is not known
-    """
-    if before == 0.0:
-        return False
-    for i in range(len(past)):
-        re, im = a.multipliers[i, 0], a.multipliers[i, 1]
-        j, k = most_alike(past, re, im), most_alike(b.multipliers, re, im)
-        if im > 0.0 and past[j, 1] > 0.0 and b.multipliers[k, 1] > 0.0:
-            x, y, z = beside_circle(past, j), beside_circle(a.multipliers, i), beside_circle(b.multipliers, k)
-            side = 1.0 if y > 0.0 else -1.0
-            if side * z > 0.0 and side * (z - y - (y - x) * length / before) > BENT * min(side * y, side * z):
-                return True
-    return False
-
-
-@jit
 def turns_back(x, slope, y, later, length):
     """Whether a number that is positive at two points may be negative between them: where its tangents meet it is."""
     return slope < 0.0 < later and x * (slope - later) + slope * (y - x - later * length) > 0.0
@@ -271,7 +232,9 @@ def happens(sides, steps, a, b, length, passed):
             return True
     if not pushing or x[MARGIN] > 0.0 >= y[MARGIN] or y[MARGIN] < -passed or x[TANGENT] * y[TANGENT] < 0.0:
         return True
-    return counts_differ(x, y) or x[REFLECTION] * y[REFLECTION] < 0.0 or x[TORUS] * y[TORUS] < 0.0
+    if counts_differ(x, y) or exchanged(a.multipliers, b.multipliers):
+        return True
+    return x[REFLECTION] * y[REFLECTION] < 0.0 or x[TORUS] * y[TORUS] < 0.0
 
 
 @jit
