@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from support.golden import curves, files
 from support.oscillators import PAPER
 from support.random_branches import attractors, random_oscillator
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.curves import tracer
+from vibro_sweep.analysis.curves import tracer, way
 from vibro_sweep.analysis.curves.oscillators import BEYOND, Oscillators
 from vibro_sweep.model.linear import family_of
 
@@ -143,3 +144,15 @@ def test_polynomials_stop_before_a_frequency_of_zero():
     """There is no forcing period; a curve in a wide box ended with an error where they were fitted anew."""
     (plane,) = Oscillators(family_of(PAPER), NAMES, 2, 0.0).around((3.0, 0.55), (30.0, 1.0))
     assert 0 < BEYOND * plane["reach"][1] < 0.55
+
+
+@pytest.mark.slow
+def test_an_impact_that_vanishes_on_a_virtual_stretch_is_left_out(monkeypatch):
+    """With steps of twice the length another one vanishes in the same step, behind which the orbit is real."""
+    record = files.read("curves")["paper, one side, neimark_sacker 1, resonance_1_4 3, fold 2"]
+    special = curves.start_of_curve(record)
+    monkeypatch.setattr(tracer, "LONGEST_STEP", 2 * tracer.LONGEST_STEP)
+    monkeypatch.setattr(tracer, "STRAIGHT", 2 * tracer.STRAIGHT)
+    monkeypatch.setattr(way, "FIRST_STEP", 2 * way.FIRST_STEP)
+    curve = vs.bifurcation_curve(special, tuple(record["names"]), record["box"])
+    assert [one.type for one in curve.special] == ["limit", "resonant_graze", "resonance_1_4"]

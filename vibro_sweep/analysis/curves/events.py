@@ -170,6 +170,19 @@ def same(tracer: Tracer, one: Found, other: Found) -> bool:
     return bool(np.all(np.abs(one.place.p - other.place.p)[:2] <= ROUNDING * np.ptp(tracer.box, axis=1)))
 
 
+def beside(tracer: Tracer, a: Place, b: Place, one: Found, found: list[Found]) -> list[Place]:
+    """A point on either side of one of those found from a to b, with no other place between at which the orbit may
+    begin or cease to be real."""
+    edges = [other.share for other in found if other.event.test is None and abs(other.share - one.share) > SAME]
+    near = max((share for share in edges if share < one.share), default=None)
+    far = min((share for share in edges if share > one.share), default=None)
+    row, places = tracer.row_of(tracer.difference(a, b)), []
+    for end, share in ((a, near), (b, far)):
+        middle = None if share is None else tracer.between(a, b, (share + one.share) / 2)
+        places.append((middle and tracer.correct(middle, row)) or end)
+    return places
+
+
 def named(tracer: Tracer, event: Event) -> Event:
     """A flip of a symmetric orbit's half map is a pitchfork."""
     if event.type == "flip_graze" and tracer.curve.sigma < 0:

@@ -10,7 +10,7 @@ from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.curves.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.curves.chord import root
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
-from vibro_sweep.analysis.curves.events import Event, found_between, found_to_edge, is_real, without_echoes
+from vibro_sweep.analysis.curves.events import Event, beside, found_between, found_to_edge, is_real, without_echoes
 from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.curves.tracer import Tracer, copied, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
@@ -133,9 +133,10 @@ class Way:
         """
         w = self.tracer
         ends = not (self.virtual or is_real(w, b))
-        for one in without_echoes(w, (found_to_edge if ends else found_between)(w, a, b)):
+        found = without_echoes(w, (found_to_edge if ends else found_between)(w, a, b))
+        for one in found:
             self._add(one.place)
-            if self._holds(one.event, one.place, a, b):
+            if self._holds(one.event, one.place, *beside(w, a, b, one, found)):
                 self.special.append(self._at(one.event.type, one.place, one.error, one.event))
                 if ends and (one.event.impact is not None or one.event.touches):
                     return False
