@@ -10,7 +10,7 @@ from support.same_branch import follow, rows
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import way
-from vibro_sweep.analysis.branches.crossings import explained
+from vibro_sweep.analysis.branches.crossings import explained, stands_alone
 from vibro_sweep.analysis.branches.looking import extremum
 from vibro_sweep.engine.impulses.checks import FARTHER
 
@@ -277,6 +277,15 @@ def test_counts_do_not_tell_of_a_pair_that_goes_out_and_one_that_comes_in():
     ends = [Stand(np.array([*mu, *mu.conj()])) for mu in (here, here * [0.98, 1.02, 1], here * [1.001, 0.999, 1])]
     assert not explained(ends[0], ends[1], []) and not explained(ends[1], ends[0], [])
     assert explained(ends[0], ends[2], [])
+
+
+def test_the_pair_on_the_circle_is_on_different_sides_before_and_behind():
+    """Else another one has crossed it too: of two outside one is left, and a third one has gone out and come in."""
+    at = np.array([1.05 * np.exp(2.6j), 0.99 * np.exp(2.1j), np.exp(1.7j)])
+    paths = (at, at * [1, 1.02, 0.99], at * [1, 1, 0.99], at * [1, 1, 1.01])
+    point, before, behind, other = (Stand(np.array([*mu, *mu.conj()])) for mu in paths)
+    assert not stands_alone(before, behind, point, "neimark_sacker")
+    assert stands_alone(other, behind, point, "neimark_sacker")
 
 
 @pytest.mark.slow

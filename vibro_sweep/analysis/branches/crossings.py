@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.pairs import exchanged
+from vibro_sweep.analysis.branches.pairs import beside_circle, exchanged
 from vibro_sweep.analysis.branches.walk import Point
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.impulses.checks import FAR_OUTSIDE
@@ -68,12 +68,20 @@ def stands_alone(a: Point, b: Point, point: Point, kind: str) -> bool:
     crossing = CROSSES[kind]
     if x.on_circle or y.on_circle or at.on_circle != (2 if kind == "neimark_sacker" else 1) or a.torus == 1.0:
         return True
+    if kind == "neimark_sacker" and not _changes_side(point, a, b):
+        return False
     for side in (x, y):
         more = np.subtract(side[:3], at[:3])
         changes = [tuple(np.abs(more - moved).tolist()) for moved in ((0, 0, 0), crossing)]
         if not any(change in ((0, 0, 0), *MEET) for change in changes):
             return False
     return True
+
+
+def _changes_side(point: Point, a: Point, b: Point) -> bool:
+    """Whether the pair on the circle at a point lies outside at one of two points beside it and inside at the other."""
+    at, one, other = beside_circle(point, a, b)
+    return not np.any((np.abs(at) < ON_SQUARE) & (one * other > 0))
 
 
 def _far_outside(before: np.ndarray, behind: np.ndarray) -> bool:
