@@ -194,6 +194,7 @@ def test_windows(tmp_path):
         assert {data[name].attrs["units"] for name in ("window_lo", "window_hi", "omega", "unseen_at")} == {"rad s-1"}
 
 
+@pytest.mark.slow
 def test_functions():
     """Of the user's own: their results have units if these are the same at all corners of the sweep."""
     physical = {"M1": 2, "M2": 8, "K1": 2000, "K2": 10_000, "C1": 5, "C2": 25, "P1": 10, "P2": 0, "Omega": 26, "R": 0.7}
