@@ -54,8 +54,7 @@ def solve(T, size, order, K, x, scratch):
     """x <- A^-1 x with the factors of A, turned."""
     line_up(size, K, x, scratch)
     substitute_transposed(T, size, order, scratch)
-    for j in range(size):
-        x[j] = scratch[place_of(j, K)]
+    take_back(size, K, scratch, x)
 
 
 @jit
@@ -63,11 +62,16 @@ def solve_adjoint(T, size, order, K, x, scratch):
     """x <- A^-T x."""
     line_up(size, K, x, scratch)
     substitute(T, size, order, scratch)
-    for i in range(size):
-        x[i] = scratch[place_of(i, K)]
+    take_back(size, K, scratch, x)
 
 
 @jit
 def line_up(size, K, x, scratch):
     for i in range(size):
         scratch[place_of(i, K)] = x[i]
+
+
+@jit
+def take_back(size, K, scratch, x):
+    for i in range(size):
+        x[i] = scratch[place_of(i, K)]
