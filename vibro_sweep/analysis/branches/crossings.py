@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.pairs import beside_circle, exchanged
+from vibro_sweep.analysis.branches.pairs import exchanged, keeps_side
 from vibro_sweep.analysis.branches.walk import Point
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.impulses.checks import FAR_OUTSIDE
-from vibro_sweep.engine.impulses.pairs import ON_SQUARE
+from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE
 
 PRODUCT_ONE = 1e-6  # of a product of two multipliers: within it, it is 1
 COMPLEX = 1e-9  # imaginary part of a multiplier that is not real
@@ -29,8 +29,9 @@ class Counts(NamedTuple):
 def counts_of(point: Point) -> Counts:
     mu = point.solution.multipliers
     squares = np.abs(mu) ** 2
-    on = np.abs(squares - 1) < ON_SQUARE
-    out, real = (squares > 1) & ~on, mu.imag == 0
+    real = mu.imag == 0
+    on = np.abs(squares - 1) < np.where(real, ON_SQUARE, ON_PAIR)
+    out = (squares > 1) & ~on
     above, below, others = (
         int(np.sum(out & of_kind)) for of_kind in (real & (mu.real > 0), real & (mu.real < 0), ~real)
     )
@@ -68,7 +69,7 @@ def stands_alone(a: Point, b: Point, point: Point, kind: str) -> bool:
     crossing = CROSSES[kind]
     if x.on_circle or y.on_circle or at.on_circle != (2 if kind == "neimark_sacker" else 1) or a.torus == 1.0:
         return True
-    if kind == "neimark_sacker" and not _changes_side(point, a, b):
+    if kind == "neimark_sacker" and keeps_side(point, a, b):
         return False
     for side in (x, y):
         more = np.subtract(side[:3], at[:3])
@@ -76,12 +77,6 @@ def stands_alone(a: Point, b: Point, point: Point, kind: str) -> bool:
         if not any(change in ((0, 0, 0), *MEET) for change in changes):
             return False
     return True
-
-
-def _changes_side(point: Point, a: Point, b: Point) -> bool:
-    """Whether the pair on the circle at a point lies outside at one of two points beside it and inside at the other."""
-    at, one, other = beside_circle(point, a, b)
-    return not np.any((np.abs(at) < ON_SQUARE) & (one * other > 0))
 
 
 def _far_outside(before: np.ndarray, behind: np.ndarray) -> bool:

@@ -8,8 +8,7 @@ from vibro_sweep.analysis.branches.locating import Event, locate
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.impulses import branch
-
-ON_CIRCLE = 1e-6  # distance of a product of two multipliers from 1, to which no point comes by chance
+from vibro_sweep.engine.impulses.pairs import ON_PAIR
 
 
 def ends_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
@@ -116,7 +115,7 @@ def torus_test(a: Point, b: Point, scaled: bool = False):
     """
     if len(a.solution.multipliers) < 3 or a.torus == 1.0 or b.torus == 1.0:
         return None
-    left_out = min(int(np.sum(np.abs(1 - _products(point)) < ON_CIRCLE)) for point in (a, b))
+    left_out = min(int(np.sum(np.abs(1 - _products(point)) < ON_PAIR)) for point in (a, b))
 
     def test(point: Point) -> float:
         factors, mu = 1 - _products(point), point.solution.multipliers

@@ -7,10 +7,11 @@ from itertools import pairwise
 import numpy as np
 
 from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_torus, stands_alone
-from vibro_sweep.analysis.branches.events import ON_CIRCLE, is_outside, torus_test
+from vibro_sweep.analysis.branches.events import is_outside, torus_test
 from vibro_sweep.analysis.branches.response import touching
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.engine.impulses.checks import FARTHER
+from vibro_sweep.engine.impulses.pairs import ON_SQUARE
 
 SHARES = (0.5, 0.4, 0.6, 0.3)  # of the way to the next point, where the first lies on a bifurcation by chance
 APART = 1e-9  # share of a step: bifurcations that are nearer to each other are not separated
@@ -100,7 +101,7 @@ def _flip(point: Point) -> float:
     """prod_i (1 + mu_i)/(1 + |mu_i|^2)^(1/2), without factors that are zero at all points."""
     mu = point.solution.multipliers
     factors = 1 + mu
-    return float(np.prod(factors[np.abs(factors) > ON_CIRCLE]).real / np.prod(np.hypot(1, np.abs(mu))))
+    return float(np.prod(factors[np.abs(factors) > ON_SQUARE]).real / np.prod(np.hypot(1, np.abs(mu))))
 
 
 def _touched(walk: Walk, beside: tuple, places: list[Point], found: list) -> Point | None:

@@ -13,7 +13,7 @@ from vibro_sweep.analysis.branches.events import bifurcations, ends_between, fir
 from vibro_sweep.analysis.branches.locating import Event
 from vibro_sweep.analysis.branches.looking import hidden_between, touches
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
-from vibro_sweep.analysis.branches.pairs import bend
+from vibro_sweep.analysis.branches.pairs import coarse
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.response import longest_step
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
@@ -110,7 +110,7 @@ class Way:
                 length = min(length, longest_step(a))
             b = self.walk.step(a, length)
             turn = math.acos(min(1.0, a.tangent @ b.tangent)) if b is not None else math.inf
-            if turn > STRAIGHT or (before and length > branch.COARSE * LONGEST_STEP and bend(before, a, b)):
+            if turn > STRAIGHT or (length > branch.COARSE * LONGEST_STEP and coarse(before, a, b)):
                 length /= 2
                 continue
             if before is not None and touches(self.walk, before, a, b) and self._again(before, a, b):

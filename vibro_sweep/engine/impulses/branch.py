@@ -14,7 +14,7 @@ import numpy as np
 from vibro_sweep.engine.impulses.blocks import eliminate, finish
 from vibro_sweep.engine.impulses.checks import certify, comes_back, happens, test, touches
 from vibro_sweep.engine.impulses.medium import OMEGA, PERIOD, flight_matrix, move_to, set_phase
-from vibro_sweep.engine.impulses.pairs import bend
+from vibro_sweep.engine.impulses.pairs import coarse
 from vibro_sweep.engine.impulses.places import DEFECT_HERE, LENGTH, ON_CIRCLE, REFLECTION, TANGENT, P
 from vibro_sweep.engine.simd.jit import entry, jit
 
@@ -25,7 +25,7 @@ CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
 DEFECT = 1e-10  # largest jump of the motion between its flights, relative to the gap
 PASSED = 1e-13  # distance beyond a stop, relative to the gap, which rounding does not explain
 BEYOND = 1.5  # times the reach of the medium, up to where its polynomials hold
-COARSE = 0.03  # of the longest step: to that they are shortened where multipliers bend
+COARSE = 0.03  # of the longest step: to that they are shortened where they do not tell pairs of multipliers apart
 SHIFTED = 0.8  # of a step, where its end lies on a bifurcation by chance
 MOST_SHIFTS = 5  # of one step
 EARLY = 10  # points before which a branch is not yet taken to be closed
@@ -219,9 +219,10 @@ def walk(media, sides, sigma, steps, size, origin, passed, first, a, b, record, 
             shifts += 1
             continue
         shifts = 0
-        if length > COARSE * steps.longest and bend(w.past_multipliers, a, b, w.past[LENGTH], length):
-            length *= 0.5
-            continue
+        if length > COARSE * steps.longest:
+            if coarse(w.past_multipliers, a.multipliers, b.multipliers, w.past[LENGTH], length):
+                length *= 0.5
+                continue
         if happens(sides, steps, a, b, length, PASSED * size):
             return EVENT, count, corrections
         if touches(w.past, a, b, length):

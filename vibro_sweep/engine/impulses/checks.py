@@ -7,7 +7,7 @@ import numpy as np
 from vibro_sweep.engine.impulses.elimination import sign_of_determinant, solve
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
 from vibro_sweep.engine.impulses.medium import GAIN_HIGH, GAIN_LOW, HIGH, LOW, PERIOD, combined, set_phase
-from vibro_sweep.engine.impulses.pairs import ON_SQUARE, exchanged
+from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE, exchanged
 from vibro_sweep.engine.impulses.places import (
     ABOVE,
     AWAY,
@@ -31,7 +31,7 @@ from vibro_sweep.engine.simd.memory import put
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
 FARTHER = 2.0  # times: a number that is so much nearer to zero than at the points beside changes too fast between them
-ZERO = 1e-12  # of |1 + mu|^2 and |1 - mu_i mu_j|^2: what no point of a branch comes to by chance
+ZERO = ON_SQUARE**2, ON_PAIR**2  # of |1 + mu|^2 and |1 - mu_i mu_j|^2: what no point of a branch comes to by chance
 FAR_OUTSIDE = 0.5  # of |mu|^2 - 1: multipliers from there on do not reach the circle within a step and go back
 
 
@@ -118,7 +118,7 @@ def test(f, sides, sigma, place, room, strikes):
         place.multipliers[i, 0], place.multipliers[i, 1] = re, im
         size = re * re + im * im
         squares *= 1.0 + size
-        if abs(size - 1.0) < ON_SQUARE:
+        if abs(size - 1.0) < (ON_SQUARE if im == 0.0 else ON_PAIR):
             on += 1.0
         elif size > 1.0:
             away = min(away, size - 1.0)
@@ -162,11 +162,11 @@ def without_zeros(re, im, root, numbers):
     for i in range(n):
         u, v = u * re[i] - v * im[i], u * im[i] + v * re[i]
         r, s = 1.0 + re[i], im[i]
-        if r * r + s * s > ZERO:
+        if r * r + s * s > ZERO[0]:
             p, q = p * r - q * s, p * s + q * r
         for j in range(i):
             r, s = 1.0 - re[i] * re[j] + im[i] * im[j], -re[i] * im[j] - im[i] * re[j]
-            if r * r + s * s > ZERO:
+            if r * r + s * s > ZERO[1]:
                 x, y = x * r - y * s, x * s + y * r
     numbers[FLIP] = p / root
     if n > 2 and abs(math.hypot(u, v) - 1.0) > 1e-9:

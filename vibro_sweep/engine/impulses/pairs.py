@@ -1,10 +1,16 @@
-"""Pairs of multipliers from point to point of a branch: what they do at the unit circle that tests and counts miss."""
+"""Pairs of multipliers from point to point of a branch: what they do at the unit circle that tests and counts miss.
+
+Multipliers of a point are (n, 2): real and imaginary parts, NaN where they are not known.
+"""
+
+import math
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.jit import entry, jit
 
-ON_SQUARE = 1e-6  # of |mu|^2: a multiplier that near to the unit circle is on neither side
+ON_SQUARE = 1e-6  # of mu^2: a real multiplier that near to the unit circle is on neither side
+ON_PAIR = 1e-9  # of |mu|^2 of a pair, which rounding moves by less than two real ones that are about to meet
 BENT = 1.0  # times the distance of multipliers from the unit circle
 
 
@@ -27,26 +33,41 @@ def most_alike(mu, re, im):
 
 
 @jit
-def bend(past, a, b, before, length):
-    """Whether steps are too long to tell if a pair of multipliers crosses the unit circle twice between two points: the
-    second lies farther from where it was heading at the first, on the outside of a bend, than from the circle.
-
-    past : multipliers of the point before a, at the distance `before`, or 0.0 where it is not known
-    """
-    if before == 0.0:
+def mixed(here, there, i, k):
+    """Whether the pair k, which of those there is most like the pair i here, is more like another one here; and one of
+    these two is nearer to the unit circle than to the other, so that in passing it may be pushed across and back."""
+    j = most_alike(here, there[k, 0], there[k, 1])
+    if j == i or not here[j, 1] > 0.0:
         return False
-    for i in range(len(past)):
-        re, im = a.multipliers[i, 0], a.multipliers[i, 1]
-        j, k = most_alike(past, re, im), most_alike(b.multipliers, re, im)
-        if im > 0.0 and past[j, 1] > 0.0 and b.multipliers[k, 1] > 0.0:
-            x, y, z = beside_circle(past, j), beside_circle(a.multipliers, i), beside_circle(b.multipliers, k)
+    apart = math.hypot(here[j, 0] - here[i, 0], here[j, 1] - here[i, 1])
+    return min(abs(beside_circle(here, i)), abs(beside_circle(here, j))) < apart
+
+
+@entry
+def coarse(past, here, there, before, length):
+    """Whether a step is too long to tell if a pair of multipliers crosses the unit circle twice from here to there: two
+    pairs are mixed up, or one lies farther from where it was heading here, on the outside of a bend, than from the
+    circle.
+
+    past : multipliers of the point before, at the distance `before` from here, or 0.0 where it is not known
+    """
+    for i in range(len(here)):
+        re, im = here[i, 0], here[i, 1]
+        k = most_alike(there, re, im)
+        if not (im > 0.0 and there[k, 1] > 0.0):
+            continue
+        if mixed(here, there, i, k):
+            return True
+        j = most_alike(past, re, im)
+        if before > 0.0 and past[j, 1] > 0.0:
+            x, y, z = beside_circle(past, j), beside_circle(here, i), beside_circle(there, k)
             side = 1.0 if y > 0.0 else -1.0
             if side * z > 0.0 and side * (z - y - (y - x) * length / before) > BENT * min(side * y, side * z):
                 return True
     return False
 
 
-@jit
+@entry
 def exchanged(here, there):
     """Whether a pair goes out of the unit circle and another one comes in between two points: counts do not tell."""
     out = back = False
@@ -55,6 +76,18 @@ def exchanged(here, there):
         k = most_alike(there, re, im)
         if im > 0.0 and there[k, 1] > 0.0:
             y, z = beside_circle(here, i), beside_circle(there, k)
-            out = out or y < -ON_SQUARE < ON_SQUARE < z
-            back = back or z < -ON_SQUARE < ON_SQUARE < y
+            out = out or y < -ON_PAIR < ON_PAIR < z
+            back = back or z < -ON_PAIR < ON_PAIR < y
     return out and back
+
+
+@entry
+def keeps_side(here, one, other):
+    """Whether a pair on the unit circle here lies on one side of it at both of two points."""
+    for i in range(len(here)):
+        re, im = here[i, 0], here[i, 1]
+        j, k = most_alike(one, re, im), most_alike(other, re, im)
+        if im > 0.0 and one[j, 1] > 0.0 and other[k, 1] > 0.0 and abs(beside_circle(here, i)) < ON_PAIR:
+            if beside_circle(one, j) * beside_circle(other, k) > 0.0:
+                return True
+    return False
