@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.curves.chord import root
+from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
 from vibro_sweep.analysis.curves.errors import error_of
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.engine.impulses import curve_tests
@@ -106,14 +107,16 @@ def found_between(tracer: Tracer, a: Place, b: Place) -> list[Found]:
     Of several in one step two may hide each other: a test has a pole where an impact vanishes, or passes zero twice. So
     the pieces of the step beside each event are looked at as well.
     """
-    found = _located(tracer, a, b)
+    found = without_echoes(tracer, _located(tracer, a, b))
     if len(found) < 2 and not any(one.event.impact is not None for one in found):
         return found
-    shares = np.unique([0.0, *(one.share for one in found), 1.0])
-    aside = PIECE * np.diff(shares).min()
-    cuts = [0.0, *np.sort([share + sign * aside for share in shares[1:-1] for sign in (-1, 1)]).tolist(), 1.0]
-    row = tracer.row_of(tracer.difference(a, b))
-    places = [tracer.correct(tracer.between(a, b, cut), row) if 0 < cut < 1 else (b if cut else a) for cut in cuts]
+    known = {0.0: a, 1.0: b} | {one.share: one.place for one in found}
+    shares = np.unique(list(known))
+    apart = PIECE * np.diff(shares).min()
+    beside_each = [(share, sign * apart) for share in shares[1:-1].tolist() for sign in (-1, 1)]
+    cuts = [0.0, *(share + apart for share, apart in beside_each), 1.0]
+    gone = [one.event.impact for one in found if one.event.impact is not None]
+    places = [a, *(aside(tracer, a, b, known[share], apart, gone) for share, apart in beside_each), b]
     if any(place is None for place in places):
         return found
     result = []
@@ -136,7 +139,8 @@ def found_to_edge(tracer: Tracer, a: Place, b: Place) -> list[Found]:
         return []
     end = min(ends, key=lambda one: one.share)
     share = (1 - PIECE) * end.share
-    before = tracer.correct(tracer.between(a, b, share), tracer.row_of(tracer.difference(a, b)))
+    gone = [] if end.event.impact is None else [end.event.impact]
+    before = aside(tracer, a, b, end.place, share - end.share, gone)
     if before is None:
         return [end]
     return [*(one._replace(share=one.share * share) for one in found_between(tracer, a, before)), end]
@@ -167,7 +171,8 @@ def echoes(tracer: Tracer, one: Found, other: Found) -> bool:
 
 def same(tracer: Tracer, one: Found, other: Found) -> bool:
     """Whether two points are one, to rounding."""
-    return bool(np.all(np.abs(one.place.p - other.place.p)[:2] <= ROUNDING * np.ptp(tracer.box, axis=1)))
+    apart = np.abs(one.place.p - other.place.p)[:2] - one.error - other.error
+    return bool(np.all(apart <= ROUNDING * np.ptp(tracer.box, axis=1)))
 
 
 def beside(tracer: Tracer, a: Place, b: Place, one: Found, found: list[Found]) -> list[Place]:
@@ -198,7 +203,14 @@ def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
     The error (`error_of`) is an estimate from several locations and from what rounding of the equations does.
     """
     found = root(tracer, a, b, event.value)
-    if found is None or found[1].tests[RESIDUAL] > SETTLED:
+    settled = found is not None and found[1].tests[RESIDUAL] <= SETTLED
+    if event.impact is not None:
+        settled = settled and not is_on_other(tracer, a, b, found[1], event.impact)
+        if not settled or is_lost(tracer, a, b, found[1]):
+            at_crossing = crossed(tracer, a, b, event.impact)
+            if at_crossing is not None:
+                return Found(event, *at_crossing)
+    if not settled:
         return None
     share, place = found
     if event.test is not None:

@@ -158,20 +158,20 @@ class Tracer:
 
     def along(self, place: Place, length: float) -> Place | None:
         """The point of the curve whose projection on the tangent at `place` is `length`."""
-        return self.correct(self._moved(place, length), self.row_of(place.tangent))
+        return self.correct(self.moved(place, length), self.row_of(place.tangent))
 
     def level(self, place: Place, axis: int, value: float) -> Place | None:
         """The point of the curve near `place` where the parameter `axis` (0, 1) has this value."""
         slope = self.curve.unit[self.S + axis] * place.tangent[self.S + axis]
         if abs(value - place.p[axis]) > 2 * LONGEST_STEP * abs(slope):  # it turns back before
             return None
-        guess = self._moved(place, (value - place.p[axis]) / slope if slope else 0.0)
+        guess = self.moved(place, (value - place.p[axis]) / slope if slope else 0.0)
         guess.p[axis] = value
         row = np.zeros(self.size)
         row[self.S + axis] = 1.0
         return self.correct(guess, row)
 
-    def _moved(self, place: Place, length: float) -> Place:
+    def moved(self, place: Place, length: float) -> Place:
         """A guess on the tangent."""
         guess, unit, step = copied(place), self.curve.unit, length * place.tangent
         K, S = self.K, self.S

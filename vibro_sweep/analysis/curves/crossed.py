@@ -1,0 +1,79 @@
+"""Where an impulse vanishes at a point of a curve that another one passes, as where its orbit becomes the free motion.
+
+There the orbits without the impact, whose impulse is zero all along, are solutions of the same equations. These are
+singular: Newton's method finds no point nearer to it than rounding over its distance, and may find one of the others.
+Farther off points are exact, and the polynomials through them give what lies between.
+"""
+
+import numpy as np
+
+from vibro_sweep.analysis.curves.chord import Chord
+from vibro_sweep.analysis.curves.errors import DIGITS, ROWS, sensitivity
+from vibro_sweep.analysis.curves.tracer import Tracer, copied
+from vibro_sweep.engine.impulses import curve
+from vibro_sweep.engine.impulses.curve_tests import RESIDUAL
+from vibro_sweep.engine.impulses.locus import Place
+
+REACH = 5e-3  # in units of a curve: the distance of the points farthest off
+NODES = np.array([-1.0, -2 / 3, -1 / 3, 1 / 3, 2 / 3, 1.0])
+ROUNDS = 3  # of points, each about the zero of the last ones
+FLAT = 1e-3  # of the mean slope of an impulse: a lesser one is zero
+LOST = 1e-10  # of the parameters, by rounding of the equations
+SMOOTH = 1e-8  # of the box: what all points and those without the outermost may say apart
+
+
+def is_on_other(tracer: Tracer, a: Place, b: Place, place: Place, impact: int) -> bool:
+    """Whether a place where this impulse vanishes, located between a and b, lies on the curve of orbits without it."""
+    change, j = tracer.difference(a, b), tracer.K + impact
+    return bool(abs(place.tangent[j]) < FLAT * abs(change[j]) / np.linalg.norm(change))
+
+
+def is_lost(tracer: Tracer, a: Place, b: Place, place: Place) -> bool:
+    """Whether rounding of the equations moves a place, located between a and b, so far that others may be near."""
+    return ROWS * sensitivity(tracer, place, tracer.row_of(tracer.difference(a, b))) > LOST
+
+
+def aside(tracer: Tracer, a: Place, b: Place, place: Place, share: float, gone: list[int]) -> Place | None:
+    """The point of the curve that lies this share of the chord from a to b beside a place on it. gone : impacts that
+    vanish between a and b; None where there is but one of the orbits without them."""
+    change = tracer.difference(a, b)
+    row = tracer.row_of(change)
+    length = share * (row @ change) / (row @ place.tangent[: tracer.size])
+    point = tracer.correct(tracer.moved(place, length), row)
+    return None if point is None or any(is_on_other(tracer, a, b, point, i) for i in gone) else point
+
+
+def crossed(tracer: Tracer, a: Place, b: Place, impact: int) -> tuple[float, Place, float] | None:
+    """(share of the chord from a to b, place, error of its parameters) where this impulse vanishes; None where it does
+    so at a pole or there are no points beside it."""
+    chord = Chord(tracer, a, b, lambda place: float(place.D[impact] / tracer.curve.unit[tracer.K]))
+    reach = REACH / float(np.linalg.norm(tracer.difference(a, b)))
+    low, high = chord.test(a), chord.test(b)
+    zero = low / (low - high)
+    try:
+        for _ in range(ROUNDS):
+            shares = zero + reach * NODES
+            places = [chord.at(share) for share in shares.tolist()]
+            tests = np.array([chord.test(place) for place in places])
+            weights, fewer = _weights(tests), np.pad(_weights(tests[1:-1]), 1)
+            zero = float(weights @ shares)
+    except ArithmeticError:
+        return None
+    p = np.array([place.p[:2] for place in places])
+    apart = np.abs((weights - fewer) @ p)
+    if not (0.0 <= zero <= 1.0 and np.all(apart <= SMOOTH * np.ptp(tracer.box, axis=1))):
+        return None
+    place = copied(places[0])
+    for name in ("t", "D", "h", "p", "w", "psi", "tangent"):
+        getattr(place, name)[:] = np.tensordot(weights, [getattr(one, name) for one in places], 1)
+    place.D[impact], place.tests[RESIDUAL] = 0.0, 0.0
+    if not (tracer.take(place) and tracer.do(curve.EXAMINE, place)):
+        return None
+    lost = np.abs(weights) @ [sensitivity(tracer, one, chord.row) for one in places]
+    return zero, place, float(apart.max() + DIGITS * np.abs(p).max() + ROWS * lost)
+
+
+def _weights(tests: np.ndarray) -> np.ndarray:
+    """Of values at points with these tests: their sum is that of the polynomial where the test is zero (Lagrange)."""
+    ratios = tests / (tests - tests[:, None] + np.diag(tests))  # 1 on the diagonal
+    return np.prod(ratios, axis=1)
