@@ -63,7 +63,7 @@ class Way:
         a = path.a
         copy(self.first, path.first)
         copy(self.first, a)
-        a.tests[curve_tests.LENGTH] = FIRST_STEP
+        a.tests[curve_tests.LENGTH], path.before[0] = FIRST_STEP, 0.0
         while passed < MOST_POINTS:
             path.counts[0] = passed
             reason, count = w.walk(b), int(path.counts[1])

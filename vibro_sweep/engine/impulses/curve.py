@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.impulses.chatter_steps import follow
-from vibro_sweep.engine.impulses.curve_path import bulges, comes_back, copy_place, keep, outside
+from vibro_sweep.engine.impulses.curve_path import bulges, comes_back, copy_place, keep, outside, remember
 from vibro_sweep.engine.impulses.curve_tests import BEFORE, LAST, LENGTH, RESIDUAL, examine, happens
 from vibro_sweep.engine.impulses.locus import (
     FIRST,
@@ -23,6 +23,7 @@ from vibro_sweep.engine.impulses.locus import (
     newton_step,
     size_of,
 )
+from vibro_sweep.engine.impulses.pairs import coarse, exchanged
 from vibro_sweep.engine.impulses.plane import move_exactly, move_to
 from vibro_sweep.engine.simd.jit import entry, jit
 
@@ -33,6 +34,7 @@ MOST_CORRECTIONS = 6
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
 BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
 EARLY = 10  # points before which a curve is not yet taken to be closed
+COARSE = 0.03  # of the longest step: to that they are shortened where they do not tell pairs of multipliers apart
 NEAR_STRONG = 0.05  # theta from 0 or pi
 LATEST, EARLIEST = 0.9, 0.4  # values of LAST and BEFORE at which another number of impacts is to be written out
 
@@ -113,6 +115,13 @@ def set_up(f, c, place, b):
 
 
 @jit
+def hides(path, a, b, length):
+    """Whether two pairs, or one twice, may cross the unit circle between two points: their test does not tell."""
+    here, there = a.multipliers, b.multipliers
+    return exchanged(here, there) or coarse(path.past, here, there, path.before[0], length)
+
+
+@jit
 def walk(f, c, path, place, row, b):
     """Steps from `path.a` until something happens, and why the call ends.
 
@@ -150,6 +159,11 @@ def walk(f, c, path, place, row, b):
         if not (move_to(f, place.p[FIRST], place.p[SECOND]) and set_up(f, c, place, b)):
             return FAILED
         examine(f, c, place, b)
+        if length > COARSE * path.longest and hides(path, a, place, length):
+            length *= 0.5
+            rate_again(f, a, b)
+            continue
+        remember(path, a, length)
         if bulges(path, c, a, place):  # the curve may leave and come back, and if not it goes on from here
             return LEFT
         if c.kind == TORUS and not NEAR_STRONG < place.p[THETA] < math.pi - NEAR_STRONG:

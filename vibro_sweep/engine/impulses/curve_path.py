@@ -33,12 +33,15 @@ class Path(NamedTuple):
     first: Place  # of the curve
     a: Place  # where the last step began
     record: Record
+    past: np.ndarray  # (n, 2) multipliers of the point before a
+    before: np.ndarray  # (1,) the distance from there to a; 0 where it is not known
 
 
 def new_path(most: int, K: int, n: int, longest: float, shortest: float, straight: float, box) -> Path:
     """most: points of one call."""
     record = Record(*map(np.zeros, [(most, K), (most, K), (most, K, 2), (most, 3), (most, TESTS), (most, n)]))
-    return Path(longest, shortest, straight, box, np.zeros(3, np.int64), new_place(K, n), new_place(K, n), record)
+    places, past = (new_place(K, n), new_place(K, n)), (np.zeros((n, 2)), np.zeros(1))
+    return Path(longest, shortest, straight, box, np.zeros(3, np.int64), *places, record, *past)
 
 
 @jit
@@ -56,6 +59,16 @@ def copy_place(a, b):
         b.tangent[i] = a.tangent[i]
     for i in range(len(a.tests)):
         b.tests[i] = a.tests[i]
+    for i in range(len(a.h)):
+        b.multipliers[i, 0], b.multipliers[i, 1] = a.multipliers[i, 0], a.multipliers[i, 1]
+
+
+@jit
+def remember(path, a, length):
+    """Keep a as the point before the next one, at this distance."""
+    for i in range(len(a.h)):
+        path.past[i, 0], path.past[i, 1] = a.multipliers[i, 0], a.multipliers[i, 1]
+    path.before[0] = length
 
 
 @jit

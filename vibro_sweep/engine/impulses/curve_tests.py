@@ -82,6 +82,8 @@ def pair_test(f, c, place, b):
                 left, least = i, distance
     x, y, u, v = 1.0, 0.0, 1.0, 0.0
     for i in range(n):
+        if i != left:
+            place.multipliers[i, 0], place.multipliers[i, 1] = re[i], im[i]
         u, v = u * re[i] - v * im[i], u * im[i] + v * re[i]
         for j in range(i):
             if i != left and j != left:
@@ -97,6 +99,8 @@ def examine(f, c, place, b):
     tests = place.tests
     for i in range(SIGNED):
         tests[i] = 1.0
+    for i in range(len(place.h)):
+        place.multipliers[i, 0] = place.multipliers[i, 1] = np.nan
     tests[MARGIN] = certify(f, c, place, b)
     if c.kind == STICK:
         end, reach = place.t[0] + f.P, b.tail.numbers[REACH]

@@ -56,6 +56,7 @@ class Place(NamedTuple):
     w: np.ndarray  # (S,) complex, scaled
     psi: np.ndarray  # (S,) complex, scaled
     tests: np.ndarray  # (TESTS,): see curve_tests.py
+    multipliers: np.ndarray  # (n, 2): real and imaginary parts of those of the test PAIR; NaN where they are not known
 
 
 class Bench(NamedTuple):
@@ -94,7 +95,7 @@ TERMS = 10  # of a power series in z and z*, to third order
 def new_place(K: int, n: int) -> Place:
     S = 2 * K + n
     real = [np.zeros(shape) for shape in (K, K, n, 3, S + 3)]
-    return Place(*real, np.zeros(S, complex), np.zeros(S, complex), np.zeros(TESTS))
+    return Place(*real, np.zeros(S, complex), np.zeros(S, complex), np.zeros(TESTS), np.full((n, 2), np.nan))
 
 
 def new_bench(K: int, n: int) -> Bench:
