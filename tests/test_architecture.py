@@ -22,6 +22,7 @@ TABLES = {
     "bifurcations",
     "branch_file",
     "catalogue",
+    "dimensions",
     "exponents",
     "files",
     "observables",
@@ -31,6 +32,7 @@ TABLES = {
     "refusals",
     "state",
     "status",
+    "trajectory_variables",
     "units",
 }  # of model/: names and labels, and checks of arguments
 

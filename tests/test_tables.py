@@ -15,10 +15,12 @@ from vibro_sweep.driver.blocks import plan_of
 from vibro_sweep.engine.records import POINT, new_results, result_of
 from vibro_sweep.engine.simd.jit import ENGINE, SHARED
 from vibro_sweep.model.catalogue import AXES
+from vibro_sweep.model.dimensions import DIMENSIONS
 from vibro_sweep.model.exponents import CERTAIN
-from vibro_sweep.model.observables import DIMENSIONS, TRAJECTORY, VARIABLES, WORDS, asked_for
+from vibro_sweep.model.observables import VARIABLES, WORDS, asked_for
 from vibro_sweep.model.parameters import BY_NAME, NAMES
 from vibro_sweep.model.state import state
+from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.model.units import unit_in
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.creating import skeleton_of

@@ -4,11 +4,13 @@ import inspect
 from collections.abc import Iterable, Iterator
 
 from vibro_sweep.model.catalogue import NUMBERS
+from vibro_sweep.model.dimensions import DIMENSIONS
 from vibro_sweep.model.models import DEFAULT, MODELS
-from vibro_sweep.model.observables import DIMENSIONS, TRAJECTORY, VARIABLES, WORDS
+from vibro_sweep.model.observables import VARIABLES, WORDS
 from vibro_sweep.model.parameters import FOLLOWING, PARAMETERS
 from vibro_sweep.model.state import INITIAL
 from vibro_sweep.model.status import STATUSES
+from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.plotting import KINDS
 from vibro_sweep.scene import json_schema
 

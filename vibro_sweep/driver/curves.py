@@ -17,7 +17,8 @@ from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, so
 from vibro_sweep.driver.planes import edges_in_file, plane_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.usable import is_branch, is_curve, is_probe
-from vibro_sweep.model.branch_file import CHART, OF_EDGES, columns_of
+from vibro_sweep.model.branch_file import CHART, columns_of
+from vibro_sweep.model.curve_columns import OF_EDGES
 from vibro_sweep.model.files import file_to_write
 from vibro_sweep.scene import Continuation
 from vibro_sweep.scene.continuation import BY_BRANCHES

@@ -12,7 +12,8 @@ from vibro_sweep.analysis.branches import seeds
 from vibro_sweep.analysis.curves import curve_search
 from vibro_sweep.analysis.curves import flat as curves
 from vibro_sweep.model.bifurcations import EDGES, REASONS
-from vibro_sweep.model.branch_file import CHART, WINDOWS, Column, columns
+from vibro_sweep.model.branch_file import CHART, WINDOWS, columns
+from vibro_sweep.model.column import Column
 
 Arrays = Mapping[str, np.ndarray]
 

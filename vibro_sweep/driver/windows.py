@@ -18,10 +18,11 @@ from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.usable import is_window
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import REASONS
-from vibro_sweep.model.branch_file import UNSEEN, WINDOWS, columns_of
+from vibro_sweep.model.branch_file import WINDOWS, columns_of
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.state import state
+from vibro_sweep.model.window_columns import UNSEEN
 from vibro_sweep.progress import given_or_bar
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.arrays import Contents

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.observables import OF_AN_ORBIT, dimensions
+from vibro_sweep.model.dimensions import dimensions
+from vibro_sweep.model.observables import OF_AN_ORBIT
 from vibro_sweep.model.parameters import NAMES
 
 

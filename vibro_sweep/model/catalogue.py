@@ -3,10 +3,12 @@
 A name means the same in all models, and has one symbol and one label.
 """
 
+from vibro_sweep.model.dimensions import DIMENSIONS, Dimension
 from vibro_sweep.model.models import MODELS
-from vibro_sweep.model.observables import DIMENSIONS, Dimension, Variable, variables
+from vibro_sweep.model.observables import variables
 from vibro_sweep.model.parameters import B_LEFT, B_RIGHT, B_STAR, PAPER, Parameter
 from vibro_sweep.model.state import INITIAL, MOST_MASSES
+from vibro_sweep.model.variable import Variable
 
 # Of all oscillators; the paper's say what a name means.
 OF_A_SYSTEM: dict[str, Parameter] = {one.name: one for one in PAPER}

@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibro_sweep.model.exponents import CERTAIN
-from vibro_sweep.model.state import coordinates, state
+from vibro_sweep.model.state import coordinates
 from vibro_sweep.model.status import NOT_COMPUTED, STATUSES
-
-TRAJECTORY = "trajectory"  # the scene's key that asks for some variables; all other keys below are words of `observe`
+from vibro_sweep.model.trajectory_variables import of_a_trajectory
+from vibro_sweep.model.variable import Variable
 
 
 class Word(NamedTuple):
@@ -37,84 +37,12 @@ WORDS = {
 }  # fmt: skip
 
 
-class Dimension(NamedTuple):
-    """A variable's own dimension, with its coordinate; without `extent` the scene decides how long it is."""
-
-    label: str
-    text: str
-    extent: int | None = None
-    units: str = "1"
-
-    @property
-    def long_name(self) -> str:
-        return self.label
-
-
-def averaged(masses: int) -> tuple[str, ...]:
-    """What all orbits of an attractor have in common."""
-    return (*state(masses), "impacts_right", "impacts_left", "lyapunov")
-
-
-@functools.cache
-def dimensions(masses: int) -> dict[str, Dimension]:
-    """The dimensions that variables may have, for so many masses."""
-    return {
-        "start": Dimension("start", "start of the orbit"),
-        "sample": Dimension("section point", "section point, counted from the end of the transient"),
-        "exponent": Dimension("exponent", "Lyapunov exponent, counted from the largest", 2 * masses),
-        "multiplier": Dimension("multiplier", "Floquet multiplier, counted from that of largest modulus", 2 * masses),
-        "averaged": Dimension(
-            "average of", "section points, impacts in a forcing period, lambda_1", len(averaged(masses))
-        ),
-        "elapsed": Dimension("forcing periods recorded", "forcing periods since the end of the transient"),
-        "time": Dimension("time t/T", "forcing periods since the last section point"),
-        "trajectory_section": Dimension("time t/T", "forcing periods since the last section point"),
-        "trajectory_impact": Dimension("impact", "impact along the orbit, counted from the last section point"),
-    }
-
-
-DIMENSIONS = dimensions(2)  # of the paper's oscillator
-
-
-class Variable(NamedTuple):
-    """A variable of a file."""
-
-    name: str
-    asked_by: tuple[str, ...]  # words of `observe`, or TRAJECTORY; of none: it is always there
-    label: str  # short: of an axis; `long_name` in the file
-    text: str  # `description` in the file
-    dimensions: tuple[str, ...] = ()
-    dtype: str = "f8"
-    units: str = "1"
-    missing: float | None = None  # by default NaN, or -1 of integers
-    in_kernel: bool = True  # a field of the record that kernels fill for each orbit
-    at_impacts: bool = False  # only of sections at impacts
-    symbol: str = ""  # TeX, where it has one
-    attributes: dict[str, Any] = {}  # noqa: RUF012  # more attributes in the file; read only
-
-    @property
-    def long_name(self) -> str:
-        return self.label
-
-    @property
-    def fill(self) -> float:
-        """Its value where nothing is computed."""
-        if self.missing is not None:
-            return self.missing
-        return np.nan if np.dtype(self.dtype).kind == "f" else -1
-
-
 def _section(name: str, label: str, text: str, **more: Any) -> Variable:
     return Variable(name, ("section",), label, text, ("sample",), in_kernel=False, **more)
 
 
 def _attractor(name: str, label: str, text: str, dtype: str = "f8") -> Variable:
     return Variable(name, ("attractors",), label, text, (), dtype, in_kernel=False)
-
-
-def _trajectory(name: str, label: str, text: str, dimension: str | None, dtype: str = "f8", **more: Any) -> Variable:
-    dimensions = (dimension,) if dimension else ()
-    return Variable(f"trajectory_{name}", (TRAJECTORY,), label, text, dimensions, dtype, in_kernel=False, **more)
 
 
 _EXPONENTS, _MULTIPLIERS, _IMPACTS, _ENERGY = ("lyapunov",), ("multipliers",), ("impacts",), ("energy",)
@@ -136,7 +64,7 @@ def variables(masses: int, gap: bool = False) -> tuple[Variable, ...]:
         *([_section(GAP, "gap g", "gap at the section", symbol="g", units="m")] if gap else []),
         *_OF_ANY,
         *_energies(masses),
-        *_of_a_trajectory(masses, gap),
+        *of_a_trajectory(masses, gap),
         _STATUS,
     )
 
@@ -234,53 +162,6 @@ def _energies(masses: int) -> tuple[Variable, ...]:
             for of, _, _, what, units in coordinates(masses)
         ),
     )  # fmt: skip
-
-
-def _of_a_trajectory(masses: int, gap: bool) -> tuple[Variable, ...]:
-    """The continuous motion, its sections and its impacts."""
-    along, at_impacts = "time", "trajectory_impact"
-    other = coordinates(masses) if gap else coordinates(masses)[2:]  # at an impact x1 is at the stop, v1 jumps
-    speed, mass = ("gap velocity", "of the gap") if gap else ("velocity v1", "of mass 1")
-    return (
-        *(
-            variable
-            for name, _, label, text, units in coordinates(masses)
-            for variable in (
-                _trajectory(name, label, f"{text} along the orbit", along, units=units),
-                _trajectory(
-                    f"section_{name}", label, f"{text} at the section t = 0 mod T along the orbit",
-                    "trajectory_section", units=units,
-                ),
-            )
-        ),
-        _trajectory(
-            "impacts", "impacts", "number of impacts along the orbit; of too many the fastest are stored", None, "i8",
-        ),
-        _trajectory(
-            "impact_time", "time of impact, t/T", "forcing periods from the last section point to an impact",
-            at_impacts,
-        ),
-        _trajectory(
-            "impact_side", "stop of impact", "stop of an impact: 1 right, -1 left; 0: none", at_impacts, "i1",
-            missing=0,
-        ),
-        _trajectory(f"impact_{before(gap)}", f"{speed} before impact", f"velocity {mass} before an impact", at_impacts,
-            units="m s-1",
-        ),
-        _trajectory(
-            f"impact_{before(gap)}_after", f"{speed} after impact", f"velocity {mass} after an impact", at_impacts,
-            units="m s-1",
-        ),
-        *(
-            _trajectory(f"impact_{name}", f"{label} at impact", f"{text} at an impact", at_impacts, units=units)
-            for name, _, label, text, units in other
-        ),
-    )  # fmt: skip
-
-
-def before(gap: bool) -> str:
-    """The coordinate that an impact reverses."""
-    return "gap_velocity" if gap else "v1"
 
 
 VARIABLES = variables(2)  # of the paper's oscillator

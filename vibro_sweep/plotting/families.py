@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.model.observables import averaged
+from vibro_sweep.model.dimensions import averaged
 from vibro_sweep.plotting.style import INK, LEFT, NOT_COMPUTED, RIGHT
 
 _LAST = averaged(0)  # they stand after the coordinates

@@ -5,8 +5,8 @@ import h5py
 import numpy as np
 
 from vibro_sweep.model import catalogue
-from vibro_sweep.model.observables import Variable
 from vibro_sweep.model.refusals import cut
+from vibro_sweep.model.variable import Variable
 
 # the attributes of a file that hold a number, or a word, for all points (`numbers.attributes`)
 NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "record")

@@ -10,9 +10,10 @@ import numpy as np
 
 from vibro_sweep.model.built import stored_names
 from vibro_sweep.model.catalogue import AXES
-from vibro_sweep.model.observables import Dimension, Variable
+from vibro_sweep.model.dimensions import Dimension
 from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.model.units import unit_in
+from vibro_sweep.model.variable import Variable
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import numbers
 from vibro_sweep.store.attributes import MATRIX, set_text

@@ -9,8 +9,11 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
-from vibro_sweep.model.branch_file import BRANCHES, CHART, OF_EDGES, RAGGED, UNSEEN, WINDOWS, Column, columns
+from vibro_sweep.model.branch_file import BRANCHES, CHART, RAGGED, WINDOWS, columns
+from vibro_sweep.model.column import Column
+from vibro_sweep.model.curve_columns import OF_EDGES
 from vibro_sweep.model.refusals import cut, shown
+from vibro_sweep.model.window_columns import UNSEEN
 from vibro_sweep.store.attributes import check_dataset, text, texts
 
 KINDS = (BRANCHES, WINDOWS, CHART)

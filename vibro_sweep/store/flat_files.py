@@ -7,7 +7,8 @@ import h5py
 import numpy as np
 
 from vibro_sweep import __version__
-from vibro_sweep.model.branch_file import RAGGED, Column
+from vibro_sweep.model.branch_file import RAGGED
+from vibro_sweep.model.column import Column
 from vibro_sweep.store import heap, parts
 from vibro_sweep.store.attributes import set_text, set_texts
 from vibro_sweep.store.creating import now

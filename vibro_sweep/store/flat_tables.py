@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVES, EDGES, KINDS, REASONS, TYPES
-from vibro_sweep.model.branch_file import UNSEEN
+from vibro_sweep.model.window_columns import UNSEEN
 from vibro_sweep.model.window_families import families
 
 LONGEST_WORD = 12  # letters of an itinerary that is printed as it is

@@ -4,17 +4,12 @@ import math
 
 import numpy as np
 
+from vibro_sweep.model.dimensions import DIMENSIONS, averaged
+from vibro_sweep.model.dimensions import dimensions as dimensions_of
 from vibro_sweep.model.exponents import RUNNING, periods_read
-from vibro_sweep.model.observables import (
-    DIMENSIONS,
-    TRAJECTORY,
-    Variable,
-    asked_for,
-    averaged,
-)
-from vibro_sweep.model.observables import (
-    dimensions as dimensions_of,
-)
+from vibro_sweep.model.observables import asked_for
+from vibro_sweep.model.trajectory_variables import TRAJECTORY
+from vibro_sweep.model.variable import Variable
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import numbers
 

@@ -13,7 +13,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from vibro_sweep.model.branch_file import Column
+from vibro_sweep.model.column import Column
 from vibro_sweep.store import appending, names, parts
 from vibro_sweep.store.appending import HeldPart
 from vibro_sweep.store.attributes import text

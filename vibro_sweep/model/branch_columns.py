@@ -1,0 +1,128 @@
+"""What files hold of branches, declared once: names, dimensions, types, units, texts, words."""
+
+from vibro_sweep.model.bifurcations import BRANCH_STATUSES, CRITICALITIES, KINDS, STATUSES, TYPES
+from vibro_sweep.model.column import OF_PARAMETER, Column
+
+OF_BRANCHES = (
+    Column("branch_period", ("branch",), "i4", "period in T", "period of the orbits in forcing periods"),
+    Column("branch_symmetric", ("branch",), "i1", "symmetric", "whether x(t + period T/2) = -x(t)", "1", ("no", "yes")),
+    Column("branch_closed", ("branch",), "i1", "closed", "whether it comes back to itself", "1", ("no", "yes")),
+    Column(
+        "branch_row_size", ("branch",), "i4", "points", "number of points of the branch, which lie one after another"
+    ),
+    Column("branch_impacts", ("branch",), "i4", "impacts", "impacts of the orbit at each point of the branch"),
+    Column("branch_special", ("branch",), "i4", "special points", "number of its special points, one after another"),
+    Column(
+        "branch_status",
+        ("branch",),
+        "i1",
+        "status",
+        "whether it was followed to both ends; of one that could not be followed at all its orbit is the only point",
+        "1",
+        BRANCH_STATUSES,
+    ),
+    Column(
+        "branch_begins", ("branch",), "i4", "begin", "index of the special point that it begins at", index_in="special"
+    ),
+    Column("branch_ends", ("branch",), "i4", "end", "index of the special point that it ends at", index_in="special"),
+    Column(
+        "branch_origin", ("branch",), "i4", "origin", "index of the point that it was followed from", index_in="point"
+    ),
+    Column(
+        "branch_parent",
+        ("branch",),
+        "i4",
+        "parent",
+        "index of the branch from which it was reached",
+        index_in="branch",
+        optional=True,
+    ),
+    Column(
+        "branch_parent_special", ("branch",), "i4", "parent's point", "index of the special point it was reached at"
+    ),
+    Column("branch_generation", ("branch",), "i4", "generation", "special points between it and the first branches"),
+    Column(
+        "multiplier_re",
+        ("point", "multiplier"),
+        "f8",
+        "multiplier, real part",
+        "of Floquet multipliers over the whole period",
+    ),
+    Column(
+        "multiplier_im",
+        ("point", "multiplier"),
+        "f8",
+        "multiplier, imaginary part",
+        "of Floquet multipliers; of a pair the positive one first",
+    ),
+    Column("unstable", ("point",), "i4", "unstable multipliers", "number of multipliers outside the unit circle"),
+    Column("margin", ("point",), "f8", "margin", "least distance of a turning point of the gap from its stop", "m"),
+    Column(
+        "min_impact_speed",
+        ("point",),
+        "f8",
+        "smallest impact speed",
+        "smallest speed of the gap before an impact; infinite without impacts",
+        "m s-1",
+    ),
+    Column(
+        "residual", ("point",), "f8", "residual", "largest jump of the gap between two flights, relative to its size"
+    ),
+    Column("status", ("point",), "i1", "status", "whether the point is a motion", "1", STATUSES),
+    Column(
+        "impact_t", ("impact",), "f8", "impact time", "of each impact of each point, continuous along a branch", "s"
+    ),
+    Column("impact_side", ("impact",), "i1", "stop", "+1: right, R of the itinerary; -1: left, L"),
+    Column("impact_v", ("impact",), "f8", "impact velocity", "of the gap before the impact", "m s-1"),
+    Column(
+        "impact_t_off",
+        ("impact",),
+        "f8",
+        "end of the rest",
+        "after an impact at which the mass rests; NaN where it does not",
+        "s",
+    ),
+    Column("special_type", ("special",), "i1", "type", "of a special point", "1", tuple(one.name for one in TYPES)),
+    Column(
+        "special_value",
+        ("special", "parameter"),
+        "f8",
+        "parameters",
+        "the numbers `parameters` at the special point",
+        OF_PARAMETER,
+    ),
+    Column("special_branch", ("special",), "i4", "branch", "index of the branch that it lies on", index_in="branch"),
+    Column(
+        "special_point", ("special",), "i4", "point", "index of the point that it is", index_in="point", optional=True
+    ),
+    Column("special_stop", ("special",), "i1", "stop", "of a graze: +1 right, -1 left; 0: no graze"),
+    Column("special_kind", ("special",), "i1", "kind", "of a graze", "1", KINDS),
+    Column(
+        "special_impact", ("special",), "i4", "impact", "of a graze: index of the impact that vanishes; -1: one appears"
+    ),
+    Column(
+        "special_direction",
+        ("special",),
+        "i1",
+        "direction",
+        "of a graze: +1 where the orbit without the impact exists at larger values, -1 at smaller ones",
+    ),
+    Column(
+        "special_criticality",
+        ("special",),
+        "i1",
+        "criticality",
+        "of a flip, pitchfork or Neimark-Sacker point",
+        "1",
+        CRITICALITIES,
+    ),
+    Column("special_error", ("special",), "f8", "error", "own estimate of the parameter's error", OF_PARAMETER),
+)
+
+BRANCH_SECTIONS = Column(
+    "branch_sections",
+    ("branch",),
+    "i4",
+    "section states",
+    "section states of each point: those of the orbit, then those of its mirror image",
+)

@@ -1,0 +1,76 @@
+"""What files hold of curves, along which orbits bifurcate, and of the edges of planes at which they begin."""
+
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES, EDGES
+from vibro_sweep.model.branch_columns import OF_BRANCHES
+from vibro_sweep.model.column import OF_PARAMETER, Column
+
+_SHARED = {
+    *("branch_period", "branch_symmetric", "branch_closed", "branch_row_size", "branch_impacts", "branch_special"),
+    *("branch_begins", "branch_ends", "branch_parent", "branch_parent_special", "branch_generation"),
+    *("multiplier_re", "multiplier_im", "margin", "min_impact_speed", "residual", "status"),
+    *("impact_t", "impact_side", "impact_v", "special_value", "special_branch", "special_point", "special_error"),
+}
+
+OF_CURVES = (  # branches are curves here, along which an orbit bifurcates
+    Column("branch_type", ("branch",), "i1", "type", "what happens along the curve", "1", CURVES),
+    Column(
+        "branch_grazing",
+        ("branch",),
+        "i4",
+        "grazing impact",
+        "index of the impact without speed along a graze curve; of a symmetric orbit, of its first half",
+    ),
+    *(column for column in OF_BRANCHES if column.name in _SHARED),
+    Column(
+        "unstable",
+        ("point",),
+        "i4",
+        "unstable multipliers",
+        "number of multipliers outside the unit circle, beside those that the curve is about; 0: it bounds attractors",
+    ),
+    Column(
+        "b_star",
+        ("point",),
+        "f8",
+        "grazing clearance",
+        "b at which the free motion grazes both stops; NaN: no such",
+        "m",
+    ),
+    Column(
+        "special_type",
+        ("special",),
+        "i1",
+        "type",
+        "of codimension two",
+        "1",
+        tuple(one.name for one in CODIMENSION_TWO),
+    ),
+    Column(
+        "special_touches", ("special",), "i1", "touches", "whether a flight touches a stop there", "1", ("no", "yes")
+    ),
+)
+
+
+OF_EDGES = (  # of curves that begin at the edges of a plane
+    Column(
+        "edge_from",
+        ("edge", "parameter"),
+        "f8",
+        "from",
+        "the numbers `parameters` at one point of the sweep",
+        OF_PARAMETER,
+    ),
+    Column(
+        "edge_to", ("edge", "parameter"), "f8", "to", "at its neighbour, whose orbit has another period", OF_PARAMETER
+    ),
+    Column("edge_reason", ("edge",), "i1", "reason", "why the two differ", "1", tuple(EDGES)),
+    Column(
+        "edge_curve",
+        ("edge",),
+        "i4",
+        "curve",
+        "index of the curve that passes between them",
+        index_in="branch",
+        optional=True,
+    ),
+)
