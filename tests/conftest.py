@@ -25,12 +25,12 @@ os.environ["PYTHONSAFEPATH"] = "1"
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# Two workers begin with these. One compiles the kernels of three masses and of one; the other those of the paper's
-# oscillator, what is built upon them (in one process this takes half the time), and those of branches. With the same
-# kernels to compile, both would do so at the same moment.
+# Two workers begin with these. One compiles the kernels of three masses and of two, and uses them again; the other
+# those of the paper's oscillator, what is built upon them (in one process this takes half the time), and those of
+# branches. With the same kernels to compile, both would do so at the same moment.
 FIRST = [
     f"test_{name}.py"
-    for name in ("any_oscillator", "system", "models", "from_python", "discontinuity", "energy", "continuation")
+    for name in ("any_oscillator", "system", "discontinuity", "models", "continuation", "from_python", "energy")
 ]
 
 

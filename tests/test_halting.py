@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support import path_with
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
@@ -57,7 +58,7 @@ def slow(call):
 def test_a_process_that_computes_for_hours_ends_with_ctrl_c(call):
     """Also the process: threads that went on would keep it from ending."""
     code = textwrap.dedent(BEGUN).format(call.replace("AGES", "10").replace("9_000_000", "10"), call)
-    surroundings = os.environ | {"PYTHONPATH": str(Path(__file__).parent)}
+    surroundings = os.environ | {"PYTHONPATH": path_with(Path(__file__).parent)}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=150, env=surroundings)
     assert (done.returncode, done.stdout) == (0, "answered\n"), done.stderr
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numba
 import numpy as np
 import pytest
-from support import slow_cases
+from support import path_with, slow_cases
 
 from vibro_sweep import identity
 from vibro_sweep.driver import blocks, compute
@@ -87,7 +87,7 @@ def test_a_small_kernel_tells_whether_numba_is_as_expected_inside(change, outcom
 @known
 @pytest.mark.slow
 def test_numba_by_itself_gives_the_same_numbers_but_for_rounding(tmp_path):
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": str(Path(__file__).parent)}
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": path_with(Path(__file__).parent)}
     subprocess.run([sys.executable, "-c", PLAIN, tmp_path / "plain.npz"], env=environment, check=True)
     plain, whole = np.load(tmp_path / "plain.npz"), arrays()
     assert set(plain) == set(whole) | {"identity"}

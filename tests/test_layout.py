@@ -1,18 +1,23 @@
 """Who may import whom among tests and benchmarks: what is shared stands in tests/support/ and tests/reference/."""
 
 import ast
+import functools
 import re
 
 import pytest
 from support import ROOT
 
 
+@functools.cache
 def imported(path):
+    """Names of modules."""
+    found = []
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.ImportFrom) and node.module:
-            yield node.module
+            found.append(node.module)
         elif isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found += [alias.name for alias in node.names]
+    return found
 
 
 @pytest.mark.parametrize("folder", ["tests", "benchmarks"])

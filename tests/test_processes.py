@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support import path_with
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
@@ -47,7 +48,7 @@ def numbers() -> str:
 def test_the_same_bits(options, code, tmp_path):
     script = tmp_path / "script.py"
     script.write_text(HEAD + code)
-    surroundings = os.environ | {"PYTHONPATH": str(Path(__file__).parent)}
+    surroundings = os.environ | {"PYTHONPATH": path_with(Path(__file__).parent)}
     expected = numbers()  # compiled with that, or found
     done = subprocess.run(
         [sys.executable, *options, script], capture_output=True, text=True, timeout=300, env=surroundings

@@ -60,9 +60,10 @@ def test_mirror_image_of_any(masses):
 
 
 def test_stiffly_joined_masses():
-    """Masses 2 and 3 joined by a spring k: the difference from two masses falls like 1/k.
+    """Two masses joined by a spring k: the difference from two masses falls like 1/k.
 
-    The constant force displaces the two by (0.15, 0.05), from where their coordinates are counted.
+    The constant force displaces the two by (0.15, 0.05), from where their coordinates are counted. Of the three the one
+    that strikes is not the first: with other tests of three masses they have the same kernels.
     """
     two = vs.Oscillator(
         [[1, 0], [0, 3]], [[1, -1], [-1, 3]], 0.1 * np.array([[1, -1], [-1, 3]]),
@@ -70,10 +71,10 @@ def test_stiffly_joined_masses():
     )  # fmt: skip
     hits, apart = vs.simulate(two, [-0.15, 0, -0.05, 0], 20).impacts[:5], []
     for k in (1e4, 1e6, 1e8):
-        K = np.array([[1, -1, 0], [-1, 3 + k, -k], [0, -k, k]])
-        C = 0.1 * np.array([[1, -1, 0], [-1, 3, 0], [0, 0, 0]])
+        K = np.array([[3 + k, -1, -k], [-1, 1, 0], [-k, 0, k]])
+        C = 0.1 * np.array([[3, -1, 0], [-1, 1, 0], [0, 0, 0]])
         three = vs.Oscillator(
-            np.diag([1.0, 1, 2]), K, C, along=[1, 0, 0], force=[1, 0, 0], constant=[0.1, 0, 0],
+            np.diag([1.0, 1, 2]), K, C, along=[0, 1, 0], force=[0, 1, 0], constant=[0, 0.1, 0],
             omega=0.7, tau=0.2, b=0.3, R=0.8,
         )  # fmt: skip
         apart.append(np.abs(vs.simulate(three, np.zeros(6), 20).impacts[:5]["t"] - hits["t"]).max())

@@ -139,7 +139,7 @@ def on_the_other_stop(hits, i):
     ],
 )  # fmt: skip
 def test_the_comparison_finds_a_missing_and_an_invented_impact(wrong):
-    system, state, _ = drawn(4)
+    system, state, _ = drawn(15)
     all_hits = vs.simulate(system, state, 4).impacts
     hits, end = all_hits[:6], all_hits["t"][5:7].mean()
     assert judged(system, state, hits, 4, end)["compared"] == 6
@@ -167,13 +167,14 @@ def test_the_comparison_counts_a_graze_only_where_the_data_decide_it(share, coun
 
 
 def test_a_few_oscillators():
-    """Among them those whose stiff masses carry most of the force, and those with far stops."""
-    hold([compared(seed) for seed in (4, 54, 99)])
+    """Among them those whose stiff masses carry most of the force, and those with far stops; all of three masses with a
+    constant force, as other tests have them, and so with the same kernels."""
+    hold([compared(seed) for seed in (0, 15, 47)])
 
 
 @pytest.mark.slow
 def test_thirty_oscillators():
-    hold([compared(seed) for seed in range(30)])
+    hold([compared(seed) for seed in (*range(30), 54, 99)])
 
 
 @pytest.mark.soak
