@@ -12,7 +12,15 @@ from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
 from vibro_sweep.engine.motion.orbits import add_count, keep_start, know, take_off, take_samples
-from vibro_sweep.engine.motion.scan import careful_state, first_suspect, is_inside, open_cell, state_at, suspect_state
+from vibro_sweep.engine.motion.scan import (
+    careful_state,
+    first_suspect,
+    is_inside,
+    next_watched,
+    open_cell,
+    state_at,
+    suspect_state,
+)
 from vibro_sweep.engine.motion.section import end_period, end_period_here
 from vibro_sweep.engine.motion.strike import clear_counts, strike
 from vibro_sweep.engine.motion.together import flight_of, records_of, stops_of
@@ -134,7 +142,7 @@ def seek(e, seeking, readings):
             if seeking >> i & 1:
                 o = e.orbits[i]
                 if sampled:
-                    o.suspect = o.cell
+                    o.suspect = next_watched(flight_of(e, o), o, records_of(e, o).times)
                 else:
                     glide(e, o, flight_of(e, o), readings)
         for i in range(LANES):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.engine.simd.jit import aside, inline, jit
 from vibro_sweep.engine.simd.lanes import bits, lowest, number, state_and_rest
 from vibro_sweep.engine.simd.memory import head, row, sixteen, widened
 from vibro_sweep.engine.tables.flight import CHUNK
@@ -41,6 +41,14 @@ def first_suspect(f, o):
             return min((p + lowest(outside)) // 2, cells)
         p += CHUNK
     return cells
+
+
+@aside
+def next_watched(f, o, times):
+    """The next suspect cell, or one before it in which there is a sample to take."""
+    i = o.samples_taken
+    sampled = int(times[i, 0]) if i < len(times) else o.cells
+    return o.cell if sampled <= o.cell else min(sampled, first_suspect(f, o))
 
 
 @inline
