@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from support.pictures import exponents, write
 
+import vibro_sweep as vs
 from vibro_sweep import plotting
 from vibro_sweep.plotting import Look, curves, labels
 from vibro_sweep.plotting.curves import Drawn, plot_curves
@@ -106,6 +107,29 @@ def test_ticks_of_a_colour_bar():
         assert not overlaps(bar.ax.get_xticklabels()) and 3 <= len(told) <= 7 and "0.00" in told
         thinned += len(told) < 7
     assert 4 < thinned < 14
+
+
+def test_a_colour_bar_keeps_the_power_of_ten_of_its_ticks():
+    fig = Figure(figsize=(2, 2), layout="constrained")
+    ax = fig.subplots()
+    image = ax.pcolorfast(np.zeros((3, 3)), vmin=-3.5e-6, vmax=3.5e-6)
+    bar = fig.colorbar(image, ax=ax, location="bottom", ticks=np.arange(-35, 36, 5) * 1e-7)
+    labels.arrange(fig)
+    labels.thin_ticks(bar)
+    fig.draw_without_rendering()
+    assert len(bar.ax.get_xticks()) < 15 and bar.ax.xaxis.get_offset_text().get_text() == "1e\u22126"
+
+
+def test_small_numbers_have_room_in_a_narrow_panel():
+    """Of 0.00012 m zeros would be most of a label."""
+    system = vs.Oscillator.named(
+        "chain", m=[2, 8], k=[0, 2000, 10_000], c=[0, 5, 25], force=[0.3, 0], omega=26.0, R=0.7, b=0.00012, units="SI"
+    )
+    fig = vs.simulate(system, np.zeros(4), 20).plot(width=85)
+    fig.draw_without_rendering()
+    for ax in fig.axes:
+        assert not overlaps(ax.get_xticklabels())
+    assert fig.axes[0].xaxis.get_offset_text().get_text() == "1e\u22124"
 
 
 def test_names_cover_neither_each_other_nor_marks():

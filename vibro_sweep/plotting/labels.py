@@ -109,7 +109,9 @@ def thin_ticks(bar, first: float = 0.0) -> None:
             kept.append(i)
     if len(kept) < len(places):
         kept.sort()
+        power = bar.ax.xaxis.get_major_formatter().get_offset()  # of ten, by which all labels are to be multiplied
         bar.set_ticks(places[kept], labels=[texts[i].get_text() for i in kept])
+        bar.ax.xaxis.get_major_formatter().set_offset_string(power)
 
 
 def legend_below(fig, handles, most: int, grow: bool = False, **style) -> None:

@@ -23,6 +23,7 @@ STYLE = {
     "legend.fontsize": 8,
     "figure.titlesize": 9,
     "axes.linewidth": 0.6,
+    "axes.formatter.limits": (-3, 6),  # numbers below 0.01 by a power of ten: their zeros have no room in small panels
     "xtick.major.width": 0.6,
     "ytick.major.width": 0.6,
     "lines.linewidth": 0.8,
