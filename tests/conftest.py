@@ -30,7 +30,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 # branches. With the same kernels to compile, both would do so at the same moment.
 FIRST = [
     f"test_{name}.py"
-    for name in ("any_oscillator", "system", "discontinuity", "models", "continuation", "from_python", "energy")
+    for name in ("any_oscillator", "system", "discontinuity", "models", "energy", "continuation", "from_python")
 ]
 
 

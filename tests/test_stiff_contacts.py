@@ -139,7 +139,7 @@ def on_the_other_stop(hits, i):
     ],
 )  # fmt: skip
 def test_the_comparison_finds_a_missing_and_an_invented_impact(wrong):
-    system, state, _ = drawn(15)
+    system, state, _ = drawn(38)
     all_hits = vs.simulate(system, state, 4).impacts
     hits, end = all_hits[:6], all_hits["t"][5:7].mean()
     assert judged(system, state, hits, 4, end)["compared"] == 6
