@@ -20,18 +20,19 @@ from vibro_sweep.analysis.curves.continuation import first_of
 from vibro_sweep.analysis.curves.start import Start, start_at
 from vibro_sweep.analysis.curves.tracer import LONGEST_STEP, Tracer, copy
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses import curve_tests, locus
+from vibro_sweep.engine.continuation import curve_tests
+from vibro_sweep.engine.continuation.workspace import new_place
 
 ROUNDS = 5
 PIECES = 40  # a step is so much shorter than usual
-BOX = ((3, 9), (0.58, 0.68))  # b, omega
+BOX = ((0.01, 9), (0.58, 0.68))  # b, omega
 
 
 def speed(start: Start, names, box) -> tuple[float, float, int]:
     """Points per second, corrections for each, and how many impacts there are in the equations."""
     tracer, first = first_of(Tracer(start, names, box))
     tracer.path = tracer.path._replace(longest=LONGEST_STEP / PIECES)
-    place, best, corrections = locus.new_place(tracer.K, tracer.n), 0.0, 0.0
+    place, best, corrections = new_place(tracer.K, tracer.n), 0.0, 0.0
     for _ in range(ROUNDS):
         for aim in (tracer.path.first, tracer.path.a):
             copy(first, aim)

@@ -15,7 +15,7 @@ from vibro_sweep.analysis.curves import born
 from vibro_sweep.analysis.curves.curve_points import others_outside
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.periodic.orbit import orbit_of
-from vibro_sweep.engine.impulses.locus import TORUS
+from vibro_sweep.engine.continuation.conditions import TORUS
 
 BOXES = {("b", "omega"): ((0.3, 9), (0.5, 0.8)), ("b", "R"): ((0.3, 9), (0.3, 0.99))}
 

@@ -7,9 +7,7 @@ from support.random_switching import attractor
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.curves import chord
-from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.curves.tracer import Tracer
-from vibro_sweep.engine.impulses import curve
 
 SEED = [1, 840]
 
@@ -45,17 +43,3 @@ def test_searches_end_where_rounding_of_the_tests_begins(graze, monkeypatch):
     for one, other in zip(*found, strict=True):
         for name, value in one.parameters.items():
             assert abs(value - other.parameters[name]) <= one.error + other.error
-
-
-def test_elimination_leaves_zeros_alone(graze):
-    """Newton's step is that of the dense equations, and no factor but those next to the diagonal is made."""
-    names, b, omega = ("b", "omega"), graze.parameters["b"], graze.orbit.system.omega
-    tracer = Tracer(start_at(graze, names), names, ((0.9 * b, 1.1 * b), (0.95 * omega, 1.05 * omega)))
-    place = tracer.first()
-    row, size = tracer.row_of(place.tangent), tracer.size
-    tracer.take(place)
-    tracer.do(curve.CORRECT, place, row)
-    dense, last = np.vstack([tracer.bench.J[: size - 1, :size], row]), np.eye(size)[-1]
-    np.testing.assert_allclose(place.tangent[:size], np.linalg.solve(dense, last), rtol=0, atol=1e-11)
-    below = np.tril(tracer.bench.matrix[:size, :size], -1)
-    assert 0 < np.count_nonzero(below) <= (tracer.n + 2) * size

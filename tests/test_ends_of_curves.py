@@ -8,7 +8,7 @@ from support.random_branches import attractors, random_oscillator
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.curves import tracer, way
-from vibro_sweep.analysis.curves.oscillators import BEYOND, Oscillators
+from vibro_sweep.analysis.curves.oscillators import BEYOND, Oscillators, Units
 from vibro_sweep.model.linear import family_of
 
 NAMES, BOX = ("b", "omega"), ((0.3, 9), (0.5, 0.8))
@@ -142,7 +142,7 @@ def test_a_curve_that_leaves_the_box_within_a_step_ends_there(symmetric_branch):
 
 def test_polynomials_stop_before_a_frequency_of_zero():
     """There is no forcing period; a curve in a wide box ended with an error where they were fitted anew."""
-    (plane,) = Oscillators(family_of(PAPER), NAMES, 2, 0.0).around((3.0, 0.55), (30.0, 1.0))
+    (plane,) = Oscillators(family_of(PAPER), NAMES, 2, Units(1.0, 1.0)).around((3.0, 0.55), (30.0, 1.0))
     assert 0 < BEYOND * plane["reach"][1] < 0.55
 
 

@@ -29,14 +29,14 @@ from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.branches.way import stop_and_impact
-from vibro_sweep.analysis.curves.pair import rates_of_pair, second_order
+from vibro_sweep.analysis.curves.pair import in_time, rates_of_pair, second_order
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.curve_tests import TOUCHING
-from vibro_sweep.engine.impulses.locus import THETA, Place
+from vibro_sweep.engine.continuation.curve_tests import TOUCHING
+from vibro_sweep.engine.continuation.workspace import THETA, Place
 
 AMPLITUDES = (0.01, 0.005, 0.0025, 0.00125, 0.02, 0.04)  # in the units of a curve, in the order in which they are tried
 REACH = 0.2  # of the parameters around the point, relative
@@ -100,9 +100,8 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
     place = tracer.first()
     if place is None:
         return None
-    w, K = place.w * tracer.curve.unit[: tracer.S], tracer.K
-    largest = place.w[np.argmax(np.abs(place.w[: 2 * K]))]
-    factor = amplitude / largest
+    K, critical = tracer.K, place.v[:, -2:].T.ravel()  # of phases and jumps
+    w, factor = critical * in_time(tracer, place), amplitude / critical[np.argmax(np.abs(critical))]
     if count == 4:
         found = _quarter(tracer, place, abs(factor), name, sign)
         if found is None:
@@ -122,7 +121,7 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
         mu = parent.solution.multipliers
         pair = mu[np.argmin(np.where(mu.imag > 1e-6, np.abs(np.abs(mu) - 1), np.inf))]
         return Entry(Start(name, child, theta=abs(float(np.angle(pair**2)))), change, None)
-    across = int(np.argmin(np.abs(place.tangent[tracer.S : tracer.S + 2])))
+    across = int(np.argmin(np.abs(place.tangent_p[:2])))
     found = _with_amplitude(child, change, names[across], values[across])
     theta = found and _angle_near_one(found)
     return Entry(Start(name, found, theta=theta), change, None) if theta else None
@@ -151,10 +150,9 @@ def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
     """The point of the curve with the amplitude of the guess, if it is near."""
     names, values = tuple(special.parameters), np.array(list(special.parameters.values()))
     tracer = Tracer(guess.start, names, box_around(special))
-    row = np.zeros(tracer.size)
-    row[: len(guess.change)] = guess.change / tracer.curve.unit[: len(guess.change)]
     place = tracer.guess()
-    place = place and tracer.settle(place, row / np.linalg.norm(row))
+    row = None if place is None else np.append(guess.change / in_time(tracer, place), np.zeros(3))
+    place = place and tracer.settle(place, tracer.unit_row(row))
     if place is None:
         return None
     far = np.abs(place.p[:2] - values) > FARTHEST * sizes_of(special.orbit._solution, names)
@@ -206,8 +204,7 @@ def _bent(child: Solution, tracer: Tracer, place: Place, z: complex, moved) -> S
 def _quarter(tracer: Tracer, place: Place, size: float, name: str, sign: int):
     """z, in units of w with |z| = size, the parameters' change, and theta (0 of a fold); None: there are none."""
     c, d, q = torus.quarter(torus.Map(tracer.solution(place)))
-    K, S = tracer.K, tracer.S
-    xi = (place.w * tracer.curve.unit[:S])[2 * K :]
+    xi = place.v[0, : tracer.n] * tracer.state_units
     scale = (q.conj() @ xi) / (q.conj() @ q)  # xi = scale q
     A = c / abs(d)
     u = _turn(A, name, sign)

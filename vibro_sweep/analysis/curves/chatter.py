@@ -1,4 +1,4 @@
-"""How many impacts of a chatter sequence are written out along a curve of sticking onsets (engine/impulses/chatter.py).
+"""How many impacts of a chatter sequence are written out along a curve of sticking onsets.
 
 The last of them must lie within the reach of the series, and not far below it: slow impacts add nothing but rounding.
 """
@@ -8,11 +8,9 @@ import numpy as np
 from vibro_sweep.analysis.branches.special import Chatter, bare
 from vibro_sweep.analysis.curves.tracer import Tracer, copied
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses import locus
-from vibro_sweep.engine.impulses.chatter import NEXT, REACH
-from vibro_sweep.engine.impulses.curve import LATEST
-from vibro_sweep.engine.impulses.locus import Place
-from vibro_sweep.model.linear import forcing_period
+from vibro_sweep.engine.continuation.chatter_sum import NEXT, REACH
+from vibro_sweep.engine.continuation.stepper import FOLLOW, LATEST
+from vibro_sweep.engine.continuation.workspace import Place, new_place
 
 NEAR_END = 0.45  # of the reach: all earlier impacts are written out
 MOST_IMPACTS = 120
@@ -22,7 +20,8 @@ def written_out(tracer: Tracer, place: Place) -> tuple[Tracer, Place] | None:
     """The same point, not corrected, with as many impacts as are needed; None where these are too many."""
     while tracer.K <= MOST_IMPACTS:
         reach = tracer.tail(place)[REACH]
-        before_end = place.t[0] + _period(tracer, place) - place.t[1:]
+        times = tracer.times(place)
+        before_end = times[0] + tracer.period(place) - times[1:]
         if before_end[-1] > LATEST * reach:
             tracer, place = with_impacts(tracer, place, tracer.K + 1)
             continue
@@ -36,34 +35,35 @@ def written_out(tracer: Tracer, place: Place) -> tuple[Tracer, Place] | None:
 def with_impacts(tracer: Tracer, place: Place, K: int) -> tuple[Tracer, Place]:
     """The point with the first K impacts, or with more of the chatter sequence."""
     while tracer.K < K:
-        time = place.t[0] + _period(tracer, place) - tracer.tail(place)[NEXT]
+        time = tracer.period(place) - tracer.tail(place)[NEXT]
         tracer, place = _resized(tracer, place, tracer.K + 1)
-        place.t[-1] = time
+        place.phases[-1] = place.phases[0] + tracer.omega(place) * time
+        tracer.do(FOLLOW, place)
         gain = 1 + tracer.family(place).linear.restitution(tracer.curve.sides[-1:])[0]
-        place.D[-1] = -gain * tracer.motion(place)[-1, 0]
+        place.jumps[-1] = -gain * tracer.motion(place)[-1, 0] / tracer.units.speed
     return (tracer, copied(place)) if tracer.K == K else _resized(tracer, place, K)
 
 
 def _resized(tracer: Tracer, place: Place, K: int) -> tuple[Tracer, Place]:
     """Numbers of impacts that are new are 0."""
     w, old = tracer.resized(K), tracer.K
-    result, kept = locus.new_place(K, w.n), min(K, old)
-    result.t[:kept], result.D[:kept] = place.t[:kept], place.D[:kept]
-    result.h[:], result.p[:], result.tests[:] = place.h, place.p, place.tests
-    result.tangent[:kept], result.tangent[K : K + kept] = place.tangent[:kept], place.tangent[old : old + kept]
-    result.tangent[2 * K :] = place.tangent[2 * old :]
+    result, kept = new_place(K, w.n), min(K, old)
+    for name in ("x", "tangent"):
+        getattr(result, name)[:kept] = getattr(place, name)[:kept]
+    for name in ("p", "tangent_p", "tests"):
+        getattr(result, name)[:] = getattr(place, name)
     return w, result
 
 
 def chatter_at(tracer: Tracer, place: Place, touches: bool) -> Chatter:
     """To start from, at a point of a curve; touches: with the nearest turning point as an impact without speed."""
     solution = tracer.solution(place)
-    phase = solution.family.linear.omega * place.t[0] + tracer.oscillators.tau
-    state = place.h + (tracer.planes[0]["Z"] * np.exp(1j * phase)).real
+    steady = (tracer.planes[0]["Z"] * np.exp(1j * place.phases[0])).real
+    state = (place.x[0, : tracer.n] + steady) * tracer.state_units
     if not touches:
         return Chatter(solution, state)
     time, side = tracer.nearest(place)
-    time += solution.times[0] - place.t[0]
+    time += solution.times[0] - tracer.times(place)[0]
     k = int(np.searchsorted(solution.times, time))
     u = np.insert(solution.u, [k, solution.K + k], [time, 0.0])
     sides = (*solution.sides[:k], side, *solution.sides[k:])
@@ -72,7 +72,3 @@ def chatter_at(tracer: Tracer, place: Place, touches: bool) -> Chatter:
 
 def without_impact(chatter: Chatter, k: int) -> Chatter:
     return Chatter(bare(chatter.solution, k), chatter.state)
-
-
-def _period(tracer: Tracer, place: Place) -> float:
-    return forcing_period(tracer.family(place).linear) / 2 * tracer.start.solution.halves

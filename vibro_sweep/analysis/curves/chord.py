@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.periodic.long_orbits import MANY
-from vibro_sweep.engine.impulses.locus import Place
+from vibro_sweep.engine.continuation.workspace import Place
 
 ROUNDING = 1e-15  # of tests, in their units
 ASIDE = 1e-7  # of a chord: a zero found by polynomials is exact to far less
@@ -36,7 +36,7 @@ class Chord:
 
     def __init__(self, tracer: Tracer, a: Place, b: Place, test: Callable[[Place], float]):
         self.tracer, self.a, self.b, self.test = tracer, a, b, test
-        self.row = tracer.row_of(tracer.difference(a, b))
+        self.row = tracer.unit_row(tracer.difference(a, b))
         self.coarse = COARSE if tracer.K >= MANY else 1.0
         self.seen = {0.0: a, 1.0: b}
 

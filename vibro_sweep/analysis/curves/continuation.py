@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves import curve_text
 from vibro_sweep.analysis.curves.chatter import written_out
@@ -18,7 +20,7 @@ from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint, Way
 from vibro_sweep.analysis.periodic.one_thread import one_thread
-from vibro_sweep.engine.impulses.locus import Place
+from vibro_sweep.engine.continuation.workspace import Place
 from vibro_sweep.model.arguments import check_call, check_type, checked_flag, checked_interval
 from vibro_sweep.model.linear import family_of
 from vibro_sweep.model.real import array_of
@@ -26,6 +28,8 @@ from vibro_sweep.model.refusals import not_allowed
 
 if TYPE_CHECKING:
     import xarray
+
+LEVEL = 1e-9  # rate of a parameter, in parts of its range: rounding, where the curve keeps its value
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -117,7 +121,8 @@ def bifurcation_curve(
         first = next((place for place in places if is_real(tracer, place)), (places or [first])[0])
     if not (virtual or is_real(tracer, first)):
         raise ValueError(f"special: beside this {special.type} there is no motion")
-    sign = -1 if first.tangent[tracer.S] > 0 else 1
+    rates = first.tangent_p[:2]
+    sign = -1 if rates[np.argmax(np.abs(rates) > LEVEL)] > 0 else 1  # down in the first parameter that changes
     down = Way(tracer, first, sign, special.orbit.system, progress, virtual)
     down.go()
     if down.closed:

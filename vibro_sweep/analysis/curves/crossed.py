@@ -10,9 +10,9 @@ import numpy as np
 from vibro_sweep.analysis.curves.chord import Chord
 from vibro_sweep.analysis.curves.errors import DIGITS, ROWS, sensitivity
 from vibro_sweep.analysis.curves.tracer import Tracer, copied
-from vibro_sweep.engine.impulses import curve
-from vibro_sweep.engine.impulses.curve_tests import RESIDUAL
-from vibro_sweep.engine.impulses.locus import Place
+from vibro_sweep.engine.continuation.curve_tests import RESIDUAL
+from vibro_sweep.engine.continuation.stepper import EXAMINE
+from vibro_sweep.engine.continuation.workspace import Place
 
 REACH = 5e-3  # in units of a curve: the distance of the points farthest off
 NODES = np.array([-1.0, -2 / 3, -1 / 3, 1 / 3, 2 / 3, 1.0])
@@ -25,20 +25,20 @@ SMOOTH = 1e-8  # of the box: what all points and those without the outermost may
 def is_on_other(tracer: Tracer, a: Place, b: Place, place: Place, impact: int) -> bool:
     """Whether a place where this impulse vanishes, located between a and b, lies on the curve of orbits without it."""
     change, j = tracer.difference(a, b), tracer.K + impact
-    return bool(abs(place.tangent[j]) < FLAT * abs(change[j]) / np.linalg.norm(change))
+    return bool(abs(tracer.direction(place)[j]) < FLAT * abs(change[j]) / np.linalg.norm(change))
 
 
 def is_lost(tracer: Tracer, a: Place, b: Place, place: Place) -> bool:
     """Whether rounding of the equations moves a place, located between a and b, so far that others may be near."""
-    return ROWS * sensitivity(tracer, place, tracer.row_of(tracer.difference(a, b))) > LOST
+    return ROWS * sensitivity(tracer, place, tracer.unit_row(tracer.difference(a, b))) > LOST
 
 
 def aside(tracer: Tracer, a: Place, b: Place, place: Place, share: float, gone: list[int]) -> Place | None:
     """The point of the curve that lies this share of the chord from a to b beside a place on it. gone : impacts that
     vanish between a and b; None where there is but one of the orbits without them."""
     change = tracer.difference(a, b)
-    row = tracer.row_of(change)
-    length = share * (row @ change) / (row @ place.tangent[: tracer.size])
+    row = tracer.unit_row(change)
+    length = share * (row @ change) / (row @ tracer.direction(place))
     point = tracer.correct(tracer.moved(place, length), row)
     return None if point is None or any(is_on_other(tracer, a, b, point, i) for i in gone) else point
 
@@ -46,7 +46,7 @@ def aside(tracer: Tracer, a: Place, b: Place, place: Place, share: float, gone: 
 def crossed(tracer: Tracer, a: Place, b: Place, impact: int) -> tuple[float, Place, float] | None:
     """(share of the chord from a to b, place, error of its parameters) where this impulse vanishes; None where it does
     so at a pole or there are no points beside it."""
-    chord = Chord(tracer, a, b, lambda place: float(place.D[impact] / tracer.curve.unit[tracer.K]))
+    chord = Chord(tracer, a, b, lambda place: float(place.jumps[impact]))
     reach = REACH / float(np.linalg.norm(tracer.difference(a, b)))
     low, high = chord.test(a), chord.test(b)
     zero = low / (low - high)
@@ -64,10 +64,10 @@ def crossed(tracer: Tracer, a: Place, b: Place, impact: int) -> tuple[float, Pla
     if not (0.0 <= zero <= 1.0 and np.all(apart <= SMOOTH * np.ptp(tracer.box, axis=1))):
         return None
     place = copied(places[0])
-    for name in ("t", "D", "h", "p", "w", "psi", "tangent"):
+    for name in ("x", "p", "tangent", "tangent_p", "v", "w"):
         getattr(place, name)[:] = np.tensordot(weights, [getattr(one, name) for one in places], 1)
-    place.D[impact], place.tests[RESIDUAL] = 0.0, 0.0
-    if not (tracer.take(place) and tracer.do(curve.EXAMINE, place)):
+    place.jumps[impact], place.tests[RESIDUAL] = 0.0, 0.0
+    if not (tracer.take(place) and tracer.do(EXAMINE, place)):
         return None
     lost = np.abs(weights) @ [sensitivity(tracer, one, chord.row) for one in places]
     return zero, place, float(apart.max() + DIGITS * np.abs(p).max() + ROWS * lost)

@@ -8,10 +8,11 @@ import numpy as np
 from vibro_sweep.analysis.curves.rows import Rows
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
-from vibro_sweep.engine.impulses.curve_tests import TOUCHING
+from vibro_sweep.engine.continuation.conditions import FLIP, FOLD, GRAZE, STICK, TORUS
+from vibro_sweep.engine.continuation.curve_tests import TOUCHING
+from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.engine.impulses.flights import free_part, new_room
 from vibro_sweep.engine.impulses.flow import Flow, contact_coordinates, steady_motion
-from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, STICK, THETA, TORUS
 from vibro_sweep.model.linear import Linear, forcing_period
 from vibro_sweep.model.state import state
 
@@ -41,7 +42,7 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     for q, f, t, D, motion, h in zip(oscillators, flows, rows.t, rows.D, rows.motion, rows.h, strict=True):
         contacts = np.column_stack([q.stop(sides), 1 + q.restitution(sides)])[others]
         P, u = forcing_period(q) / 2 * s.halves, np.concatenate([t[others], D[others]])
-        shifts.append((tracer.oscillators.tau - q.tau) / q.omega)
+        shifts.append((tracer.tau - q.tau) / q.omega)
         if kind == STICK:
             multipliers.append(np.full(2 * len(q.along), np.nan, complex))
             states.append(np.full(2 * len(q.along), np.nan))
@@ -53,7 +54,7 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     values **= 1 if s.sigma == 1 else 2
     order = np.lexsort((-values.imag, -np.abs(values)), axis=-1)
     values = np.take_along_axis(values, order, axis=-1)
-    pulls = -sides[others] * rows.D[:, others] <= -TOUCHING * tracer.curve.unit[tracer.K]
+    pulls = -sides[others] * rows.D[:, others] <= -TOUCHING * tracer.units.speed
     pushes = ~np.any(pulls, axis=1)  # NaN: not written out
     variables = {
         names[0]: ("point", rows.p[:, 0]),
@@ -62,7 +63,7 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
         "multiplier_re": (("point", "multiplier"), values.real),
         "multiplier_im": (("point", "multiplier"), values.imag),
         "unstable": ("point", unstable),
-        "virtual": ("point", ~(pushes & (rows.margin > -TOUCHING * tracer.size_of_gap))),
+        "virtual": ("point", ~(pushes & (rows.margin > -TOUCHING * tracer.units.length))),
         "margin": ("point", rows.margin),
         "residual": ("point", rows.residual),
         "impact_t": (("point", "impact"), rows.t + np.array(shifts)[:, None]),

@@ -19,7 +19,8 @@ from vibro_sweep.analysis.curves.events import Found, event_near
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, THETA, TORUS, Place
+from vibro_sweep.engine.continuation.conditions import FLIP, FOLD, GRAZE, TORUS
+from vibro_sweep.engine.continuation.workspace import THETA, Place
 
 NEAR = 0.2  # in the units of the curve: how far from the expected end the other curve is entered
 SHORTEST = 1e-6
@@ -65,7 +66,7 @@ def strong_resonance(tracer: Tracer, a: Place, b: Place) -> End | None:
     # near the end all moves with the square of the angle that is left
     aim = tracer.between(b, a, -(left**2) / (before**2 - left**2))
     moved = tracer.difference(a, b)
-    lengths = (np.linalg.norm(moved[: tracer.S + 2]), np.linalg.norm(moved))  # the other curve has no angle
+    lengths = (np.linalg.norm(moved[:-1]), np.linalg.norm(moved))  # the other curve has no angle
     end = _on_other(tracer, Start(of_type, tracer.solution(aim)), aim, lengths, (name,))
     if end is None or _is_repeated(end):
         return None
@@ -100,7 +101,7 @@ def _near(tracer: Tracer, a: Place, b: Place, share: float, parts) -> Place | No
     With theta = 0 or pi the equations hold all along the curve of folds or flips, and with equal halves all along the
     graze curve of the simpler orbit; these are not meant.
     """
-    row = tracer.row_of(tracer.difference(a, b))
+    row = tracer.unit_row(tracer.difference(a, b))
     for part in parts:
         guess = tracer.between(a, b, (1 - part) * share)
         place, angle = tracer.correct(guess, row), guess.p[THETA]

@@ -11,8 +11,9 @@ import numpy as np
 
 from vibro_sweep.analysis.curves.chord import ASIDE, Chord
 from vibro_sweep.analysis.curves.tracer import Tracer
-from vibro_sweep.engine.impulses import curve
-from vibro_sweep.engine.impulses.locus import STICK, Place
+from vibro_sweep.engine.continuation import stepper
+from vibro_sweep.engine.continuation.conditions import STICK
+from vibro_sweep.engine.continuation.workspace import Place
 
 STEPS = (-3e-12, -1e-12, 1e-12, 3e-12)  # of a chord: beside the zero, so near that only rounding differs
 TIMES = 6.0  # the largest difference between locations
@@ -48,12 +49,20 @@ def estimates(chord: Chord, share: float) -> np.ndarray:
 
 def sensitivity(tracer: Tracer, place: Place, row: np.ndarray) -> float:
     """By how much a parameter moves, on the plane across `row`, where each equation is off by its own size."""
-    size, S = tracer.size, tracer.S
-    if tracer.curve.kind == STICK or not (tracer.go_to(place) and tracer.do(curve.ASSEMBLE, place)):
+    if tracer.curve.kind == STICK or not tracer.assemble(place, row):
         return 0.0
-    matrix = np.vstack([tracer.bench.J[: size - 1, :size], row])
+    n, free, work, events = tracer.n, tracer.curve.free, tracer.bench.work[0], tracer.bench.events
     try:
-        moved = np.linalg.inv(matrix)[S : S + 2, :-1]
+        inverse = np.linalg.inv(work["ends"][: n + free, : n + free])
     except np.linalg.LinAlgError:
         return 0.0
-    return float((np.abs(moved).sum(axis=1) * tracer.curve.unit[S : S + 2]).max())
+    found = []
+    for j in range(2):
+        by_last, by_rows = inverse[n + j, :n], inverse[n + j, n:]
+        work["left"][:] = by_last
+        events["sides"][:] = -np.einsum("ikr,k->ir", events["factors"][:, :free], by_rows)
+        tracer.do(stepper.TAKE_UP, place)
+        rows = np.abs(place.left)
+        total = rows[:-1, :2].sum() + rows[-2, 2:].sum() + np.abs(by_rows[:-1]).sum()
+        found.append(total * tracer.curve.unit[j])
+    return float(max(found))

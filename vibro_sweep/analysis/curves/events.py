@@ -11,9 +11,10 @@ from vibro_sweep.analysis.curves.chord import root
 from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
 from vibro_sweep.analysis.curves.errors import error_of
 from vibro_sweep.analysis.curves.tracer import Tracer
-from vibro_sweep.engine.impulses import curve_tests
-from vibro_sweep.engine.impulses.curve_tests import RESIDUAL
-from vibro_sweep.engine.impulses.locus import FLIP, FOLD, GRAZE, STICK, THETA, TORUS, Place
+from vibro_sweep.engine.continuation import curve_tests
+from vibro_sweep.engine.continuation.conditions import FLIP, FOLD, GRAZE, STICK, TORUS
+from vibro_sweep.engine.continuation.curve_tests import RESIDUAL
+from vibro_sweep.engine.continuation.workspace import THETA, Place
 
 # what a test is zero at, on each kind of curve
 NAMES = {
@@ -70,21 +71,18 @@ class Event:
 
 def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
     """What changes its sign from a to b."""
-    kind, events, speed = tracer.curve.kind, [], float(tracer.curve.unit[tracer.K])
+    kind, events = tracer.curve.kind, []
     for i in range(curve_tests.SIGNED):
         if np.sign(a.tests[i]) * np.sign(b.tests[i]) < 0:
             size = max(abs(a.tests[i]), abs(b.tests[i]))
             name = NAMES[kind, i]
             events.append(Event(name, lambda place, i=i, size=size: place.tests[i] / size, test=i))
     for i in range(tracer.K):
-        if a.D[i] * b.D[i] < 0 and not (kind >= GRAZE and i == tracer.curve.index):
-            events.append(Event(VANISHES[kind], lambda place, i=i: place.D[i] / speed, impact=i))
-    least, most = sorted(place.tests[curve_tests.MARGIN] / tracer.size_of_gap for place in (a, b))
+        if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == tracer.curve.index):
+            events.append(Event(VANISHES[kind], lambda place, i=i: place.jumps[i], impact=i))
+    least, most = sorted(place.tests[curve_tests.MARGIN] for place in (a, b))
     if least < -curve_tests.TOUCHING and most > curve_tests.TOUCHING:
-        size = tracer.size_of_gap
-        events.append(
-            Event(TOUCHES[kind], lambda place: min(place.tests[curve_tests.MARGIN] / size, 1.0), touches=True)
-        )
+        events.append(Event(TOUCHES[kind], lambda place: min(place.tests[curve_tests.MARGIN], 1.0), touches=True))
     if kind == TORUS:
         for name, angle in ANGLES.items():
             if (a.p[THETA] - angle) * (b.p[THETA] - angle) < 0:
@@ -181,7 +179,7 @@ def beside(tracer: Tracer, a: Place, b: Place, one: Found, found: list[Found]) -
     edges = [other.share for other in found if other.event.test is None and abs(other.share - one.share) > SAME]
     near = max((share for share in edges if share < one.share), default=None)
     far = min((share for share in edges if share > one.share), default=None)
-    row, places = tracer.row_of(tracer.difference(a, b)), []
+    row, places = tracer.unit_row(tracer.difference(a, b)), []
     for end, share in ((a, near), (b, far)):
         middle = None if share is None else tracer.between(a, b, (share + one.share) / 2)
         places.append((middle and tracer.correct(middle, row)) or end)
@@ -223,18 +221,18 @@ def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
 
 def is_sharp(tracer: Tracer, event: Event, place: Place) -> bool:
     """Whether rounding leaves a test its sign: that of multipliers has a pole where another impact vanishes."""
-    impulses = np.abs(place.D)
+    impulses = np.abs(place.jumps)
     if tracer.curve.kind == GRAZE:
         impulses = np.delete(impulses, tracer.curve.index)
-    return event.test != curve_tests.PAIR or not np.any(impulses < SLOW * tracer.curve.unit[tracer.K])
+    return event.test != curve_tests.PAIR or not np.any(impulses < SLOW)
 
 
 def is_real(tracer: Tracer, place: Place) -> bool:
     """Whether all impulses but the grazing one push, and every flight stays inside."""
-    pushes = -tracer.curve.sides * place.D
+    pushes = -tracer.curve.sides * place.jumps
     if tracer.curve.kind >= GRAZE:
         pushes = np.delete(pushes, tracer.curve.index)
-    return bool(np.all(pushes > 0) and place.tests[curve_tests.MARGIN] > -curve_tests.TOUCHING * tracer.size_of_gap)
+    return bool(np.all(pushes > 0) and place.tests[curve_tests.MARGIN] > -curve_tests.TOUCHING)
 
 
 def event_near(tracer: Tracer, place: Place, length: float, types) -> Found | None:

@@ -13,7 +13,7 @@ from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.locus import GRAZE
+from vibro_sweep.engine.continuation.conditions import GRAZE
 from vibro_sweep.model.bifurcations import CODES_OF_CURVES, CODIMENSION_TWO, CURVES
 from vibro_sweep.model.linear import Linear, steady_gain
 from vibro_sweep.model.state import state

@@ -1,14 +1,16 @@
-"""The oscillator as polynomials of two parameters (engine/impulses/plane.py)."""
+"""The oscillator as polynomials of two parameters (engine/continuation/moving_flow.py)."""
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from vibro_sweep.analysis.periodic.impulse_equations import flow
 from vibro_sweep.analysis.periodic.media import sizes_of_rates
-from vibro_sweep.engine.impulses import plane
+from vibro_sweep.engine.continuation import moving_flow
+from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.extended import extended, identity, zeros
 from vibro_sweep.engine.impulses.flow import rates
-from vibro_sweep.engine.impulses.plane import NUMBERS
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.model.linear import Family, Linear
 
@@ -18,25 +20,35 @@ BEYOND = 1.2  # times the reach, up to where the polynomials hold
 ASIDE = 0.37  # of the reach: where degrees are read off, so that products of both parameters are seen
 
 
-def sampled(q: Linear) -> np.ndarray:
-    """The numbers of `plane_of`.values."""
-    B = rates(q)
+class Units(NamedTuple):
+    """In which kernels compute: all numbers are of size 1."""
+
+    length: float  # the gap's size
+    rate: float  # omega of the start
+
+    @property
+    def speed(self) -> float:
+        """Of velocities."""
+        return self.length * self.rate
+
+
+def sampled(q: Linear, units: Units) -> np.ndarray:
+    """The numbers of `plane_of`.values, in these units."""
+    B, (length, rate) = rates(q), units
     n = len(B) - 3
     N = n // 2
+    B[:N] /= rate * np.repeat([1.0, 1 / rate, length], [N, N, 3])
+    B[N:n] /= rate**2 * np.repeat([1.0, 1 / rate, length], [N, N, 3])
     A = np.column_stack([B[:n, :n], B[:n, n + 2]])
-    numbers = [q.low, q.high, 1 + q.R_low, 1 + q.R_high, q.omega]
+    numbers = [q.low / length, q.high / length, 1 + q.R_low, 1 + q.R_high, q.omega / rate]
     return np.concatenate([A.ravel(), B[N:n, n], B[N:n, n + 1], numbers])
 
 
 class Oscillators:
-    """Of a family, along two of its parameters, with its phase at `tau`."""
+    """Of a family, along two of its parameters."""
 
-    def __init__(self, family: Family, names: tuple[str, str], halves: int, tau: float):
-        self.family, self.names, self.halves, self.tau = family, names, halves, tau
-
-    def linear(self, p) -> Linear:
-        """The oscillator at the parameters p, its phase kept."""
-        return self.at(p).linear._replace(tau=self.tau)
+    def __init__(self, family: Family, names: tuple[str, str], halves: int, units: Units):
+        self.family, self.names, self.halves, self.units = family, names, halves, units
 
     def at(self, p) -> Family:
         return self.family.replace(**dict(zip(self.names, map(float, p[:2]), strict=True)))
@@ -44,7 +56,7 @@ class Oscillators:
     def values(self, p) -> np.ndarray:
         """`sampled` at the parameters p; the phase, which that does not need, is not looked for."""
         family = self.at(p)
-        return sampled(family.build(**family.numbers))
+        return sampled(family.build(**family.numbers), self.units)
 
     def _sample(self, p) -> np.ndarray:
         try:
@@ -54,7 +66,7 @@ class Oscillators:
                     return np.full_like(values, np.nan)
                 return np.where(np.isinf(values), 0.0, values)  # a stop that is not there
         except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
-            return np.full(plane.count_of(len(self.family.linear.along)), np.nan)
+            return np.full(moving_flow.count_of(len(self.family.linear.along)), np.nan)
 
     def around(self, centre, reach) -> np.ndarray | None:
         """(1,) `plane_of` around the parameters `centre`, to `reach` or as far as polynomials hold; None: nowhere."""
@@ -71,7 +83,7 @@ class Oscillators:
 
     def _degree(self, centre, reach, j: int) -> int | None:
         """The least degree in parameter j; None where the highest allowed is not enough."""
-        most = plane.DEGREE
+        most = moving_flow.DEGREE
         nodes = _nodes(most)
         start = centre + ASIDE * reach
         values = []
@@ -107,28 +119,27 @@ class Oscillators:
         return c, values
 
     def _built(self, centre, reach, degrees, c, values) -> np.ndarray:
-        q = self.linear(centre)
+        q = self.at(centre).linear
         f = flow(q)
         n = f.B.shape[0] - 3
-        result = np.zeros(1, plane.plane_of(n // 2))
+        result = np.zeros(1, moving_flow.plane_of(n // 2))
         r = result[0]
-        r["n"] = n
         flat, size = values[..., : n * (n + 1)], _sizes(values.reshape(-1, values.shape[-1]), n)[: n * (n + 1)]
         for j in range(2):
             r["moves"][j] = bool(np.any(np.ptp(flat, axis=j) > 1e-15 * size))
         if not r["moves"].any():
-            exact = sampled(q)
+            exact = sampled(q, self.units)
             c[..., : n * (n + 1)] = 0.0
             c[0, 0, : n * (n + 1)] = exact[: n * (n + 1)]
-        r["centre"], r["reach"], r["degree"], r["tau"] = centre, reach, degrees, self.tau
-        r["width"] = f.width
+        r["centre"], r["reach"], r["degree"] = centre, reach, degrees
+        r["width"] = f.width * self.units.rate
         r["fit"][: c.shape[0], : c.shape[1]] = c
-        at_centre = sampled(q)
+        at_centre = sampled(q, self.units)
         r["fit"][0, 0][np.isinf(at_centre)] = at_centre[np.isinf(at_centre)]
         r["half_turns"] = self.halves
         longest = np.pi * self.halves / values[..., -1].min()
-        r["bits"] = min(max(int(np.ceil(np.log2(2 * longest / f.width))), 1), plane.BITS)
-        exact_tables(r, np.delete(f.B, [n, n + 1], 1)[:n])
+        r["bits"] = min(max(int(np.ceil(np.log2(2 * longest / r["width"]))), 1), moving_flow.BITS)
+        exact_tables(r, at_centre[: n * (n + 1)].reshape(n, n + 1))
         return result
 
 

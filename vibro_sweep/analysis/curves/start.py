@@ -8,15 +8,15 @@ from vibro_sweep.analysis.branches.beginning import keeps_symmetry
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted, vanishing
 from vibro_sweep.analysis.branches.switching import index_in
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses import locus
+from vibro_sweep.engine.continuation import conditions
 
 KINDS = {
-    "fold": locus.FOLD,
-    "flip": locus.FLIP,
-    "pitchfork": locus.FLIP,
-    "neimark_sacker": locus.TORUS,
-    "graze": locus.GRAZE,
-    "sticking": locus.STICK,
+    "fold": conditions.FOLD,
+    "flip": conditions.FLIP,
+    "pitchfork": conditions.FLIP,
+    "neimark_sacker": conditions.TORUS,
+    "graze": conditions.GRAZE,
+    "sticking": conditions.STICK,
 }
 
 

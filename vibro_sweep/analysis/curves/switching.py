@@ -15,7 +15,7 @@ from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses import locus
+from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.model.arguments import check_type
 
 SINGULAR = 1e-8  # least singular value of M(mu), of its largest, below which mu is a multiplier
@@ -139,9 +139,7 @@ def _beside_strong(special: CurvePoint) -> SpecialPoint | None:
     names = tuple(special.parameters)
     theta = BESIDE if special.type == "resonance_1_1" else math.pi - BESIDE
     tracer = Tracer(Start("neimark_sacker", solution, theta=theta), names, box_around(special))
-    axis = np.zeros(tracer.size)
-    axis[tracer.S + locus.THETA] = 1.0
-    place = tracer.first(axis)
+    place = tracer.first(tracer.axis(THETA))
     if place is None:
         return None
     found = tracer.solution(place)

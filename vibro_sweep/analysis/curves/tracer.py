@@ -5,12 +5,13 @@ from copy import copy as copy_object
 import numpy as np
 
 from vibro_sweep.analysis.branches.beginning import keeps_symmetry
-from vibro_sweep.analysis.curves.oscillators import Oscillators
+from vibro_sweep.analysis.curves.oscillators import Oscillators, Units
 from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
-from vibro_sweep.engine.impulses import curve, curve_path, locus
-from vibro_sweep.engine.impulses.curve_tests import RESIDUAL
-from vibro_sweep.engine.impulses.locus import Curve, Place
+from vibro_sweep.engine.continuation import path, stepper
+from vibro_sweep.engine.continuation.conditions import GRAZE, STICK, TORUS, Curve
+from vibro_sweep.engine.continuation.curve_tests import RESIDUAL
+from vibro_sweep.engine.continuation.workspace import THETA, Place, new_bench, new_place
 from vibro_sweep.model.linear import Family, forcing_period
 
 MOST_CORRECTIONS = 12
@@ -32,8 +33,10 @@ class Tracer:
         self.box = np.array(box, float)
         s = start.solution
         q = s.family.linear
-        self.oscillators = Oscillators(s.family, names, s.halves, float(q.tau))
-        self.n, self.size_of_gap = 2 * len(q.along), s.size_of_gap
+        self.units = Units(float(s.size_of_gap), float(q.omega))
+        self.tau = float(q.tau)  # by which phases become times: those of the curve do not move with it
+        self.oscillators = Oscillators(s.family, names, s.halves, self.units)
+        self.n = 2 * len(q.along)
         self._take_sides(s.sides)
         middle, reach = self.box.mean(axis=1), np.ptp(self.box, axis=1) / 2
         planes = self.oscillators.around(middle, reach)
@@ -42,22 +45,18 @@ class Tracer:
     def _take_sides(self, which: tuple[int, ...]) -> None:
         """Of the impacts."""
         start, s = self.start, self.start.solution
-        q, K, n = s.family.linear, len(which), self.n
-        self.K, self.S = K, 2 * K + n
-        speed = q.omega * self.size_of_gap
-        states = np.repeat([speed / q.omega, speed], n // 2)
-        unit = np.concatenate([np.full(K, 1 / q.omega), np.full(K, speed), states, np.ptp(self.box, axis=1), [1.0]])
-        row_unit = np.concatenate([np.full(K, speed / q.omega), np.full(K, speed), states])
-        sides = np.array(which, float)
-        struck = which[: start.index] + which[start.index + 1 :] if start.kind == locus.GRAZE and K % 2 else which
+        q, K, kind = s.family.linear, len(which), self.start.kind
+        self.K = K
+        struck = which[: start.index] + which[start.index + 1 :] if kind == GRAZE and K % 2 else which
         half, whole = len(struck) // 2, s.sigma == 1 and len(struck) > 0 and len(struck) % 2 == 0
-        whole = whole and start.kind != locus.STICK
+        whole = whole and kind != STICK
         repeats = whole and s.halves % 4 == 0 and struck[:half] == struck[half:]
         symmetric = q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
         mirrors = whole and symmetric and s.halves % 4 == 2 and struck[:half] == tuple(-side for side in struck[half:])
-        self.curve = Curve(start.kind, start.index, sides, float(s.sigma), unit, row_unit, repeats, mirrors)
-        self.bench = locus.new_bench(K, n)
-        self.path = curve_path.new_path(AT_ONCE, K, n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
+        sides, free, unit = np.array(which, float), 3 if kind == TORUS else 2, np.ptp(self.box, axis=1)
+        self.curve = Curve(kind, start.index, sides, float(s.sigma), free, kind == STICK, unit, repeats, mirrors)
+        self.bench = new_bench(K, self.n)
+        self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
 
     def resized(self, K: int) -> "Tracer":
         """For the same curve with K impacts: without the last, or with more on the same stop."""
@@ -66,9 +65,9 @@ class Tracer:
         return other
 
     @property
-    def size(self) -> int:
-        """Number of unknowns."""
-        return self.S + (3 if self.curve.kind == locus.TORUS else 2)
+    def state_units(self) -> np.ndarray:
+        """(n,) of contact coordinates."""
+        return np.repeat([self.units.length, self.units.speed], self.n // 2)
 
     def _around(self, centre, reach) -> np.ndarray:
         found = self.oscillators.around(centre, reach)
@@ -81,9 +80,9 @@ class Tracer:
         self.planes = self._around(place.p, np.ptp(self.box, axis=1) / 2)
 
     def do(self, task: int, place: Place, row: np.ndarray | None = None) -> float:
-        """One task of `curve.at`; what it leaves is in `bench`."""
-        row = place.tangent if row is None else row
-        return curve.at(task, self.planes, self.curve, self.path, place, row, self.bench)
+        """One task of `stepper.at`; what it leaves is in `bench`."""
+        row = self.direction(place) if row is None else row
+        return stepper.at(task, self.planes, self.curve, self.path, place, row, self.bench)
 
     def take(self, place: Place) -> bool:
         """Take the oscillator's numbers at the parameters of `place`. False where there is none."""
@@ -97,29 +96,43 @@ class Tracer:
 
     def go_to(self, place: Place) -> bool:
         """Move the oscillator exactly to the parameters of `place`. False where it has no forced motion."""
-        return self.take(place) and bool(self.do(curve.MOVE, place))
+        return self.take(place) and bool(self.do(stepper.MOVE, place))
+
+    def assemble(self, place: Place, row: np.ndarray | None = None) -> bool:
+        """Leave the equations at `place` in `bench`. False where they are singular."""
+        return self.go_to(place) and bool(self.do(stepper.ASSEMBLE, place, row))
 
     def walk(self, place: Place) -> int:
-        """Compiled steps from `path.a` until something happens, and why they end (engine/impulses/curve.py)."""
-        return int(self.do(curve.WALK, place, np.zeros(self.S + 3)))
+        """Compiled steps from `path.a` until something happens, and why they end (engine/continuation/stepper.py)."""
+        return int(self.do(stepper.WALK, place, np.zeros(2 * self.K + 3)))
 
     def motion(self, place: Place) -> np.ndarray:
         """(K, 2) gap velocity and acceleration before each impact."""
-        self.go_to(place)
-        self.do(curve.ASSEMBLE, place)
-        return self.bench.room.motion.copy()
+        self.assemble(place)
+        return self.bench.events["motion"] * self.units.speed * [1.0, self.units.rate]
 
     def tail(self, place: Place) -> np.ndarray:
-        """`numbers` of what follows the last impact written out, of an onset of sticking."""
-        self.go_to(place)
-        self.do(curve.ASSEMBLE, place)
-        return self.bench.tail.numbers.copy()
+        """`numbers` of what follows the last impact written out, of an onset of sticking: times."""
+        self.assemble(place)
+        return self.bench.tail.numbers / self.units.rate
 
     def nearest(self, place: Place) -> tuple[float, int]:
         """Time and side of the turning point nearest to its stop."""
         self.take(place)
-        self.do(curve.EXAMINE, place)
-        return float(self.bench.nearest[1]), int(self.bench.nearest[2])
+        self.do(stepper.EXAMINE, place)
+        _, phase, side = self.bench.work[0]["nearest"]
+        return float((phase - self.tau) / self.omega(place)), int(side)
+
+    def omega(self, place: Place) -> float:
+        """Of the force."""
+        return float(self.family(place).linear.omega)
+
+    def times(self, place: Place) -> np.ndarray:
+        """(K,) of the impacts, for the phase `tau` of the start."""
+        return (place.phases - self.tau) / self.omega(place)
+
+    def period(self, place: Place) -> float:
+        return float(np.pi * self.start.solution.halves / self.omega(place))
 
     def first(self, row: np.ndarray | None = None) -> Place | None:
         """The point of the curve at `start`, or near it on the plane across `row`; None where it is not isolated."""
@@ -128,26 +141,27 @@ class Tracer:
 
     def guess(self) -> Place | None:
         """`start`, as it is; None where the oscillator has no forced motion."""
-        s, place = self.start.solution, locus.new_place(self.K, self.n)
-        place.t[:], place.D[:] = s.times, s.jumps
+        s, place = self.start.solution, new_place(self.K, self.n)
+        place.phases[:], place.jumps[:] = s.family.linear.omega * s.times + self.tau, s.jumps / self.units.speed
         place.p[:2] = [s.family.numbers[name] for name in self.names]
-        place.p[locus.THETA] = self.start.theta
+        place.p[THETA] = self.start.theta
         if not self.go_to(place):
             return None
-        f = self.planes[0]
-        phase = s.family.linear.omega * place.t[0] + f["tau"]
-        state = s.states[0, : self.n] if self.start.state is None else self.start.state
-        place.h[:] = state - (f["Z"] * np.exp(1j * phase)).real
+        states = s.states[: self.K, : self.n] if self.start.state is None else self.start.state[None]
+        steady = (self.planes[0]["Z"] * np.exp(1j * place.phases[:, None])).real
+        place.x[:, : self.n] = states / self.state_units - steady
+        if self.start.state is not None:
+            self.do(stepper.FOLLOW, place)
         return place
 
     def settle(self, place: Place, row: np.ndarray | None = None) -> Place | None:
         """The point of the curve near a guess without a tangent."""
         if not self.go_to(place):
             return None
-        if self.curve.kind < locus.GRAZE:
+        if self.curve.kind < GRAZE:
             self._take_null_vectors(place)
         if row is None:
-            row = self._direction(place)
+            row = self._first_direction(place)
         return None if row is None else self.correct(place, row)
 
     def beside(self, place: Place) -> list[Place]:
@@ -158,63 +172,63 @@ class Tracer:
 
     def along(self, place: Place, length: float) -> Place | None:
         """The point of the curve whose projection on the tangent at `place` is `length`."""
-        return self.correct(self.moved(place, length), self.row_of(place.tangent))
+        return self.correct(self.moved(place, length), self.direction(place))
 
     def level(self, place: Place, axis: int, value: float) -> Place | None:
         """The point of the curve near `place` where the parameter `axis` (0, 1) has this value."""
-        slope = self.curve.unit[self.S + axis] * place.tangent[self.S + axis]
+        slope = self.curve.unit[axis] * place.tangent_p[axis]
         if abs(value - place.p[axis]) > 2 * LONGEST_STEP * abs(slope):  # it turns back before
             return None
         guess = self.moved(place, (value - place.p[axis]) / slope if slope else 0.0)
         guess.p[axis] = value
-        row = np.zeros(self.size)
-        row[self.S + axis] = 1.0
-        return self.correct(guess, row)
+        return self.correct(guess, self.axis(axis))
+
+    def axis(self, parameter: int) -> np.ndarray:
+        """The plane on which a parameter (or theta) is held."""
+        row = np.zeros(2 * self.K + 3)
+        row[2 * self.K + parameter] = 1.0
+        return row
 
     def moved(self, place: Place, length: float) -> Place:
         """A guess on the tangent."""
-        guess, unit, step = copied(place), self.curve.unit, length * place.tangent
-        K, S = self.K, self.S
-        guess.t[:] += unit[:K] * step[:K]
-        guess.D[:] += unit[K : 2 * K] * step[K : 2 * K]
-        guess.p[: self.size - S] += (unit * step)[S : self.size]
+        guess = copied(place)
+        guess.x[:] += length * place.tangent
+        guess.p[:] += length * place.tangent_p * [*self.curve.unit, 1.0]
         return guess
 
     def _take_null_vectors(self, place: Place) -> None:
-        """w and psi, the singular vectors of M(mu)."""
-        place.w[:], place.psi[:] = 1.0, 1.0  # any border
-        self.do(curve.ASSEMBLE, place)
-        unit, row_unit = self.curve.unit[: self.S], self.curve.row_unit
-        M = (self.bench.room.M * unit / row_unit[:, None]).astype(complex)
-        mu = {locus.FOLD: 1.0, locus.FLIP: -1.0}.get(self.curve.kind, np.exp(1j * place.p[locus.THETA]))
-        closing = np.arange(2 * self.K, self.S)
-        M[closing, closing] += self.curve.sigma * mu
-        if self.curve.kind != locus.TORUS:
-            M = M.real
-        left, _, right = np.linalg.svd(M)
-        place.w[:], place.psi[:] = right[-1].conj(), left[:, -1].conj()
+        """v and w of the critical multiplier, at a place that has none."""
+        place.v[:], place.w[:] = 0.0, 0.0
+        for _ in range(2):  # with any border, then with what that gives
+            self.do(stepper.ASSEMBLE, place)
+            for here, found in ((place.v, self.bench.events["v"]), (place.w, place.left)):
+                here[:] = found / np.linalg.norm(found)
 
-    def _direction(self, place: Place) -> np.ndarray | None:
+    def _first_direction(self, place: Place) -> np.ndarray | None:
         """The tangent of the curve at a place to which the oscillator was moved."""
-        if self.curve.kind == locus.STICK:
-            for row in np.eye(self.S + 3)[self.S : self.S + 2]:  # one of the parameters may have its extremum there
-                beside = copied(place)
-                if np.isfinite(self.do(curve.CORRECT, beside, row)):
-                    return self.row_of(beside.tangent)
+        if not self.do(stepper.ASSEMBLE, place):
             return None
-        if not self.do(curve.ASSEMBLE, place):
-            return None
-        return self.row_of(np.linalg.svd(self.bench.J[: self.size - 1, : self.size])[2][-1])
+        size = self.n + self.curve.free
+        null = np.linalg.svd(self.bench.work[0]["ends"][: size - 1, :size])[2][-1]
+        return self.unit_row(self.taken_apart(place, null[: self.n], null[self.n :]))
 
-    def row_of(self, tangent) -> np.ndarray:
-        """The plane across a tangent: distances are not measured over h."""
-        row = self._measured(tangent)
-        return row / np.linalg.norm(row)
+    def taken_apart(self, place: Place, first: np.ndarray, parameters: np.ndarray) -> np.ndarray:
+        """(2 K + 3,) phases, jumps, parameters of a change with this xi_1, after `assemble`."""
+        null = self.bench.work[0]["null"]
+        null[:] = 0.0
+        null[: self.n], null[self.n : self.n + len(parameters)] = first, parameters
+        self.do(stepper.TAKE_APART, place)
+        changes = self.bench.events["changes"][:, 1]
+        return np.concatenate([changes[:, self.n], changes[:, self.n + 1], null[self.n :]])
 
-    def _measured(self, tangent) -> np.ndarray:
-        row = np.array(tangent[: self.size])
-        row[2 * self.K : self.S] = 0.0
-        return row
+    def direction(self, place: Place) -> np.ndarray:
+        """(2 K + 3,) the tangent over what distances are measured by: phases, jumps, parameters in their units, theta;
+        of length 1."""
+        return np.concatenate([place.tangent[:, -2], place.tangent[:, -1], place.tangent_p])
+
+    def unit_row(self, change: np.ndarray) -> np.ndarray:
+        """The plane across a change."""
+        return change / np.linalg.norm(change)
 
     def correct(self, guess: Place, row: np.ndarray, exact: bool = True) -> Place | None:
         """The point of the curve on the plane through `guess` across `row`, examined; None: none was found.
@@ -222,7 +236,7 @@ class Tracer:
         exact : of the oscillator itself, or of its polynomials, which is ten times as fast and nearly the same
         """
         place = copied(guess)
-        near = self.do(curve.NEAR, place, row)
+        near = self.do(stepper.NEAR, place, row)
         if not exact:
             return place if near else None
         place = place if near else copied(guess)
@@ -230,13 +244,15 @@ class Tracer:
         for _ in range(MOST_CORRECTIONS):
             if not self.take(place):
                 return None
-            change = self.do(curve.CORRECT, place, row)
+            change = self.do(stepper.CORRECT, place, row)
             if not change <= 1.0:
                 return None
             if change <= 1e-15 or (change < 1e-8 and change >= 0.3 * before):
                 place.tests[RESIDUAL] = change
-                place.tangent[: self.size] /= np.linalg.norm(self._measured(place.tangent))
-                return place if self.take(place) and self.do(curve.EXAMINE, place) else None
+                length = np.linalg.norm(self.direction(place))
+                place.tangent[:] /= length
+                place.tangent_p[:] /= length
+                return place if self.take(place) and self.do(stepper.EXAMINE, place) else None
             before = change
         return None
 
@@ -247,16 +263,15 @@ class Tracer:
     def shifted(self, place: Place, a: Place, b: Place, share: float) -> Place:
         """`place` moved by a share of the chord from a to b."""
         result = copied(place)
-        for name in ("t", "D", "h", "p"):
-            getattr(result, name)[:] += share * (getattr(b, name) - getattr(a, name))
+        result.x[:] += share * (b.x - a.x)
+        result.p[:] += share * (b.p - a.p)
         return result
 
     def difference(self, a: Place, b: Place) -> np.ndarray:
-        """From a to b, scaled."""
-        change = np.zeros(self.size)
-        change[: self.K], change[self.K : 2 * self.K] = b.t - a.t, b.D - a.D
-        change[self.S :] = (b.p - a.p)[: self.size - self.S]
-        return change / self.curve.unit[: self.size]
+        """From a to b, as `direction`."""
+        moved = (b.p - a.p) / [*self.curve.unit, 1.0]
+        moved[self.curve.free :] = 0.0
+        return np.concatenate([b.phases - a.phases, b.jumps - a.jumps, moved])
 
     def family(self, place: Place) -> Family:
         return self.oscillators.at(place.p)
@@ -265,10 +280,10 @@ class Tracer:
         """The orbit of a point; its times are those of the oscillator with its own phase."""
         s, family = self.start.solution, self.family(place)
         q = family.linear
-        sides = tuple(map(int, self.curve.sides))
-        t = place.t + (self.oscillators.tau - q.tau) / q.omega
+        t = (place.phases - q.tau) / q.omega
         t -= forcing_period(q) * np.round((t[0] - s.times[0]) / forcing_period(q)) if self.K else 0.0
-        found = Solution(family, s.sigma, s.halves, sides, np.concatenate([t, place.D]), float(place.tests[RESIDUAL]))
+        u, sides = np.concatenate([t, place.jumps * self.units.speed]), tuple(map(int, self.curve.sides))
+        found = Solution(family, s.sigma, s.halves, sides, u, float(place.tests[RESIDUAL]))
         e = equations_for(found, q)
         if e.free:
             u = np.append(found.u, 0.0)

@@ -14,9 +14,11 @@ from vibro_sweep.analysis.curves.events import Event, beside, found_between, fou
 from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.curves.tracer import Tracer, copied, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
-from vibro_sweep.engine.impulses import curve, curve_path, curve_tests, locus
+from vibro_sweep.engine.continuation import curve_tests, stepper
+from vibro_sweep.engine.continuation.conditions import GRAZE, STICK, TORUS
+from vibro_sweep.engine.continuation.path import Record
+from vibro_sweep.engine.continuation.workspace import THETA, Place, new_place
 from vibro_sweep.engine.impulses.flow import steady_motion
-from vibro_sweep.engine.impulses.locus import GRAZE, STICK, Place
 
 FIRST_STEP = 1e-3
 CLOSE = 1e-6  # distance, in the units of a curve, from the first point where it comes back to it
@@ -47,6 +49,7 @@ class Way:
         self.tracer, self.system, self.progress, self.virtual = tracer, system, progress, virtual
         self.first = copied(first)
         self.first.tangent[:] *= sign
+        self.first.tangent_p[:] *= sign
         self.special: list[CurvePoint] = []
         self.rows: list[Rows] = []
         self.closed = False
@@ -59,7 +62,7 @@ class Way:
     def go(self) -> None:
         """To the curve's end."""
         w, passed = self.tracer, 1
-        path, b = w.path, locus.new_place(w.K, w.n)
+        path, b = w.path, new_place(w.K, w.n)
         a = path.a
         copy(self.first, path.first)
         copy(self.first, a)
@@ -71,21 +74,21 @@ class Way:
             self._keep(path.record, count)
             if self.progress is not None:
                 self.progress(passed, tuple(map(float, a.p[:2])))
-            if reason == curve.FAR:
+            if reason == stepper.FAR:
                 w.recentre(a)
-            elif reason == curve.CHATTER:
+            elif reason == stepper.CHATTER:
                 if not self._write_out(a):
                     break
                 w, path = self.tracer, self.tracer.path
-                a, b = path.a, locus.new_place(w.K, w.n)
-            elif reason == curve.LEFT and (beyond := outside_between(w, a, b)) is not None:
+                a, b = path.a, new_place(w.K, w.n)
+            elif reason == stepper.LEFT and (beyond := outside_between(w, a, b)) is not None:
                 self._leave(a, beyond)
                 return
-            elif reason in (curve.CLOSED, curve.LEFT) and closes(w, a, b, self.first):
+            elif reason in (stepper.CLOSED, stepper.LEFT) and closes(w, a, b, self.first):
                 self.closed = True
                 self.special.append(self._at("closed", self.first, np.nan))
                 return
-            elif reason in (curve.EVENT, curve.STRONG, curve.CLOSED, curve.LEFT):
+            elif reason in (stepper.EVENT, stepper.STRONG, stepper.CLOSED, stepper.LEFT):
                 if self._ends(a, b, reason):
                     return
                 if not passable(w, b):
@@ -94,7 +97,7 @@ class Way:
                     return
                 passed += 1
                 copy(b, a)
-            elif reason == curve.FAILED:
+            elif reason == stepper.FAILED:
                 break
         end = birth_near(w, a) if w.curve.repeats or w.curve.mirrors else None
         if end is not None:
@@ -108,7 +111,7 @@ class Way:
         if found is None:
             return False
         w, place = found
-        place = w.correct(place, w.row_of(place.tangent))
+        place = w.correct(place, w.direction(place))
         if place is None:
             return False
         copy(with_impacts(self.tracer, self.tracer.path.first, w.K)[1], w.path.first)
@@ -116,15 +119,16 @@ class Way:
         self.tracer = w
         return True
 
-    def _keep(self, record: curve_path.Record, count: int) -> None:
-        r = record
-        values = r.p, r.t, r.D, r.motion, r.tests[:, curve_tests.MARGIN], r.tests[:, curve_tests.RESIDUAL], r.h
-        self.rows.append(Rows(*(value[:count].copy() for value in values)))
+    def _keep(self, record: Record, count: int) -> None:
+        if count:
+            r = Record(*(values[:count] for values in record))
+            self.rows.append(rows_of(self.tracer, r.x, r.motion, r.p, r.tests, r.omega * self.tracer.units.rate))
 
     def _add(self, place: Place) -> None:
-        margin, residual = place.tests[curve_tests.MARGIN], place.tests[curve_tests.RESIDUAL]
-        values = place.p, place.t, place.D, self.tracer.motion(place), margin, residual, place.h
-        self.rows.append(Rows(*(np.array(value)[None].copy() for value in values)))
+        w = self.tracer
+        w.assemble(place)
+        motion, omega = w.bench.events["motion"][None], np.array([w.omega(place)])
+        self.rows.append(rows_of(w, place.x[None], motion, place.p[None], place.tests[None], omega))
 
     def _pass(self, a: Place, b: Place) -> bool:
         """Record what lies between a and b where the orbit is real, then b. Whether the curve goes on from there.
@@ -171,8 +175,10 @@ class Way:
             self.special.append(self._at("failed", a, np.nan))
             return
         place = min(found, key=lambda one: max((one.p[j] - limit) * side for j, limit, side in sides))
-        place.tangent[:] *= np.sign(w.row_of(a.tangent) @ place.tangent[: w.size]) or 1.0
-        if not self._ends(a, place, curve.LEFT) and self._pass(a, place):
+        sign = np.sign(w.direction(a) @ w.direction(place)) or 1.0
+        place.tangent[:] *= sign
+        place.tangent_p[:] *= sign
+        if not self._ends(a, place, stepper.LEFT) and self._pass(a, place):
             self.special.append(self._at("limit", place, 0.0))
 
     def _at_limit(self, a: Place, b: Place, j: int, limit: float) -> Place | None:
@@ -180,9 +186,7 @@ class Way:
         w = self.tracer
         guess = w.between(a, b, (limit - a.p[j]) / (b.p[j] - a.p[j]))
         guess.p[j] = limit
-        row = np.zeros(w.size)
-        row[w.S + j] = 1.0
-        place = w.correct(guess, row) or self._across(a, b, j, limit)
+        place = w.correct(guess, w.axis(j)) or self._across(a, b, j, limit)
         if place is not None:
             place.p[j] = limit
         return place
@@ -195,7 +199,7 @@ class Way:
     def _ends(self, a: Place, b: Place, reason: int) -> bool:
         """Whether the curve ends: its pair meets at 1 or -1 ahead, or its orbit is born between a and b."""
         w = self.tracer
-        end = strong_resonance(w, a, b) if reason == curve.STRONG else None
+        end = strong_resonance(w, a, b) if reason == stepper.STRONG else None
         if end is None and (w.curve.repeats or w.curve.mirrors):
             end = birth(w, a, b)
         if end is None:
@@ -213,9 +217,9 @@ class Way:
         w, solution, p = self.tracer, in_full(self.tracer, end), found.place.p.copy()
         self.special.append(self._at(found.event.type, found.place, found.error, found.event, other))
         q = solution.family.linear
-        if w.curve.kind == locus.TORUS:
-            p[locus.THETA] = round(self.points.p[-1, locus.THETA] / np.pi) * np.pi
-        t = solution.times + (q.tau - w.oscillators.tau) / q.omega
+        if w.curve.kind == TORUS:
+            p[THETA] = round(self.points.p[-1, THETA] / np.pi) * np.pi
+        t = solution.times + (q.tau - w.tau) / q.omega
         motion = solution.motion[:, :2]
         h = solution.states[0, : w.n] - steady_motion(q, solution.times[0])
         values = p, t, solution.jumps, motion, np.array(solution.margin), np.array(solution.change), h
@@ -242,10 +246,19 @@ class Way:
         )  # fmt: skip
 
 
+def rows_of(tracer: Tracer, x, motion, p, tested, omega) -> Rows:
+    """Points, of what kernels have of them; omega: (points,) of the force."""
+    units, n = tracer.units, tracer.n
+    times, speeds = (x[..., n] - tracer.tau) / omega[:, None], motion * units.speed * [1.0, units.rate]
+    margin, residual = tested[:, curve_tests.MARGIN] * units.length, tested[:, curve_tests.RESIDUAL].copy()
+    jumps, states = x[..., n + 1] * units.speed, x[:, 0, :n] * tracer.state_units
+    return Rows(p.copy(), times, jumps, speeds, margin, residual, states)
+
+
 def outside_between(tracer: Tracer, a: Place, b: Place) -> Place | None:
     """b, or the point between a and b where a parameter has its extremum, if it lies out of the box."""
-    extrema = [tracer.S + j for j in range(2) if a.tangent[tracer.S + j] * b.tangent[tracer.S + j] < 0]
-    found = [root(tracer, a, b, lambda place, j=j: place.tangent[j]) for j in extrema]
+    extrema = [j for j in range(2) if a.tangent_p[j] * b.tangent_p[j] < 0]
+    found = [root(tracer, a, b, lambda place, j=j: place.tangent_p[j]) for j in extrema]
     for place in (b, *(one[1] for one in found if one is not None)):
         if np.any((place.p[:2] < tracer.box[:, 0]) | (place.p[:2] > tracer.box[:, 1])):
             return place
@@ -254,15 +267,14 @@ def outside_between(tracer: Tracer, a: Place, b: Place) -> Place | None:
 
 def passable(tracer: Tracer, place: Place) -> bool:
     """False where a Neimark-Sacker curve has passed the end that was not found."""
-    return tracer.curve.kind != locus.TORUS or 0 < place.p[locus.THETA] < math.pi
+    return tracer.curve.kind != TORUS or 0 < place.p[THETA] < math.pi
 
 
 def closes(tracer: Tracer, a: Place, b: Place, first: Place) -> bool:
     """Whether the curve passes through its first point between a and b; other curves may come as near as a step."""
-    period = 2 * math.pi * float(tracer.curve.unit[0])
     first = copied(first)
-    first.t[:] += period * np.round(np.mean(a.t - first.t) / period)
-    row = tracer.row_of(first.tangent)
+    first.phases[:] += 2 * np.pi * np.round(np.mean(a.phases - first.phases) / (2 * np.pi))
+    row = tracer.direction(first)
     ends = [row @ tracer.difference(first, place) for place in (a, b)]
     if ends[0] * ends[1] > 0:
         return False

@@ -93,6 +93,18 @@ def eight(typingctx, array, place):
 
 
 @intrinsic
+def put_eight(typingctx, array, place, value):
+    """Eight numbers of a contiguous array, from `place` on, become `value`."""
+    if isinstance(array, types.Array) and isinstance(place, types.Integer) and isinstance(value, LanesType):
+
+        def codegen(context, builder, sig, args):
+            builder.store(args[2], address(context, builder, sig.args, args, 1, LANES), align=8)
+            return context.get_dummy_value()
+
+        return types.void(array, place, value), codegen
+
+
+@intrinsic
 def sixteen(typingctx, array, place):
     """Sixteen numbers of a contiguous array in single precision, from `place` on; rows follow one another."""
     if isinstance(array, types.Array) and array.dtype == singles.element and isinstance(place, types.Integer):

@@ -1,18 +1,15 @@
 """The oscillator over a plane of two parameters: its free flight, forced motion and stops, with exact derivatives.
 
-In contact coordinates z = (q, u) (flow.py) the motion is z = h + Re(Z e^{i(omega t + tau)}), where the flight
-h' = A (h, 1) knows the constant force alone. tau is kept while the parameters move: a change of it shifts the times
-and nothing else.
+In contact coordinates z = (q, u) (flow.py) the motion is z = y + Re(Z e^{i phi}), phi = omega t + tau, where the flight
+y' = A (y, 1) knows the constant force alone.
 
 All numbers are polynomials of the two parameters (analysis/curves/oscillators.py fits them), so that kernels may go to
 any point of the plane. Where A changes there, the tables of the flight are built anew at each point.
 """
 
-import math
-
 import numpy as np
 
-from vibro_sweep.engine.impulses.factors import factorise, square, substitute
+from vibro_sweep.engine.continuation.factors import factorise, square, substitute
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.memory import record
@@ -33,17 +30,13 @@ def plane_of(masses: int) -> np.dtype:
     """N masses, n = 2N. Slopes: derivatives by the first and the second parameter."""
     n, count = 2 * masses, count_of(masses)
     return record([
-        ("n", np.int64),  # read where loops run, so that they are not written out at length: it is compiled much faster
         ("centre", float, 2),
         ("reach", float, 2),
         ("degree", np.int64, 2),
         ("moves", np.int64, 2),  # 1 where A depends on that parameter
         ("width", float),  # of a cell
         ("bits", np.int64),  # of the number of cells of the longest flight
-        ("tau", float),
-        ("half_turns", float),  # of the force in P
-        ("P", float),
-        ("P_slopes", float, 2),
+        ("half_turns", float),  # of the force in a period
         ("fit", float, (DEGREE + 1, DEGREE + 1, count)),  # coefficients of the powers of (p - centre)/reach
         ("exact", float, count),  # what `values` are at a point, of the oscillator itself
         ("values", float, count),
@@ -92,7 +85,7 @@ def move_exactly(f, p, q):
 @jit
 def spread(f):
     """Matrices, forced motion and tables from `values` and `slopes`. False in the resonance of an undamped mode."""
-    n = f.n
+    n = f.A.shape[0]
     N = n // 2
     size = n * (n + 1)
     for r in range(n):
@@ -104,9 +97,6 @@ def spread(f):
         f.numbers[i] = f.values[size + n + i]
         for j in range(2):
             f.number_slopes[j, i] = f.slopes[j, size + n + i]
-    f.P = math.pi * f.half_turns / f.numbers[OMEGA]
-    for j in range(2):
-        f.P_slopes[j] = -f.P * f.number_slopes[j, OMEGA] / f.numbers[OMEGA]
     if f.moves[0] > 0 or f.moves[1] > 0:
         build_series(f)
         build_powers(f)
@@ -145,7 +135,7 @@ def spread(f):
 @jit
 def by_push(f, A, W, r):
     """Row r of the first column of A_uq (W - 1): of both matrices, or of the slope of one of them."""
-    N, total = f.n // 2, 0.0
+    N, total = f.A.shape[0] // 2, 0.0
     for k in range(1, N):
         total += A[N + r, k] * W[k, N]
     return total
@@ -184,7 +174,7 @@ def add_slope(n, a, da, b, db, out):
 
 @jit
 def build_series(f):
-    n = f.n
+    n = f.A.shape[0]
     for r in range(n):
         for c in range(n + 1):
             f.series[0, r, c] = 1.0 if r == c else 0.0
@@ -222,7 +212,7 @@ def polynomial(n, series, u, out):
 
 @jit
 def build_powers(f):
-    n = f.n
+    n = f.A.shape[0]
     polynomial(n, f.series, f.width, f.powers[0])
     for k in range(1, f.bits):
         product(n, f.powers[k - 1], f.powers[k - 1], f.powers[k])
@@ -237,7 +227,7 @@ def build_powers(f):
 @jit
 def flight(f, length, out, other):
     """The affine map (n, n + 1) of a flight, and its derivatives where A moves: out (3, n, n + 1). other: as out."""
-    n = f.n
+    n = f.A.shape[0]
     cells = int(length / f.width)
     u = length - cells * f.width
     polynomial(n, f.series, u, out[0])

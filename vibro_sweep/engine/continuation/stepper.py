@@ -1,30 +1,37 @@
 """Many steps along a bifurcation curve: predictor, corrector, tests and certificate of every point.
 
-Distances are measured in the units of the curve, over times, impulses, parameters and theta. A call ends where
-something happens between two points, so that the caller can locate it; both points are kept.
+Distances are measured in the units of the curve, over phases, jumps, parameters and theta. A call ends where something
+happens between two points, so that the caller can locate it; both points are kept.
 """
 
 import math
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.chatter_steps import follow
-from vibro_sweep.engine.impulses.curve_path import bulges, comes_back, copy_place, keep, outside, remember
-from vibro_sweep.engine.impulses.curve_tests import BEFORE, LAST, LENGTH, RESIDUAL, examine, happens
-from vibro_sweep.engine.impulses.locus import (
-    FIRST,
-    SECOND,
-    STICK,
-    THETA,
-    TORUS,
+from vibro_sweep.engine.continuation.conditions import STICK, TORUS
+from vibro_sweep.engine.continuation.corrector import (
     assemble,
     in_order,
     move,
     newton_step,
-    size_of,
+    put_plane,
 )
+from vibro_sweep.engine.continuation.curve_tests import BEFORE, LAST, LENGTH, RESIDUAL, examine, happens
+from vibro_sweep.engine.continuation.moving_flow import OMEGA, move_exactly, move_to
+from vibro_sweep.engine.continuation.path import (
+    bulges,
+    comes_back,
+    copy_place,
+    keep,
+    measured,
+    outside,
+    rate,
+    remember,
+)
+from vibro_sweep.engine.continuation.reflections import take_apart, take_up
+from vibro_sweep.engine.continuation.residual import fly_through, follow
+from vibro_sweep.engine.continuation.workspace import FIRST, SECOND, THETA
 from vibro_sweep.engine.impulses.pairs import coarse, exchanged
-from vibro_sweep.engine.impulses.plane import move_exactly, move_to
 from vibro_sweep.engine.simd.jit import entry, jit
 
 FULL, EVENT, CLOSED, FAILED, FAR, LEFT, STRONG, CHATTER = range(8)
@@ -33,6 +40,7 @@ FULL, EVENT, CLOSED, FAILED, FAR, LEFT, STRONG, CHATTER = range(8)
 MOST_CORRECTIONS = 6
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
 BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
+COARSE = 0.03  # of the longest step: to that they are shortened where they do not tell pairs of multipliers apart
 EARLY = 10  # points before which a curve is not yet taken to be closed
 COARSE = 0.03  # of the longest step: to that they are shortened where they do not tell pairs of multipliers apart
 NEAR_STRONG = 0.05  # theta from 0 or pi
@@ -40,35 +48,30 @@ LATEST, EARLIEST = 0.9, 0.4  # values of LAST and BEFORE at which another number
 
 
 @jit
-def counts(place, j):
-    """Whether distances are measured over unknown j: not over the state h."""
-    return j < 2 * len(place.t) or j >= len(place.w)
-
-
-@jit
 def take_row(c, place, row):
     """The plane across the tangent."""
-    for j in range(size_of(c, place)):
-        row[j] = place.tangent[j] if counts(place, j) else 0.0
+    for k in range(len(row)):
+        row[k] = rate(c, place, k)
 
 
 @jit
 def normalise(c, place):
     size = 0.0
-    for j in range(size_of(c, place)):
-        if counts(place, j):
-            size += place.tangent[j] ** 2
-    size = math.sqrt(size)
-    for j in range(size_of(c, place)):
-        place.tangent[j] /= size
+    for k in range(measured(c, place)):
+        size += rate(c, place, k) ** 2
+    scale = 1.0 / math.sqrt(size)
+    for i in range(len(place.x)):
+        for r in range(place.x.shape[1]):
+            place.tangent[i, r] *= scale
+    for j in range(3):
+        place.tangent_p[j] *= scale
 
 
 @jit
 def cosine(c, a, b):
     total = 0.0
-    for j in range(size_of(c, a)):
-        if counts(a, j):
-            total += a.tangent[j] * b.tangent[j]
+    for k in range(measured(c, a)):
+        total += rate(c, a, k) * rate(c, b, k)
     return total
 
 
@@ -82,8 +85,8 @@ def correct(f, c, place, row, b):
                 return 0
         if not move_to(f, place.p[FIRST], place.p[SECOND]):
             return 0
-        change = newton_step(f, c, place, row, b, place.tangent)
-        if not change <= 1.0 or not in_order(f.P, place):
+        change = newton_step(f, c, place, row, b)
+        if not change <= 1.0 or not in_order(f, place):
             return 0
         if change < CONVERGED or (change < 1e-7 and change > 0.3 * before):
             place.tests[RESIDUAL] = change
@@ -94,24 +97,15 @@ def correct(f, c, place, row, b):
 
 
 @jit
-def rate_again(f, a, b):
-    """h' before the first impact of a, where b was used for another point since."""
-    if move_to(f, a.p[FIRST], a.p[SECOND]):
-        for r in range(len(a.h)):
-            b.room.rate[0, r] = f.A[r, len(a.h)]
-            for k in range(len(a.h)):
-                b.room.rate[0, r] += f.A[r, k] * a.h[k]
-
-
-@jit
 def set_up(f, c, place, b):
-    """What tests of a corrected point need; of a chatter's tail, what the last correction left serves."""
-    if c.kind != STICK:
-        return assemble(f, c, place, b)
-    for r in range(len(place.h)):
-        b.room.h[0, r] = place.h[r]
-    follow(f, c.sides, c.sigma, place.t, place.D, b.room)
-    return True
+    """What tests of a corrected point need: equations, but for a chatter sequence, whose tail changes little since the
+    last correction. False: singular."""
+    if not move_to(f, place.p[FIRST], place.p[SECOND]):
+        return False
+    if c.chatters:
+        fly_through(f, c, place, b)
+        return True
+    return assemble(f, c, place, b)
 
 
 @jit
@@ -130,7 +124,6 @@ def walk(f, c, path, place, row, b):
     a, record, counts = path.a, path.record, path.counts
     counts[1] = counts[2] = 0
     length = a.tests[LENGTH]
-    rate_again(f, a, b)
     while counts[1] < len(record.p):
         for j in range(2):
             if not abs(a.p[j] - f.centre[j]) <= f.reach[j]:
@@ -141,7 +134,7 @@ def walk(f, c, path, place, row, b):
             return CHATTER
         copy_place(a, place)
         take_row(c, a, row)
-        move(c, place, a.tangent, length, b.room.rate)
+        move(c, place, a.tangent, a.tangent_p, length)
         made = correct(f, c, place, row, b)
         turn = np.inf
         if made > 0:
@@ -151,17 +144,14 @@ def walk(f, c, path, place, row, b):
             length *= 0.5
             if length < path.shortest:
                 return FAILED
-            rate_again(f, a, b)
             continue
         place.tests[LENGTH] = length
         if outside(path, place):
             return LEFT
-        if not (move_to(f, place.p[FIRST], place.p[SECOND]) and set_up(f, c, place, b)):
+        if not (set_up(f, c, place, b) and examine(f, c, place, b)):
             return FAILED
-        examine(f, c, place, b)
         if length > COARSE * path.longest and hides(path, a, place, length):
             length *= 0.5
-            rate_again(f, a, b)
             continue
         remember(path, a, length)
         if bulges(path, c, a, place):  # the curve may leave and come back, and if not it goes on from here
@@ -172,7 +162,7 @@ def walk(f, c, path, place, row, b):
             return EVENT
         if counts[0] + counts[1] >= EARLY and comes_back(c, a, path.first, length):
             return CLOSED
-        keep(place, b, record, counts[1])
+        keep(place, b, f.numbers[OMEGA], record, counts[1])
         counts[1] += 1
         if turn < path.straight / 3 and made <= 3:
             length = min(1.5 * length, path.longest)
@@ -181,7 +171,7 @@ def walk(f, c, path, place, row, b):
     return FULL
 
 
-MOVE, ASSEMBLE, CORRECT, EXAMINE, NEAR, WALK = range(6)  # what `at` is to do
+MOVE, ASSEMBLE, CORRECT, EXAMINE, NEAR, WALK, FOLLOW, TAKE_APART, TAKE_UP = range(9)  # what `at` is to do
 
 
 @entry
@@ -189,8 +179,10 @@ def at(task, planes, c, path, place, row, b):
     """One kernel for Python, since each is compiled with all that it calls; 0 or NaN where something is singular.
 
     MOVE: to the parameters of `place`, with the values `exact` of the plane; CORRECT, one step of Newton's method (its
-    size is returned), and EXAMINE, tests, do that first. ASSEMBLE: equations. NEAR: all steps of Newton's method, with
-    the polynomials of the plane, and tests. WALK: why it ends.
+    size is returned), and EXAMINE, tests, do that first. ASSEMBLE: equations, and null vectors. NEAR: all steps of
+    Newton's method, with the polynomials of the plane, and tests. WALK: why it ends. FOLLOW: states before all events
+    from that before the first. TAKE_APART: the change of all events, `events.changes[1]`, for xi_1 and parameters in
+    `work.null`. TAKE_UP: the left vector, in `place.left`, for those of the last and of the eliminated equations.
     """
     f = planes[0]
     if task == MOVE or task == CORRECT or task == EXAMINE:
@@ -198,14 +190,26 @@ def at(task, planes, c, path, place, row, b):
         if task == MOVE or not moved:
             return 1.0 if moved else np.nan if task == CORRECT else 0.0
     if task == CORRECT:
-        change = newton_step(f, c, place, row, b, place.tangent)
-        return change if in_order(f.P, place) else np.nan
+        change = newton_step(f, c, place, row, b)
+        return change if in_order(f, place) else np.nan
     if task == WALK:
         return float(walk(f, c, path, place, row, b))
+    if task == FOLLOW:
+        follow(f, place, b)
+        return 1.0
+    if task == TAKE_APART:
+        for j in range(3):
+            b.work[0].step_p[1, j] = b.work[0].null[f.A.shape[0] + j]
+        take_apart(f, c, b, 1, b.work[0].null, b.work[0].step_p[1], False)
+        return 1.0
+    if task == TAKE_UP:
+        take_up(b, f.A.shape[0], b.work[0].left, place.left)
+        return 1.0
     if task == NEAR and not (correct(f, c, place, row, b) > 0 and move_to(f, place.p[FIRST], place.p[SECOND])):
         return 0.0
     if not assemble(f, c, place, b):
         return 0.0
     if task == EXAMINE or task == NEAR:
-        examine(f, c, place, b)
+        return 1.0 if examine(f, c, place, b) else 0.0
+    put_plane(f, c, b, row)
     return 1.0

@@ -11,8 +11,8 @@ with the power series mu_m(s) of chatter_series.py.
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.chatter_series import FACTORIAL, ORDERS, SLOPES, next_order, next_slopes, start
-from vibro_sweep.engine.impulses.plane import GAIN_HIGH, GAIN_LOW, OMEGA
+from vibro_sweep.engine.continuation.chatter_series import FACTORIAL, ORDERS, SLOPES, next_order, next_slopes, start
+from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, OMEGA
 from vibro_sweep.engine.simd.jit import jit
 
 REACH, NEXT = range(2)  # of `Tail.numbers`: the largest s of the series; s of the impact that follows
@@ -22,7 +22,7 @@ DECAYED = 1e-15  # relative size of the first term left out, at the largest s
 @jit
 def multiply_out(f, tail):
     """e_gap A^m, A^m e_v."""
-    n, rows, columns = f.n, tail.rows, tail.columns
+    n, rows, columns = f.A.shape[0], tail.rows, tail.columns
     for r in range(n):
         for i in range(3):
             rows[i, 0, r] = columns[i, 0, r] = 0.0
@@ -52,7 +52,7 @@ def multiply_out(f, tail):
 @jit
 def differentiate(f, t, h, rate, turn, tail):
     """y_m and gamma_m at the end of the sequence; turn: e^{i phi} there."""
-    n, omega, rows, y, slopes = f.n, f.numbers[OMEGA], tail.rows, tail.y, tail.y_slopes
+    n, omega, rows, y, slopes = f.A.shape[0], f.numbers[OMEGA], tail.rows, tail.y, tail.y_slopes
     for m in range(ORDERS + 2):
         tail.gamma[m] = rows[0, m, n // 2]
         for j in range(2):
@@ -77,7 +77,7 @@ def differentiate(f, t, h, rate, turn, tail):
 @jit
 def sum_up(f, s, tail):
     """Q, p(s), and up to which s they hold."""
-    n, nu, Q, columns, slopes = f.n, tail.nu, tail.Q, tail.columns, tail.sides[0]
+    n, nu, Q, columns, slopes = f.A.shape[0], tail.nu, tail.Q, tail.columns, tail.sides[0]
     W = n + 3
     for r in range(n):
         for v in range(W + 2):
@@ -127,5 +127,5 @@ def sum_chatter(f, side, t, rate, h, turn, s, tail):
     for l in range(1, ORDERS):  # noqa: E741
         next_order(kept, l, tail)
         if l < SLOPES:
-            next_slopes(kept, f.n + 3, l, tail)
+            next_slopes(kept, f.A.shape[0] + 3, l, tail)
     sum_up(f, s, tail)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.locus import TESTS, THETA, TORUS, Place, new_place, size_of
+from vibro_sweep.engine.continuation.workspace import TESTS, Place, new_place
 from vibro_sweep.engine.simd.jit import jit
 
 CAUTION = 0.1  # of the height to which a parameter rises between two points: what a cubic may be wrong by
@@ -14,12 +14,11 @@ CAUTION = 0.1  # of the height to which a parameter rises between two points: wh
 class Record(NamedTuple):
     """Points, in order."""
 
-    t: np.ndarray  # (most, K)
-    D: np.ndarray  # (most, K)
+    x: np.ndarray  # (most, K, n + 2)
     motion: np.ndarray  # (most, K, 2)
     p: np.ndarray  # (most, 3)
     tests: np.ndarray  # (most, TESTS)
-    h: np.ndarray  # (most, n)
+    omega: np.ndarray  # (most,): of the force
 
 
 class Path(NamedTuple):
@@ -39,7 +38,7 @@ class Path(NamedTuple):
 
 def new_path(most: int, K: int, n: int, longest: float, shortest: float, straight: float, box) -> Path:
     """most: points of one call."""
-    record = Record(*map(np.zeros, [(most, K), (most, K), (most, K, 2), (most, 3), (most, TESTS), (most, n)]))
+    record = Record(*map(np.zeros, [(most, K, n + 2), (most, K, 2), (most, 3), (most, TESTS), most]))
     places, past = (new_place(K, n), new_place(K, n)), (np.zeros((n, 2)), np.zeros(1))
     return Path(longest, shortest, straight, box, np.zeros(3, np.int64), *places, record, *past)
 
@@ -47,42 +46,42 @@ def new_path(most: int, K: int, n: int, longest: float, shortest: float, straigh
 @jit
 def copy_place(a, b):
     """b <- a."""
-    for i in range(len(a.t)):
-        b.t[i], b.D[i] = a.t[i], a.D[i]
-    for i in range(len(a.h)):
-        b.h[i] = a.h[i]
-    for i in range(3):
-        b.p[i] = a.p[i]
-    for i in range(len(a.w)):
-        b.w[i], b.psi[i] = a.w[i], a.psi[i]
-    for i in range(len(a.tangent)):
-        b.tangent[i] = a.tangent[i]
-    for i in range(len(a.tests)):
-        b.tests[i] = a.tests[i]
-    for i in range(len(a.h)):
-        b.multipliers[i, 0], b.multipliers[i, 1] = a.multipliers[i, 0], a.multipliers[i, 1]
+    K, width = a.x.shape
+    for i in range(K):
+        for r in range(width):
+            b.x[i, r], b.tangent[i, r], b.v[i, r] = a.x[i, r], a.tangent[i, r], a.v[i, r]
+    for i in range(K + 1):
+        for r in range(width):
+            b.w[i, r] = a.w[i, r]
+    for j in range(3):
+        b.p[j], b.tangent_p[j] = a.p[j], a.tangent_p[j]
+    for j in range(TESTS):
+        b.tests[j] = a.tests[j]
+    for r in range(width - 2):
+        b.multipliers[r, 0], b.multipliers[r, 1] = a.multipliers[r, 0], a.multipliers[r, 1]
 
 
 @jit
 def remember(path, a, length):
     """Keep a as the point before the next one, at this distance."""
-    for i in range(len(a.h)):
-        path.past[i, 0], path.past[i, 1] = a.multipliers[i, 0], a.multipliers[i, 1]
+    for r in range(len(path.past)):
+        path.past[r, 0], path.past[r, 1] = a.multipliers[r, 0], a.multipliers[r, 1]
     path.before[0] = length
 
 
 @jit
-def keep(place, b, record, count):
-    for i in range(len(place.t)):
-        record.t[count, i], record.D[count, i] = place.t[i], place.D[i]
+def keep(place, b, omega, record, count):
+    record.omega[count] = omega
+    K, width = place.x.shape
+    for i in range(K):
+        for r in range(width):
+            record.x[count, i, r] = place.x[i, r]
         for j in range(2):
-            record.motion[count, i, j] = b.room.motion[i, j]
+            record.motion[count, i, j] = b.events[i].motion[j]
     for j in range(3):
         record.p[count, j] = place.p[j]
-    for j in range(len(place.tests)):
+    for j in range(TESTS):
         record.tests[count, j] = place.tests[j]
-    for j in range(len(place.h)):
-        record.h[count, j] = place.h[j]
 
 
 @jit
@@ -94,18 +93,43 @@ def outside(path, place):
 
 
 @jit
+def offset(c, a, b, k):
+    """Unknown k of those over which distances are measured, from a to b: phases, jumps, parameters, theta."""
+    K, n = len(a.x), a.x.shape[1] - 2
+    if k < K:
+        return b.x[k, n] - a.x[k, n]
+    if k < 2 * K:
+        return b.x[k - K, n + 1] - a.x[k - K, n + 1]
+    k -= 2 * K
+    return (b.p[k] - a.p[k]) / (c.unit[k] if k < 2 else 1.0)
+
+
+@jit
+def rate(c, a, k):
+    """The same of the tangent."""
+    K, n = len(a.x), a.x.shape[1] - 2
+    if k < K:
+        return a.tangent[k, n]
+    if k < 2 * K:
+        return a.tangent[k - K, n + 1]
+    return a.tangent_p[k - 2 * K]
+
+
+@jit
+def measured(c, a):
+    """How many unknowns that are."""
+    return 2 * len(a.x) + c.free
+
+
+@jit
 def bulges(path, c, a, b):
     """Whether a parameter leaves the box between a and b, to return: by the cubic through both with their tangents."""
-    S, length = len(a.w), 0.0
-    for j in range(2):
-        length += ((b.p[j] - a.p[j]) / c.unit[S + j]) ** 2
-    for i in range(len(a.t)):
-        length += ((b.t[i] - a.t[i]) / c.unit[i]) ** 2 + ((b.D[i] - a.D[i]) / c.unit[len(a.t) + i]) ** 2
-    if c.kind == TORUS:
-        length += (b.p[THETA] - a.p[THETA]) ** 2
+    length = 0.0
+    for k in range(measured(c, a)):
+        length += offset(c, a, b, k) ** 2
     length = math.sqrt(length)
     for j in range(2):
-        rise, fall = length * c.unit[S + j] * a.tangent[S + j], length * c.unit[S + j] * b.tangent[S + j]
+        rise, fall = length * c.unit[j] * a.tangent_p[j], length * c.unit[j] * b.tangent_p[j]
         if rise * fall < 0.0:
             step = b.p[j] - a.p[j]
             bend, twist = 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
@@ -120,22 +144,14 @@ def bulges(path, c, a, b):
 
 @jit
 def comes_back(c, a, first, length):
-    """Whether the step from a passes the first point; times count modulo the forcing period."""
-    K, S = len(a.t), len(a.w)
-    shift = 0.0
+    """Whether the step from a passes the first point; phases count modulo the forcing period."""
+    K, shift = len(a.x), 0.0
     for i in range(K):
-        shift += (first.t[i] - a.t[i]) / c.unit[i] / K
+        shift += offset(c, a, first, i) / K
     shift = 2.0 * math.pi * math.floor(shift / (2.0 * math.pi) + 0.5)
     along, size = 0.0, 0.0
-    for j in range(size_of(c, a)):
-        if j < K:
-            offset = (first.t[j] - a.t[j]) / c.unit[j] - shift
-        elif j < 2 * K:
-            offset = (first.D[j - K] - a.D[j - K]) / c.unit[j]
-        elif j < S:
-            continue
-        else:
-            offset = (first.p[j - S] - a.p[j - S]) / c.unit[j]
-        along += offset * a.tangent[j]
-        size += offset * offset
+    for k in range(measured(c, a)):
+        away = offset(c, a, first, k) - (shift if k < K else 0.0)
+        along += away * rate(c, a, k)
+        size += away * away
     return 0.0 <= along <= length and size - along * along < 0.01 * length * length

@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.plane import GAIN_HIGH, GAIN_LOW
+from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW
 from vibro_sweep.engine.simd.jit import jit
 
 ORDERS = 16  # of the series
@@ -53,7 +53,7 @@ class Tail(NamedTuple):
     kept_slopes: np.ndarray  # (W,): of R/(1 + R)
     sides: np.ndarray  # (3, W): right sides
     Q: np.ndarray  # (n, W + 2): the number, its derivatives, and that by s
-    numbers: np.ndarray  # (2,): see chatter.py
+    numbers: np.ndarray  # (2,): see chatter_sum.py
 
 
 def new_tail(n: int) -> Tail:
@@ -67,7 +67,7 @@ def new_tail(n: int) -> Tail:
 def start(f, side, tail):
     """phi, its powers, d_0 and nu_m,0, and their derivatives."""
     gain = GAIN_HIGH if side > 0 else GAIN_LOW
-    n, power, nu, d = f.n, tail.power, tail.nu, tail.d
+    n, power, nu, d = f.A.shape[0], tail.power, tail.nu, tail.d
     W, R, phi = n + 3, f.numbers[gain] - 1.0, 1.0
     for _ in range(60):
         step = (phi * phi * (2.0 + phi) - R * (1.0 + 2.0 * phi)) / (3.0 * phi * phi + 4.0 * phi - 2.0 * R)

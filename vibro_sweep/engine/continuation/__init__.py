@@ -1,0 +1,1 @@
+"""One residual for periodic orbits with events, its derivatives, one corrector and one stepper."""

@@ -1,0 +1,113 @@
+"""The certificate of an orbit on a bifurcation curve: how far its turning points stay from their stops."""
+
+import cmath
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.continuation.chatter_sum import NEXT
+from vibro_sweep.engine.continuation.conditions import GRAZE
+from vibro_sweep.engine.continuation.factors import square
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, polynomial
+from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
+from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.simd.jit import jit
+
+FARTHER = 0.05  # relative: where the nearest turning point is looked for first, beyond that of the last point
+ASIDE = 1e-3  # of the phase beside a graze in which its own turning point lies
+
+
+@jit
+def certify(f, c, place, b):
+    """The least distance of a turning point of the gap from its stop; that of the graze itself is left out.
+
+    work.nearest: the distance, its phase and the side. Where all is farther away than at the last point, cells are
+    passed over; if nothing nearer is found, they are looked at again.
+    """
+    work = b.work[0]
+    weigh(f, work.weights)
+    far = work.nearest[0] + FARTHER * abs(work.nearest[0])
+    if not far < np.inf:
+        far = np.inf
+    work.nearest[0] = far
+    look(f, c, place, b)
+    if work.nearest[0] == far and far < np.inf:
+        work.nearest[0] = np.inf
+        look(f, c, place, b)
+    return work.nearest[0]
+
+
+@jit
+def weigh(f, weights):
+    """Bounds, over a cell, of how far the gap moves by each coordinate of the state, which is 1, and by the shift."""
+    n, power = f.A.shape[0], f.width * OVERLAP
+    for r in range(n + 1):
+        weights[r] = 0.0
+    for q in range(1, ORDER + 1):
+        for r in range(n + 1):
+            weights[r] += power * abs(f.series[q, 0, r])
+        power *= f.width * OVERLAP
+
+
+@jit
+def is_far(f, y, e, swing, weights, distance):
+    """Whether the gap stays farther than `distance` from both stops over a cell; swing: a bound of the steady part."""
+    n = f.A.shape[0]
+    gap, moved = y[0] + (f.Z[0] * e).real, swing + weights[n]
+    for r in range(n):
+        moved += weights[r] * abs(y[r])
+    return f.numbers[HIGH] - gap - moved > distance and gap - moved - f.numbers[LOW] > distance
+
+
+@jit
+def shift(f, table, y, other):
+    """y <- table (y, 1)."""
+    n = f.A.shape[0]
+    for r in range(n):
+        other[r] = table[r, n]
+        for k in range(n):
+            other[r] += table[r, k] * y[k]
+    for r in range(n):
+        y[r] = other[r]
+
+
+@jit
+def look(f, c, place, b):
+    """Lower `work.nearest` to the nearest turning point."""
+    K, n, omega, work = len(place.x), f.A.shape[0], f.numbers[OMEGA], b.work[0]
+    nearest, y, other = work.nearest, work.flying[0], work.flying[1]
+    aside, most = ASIDE / omega, math.sqrt(square(f.Z[0])) * omega * f.width * OVERLAP
+    for i in range(K):
+        begin, length = place.x[i, n], b.events[i].length
+        for r in range(n):
+            y[r] = b.events[i].after[r]
+        if c.kind >= GRAZE:
+            if i == c.index:
+                polynomial(n, f.series, aside, work.other[0])
+                shift(f, work.other[0], y, other)
+                begin, length = begin + omega * aside, length - aside
+            if (i + 1) % K == c.index:
+                length -= b.tail.numbers[NEXT] if c.chatters else aside
+        e, turn = cmath.exp(1j * begin), cmath.exp(1j * omega * f.width)
+        cells = int(length / f.width)
+        for k in range(cells + 1):
+            width = min(f.width * OVERLAP, length - k * f.width)
+            if width > 0.0 and not is_far(f, y, e, most, work.weights, nearest[0]):
+                expand_gap(f, y, e, work.cell)
+                if extremes_of_cell(work.cell, width, f.numbers[LOW], f.numbers[HIGH], nearest, work.waiting):
+                    nearest[1] = begin + omega * (nearest[1] + k * f.width)
+            if k < cells:
+                shift(f, f.powers[0], y, other)
+                e *= turn
+
+
+@jit
+def expand_gap(f, y, e, cell):
+    """The gap's Taylor coefficients from the state y, where the steady motion is Re(Z e)."""
+    n, omega, swing = f.A.shape[0], f.numbers[OMEGA], f.Z[0] * e
+    for q in range(ORDER + 1):
+        total = f.series[q, 0, n]
+        for r in range(n):
+            total += f.series[q, 0, r] * y[r]
+        cell[q] = total + swing.real
+        swing *= 1j * omega / (q + 1)

@@ -1,0 +1,176 @@
+"""Tests along a bifurcation curve: zero at its points of codimension two."""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.continuation.certificate import certify
+from vibro_sweep.engine.continuation.chatter_sum import REACH
+from vibro_sweep.engine.continuation.conditions import (
+    FLIP,
+    FOLD,
+    GRAZE,
+    STICK,
+    TORUS,
+    keep_null_vectors,
+)
+from vibro_sweep.engine.continuation.factors import factorise
+from vibro_sweep.engine.continuation.moving_flow import OMEGA
+from vibro_sweep.engine.continuation.normal_form import coefficient
+from vibro_sweep.engine.continuation.residual import eliminate
+from vibro_sweep.engine.continuation.workspace import THETA
+from vibro_sweep.engine.impulses.elimination import solve
+from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.variational.eigenvalues import eigenvalues
+
+# of `Place.tests`; those that do not belong to a kind of curve are 1
+PLUS, MINUS, DOUBLE, CUSP, PAIR, BARE_PLUS, BARE_MINUS, NORMAL, MARGIN, LENGTH, RESIDUAL, LAST, BEFORE = range(13)
+# LAST, BEFORE: time from the last impact written out, and from the one before, to the end of the chatter, in units of
+# the reach of its series
+SIGNED = 8  # so many of them are zero at points of codimension two
+TOUCHING = 1e-12  # margin, in parts of the size of the gap, that counts as zero
+
+
+@jit
+def determinant(c, b, n, mu):
+    """Of G(mu), with the sign of what was eliminated."""
+    work, X = b.work[0], 2 * n + 2
+    for r in range(n):
+        for j in range(n):
+            work.matrix[r, j] = c.sigma * mu * work.last[r, j] + work.last[r, X + j]
+    return work.sign * factorise(work.matrix, n, work.order)
+
+
+@jit
+def pair_test(c, place, b, n):
+    """prod_{i<j} (1 - mu_i mu_j) of the multipliers but the critical one: eigenvalues of -sigma ahead^-1 behind.
+
+    Zero where a pair passes the unit circle, and at a neutral saddle. 1 without losses.
+    """
+    work, X = b.work[0], 2 * n + 2
+    for r in range(n):
+        for j in range(n):
+            work.image[r, j], work.image[r, n + j] = work.last[r, j], -c.sigma * work.last[r, X + j]
+    if not solve(work.image):
+        return 1.0
+    for r in range(n):
+        for j in range(n):
+            work.matrix[r, j] = work.image[r, n + j]
+    re, im = work.re, work.im
+    if not eigenvalues(work.matrix, n, re, im):
+        return 1.0
+    left = -1
+    if c.kind == FOLD or c.kind == FLIP:
+        mu, least = 1.0 if c.kind == FOLD else -1.0, math.inf
+        for i in range(n):  # where mu is double, rounding makes a complex pair of it
+            distance = math.hypot(re[i] - mu, im[i])
+            if distance < least:
+                left, least = i, distance
+    x, y, u, v = 1.0, 0.0, 1.0, 0.0
+    for i in range(n):
+        if i != left:
+            place.multipliers[i, 0], place.multipliers[i, 1] = re[i], im[i]
+        u, v = u * re[i] - v * im[i], u * im[i] + v * re[i]
+        for j in range(i):
+            if i != left and j != left:
+                p, q = 1.0 - re[i] * re[j] + im[i] * im[j], -re[i] * im[j] - im[i] * re[j]
+                x, y = x * p - y * q, x * q + y * p
+    return x if abs(math.hypot(u, v) - 1.0) > 1e-9 else 1.0
+
+
+@jit
+def examine(f, c, place, b):
+    """Tests and certificate of a corrected point, for which `assemble` has filled b; its new v and w. False: singular.
+
+    Of a graze, those of the orbit without the impact come from a second elimination, in which it is only watched.
+    """
+    n, tests = f.A.shape[0], place.tests
+    for i in range(SIGNED):
+        tests[i] = 1.0
+    for r in range(n):
+        place.multipliers[r, 0] = place.multipliers[r, 1] = np.nan
+    tests[MARGIN] = certify(f, c, place, b)
+    if c.kind == STICK:
+        K, reach = len(place.x), b.tail.numbers[REACH] * f.numbers[OMEGA]
+        end = place.x[0, n] + math.pi * f.half_turns
+        tests[LAST], tests[BEFORE] = (end - place.x[K - 1, n]) / reach, (end - place.x[K - 2, n]) / reach
+        return True
+    if c.kind < GRAZE:
+        examine_null_vectors(c, place, b, n)
+    if c.kind != FOLD:
+        tests[PLUS] = determinant(c, b, n, 1.0)
+    if c.kind != FLIP:
+        tests[MINUS] = determinant(c, b, n, -1.0)
+    if c.kind == FLIP or c.kind == TORUS:  # det G(1) takes away the pole where the orbit has the multiplier 1 as well
+        tests[NORMAL] = coefficient(f, c, place, b) * tests[PLUS]
+    if c.kind == GRAZE:
+        b.work[0].sign = eliminate(f, c, place, b, True)
+        if b.work[0].sign == 0.0:
+            return False
+        tests[BARE_PLUS] = determinant(c, b, n, 1.0)
+        tests[BARE_MINUS] = determinant(c, b, n, -1.0)
+    if c.kind != TORUS and n > 2:
+        tests[PAIR] = pair_test(c, place, b, n)
+    return True
+
+
+@jit
+def examine_null_vectors(c, place, b, n):
+    """Where mu is double, and of a fold where it is a cusp."""
+    K, double, cusp = len(b.events), 0j, 0j
+    scale_v, scale_w = keep_null_vectors(place, b, n)
+    for i in range(K):
+        e = b.events[i]
+        for r in range(n + 2):
+            cusp += e.slopes[r] * e.v[r]
+    for r in range(n):
+        double += place.w[K - 1, 2 + r] * place.v[0, r]
+    if c.kind != TORUS:
+        place.tests[DOUBLE] = double.real
+    if c.kind == FOLD:
+        place.tests[CUSP] = (cusp * scale_v * scale_v * scale_w).real
+
+
+@jit
+def passes(a, b):
+    """Whether a margin changes its sign by more than rounding: where both stops are touched at once, it is zero."""
+    return (a > TOUCHING and b < -TOUCHING) or (a < -TOUCHING and b > TOUCHING)
+
+
+@jit
+def is_born(c, sign, a, b):
+    """Whether what tells the two halves of the orbit apart (sign -1: a half from the other's mirror) changes its sign.
+
+    A necessary condition, from the jumps alone; analysis/curves/ends.py looks closer.
+    """
+    K, D = len(a.x), a.x.shape[1] - 1
+    half, touch = K // 2, c.index if c.kind == GRAZE and K % 2 == 1 else K
+    product, size_a, size_b = 0.0, 0.0, 0.0
+    for k in range(half):  # a touch that only one half has does not count
+        i, j = k + (1 if k >= touch else 0), k + half + (1 if k + half >= touch else 0)
+        x, y = a.x[j, D] - sign * a.x[i, D], b.x[j, D] - sign * b.x[i, D]
+        product += x * y
+        size_a += x * x
+        size_b += y * y
+    return min(size_a, size_b) > 1e-18 and product < -0.5 * math.sqrt(size_a * size_b)  # else one orbit taken twice
+
+
+@jit
+def happens(c, a, b):
+    """Whether a test changes its sign between two points."""
+    if (c.repeats and is_born(c, 1.0, a, b)) or (c.mirrors and is_born(c, -1.0, a, b)):
+        return True
+    for i in range(SIGNED):
+        if (a.tests[i] > 0.0 > b.tests[i]) or (a.tests[i] < 0.0 < b.tests[i]):  # their product may underflow
+            return True
+    D = a.x.shape[1] - 1
+    for i in range(len(a.x)):
+        if a.x[i, D] * b.x[i, D] < 0.0 and not (c.kind >= GRAZE and i == c.index):
+            return True
+    if passes(a.tests[MARGIN], b.tests[MARGIN]):
+        return True
+    if c.kind == TORUS:
+        for angle in (math.pi / 2, 2 * math.pi / 3):
+            if (a.p[THETA] - angle) * (b.p[THETA] - angle) <= 0.0:
+                return True
+    return False

@@ -1,0 +1,232 @@
+"""The normal form of a flip and of a Neimark-Sacker point, to third order and exact: no differences.
+
+The invariant manifold of the critical multiplier is X(z) = (phi_i, D_i, y_1)(z), and one period later X(f(z)):
+
+    flip: f(z) = -z + c z^3        Neimark-Sacker: f(z) = mu z + c z^2 z*
+
+The equations of the orbit (residual.py) hold for X as power series in z and z*. At each order m, z^j z*^k, the unknown
+coefficient satisfies J(mu^j mu*^k) X_m = -R_m, with R_m from the lower orders; at the resonant one w gives c:
+
+    c sigma w.(closing rows of v) = -w.R_m
+
+(Kuznetsov, Elements of Applied Bifurcation Theory, 5.4; the parameterisation is that of Cabre, Fontich, de la Llave,
+J. Differential Equations 218 (2005) 444.)
+"""
+
+import numpy as np
+
+from vibro_sweep.engine.continuation.conditions import FLIP, expand, multiplier, put_matrix
+from vibro_sweep.engine.continuation.factors import factorise, square, substitute
+from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, OMEGA
+from vibro_sweep.engine.continuation.reflections import take_down
+from vibro_sweep.engine.continuation.workspace import TERMS
+from vibro_sweep.engine.simd.jit import jit
+
+POWERS = np.array([(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3)])  # j, k of z^j z*^k
+_PLACE = {tuple(power): place for place, power in enumerate(POWERS.tolist())}
+PRODUCTS = np.array([  # i, j, k: terms i and j make term k
+    (i, j, _PLACE[a + c, b + d])
+    for i, (a, b) in enumerate(POWERS.tolist())
+    for j, (c, d) in enumerate(POWERS.tolist())
+    if (a + c, b + d) in _PLACE
+])  # fmt: skip
+MIRROR = np.array([_PLACE[k, j] for j, k in POWERS.tolist()])  # of the complex conjugate
+LINEAR, SQUARE, MIXED, CUBE, RESONANT = 1, 3, 4, 6, 7
+
+
+@jit
+def times(a, b, out):
+    """out = a b, to third order."""
+    for i in range(TERMS):
+        out[i] = 0.0
+    for i in range(len(PRODUCTS)):
+        out[PRODUCTS[i, 2]] += a[PRODUCTS[i, 0]] * b[PRODUCTS[i, 1]]
+
+
+@jit
+def factor_of(mu, m):
+    """mu^j mu*^k."""
+    result = 1.0 + 0j
+    for _ in range(POWERS[m, 0]):
+        result *= mu
+    for _ in range(POWERS[m, 1]):
+        result *= mu.conjugate()
+    return result
+
+
+@jit
+def meet(f, gain, e, D, series, y, power, other, left):
+    """left (2, TERMS): rows 1 and 2 of an impact, for the state y (n, TERMS) before it at its own phase."""
+    N, R1 = f.A.shape[0] // 2, f.numbers[gain]
+    shift, jump = series[0], series[1]
+    for m in range(TERMS):
+        power[m], left[0, m], left[1, m] = 0.0, y[0, m], jump[m] + R1 * y[N, m]
+    left[1, 0] += D
+    power[0] = 1.0
+    # Re(Z e^{i phi}) with e^{i dphi} = 1 + x + x^2/2 + x^3/6
+    back = e.turn.conjugate()
+    gap, speed = f.Z[0] * e.turn, f.Z[N] * e.turn
+    gap_back, speed_back = f.Z[0].conjugate() * back, f.Z[N].conjugate() * back
+    weight = 1.0 + 0j
+    for k in range(4):
+        sign = 1.0 if k % 2 == 0 else -1.0
+        for m in range(TERMS):
+            left[0, m] += 0.5 * (gap + sign * gap_back) * weight * power[m]
+            left[1, m] += 0.5 * R1 * (speed + sign * speed_back) * weight * power[m]
+        times(power, shift, other)
+        for m in range(TERMS):
+            power[m] = other[m]
+        weight *= 1j / (k + 1)
+
+
+@jit
+def fly_series(f, e, delay, y, landing, turned, power, other):
+    """y becomes E exp(A delay/omega) (y, 1), all power series; power becomes those of delay.
+
+    landing, turned : room like y; other: (TERMS,)
+    """
+    n, omega = f.A.shape[0], f.numbers[OMEGA]
+    for r in range(n):
+        for m in range(TERMS):
+            landing[r, m] = y[r, m]
+    for m in range(TERMS):
+        power[m] = 0.0
+    power[0] = 1.0
+    constant, weight = 1.0, 1.0
+    for k in range(1, 4):  # terms A^k delay^k/k! of (y, 1)
+        times(power, delay, other)
+        for m in range(TERMS):
+            power[m] = other[m]
+        for r in range(n):
+            for m in range(TERMS):
+                turned[r, m] = 0.0
+                for q in range(n):
+                    turned[r, m] += f.A[r, q] * y[q, m]
+            turned[r, 0] += f.A[r, n] * constant
+        constant = 0.0
+        weight /= k * omega
+        for r in range(n):
+            times(power, turned[r], other)
+            for m in range(TERMS):
+                y[r, m] = turned[r, m]
+                landing[r, m] += weight * other[m]
+    for r in range(n):
+        for m in range(TERMS):
+            y[r, m] = 0.0
+            for q in range(n):
+                y[r, m] += e.E[0, r, q] * landing[q, m]
+        y[r, 0] += e.E[0, r, n]
+
+
+@jit
+def residuals(f, c, place, b, mu):
+    """b.left, b.closing: coefficients of all equations, for those of X in b.series, b.first."""
+    K, n = len(place.x), f.A.shape[0]
+    N = n // 2
+    y, landing, turned = b.states[0], b.states[1], b.states[2]
+    power, other, delay = b.jets[0], b.jets[1], b.jets[2]
+    for r in range(n):
+        for m in range(TERMS):
+            y[r, m] = b.first[r, m]
+        y[r, 0] = place.x[0, r]
+    for i in range(K):
+        e, following = b.events[i], i + 1 if i + 1 < K else 0
+        gain, D = GAIN_HIGH if c.sides[i] > 0 else GAIN_LOW, place.x[i, n + 1]
+        meet(f, gain, e, D, b.series[i], y, power, other, b.left[i])
+        for m in range(TERMS):
+            delay[m] = b.series[following, 0, m] * (1.0 if i + 1 < K else factor_of(mu, m)) - b.series[i, 0, m]
+            y[N, m] += b.series[i, 1, m]
+        y[N, 0] += D
+        delay[0] = 0.0
+        fly_series(f, e, delay, y, landing, turned, power, other)
+    for r in range(n):
+        for m in range(1, TERMS):
+            b.closing[r, m] = c.sigma * factor_of(mu, m) * b.first[r, m] - y[r, m]
+
+
+@jit
+def solve_order(f, c, place, b, mu, m):
+    """The coefficient of order m from its residual. False where mu^j mu*^k is a multiplier."""
+    K, n, work, rows = len(place.x), f.A.shape[0], b.work[0], place.left
+    factor = factor_of(mu, m)
+    put_matrix(c, b, n, factor, work.border)
+    if square(factorise(work.border, n, work.order)) == 0.0:
+        return False
+    for i in range(K + 1):
+        for r in range(n + 2):
+            rows[i, r] = 0.0
+        if i < K:
+            rows[i, 0], rows[i, 1] = -b.left[i, 0, m], -b.left[i, 1, m]
+    for r in range(n):
+        rows[K - 1, 2 + r] = -b.closing[r, m]
+    take_down(b, n, rows, True, work.right)
+    substitute(work.border, n, work.order, work.right)
+    expand(c, b, n, factor, work.right)
+    set_order(f, b, m)
+    return True
+
+
+@jit
+def set_order(f, b, m):
+    """X_m from (xi, dphi, dD) in `events.v`, and its mirror: dy_1 = xi_1 + y' dphi_1."""
+    n = f.A.shape[0]
+    for i in range(len(b.events)):
+        for k in range(2):
+            value = b.events[i].v[n + k]
+            b.series[i, k, m] = value
+            if MIRROR[m] != m:
+                b.series[i, k, MIRROR[m]] = value.conjugate()
+    e = b.events[0]
+    for r in range(n):
+        value = e.v[r] + e.rate[r] * e.v[n]
+        b.first[r, m] = value
+        if MIRROR[m] != m:
+            b.first[r, MIRROR[m]] = value.conjugate()
+
+
+@jit
+def clear_mirror(b, m):
+    """Of a flip, power series are of z alone."""
+    for i in range(len(b.series)):
+        b.series[i, 0, MIRROR[m]] = b.series[i, 1, MIRROR[m]] = 0.0
+    for r in range(len(b.first)):
+        b.first[r, MIRROR[m]] = 0.0
+
+
+@jit
+def coefficient(f, c, place, b):
+    """For the v and w of `place`, with z = w.(closing rows of v); NaN where it is not defined.
+
+    Flip: c z, which stays finite at the resonance 1:2. Neimark-Sacker: Re(c mu*) |z|^2.
+    """
+    K, n, mu = len(place.x), f.A.shape[0], multiplier(c, place)
+    for i in range(K):
+        for r in range(n + 2):
+            b.events[i].v[r] = place.v[i, r]
+        for k in range(2):
+            for m in range(TERMS):
+                b.series[i, k, m] = 0.0
+    for r in range(n):
+        for m in range(TERMS):
+            b.first[r, m] = 0.0
+    set_order(f, b, LINEAR)
+    if c.kind == FLIP:
+        clear_mirror(b, LINEAR)
+    residuals(f, c, place, b, mu)
+    if not solve_order(f, c, place, b, mu, SQUARE):
+        return np.nan
+    if c.kind == FLIP:
+        clear_mirror(b, SQUARE)
+    elif not solve_order(f, c, place, b, mu, MIXED):
+        return np.nan
+    residuals(f, c, place, b, mu)
+    order = CUBE if c.kind == FLIP else RESONANT
+    total, double = 0j, 0j
+    for i in range(K):
+        total += place.w[i, 0] * b.left[i, 0, order] + place.w[i, 1] * b.left[i, 1, order]
+    for r in range(n):
+        total += place.w[K - 1, 2 + r] * b.closing[r, order]
+        double += place.w[K - 1, 2 + r] * place.v[0, r]
+    if c.kind == FLIP:
+        return -c.sigma * total.real
+    return (-c.sigma * total * double.conjugate() * mu.conjugate()).real

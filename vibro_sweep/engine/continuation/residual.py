@@ -1,0 +1,172 @@
+"""The equations of a periodic orbit as a sequence of events, and their elimination event by event.
+
+The phase phi = omega t + tau is the independent variable, and the steady motion S = Re(Z e^{i phi}) is taken out: in
+contact coordinates z = y + S, and y' = A (y, 1) knows the constant force alone. Event i has the unknowns y_i, phi_i and
+its velocity jump D_i, two rows, and the flight after it; s_i = (phi_{i+1} - phi_i)/omega:
+
+    impact: gap_i = stop_i, D_i + (1 + R_i) v_i = 0        watched: v_i = 0, D_i = 0
+    y_{i+1} = E(s_i) (y_i + D_i e_v, 1)                    y_{K+1} = sigma y_1, phi_{K+1} = phi_1 + pi halves
+
+Newton's changes are (xi_i, dphi_i, dD_i) with dy_i = xi_i + y'_i dphi_i, so that only neighbours are coupled:
+
+    xi_{i+1} = E_i (xi_i + e_v dD_i - rho_i dphi_i) - s_i y'_{i+1} d omega + E_p (y_i + D_i e_v, 1) dp
+    rho_i = A e_v D_i/omega
+
+Reflections eliminate xi_i, dphi_i and dD_i; xi_1 and the parameters stay to the end, where `ahead` and `behind` are
+left of xi_{K+1} and xi_1: G(mu) = sigma mu ahead + behind is singular where the orbit has the multiplier mu. Nothing is
+singular at D = 0, a graze, and the cost grows like K.
+"""
+
+import cmath
+import math
+
+from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
+from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, flight
+from vibro_sweep.engine.continuation.reflections import copy_row, reflect
+from vibro_sweep.engine.simd.jit import jit
+
+IMPACT, WATCHED, END = range(3)  # laws of events; END: of a chatter sequence at the onset of sticking
+
+
+@jit
+def approach(f, x, e):
+    """The motion before an event."""
+    n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
+    e.turn = cmath.exp(1j * x[n])
+    for r in range(n):
+        total = f.A[r, n]
+        for c in range(n):
+            total += f.A[r, c] * x[c]
+        e.rate[r] = total / omega
+    e.motion[0] = x[N] + (f.Z[N] * e.turn).real
+    e.motion[1] = omega * e.rate[N] + (1j * omega * f.Z[N] * e.turn).real
+
+
+@jit
+def put_rows(f, law, side, x, e, panel):
+    """Rows n and n + 1 of the panel: those of the event itself."""
+    n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
+    p, F, first, second = 3 * n + 2, 3 * n + 4, n, n + 1
+    stop, gain = (HIGH, GAIN_HIGH) if side > 0 else (LOW, GAIN_LOW)
+    v, a = e.motion[0], e.motion[1]
+    speed = second if law != WATCHED else first  # the row that knows the velocity, and how much of it
+    weight = f.numbers[gain] if law != WATCHED else 1.0
+    panel[speed, N], panel[speed, n] = weight, weight * a / omega
+    panel[speed, F] = weight * v
+    panel[second, n + 1] = 1.0  # D
+    panel[second, F] += x[n + 1]
+    for j in range(2):
+        panel[speed, p + j] = weight * (f.Z_slopes[j, N] * e.turn).real
+        if law != WATCHED:
+            panel[speed, p + j] += f.number_slopes[j, gain] * v
+    if law == IMPACT:
+        panel[first, 0], panel[first, n] = 1.0, v / omega
+        panel[first, F] = x[0] + (f.Z[0] * e.turn).real - f.numbers[stop]
+        for j in range(2):
+            panel[first, p + j] = (f.Z_slopes[j, 0] * e.turn).real - f.number_slopes[j, stop]
+    elif law == END:
+        end_of_chatter(f, x, e, panel)
+
+
+@jit
+def fly(f, length, x, e, other):
+    """The flight of this length after an event."""
+    n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
+    flight(f, length, e.E, other)
+    for r in range(n):
+        e.after[r], e.bend[r] = x[r], f.A[r, N] * x[n + 1] / omega
+    e.after[N] += x[n + 1]
+    e.after[n] = 1.0
+    for r in range(n):
+        total = 0.0
+        for c in range(n + 1):
+            total += e.E[0, r, c] * e.after[c]
+        e.landing[r] = total
+    for r in range(n):
+        total = f.A[r, n]
+        for c in range(n):
+            total += f.A[r, c] * e.landing[c]
+        e.landing_rate[r] = total / omega
+
+
+@jit
+def put_flight(f, e, panel):
+    """The last rows of the panel: the flight, whose end is to be the next state."""
+    n, N = f.A.shape[0], f.A.shape[0] // 2
+    p, F = 3 * n + 2, 3 * n + 4
+    for r in range(n):
+        i, by_phase = n + 2 + r, 0.0
+        for c in range(n):
+            panel[i, c] = -e.E[0, r, c]
+            by_phase += e.E[0, r, c] * e.bend[c]
+        panel[i, n], panel[i, n + 1], panel[i, n + 2 + r] = by_phase, -e.E[0, r, N], 1.0
+        panel[i, F] = e.missed[r]
+        for j in range(2):
+            panel[i, p + j] = e.length * e.landing_rate[r] * f.number_slopes[j, OMEGA]
+            if f.moves[j] > 0:
+                for c in range(n + 1):
+                    panel[i, p + j] -= e.E[1 + j, r, c] * e.after[c]
+
+
+@jit
+def fly_through(f, c, place, b):
+    """The motion through all events, at the parameters to which f was moved."""
+    K, n = len(place.x), f.A.shape[0]
+    for i in range(K):
+        e, x, last = b.events[i], place.x[i], i + 1 == K
+        following = place.x[0 if last else i + 1]
+        e.length = (following[n] + (math.pi * f.half_turns if last else 0.0) - x[n]) / f.numbers[OMEGA]
+        approach(f, x, e)
+        fly(f, e.length, x, e, b.work[0].other)
+        for r in range(n):
+            e.missed[r] = (c.sigma if last else 1.0) * following[r] - e.landing[r]
+
+
+@jit
+def eliminate(f, c, place, b, watched):
+    """Eliminate all events after `fly_through`. Sign of the determinant's part; 0.0: singular.
+
+    watched : whether the event c.index takes part in nothing but is followed
+    """
+    K, n, work = len(place.x), f.A.shape[0], b.work[0]
+    panel, X, sign = work.panel, 2 * n + 2, 1.0
+    for r in range(n):  # xi_1 - xi_1 = 0
+        for j in range(panel.shape[1]):
+            panel[r, j] = 0.0
+        panel[r, r], panel[r, X + r] = 1.0, -1.0
+    for i in range(K):
+        e, x, last = b.events[i], place.x[i], i + 1 == K
+        law = WATCHED if watched and i == c.index else END if c.chatters and i == 0 else IMPACT
+        for r in range(n, 2 * n + 2):
+            for j in range(panel.shape[1]):
+                panel[r, j] = 0.0
+        put_rows(f, law, c.sides[i], x, e, panel)
+        put_flight(f, e, panel)
+        if c.chatters and last:
+            put_tail(f, c, place, b, panel)
+        sign *= reflect(panel, n + 2, e.mirrors, e.scales)
+        if sign == 0.0:
+            return 0.0
+        for r in range(n + 2):
+            copy_row(panel, r, e.kept, r)
+        for r in range(n):
+            below = n + 2 + r
+            for j in range(n):
+                panel[r, j], panel[r, n + 2 + j] = panel[below, n + 2 + j], 0.0
+            panel[r, n] = panel[r, n + 1] = 0.0
+            for j in range(X, panel.shape[1]):
+                panel[r, j] = panel[below, j]
+    for r in range(n):
+        copy_row(panel, r, work.last, r)
+    return sign
+
+
+@jit
+def follow(f, place, b):
+    """States before all events from that before the first."""
+    n = f.A.shape[0]
+    for i in range(len(place.x) - 1):
+        e, x, following = b.events[i], place.x[i], place.x[i + 1]
+        fly(f, (following[n] - x[n]) / f.numbers[OMEGA], x, e, b.work[0].other)
+        for r in range(n):
+            following[r] = e.landing[r]

@@ -1,0 +1,142 @@
+"""Points of a solution set, and the room in which kernels work on them.
+
+Lengths are in units of the gap's size and times in units of 1/omega of the start, so that all numbers are of size 1.
+The unknowns of an event are its state y before it, its phase phi and its velocity jump D: a row (n + 2), n = 2N.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.engine.continuation.chatter_series import Tail, new_tail
+from vibro_sweep.engine.impulses.extremes import PIECES
+from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.simd.memory import new_lines, record
+
+FIRST, SECOND, THETA = range(3)  # of `Place.p`: both parameters, and theta of a Neimark-Sacker curve
+TESTS = 13
+TERMS = 10  # of a power series in z and its conjugate, to third order
+ROWS = 3  # most scalar rows: conditions, and the plane across a tangent
+
+
+class Place(NamedTuple):
+    """A point; K events."""
+
+    x: np.ndarray  # (K, n + 2): y, phi, D
+    p: np.ndarray  # (3,)
+    tangent: np.ndarray  # (K, n + 2)
+    tangent_p: np.ndarray  # (3,), in units of the parameters
+    v: np.ndarray  # (K, n + 2) complex: right null vector of a critical multiplier, (xi, dphi, dD)
+    w: np.ndarray  # (K + 1, n + 2) complex: left null vector, rows 1 and 2 of the event and those of the flight after
+    # it; last those of xi_1 - xi_1 = 0
+    left: np.ndarray  # (K + 1, n + 2) complex: room for w of a trial
+    tests: np.ndarray  # (TESTS,): see curve_tests.py
+    multipliers: np.ndarray  # (n, 2): real and imaginary parts of those of the test PAIR; NaN where they are not known
+
+    @property
+    def phases(self) -> np.ndarray:
+        """(K,) of the events, radians."""
+        return self.x[:, -2]
+
+    @property
+    def jumps(self) -> np.ndarray:
+        """(K,) velocity jumps."""
+        return self.x[:, -1]
+
+
+def new_place(K: int, n: int) -> Place:
+    real, vectors = [(K, n + 2), 3, (K, n + 2), 3], [np.zeros((count, n + 2), complex) for count in (K, K + 1, K + 1)]
+    return Place(*map(np.zeros, real), *vectors, np.zeros(TESTS), np.full((n, 2), np.nan))
+
+
+def columns_of(n: int) -> int:
+    """Of a panel: xi_i (n), dphi_i, dD_i, xi_{i+1} (n), xi_1 (n), both parameters, residual; in whole vectors."""
+    return -(-(3 * n + 5) // LANES) * LANES
+
+
+@cache
+def event_of(masses: int) -> np.dtype:
+    """What is kept of each event."""
+    n = 2 * masses
+    return record([
+        ("kept", float, (n + 2, columns_of(n))),  # what was eliminated, an upper triangle in front; whole cache lines
+        ("mirrors", float, (n + 2, 2 * n + 2)),  # m of the reflections 1 - s m m^T
+        ("scales", float, n + 2),  # s
+        ("E", float, (3, n, n + 1)),  # the flight after it, and its derivatives by the parameters
+        ("rate", float, n),  # y' = dy/dphi before it
+        ("after", float, n + 1),  # y after it, and 1
+        ("landing", float, n),  # y at the end of the flight
+        ("landing_rate", float, n),  # y' there
+        ("missed", float, n),  # by which it misses the next state
+        ("bend", float, n),  # rho: the jump of y' at it
+        ("motion", float, 2),  # gap velocity and acceleration before it
+        ("rows", float, (ROWS, n + 2)),  # entries of the scalar rows, by xi, dphi, dD
+        ("factors", float, (ROWS, n + 2)),  # with which `kept` was subtracted from them
+        ("changes", float, (2, n + 2)),  # Newton's change, and the tangent: xi, dphi, dD
+        ("length", float),  # of the flight
+        ("turn", complex),  # e^{i phi}
+        ("slopes", complex, n + 2),  # of a condition by xi, dphi, dD
+        ("v", complex, n + 2),  # as of `Place`, at this point
+        ("w", complex, n + 2),
+        ("sides", complex, n + 2),  # right sides of a system with the eliminated matrix
+    ])  # fmt: skip
+
+
+@cache
+def work_of(masses: int) -> np.dtype:
+    """Room for one elimination."""
+    n = 2 * masses
+    wide = columns_of(n)
+    return record([
+        ("panel", float, (2 * n + 2, wide)),
+        ("line", float, wide),
+        ("last", float, (n, wide)),  # what is left: columns of xi_{K+1} (XI), xi_1, parameters, residual
+        ("ends", float, (n + ROWS, n + ROWS + 2)),  # the last equations: xi_1, parameters | residual, 1 of the plane
+        ("system", float, (n + ROWS, n + ROWS)),
+        ("sign", float),  # of the determinant of what was eliminated
+        ("step_p", float, (2, ROWS)),  # Newton's change of the parameters, and the tangent, in their units
+        ("null", float, n + ROWS),  # xi_1 and parameters of a vector that is taken apart
+        ("row_p", float, (ROWS, ROWS)),  # scalar rows by the parameters
+        ("row_left", float, ROWS),  # and their residuals
+        ("other", float, (3, n, n + 1)),
+        ("mirror", float, (n + 2, 2 * n + 2)),
+        ("image", float, (n, 2 * n)),
+        ("matrix", float, (n, n)),
+        ("re", float, n),
+        ("im", float, n),
+        ("cell", float, ORDER + 1),
+        ("nearest", float, 3),  # turning point nearest to its stop: distance, phase, side
+        ("waiting", float, (PIECES, 2)),
+        ("weights", float, n + 1),  # see certificate.py
+        ("flying", float, (2, n)),
+        ("order", np.int64, n + ROWS),
+        ("border", complex, (n + 1, n + 1)),
+        ("left", complex, n),  # of the last equations: border, then null vector
+        ("right", complex, n),
+        ("side", complex, n + 1),
+        ("column", complex, 2 * n + 2),
+        ("slopes_p", complex, ROWS),  # of a condition by the parameters
+        ("missed", complex),  # see second_derivative.py
+    ])  # fmt: skip
+
+
+class Bench(NamedTuple):
+    """Room to work in."""
+
+    work: np.ndarray  # (1,) `work_of`
+    events: np.ndarray  # (K,) `event_of`
+    tail: Tail
+    series: np.ndarray  # (K, 2, TERMS) complex: of dphi_i and dD_i, see normal_form.py
+    first: np.ndarray  # (n, TERMS) complex: of y_1
+    left: np.ndarray  # (K, 2, TERMS) complex: of rows 1 and 2
+    closing: np.ndarray  # (n, TERMS) complex
+    states: np.ndarray  # (3, n, TERMS) complex
+    jets: np.ndarray  # (3, TERMS) complex
+
+
+def new_bench(K: int, n: int) -> Bench:
+    shapes = (K, 2, TERMS), (n, TERMS), (K, 2, TERMS), (n, TERMS), (3, n, TERMS), (3, TERMS)
+    room = new_lines(1, work_of(n // 2)), new_lines(K, event_of(n // 2)), new_tail(n)
+    return Bench(*room, *(np.zeros(shape, complex) for shape in shapes))
