@@ -62,11 +62,10 @@ def passed(a: np.ndarray, b: np.ndarray) -> tuple[list[str], list[int]]:
         if not len(near):
             lines.append(f"point {k} of the record lies {away.min():.1e} aside")
             continue
-        places = near + share[near]
-        later = places[places >= last - 1e-6]
+        later = near[near + share[near] >= last - 1e-6]
         if not len(later):
             lines.append(f"point {k} of the record is passed earlier than the one before")
             continue
-        best = near[places >= last - 1e-6][np.argmin(away[near][places >= last - 1e-6])]
+        best = later[np.argmax(away[later] <= away[later].min() + ROUNDED)]  # where it is passed twice, the first time
         last, steps[k] = float(best + share[best]), int(best)
     return lines, steps
