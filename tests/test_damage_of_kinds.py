@@ -83,6 +83,53 @@ def test_a_list_of_numbers_that_is_a_text(kinds, tmp_path, monkeypatch):
         assert told.outcome == damage.REFUSED and "x.h5 is damaged (its attribute `along`" in told.message
 
 
+ALL_COMPUTING = (*damage.COMPUTING, "vs.windows")
+REFUSED_LATE = {  # kind of the file, its dataset or attribute, the value in it, words of the message
+    "a scene that is none": ("sweep", "scene", "no such thing", "sweep.h5: scene: scene = "),
+    "a swept number out of its range": ("sweep", "b", -1e30, "sweep.h5: b: -1e+30 is not allowed"),
+    "a period of a million": ("windows", "branch_period", 10**6, "windows.h5: tables over 2000000 half periods"),
+    "a period of a million in branches": ("branches", "branch_period", 10**6, "branches.h5: tables over 2000000 half"),
+    "a plane of no scene": ("plane", "scene", "no such thing", "plane.h5: scene: scene = "),
+    "a type without a curve": ("windows", "special_type", 7, "'limit' in windows.h5; it must be one of fold"),
+}
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(case, marks=pytest.mark.slow if kind in ("branches", "plane") else ())
+        for case, (kind, *_) in REFUSED_LATE.items()
+    ],
+)
+def test_what_is_refused_late_names_the_file(kinds, tmp_path, monkeypatch, case):
+    """Whatever computes from it, on the command line and in Python."""
+    monkeypatch.chdir(tmp_path)
+    name, where, value, words = REFUSED_LATE[case]
+    file = str(shutil.copy(kinds(name), f"{name}.h5"))
+    damage.write_scenes_of_commands()
+    with h5py.File(file, "a") as content:
+        if where in content:
+            content[where][...] = value
+        else:
+            content.attrs[where] = value
+    for key, call in damage.commands(name).items():
+        if key in ALL_COMPUTING:
+            told = call(file)
+            assert told.outcome == damage.REFUSED and words in told.message, f"{key}: {told.message}"
+            Path("made.h5.part").unlink(missing_ok=True)
+
+
+def test_a_resumed_scene_of_long_text(kinds, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    damage.write_scenes_of_commands()
+    shutil.copy(kinds("linear"), "linear.h5")
+    with h5py.File("linear.h5", "a") as file:
+        file.attrs.create("scene", LONG)
+    for option in ("--resume", "--quiet"):
+        told = damage.said([*KINDS["linear"].command("linear"), option])
+        assert told.outcome == damage.REFUSED and LONG[:40] in told.message and LONG[:61] not in told.message
+
+
 def test_a_quantity_without_its_own_dimension(kinds, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(kinds("follow"), "x.h5")

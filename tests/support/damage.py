@@ -81,6 +81,13 @@ SCENES = {
 }
 
 
+def write_scenes_of_commands() -> None:
+    """Into the current folder."""
+    write_scenes(Path())
+    for scene, text in SCENES.items():
+        Path(f"{scene}.yaml").write_text(text)
+
+
 def _of(name: str, file: str) -> list[str]:
     words = KINDS[name].command(name)
     words[words.index("-o") + 1] = file
@@ -185,9 +192,7 @@ def table(
     some : cases of each kind of damage; of edits a sample of ten times as many. slow: with commands that compute
     """
     rng, counts, failures = np.random.default_rng(seed), collections.Counter(), []
-    write_scenes(Path())
-    for scene, text in SCENES.items():
-        Path(f"{scene}.yaml").write_text(text)
+    write_scenes_of_commands()
     for other in KINDS if name != PERIODIC else ():
         shutil.copy(kinds(other), f"{other}.h5")
     file = str(shutil.copy(kinds(name), kinds(name).name))

@@ -11,6 +11,7 @@ from vibro_sweep.analysis.branches.search import Node, search
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.driver.source_file import computed_from_source
 from vibro_sweep.driver.usable import is_branch
 from vibro_sweep.model.branch_file import BRANCHES, columns_of
 from vibro_sweep.model.files import file_to_write
@@ -35,20 +36,22 @@ def run_branches(
     The file does not depend on workers, executor or interruptions. Raises StoreError as `run` does, ValueError where
     the scene's first orbit does not exist, RunError where workers fail.
     """
-    subject = Subject(BRANCHES, scene.name, scene.text, attributes_of(scene, source_of(scene)))
+    output = file_to_write("output", output)
     ((key, bounds),) = scene.along.items()
-    with pieces(subject, file_to_write("output", output), mode, scene.inputs) as file:
-        if file.complete:
-            return
-        with workers_of(workers, executor) as pool:
-            try:
-                seeds = seeds_of(scene, file, pool)
-            except NoOrbitError:
-                file.drop()
-                raise
-            evaluate = computed(grow, is_branch, pool, file, progress)
-            found = search(Branches(key, bounds, scene.follow), seeds, scene.depth, evaluate)
-        file.finish(provenance(), *_contents(scene, found))
+    with computed_from_source(scene):
+        subject = Subject(BRANCHES, scene.name, scene.text, attributes_of(scene, source_of(scene)))
+        with pieces(subject, output, mode, scene.inputs) as file:
+            if file.complete:
+                return
+            with workers_of(workers, executor) as pool:
+                try:
+                    seeds = seeds_of(scene, file, pool)
+                except NoOrbitError:
+                    file.drop()
+                    raise
+                evaluate = computed(grow, is_branch, pool, file, progress)
+                found = search(Branches(key, bounds, scene.follow), seeds, scene.depth, evaluate)
+            file.finish(provenance(), *_contents(scene, found))
 
 
 def _contents(scene: Continuation, found: list[Node]) -> tuple:

@@ -16,6 +16,7 @@ from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of, specials_of
 from vibro_sweep.driver.planes import edges_in_file, plane_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.driver.source_file import computed_from_source
 from vibro_sweep.driver.usable import is_branch, is_curve, is_probe
 from vibro_sweep.model.branch_file import CHART, columns_of
 from vibro_sweep.model.curve_columns import OF_EDGES
@@ -40,28 +41,34 @@ def run_curves(
     progress : called as progress(done, total) in branches, then in curves
     The file does not depend on workers, executor or interruptions. Raises what `run_branches` raises.
     """
-    of_plane, more = plane_of(scene), {}
-    subject = Subject(CHART, scene.name, scene.text, attributes_of(scene, source_of(scene)))
-    names, box = tuple(scene.along), tuple(scene.along.values())
-    with pieces(subject, file_to_write("output", output), mode, scene.inputs) as file:
-        if file.complete:
-            return
-        with workers_of(workers, executor) as pool:
-            evaluate = computed(trace, is_curve, pool, file, progress)
-            if of_plane is not None:
-                probed = computed(probe, is_probe, pool, file, progress)
-                found = explain(*of_plane, names, box, scene.of, scene.depth, probed, evaluate)
-                curves, more = found.curves, edges_in_file(of_plane[0], found)
-            else:
-                try:
-                    starts = _starts(scene, names, box, pool, file, progress)
-                except NoOrbitError:
-                    file.drop()
-                    raise
-                curves = Curves(names, box, scene.of).search(starts, scene.depth, evaluate)
-        arrays = joined_curves([one.flat for one in curves], list(names), scene.system.masses)
-        held = columns_of(CHART, list(names), scene.system, OF_EDGES if more else ())
-        file.finish(provenance(), held, arrays | _origins(curves, arrays) | more)
+    output = file_to_write("output", output)
+    with computed_from_source(scene):
+        of_plane = plane_of(scene)
+        subject = Subject(CHART, scene.name, scene.text, attributes_of(scene, source_of(scene)))
+        with pieces(subject, output, mode, scene.inputs) as file:
+            if not file.complete:
+                file.finish(provenance(), *_contents(scene, of_plane, workers, executor, file, progress))
+
+
+def _contents(scene: Continuation, of_plane, workers, executor, file, progress) -> tuple:
+    """Columns and arrays of the file."""
+    names, box, more = tuple(scene.along), tuple(scene.along.values()), {}
+    with workers_of(workers, executor) as pool:
+        evaluate = computed(trace, is_curve, pool, file, progress)
+        if of_plane is not None:
+            probed = computed(probe, is_probe, pool, file, progress)
+            found = explain(*of_plane, names, box, scene.of, scene.depth, probed, evaluate)
+            curves, more = found.curves, edges_in_file(of_plane[0], found)
+        else:
+            try:
+                starts = _starts(scene, names, box, pool, file, progress)
+            except NoOrbitError:
+                file.drop()
+                raise
+            curves = Curves(names, box, scene.of).search(starts, scene.depth, evaluate)
+    arrays = joined_curves([one.flat for one in curves], list(names), scene.system.masses)
+    held = columns_of(CHART, list(names), scene.system, OF_EDGES if more else ())
+    return held, arrays | _origins(curves, arrays) | more
 
 
 def _starts(scene: Continuation, names, box, pool, file, progress) -> list[CurveSeed]:

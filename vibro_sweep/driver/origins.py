@@ -21,6 +21,7 @@ from vibro_sweep.analysis.periodic.orbit import STATUS, PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.windows.cover import Cover, Found
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.rows import Row
+from vibro_sweep.driver.source_file import SourceError
 from vibro_sweep.driver.windows import cover_of, rows_in
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.bifurcations import CURVES
@@ -32,7 +33,7 @@ from vibro_sweep.store.joining import branch_of, curve_of
 from vibro_sweep.store.pieces import Pieces
 
 
-class NoOrbitError(ValueError):
+class NoOrbitError(SourceError):
     """There is no orbit to begin with."""
 
 
@@ -49,7 +50,7 @@ def source_of(scene: Continuation) -> Source:
     if scene.origin == "sweep":
         with store.contents(Path(scene.begin)) as data:
             if "kind" in data.attrs:
-                raise ValueError(f"continue.from.sweep: {scene.begin} holds {cut(str(data.attrs['kind']))}, no sweep")
+                raise SourceError(f"continue.from.sweep: {scene.begin} holds {cut(str(data.attrs['kind']))}, no sweep")
             own = _rows(scene, data)[0].system
             identity = data.attrs.get("identity", "")
     elif scene.origin == "branches":
@@ -110,7 +111,7 @@ def _check_same(scene: Continuation, own: AnyOscillator, asked: AnyOscillator) -
     for name in [*ours, *theirs]:
         if ours.get(name) != theirs.get(name):
             told = f"{name} = {shown(ours.get(name))} in system, and {shown(theirs.get(name))} in {scene.begin}"
-            raise ValueError(f"continue.from.{scene.origin}: {told}; branches belong to one oscillator")
+            raise SourceError(f"continue.from.{scene.origin}: {told}; branches belong to one oscillator")
 
 
 def _rows(scene: Continuation, data: Contents) -> list[Row]:
@@ -118,15 +119,12 @@ def _rows(scene: Continuation, data: Contents) -> list[Row]:
 
     All rows of a plane whose keys are both followed. Raises ValueError.
     """
-    try:
-        rows = rows_in(data, next(iter(scene.along)))
-    except ValueError as error:
-        raise ValueError(f"continue.from.sweep: {scene.begin}, {error}") from None
+    rows = rows_in(data, next(iter(scene.along)))
     numbers = {name: value for name, value in scene.system.parameters().items() if name not in scene.along}
     found = [row for row in rows if all(numbers.get(name, value) == value for name, value in row.held.items())]
     if not found:
         held = ", ".join(f"{name} = {numbers[name]!r}" for name in rows[0].held)
-        raise ValueError(f"continue.from.sweep: {scene.begin} has no row with {held}")
+        raise SourceError(f"continue.from.sweep: {scene.begin} has no row with {held}")
     return found
 
 
@@ -179,7 +177,8 @@ def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> lis
         if isinstance(special, CurvePoint):
             return curves_through(special)
         if special.type not in CURVES:
-            raise ValueError(f"continue.from.special: {special.type!r} is not allowed; it must be {', '.join(CURVES)}")
+            told = f"{scene.special} is a {special.type!r} in {scene.begin}"
+            raise SourceError(f"continue.from.special: {told}; it must be one of {', '.join(CURVES)}")
         return [special]
     with store.contents(Path(scene.begin)) as data:
         rows = _rows(scene, data)
@@ -204,10 +203,11 @@ def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:
 def _at_special(scene: Continuation, data: Contents) -> tuple[AnyOscillator, list[str]]:
     """The oscillator at the scene's special point, and the numbers that vary in the file. Raises ValueError."""
     if "kind" not in data.attrs:
-        raise ValueError(f"continue.from.branches: {scene.begin} holds no branches")
+        raise SourceError(f"continue.from.branches: {scene.begin} holds no branches")
     count = data.sizes["special"]
     if scene.special >= count:
-        raise ValueError(f"continue.from.special: {scene.special} is not allowed; it must be < {count}")
+        allowed = f"< {count}, as {scene.begin} has no more special points"
+        raise SourceError(f"continue.from.special: {scene.special} is not allowed; it must be {allowed}")
     parse = parse_scene if data.attrs["kind"] == WINDOWS else parse_continuation
     names = np.atleast_1d(data.attrs["parameters"]).tolist()
     values = data.values("special_value")[scene.special].tolist()

@@ -8,6 +8,7 @@ from vibro_sweep import store
 from vibro_sweep.analysis.windows.edges import Plane, ends_of
 from vibro_sweep.analysis.windows.explained import Explained
 from vibro_sweep.analysis.windows.rows import check_data
+from vibro_sweep.driver.source_file import SourceError
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.state import state
@@ -30,16 +31,16 @@ def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
             raise ValueError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
         check_data(data)
         if sorted(keys) != sorted(names):
-            raise ValueError(
+            raise SourceError(
                 f"continue.along: {', '.join(names)} is not allowed; {scene.begin} is a plane of {cut(', '.join(keys))}"
             )
         if scene.largest is not None:
-            raise ValueError(
+            raise SourceError(
                 f"continue.from.largest: belongs to windows along one number; {scene.begin} is a plane whose edges are "
                 "explained; leave it out"
             )
         if "start" in data.dims("period"):
-            raise ValueError(f"continue.from.sweep: {scene.begin} has several starts; it must be a plane of one")
+            raise SourceError(f"continue.from.sweep: {scene.begin} has several starts; it must be a plane of one")
         system = parse_scene(data.attrs["scene"]).system
         values = [data.values(name).astype(float) for name in names]
         rising = np.ix_(*(np.argsort(axis, kind="stable") for axis in values))

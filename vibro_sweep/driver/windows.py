@@ -15,6 +15,7 @@ from vibro_sweep.analysis.windows.unseen import unseen_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.driver.jobs import results, workers_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.driver.source_file import computed_from
 from vibro_sweep.driver.usable import is_window
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import REASONS
@@ -51,20 +52,21 @@ def windows(path: str | Path, key: str | None = None) -> Windows:
     """
     path = checked_path("path", path)
     check_type("key", key, (str, NoneType), "the name of a swept number, or None")
-    with store.contents(path) as data:
-        cover = Cover(rows_in(data, key))
-    with given_or_bar(None, cover.total) as tell:
+    with computed_from(path):
+        with store.contents(path) as data:
+            cover = Cover(rows_in(data, key))
+        with given_or_bar(None, cover.total) as tell:
 
-        def evaluate(_, jobs) -> list[Result]:
-            found = []
-            for job in jobs:
-                found.append(window_of(job))
-                if tell:
-                    tell(cover.done, cover.total)
-            return found
+            def evaluate(_, jobs) -> list[Result]:
+                found = []
+                for job in jobs:
+                    found.append(window_of(job))
+                    if tell:
+                        tell(cover.done, cover.total)
+                return found
 
-        cover.search(evaluate)
-    return windows_of(cover)
+            cover.search(evaluate)
+        return windows_of(cover)
 
 
 def run_windows(
@@ -81,17 +83,19 @@ def run_windows(
     progress : called as progress(done, total) in orbits of the sweep
     The file does not depend on workers, executor or interruptions. Raises what `windows` and `run` raise.
     """
-    with store.contents(path) as data:
-        rows = rows_in(data, key)
-        subject = _subject(data, rows[0].parameter)
-    with pieces(subject, file_to_write("output", output), mode, [Path(path)]) as file:
-        if file.complete:
-            return
-        with workers_of(workers, executor) as pool:
-            cover = cover_of(rows, file, pool, progress)
-        if progress:
-            progress(cover.total, cover.total)
-        file.finish(provenance(), *_contents(cover))
+    path, output = checked_path("path", path), file_to_write("output", output)
+    with computed_from(path):
+        with store.contents(path) as data:
+            rows = rows_in(data, key)
+            subject = _subject(data, rows[0].parameter)
+        with pieces(subject, output, mode, [path]) as file:
+            if file.complete:
+                return
+            with workers_of(workers, executor) as pool:
+                cover = cover_of(rows, file, pool, progress)
+            if progress:
+                progress(cover.total, cover.total)
+            file.finish(provenance(), *_contents(cover))
 
 
 def cover_of(

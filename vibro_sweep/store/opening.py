@@ -1,7 +1,6 @@
 """Opening a file or a part for reading: is it one of ours, whole, and what the scene describes? Nothing is written."""
 
 import contextlib
-import difflib
 import io
 import json
 import tempfile
@@ -14,9 +13,10 @@ import numpy as np
 
 from vibro_sweep import __version__
 from vibro_sweep.model.files import MissingFileError
-from vibro_sweep.model.refusals import LONGEST, cut
+from vibro_sweep.model.refusals import cut
 from vibro_sweep.store import heap, parts
 from vibro_sweep.store.attributes import MATRIX, check_dataset, check_numbers, check_own_dimensions, text, texts
+from vibro_sweep.store.differences import differences
 from vibro_sweep.store.flat_checks import damage_of
 from vibro_sweep.store.image import Index, frame_of
 from vibro_sweep.store.parts import FORMAT, PartError
@@ -261,7 +261,7 @@ def check_scene(file: h5py.File, path: Path, scene: "Scene") -> None:
     if old != scene.text:
         raise StoreError(
             f"{path} was made from another scene; name another file, or overwrite it\n"
-            f"(- is that scene, + is this one)\n{_differences(old, scene.text)}"
+            f"(- is that scene, + is this one)\n{differences(old, scene.text)}"
         )
 
 
@@ -279,12 +279,6 @@ def check_version(file: h5py.File, path: Path) -> None:
             f"{begun}, code {cut(str(old.get('code')))}, and this is vibro_sweep {__version__} with other code, "
             f"{code}, another numpy or numba, or a processor that rounds otherwise (README, Tested); overwrite it"
         )
-
-
-def _differences(old: str, new: str, most: int = 8) -> str:
-    lines = difflib.ndiff(old.splitlines(), new.splitlines())
-    changed = [f"  {cut(line, 2 * LONGEST)}" for line in lines if line[0] in "+-"]
-    return "\n".join(changed[:most] + (["  ..."] if len(changed) > most else []))
 
 
 def made_by() -> dict:
