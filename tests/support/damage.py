@@ -145,8 +145,10 @@ def _python(call: Callable[[], str]) -> Said:
 def _opened(file: str) -> Said:
     def read() -> str:
         with vs.open(file) as data:
-            numbers = [name.encode() + np.asarray(data[name]).tobytes() for name in sorted(map(str, data.variables))]
-        return hashlib.sha256(b"".join(numbers)).hexdigest()
+            known = {name: np.asarray(data[name]) for name in sorted(map(str, data.variables))}
+        words = {name: values.astype(str) for name, values in known.items() if values.dtype == object}  # not addresses
+        parts = [name.encode() + values.tobytes() for name, values in (known | words).items()]
+        return hashlib.sha256(b"".join(parts)).hexdigest()
 
     return _python(read)
 
