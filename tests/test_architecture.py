@@ -15,7 +15,8 @@ ALLOWED = {
     "driver": {"model", "engine", "analysis", "scene", "store"},
     "plotting": {"store", "model"},
 }
-FLOORS = ["single", "attractors", "periodic", "branches", "curves", "windows"]  # of analysis/: in this order
+# of analysis/: in this order
+FLOORS = ["single", "attractors", "periodic", "continuation", "branches", "curves", "windows"]
 EVERYWHERE = {"identity", "progress", "__version__"}  # what numbers depend on, the progress bar, and the version
 TABLES = {
     "arguments",

@@ -11,9 +11,9 @@ from support.oscillators import PAPER
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import births, torus
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.curves import born
 from vibro_sweep.analysis.curves.curve_points import others_outside
-from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.engine.continuation.conditions import TORUS
 

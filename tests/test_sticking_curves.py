@@ -10,9 +10,9 @@ from reference.chatter import Chatter
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.continuation import first_of
 from vibro_sweep.analysis.curves.start import start_at
-from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 
 pytestmark = pytest.mark.slow

@@ -7,9 +7,9 @@ import pytest
 from support import slow_cases
 from support.golden import curves, files
 
+from vibro_sweep.analysis.continuation.tracer import Tracer, copied
 from vibro_sweep.analysis.curves.continuation import first_of
 from vibro_sweep.analysis.curves.start import start_at
-from vibro_sweep.analysis.curves.tracer import Tracer, copied
 from vibro_sweep.engine.continuation import stepper
 
 NAMES = (  # of each kind, of one to eight masses, in numbers that move the flight and that do not

@@ -3,7 +3,7 @@
 import numpy as np
 from reference.saltation import expm, field, monodromy
 
-from vibro_sweep.analysis.branches.beginning import keeps_symmetry
+from vibro_sweep.analysis.continuation.start import keeps_symmetry
 from vibro_sweep.model.linear import family_of
 
 NEAR = 1e-6  # distance of a multiplier from the unit circle within which it counts as on neither side

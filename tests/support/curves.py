@@ -27,7 +27,7 @@ def chosen(curve, count):
     points = curve.points
     speeds = np.abs(points.impact_v.values)
     if curve.type == "graze":
-        speeds = np.delete(speeds, curve._tracer.curve.index, axis=1)
+        speeds = np.delete(speeds, curve._tracer.problem.index, axis=1)
     allowed = np.flatnonzero(~points.virtual.values & (speeds.min(axis=1, initial=np.inf) > SLOWEST))
     return allowed[np.linspace(0, len(allowed) - 1, count).round().astype(int)]
 
@@ -65,7 +65,7 @@ def error_at(curve, k, digits=30) -> float:
         elif curve.type == "neimark_sacker":
             found = shooting.where_torus(u, name, value)
         else:
-            found = shooting.where_vanishing(curve._tracer.curve.index, u, name, value)
+            found = shooting.where_vanishing(curve._tracer.problem.index, u, name, value)
         return float(abs(found - mpf(value)) / abs(value))
 
 

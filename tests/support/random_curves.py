@@ -94,7 +94,7 @@ def special_at(curve, k, special) -> SpecialPoint:
     solution = solution_at(curve, k)
     names = curve.parameters
     system = special.orbit.system.replace(**{name: float(curve.points[name][k]) for name in names})
-    impact = stop_and_impact(solution, curve._tracer.curve.index)[1] if curve.type == "graze" else None
+    impact = stop_and_impact(solution, curve._tracer.problem.index)[1] if curve.type == "graze" else None
     parameters = {name: solution.family.numbers[name] for name in names}
     return SpecialPoint(curve.type, parameters, orbit_of(system, solution), np.empty(0), impact=impact)
 
@@ -103,7 +103,7 @@ def simulate_beside(report: Report, curve, k, where: str) -> None:
     """The orbit on each side of the curve, where there is one, is the motion that the engine computes."""
     solution = solution_at(curve, k)
     if curve.type == "graze":
-        keep = np.delete(np.arange(solution.K), curve._tracer.curve.index)
+        keep = np.delete(np.arange(solution.K), curve._tracer.problem.index)
         sides = tuple(solution.sides[i] for i in keep)
         u = np.concatenate([solution.times[keep], solution.jumps[keep]])
         solution = replace(solution, sides=sides, u=u)

@@ -3,9 +3,9 @@
 import numpy as np
 
 from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.continuation.start import keeps_symmetry
 from vibro_sweep.analysis.periodic.long_orbits import is_sparse, residual
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.model.linear import Family
 
 BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # in units of a walk; near the onset of sticking branches are short
 FARTHER = (1e-3, 1e-2)  # beside a fold so flat that Newton's method stands still only there
@@ -44,12 +44,6 @@ def start_of_walk(solution: Solution, name: str, lo: float, hi: float, stable: b
     if not is_real(first, TOUCHES):
         raise ValueError(f"orbit: it is a special point, and no orbit beside it in {name} is real and in bounds")
     return walk
-
-
-def keeps_symmetry(family: Family, name: str) -> bool:
-    """Whether orbits with x(t + P) = -x(t) remain so along this parameter."""
-    slope = family.derivative(name)
-    return slope.low == -slope.high and slope.R_low == slope.R_high and not np.any(slope.constant)
 
 
 def changes_rests(solution: Solution, name: str) -> bool:

@@ -9,11 +9,11 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.beginning import keeps_symmetry
 from vibro_sweep.analysis.branches.own_birth import may_be_born, over_birth
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.track import Rows, Track
 from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.continuation.start import keeps_symmetry
 
 BACK = 16  # points, at most, to one that lies before what rounding does beside a birth
 

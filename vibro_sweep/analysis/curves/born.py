@@ -29,9 +29,9 @@ from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.pair import in_time, rates_of_pair, second_order
-from vibro_sweep.analysis.curves.start import Start
-from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution

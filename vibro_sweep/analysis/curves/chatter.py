@@ -6,7 +6,7 @@ The last of them must lie within the reach of the series, and not far below it: 
 import numpy as np
 
 from vibro_sweep.analysis.branches.special import Chatter, bare
-from vibro_sweep.analysis.curves.tracer import Tracer, copied
+from vibro_sweep.analysis.continuation.tracer import Tracer, copied
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.chatter_sum import NEXT, REACH
 from vibro_sweep.engine.continuation.stepper import FOLLOW, LATEST
@@ -39,7 +39,7 @@ def with_impacts(tracer: Tracer, place: Place, K: int) -> tuple[Tracer, Place]:
         tracer, place = _resized(tracer, place, tracer.K + 1)
         place.phases[-1] = place.phases[0] + tracer.omega(place) * time
         tracer.do(FOLLOW, place)
-        gain = 1 + tracer.family(place).linear.restitution(tracer.curve.sides[-1:])[0]
+        gain = 1 + tracer.family(place).linear.restitution(tracer.problem.sides[-1:])[0]
         place.jumps[-1] = -gain * tracer.motion(place)[-1, 0] / tracer.units.speed
     return (tracer, copied(place)) if tracer.K == K else _resized(tracer, place, K)
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from scipy.optimize import brentq
 
-from vibro_sweep.analysis.curves.tracer import Tracer
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.periodic.long_orbits import MANY
 from vibro_sweep.engine.continuation.workspace import Place
 

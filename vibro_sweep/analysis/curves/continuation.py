@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves import curve_text
 from vibro_sweep.analysis.curves.chatter import written_out
 from vibro_sweep.analysis.curves.curve_points import dataset
 from vibro_sweep.analysis.curves.events import is_real
 from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.curves.start import start_at
-from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint, Way
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.engine.continuation.workspace import Place

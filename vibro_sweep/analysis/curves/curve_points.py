@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.rows import Rows
-from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
-from vibro_sweep.engine.continuation.conditions import FLIP, FOLD, GRAZE, STICK, TORUS
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
+from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.engine.impulses.flights import free_part, new_room
 from vibro_sweep.engine.impulses.flow import Flow, contact_coordinates, steady_motion
@@ -33,9 +33,9 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     At an onset of sticking there are no multipliers and no states (NaN). The impacts are the end of the chatter, with
     no speed, and those before the next end that are written out (NaN: fewer than elsewhere on the curve).
     """
-    s, kind, names, K = tracer.start.solution, tracer.curve.kind, tracer.names, rows.t.shape[1]
-    sides = tracer.resized(K).curve.sides.astype(int)
-    others = np.delete(np.arange(K), tracer.curve.index) if kind >= GRAZE else np.arange(K)
+    s, kind, names, K = tracer.start.solution, tracer.problem.kind, tracer.names, rows.t.shape[1]
+    sides = tracer.resized(K).problem.sides.astype(int)
+    others = np.delete(np.arange(K), tracer.problem.index) if kind >= GRAZE else np.arange(K)
     multipliers, shifts, states = [], [], []
     oscillators = [tracer.oscillators.at(p).linear for p in rows.p]
     flows = _flows(oscillators) if kind != STICK else oscillators

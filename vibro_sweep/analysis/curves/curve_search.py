@@ -9,16 +9,16 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches import seeds as orbits
-from vibro_sweep.analysis.branches.beginning import keeps_symmetry
 from vibro_sweep.analysis.branches.flat import Flat
 from vibro_sweep.analysis.branches.search import Evaluate, Node, search
 from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of, unpacked
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.continuation.start import KINDS, Start, keeps_symmetry
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.continuation import bifurcation_curve
 from vibro_sweep.analysis.curves.flat import as_special, flatten, solution_at, start_from
-from vibro_sweep.analysis.curves.start import KINDS, Start, start_at
+from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.curves.switching import ENDS, switch
-from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution

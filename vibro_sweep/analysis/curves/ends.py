@@ -15,11 +15,11 @@ import numpy as np
 from vibro_sweep.analysis.branches.births import doubled
 from vibro_sweep.analysis.branches.own_birth import halves_apart
 from vibro_sweep.analysis.branches.special import bare, inserted
+from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.events import Found, event_near
-from vibro_sweep.analysis.curves.start import Start
-from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.continuation.conditions import FLIP, FOLD, GRAZE, TORUS
+from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA, Place
 
 NEAR = 0.2  # in the units of the curve: how far from the expected end the other curve is entered
@@ -83,9 +83,9 @@ def in_full(tracer: Tracer, end: End) -> Solution:
     if solution.K == tracer.K:
         return solution
     touching, index = inserted(solution)  # both halves touch the stop, and that of the curve is meant
-    k, half = tracer.curve.index, solution.equations.P / 2
+    k, half = tracer.problem.index, solution.equations.P / 2
     time = touching.times[index] + half * np.sign(k - index)
-    sides = (*solution.sides[:k], int(tracer.curve.sides[k]), *solution.sides[k:])
+    sides = (*solution.sides[:k], int(tracer.problem.sides[k]), *solution.sides[k:])
     u = np.insert(solution.u, [k, solution.K + k], [time, 0.0])
     return Solution(solution.family, solution.sigma, solution.halves, sides, u)
 
@@ -106,7 +106,7 @@ def _near(tracer: Tracer, a: Place, b: Place, share: float, parts) -> Place | No
         guess = tracer.between(a, b, (1 - part) * share)
         place, angle = tracer.correct(guess, row), guess.p[THETA]
         turn = abs(angle - math.pi * round(angle / math.pi))
-        if place is None or (tracer.curve.kind == TORUS and not abs(place.p[THETA] - angle) < 0.5 * turn):
+        if place is None or (tracer.problem.kind == TORUS and not abs(place.p[THETA] - angle) < 0.5 * turn):
             continue
         if _apart(tracer, place) >= max(LEAST, 0.5 * _apart(tracer, guess)):
             return place
@@ -115,16 +115,16 @@ def _near(tracer: Tracer, a: Place, b: Place, share: float, parts) -> Place | No
 
 def struck(tracer: Tracer, solution: Solution) -> Solution:
     """A point's orbit without the touch that only one of its two halves can have: a graze, of an odd number."""
-    of_graze = tracer.curve.kind == GRAZE and solution.K % 2
-    return bare(solution, tracer.curve.index) if of_graze else solution
+    of_graze = tracer.problem.kind == GRAZE and solution.K % 2
+    return bare(solution, tracer.problem.index) if of_graze else solution
 
 
 def _apart(tracer: Tracer, place: Place) -> float:
     """By how much the halves of an orbit differ; inf where it cannot be a simpler one, taken twice."""
-    if not (tracer.curve.repeats or tracer.curve.mirrors):
+    if not (tracer.problem.repeats or tracer.problem.mirrors):
         return math.inf
     solution = struck(tracer, tracer.solution(place))
-    return float(np.linalg.norm(halves_apart(solution, 1 if tracer.curve.repeats else -1)))
+    return float(np.linalg.norm(halves_apart(solution, 1 if tracer.problem.repeats else -1)))
 
 
 def _is_repeated(end: End) -> bool:
@@ -160,7 +160,7 @@ def birth_near(tracer: Tracer, a: Place) -> End | None:
 
 
 def _first_found(tracer: Tracer, aim: Place, sigma: int, lengths) -> End | None:
-    solution, kind = struck(tracer, tracer.solution(aim)), tracer.curve.kind
+    solution, kind = struck(tracer, tracer.solution(aim)), tracer.problem.kind
     starts = []
     if sigma > 0 and solution.K % 4 == 0 and solution.halves % 4 == 0 and kind in (FOLD, TORUS):
         mirrored = solution.sides[solution.K // 4] == -solution.sides[0]

@@ -9,10 +9,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.chord import ASIDE, Chord
-from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.engine.continuation import stepper
-from vibro_sweep.engine.continuation.conditions import STICK
+from vibro_sweep.engine.continuation.problem import STICK, unknowns
 from vibro_sweep.engine.continuation.workspace import Place
 
 STEPS = (-3e-12, -1e-12, 1e-12, 3e-12)  # of a chord: beside the zero, so near that only rounding differs
@@ -49,9 +49,9 @@ def estimates(chord: Chord, share: float) -> np.ndarray:
 
 def sensitivity(tracer: Tracer, place: Place, row: np.ndarray) -> float:
     """By how much a parameter moves, on the plane across `row`, where each equation is off by its own size."""
-    if tracer.curve.kind == STICK or not tracer.assemble(place, row):
+    if tracer.problem.kind == STICK or not tracer.assemble(place, row):
         return 0.0
-    n, free, work, events = tracer.n, tracer.curve.free, tracer.bench.work[0], tracer.bench.events
+    n, free, work, events = tracer.n, unknowns(tracer.problem), tracer.bench.work[0], tracer.bench.events
     try:
         inverse = np.linalg.inv(work["ends"][: n + free, : n + free])
     except np.linalg.LinAlgError:
@@ -64,5 +64,5 @@ def sensitivity(tracer: Tracer, place: Place, row: np.ndarray) -> float:
         tracer.do(stepper.TAKE_UP, place)
         rows = np.abs(place.left)
         total = rows[:-1, :2].sum() + rows[-2, 2:].sum() + np.abs(by_rows[:-1]).sum()
-        found.append(total * tracer.curve.unit[j])
+        found.append(total * tracer.problem.unit[j])
     return float(max(found))

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.chord import root
 from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
 from vibro_sweep.analysis.curves.errors import error_of
-from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.engine.continuation import curve_tests
-from vibro_sweep.engine.continuation.conditions import FLIP, FOLD, GRAZE, STICK, TORUS
 from vibro_sweep.engine.continuation.curve_tests import RESIDUAL
+from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA, Place
 
 # what a test is zero at, on each kind of curve
@@ -71,14 +71,14 @@ class Event:
 
 def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
     """What changes its sign from a to b."""
-    kind, events = tracer.curve.kind, []
+    kind, events = tracer.problem.kind, []
     for i in range(curve_tests.SIGNED):
         if np.sign(a.tests[i]) * np.sign(b.tests[i]) < 0:
             size = max(abs(a.tests[i]), abs(b.tests[i]))
             name = NAMES[kind, i]
             events.append(Event(name, lambda place, i=i, size=size: place.tests[i] / size, test=i))
     for i in range(tracer.K):
-        if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == tracer.curve.index):
+        if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == tracer.problem.index):
             events.append(Event(VANISHES[kind], lambda place, i=i: place.jumps[i], impact=i))
     least, most = sorted(place.tests[curve_tests.MARGIN] for place in (a, b))
     if least < -curve_tests.TOUCHING and most > curve_tests.TOUCHING:
@@ -188,7 +188,7 @@ def beside(tracer: Tracer, a: Place, b: Place, one: Found, found: list[Found]) -
 
 def named(tracer: Tracer, event: Event) -> Event:
     """A flip of a symmetric orbit's half map is a pitchfork."""
-    if event.type == "flip_graze" and tracer.curve.sigma < 0:
+    if event.type == "flip_graze" and tracer.problem.sigma < 0:
         return replace(event, type="pitchfork_graze")
     return event
 
@@ -222,16 +222,16 @@ def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
 def is_sharp(tracer: Tracer, event: Event, place: Place) -> bool:
     """Whether rounding leaves a test its sign: that of multipliers has a pole where another impact vanishes."""
     impulses = np.abs(place.jumps)
-    if tracer.curve.kind == GRAZE:
-        impulses = np.delete(impulses, tracer.curve.index)
+    if tracer.problem.kind == GRAZE:
+        impulses = np.delete(impulses, tracer.problem.index)
     return event.test != curve_tests.PAIR or not np.any(impulses < SLOW)
 
 
 def is_real(tracer: Tracer, place: Place) -> bool:
     """Whether all impulses but the grazing one push, and every flight stays inside."""
-    pushes = -tracer.curve.sides * place.jumps
-    if tracer.curve.kind >= GRAZE:
-        pushes = np.delete(pushes, tracer.curve.index)
+    pushes = -tracer.problem.sides * place.jumps
+    if tracer.problem.kind >= GRAZE:
+        pushes = np.delete(pushes, tracer.problem.index)
     return bool(np.all(pushes > 0) and place.tests[curve_tests.MARGIN] > -curve_tests.TOUCHING)
 
 

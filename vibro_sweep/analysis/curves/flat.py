@@ -8,12 +8,12 @@ import numpy as np
 from vibro_sweep.analysis.branches.flat import Flat, solution_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.curves.continuation import BifurcationCurve
-from vibro_sweep.analysis.curves.start import Start
 from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.continuation.conditions import GRAZE
+from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.model.bifurcations import CODES_OF_CURVES, CODIMENSION_TWO, CURVES
 from vibro_sweep.model.linear import Linear, steady_gain
 from vibro_sweep.model.state import state
@@ -36,7 +36,7 @@ SHAPES = {
 def flatten(curve: BifurcationCurve) -> Flat:
     """The arrays of a curve."""
     data, tracer, start = curve.points, curve._tracer, curve._tracer.start.solution
-    grazing = tracer.curve.index if tracer.curve.kind == GRAZE else -1
+    grazing = tracer.problem.index if tracer.problem.kind == GRAZE else -1
     value = np.column_stack([data[name].values for name in curve.parameters])
     t, v, sides = (data[name].values for name in ("impact_t", "impact_v", "impact_side"))
     speeds = np.abs(np.delete(v, grazing, axis=1) if grazing >= 0 else v)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.analysis.curves.tracer import Tracer
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.normal_form import MIXED, SQUARE
 from vibro_sweep.engine.continuation.workspace import Place
@@ -19,7 +19,7 @@ def second_order(tracer: Tracer, place: Place) -> tuple[np.ndarray, np.ndarray]:
 def rates_of_pair(tracer: Tracer, place: Place) -> tuple[np.ndarray, np.ndarray]:
     """Slopes along the orbits by both parameters: of log mu of the pair (2,), of times and impulses (2K, 2)."""
     tracer.assemble(place)
-    n, unit, omega = tracer.n, tracer.curve.unit, tracer.omega(place)
+    n, unit, omega = tracer.n, tracer.problem.unit, tracer.omega(place)
     ends = tracer.bench.work[0]["ends"][: n + 2, : n + 3].copy()
     first = -np.linalg.solve(ends[:n, :n], ends[:n, n : n + 2])
     along = np.array([tracer.taken_apart(place, first[:, j], np.eye(2)[j]) for j in range(2)]).T

@@ -1,38 +1,11 @@
 """From a special point to the bifurcation curve through it: which equations, and the first point."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from vibro_sweep.analysis.branches.beginning import keeps_symmetry
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted, vanishing
 from vibro_sweep.analysis.branches.switching import index_in
+from vibro_sweep.analysis.continuation.start import KINDS, Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.continuation import conditions
-
-KINDS = {
-    "fold": conditions.FOLD,
-    "flip": conditions.FLIP,
-    "pitchfork": conditions.FLIP,
-    "neimark_sacker": conditions.TORUS,
-    "graze": conditions.GRAZE,
-    "sticking": conditions.STICK,
-}
-
-
-@dataclass(frozen=True)
-class Start:
-    """The orbit at a bifurcation; index: of the impact that grazes; state: of an onset of sticking (`Chatter`)."""
-
-    type: str
-    solution: Solution
-    index: int = 0
-    theta: float = 0.0
-    state: np.ndarray | None = None
-
-    @property
-    def kind(self) -> int:
-        return KINDS[self.type]
 
 
 def start_at(special: SpecialPoint, names: tuple[str, ...] = ()) -> Start:

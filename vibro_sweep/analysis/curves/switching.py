@@ -9,9 +9,9 @@ import numpy as np
 from vibro_sweep.analysis.branches.special import Chatter, SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.switching import switch as switch_branches
 from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.born import born, box_around
-from vibro_sweep.analysis.curves.start import Start
-from vibro_sweep.analysis.curves.tracer import Tracer
 from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution

@@ -7,16 +7,16 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.continuation.tracer import Tracer, copied, copy
 from vibro_sweep.analysis.curves.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.curves.chord import root
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
 from vibro_sweep.analysis.curves.events import Event, beside, found_between, found_to_edge, is_real, without_echoes
 from vibro_sweep.analysis.curves.rows import Rows, join
-from vibro_sweep.analysis.curves.tracer import Tracer, copied, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.continuation import curve_tests, stepper
-from vibro_sweep.engine.continuation.conditions import GRAZE, STICK, TORUS
 from vibro_sweep.engine.continuation.path import Record
+from vibro_sweep.engine.continuation.problem import GRAZE, STICK, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA, Place, new_place
 from vibro_sweep.engine.impulses.flow import steady_motion
 
@@ -99,7 +99,7 @@ class Way:
                 copy(b, a)
             elif reason == stepper.FAILED:
                 break
-        end = birth_near(w, a) if w.curve.repeats or w.curve.mirrors else None
+        end = birth_near(w, a) if w.problem.repeats or w.problem.mirrors else None
         if end is not None:
             self._end(end)
         else:
@@ -159,7 +159,7 @@ class Way:
             return False
         if event.test == curve_tests.PAIR:
             solution = w.solution(place)
-            mu = (bare(solution, w.curve.index) if w.curve.kind == GRAZE else solution).multipliers
+            mu = (bare(solution, w.problem.index) if w.problem.kind == GRAZE else solution).multipliers
             i, j = np.triu_indices(len(mu), 1)
             k = np.argmin(np.abs(1 - mu[i] * mu[j]))
             return bool(abs(mu[i[k]].imag) > 1e-9)
@@ -200,7 +200,7 @@ class Way:
         """Whether the curve ends: its pair meets at 1 or -1 ahead, or its orbit is born between a and b."""
         w = self.tracer
         end = strong_resonance(w, a, b) if reason == stepper.STRONG else None
-        if end is None and (w.curve.repeats or w.curve.mirrors):
+        if end is None and (w.problem.repeats or w.problem.mirrors):
             end = birth(w, a, b)
         if end is None:
             return False
@@ -217,7 +217,7 @@ class Way:
         w, solution, p = self.tracer, in_full(self.tracer, end), found.place.p.copy()
         self.special.append(self._at(found.event.type, found.place, found.error, found.event, other))
         q = solution.family.linear
-        if w.curve.kind == TORUS:
+        if w.problem.kind == TORUS:
             p[THETA] = round(self.points.p[-1, THETA] / np.pi) * np.pi
         t = solution.times + (q.tau - w.tau) / q.omega
         motion = solution.motion[:, :2]
@@ -229,17 +229,17 @@ class Way:
         w = tracer or self.tracer
         solution = w.solution(place)
         parameters = dict(zip(w.names, map(float, place.p[:2]), strict=True))
-        if w.curve.kind == STICK:
+        if w.problem.kind == STICK:
             orbit, stop = PeriodicOrbit(self.system.replace(**parameters), "sticking"), w.start.solution.sides[-1]
             return CurvePoint(
                 of_type, parameters, orbit, np.empty(0, complex), error, stop=stop, curve=w.start.type,
                 _chatter=chatter_at(w, place, event is not None and event.touches),
             )  # fmt: skip
         orbit = orbit_of(self.system.replace(**parameters), solution)
-        grazes = w.curve.kind == GRAZE
-        index = w.curve.index if grazes else event.impact if event is not None else None
+        grazes = w.problem.kind == GRAZE
+        index = w.problem.index if grazes else event.impact if event is not None else None
         stop, impact = (None, None) if index is None else stop_and_impact(solution, index)
-        multipliers = bare(solution, w.curve.index).multipliers if grazes else solution.multipliers
+        multipliers = bare(solution, w.problem.index).multipliers if grazes else solution.multipliers
         return CurvePoint(
             of_type, parameters, orbit, multipliers, error, impact=impact, stop=stop, curve=w.start.type,
             touches=event is not None and event.touches,
@@ -267,7 +267,7 @@ def outside_between(tracer: Tracer, a: Place, b: Place) -> Place | None:
 
 def passable(tracer: Tracer, place: Place) -> bool:
     """False where a Neimark-Sacker curve has passed the end that was not found."""
-    return tracer.curve.kind != TORUS or 0 < place.p[THETA] < math.pi
+    return tracer.problem.kind != TORUS or 0 < place.p[THETA] < math.pi
 
 
 def closes(tracer: Tracer, a: Place, b: Place, first: Place) -> bool:

@@ -6,9 +6,9 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_sum import NEXT
-from vibro_sweep.engine.continuation.conditions import GRAZE
 from vibro_sweep.engine.continuation.factors import square
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, polynomial
+from vibro_sweep.engine.continuation.problem import GRAZE, STICK
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
@@ -87,7 +87,7 @@ def look(f, c, place, b):
                 shift(f, work.other[0], y, other)
                 begin, length = begin + omega * aside, length - aside
             if (i + 1) % K == c.index:
-                length -= b.tail.numbers[NEXT] if c.chatters else aside
+                length -= b.tail.numbers[NEXT] if c.kind == STICK else aside
         e, turn = cmath.exp(1j * begin), cmath.exp(1j * omega * f.width)
         cells = int(length / f.width)
         for k in range(cells + 1):

@@ -33,7 +33,7 @@ def multiply_out(f, tail):
                 rows[i, m, c] = 0.0
             for r in range(n):
                 rows[0, m, c] += rows[0, m - 1, r] * f.A[r, c]
-                for j in range(2):
+                for j in range(f.parameters):
                     if f.moves[j] > 0:
                         change = rows[1 + j, m - 1, r] * f.A[r, c] + rows[0, m - 1, r] * f.A_slopes[j, r, c]
                         rows[1 + j, m, c] += change
@@ -43,7 +43,7 @@ def multiply_out(f, tail):
                 columns[i, m, r] = 0.0
             for c in range(n):
                 columns[0, m, r] += f.A[r, c] * columns[0, m - 1, c]
-                for j in range(2):
+                for j in range(f.parameters):
                     if f.moves[j] > 0:
                         columns[1 + j, m, r] += f.A[r, c] * columns[1 + j, m - 1, c]
                         columns[1 + j, m, r] += f.A_slopes[j, r, c] * columns[0, m - 1, c]
@@ -55,18 +55,18 @@ def differentiate(f, t, h, rate, turn, tail):
     n, omega, rows, y, slopes = f.A.shape[0], f.numbers[OMEGA], tail.rows, tail.y, tail.y_slopes
     for m in range(ORDERS + 2):
         tail.gamma[m] = rows[0, m, n // 2]
-        for j in range(2):
+        for j in range(f.parameters):
             tail.gamma_slopes[m, n + 1 + j] = rows[1 + j, m, n // 2]
     power = (1j * omega) ** 3 * turn
     for m in range(3, ORDERS + 3):
         y[m], slopes[m, n] = (f.Z[0] * power).real, (1j * omega * f.Z[0] * power).real
-        for j in range(2):
+        for j in range(f.parameters):
             d_omega = f.number_slopes[j, OMEGA]
             slopes[m, n + 1 + j] = ((f.Z_slopes[j, 0] + f.Z[0] * d_omega * (1j * t + m / omega)) * power).real
         for r in range(n):
             y[m] += rows[0, m - 1, r] * rate[r]
             slopes[m, r] = rows[0, m, r]
-            for j in range(2):
+            for j in range(f.parameters):
                 change = f.A_slopes[j, r, n]
                 for c in range(n):
                     change += f.A_slopes[j, r, c] * h[c]
@@ -100,7 +100,7 @@ def sum_up(f, s, tail):
             Q[r, 0] += weight * mu
             for v in range(W):
                 Q[r, 1 + v] += weight * slopes[v]
-            for j in range(2):
+            for j in range(f.parameters):
                 Q[r, n + 2 + j] += columns[1 + j, m, r] / FACTORIAL[m] * mu
             Q[r, W + 1] += weight * by_s
     following, power, reach = 0.0, s, np.inf

@@ -14,13 +14,13 @@ from vibro_sweep.engine.simd.jit import jit
 def end_of_chatter(f, x, e, panel):
     """Row n of the panel: no acceleration of the gap."""
     n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
-    p, F, i = 3 * n + 2, 3 * n + 4, n
+    p, F, i = 3 * n + 2, 3 * n + 2 + f.parameters, n
     panel[i, n] = -(omega * f.Z[N] * e.turn).real
     for c in range(n):
         panel[i, c] = f.A[N, c]
         panel[i, n] += f.A[N, c] * e.rate[c]
     panel[i, F] = e.motion[1]
-    for j in range(2):
+    for j in range(f.parameters):
         turning = 1j * (f.number_slopes[j, OMEGA] * f.Z[N] + omega * f.Z_slopes[j, N])
         panel[i, p + j] = (turning * e.turn).real + f.A_slopes[j, N, n]
         for c in range(n):
@@ -44,16 +44,16 @@ def put_tail(f, c, place, b, panel):
     row of acceleration = 0: alpha xi_1 + beta dphi_1 + gamma dp + a = 0.
     """
     n, first, tail, omega = f.A.shape[0], b.events[0], b.tail, f.numbers[OMEGA]
-    X, p, F, V = 2 * n + 2, 3 * n + 2, 3 * n + 4, n + 4  # V: of Q by the length
+    X, p, F, V = 2 * n + 2, 3 * n + 2, 3 * n + 2 + f.parameters, n + 4  # V: of Q by the length
     line, length = b.work[0].line, b.events[len(b.events) - 1].length
-    for j in range(len(line)):
+    for j in range(F + 1):
         line[j] = 0.0
     beta = -(omega * f.Z[n // 2] * first.turn).real
     for k in range(n):
         line[X + k] = f.A[n // 2, k]
         beta += f.A[n // 2, k] * first.rate[k]
     line[F] = first.motion[1]
-    for j in range(2):
+    for j in range(f.parameters):
         turning = 1j * (f.number_slopes[j, OMEGA] * f.Z[n // 2] + omega * f.Z_slopes[j, n // 2])
         line[p + j] = (turning * first.turn).real + f.A_slopes[j, n // 2, n]
         for k in range(n):
@@ -68,7 +68,7 @@ def put_tail(f, c, place, b, panel):
         panel[i, F] -= c.sigma * Q[r, 0]
         for k in range(n):
             panel[i, X + k] -= c.sigma * Q[r, 1 + k]
-        for j in range(2):
+        for j in range(f.parameters):
             panel[i, p + j] -= c.sigma * (Q[r, n + 2 + j] - Q[r, V] * length / omega * f.number_slopes[j, OMEGA])
-        for j in range(X, len(line)):
+        for j in range(X, F + 1):
             panel[i, j] -= by_phase / beta * line[j]

@@ -12,11 +12,11 @@ borders are the null vectors of the last point. For a pair, g is complex and the
 
 import cmath
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from vibro_sweep.engine.continuation.factors import factorise, square, substitute, substitute_transposed
+from vibro_sweep.engine.continuation.problem import FOLD, ORBIT, TORUS, conditions, is_critical
 from vibro_sweep.engine.continuation.reflections import (
     clear_sides,
     reduce_row,
@@ -27,23 +27,6 @@ from vibro_sweep.engine.continuation.reflections import (
 from vibro_sweep.engine.continuation.second_derivative import differentiate
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.engine.simd.jit import jit
-
-FOLD, FLIP, TORUS, GRAZE, STICK = range(5)
-# kinds of curves; FLIP is the pitchfork where sigma = -1; from GRAZE on an event has no jump
-
-
-class Curve(NamedTuple):
-    """What all points of a curve share."""
-
-    kind: int
-    index: int  # of the impact that grazes; 0 of an onset of sticking
-    sides: np.ndarray  # (K,)
-    sigma: float
-    free: int  # parameters, with theta
-    chatters: bool  # whether event 0 is the end of a chatter sequence
-    unit: np.ndarray  # (2,) of the parameters
-    repeats: bool  # whether the second half of the orbit may repeat the first one
-    mirrors: bool  # whether it may be its mirror image
 
 
 @jit
@@ -150,7 +133,7 @@ def turned(product):
 def put_conditions(f, c, place, b):
     """The scalar rows of the curve's conditions, with what they leave. False where they are singular."""
     n, work = f.A.shape[0], b.work[0]
-    for k in range(2):
+    for k in range(conditions(c)):
         work.row_left[k] = 0.0
         for j in range(3):
             work.row_p[k, j] = 0.0
@@ -158,7 +141,9 @@ def put_conditions(f, c, place, b):
             rows = b.events[i].rows
             for r in range(n + 2):
                 rows[k, r] = 0.0
-    if c.kind >= GRAZE:
+    if c.kind == ORBIT:
+        return True
+    if not is_critical(c):
         b.events[c.index].rows[0, n + 1], work.row_left[0] = 1.0, place.x[c.index, n + 1]
         reduce_row(c, b, n, 0)
         return True
@@ -171,15 +156,15 @@ def put_conditions(f, c, place, b):
     for r in range(n):  # theta turns the closure alone
         turn -= b.events[K - 1].w[2 + r] * b.events[0].v[r]
     turn *= c.sigma * 1j * mu
-    for k in range(2 if c.kind == TORUS else 1):
+    for k in range(conditions(c)):
         unit = 1.0 + 0j if k == 0 else -1j  # the imaginary part is the real one of -1j g
         work.row_left[k] = (unit * (g - work.missed)).real
         for i in range(K):
             e = b.events[i]
             for r in range(n + 2):
                 e.rows[k, r] = -(unit * e.slopes[r]).real
-        for j in range(2):
+        for j in range(c.parameters):
             work.row_p[k, j] = -(unit * work.slopes_p[j]).real * c.unit[j]
-        work.row_p[k, 2] = (unit * turn).real
+        work.row_p[k, THETA] = (unit * turn).real
         reduce_row(c, b, n, k)
     return True

@@ -7,6 +7,7 @@ import numpy as np
 from vibro_sweep.engine.continuation.chatter_tail import sum_tail
 from vibro_sweep.engine.continuation.conditions import put_conditions
 from vibro_sweep.engine.continuation.factors import factorise, substitute
+from vibro_sweep.engine.continuation.problem import STICK, conditions, index_of, unknowns
 from vibro_sweep.engine.continuation.reflections import put_last, reduce_row, take_apart
 from vibro_sweep.engine.continuation.residual import eliminate, fly_through
 from vibro_sweep.engine.simd.jit import jit
@@ -17,7 +18,7 @@ def assemble(f, c, place, b):
     """The last equations of a point, but the plane, at the parameters to which f was moved. False: singular."""
     work = b.work[0]
     fly_through(f, c, place, b)
-    if c.chatters:
+    if c.kind == STICK:
         sum_tail(f, c, place, b)
     work.sign = eliminate(f, c, place, b, False)
     if work.sign == 0.0:
@@ -29,7 +30,7 @@ def assemble(f, c, place, b):
 @jit
 def put_plane(f, c, b, row):
     """The plane through the point across `row`: dphi (K,), dD (K,), parameters in their units, theta."""
-    n, K, k, work = f.A.shape[0], len(b.events), c.free - 1, b.work[0]
+    n, K, k, work = f.A.shape[0], len(b.events), conditions(c), b.work[0]
     for i in range(K):
         rows = b.events[i].rows
         for r in range(n):
@@ -39,26 +40,33 @@ def put_plane(f, c, b, row):
         work.row_p[k, j] = row[2 * K + j]
     work.row_left[k] = 0.0
     reduce_row(c, b, n, k)
-    work.ends[n + k, n + c.free + 1] = 1.0
+    work.ends[n + k, n + unknowns(c) + 1] = 1.0
 
 
 @jit
 def solve_on_plane(f, c, b, row):
-    """`events.changes` and `work.step_p`: Newton's change on the plane, and the tangent. False: singular."""
-    n, m, work = f.A.shape[0], c.free, b.work[0]
-    put_plane(f, c, b, row)
+    """`events.changes` and `work.step_p`: Newton's change on the plane, and the tangent. False: singular.
+
+    Where the condition leaves a single point, there is no plane and no tangent.
+    """
+    n, m, work = f.A.shape[0], unknowns(c), b.work[0]
+    along = conditions(c) < m
+    if along:
+        put_plane(f, c, b, row)
     size = n + m
     for r in range(size):
         for j in range(size):
             work.system[r, j] = work.ends[r, j]
     if factorise(work.system, size, work.order) == 0.0:
         return False
-    for s in range(2):
+    for s in range(2 if along else 1):
         for j in range(size):
             work.null[j] = work.ends[j, size + s]
         substitute(work.system, size, work.order, work.null)
         for j in range(3):
-            work.step_p[s, j] = work.null[n + j] if j < m else 0.0
+            work.step_p[s, j] = 0.0
+        for j in range(m):
+            work.step_p[s, index_of(c, j)] = work.null[n + j]
         take_apart(f, c, b, s, work.null, work.step_p[s], s == 0)
     return True
 
@@ -73,14 +81,15 @@ def newton_step(f, c, place, row, b):
     if not (assemble(f, c, place, b) and solve_on_plane(f, c, b, row)):
         return np.nan
     change = 0.0
-    for j in range(c.free):
+    for j in range(3):
         change = max(change, abs(work.step_p[0, j]))
     for i in range(len(b.events)):
         x = b.events[i].changes[0]
         change = max(change, abs(x[n]), abs(x[n + 1]))
     if not change <= 1.0:
         return np.nan
-    take_tangent(f, place, b)
+    if conditions(c) < unknowns(c):
+        take_tangent(f, place, b)
     for i in range(len(b.events)):
         e = b.events[i]
         for r in range(n + 2):

@@ -6,17 +6,11 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.chatter_sum import REACH
-from vibro_sweep.engine.continuation.conditions import (
-    FLIP,
-    FOLD,
-    GRAZE,
-    STICK,
-    TORUS,
-    keep_null_vectors,
-)
+from vibro_sweep.engine.continuation.conditions import keep_null_vectors
 from vibro_sweep.engine.continuation.factors import factorise
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.normal_form import coefficient
+from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS, is_critical
 from vibro_sweep.engine.continuation.residual import eliminate
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.engine.impulses.elimination import solve
@@ -95,7 +89,7 @@ def examine(f, c, place, b):
         end = place.x[0, n] + math.pi * f.half_turns
         tests[LAST], tests[BEFORE] = (end - place.x[K - 1, n]) / reach, (end - place.x[K - 2, n]) / reach
         return True
-    if c.kind < GRAZE:
+    if is_critical(c):
         examine_null_vectors(c, place, b, n)
     if c.kind != FOLD:
         tests[PLUS] = determinant(c, b, n, 1.0)

@@ -1,10 +1,10 @@
-"""The oscillator over a plane of two parameters: its free flight, forced motion and stops, with exact derivatives.
+"""The oscillator over two parameters, one, or none: its flight, forced motion and stops, with exact derivatives.
 
 In contact coordinates z = (q, u) (flow.py) the motion is z = y + Re(Z e^{i phi}), phi = omega t + tau, where the flight
 y' = A (y, 1) knows the constant force alone.
 
-All numbers are polynomials of the two parameters (analysis/curves/oscillators.py fits them), so that kernels may go to
-any point of the plane. Where A changes there, the tables of the flight are built anew at each point.
+All numbers are polynomials of the parameters (analysis/continuation/oscillators.py fits them), so that kernels may go
+to any of their values. Where A changes there, the tables of the flight are built anew at each point.
 """
 
 import numpy as np
@@ -30,10 +30,13 @@ def plane_of(masses: int) -> np.dtype:
     """N masses, n = 2N. Slopes: derivatives by the first and the second parameter."""
     n, count = 2 * masses, count_of(masses)
     return record([
+        ("parameters", np.int64),  # that are free
         ("centre", float, 2),
         ("reach", float, 2),
         ("degree", np.int64, 2),
         ("moves", np.int64, 2),  # 1 where A depends on that parameter
+        ("is_still", np.int64),  # 1 where the forced motion does not depend on the parameters
+        ("is_known", np.int64),  # 1 after it was computed
         ("width", float),  # of a cell
         ("bits", np.int64),  # of the number of cells of the longest flight
         ("half_turns", float),  # of the force in a period
@@ -91,15 +94,18 @@ def spread(f):
     for r in range(n):
         for c in range(n + 1):
             f.A[r, c] = f.values[r * (n + 1) + c]
-            for j in range(2):
+            for j in range(f.parameters):
                 f.A_slopes[j, r, c] = f.slopes[j, r * (n + 1) + c]
     for i in range(NUMBERS):
         f.numbers[i] = f.values[size + n + i]
-        for j in range(2):
+        for j in range(f.parameters):
             f.number_slopes[j, i] = f.slopes[j, size + n + i]
     if f.moves[0] > 0 or f.moves[1] > 0:
         build_series(f)
         build_powers(f)
+    if f.is_still > 0 and f.is_known > 0:
+        return True
+    f.is_known = 1
     # Z_q = W Y, Z_u = i omega Y,    (-omega^2 - i omega A_uu - A_uq W) Y = cosine - i sine
     omega, S = f.numbers[OMEGA], f.stiffness
     for r in range(N):
@@ -113,7 +119,7 @@ def spread(f):
     substitute(S, N, f.order, f.Z)
     for r in range(N):
         f.Z[N + r] = 1j * omega * f.Z[r]
-    for j in range(2):
+    for j in range(f.parameters):
         turn = f.number_slopes[j, OMEGA]
         for r in range(N):
             change = f.slopes[j, size + r] - 1j * f.slopes[j, size + N + r] + 2.0 * omega * turn * f.Z[r]
@@ -178,7 +184,7 @@ def build_series(f):
     for r in range(n):
         for c in range(n + 1):
             f.series[0, r, c] = 1.0 if r == c else 0.0
-            for j in range(2):
+            for j in range(f.parameters):
                 f.series_slopes[j, 0, r, c] = 0.0
     for k in range(1, ORDER + 1):
         for r in range(n):
@@ -187,7 +193,7 @@ def build_series(f):
                 for l in range(n):  # noqa: E741
                     total += f.series[k - 1, r, l] * f.A[l, c]
                 f.series[k, r, c] = total / k
-        for j in range(2):
+        for j in range(f.parameters):
             if f.moves[j] > 0:
                 for r in range(n):
                     for c in range(n + 1):
@@ -216,7 +222,7 @@ def build_powers(f):
     polynomial(n, f.series, f.width, f.powers[0])
     for k in range(1, f.bits):
         product(n, f.powers[k - 1], f.powers[k - 1], f.powers[k])
-    for j in range(2):
+    for j in range(f.parameters):
         if f.moves[j] > 0:
             polynomial(n, f.series_slopes[j], f.width, f.power_slopes[j, 0])
             for k in range(1, f.bits):
@@ -231,19 +237,20 @@ def flight(f, length, out, other):
     cells = int(length / f.width)
     u = length - cells * f.width
     polynomial(n, f.series, u, out[0])
-    for j in range(2):
+    for j in range(f.parameters):
         if f.moves[j] > 0:
             polynomial(n, f.series_slopes[j], u, out[1 + j])
     bit = 0
     while cells > 0:
         if cells & 1:
             product(n, out[0], f.powers[bit], other[0])
-            for j in range(2):
+            for j in range(f.parameters):
                 if f.moves[j] > 0:
                     add_slope(n, out[0], out[1 + j], f.powers[bit], f.power_slopes[j, bit], other[1 + j])
-            for i in range(3):
-                for r in range(n):
-                    for c in range(n + 1):
-                        out[i, r, c] = other[i, r, c]
+            for i in range(1 + f.parameters):
+                if i == 0 or f.moves[i - 1] > 0:
+                    for r in range(n):
+                        for c in range(n + 1):
+                            out[i, r, c] = other[i, r, c]
         cells >>= 1
         bit += 1

@@ -15,9 +15,10 @@ J. Differential Equations 218 (2005) 444.)
 
 import numpy as np
 
-from vibro_sweep.engine.continuation.conditions import FLIP, expand, multiplier, put_matrix
+from vibro_sweep.engine.continuation.conditions import expand, multiplier, put_matrix
 from vibro_sweep.engine.continuation.factors import factorise, square, substitute
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, OMEGA
+from vibro_sweep.engine.continuation.problem import FLIP
 from vibro_sweep.engine.continuation.reflections import take_down
 from vibro_sweep.engine.continuation.workspace import TERMS
 from vibro_sweep.engine.simd.jit import jit

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.continuation.problem import index_of, unknowns
 from vibro_sweep.engine.continuation.workspace import TESTS, Place, new_place
 from vibro_sweep.engine.simd.jit import jit
 
@@ -100,7 +101,7 @@ def offset(c, a, b, k):
         return b.x[k, n] - a.x[k, n]
     if k < 2 * K:
         return b.x[k - K, n + 1] - a.x[k - K, n + 1]
-    k -= 2 * K
+    k = index_of(c, k - 2 * K)
     return (b.p[k] - a.p[k]) / (c.unit[k] if k < 2 else 1.0)
 
 
@@ -112,13 +113,13 @@ def rate(c, a, k):
         return a.tangent[k, n]
     if k < 2 * K:
         return a.tangent[k - K, n + 1]
-    return a.tangent_p[k - 2 * K]
+    return a.tangent_p[index_of(c, k - 2 * K)]
 
 
 @jit
 def measured(c, a):
     """How many unknowns that are."""
-    return 2 * len(a.x) + c.free
+    return 2 * len(a.x) + unknowns(c)
 
 
 @jit

@@ -2,19 +2,22 @@
 
 import math
 
+from vibro_sweep.engine.continuation.problem import unknowns
+from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import eight, put_eight
 
 
 @jit
-def reflect(panel, columns, mirrors, scales):
+def reflect(panel, width, columns, mirrors, scales):
     """Reflections that make the first columns an upper triangle. Sign of its determinant; 0.0 where it is singular.
 
+    width : of the rows, in use
     mirrors : (columns, rows) receives m of each reflection 1 - s m m^T, from entry `column` on; scales: (columns,) s
     What is left below the triangle is rounding.
     """
-    (rows, width), sign = panel.shape, 1.0
+    rows, stride, sign = panel.shape[0], panel.shape[1], 1.0
     for c in range(columns):
         size = 0.0
         for r in range(c, rows):
@@ -30,23 +33,23 @@ def reflect(panel, columns, mirrors, scales):
         for r in range(c + 1, rows):
             mirrors[c, r] = panel[r, c]
         for place in range(c - c % LANES, width, LANES):
-            total = mirrors[c, c] * eight(panel, c * width + place)
+            total = mirrors[c, c] * eight(panel, c * stride + place)
             for r in range(c + 1, rows):
-                total = total + mirrors[c, r] * eight(panel, r * width + place)
+                total = total + mirrors[c, r] * eight(panel, r * stride + place)
             total = total * scales[c]
             for r in range(c, rows):
-                first = r * width + place
+                first = r * stride + place
                 put_eight(panel, first, eight(panel, first) - mirrors[c, r] * total)
         panel[c, c] = diagonal
     return sign
 
 
 @jit
-def copy_row(source, i, target, j):
-    """Row i of one table to row j of another one with as many columns."""
-    width = source.shape[1]
+def copy_row(source, i, target, j, width):
+    """The first `width` numbers of row i of one table to row j of another one with as many columns."""
+    stride = source.shape[1]
     for place in range(0, width, LANES):
-        put_eight(target, j * width + place, eight(source, i * width + place))
+        put_eight(target, j * stride + place, eight(source, i * stride + place))
 
 
 @jit
@@ -129,13 +132,13 @@ def substitute_back(e, n, after, first, x):
 def take_apart(f, c, b, s, first, p, with_residual):
     """`changes[s]` of all events, from xi_1 and the parameters (in their units); or without the residual."""
     K, n = len(b.events), f.A.shape[0]
-    P, F = 3 * n + 2, 3 * n + 4
+    P, F = 3 * n + 2, 3 * n + 2 + c.parameters
     for i in range(K - 1, -1, -1):
         e = b.events[i]
         x = e.changes[s]
         for r in range(n + 2):
             x[r] = e.kept[r, F] if with_residual else 0.0
-            for j in range(2):
+            for j in range(c.parameters):
                 x[r] -= e.kept[r, P + j] * p[j] * c.unit[j]
         if i + 1 < K:
             substitute_back(e, n, b.events[i + 1].changes[s], first, x)
@@ -150,11 +153,11 @@ def take_apart(f, c, b, s, first, p, with_residual):
 def reduce_row(c, b, n, k):
     """Eliminate scalar row k, `events.rows` and `work.row_p`: it becomes row n + k of the last equations."""
     work = b.work[0]
-    line, X, P, F = work.line, 2 * n + 2, 3 * n + 2, 3 * n + 4
-    for j in range(len(line)):
+    line, X, P, F = work.line, 2 * n + 2, 3 * n + 2, 3 * n + 2 + c.parameters
+    for j in range(F):
         line[j] = 0.0
     line[F] = work.row_left[k]
-    for j in range(2):
+    for j in range(c.parameters):
         line[P + j] = work.row_p[k, j] / c.unit[j]
     for i in range(len(b.events)):
         e = b.events[i]
@@ -162,18 +165,16 @@ def reduce_row(c, b, n, k):
             line[r] += e.rows[k, r]
         for r in range(n + 2):
             e.factors[k, r] = line[r] / e.kept[r, r]
-            for j in range(r, len(line)):
+            for j in range(r, F + 1):
                 line[j] -= e.factors[k, r] * e.kept[r, j]
         for r in range(n):
             line[r], line[n + 2 + r] = line[n + 2 + r], 0.0
         line[n] = line[n + 1] = 0.0
-    ends, m = work.ends, c.free
+    ends, m = work.ends, unknowns(c)
     for r in range(n):
         ends[n + k, r] = c.sigma * line[r] + line[X + r]
-    for j in range(2):
-        ends[n + k, n + j] = line[P + j] * c.unit[j]
-    if m > 2:
-        ends[n + k, n + 2] = work.row_p[k, 2]
+    for j in range(m):
+        ends[n + k, n + j] = line[P + j] * c.unit[j] if j < c.parameters else work.row_p[k, THETA]
     ends[n + k, n + m], ends[n + k, n + m + 1] = line[F], 0.0
 
 
@@ -181,12 +182,10 @@ def reduce_row(c, b, n, k):
 def put_last(c, b, n):
     """The first n of the last equations: G(1) xi_1, parameters, residual."""
     work, X, P = b.work[0], 2 * n + 2, 3 * n + 2
-    m = c.free
+    m = unknowns(c)
     for r in range(n):
         for j in range(n):
             work.ends[r, j] = c.sigma * work.last[r, j] + work.last[r, X + j]
-        for j in range(2):
-            work.ends[r, n + j] = work.last[r, P + j] * c.unit[j]
-        if m > 2:
-            work.ends[r, n + 2] = 0.0
-        work.ends[r, n + m], work.ends[r, n + m + 1] = work.last[r, P + 2], 0.0
+        for j in range(m):
+            work.ends[r, n + j] = work.last[r, P + j] * c.unit[j] if j < c.parameters else 0.0
+        work.ends[r, n + m], work.ends[r, n + m + 1] = work.last[r, P + c.parameters], 0.0

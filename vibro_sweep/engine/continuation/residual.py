@@ -22,6 +22,7 @@ import math
 
 from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, flight
+from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
 from vibro_sweep.engine.simd.jit import jit
 
@@ -46,7 +47,7 @@ def approach(f, x, e):
 def put_rows(f, law, side, x, e, panel):
     """Rows n and n + 1 of the panel: those of the event itself."""
     n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
-    p, F, first, second = 3 * n + 2, 3 * n + 4, n, n + 1
+    p, F, first, second = 3 * n + 2, 3 * n + 2 + f.parameters, n, n + 1
     stop, gain = (HIGH, GAIN_HIGH) if side > 0 else (LOW, GAIN_LOW)
     v, a = e.motion[0], e.motion[1]
     speed = second if law != WATCHED else first  # the row that knows the velocity, and how much of it
@@ -55,14 +56,14 @@ def put_rows(f, law, side, x, e, panel):
     panel[speed, F] = weight * v
     panel[second, n + 1] = 1.0  # D
     panel[second, F] += x[n + 1]
-    for j in range(2):
+    for j in range(f.parameters):
         panel[speed, p + j] = weight * (f.Z_slopes[j, N] * e.turn).real
         if law != WATCHED:
             panel[speed, p + j] += f.number_slopes[j, gain] * v
     if law == IMPACT:
         panel[first, 0], panel[first, n] = 1.0, v / omega
         panel[first, F] = x[0] + (f.Z[0] * e.turn).real - f.numbers[stop]
-        for j in range(2):
+        for j in range(f.parameters):
             panel[first, p + j] = (f.Z_slopes[j, 0] * e.turn).real - f.number_slopes[j, stop]
     elif law == END:
         end_of_chatter(f, x, e, panel)
@@ -93,7 +94,7 @@ def fly(f, length, x, e, other):
 def put_flight(f, e, panel):
     """The last rows of the panel: the flight, whose end is to be the next state."""
     n, N = f.A.shape[0], f.A.shape[0] // 2
-    p, F = 3 * n + 2, 3 * n + 4
+    p, F = 3 * n + 2, 3 * n + 2 + f.parameters
     for r in range(n):
         i, by_phase = n + 2 + r, 0.0
         for c in range(n):
@@ -101,7 +102,7 @@ def put_flight(f, e, panel):
             by_phase += e.E[0, r, c] * e.bend[c]
         panel[i, n], panel[i, n + 1], panel[i, n + 2 + r] = by_phase, -e.E[0, r, N], 1.0
         panel[i, F] = e.missed[r]
-        for j in range(2):
+        for j in range(f.parameters):
             panel[i, p + j] = e.length * e.landing_rate[r] * f.number_slopes[j, OMEGA]
             if f.moves[j] > 0:
                 for c in range(n + 1):
@@ -129,35 +130,35 @@ def eliminate(f, c, place, b, watched):
     watched : whether the event c.index takes part in nothing but is followed
     """
     K, n, work = len(place.x), f.A.shape[0], b.work[0]
-    panel, X, sign = work.panel, 2 * n + 2, 1.0
+    panel, X, width, sign = work.panel, 2 * n + 2, width_of(n, f.parameters), 1.0
     for r in range(n):  # xi_1 - xi_1 = 0
-        for j in range(panel.shape[1]):
+        for j in range(width):
             panel[r, j] = 0.0
         panel[r, r], panel[r, X + r] = 1.0, -1.0
     for i in range(K):
         e, x, last = b.events[i], place.x[i], i + 1 == K
-        law = WATCHED if watched and i == c.index else END if c.chatters and i == 0 else IMPACT
+        law = WATCHED if watched and i == c.index else END if c.kind == STICK and i == 0 else IMPACT
         for r in range(n, 2 * n + 2):
-            for j in range(panel.shape[1]):
+            for j in range(width):
                 panel[r, j] = 0.0
         put_rows(f, law, c.sides[i], x, e, panel)
         put_flight(f, e, panel)
-        if c.chatters and last:
+        if c.kind == STICK and last:
             put_tail(f, c, place, b, panel)
-        sign *= reflect(panel, n + 2, e.mirrors, e.scales)
+        sign *= reflect(panel, width, n + 2, e.mirrors, e.scales)
         if sign == 0.0:
             return 0.0
         for r in range(n + 2):
-            copy_row(panel, r, e.kept, r)
+            copy_row(panel, r, e.kept, r, width)
         for r in range(n):
             below = n + 2 + r
             for j in range(n):
                 panel[r, j], panel[r, n + 2 + j] = panel[below, n + 2 + j], 0.0
             panel[r, n] = panel[r, n + 1] = 0.0
-            for j in range(X, panel.shape[1]):
+            for j in range(X, width):
                 panel[r, j] = panel[below, j]
     for r in range(n):
-        copy_row(panel, r, work.last, r)
+        copy_row(panel, r, work.last, r, width)
     return sign
 
 

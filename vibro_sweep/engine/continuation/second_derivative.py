@@ -43,7 +43,7 @@ def differentiate_event(f, c, place, b, i):
     R1, alpha, beta, phi_v = f.numbers[gain], e.w[0], e.w[1], e.v[n]
     e.slopes[n] -= phi_v * (alpha * (f.Z[0] * e.turn).real + beta * R1 * (f.Z[N] * e.turn).real)
     speed_v = e.v[N] + phi_v * (e.rate[N] + (1j * f.Z[N] * e.turn).real)
-    for j in range(2):
+    for j in range(f.parameters):
         gap, speed = (1j * f.Z_slopes[j, 0] * e.turn).real, (1j * f.Z_slopes[j, N] * e.turn).real
         slopes_p[j] += phi_v * (alpha * gap + beta * R1 * speed) + beta * f.number_slopes[j, gain] * speed_v
 
@@ -83,7 +83,7 @@ def differentiate_flight(f, place, b, i, mu):
     e.slopes[n] += by_phase - by_length / omega
     following.slopes[n] += by_length / omega
     length = e.length
-    for j in range(2):
+    for j in range(f.parameters):
         d_omega = f.number_slopes[j, OMEGA]
         total = d_omega / omega * (landing * kappa - by_length * length)
         if f.moves[j] > 0:

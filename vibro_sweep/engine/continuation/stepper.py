@@ -8,7 +8,6 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.continuation.conditions import STICK, TORUS
 from vibro_sweep.engine.continuation.corrector import (
     assemble,
     in_order,
@@ -28,6 +27,7 @@ from vibro_sweep.engine.continuation.path import (
     rate,
     remember,
 )
+from vibro_sweep.engine.continuation.problem import STICK, TORUS
 from vibro_sweep.engine.continuation.reflections import take_apart, take_up
 from vibro_sweep.engine.continuation.residual import fly_through, follow
 from vibro_sweep.engine.continuation.workspace import FIRST, SECOND, THETA
@@ -40,7 +40,6 @@ FULL, EVENT, CLOSED, FAILED, FAR, LEFT, STRONG, CHATTER = range(8)
 MOST_CORRECTIONS = 6
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
 BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
-COARSE = 0.03  # of the longest step: to that they are shortened where they do not tell pairs of multipliers apart
 EARLY = 10  # points before which a curve is not yet taken to be closed
 COARSE = 0.03  # of the longest step: to that they are shortened where they do not tell pairs of multipliers apart
 NEAR_STRONG = 0.05  # theta from 0 or pi
@@ -102,7 +101,7 @@ def set_up(f, c, place, b):
     last correction. False: singular."""
     if not move_to(f, place.p[FIRST], place.p[SECOND]):
         return False
-    if c.chatters:
+    if c.kind == STICK:
         fly_through(f, c, place, b)
         return True
     return assemble(f, c, place, b)

@@ -10,14 +10,15 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_series import Tail, new_tail
+from vibro_sweep.engine.continuation.problem import width_of
 from vibro_sweep.engine.impulses.extremes import PIECES
 from vibro_sweep.engine.impulses.tables import ORDER
-from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import new_lines, record
 
 FIRST, SECOND, THETA = range(3)  # of `Place.p`: both parameters, and theta of a Neimark-Sacker curve
 TESTS = 13
 TERMS = 10  # of a power series in z and its conjugate, to third order
+PARAMETERS = 2  # of the oscillator that may be free
 ROWS = 3  # most scalar rows: conditions, and the plane across a tangent
 
 
@@ -51,17 +52,12 @@ def new_place(K: int, n: int) -> Place:
     return Place(*map(np.zeros, real), *vectors, np.zeros(TESTS), np.full((n, 2), np.nan))
 
 
-def columns_of(n: int) -> int:
-    """Of a panel: xi_i (n), dphi_i, dD_i, xi_{i+1} (n), xi_1 (n), both parameters, residual; in whole vectors."""
-    return -(-(3 * n + 5) // LANES) * LANES
-
-
 @cache
 def event_of(masses: int) -> np.dtype:
     """What is kept of each event."""
     n = 2 * masses
     return record([
-        ("kept", float, (n + 2, columns_of(n))),  # what was eliminated, an upper triangle in front; whole cache lines
+        ("kept", float, (n + 2, width_of(n, PARAMETERS))),  # what was eliminated, a triangle in front
         ("mirrors", float, (n + 2, 2 * n + 2)),  # m of the reflections 1 - s m m^T
         ("scales", float, n + 2),  # s
         ("E", float, (3, n, n + 1)),  # the flight after it, and its derivatives by the parameters
@@ -88,7 +84,7 @@ def event_of(masses: int) -> np.dtype:
 def work_of(masses: int) -> np.dtype:
     """Room for one elimination."""
     n = 2 * masses
-    wide = columns_of(n)
+    wide = width_of(n, PARAMETERS)
     return record([
         ("panel", float, (2 * n + 2, wide)),
         ("line", float, wide),

@@ -136,6 +136,10 @@ class _Part:
         functools.update_wrapper(self, function)
         self._make = functools.partial(_compiled, function, compiler, no_cpython_wrapper=True, **options)
 
+    def __call__(self, *args):
+        """From Python, where that compiles nothing: the function as it is written."""
+        return self.__wrapped__(*args)
+
     @functools.cached_property
     def _kernel(self):
         return self._make()

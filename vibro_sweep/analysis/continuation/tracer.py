@@ -4,13 +4,12 @@ from copy import copy as copy_object
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.beginning import keeps_symmetry
-from vibro_sweep.analysis.curves.oscillators import Oscillators, Units
-from vibro_sweep.analysis.curves.start import Start
+from vibro_sweep.analysis.continuation.oscillators import Oscillators, Units
+from vibro_sweep.analysis.continuation.start import Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.engine.continuation import path, stepper
-from vibro_sweep.engine.continuation.conditions import GRAZE, STICK, TORUS, Curve
 from vibro_sweep.engine.continuation.curve_tests import RESIDUAL
+from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, is_critical, unknowns
 from vibro_sweep.engine.continuation.workspace import THETA, Place, new_bench, new_place
 from vibro_sweep.model.linear import Family, forcing_period
 
@@ -53,14 +52,14 @@ class Tracer:
         repeats = whole and s.halves % 4 == 0 and struck[:half] == struck[half:]
         symmetric = q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
         mirrors = whole and symmetric and s.halves % 4 == 2 and struck[:half] == tuple(-side for side in struck[half:])
-        sides, free, unit = np.array(which, float), 3 if kind == TORUS else 2, np.ptp(self.box, axis=1)
-        self.curve = Curve(kind, start.index, sides, float(s.sigma), free, kind == STICK, unit, repeats, mirrors)
+        sides, unit = np.array(which, float), np.ptp(self.box, axis=1)
+        self.problem = Problem(kind, start.index, sides, float(s.sigma), len(self.names), unit, repeats, mirrors)
         self.bench = new_bench(K, self.n)
         self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
 
     def resized(self, K: int) -> "Tracer":
         """For the same curve with K impacts: without the last, or with more on the same stop."""
-        other, sides = copy_object(self), tuple(map(int, self.curve.sides))
+        other, sides = copy_object(self), tuple(map(int, self.problem.sides))
         other._take_sides(sides[:K] + sides[-1:] * (K - len(sides)))
         return other
 
@@ -82,7 +81,7 @@ class Tracer:
     def do(self, task: int, place: Place, row: np.ndarray | None = None) -> float:
         """One task of `stepper.at`; what it leaves is in `bench`."""
         row = self.direction(place) if row is None else row
-        return stepper.at(task, self.planes, self.curve, self.path, place, row, self.bench)
+        return stepper.at(task, self.planes, self.problem, self.path, place, row, self.bench)
 
     def take(self, place: Place) -> bool:
         """Take the oscillator's numbers at the parameters of `place`. False where there is none."""
@@ -158,7 +157,7 @@ class Tracer:
         """The point of the curve near a guess without a tangent."""
         if not self.go_to(place):
             return None
-        if self.curve.kind < GRAZE:
+        if is_critical(self.problem):
             self._take_null_vectors(place)
         if row is None:
             row = self._first_direction(place)
@@ -176,7 +175,7 @@ class Tracer:
 
     def level(self, place: Place, axis: int, value: float) -> Place | None:
         """The point of the curve near `place` where the parameter `axis` (0, 1) has this value."""
-        slope = self.curve.unit[axis] * place.tangent_p[axis]
+        slope = self.problem.unit[axis] * place.tangent_p[axis]
         if abs(value - place.p[axis]) > 2 * LONGEST_STEP * abs(slope):  # it turns back before
             return None
         guess = self.moved(place, (value - place.p[axis]) / slope if slope else 0.0)
@@ -193,7 +192,7 @@ class Tracer:
         """A guess on the tangent."""
         guess = copied(place)
         guess.x[:] += length * place.tangent
-        guess.p[:] += length * place.tangent_p * [*self.curve.unit, 1.0]
+        guess.p[:] += length * place.tangent_p * [*self.problem.unit, 1.0]
         return guess
 
     def _take_null_vectors(self, place: Place) -> None:
@@ -208,7 +207,7 @@ class Tracer:
         """The tangent of the curve at a place to which the oscillator was moved."""
         if not self.do(stepper.ASSEMBLE, place):
             return None
-        size = self.n + self.curve.free
+        size = self.n + unknowns(self.problem)
         null = np.linalg.svd(self.bench.work[0]["ends"][: size - 1, :size])[2][-1]
         return self.unit_row(self.taken_apart(place, null[: self.n], null[self.n :]))
 
@@ -269,8 +268,8 @@ class Tracer:
 
     def difference(self, a: Place, b: Place) -> np.ndarray:
         """From a to b, as `direction`."""
-        moved = (b.p - a.p) / [*self.curve.unit, 1.0]
-        moved[self.curve.free :] = 0.0
+        moved = (b.p - a.p) / [*self.problem.unit, 1.0]
+        moved[unknowns(self.problem) :] = 0.0
         return np.concatenate([b.phases - a.phases, b.jumps - a.jumps, moved])
 
     def family(self, place: Place) -> Family:
@@ -282,7 +281,7 @@ class Tracer:
         q = family.linear
         t = (place.phases - q.tau) / q.omega
         t -= forcing_period(q) * np.round((t[0] - s.times[0]) / forcing_period(q)) if self.K else 0.0
-        u, sides = np.concatenate([t, place.jumps * self.units.speed]), tuple(map(int, self.curve.sides))
+        u, sides = np.concatenate([t, place.jumps * self.units.speed]), tuple(map(int, self.problem.sides))
         found = Solution(family, s.sigma, s.halves, sides, u, float(place.tests[RESIDUAL]))
         e = equations_for(found, q)
         if e.free:

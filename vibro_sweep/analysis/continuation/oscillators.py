@@ -1,4 +1,4 @@
-"""The oscillator as polynomials of two parameters (engine/continuation/moving_flow.py)."""
+"""The oscillator as polynomials of its free numbers, two at most (engine/continuation/moving_flow.py)."""
 
 from typing import NamedTuple
 
@@ -45,13 +45,13 @@ def sampled(q: Linear, units: Units) -> np.ndarray:
 
 
 class Oscillators:
-    """Of a family, along two of its parameters."""
+    """Of a family, along two of its parameters, or fewer."""
 
-    def __init__(self, family: Family, names: tuple[str, str], halves: int, units: Units):
+    def __init__(self, family: Family, names: tuple[str, ...], halves: int, units: Units):
         self.family, self.names, self.halves, self.units = family, names, halves, units
 
     def at(self, p) -> Family:
-        return self.family.replace(**dict(zip(self.names, map(float, p[:2]), strict=True)))
+        return self.family.replace(**dict(zip(self.names, map(float, p[: len(self.names)]), strict=True)))
 
     def values(self, p) -> np.ndarray:
         """`sampled` at the parameters p; the phase, which that does not need, is not looked for."""
@@ -68,12 +68,14 @@ class Oscillators:
         except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
             return np.full(moving_flow.count_of(len(self.family.linear.along)), np.nan)
 
-    def around(self, centre, reach) -> np.ndarray | None:
-        """(1,) `plane_of` around the parameters `centre`, to `reach` or as far as polynomials hold; None: nowhere."""
-        centre, reach = np.array(centre[:2], float), np.array(reach, float)
-        least = NARROWEST * reach
-        while np.all(reach > least):
-            degrees = [self._degree(centre, reach, j) for j in range(2)]
+    def around(self, around, within) -> np.ndarray | None:
+        """(1,) `plane_of` around these values, as far as `within`, or as polynomials hold; None: nowhere."""
+        count = len(self.names)
+        centre, reach = np.zeros(2), np.full(2, np.inf)
+        centre[:count], reach[:count] = around[:count], within[:count]
+        least = NARROWEST * reach[:count]
+        while np.all(reach[:count] > least):
+            degrees = [self._degree(centre, reach, j) if j < count else 0 for j in range(2)]
             if None not in degrees:
                 found = self._fitted(centre, reach, degrees)
                 if found is not None:
@@ -85,7 +87,7 @@ class Oscillators:
         """The least degree in parameter j; None where the highest allowed is not enough."""
         most = moving_flow.DEGREE
         nodes = _nodes(most)
-        start = centre + ASIDE * reach
+        start = centre + ASIDE * np.where(np.isfinite(reach), reach, 0.0)
         values = []
         for x in nodes:
             start[j] = centre[j] + BEYOND * reach[j] * x
@@ -99,9 +101,9 @@ class Oscillators:
         return degree if degree <= most - 2 else None
 
     def _fitted(self, centre, reach, degrees):
-        nodes = [_nodes(degree) for degree in degrees]
+        nodes, span = [_nodes(degree) for degree in degrees], np.where(np.isfinite(reach), reach, 0.0)
         values = np.array(
-            [[self._sample(centre + BEYOND * reach * [x, y]) for y in nodes[1]] for x in nodes[0]]
+            [[self._sample(centre + BEYOND * span * [x, y]) for y in nodes[1]] for x in nodes[0]]
         )  # (d1 + 1, d2 + 1, count)
         if not np.all(np.isfinite(values)):
             return None
@@ -127,10 +129,13 @@ class Oscillators:
         flat, size = values[..., : n * (n + 1)], _sizes(values.reshape(-1, values.shape[-1]), n)[: n * (n + 1)]
         for j in range(2):
             r["moves"][j] = bool(np.any(np.ptp(flat, axis=j) > 1e-15 * size))
+        swaying = np.delete(values.reshape(-1, values.shape[-1]), np.s_[-NUMBERS:-1], axis=1)
+        r["is_still"] = bool(np.all(swaying == swaying[0]))
         if not r["moves"].any():
             exact = sampled(q, self.units)
             c[..., : n * (n + 1)] = 0.0
             c[0, 0, : n * (n + 1)] = exact[: n * (n + 1)]
+        r["parameters"] = len(self.names)
         r["centre"], r["reach"], r["degree"] = centre, reach, degrees
         r["width"] = f.width * self.units.rate
         r["fit"][: c.shape[0], : c.shape[1]] = c

@@ -1,0 +1,39 @@
+"""Where a solution set begins: an orbit, and the condition that it satisfies."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.continuation import problem
+from vibro_sweep.model.linear import Family
+
+KINDS = {
+    "fold": problem.FOLD,
+    "flip": problem.FLIP,
+    "pitchfork": problem.FLIP,
+    "neimark_sacker": problem.TORUS,
+    "graze": problem.GRAZE,
+    "sticking": problem.STICK,
+}
+
+
+@dataclass(frozen=True)
+class Start:
+    """An orbit, perhaps at a bifurcation; index: of the impact that grazes; state: of an onset of sticking."""
+
+    type: str
+    solution: Solution
+    index: int = 0
+    theta: float = 0.0
+    state: np.ndarray | None = None
+
+    @property
+    def kind(self) -> int:
+        return KINDS.get(self.type, problem.ORBIT)
+
+
+def keeps_symmetry(family: Family, name: str) -> bool:
+    """Whether orbits with x(t + P) = -x(t) remain so along this parameter."""
+    slope = family.derivative(name)
+    return slope.low == -slope.high and slope.R_low == slope.R_high and not np.any(slope.constant)
