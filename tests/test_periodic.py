@@ -1,6 +1,7 @@
 """`periodic_orbit`: orbits with impacts by Newton's method, their multipliers and certificate."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -228,3 +229,35 @@ def test_shooting_of_the_reference_finds_the_same_orbit():
         x = shooting.solve(shooting.unknowns([i["t"]], [orbit.system.b, i["v1"], i["x2"], i["v2"]]))
         for mine, exact in zip((i["t"], i["x2"], i["v1"], i["v2"]), (x[0], x[2], x[3], x[4]), strict=True):
             assert abs(mpf(float(mine)) - exact) < 2e-14
+
+
+@pytest.mark.parametrize("itinerary", ["LR", "LRR"])
+def test_a_free_mass_that_the_contact_does_not_see(itinerary):
+    """It may be anywhere: Newton's method leaves its place alone, and finds the impacts of the other mass."""
+    numbers = dict(force=[0.5, 0.2], along=[1.0, 0.0], omega=0.7, R=0.8, b=0.3)
+    both = vs.periodic_orbit(vs.Oscillator(np.eye(2), np.zeros((2, 2)), **numbers), itinerary=itinerary)
+    one = vs.periodic_orbit(
+        vs.Oscillator([[1.0]], [[0.0]], **numbers | dict(force=[0.5], along=[1.0])), itinerary=itinerary
+    )
+    s = both._solution.whole()
+    beside = replace(s, u=s.u * (1 + 1e-6 * np.random.default_rng(0).normal(size=s.size))).corrected()
+    assert both.ok and np.abs(beside.u - s.u).max() < 1e-13
+    for name in ("t", "side"):
+        assert both.impacts[name] == pytest.approx(one.impacts[name], abs=1e-12)
+
+
+def test_newton_finds_what_is_at_a_fold_to_rounding():
+    """Rounding throws its steps about by 1e-6 there: one of them leads to the orbit."""
+    system = vs.Oscillator.named(
+        "one_mass", base=False, stops="left", k=1.0, zeta=0.017127041585976777, F=0.37588718692642553,
+        constant=-0.10162752952927796, omega=0.9908938690340032, R=0.9003566901152249, b=0.6241569974260474,
+        offset=-0.10162752952927796, tau=4.767350176503159,
+    )  # fmt: skip
+    rows, rng = np.array([[6.33082, -1, -0.60963], [12.673045, -1, -0.60664]]), np.random.default_rng(0)
+    found = [
+        vs.periodic_orbit(system, guess=rows * (1 + 1e-7 * rng.normal(size=(2, 1)) * [1, 0, 1]), periods=2)
+        for _ in range(40)
+    ]
+    found = [orbit for orbit in found if orbit.ok]
+    assert len(found) >= 35 and max(orbit.residual for orbit in found) < 1e-7
+    assert all(abs(orbit.multipliers[0] - 1) < 1e-3 for orbit in found)

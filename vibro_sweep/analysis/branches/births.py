@@ -51,6 +51,7 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
         critical = critical_direction(e, sides, parent.u, parent.motion, -1, scale)
     else:
         critical = np.linalg.svd(e.linearised(-1, sides, parent.u, parent.motion)[:size, :size] * scale)[2][-1]
+    critical *= -np.copysign(1.0, critical[K : 2 * K].sum())  # a choice: which of two mirror images comes first
     dt, dD, de = critical[:K], critical[K : 2 * K], critical[2 * K :]
     normal = np.zeros(len(walk.scale))
     normal[: 2 * size] = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])

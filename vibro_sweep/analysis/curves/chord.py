@@ -5,9 +5,9 @@ from collections.abc import Callable
 from scipy.optimize import brentq
 
 from vibro_sweep.analysis.continuation.tracer import Tracer
-from vibro_sweep.analysis.periodic.long_orbits import MANY
 from vibro_sweep.engine.continuation.workspace import Place
 
+MANY = 60  # impacts of a long orbit
 ROUNDING = 1e-15  # of tests, in their units
 ASIDE = 1e-7  # of a chord: a zero found by polynomials is exact to far less
 LEAST = 1e-14  # of a chord, far below what rounding of tests leaves of a zero

@@ -16,42 +16,19 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.flight_slopes import state_slopes
 from vibro_sweep.analysis.periodic.impulse_equations import Equations, flow, moves_stops_only
-from vibro_sweep.analysis.periodic.media import still_medium
-from vibro_sweep.engine.impulses import branch, equations, flights
+from vibro_sweep.engine.impulses import equations, flights
 from vibro_sweep.engine.impulses.green import cells_needed
-from vibro_sweep.engine.impulses.places import Steps, new_place, new_work
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-MANY = 60  # impacts from which on Newton's method with the states as unknowns is the faster one
-SPARSE = 120  # and the sparse system
-
-
-def is_long(e: Equations, sides) -> bool:
-    """Whether to use `newton`; a free mode that the contact sees has its equations in the dense form only."""
-    return len(sides) >= MANY and not e.free
+SPARSE = 120  # impacts from which on the sparse system is the faster one
 
 
 def is_sparse(e: Equations, sides) -> bool:
-    """The same for `solve_bordered` and `sign_and_log_det`. SciPy's part for these is loaded where they are called."""
+    """Whether to use `solve_bordered` and `sign_and_log_det`; a free mode that the contact sees has its equations in
+    the dense form only. SciPy's part for these is loaded where they are called."""
     return len(sides) >= SPARSE and not e.free
-
-
-def newton(e: Equations, sides, u, states) -> tuple[np.ndarray, float] | None:
-    """Newton's method at a cost that grows like K: (solution, change of the last step); None without convergence.
-
-    states : (K, m) before the impacts of the guess u, in contact coordinates; further unknowns (engine/impulses/blocks)
-    """
-    K, n = len(sides), states.shape[1] - 3
-    speed = max(e.q.omega * np.hypot(e.steady.real, e.steady.imag), np.abs(u[K:]).max())
-    steps = Steps(e.P, speed, 1.0, 0.0, 0.0, 0.0, -np.inf, np.inf)
-    place, work = new_place(K, n), new_work(K, n)
-    place.t[:], place.D[:], place.z[:] = u[:K], u[K:], states[:, :n]
-    if not branch.settle(still_medium(e.q, e.halves), np.array(sides, float), float(e.sigma), steps, place, work):
-        return None
-    change = max(np.abs(work.change_t[0]).max() / e.P, np.abs(work.change_jump[0]).max() / speed)
-    return np.concatenate([place.t, place.D]), float(change)
 
 
 def residual(e: Equations, sides, u):

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from vibro_sweep.analysis.periodic import long_orbits
+from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.impulse_equations import Equations
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
 from vibro_sweep.analysis.periodic.resting import RestEquations
@@ -15,7 +16,6 @@ from vibro_sweep.model.linear import Family, Linear
 # flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not tell the two orbits apart.
 ALIKE = 1e-6
 NO_SPEED = 1e-9  # impulse, relative to omega times the gap, of an impact that is none
-SLOW = 1e-5  # impulse, relative to the largest, below which impacts follow each other so closely that rounding counts
 
 
 @dataclass(frozen=True)
@@ -135,14 +135,15 @@ class Solution:
         """By Newton's method from here; None without convergence."""
         if self.K == 0:
             return self
-        if not self.rests and long_orbits.is_long(self.equations, self.sides):
-            found = long_orbits.newton(self.equations, self.sides, self.u, self.states)
-            if found is not None and np.abs(found[0][self.K :]).min() > SLOW * np.abs(found[0][self.K :]).max():
-                return replace(self, u=found[0], change=found[1])
-        ends, change = self.equations.newton(self.sides, self.u[None])
+        if self.rests:
+            ends, change = self.equations.newton(self.sides, self.u[None])
+        else:
+            e = EventEquations(self.family.linear, self.sigma, self.halves, self.sides)
+            ends, change = e.newton(self.u[None, : 2 * self.K])
         if not np.isfinite(change[0]):
             return None
-        return replace(self, u=ends[0], change=float(change[0]))
+        found = replace(self, u=ends[0], change=float(change[0]))
+        return found if self.rests or not e.free else found.with_mean()
 
     def whole(self) -> "Solution":
         """The same orbit over its whole period, sigma = +1."""

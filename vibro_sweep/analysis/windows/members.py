@@ -3,8 +3,8 @@
 import numpy as np
 
 from vibro_sweep.analysis.branches.flat import Flat, section_states, solution_of
-from vibro_sweep.analysis.periodic.impulse_equations import contacts_of, moves_stops_only
-from vibro_sweep.analysis.periodic.long_orbits import is_long
+from vibro_sweep.analysis.periodic.event_equations import EventEquations, contact_of
+from vibro_sweep.analysis.periodic.impulse_equations import moves_stops_only
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import ALIKE, Solution
 from vibro_sweep.analysis.windows.job import is_near
@@ -72,15 +72,16 @@ def _sections(flat: Flat, system, parameter: str, values: np.ndarray) -> list[np
     parts, family = _between(flat, values), family_of(system)
     there = [family.replace(**{parameter: float(value)}) for value in values]
     first = solution_of(flat, there[0], *(part[0] for part in parts))
-    e = first.equations
-    if not moves_stops_only(family.derivative(parameter)) or first.rests or e.free or is_long(e, first.sides):
+    q = first.family.linear
+    e = None if first.rests else EventEquations(q, first.sigma, first.halves, first.sides)
+    if not moves_stops_only(family.derivative(parameter)) or e is None or e.free:
         return [_section_states(solution_of(flat, one, *impacts)) for one, *impacts in zip(there, *parts, strict=True)]
-    oscillators, K = [one.stops(parameter, e.q)[0] for one in there], first.K
-    contacts = np.array([contacts_of(q, None, first.sides) for q in oscillators]).reshape(len(values), K, 4)
-    guesses = np.hstack([parts[0][:, :K], -contacts[:, :, 1] * parts[1][:, :K]])
-    unknowns, change = e.newton(first.sides, guesses, contacts)
-    gaps = contacts[:, 0, 0] if K else np.zeros(len(values))
-    found = _masses(e.q, e.sections(unknowns, gaps))
+    oscillators, sides = [one.stops(parameter, q)[0] for one in there], np.array(first.sides)
+    gains = np.array([1 + one.restitution(sides) for one in oscillators]).reshape(len(values), first.K)
+    guesses = np.hstack([parts[0][:, : first.K], -gains * parts[1][:, : first.K]])
+    unknowns, change = e.newton(guesses, np.array([contact_of(one) for one in oscillators]))
+    gaps = np.array([one.stop(sides[0]) if first.K else 0.0 for one in oscillators])
+    found = _masses(q, first.equations.sections(unknowns, gaps))
     found = [_own(q, first, states) for q, states in zip(oscillators, found, strict=True)]
     return [states if ok else states[:0] for states, ok in zip(found, np.isfinite(change), strict=True)]
 

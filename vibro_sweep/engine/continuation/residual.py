@@ -39,6 +39,7 @@ def approach(f, x, e):
         for c in range(n):
             total += f.A[r, c] * x[c]
         e.rate[r] = total / omega
+    e.gap = x[0] + (f.Z[0] * e.turn).real
     e.motion[0] = x[N] + (f.Z[N] * e.turn).real
     e.motion[1] = omega * e.rate[N] + (1j * omega * f.Z[N] * e.turn).real
 
@@ -62,7 +63,7 @@ def put_rows(f, law, side, x, e, panel):
             panel[speed, p + j] += f.number_slopes[j, gain] * v
     if law == IMPACT:
         panel[first, 0], panel[first, n] = 1.0, v / omega
-        panel[first, F] = x[0] + (f.Z[0] * e.turn).real - f.numbers[stop]
+        panel[first, F] = e.gap - f.numbers[stop]
         for j in range(f.parameters):
             panel[first, p + j] = (f.Z_slopes[j, 0] * e.turn).real - f.number_slopes[j, stop]
     elif law == END:
@@ -72,8 +73,14 @@ def put_rows(f, law, side, x, e, panel):
 @jit
 def fly(f, length, x, e, other):
     """The flight of this length after an event."""
-    n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
     flight(f, length, e.E, other)
+    land(f, x, e)
+
+
+@jit
+def land(f, x, e):
+    """The flight `e.E` after an event."""
+    n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
     for r in range(n):
         e.after[r], e.bend[r] = x[r], f.A[r, N] * x[n + 1] / omega
     e.after[N] += x[n + 1]
@@ -110,6 +117,15 @@ def put_flight(f, e, panel):
 
 
 @jit
+def hold(f, panel):
+    """A free mode that the contact does not see may stand anywhere: its place does not change."""
+    n = f.A.shape[0]
+    for r in range(n):
+        for k in range(n):
+            panel[n + 2 + r, 2 * n + 2 + k] += f.held[r, k]
+
+
+@jit
 def fly_through(f, c, place, b):
     """The motion through all events, at the parameters to which f was moved."""
     K, n = len(place.x), f.A.shape[0]
@@ -143,6 +159,8 @@ def eliminate(f, c, place, b, watched):
                 panel[r, j] = 0.0
         put_rows(f, law, c.sides[i], x, e, panel)
         put_flight(f, e, panel)
+        if last and f.is_held > 0:
+            hold(f, panel)
         if c.kind == STICK and last:
             put_tail(f, c, place, b, panel)
         sign *= reflect(panel, width, n + 2, e.mirrors, e.scales)

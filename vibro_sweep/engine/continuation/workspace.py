@@ -67,7 +67,8 @@ def event_of(masses: int) -> np.dtype:
         ("landing_rate", float, n),  # y' there
         ("missed", float, n),  # by which it misses the next state
         ("bend", float, n),  # rho: the jump of y' at it
-        ("motion", float, 2),  # gap velocity and acceleration before it
+        ("gap", float),  # before it
+        ("motion", float, 2),  # and its velocity and acceleration
         ("rows", float, (ROWS, n + 2)),  # entries of the scalar rows, by xi, dphi, dD
         ("factors", float, (ROWS, n + 2)),  # with which `kept` was subtracted from them
         ("changes", float, (2, n + 2)),  # Newton's change, and the tangent: xi, dphi, dD

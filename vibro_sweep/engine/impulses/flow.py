@@ -163,16 +163,14 @@ def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
     """
     N = len(q.along)
     n = 2 * N
-    to, A = contact_coordinates(q), extended(free_rates(q))
+    A = extended(free_rates(q))
     cells = cells_needed(q)
     half = power(exponential(A, extended(forcing_period(q)) / 2 / cells), cells)
     matrix = (sigma * np.eye(n) - power(half, halves)).astype(float)
     result = np.zeros((n, n + 1))
     if sigma == 1 and has_free_gap(q):
-        shapes, _ = free_modes(q)
-        count = shapes.shape[1]
-        momentum = np.block([[to.P_back.T @ q.C @ shapes], [to.U_back.T @ q.M @ shapes]])
-        gauge = np.concatenate([to.P @ shapes, np.zeros_like(shapes)]).T
+        momentum, gauge = _free_motion(q)
+        count = len(gauge)
         gauge[0] = np.eye(n)[0]
         bordered = np.block([[matrix, momentum], [gauge, np.zeros((count, count))]])
         result[:] = np.linalg.inv(bordered)[:n, : n + 1]
@@ -181,3 +179,17 @@ def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
         raise ResonanceError(f"an undamped mode repeats itself, with sign {sigma:+d}, after {halves} half periods")
     result[:, :n] = np.linalg.inv(matrix)
     return result
+
+
+def _free_motion(q: Linear) -> tuple[np.ndarray, np.ndarray]:
+    """Of the free modes, that which the contact sees first: momenta (n, count) and places (count, n) by the state."""
+    to, (shapes, _) = contact_coordinates(q), free_modes(q)
+    momentum = np.block([[to.P_back.T @ q.C @ shapes], [to.U_back.T @ q.M @ shapes]])
+    return momentum, np.concatenate([to.P @ shapes, np.zeros_like(shapes)]).T
+
+
+def unseen_modes(q: Linear) -> np.ndarray:
+    """(n, n) momenta times places of the free modes that the contact does not see."""
+    momentum, places = _free_motion(q)
+    seen = int(has_free_gap(q))
+    return momentum[:, seen:] @ places[seen:]

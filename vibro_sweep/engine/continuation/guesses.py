@@ -1,0 +1,197 @@
+"""Orbits alone, from guesses of the phases and velocity jumps of their impacts, by Newton's method.
+
+For given phases and jumps the states before the impacts follow linearly: with r what jumps and constant force add to
+the state 0 over a period,
+
+    y_1 = (sigma - E(P))^-1 r
+
+so that each step begins with states that fly to one another, as if phases and jumps were the only unknowns. What a free
+mode leaves open of y_1 is the gap there, which moves with Newton's steps.
+
+Towards the end of a chatter sequence flights and speeds vanish. From one impact to the next, after a short flight from
+the same stop, only what changes is summed up, so that rounding shrinks with the flight.
+"""
+
+import cmath
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.continuation.corrector import in_order
+from vibro_sweep.engine.continuation.factors import factorise, substitute
+from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, flight
+from vibro_sweep.engine.continuation.reflections import put_last, take_apart
+from vibro_sweep.engine.continuation.residual import approach, eliminate, land
+from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.simd.jit import entry, jit
+
+MOST_STEPS = 30
+LAST = 5  # of them
+MORE = 100  # beside a fold, where rounding throws steps about: one of them leads to the solution
+THROWN = 1e-5  # sizes of these steps
+ROUNDING = 1e-13  # of the gap's size
+SHORT = 1 / 16  # of a cell: a flight of which only what changes is summed up
+
+
+@jit
+def length_after(f, place, i):
+    """Of the flight after event i."""
+    n, x, omega = f.A.shape[0], place.x, f.numbers[OMEGA]
+    following = x[i + 1, n] if i + 1 < len(x) else x[0, n] + math.pi * f.half_turns
+    return (following - x[i, n]) / omega
+
+
+@jit
+def rise(f, e, r):
+    """By how much coordinate r of the free part grows in the flight after an event: not a difference."""
+    n, power, total = f.A.shape[0], 1.0, 0.0
+    for k in range(1, ORDER + 1):
+        power *= e.length
+        for j in range(n + 1):
+            total += f.series[k, r, j] * power * e.after[j]
+    return total
+
+
+@jit
+def follow_shortly(f, x, before, e):
+    """Gap and velocity before an event that comes a short flight after another one, from those there."""
+    n = f.A.shape[0]
+    turned = f.numbers[OMEGA] * before.length
+    swing = before.turn * cmath.exp(0.5j * turned) * complex(0.0, 2.0 * math.sin(0.5 * turned))
+    e.gap = before.gap + rise(f, before, 0) + (f.Z[0] * swing).real
+    e.motion[0] = before.motion[0] + x[n + 1] + rise(f, before, n // 2) + (f.Z[n // 2] * swing).real
+
+
+@jit
+def close(f, c, place, closing, b):
+    """The motion through all events, with the states that follow from phases and jumps.
+
+    closing : (n, n + 1) from what a period adds to the state 0, and the gap, to y_1
+    """
+    K, n, N, work = len(place.x), f.A.shape[0], f.A.shape[0] // 2, b.work[0]
+    y, end, gap = work.flying[0], work.flying[1], place.x[0, 0]
+    for r in range(n):
+        y[r] = 0.0
+    for i in range(K):
+        e = b.events[i]
+        e.length = length_after(f, place, i)
+        flight(f, e.length, e.E, work.other)
+        y[N] += place.x[i, n + 1]
+        for r in range(n):
+            end[r] = e.E[0, r, n]
+            for j in range(n):
+                end[r] += e.E[0, r, j] * y[j]
+        for r in range(n):
+            y[r] = end[r]
+    for r in range(n):
+        place.x[0, r] = closing[r, n] * gap
+        for j in range(n):
+            place.x[0, r] += closing[r, j] * y[j]
+    for i in range(K):
+        e, x, last = b.events[i], place.x[i], i + 1 == K
+        approach(f, x, e)
+        if i > 0 and c.sides[i] == c.sides[i - 1] and b.events[i - 1].length < SHORT * f.width:
+            follow_shortly(f, place.x[i - 1], b.events[i - 1], e)
+        land(f, x, e)
+        for r in range(n):
+            e.missed[r] = 0.0
+            if last:
+                e.missed[r] = c.sigma * place.x[0, r] - e.landing[r]
+            else:
+                place.x[i + 1, r] = e.landing[r]
+
+
+@jit
+def solve(f, c, place, b):
+    """`events.changes[0]`: Newton's change. False where the equations are singular."""
+    n, work = f.A.shape[0], b.work[0]
+    if eliminate(f, c, place, b, False) == 0.0:
+        return False
+    put_last(c, b, n)
+    for r in range(n):
+        work.null[r] = work.ends[r, n]
+        for j in range(n):
+            work.system[r, j] = work.ends[r, j]
+    if factorise(work.system, n, work.order) == 0.0:
+        return False
+    substitute(work.system, n, work.order, work.null)
+    take_apart(f, c, b, 0, work.null, work.step_p[0], True)
+    return True
+
+
+@jit
+def settle(f, c, place, closing, b):
+    """Newton's method from phases, jumps and the gap at the first impact. Relative size of the last step; NaN: none.
+
+    Steps longer than a quarter of the least distance between impacts are shortened. It has converged where steps grow
+    no smaller; steps up to 1e-7, as slow impacts leave them, count if the equations hold to rounding. Near a fold each
+    step is half of the one before: that is no end yet. Of many impacts rounding leaves more, beside a fold most: where
+    the last steps of all are small and shrink no more, the largest of them says how much.
+    """
+    K, n, omega, earlier, last, before = len(place.x), f.A.shape[0], f.numbers[OMEGA], 0.0, 0.0, np.inf
+    swing, period = abs(f.Z[0]), math.pi * f.half_turns
+    size = swing
+    for i in range(K):
+        size = max(size, abs(f.numbers[HIGH if c.sides[i] > 0 else LOW]))
+    for count in range(MOST_STEPS + MORE):
+        if not in_order(f, place):
+            return np.nan
+        if count == MOST_STEPS:
+            if max(earlier, last) < 1e-7 and last > 0.25 * earlier:
+                return max(earlier, last)
+            if not last < THROWN:
+                return np.nan
+        close(f, c, place, closing, b)
+        if not solve(f, c, place, b):
+            return np.nan
+        left, longest, reach, speed, kick = 0.0, 0.0, np.inf, omega * swing, 0.0
+        for i in range(K):
+            e, D = b.events[i], place.x[i, n + 1]
+            high = c.sides[i] > 0
+            off = e.gap - f.numbers[HIGH if high else LOW]
+            lost = D + f.numbers[GAIN_HIGH if high else GAIN_LOW] * e.motion[0]
+            left = max(left, abs(off), abs(lost) / omega)
+            longest, reach, speed = max(longest, abs(e.changes[0, n])), min(reach, e.length * omega), max(speed, abs(D))
+        for i in range(K):
+            change = abs(b.events[i].changes[0, n + 1])
+            kick = max(kick, change / (speed + change))
+        change = max(longest / period, kick)
+        if not change < np.inf:
+            return np.nan
+        most = 1e-7 if left <= ROUNDING * size else 1e-9
+        damping = min(1.0, 0.25 * reach / longest) if longest > 0.0 else 1.0
+        e = b.events[0]
+        place.x[0, 0] -= damping * (e.changes[0, 0] + e.rate[0] * e.changes[0, n])
+        for i in range(K):
+            for r in range(n, n + 2):
+                place.x[i, r] -= damping * b.events[i].changes[0, r]
+        if damping == 1.0 and (
+            change <= 4e-16 or (change < most and change >= (0.5 if change < 1e-12 else 0.8) * before)
+        ):
+            return change if in_order(f, place) else np.nan
+        before = change if damping == 1.0 else np.inf
+        if count >= MOST_STEPS - LAST:
+            last = max(last, before)
+        elif count >= MOST_STEPS - 2 * LAST:
+            earlier = max(earlier, before)
+    return np.nan
+
+
+@entry
+def settle_all(planes, c, place, closing, b, contacts, starts, ends, changes):
+    """`settle` from many guesses.
+
+    contacts : (m, 4) `numbers` of both stops, LOW .. GAIN_HIGH
+    starts, ends : (m, 2 K + 1): phases, jumps, the gap at the first impact less the steady motion; changes : (m,)
+    """
+    f, K, n = planes[0], len(place.x), planes[0].A.shape[0]
+    for m in range(len(starts)):
+        for j in range(4):
+            f.numbers[j] = contacts[m, j]
+        for i in range(K):
+            place.x[i, n], place.x[i, n + 1] = starts[m, i], starts[m, K + i]
+        place.x[0, 0] = starts[m, 2 * K]
+        changes[m] = settle(f, c, place, closing, b)
+        for i in range(K):
+            ends[m, i], ends[m, K + i] = place.x[i, n], place.x[i, n + 1]
+        ends[m, 2 * K] = place.x[0, 0]
