@@ -7,6 +7,7 @@ the map over a period, integrated by heyoka (tolerance 1e-16) or SciPy's DOP853 
 """
 
 import time
+from dataclasses import replace
 from importlib.util import find_spec
 
 import numpy as np
@@ -19,6 +20,7 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.branches.way import LONGEST_STEP, SHORTEST_STEP, STRAIGHT
+from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 
@@ -46,21 +48,21 @@ def one_sided(count: int) -> Solution:
 
 def from_guesses(solution: Solution) -> tuple[float, float]:
     """Microseconds for an orbit from a guess in a compiled batch, and the share that converged."""
-    e, rng = solution.equations, np.random.default_rng(0)
+    e, rng = EventEquations.of(solution), np.random.default_rng(0)
     guesses = solution.u * (1 + rng.uniform(-NEAR, NEAR, (GUESSES, solution.size)))
-    found = np.isfinite(e.newton(solution.sides, guesses)[1]).mean()
-    return least(lambda: e.newton(solution.sides, guesses)) / GUESSES * 1e6, found
+    found = np.isfinite(e.newton(guesses)[1]).mean()
+    return least(lambda: e.newton(guesses)) / GUESSES * 1e6, found
 
 
 def additions(solution: Solution) -> dict[str, float]:
     """Microseconds that the certificate, the multipliers and the call from Python add."""
-    e, sides, u, motion = solution.equations, solution.sides, solution.u, solution.motion
+    sides = solution.sides
     guess = [(t, side, -D / 1.8) for t, side, D in zip(solution.times, sides, solution.jumps, strict=True)]
     periods = solution.halves // 2
     system = PAPER.replace(b=4.0)
     return {
-        "certificate": least(lambda: e.fly(sides, u)) * 1e6,
-        "multipliers": least(lambda: e.multipliers(sides, u, motion)) * 1e6,
+        "certificate": least(lambda: replace(solution).margin) * 1e6,
+        "certificate and multipliers": least(lambda: replace(solution).multipliers) * 1e6,
         "periodic_orbit, from Python": least(lambda: vs.periodic_orbit(system, guess=guess, periods=periods)) * 1e6,
     }
 

@@ -9,10 +9,11 @@ import numpy as np
 from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, slopes
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.periodic.long_orbits import critical_direction, is_sparse
-from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.analysis.periodic.linearised import Linearised
+from vibro_sweep.analysis.periodic.solution import Solution
 
 AMPLITUDE = 1e-3  # of a branch that is born, in the units of a walk
+ROUNDING = 1e-12  # of a multiplier on the unit circle, where nothing is lost
 LARGER = (4.0, 16.0, 64.0)  # times as large: where the branch leaves nearly along the born orbits
 
 
@@ -44,13 +45,14 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
     name, value = next(iter(special.parameters.items()))
     K, rests = parent.K, len(parent.rests)
     size = 2 * K + rests
-    e, sides, twice = parent.equations, parent.sides, doubled(parent)
+    twice = doubled(parent)
     walk = Walk(twice, name, size_of(parent, name))
     scale = np.concatenate([walk.scale[:K], walk.scale[2 * K : 3 * K], walk.scale[4 * K : 4 * K + rests]])
-    if not rests and is_sparse(e, sides):
-        critical = critical_direction(e, sides, parent.u, parent.motion, -1, scale)
+    if rests:
+        J = parent.equations.linearised(-1, parent.sides, parent.u, parent.motion)
+        critical = np.linalg.svd(J * scale)[2][-1]
     else:
-        critical = np.linalg.svd(e.linearised(-1, sides, parent.u, parent.motion)[:size, :size] * scale)[2][-1]
+        critical = Linearised(parent).critical_direction(-1) / scale
     critical *= -np.copysign(1.0, critical[K : 2 * K].sum())  # a choice: which of two mirror images comes first
     dt, dD, de = critical[:K], critical[K : 2 * K], critical[2 * K :]
     normal = np.zeros(len(walk.scale))
@@ -65,7 +67,7 @@ def doubled(parent: Solution) -> Solution:
     """The same orbit over the period of the branch that is born."""
     if parent.sigma == -1:
         return parent.whole()
-    t, D, P, K = parent.times, parent.jumps, parent.equations.P, parent.K
+    t, D, P, K = parent.times, parent.jumps, parent.P, parent.K
     tail = [parent.ends, parent.ends + P] if parent.rests else [parent.u[2 * K :]]
     u = np.concatenate([t, t + P, D, D, *tail])
     rests = (*parent.rests, *(k + K for k in parent.rests))
@@ -86,11 +88,10 @@ def criticality(special: SpecialPoint) -> str | None:
         return None
     step = math.copysign(max(abs(moved[0]), 1e-6 * abs(value)), moved[0])
     parent = special.orbit._solution
-    slope = parent.family.derivative(name)
-    du = slopes(equations_for(parent, parent.family.linear, slope), parent)
+    du = slopes(parent, name)
     family = parent.family.replace(**{name: value + step})
     beside = replace(parent, family=family, u=parent.u + step * du).corrected()
     if beside is None:
         return None
     critical = beside.multipliers[np.argmin(np.abs(beside.multipliers + 1))]
-    return "super" if abs(critical) > 1 else "sub"
+    return "super" if abs(critical) > 1 + ROUNDING else "sub"

@@ -114,7 +114,7 @@ def solution_of(flat: Flat, system, t, v, t_off) -> Solution:
     u = np.concatenate([t[:K], D, t_off[list(rests)]])
     sigma, halves = (-1, period) if symmetric else (1, 2 * period)
     found = Solution(family, sigma, halves, sides, u, 0.0, rests)
-    return found.with_mean() if K and not rests and found.equations.free else found
+    return found.with_mean() if K and not rests and found.is_free else found
 
 
 def orbit_at(flat: Flat, point: int, system) -> PeriodicOrbit:

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vibro_sweep.analysis.branches import branch_text
-from vibro_sweep.analysis.periodic import long_orbits
-from vibro_sweep.analysis.periodic.impulse_equations import Equations, flow
+from vibro_sweep.analysis.periodic.impulse_equations import flow
+from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.engine.impulses import flights
@@ -103,16 +103,16 @@ def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
         sides = tuple(np.delete(solution.sides, gone).tolist())
         u = np.delete(solution.u, [*gone, *(solution.K + gone)])
         without, touching = _with(solution, sides, u, rests - np.searchsorted(gone, rests)), solution
-    q, slope = solution.family.linear, solution.family.derivative(name)
-    e = equations_for(touching, q, slope)
-    du = slopes(e, touching)
+    du, q = slopes(touching, name), solution.family.linear
     speed_slope = -side * du[touching.K + index] / (1 + q.restitution([side])[0])
+    if not touching.rests:
+        distance_slope = Linearised(touching, solution.family.derivative(name), gone).distance_slope(index)
+        return Graze(without, touching, index, distance_slope, float(speed_slope))
     # At D = 0 the first equation of that impact is the gap less the stop, as the others leave it: take its change
     # along the orbits without the impact, whose own times and impulses move by their own slopes.
     held = np.zeros(touching.size)
-    keep = np.delete(np.arange(touching.size), [*gone, *(touching.K + gone)])
-    if without.K or e.free:
-        held[keep] = slopes(equations_for(without, q, slope), without)
+    held[np.delete(np.arange(touching.size), [*gone, *(touching.K + gone)])] = slopes(without, name)
+    e = equations_for(touching, q, solution.family.derivative(name))
     _, J, Fp, _ = e.evaluate(touching.sides, touching.u)
     distance_slope = -side * float((J[index] @ held) + Fp[index])
     return Graze(without, touching, index, float(distance_slope), float(speed_slope))
@@ -125,13 +125,13 @@ def inserted(solution: Solution, slow=()) -> tuple[Solution, int]:
     """
     K, rests = solution.K, np.array(solution.rests, int)
     _, time, side = _nearest_aside(solution, slow) if len(slow) else solution.nearest
-    period = solution.equations.P
+    period = solution.P
     index = int(np.searchsorted(solution.times, time))
     if K == 0 and time >= period:  # found where the period begins again, with the mirror for sigma = -1
         time, side = time - period, solution.sigma * side
     u = np.insert(solution.u, [index, K + index], [time, 0.0])
     sides = (*solution.sides[:index], side, *solution.sides[index:])
-    if K == 0 and solution.family.linear.symmetric is False and solution.equations.free:
+    if K == 0 and solution.family.linear.symmetric is False and solution.is_free:
         u = np.append(u, 0.0)
     return _with(solution, sides, u, rests + (rests >= index)), index
 
@@ -142,7 +142,7 @@ def _nearest_aside(solution: Solution, slow) -> tuple[float, float, int]:
     f, nearest = flow(q), np.array([np.inf, 0.0, 0.0])
     starts, begins = solution.states.copy(), solution.times
     starts[:, len(q.along)] += solution.jumps
-    ends = np.append(begins[1:], begins[0] + solution.equations.P)
+    ends = np.append(begins[1:], begins[0] + solution.P)
     aside = np.isin(np.arange(K), slow) * ASIDE / q.omega
     first, last = begins + aside, ends - np.roll(aside, -1)
     flying, room = np.empty_like(starts), flights.new_room(starts.shape[1])
@@ -165,13 +165,13 @@ def _with(solution: Solution, sides, u, rests) -> Solution:
     return Solution(solution.family, solution.sigma, solution.halves, tuple(sides), u, 0.0, rests)
 
 
-def slopes(e: Equations, solution: Solution) -> np.ndarray:
+def slopes(solution: Solution, name: str) -> np.ndarray:
     """du/dp of an orbit that is not at a fold. Without impacts a free mode may stand anywhere: it stays."""
-    if solution.K == 0 and e.free:
-        return np.zeros(solution.size)
-    if solution.size == 0:
-        return np.zeros(0)
-    if not solution.rests and long_orbits.is_sparse(e, solution.sides):
-        return long_orbits.slopes(e, solution.sides, solution.u)
-    _, J, Fp, _ = e.evaluate(solution.sides, solution.u)
-    return -np.linalg.solve(J, Fp)
+    slope = solution.family.derivative(name)
+    if solution.rests:
+        _, J, Fp, _ = equations_for(solution, solution.family.linear, slope).evaluate(solution.sides, solution.u)
+        return -np.linalg.solve(J, Fp)
+    result = np.zeros(solution.size)  # the mean gap follows from times and impulses
+    if solution.K:
+        result[: 2 * solution.K] = Linearised(solution, slope).slopes()
+    return result

@@ -9,7 +9,7 @@ from vibro_sweep.analysis.branches.births import born, is_steady
 from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, slopes
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit
-from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_type
 
 BESIDE = 1e-4  # relative distance of the parameter from a graze
@@ -66,8 +66,7 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
     try:
         graze = graze_at(solution, name, impact)
         target = graze.touching if impact is None else graze.without
-        e = equations_for(target, solution.family.linear, solution.family.derivative(name))
-        du = slopes(e, target)
+        du = slopes(target, name)
     except np.linalg.LinAlgError:  # a fold as well: no slopes
         return None
     slope = graze.speed_slope if impact is None else graze.distance_slope

@@ -40,7 +40,7 @@ class Map:
         self.s, f = s, flow(s.family.linear)
         self.B, self.n = f.B, f.B.shape[0] - 3
         self.E = np.empty((s.K, self.n, self.n))
-        lengths = np.diff(np.append(s.times, s.times[0] + s.equations.P))
+        lengths = np.diff(np.append(s.times, s.times[0] + s.P))
         flights.flight_matrices(f, lengths, self.E, flights.new_room(self.n + 3))
         self.R = s.family.linear.restitution(s.sides)
 

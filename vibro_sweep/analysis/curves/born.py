@@ -129,7 +129,7 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
 
 def _with_amplitude(guess: Solution, change: np.ndarray, name: str, value: float) -> Solution | None:
     """The orbit near a guess with its amplitude in the direction `change`; the parameter is found with it."""
-    guess = guess.with_mean() if guess.equations.free else guess
+    guess = guess.with_mean() if guess.is_free else guess
     walk = Walk(guess, name, size_of(guess, name))
     row = np.zeros(len(walk.scale))
     row[: len(change)] = change / walk.scale[: len(change)]
@@ -182,7 +182,7 @@ def box_around(special: CurvePoint) -> np.ndarray:
 
 def repeated(parent: Solution, count: int, dt, dD, mu: complex) -> tuple[Solution, np.ndarray]:
     """The orbit taken `count` times, moved by mu^k (dt, dD) and its conjugate in period k; and the change itself."""
-    P, s = parent.equations.P, float(parent.sigma)
+    P, s = parent.P, float(parent.sigma)
     turns, signs = mu ** np.arange(count)[:, None], s ** np.arange(count)[:, None]
     change = np.concatenate([2 * (turns * dt).real.ravel(), 2 * (signs * turns * dD).real.ravel()])
     t = parent.times + P * np.arange(count)[:, None]

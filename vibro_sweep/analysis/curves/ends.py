@@ -83,7 +83,7 @@ def in_full(tracer: Tracer, end: End) -> Solution:
     if solution.K == tracer.K:
         return solution
     touching, index = inserted(solution)  # both halves touch the stop, and that of the curve is meant
-    k, half = tracer.problem.index, solution.equations.P / 2
+    k, half = tracer.problem.index, solution.P / 2
     time = touching.times[index] + half * np.sign(k - index)
     sides = (*solution.sides[:k], int(tracer.problem.sides[k]), *solution.sides[k:])
     u = np.insert(solution.u, [k, solution.K + k], [time, 0.0])

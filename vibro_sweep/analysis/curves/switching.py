@@ -13,12 +13,13 @@ from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.born import born, box_around
 from vibro_sweep.analysis.curves.way import CurvePoint
+from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.model.arguments import check_type
 
-SINGULAR = 1e-8  # least singular value of M(mu), of its largest, below which mu is a multiplier
+SINGULAR = 1e-8  # least singular value of G(mu), of its largest, below which mu is a multiplier
 SLOW = 1e-9  # impulse, in parts of the gap's size times omega, below which an impact is a graze
 ON_CIRCLE = 1e-8  # | |mu| - 1 | of a Neimark-Sacker pair
 BESIDE = 0.2  # theta at which the Neimark-Sacker curve of a double multiplier 1 (-1) is entered
@@ -107,13 +108,7 @@ def _smooth(solution: Solution, no_pair: bool) -> list[Start]:
 
 def is_singular(solution: Solution, mu: int) -> bool:
     """Whether mu is a multiplier, also where an impact has no speed."""
-    q, K = solution.family.linear, solution.K
-    J = solution.equations.linearised(mu, solution.sides, solution.u, solution.motion)
-    scale, rows = np.full(len(J), solution.size_of_gap), np.ones(len(J))
-    scale[:K] = 1 / q.omega
-    scale[K : 2 * K] *= q.omega
-    rows[K:] = q.omega
-    values = np.linalg.svd(J * scale / rows[:, None], compute_uv=False)
+    values = np.linalg.svd(Linearised(solution).closure(mu), compute_uv=False)
     return bool(values[-1] < SINGULAR * values[0])
 
 

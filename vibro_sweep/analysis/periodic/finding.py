@@ -1,6 +1,6 @@
 """`periodic_orbit`: finds an orbit by Newton's method, whether it attracts or repels.
 
-The unknowns are the times and impulses of the impacts (engine/impulses), so that nothing is singular at a graze.
+The unknowns are the times and impulses of the impacts, so that nothing is singular at a graze.
 """
 
 import math
@@ -8,11 +8,14 @@ from itertools import pairwise
 
 import numpy as np
 
+from vibro_sweep.analysis.periodic.event_equations import EventEquations
+from vibro_sweep.analysis.periodic.impulse_equations import flow, swing_of
 from vibro_sweep.analysis.periodic.itinerary import SIDES, is_mirrored, repetitions, word
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit, leans, orbit_of
 from vibro_sweep.analysis.periodic.seeds_of_rests import evenly, with_rests
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.orbit import simulate
+from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.green import ResonanceError, TooStiffError
 from vibro_sweep.model.arguments import checked_count, checked_state
 from vibro_sweep.model.linear import Family, family_of, forcing_period
@@ -20,6 +23,7 @@ from vibro_sweep.model.real import array_of
 from vibro_sweep.model.refusals import not_allowed
 
 SEEDS = 4000
+AT_ONCE = 250  # of them: the orbit may be among the first
 MOMENTS = 24
 SAME = 1e-7  # relative difference of solutions from two seeds that are one, and in parts of their units
 NO_ROW = (math.nan, 0.0, math.nan)
@@ -127,9 +131,9 @@ def _from_guess(system, family, rows, periods) -> PeriodicOrbit:
     t, v = np.array([row[0] for row in rows]), np.array([row[2] for row in rows])
     u = np.concatenate([t, -(1 + R) * v])
     start = Solution(family, 1, 2 * periods, sides, u)
-    if start.equations.free and sides:
+    if start.is_free and sides:
         start = start.with_mean()
-    if sides and t[-1] >= t[0] + start.equations.P:
+    if sides and t[-1] >= t[0] + start.P:
         raise ValueError(not_allowed("guess", rows, "(t, side, v) for each impact within one period"))
     found = start.corrected()
     if (found is None or not found.real) and np.any(R == 0):
@@ -165,53 +169,45 @@ def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
 
 
 def _passes_a_stop(s: Solution) -> bool:
-    """Whether it does so at moments of one forcing period in its longest flight: seen soon, also of a long period.
-
-    The moments are added as impacts without impulse: their equations say how far the gap is from the stop.
-    """
-    e, K, T = s.equations, s.K, forcing_period(s.family.linear)
-    lengths = np.diff(np.append(s.times, s.times[0] + e.P))
+    """Whether it does so at moments of one forcing period in its longest flight: seen soon, also of a long period."""
+    q, T = s.family.linear, forcing_period(s.family.linear)
+    lengths = np.diff(np.append(s.times, s.times[0] + s.P))
     k = int(np.argmax(lengths))
     if lengths[k] < 2 * T:
         return False
-    moments = s.times[k] + lengths[k] / 2 + T * np.arange(MOMENTS) / MOMENTS
-    u = np.insert(s.u, [k + 1] * MOMENTS + [K + k + 1] * MOMENTS, [*moments, *np.zeros(MOMENTS)])
-    beyond = []
-    for side, stop in ((1, e.q.high), (-1, e.q.low)):
-        if math.isfinite(stop):
-            sides = (*s.sides[: k + 1], *[side] * MOMENTS, *s.sides[k + 1 :])
-            beyond.append(side * e.evaluate(sides, u)[0][k + 1 : k + 1 + MOMENTS])
-    size = (
-        math.hypot(e.steady.real, e.steady.imag) + np.abs(e.q.stop(s.sides)).max() + np.abs(s.jumps).max() / e.q.omega
-    )
-    return bool(np.max(beyond) > 1e-9 * size)
+    start, begin, f = s.states[k : k + 1].copy(), s.times[k : k + 1], flow(q)
+    start[0, len(q.along)] += s.jumps[k]
+    moments, out = begin + lengths[k] / 2 + T * np.arange(MOMENTS) / MOMENTS, np.empty((MOMENTS, start.shape[1]))
+    flights.sample_flights(f, start, begin, np.zeros(MOMENTS, int), moments, out, flights.new_room(start.shape[1]))
+    size = swing_of(q) + np.abs(q.stop(s.sides)).max() + np.abs(s.jumps).max() / q.omega
+    return bool(max(out[:, 0].max() - q.high, q.low - out[:, 0].min()) > 1e-9 * size)
 
 
 def _seeded(start: Solution):
     """Solutions from fixed seeds, different ones, those whose impulses push first."""
-    e, K = start.equations, start.K
-    rng = np.random.default_rng(0)
-    q = e.q
-    steady_speed = q.omega * math.hypot(e.steady.real, e.steady.imag)
-    size = max(steady_speed, abs(e.steady.momentum) / K, *(q.omega * abs(x) for x in q.stop(start.sides)))
-    t = np.sort(rng.uniform(0, e.P, (SEEDS, K)), axis=1)
-    t += rng.uniform(0, e.P, (SEEDS, 1)) - t[:, :1]
-    D = -np.array(start.sides) * size * 10 ** rng.uniform(-2, 0.5, (SEEDS, K))
-    guesses = np.concatenate([t, D], axis=1)
-    if e.free:
-        guesses = np.column_stack([guesses, q.stop(start.sides).mean() * np.ones(SEEDS)])
-    ends, change = e.newton(start.sides, guesses)
-    ends, change = ends[np.isfinite(change)], change[np.isfinite(change)]
-    T = forcing_period(q)
-    shift = np.zeros(ends.shape[1])
-    shift[:K] = T
-    ends = ends - np.floor(ends[:, :1] / T) * shift
-    pushing = np.all(-np.array(start.sides) * ends[:, K : 2 * K] > 0, axis=1)
-    known, count = np.empty_like(ends), 0
-    units = np.repeat([1 / q.omega, size, size / q.omega], [K, K, ends.shape[1] - 2 * K])
-    for i in np.argsort(~pushing, kind="stable"):
-        apart = np.abs(known[:count] - ends[i]) > SAME * (units + np.abs(known[:count]))
-        if np.all(apart.any(axis=1)):
-            known[count] = ends[i]
-            count += 1
-            yield Solution(start.family, start.sigma, start.halves, start.sides, ends[i], float(change[i]))
+    e, K, q = EventEquations.of(start), start.K, start.family.linear
+    rng, T, sides = np.random.default_rng(0), forcing_period(q), np.array(start.sides)
+    size = max(q.omega * swing_of(q), abs(e.momentum) / K, *(q.omega * abs(x) for x in q.stop(start.sides)))
+    t = np.sort(rng.uniform(0, start.P, (SEEDS, K)), axis=1)
+    t += rng.uniform(0, start.P, (SEEDS, 1)) - t[:, :1]
+    guesses = np.hstack([t, -sides * size * 10 ** rng.uniform(-2, 0.5, (SEEDS, K))])
+    units, known, pulling = np.repeat([1 / q.omega, size], K), np.empty((0, 2 * K)), []
+
+    def new(ends, changes):
+        nonlocal known
+        for end, change in zip(ends, changes, strict=True):
+            if np.all((np.abs(known - end) > SAME * (units + np.abs(known))).any(axis=1)):
+                known = np.vstack([known, end])
+                found = Solution(start.family, start.sigma, start.halves, start.sides, end, float(change))
+                yield found.with_mean() if found.is_free else found
+
+    for first in range(0, SEEDS, AT_ONCE):
+        ends, changes = e.newton(guesses[first : first + AT_ONCE])
+        converged = np.isfinite(changes)
+        ends, changes = ends[converged], changes[converged]
+        ends[:, :K] -= np.floor(ends[:, :1] / T) * T
+        pushing = np.all(-sides * ends[:, K:] > 0, axis=1)
+        pulling.append((ends[~pushing], changes[~pushing]))
+        yield from new(ends[pushing], changes[pushing])
+    for found in pulling:
+        yield from new(*found)

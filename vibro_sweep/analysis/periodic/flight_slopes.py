@@ -10,6 +10,8 @@ too, the last one ends later. The cost grows like the number of impacts; sums ov
 engine/impulses/equations.py, take seconds for a thousand of them.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from vibro_sweep.analysis.periodic.impulse_equations import Equations, closing, flow
@@ -17,7 +19,7 @@ from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import DOUBLINGS, Flow, contact_coordinates
 from vibro_sweep.engine.impulses.tables import exponential, taylor_rows
 from vibro_sweep.model.contact import push_of
-from vibro_sweep.model.linear import Linear
+from vibro_sweep.model.linear import Linear, amplitude_slopes, amplitudes
 
 
 def state_slopes(e: Equations, u, states: np.ndarray) -> np.ndarray:
@@ -48,10 +50,18 @@ def state_slopes(e: Equations, u, states: np.ndarray) -> np.ndarray:
     return result[:K]
 
 
-def rate_slopes(q: Linear, slope: Linear) -> np.ndarray:
-    """Derivative of B, (m, m), where q changes by `slope`."""
+class Slopes(NamedTuple):
+    """Derivatives of `contact_coordinates` (engine/impulses/flow.py) by a number."""
+
+    P: np.ndarray  # (N, N)
+    P_back: np.ndarray
+    U: np.ndarray
+    U_back: np.ndarray
+    by_force: np.ndarray
+
+
+def coordinate_slopes(q: Linear, slope: Linear) -> Slopes:
     N = len(q.along)
-    n = 2 * N
     to = contact_coordinates(q)
     inverse = np.linalg.inv(q.M)
     d_inverse = -inverse @ slope.M @ inverse
@@ -66,19 +76,32 @@ def rate_slopes(q: Linear, slope: Linear) -> np.ndarray:
     W[1:, 0] = push[1:]
     dW[1:, 0] = ((dP @ towards + P @ d_towards) / seen - push * d_seen / seen)[1:]
     dU = -dW @ P + (2 * np.eye(N) - W) @ dP  # the inverse of W is 2 - W
-    dU_back = d_back @ W + to.P_back @ dW
-    by_force, d_by_force = to.by_force, dU @ inverse + to.U @ d_inverse
+    return Slopes(dP, d_back, dU, d_back @ W + to.P_back @ dW, dU @ inverse + to.U @ d_inverse)
+
+
+def rate_slopes(q: Linear, slope: Linear) -> np.ndarray:
+    """Derivative of B, (m, m), where q changes by `slope`."""
+    N = len(q.along)
+    n = 2 * N
+    to, d = contact_coordinates(q), coordinate_slopes(q, slope)
     dB = np.zeros((n + 3, n + 3))
-    dB[:N, N:n] = dP @ to.U_back + P @ dU_back
-    for columns, matrix, change, back, d_of_back in (
-        (slice(N), q.K, slope.K, to.P_back, d_back),
-        (slice(N, n), q.C, slope.C, to.U_back, dU_back),
+    dB[:N, N:n] = d.P @ to.U_back + to.P @ d.U_back
+    for columns, matrix, change, back, d_back in (
+        (slice(N), q.K, slope.K, to.P_back, d.P_back),
+        (slice(N, n), q.C, slope.C, to.U_back, d.U_back),
     ):
-        dB[N:n, columns] = -(d_by_force @ matrix @ back + by_force @ (change @ back + matrix @ d_of_back))
+        dB[N:n, columns] = -(d.by_force @ matrix @ back + to.by_force @ (change @ back + matrix @ d_back))
     for column, name in ((n, "cosine"), (n + 1, "sine"), (n + 2, "constant")):
-        dB[N:n, column] = d_by_force @ getattr(q, name) + by_force @ getattr(slope, name)
+        dB[N:n, column] = d.by_force @ getattr(q, name) + to.by_force @ getattr(slope, name)
     dB[n, n + 1], dB[n + 1, n] = -slope.omega, slope.omega
     return dB
+
+
+def motion_slopes(q: Linear, slope: Linear) -> np.ndarray:
+    """(2N,) derivative of the amplitudes of the steady motion in contact coordinates, at a fixed phase."""
+    to, d, X, dX = contact_coordinates(q), coordinate_slopes(q, slope), amplitudes(q), amplitude_slopes(q, slope)
+    speeds = slope.omega * (to.U @ X) + q.omega * (d.U @ X + to.U @ dX)
+    return np.concatenate([d.P @ X + to.P @ dX, 1j * speeds])
 
 
 def _flow_of_both(f: Flow, dB: np.ndarray) -> Flow:

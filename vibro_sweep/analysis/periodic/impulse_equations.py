@@ -105,38 +105,35 @@ class Equations:
             J = np.block([[J, np.repeat([[1.0], [0.0]], K, 0)], [np.repeat([[0.0, 1.0]], K, 1), np.zeros((1, 1))]])
         return J
 
-    def fly(self, sides, u) -> tuple[np.ndarray, np.ndarray]:
-        """States (max(K, 1), 2N + 3) before each impact, in contact coordinates; and (distance, t, side) of the turning
-        point of the gap nearest to its stop, inf where there is none."""
-        f, close = flow(self.q), closing(self.q, self.sigma, self.halves)
-        m, K = f.B.shape[0], len(sides)
-        states, nearest, room = np.empty((max(K, 1) + 1, m)), np.empty(3), flights.new_room(m)
-        low, high = self.q.low, self.q.high
-        flights.fly_orbit(f, close, self.contacts(sides), u, self.P, low, high, states, nearest, room)
-        return states[:-1], nearest
 
-    def sections(self, unknowns, gaps) -> np.ndarray:
-        """(m, 2n, 2N) states at the multiples of T/2 of orbits over n forcing periods, in contact coordinates.
+def fly(q: Linear, sigma: int, halves: int, sides, u) -> tuple[np.ndarray, np.ndarray]:
+    """States (max(K, 1), 2N + 3) before each impact, in contact coordinates; and (distance, t, side) of the turning
+    point of the gap nearest to its stop, inf where there is none."""
+    f, close = flow(q), closing(q, sigma, halves)
+    m, K = f.B.shape[0], len(sides)
+    states, nearest, room = np.empty((max(K, 1) + 1, m)), np.empty(3), flights.new_room(m)
+    P = forcing_period(q) / 2 * halves
+    flights.fly_orbit(f, close, contacts_of(q, None, sides), u, P, q.low, q.high, states, nearest, room)
+    return states[:-1], nearest
 
-        unknowns : (m, 2K), of orbits whose stops and restitutions may differ from those of `q`
-        gaps : (m,) at the first impact
-        """
-        f, close = flow(self.q), closing(self.q, self.sigma, self.halves)
-        m, count = len(f.B), self.halves if self.sigma == 1 else 2 * self.halves
-        out = np.empty((len(unknowns), count, m - 3))
-        K, T = np.shape(unknowns)[1] // 2, forcing_period(self.q)
-        flying, room = np.empty((2, m)), flights.new_room(m)
-        sections.sections(f, close, unknowns, gaps, K, float(self.sigma), self.P, T, out, flying, room)
-        return out
 
-    def multipliers(self, sides, u, motion) -> np.ndarray:
-        """(2N,) of the map over P, with the mirror for sigma = -1; by falling modulus, of a pair +im first."""
-        return multipliers_of(flow(self.q), self.sigma, self.P, self.contacts(sides), u, motion)
+def sections_of(q: Linear, sigma: int, halves: int, unknowns, gaps) -> np.ndarray:
+    """(m, 2n, 2N) states at the multiples of T/2 of orbits over n forcing periods, in contact coordinates.
+
+    unknowns : (m, 2K), of orbits whose stops and restitutions may differ from those of `q`
+    gaps : (m,) at the first impact
+    """
+    f, close = flow(q), closing(q, sigma, halves)
+    m, count, K, T = len(f.B), halves if sigma == 1 else 2 * halves, np.shape(unknowns)[1] // 2, forcing_period(q)
+    out, flying, room = np.empty((len(unknowns), count, m - 3)), np.empty((2, m)), flights.new_room(m)
+    sections.sections(f, close, unknowns, gaps, K, float(sigma), T / 2 * halves, T, out, flying, room)
+    return out
 
 
 def multipliers_of(f: free_flight.Flow, sigma: int, P: float, contacts: np.ndarray, u, motion) -> np.ndarray:
-    """`Equations.multipliers` without the tables of the equations; contacts (K, 2 or more): stop, 1 + R.
+    """(2N,) of the map over P, with the mirror for sigma = -1; by falling modulus, of a pair +im first.
 
+    contacts : (K, 2 or more) stop, 1 + R
     They do not depend on the force: the flow may be that of an oscillator with another one.
     """
     n = f.B.shape[0] - 3
@@ -201,6 +198,17 @@ def steady(q: Linear, sigma: int, halves: int, slope: Linear | None) -> equation
         raise ResonanceError("the force drives an undamped mode at its own frequency")
     numbers = (q.omega, mean, gain.real, gain.imag, d_omega, d_mean, d_gain.real, d_gain.imag)
     return equations.Steady(*map(float, numbers), free, float(momentum), float(d_momentum))
+
+
+def swing_of(q: Linear) -> float:
+    """Amplitude of the gap in the steady motion. Raises ResonanceError."""
+    try:
+        swing = float(abs(q.along @ amplitudes(q)))
+    except np.linalg.LinAlgError:
+        swing = np.inf
+    if not swing < np.inf:
+        raise ResonanceError("the force drives an undamped mode at its own frequency")
+    return swing
 
 
 def _static(q: Linear, force: np.ndarray) -> np.ndarray:

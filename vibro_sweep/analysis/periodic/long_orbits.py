@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.analysis.periodic.flight_slopes import state_slopes
-from vibro_sweep.analysis.periodic.impulse_equations import Equations, flow, moves_stops_only
+from vibro_sweep.analysis.periodic.impulse_equations import Equations, flow, fly, moves_stops_only
 from vibro_sweep.engine.impulses import equations, flights
 from vibro_sweep.engine.impulses.green import cells_needed
 
@@ -43,7 +43,7 @@ def residual(e: Equations, sides, u):
     width = e.P / e.halves / cells_needed(e.q)  # of a cell
     if np.any(again & (np.diff(t) < equations.SHORT * width)) or not np.all(gain > 1):
         return e.residual(sides, u)
-    states, B = e.fly(sides, u)[0], flow(e.q).B
+    states, B = fly(e.q, e.sigma, e.halves, sides, u)[0], flow(e.q).B
     N, rates = (len(B) - 3) // 2, states @ B.T
     v = states[:, N]
     F = np.concatenate([states[:, 0] - contacts[:, equations.STOP], D + gain * v])

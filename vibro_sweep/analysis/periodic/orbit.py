@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from vibro_sweep.analysis.periodic import orbit_text
+from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.impulse_equations import flow, held_flow
 from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -69,7 +70,7 @@ class PeriodicOrbit:
         if not s.K:
             return 0, 0
         T = forcing_period(s.family.linear)
-        first = canonical_start(s.sides, s.times, T, s.equations.P)
+        first = canonical_start(s.sides, s.times, T, s.P)
         return first, math.floor(s.times[first] / T)
 
     @cached_property
@@ -79,7 +80,7 @@ class PeriodicOrbit:
         T = forcing_period(s.family.linear)
         t, sides, D, states = s.times, np.array(s.sides, int), s.jumps, s.states[:, :-3]
         if self.symmetric:
-            t, sides, D = np.append(t, t + s.equations.P), np.append(sides, -sides), np.append(D, -D)
+            t, sides, D = np.append(t, t + s.P), np.append(sides, -sides), np.append(D, -D)
             states = np.concatenate([states, -states])
         if s.K:
             first, shift = self._frame or self._canonical_frame
@@ -269,7 +270,9 @@ def leans(solution: Solution) -> bool:
 def is_isolated(free_motion: Solution) -> bool:
     """Whether a motion without impacts is the only one near it: a free mode may be at rest anywhere between the stops,
     and an undamped mode that repeats itself after the forcing period has any amplitude."""
+    whole = free_motion.whole()
     try:
-        return not free_motion.whole().equations.free
+        EventEquations.of(whole)
     except ResonanceError:
         return False
+    return not whole.is_free

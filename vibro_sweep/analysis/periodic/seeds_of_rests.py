@@ -15,7 +15,7 @@ PHASES = 8  # of the first impact, where nothing is known
 
 def with_rests(solution: Solution) -> Solution | None:
     """The first real orbit that is found with rests near the times of `solution`, which passes a stop."""
-    t, P = solution.times, solution.equations.P
+    t, P = solution.times, solution.P
     flights = np.diff(np.append(t, t[0] + P))
     for rests in _patterns(solution):
         for share in SHARES:
@@ -30,11 +30,11 @@ def with_rests(solution: Solution) -> Solution | None:
 
 def evenly(start: Solution):
     """Guesses with impacts at equal distances, for an orbit of this kind without times."""
-    K, P, q = len(start.sides), start.equations.P, start.family.linear
+    K, P, q = len(start.sides), start.P, start.family.linear
     for first in np.arange(PHASES) / PHASES:
         times = (first + np.arange(K) / K) * P
         jumps = -np.array(start.sides) * q.omega * np.abs(q.stop(start.sides))
-        u = np.concatenate([times, jumps, np.zeros(int(start.equations.free))])
+        u = np.concatenate([times, jumps, np.zeros(int(start.is_free))])
         yield Solution(start.family, start.sigma, start.halves, start.sides, u)
 
 

@@ -7,10 +7,11 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic import long_orbits
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
-from vibro_sweep.analysis.periodic.impulse_equations import Equations
+from vibro_sweep.analysis.periodic.impulse_equations import Equations, contacts_of, flow, fly, multipliers_of, swing_of
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
 from vibro_sweep.analysis.periodic.resting import RestEquations
-from vibro_sweep.model.linear import Family, Linear
+from vibro_sweep.engine.impulses.green import has_free_gap
+from vibro_sweep.model.linear import Family, Linear, forcing_period
 
 # Relative difference below which two halves (periods) of an orbit are the same. An orbit that is born at a pitchfork or
 # flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not tell the two orbits apart.
@@ -42,6 +43,15 @@ class Solution:
         return len(self.sides)
 
     @property
+    def P(self) -> float:
+        return forcing_period(self.family.linear) / 2 * self.halves
+
+    @property
+    def is_free(self) -> bool:
+        """Whether the contact sees a free mode, which no rest holds."""
+        return self.sigma == 1 and not self.rests and has_free_gap(self.family.linear)
+
+    @property
     def size(self) -> int:
         """Number of unknowns."""
         return len(self.u)
@@ -66,15 +76,20 @@ class Solution:
 
     @cached_property
     def motion(self) -> np.ndarray:
-        """(K, 3) gap velocity, acceleration and jerk before each impact."""
-        e = self.equations
-        if not self.rests and long_orbits.is_sparse(e, self.sides):
-            return long_orbits.residual(e, self.sides, self.u)[2]
-        return e.residual(self.sides, self.u)[2]
+        """(K, 3) gap velocity, acceleration and jerk before each impact; the velocity as the jump says."""
+        if self.rests:
+            return self.equations.residual(self.sides, self.u)[2]
+        q = self.family.linear
+        B = flow(q).B
+        N, states = len(q.along), self.states[: self.K]
+        rates, v = states @ B.T, -self.jumps / (1 + q.restitution(self.sides))
+        return np.column_stack([np.where(v != 0, v, states[:, N]), rates[:, N], rates @ B[N]])
 
     @cached_property
     def _flights(self):
-        return self.equations.fly(self.sides, self.u)
+        if self.rests:
+            return self.equations.fly(self.sides, self.u)
+        return fly(self.family.linear, self.sigma, self.halves, self.sides, self.u)
 
     @property
     def states(self) -> np.ndarray:
@@ -94,7 +109,10 @@ class Solution:
     @cached_property
     def multipliers(self) -> np.ndarray:
         """Of the map over P, with the mirror for sigma = -1."""
-        return self.equations.multipliers(self.sides, self.u, self.motion)
+        if self.rests:
+            return self.equations.multipliers(self.sides, self.u, self.motion)
+        q = self.family.linear
+        return multipliers_of(flow(q), self.sigma, self.P, contacts_of(q, None, self.sides), self.u, self.motion)
 
     @property
     def pushes(self) -> np.ndarray:
@@ -118,9 +136,9 @@ class Solution:
     @cached_property
     def size_of_gap(self) -> float:
         """A scale of the gap: of the stops that are hit, the steady motion, and what impulses do in 1/omega."""
-        q, steady = self.family.linear, self.equations.steady
-        moved = np.abs(self.jumps).max(initial=0.0) / q.omega
-        return max(np.abs(self.states[:, 0]).max(), float(np.hypot(steady.real, steady.imag)), moved)
+        q = self.family.linear
+        moved = float(np.abs(self.jumps).max(initial=0.0)) / q.omega
+        return max(float(np.abs(self.states[:, 0]).max()), swing_of(q), moved)
 
     @cached_property
     def units(self) -> np.ndarray:
@@ -138,23 +156,22 @@ class Solution:
         if self.rests:
             ends, change = self.equations.newton(self.sides, self.u[None])
         else:
-            e = EventEquations(self.family.linear, self.sigma, self.halves, self.sides)
-            ends, change = e.newton(self.u[None, : 2 * self.K])
+            ends, change = EventEquations.of(self).newton(self.u[None, : 2 * self.K])
         if not np.isfinite(change[0]):
             return None
         found = replace(self, u=ends[0], change=float(change[0]))
-        return found if self.rests or not e.free else found.with_mean()
+        return found.with_mean() if found.is_free else found
 
     def whole(self) -> "Solution":
         """The same orbit over its whole period, sigma = +1."""
         if self.sigma == 1:
             return self
-        t, D, P = self.times, self.jumps, self.equations.P
+        t, D, P = self.times, self.jumps, self.P
         u = np.concatenate([t, t + P, D, -D, self.ends, self.ends + P])
         sides = (*self.sides, *(-side for side in self.sides))
         rests = (*self.rests, *(k + self.K for k in self.rests))
         whole = Solution(self.family, 1, 2 * self.halves, sides, u, self.change, rests)
-        return whole.with_mean() if whole.equations.free else whole
+        return whole.with_mean() if whole.is_free else whole
 
     def with_mean(self) -> "Solution":
         """With the mean gap, which a free mode leaves open, as last unknown: what the gaps at impacts lack.
@@ -172,7 +189,7 @@ class Solution:
 
         exact : corrected by Newton's method, which fails at a fold; otherwise the mean of the parts
         """
-        K, P, rests = self.K // count, self.equations.P / count, self.rests[: len(self.rests) // count]
+        K, P, rests = self.K // count, self.P / count, self.rests[: len(self.rests) // count]
         if self.rests != tuple(k + K * i for i in range(count) for k in rests):
             return None
         t, D = self.times.reshape(count, K), self.jumps.reshape(count, K)
@@ -183,7 +200,7 @@ class Solution:
             return None
         u = np.concatenate([shifted.mean(0), aligned.mean(0), self.ends[: len(rests)]])
         found = Solution(self.family, sigma, self.halves // count, tuple(self.sides[:K]), u, 0.0, rests)
-        if found.equations.free:
+        if found.is_free:
             found = Solution(self.family, sigma, found.halves, found.sides, np.append(u, self.u[-1]))
         if not exact:
             return found

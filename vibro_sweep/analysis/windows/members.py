@@ -4,7 +4,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.flat import Flat, section_states, solution_of
 from vibro_sweep.analysis.periodic.event_equations import EventEquations, contact_of
-from vibro_sweep.analysis.periodic.impulse_equations import moves_stops_only
+from vibro_sweep.analysis.periodic.impulse_equations import moves_stops_only, sections_of
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import ALIKE, Solution
 from vibro_sweep.analysis.windows.job import is_near
@@ -73,15 +73,14 @@ def _sections(flat: Flat, system, parameter: str, values: np.ndarray) -> list[np
     there = [family.replace(**{parameter: float(value)}) for value in values]
     first = solution_of(flat, there[0], *(part[0] for part in parts))
     q = first.family.linear
-    e = None if first.rests else EventEquations(q, first.sigma, first.halves, first.sides)
-    if not moves_stops_only(family.derivative(parameter)) or e is None or e.free:
+    if not moves_stops_only(family.derivative(parameter)) or first.rests or first.is_free:
         return [_section_states(solution_of(flat, one, *impacts)) for one, *impacts in zip(there, *parts, strict=True)]
     oscillators, sides = [one.stops(parameter, q)[0] for one in there], np.array(first.sides)
     gains = np.array([1 + one.restitution(sides) for one in oscillators]).reshape(len(values), first.K)
     guesses = np.hstack([parts[0][:, : first.K], -gains * parts[1][:, : first.K]])
-    unknowns, change = e.newton(guesses, np.array([contact_of(one) for one in oscillators]))
+    unknowns, change = EventEquations.of(first).newton(guesses, np.array([contact_of(one) for one in oscillators]))
     gaps = np.array([one.stop(sides[0]) if first.K else 0.0 for one in oscillators])
-    found = _masses(q, first.equations.sections(unknowns, gaps))
+    found = _masses(q, sections_of(q, first.sigma, first.halves, unknowns, gaps))
     found = [_own(q, first, states) for q, states in zip(oscillators, found, strict=True)]
     return [states if ok else states[:0] for states, ok in zip(found, np.isfinite(change), strict=True)]
 

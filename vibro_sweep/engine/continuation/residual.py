@@ -153,7 +153,9 @@ def eliminate(f, c, place, b, watched):
         panel[r, r], panel[r, X + r] = 1.0, -1.0
     for i in range(K):
         e, x, last = b.events[i], place.x[i], i + 1 == K
-        law = WATCHED if watched and i == c.index else END if c.kind == STICK and i == 0 else IMPACT
+        law = END if c.kind == STICK and i == 0 else IMPACT
+        if c.sides[i] == 0.0 or (watched and i == c.index):
+            law = WATCHED
         for r in range(n, 2 * n + 2):
             for j in range(width):
                 panel[r, j] = 0.0

@@ -103,12 +103,14 @@ def salt(f, gain, v, a, split, Y, order, T, product, columns):
             order[i] = i
         turn(Y, 0, N, abs(s), -math.copysign(c, beta))  # U
         shear = 0.0
+    R = gain - 1.0  # as differences of g and (1 + R) g rows would lose the digits of a small R
     for k in range(n):
         g, speed = Y[0, k], Y[N, k]
-        Y[0, k] -= gain * g  # A e_v has the gap component 1
         for i in range(1, n):
-            Y[i, k] -= gain * f.B[i, N] * g
-        Y[N, k] += shear * g - gain * speed
+            if i != N:
+                Y[i, k] -= gain * f.B[i, N] * g
+        Y[0, k] = -R * g  # A e_v has the gap component 1
+        Y[N, k] = (shear - gain * f.B[N, N]) * g - R * speed
 
 
 @jit

@@ -1,0 +1,105 @@
+"""The linearised equations of an orbit without rests: how it moves with a number, and what a multiplier 1 or -1 moves.
+
+In the units of event_equations.py. A change of the orbit is (xi, dphi, dD) at each event: of the state at a fixed
+phase, of the phase, and of the jump.
+"""
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.event_equations import EventEquations, contact_of
+from vibro_sweep.analysis.periodic.flight_slopes import motion_slopes, rate_slopes
+from vibro_sweep.engine.continuation import moving_flow, path, stepper
+from vibro_sweep.engine.continuation.problem import FLIP, FOLD
+from vibro_sweep.model.linear import Linear
+
+
+class Linearised:
+    """About a solution.
+
+    slope : how its oscillator changes with a number
+    watched : indices of impacts without speed, which are followed as turning points and take part in nothing
+    """
+
+    def __init__(self, solution, slope: Linear | None = None, watched=()):
+        e = self.equations = EventEquations.of(solution)
+        self.solution, self.slope, self.q = solution, slope, e.q
+        self.path = path.new_path(1, e.K, e.n, 1.0, 1.0, 1.0, np.zeros((2, 2)))
+        e.problem = e.problem._replace(parameters=int(slope is not None))
+        e.problem.sides[list(watched)] = 0.0
+        self._take_oscillator()
+        self.phases = self.q.omega * solution.times + self.q.tau
+        x, units = e.place.x, np.repeat([1.0, self.q.omega], e.n // 2)
+        steady = (e.planes[0]["Z"] * np.exp(1j * self.phases[:, None])).real
+        x[:, : e.n] = solution.states[: e.K, : e.n] / units - steady
+        x[:, e.n], x[:, e.n + 1] = self.phases, solution.jumps / self.q.omega
+
+    def _take_oscillator(self) -> None:
+        """The numbers of the kernels, and their derivatives as polynomials of degree 1 of the number's change."""
+        r, n, omega = self.equations.planes[0], self.equations.n, self.q.omega
+        values = r["exact"]
+        values[: n * (n + 1)] = r["A"].ravel()
+        values[-moving_flow.NUMBERS :] = [*contact_of(self.q), 1.0]
+        r["fit"][0, 0], r["reach"] = values, 1.0
+        if self.slope is not None:
+            slope, units = self.slope, np.append(np.repeat([1.0, omega], n // 2), 1.0)
+            dA = rate_slopes(self.q, slope)[:n][:, [*range(n), n + 2]] * units / units[:n, None] / omega
+            r["parameters"], r["degree"], r["moves"][0] = 1, [1, 0], bool(np.any(dA))
+            r["fit"][1, 0, : n * (n + 1)] = dA.ravel()
+            r["fit"][1, 0, -moving_flow.NUMBERS :] = [
+                *(slope.low, slope.high, slope.R_low, slope.R_high),
+                slope.omega / omega,
+            ]
+            r["Z_slopes"][0] = motion_slopes(self.q, slope) / units[:n]
+        self._do(stepper.MOVE)
+
+    def _do(self, task: int) -> bool:
+        e = self.equations
+        row = np.zeros(2 * e.K + 3)
+        return bool(stepper.at(task, e.planes, e.problem, self.path, e.place, row, e.bench))
+
+    def _assembled(self):
+        if not self._do(stepper.ASSEMBLE):
+            raise np.linalg.LinAlgError("the equations are singular")
+        return self.equations.bench.work[0]
+
+    def tangent(self) -> np.ndarray:
+        """(K, n + 2) change of the orbit with the number. LinAlgError at a fold.
+
+        Without impacts a free mode may stand anywhere: it stays.
+        """
+        e, n = self.equations, self.equations.n
+        work = self._assembled()
+        G, right = work["ends"][:n, :n], -work["ends"][:n, n]
+        alone = self.solution.is_free and not np.any(e.problem.sides)
+        work["null"][:n] = np.linalg.lstsq(G, right)[0] if alone else np.linalg.solve(G, right)
+        work["null"][n:] = 0.0
+        work["null"][n] = 1.0
+        self._do(stepper.TAKE_APART)
+        return e.bench.events["changes"][:, 1].copy()
+
+    def slopes(self) -> np.ndarray:
+        """(2K,) du/dp."""
+        moved, n, q = self.tangent(), self.equations.n, self.q
+        late = self.slope.omega * self.solution.times + self.slope.tau
+        return np.concatenate([(moved[:, n] - late) / q.omega, moved[:, n + 1] * q.omega])
+
+    def distance_slope(self, index: int) -> float:
+        """Of a watched turning point: how fast its distance from its stop grows with the number."""
+        moved, side = self.tangent()[index], self.solution.sides[index]
+        steady = (self.equations.planes[0]["Z_slopes"][0, 0] * np.exp(1j * self.phases[index])).real
+        return float(side * (self.slope.stop([side])[0] - moved[0] - steady))
+
+    def critical_direction(self, mu: int) -> np.ndarray:
+        """(2K,) what a multiplier mu = 1 or -1 moves: of the times and jumps."""
+        e, n = self.equations, self.equations.n
+        e.problem = e.problem._replace(kind=FOLD if mu == 1 else FLIP)
+        for _ in range(2):  # first across any direction, which may lie badly, then across the one that is found
+            self._assembled()
+            for here, found in ((e.place.v, e.bench.events["v"]), (e.place.w, e.place.left)):
+                here[:] = found / np.linalg.norm(found)
+        return np.concatenate([e.place.v[:, n].real / self.q.omega, e.place.v[:, n + 1].real * self.q.omega])
+
+    def closure(self, mu: int) -> np.ndarray:
+        """(n, n) G(mu), which is singular where mu is a multiplier."""
+        n, last = self.equations.n, self._assembled()["last"]
+        return self.solution.sigma * mu * last[:, :n] + last[:, 2 * n + 2 : 3 * n + 2]
