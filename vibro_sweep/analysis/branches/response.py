@@ -8,6 +8,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.locating import zero_between
 from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.periodic.steady_gap import steady_gap, steady_gap_slopes
 from vibro_sweep.model.linear import dynamic_stiffness
 
 SHARE = 0.25  # by which Z may change in a step, relative to itself
@@ -17,7 +18,7 @@ SHORTEST = 1e-7  # step: an undamped mode that is not driven in its resonance do
 def longest_step(point: Point) -> float:
     """In which Z changes by `SHARE`, in the units of a walk."""
     walk = point.walk
-    q = point.equations.q
+    q = point.solution.family.linear
     slope = walk.family.replace(**{walk.name: point.p}).derivative(walk.name, q)
     turned = slope.omega * (1j * q.C - 2 * q.omega * q.M)
     change = slope.K - q.omega**2 * slope.M + 1j * q.omega * slope.C + turned
@@ -31,7 +32,7 @@ def longest_step(point: Point) -> float:
 
 def touching(walk: Walk, a: Point, b: Point) -> Point | None:
     """The point between a and b, which stay inside, at which the motion is farthest beyond a stop."""
-    if a.equations.free or min(a.solution.margin, b.solution.margin) <= 0:
+    if a.solution.is_free or min(a.solution.margin, b.solution.margin) <= 0:
         return None
     forwards = a.tangent[-1]
     for side in (1, -1):
@@ -44,8 +45,9 @@ def touching(walk: Walk, a: Point, b: Point) -> Point | None:
 
 def _distance(point: Point, side: int) -> tuple[float, float]:
     """Of the steady motion from its stop, and the derivative by the parameter."""
-    e, steady = point.equations, point.equations.steady
-    size = float(np.hypot(steady.real, steady.imag))
-    growth = (steady.real * steady.d_real + steady.imag * steady.d_imag) / size if size > 0 else 0.0
-    distance = side * (float(e.q.stop(side)) - steady.mean) - size
-    return distance, side * (float(e.slope.stop(side)) - steady.d_mean) - growth
+    family, walk = point.solution.family, point.walk
+    q, slope = family.linear, family.derivative(walk.name)
+    now, moved = steady_gap(q), steady_gap_slopes(q, slope)
+    size = abs(now.swing)
+    growth = (now.swing.conjugate() * moved.swing).real / size if size > 0 else 0.0
+    return side * (float(q.stop(side)) - now.mean) - size, side * (float(slope.stop(side)) - moved.mean) - growth

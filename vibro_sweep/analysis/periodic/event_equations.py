@@ -7,7 +7,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.impulse_equations import TABLES, closing, flow, steady
+from vibro_sweep.analysis.periodic.impulse_equations import TABLES, closing, flow
+from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
 from vibro_sweep.engine.continuation import guesses, moving_flow
 from vibro_sweep.engine.continuation.problem import ORBIT, Problem
 from vibro_sweep.engine.continuation.workspace import new_bench, new_place
@@ -26,7 +27,7 @@ class EventEquations:
 
     def __init__(self, q: Linear, sigma: int, halves: int, sides):
         self.q, self.K, self.n = q, len(sides), 2 * len(q.along)
-        planes, self.closing, self.momentum = _tables(Keyed(q, TABLES), sigma, halves)
+        planes, self.closing = _tables(Keyed(q, TABLES), sigma, halves)
         self.planes = planes.copy()  # kernels write the contact's numbers into it
         self.problem = Problem(ORBIT, 0, np.array(sides, float), float(sigma), 0, np.ones(2), False, False)
         self.place, self.bench = new_place(self.K, self.n), new_bench(self.K, self.n)
@@ -63,13 +64,13 @@ def contact_of(q: Linear) -> list[float]:
 
 
 @lru_cache(maxsize=64)
-def _tables(key: Keyed, sigma: int, halves: int) -> tuple[np.ndarray, np.ndarray, float]:
-    """(1,) `plane_of` of an oscillator, without its contact; `closing` in its units; what the constant force adds to
-    the gap velocity of a free mode that the contact sees, over P."""
+def _tables(key: Keyed, sigma: int, halves: int) -> tuple[np.ndarray, np.ndarray]:
+    """(1,) `plane_of` of an oscillator, without its contact; `closing` in its units."""
     q = key.q
     if cells_needed(q) * halves > MOST_CELLS:
         raise TooStiffError(f"{halves} half periods need more than {MOST_CELLS} cells")
-    f, momentum = flow(q), steady(q, sigma, halves, None).momentum
+    steady_gap(q), push_of_free_mode(q)  # where they do not exist there is no such orbit
+    f = flow(q)
     m = len(f.B)
     n = m - 3
     units = np.repeat([1.0, q.omega], n // 2)
@@ -87,4 +88,4 @@ def _tables(key: Keyed, sigma: int, halves: int) -> tuple[np.ndarray, np.ndarray
     if sigma == 1:
         r["held"] = unseen_modes(q) / np.outer(units, units)
         r["is_held"] = bool(np.any(r["held"]))
-    return result, closing(q, sigma, halves) * np.append(units, 1.0) / units[:, None], momentum
+    return result, closing(q, sigma, halves) * np.append(units, 1.0) / units[:, None]

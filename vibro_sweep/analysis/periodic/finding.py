@@ -9,11 +9,12 @@ from itertools import pairwise
 import numpy as np
 
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
-from vibro_sweep.analysis.periodic.impulse_equations import flow, swing_of
+from vibro_sweep.analysis.periodic.impulse_equations import flow
 from vibro_sweep.analysis.periodic.itinerary import SIDES, is_mirrored, repetitions, word
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit, leans, orbit_of
 from vibro_sweep.analysis.periodic.seeds_of_rests import evenly, with_rests
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
 from vibro_sweep.analysis.single.orbit import simulate
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.green import ResonanceError, TooStiffError
@@ -179,7 +180,7 @@ def _passes_a_stop(s: Solution) -> bool:
     start[0, len(q.along)] += s.jumps[k]
     moments, out = begin + lengths[k] / 2 + T * np.arange(MOMENTS) / MOMENTS, np.empty((MOMENTS, start.shape[1]))
     flights.sample_flights(f, start, begin, np.zeros(MOMENTS, int), moments, out, flights.new_room(start.shape[1]))
-    size = swing_of(q) + np.abs(q.stop(s.sides)).max() + np.abs(s.jumps).max() / q.omega
+    size = abs(steady_gap(q).swing) + np.abs(q.stop(s.sides)).max() + np.abs(s.jumps).max() / q.omega
     return bool(max(out[:, 0].max() - q.high, q.low - out[:, 0].min()) > 1e-9 * size)
 
 
@@ -187,7 +188,10 @@ def _seeded(start: Solution):
     """Solutions from fixed seeds, different ones, those whose impulses push first."""
     e, K, q = EventEquations.of(start), start.K, start.family.linear
     rng, T, sides = np.random.default_rng(0), forcing_period(q), np.array(start.sides)
-    size = max(q.omega * swing_of(q), abs(e.momentum) / K, *(q.omega * abs(x) for x in q.stop(start.sides)))
+    push = push_of_free_mode(q) if start.is_free else 0.0
+    size = max(
+        q.omega * abs(steady_gap(q).swing), abs(push) * start.P / K, *(q.omega * abs(x) for x in q.stop(start.sides))
+    )
     t = np.sort(rng.uniform(0, start.P, (SEEDS, K)), axis=1)
     t += rng.uniform(0, start.P, (SEEDS, 1)) - t[:, :1]
     guesses = np.hstack([t, -sides * size * 10 ** rng.uniform(-2, 0.5, (SEEDS, K))])

@@ -200,17 +200,6 @@ def steady(q: Linear, sigma: int, halves: int, slope: Linear | None) -> equation
     return equations.Steady(*map(float, numbers), free, float(momentum), float(d_momentum))
 
 
-def swing_of(q: Linear) -> float:
-    """Amplitude of the gap in the steady motion. Raises ResonanceError."""
-    try:
-        swing = float(abs(q.along @ amplitudes(q)))
-    except np.linalg.LinAlgError:
-        swing = np.inf
-    if not swing < np.inf:
-        raise ResonanceError("the force drives an undamped mode at its own frequency")
-    return swing
-
-
 def _static(q: Linear, force: np.ndarray) -> np.ndarray:
     """Displacement under a constant force, without free modes."""
     return np.linalg.lstsq(q.K, force)[0] if np.any(force) else np.zeros(len(force))

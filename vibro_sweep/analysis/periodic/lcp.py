@@ -13,13 +13,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.impulse_equations import Equations
+from vibro_sweep.analysis.periodic.event_equations import EventEquations
+from vibro_sweep.analysis.periodic.impulse_equations import closing, flow
 from vibro_sweep.analysis.periodic.itinerary import canonical_start
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.analysis.periodic.steady_gap import steady_gap
+from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.green import has_free_gap
 from vibro_sweep.model.arguments import checked_count
-from vibro_sweep.model.linear import family_of, forcing_period
+from vibro_sweep.model.linear import Linear, family_of, forcing_period
 from vibro_sweep.model.refusals import not_allowed
 
 BESIDE = (1e-4, 1e-5, 1e-6, 1e-7)  # distances from b*, over the amplitude of the gap, at which an orbit is confirmed
@@ -77,7 +80,7 @@ def born_at_grazing(system, periods: int = 6) -> list[Born]:
         raise ValueError(not_allowed("system", system, "one with a clearance b"))
     if has_free_gap(family.linear):
         raise ValueError(not_allowed("system", system, "one without a free mode, which has no steady motion"))
-    graze = _graze(family, Equations(family.linear, 1, 2), 1)
+    graze = _graze(family, 1)
     if graze.amplitude == 0:
         raise ValueError(not_allowed("system", system, "one whose gap a force moves, so that it grazes"))
     most = MOST_PLACES // graze.per_period
@@ -89,15 +92,16 @@ def born_at_grazing(system, periods: int = 6) -> list[Born]:
     return result
 
 
-def _graze(family, e: Equations, n: int) -> _Graze:
-    q, s, b = e.q, e.steady, family.numbers["b"]
-    amplitude = float(np.hypot(s.real, s.imag))
+def _graze(family, n: int) -> _Graze:
+    q, b = family.linear, family.numbers["b"]
+    EventEquations(q, 1, 2 * n, ())  # or there are no such orbits
+    s, T = steady_gap(q), forcing_period(q)
+    amplitude = abs(s.swing)
     right = b + s.mean + amplitude - q.high  # -inf without that stop
     left = b + q.low - s.mean + amplitude
     double = abs(right - left) <= 1e-12 * amplitude
-    first = -np.arctan2(s.imag, s.real) / q.omega
+    first = -(np.angle(s.swing) + q.tau) / q.omega
     side = 1 if right >= left or double else -1
-    T = forcing_period(q)
     count = 2 * n if double else n
     step = T / 2 if double else T
     times = first + (0 if side > 0 else T / 2) + step * np.arange(count)
@@ -106,11 +110,9 @@ def _graze(family, e: Equations, n: int) -> _Graze:
 
 
 def _of_period(system, family, n: int) -> list[Born]:
-    e = Equations(family.linear, 1, 2 * n)
-    graze = _graze(family, e, n)
+    graze = _graze(family, n)
     count = len(graze.times)
-    j = np.arange(count)
-    gamma = np.array([_gamma(e, i * e.P / count) for i in range(count)])
+    j, gamma = np.arange(count), _gamma(family.linear, n, count)
     M = graze.sides[:, None] * graze.sides * gamma[(j[:, None] - j) % count]
     result = [
         _confirmed(system, family, graze, n, np.flatnonzero(hit), d, side)
@@ -119,10 +121,14 @@ def _of_period(system, family, n: int) -> list[Born]:
     return sorted(result, key=lambda item: (len(item.speed_per_distance), item.itinerary, item.born))
 
 
-def _gamma(e: Equations, s: float) -> float:
-    table, width = e.train.coefficients, e.train.width
-    k = min(int(s / width), len(table) - 1)
-    return float(np.polynomial.polynomial.polyval(s - k * width, table[k]))
+def _gamma(q: Linear, n: int, count: int) -> np.ndarray:
+    """(count,) the gap's response at 0, P/count, 2 P/count, ... to a unit impulse repeated every P = n T."""
+    states, f, P = 2 * len(q.along), flow(q), n * forcing_period(q)
+    E = np.empty((count, states, states))
+    flights.flight_matrices(f, P / count * np.arange(1, count + 1), E, flights.new_room(states + 3))
+    before = closing(q, 1, 2 * n)[:, :states] @ E[-1, :, states // 2]
+    after = before + np.eye(states)[states // 2]
+    return np.append(before[0], E[:-1, 0] @ after)
 
 
 def representatives(count: int, per_period: int, mirrors: bool) -> np.ndarray:

@@ -7,9 +7,10 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic import long_orbits
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
-from vibro_sweep.analysis.periodic.impulse_equations import Equations, contacts_of, flow, fly, multipliers_of, swing_of
+from vibro_sweep.analysis.periodic.impulse_equations import Equations, contacts_of, flow, fly, multipliers_of
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
 from vibro_sweep.analysis.periodic.resting import RestEquations
+from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses.green import has_free_gap
 from vibro_sweep.model.linear import Family, Linear, forcing_period
 
@@ -138,7 +139,7 @@ class Solution:
         """A scale of the gap: of the stops that are hit, the steady motion, and what impulses do in 1/omega."""
         q = self.family.linear
         moved = float(np.abs(self.jumps).max(initial=0.0)) / q.omega
-        return max(float(np.abs(self.states[:, 0]).max()), swing_of(q), moved)
+        return max(float(np.abs(self.states[:, 0]).max()), abs(steady_gap(q).swing), moved)
 
     @cached_property
     def units(self) -> np.ndarray:
