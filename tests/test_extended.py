@@ -5,10 +5,9 @@ import pytest
 from mpmath import mp, mpf
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import precise
 from vibro_sweep.analysis.periodic import impulse_equations
 from vibro_sweep.engine.impulses import extended, flow, green
-from vibro_sweep.engine.impulses.tables import ORDER, exponential, power
+from vibro_sweep.engine.impulses.tables import exponential, power
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=3.0, tau=0.1)
 
@@ -37,7 +36,7 @@ def exact(x):
     return np.vectorize(lambda a, b: mpf(float(a)) + mpf(float(b)), otypes=[object])(x.high, x.low)
 
 
-def test_sums_products_and_circular_functions():
+def test_sums_and_products():
     rng = np.random.default_rng(0)
     with mp.workdps(50):
         high = rng.normal(size=(2, 200)) * 10.0 ** rng.uniform(-8, 8, (2, 200))
@@ -47,12 +46,6 @@ def test_sums_products_and_circular_functions():
             assert max(abs(exact(found) / true - 1)) < mpf(2) ** -100
         for found, true in ((a + b, x + y), (a - b, x - y), (1.0 - b, 1 - y)):
             assert max(abs(exact(found) - true) / (abs(x) + abs(y) + 1)) < mpf(2) ** -102
-        angle = extended.Twofold(rng.uniform(-1e4, 1e4, 200))
-        cos, sin = angle.cosine_and_sine()
-        for found, function in ((cos, mp.cos), (sin, mp.sin)):
-            assert max(abs(exact(found) - [function(one) for one in exact(angle)])) < mpf(2) ** -84
-        whole = np.array([3.0, 3.0, 2.5])
-        assert extended.Twofold(whole, [1e-17, -1e-17, 0.0]).astype(int).tolist() == [3, 2, 2]
 
 
 def test_exponentials(narrow):
@@ -66,28 +59,18 @@ def test_exponentials(narrow):
 
 @pytest.mark.skipif(not extended.NATIVE, reason="longdouble is a float")
 def test_tables_are_the_same_but_for_rounding(narrow):
-    """Flights, Green functions, and the equations of an orbit with impacts that follow each other closely."""
+    """Flights and Green functions."""
     orbit = vs.periodic_orbit(SYSTEM, vs.simulate(SYSTEM, [0.1, 0.2, 0.1, -0.3], 400).section[-1])
     assert orbit.status == "ok" and orbit._solution.K > 0
     s = orbit._solution
 
     def all_of_it():
         q = s.family.linear
-        equations = impulse_equations.Equations(q, s.sigma, s.halves)
         free = flow.flow(q)
-        residual, pull = precise.precise(equations, s.sides, s.u)
         train = green.train(q, float(s.sigma), s.halves, s.family.derivative("omega"))
-        return [free.powers[:12], free.series, free.rows, train.coefficients, train.slopes], residual, pull
+        return [free.powers[:12], free.series, free.rows, train.coefficients, train.slopes]
 
-    tables, residual, pull = all_of_it()
+    tables = all_of_it()
     narrow()
-    others, other, pulls = all_of_it()
-    for table, same in zip(tables, others, strict=True):
+    for table, same in zip(tables, all_of_it(), strict=True):
         np.testing.assert_allclose(same, table, rtol=0, atol=4e-16 * np.abs(table).max())
-    # each product of flights and each term of a sum rounds to 2^-64; the numbers given back are floats
-    K, cells = s.K, len(tables[3])
-    steps, D = (cells + K + ORDER) * 2.0**-64, np.abs(s.jumps).sum()
-    terms = np.hypot(s.equations.steady.real, s.equations.steady.imag) * np.array([1.0, s.family.linear.omega**2])
-    slope = np.abs(tables[3][:, :3]).max(axis=0) * [1.0, 1.0, 2.0]
-    assert np.abs(residual - other).max() < steps * (terms[0] + D * slope[:2].max()) + 2.0**-53 * np.abs(residual).max()
-    assert abs(pull - pulls) < steps * (terms[1] + D * slope[2]) + 2.0**-52 * abs(pull)

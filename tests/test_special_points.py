@@ -2,17 +2,18 @@
 
 import pytest
 from mpmath import mp, mpf
+from reference.chatter import part_lost
 from support.branches import branch_of, exact
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.sticking import shrinking
 
 
 @pytest.mark.parametrize("R", [0.2, 0.8, 0.95])
 def test_chatter_at_its_onset_shrinks_by_its_own_factor(R):
-    """A mass that bounces under the acceleration s - s_inf: the factor of orbits.md makes its flights similar."""
-    phi = shrinking(R)
+    """A mass that bounces under the acceleration s - s_inf: the factor of orbits.md makes its flights similar, and is
+    that of `reference.chatter`, to which curves of onsets are held."""
+    phi = 1 - part_lost(R)
     # velocity after an impact at s = -1 (s_inf = 0) such that the flight lasts 1 - phi; then the next one is similar
     d = 1 - phi
     v = d / 2 - d**2 / 6  # v d + integral of the acceleration s twice = 0

@@ -57,6 +57,25 @@ def error_at(special) -> float:
     return abs(float(exact) - q.high) / max(q.high, math.hypot(steady.real, steady.imag))
 
 
+def test_stated_errors(symmetric_onset, one_mass_onset):
+    for special in (symmetric_onset, one_mass_onset):
+        _, q, _, _ = numbers_at(special)
+        steady = special._chatter.solution.equations.steady
+        true = error_at(special) * max(q.high, math.hypot(steady.real, steady.imag))
+        assert true < special.error < 2e-13
+
+
+def test_the_nearer_of_two_onsets():
+    """The orbit gains impacts at both ends of its branch; from either end Newton's method may find both onsets."""
+    system = vs.System(
+        mu_m=8.45913255205294, mu_k=2.4638554530011407, zeta=0.07377473049461114, f2=0.6073477420034428,
+        omega=0.36217888304179824, R=0.7279326390251835, b=0.17628650016260886, stops="left",
+    )  # fmt: skip
+    orbit = vs.periodic_orbit(system, state=vs.simulate(system, np.full(4, 1e-3), 400).section[-1])
+    special = vs.continue_orbit(orbit, "omega", (0.25, 0.5)).special
+    assert [one.type for one in special] == ["sticking", "graze", "graze", "sticking"]
+
+
 @pytest.mark.parametrize(
     ("names", "box"),
     [(("b", "omega"), ((0.01, 0.3), (0.4, 0.63))), (("b", "R"), ((0.03, 0.3), (0.3, 0.95)))],

@@ -76,6 +76,9 @@ def _speeds(points) -> np.ndarray:
 
 def _passed(names, sizes, stored: dict, curve) -> list[str]:
     v, now = np.array(stored["v"]), _speeds(curve.points)
+    if curve.type == "sticking":  # so many impacts of a chatter sequence, and its end, which has no speed
+        common = max(min(v.shape[1], now.shape[1]) - 1, 0)
+        v, now = (-np.sort(-np.abs(one), axis=1)[:, :common] for one in (v, now))
     if v.shape[1] != now.shape[1]:
         return [f"{v.shape[1]} impacts, now {now.shape[1]}"]
     size = max(np.abs(v).max(initial=0.0), LEAST_SPEED)

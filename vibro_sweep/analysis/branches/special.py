@@ -5,24 +5,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vibro_sweep.analysis.branches import branch_text
+from vibro_sweep.analysis.continuation.chatter import Chatter
 from vibro_sweep.analysis.periodic.impulse_equations import flow
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.engine.impulses import flights
-
-
-@dataclass(frozen=True, eq=False)
-class Chatter:
-    """The orbit at an onset of sticking: what infinitely many impacts leave out.
-
-    solution : impacts from the end of the chatter sequence, as one without impulse, to the last written out before the
-        same end, one period (sigma = -1: half a period, mirrored) later
-    state : (2N,) at that end, in contact coordinates
-    """
-
-    solution: Solution
-    state: np.ndarray
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -8,8 +8,8 @@ from vibro_sweep.analysis.continuation.oscillators import Oscillators, Units
 from vibro_sweep.analysis.continuation.start import Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.engine.continuation import path, stepper
-from vibro_sweep.engine.continuation.curve_tests import RESIDUAL
-from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, is_critical, unknowns
+from vibro_sweep.engine.continuation.curve_tests import MARGIN, RESIDUAL, TOUCHING
+from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, conditions, is_critical, unknowns
 from vibro_sweep.engine.continuation.workspace import THETA, Place, new_bench, new_place
 from vibro_sweep.model.linear import Family, forcing_period
 
@@ -25,11 +25,13 @@ class NoPlaneError(ValueError):
 
 
 class Tracer:
-    """A curve of one kind through `start`, in the parameters `names`, with distances in units of the box."""
+    """A branch in one parameter, a curve of one kind in two, or a single point, through `start`."""
 
-    def __init__(self, start: Start, names: tuple[str, str], box):
+    def __init__(self, start: Start, names: tuple[str, ...], box, unit=None):
+        """box : ends of each parameter; unit: of distances in each, by default the length of its side"""
         self.start, self.names = start, names
-        self.box = np.array(box, float)
+        self.box = np.array([*box, *[(-np.inf, np.inf)] * (2 - len(names))], float)
+        self.unit = np.append(np.ptp(box, axis=1) if unit is None else unit, [1.0] * (2 - len(names)))
         s = start.solution
         q = s.family.linear
         self.units = Units(float(s.size_of_gap), float(q.omega))
@@ -37,9 +39,8 @@ class Tracer:
         self.oscillators = Oscillators(s.family, names, s.halves, self.units)
         self.n = 2 * len(q.along)
         self._take_sides(s.sides)
-        middle, reach = self.box.mean(axis=1), np.ptp(self.box, axis=1) / 2
-        planes = self.oscillators.around(middle, reach)
-        self.planes = self._around([s.family.numbers[name] for name in names], reach) if planes is None else planes
+        planes = self.oscillators.around(self.box.mean(axis=1), self.unit / 2) if len(names) > 1 else None
+        self.planes = self._around([s.family.numbers[name] for name in names]) if planes is None else planes
 
     def _take_sides(self, which: tuple[int, ...]) -> None:
         """Of the impacts."""
@@ -52,8 +53,8 @@ class Tracer:
         repeats = whole and s.halves % 4 == 0 and struck[:half] == struck[half:]
         symmetric = q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
         mirrors = whole and symmetric and s.halves % 4 == 2 and struck[:half] == tuple(-side for side in struck[half:])
-        sides, unit = np.array(which, float), np.ptp(self.box, axis=1)
-        self.problem = Problem(kind, start.index, sides, float(s.sigma), len(self.names), unit, repeats, mirrors)
+        sides, count = np.array(which, float), len(self.names)
+        self.problem = Problem(kind, start.index, sides, float(s.sigma), count, self.unit, repeats, mirrors)
         self.bench = new_bench(K, self.n)
         self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
 
@@ -68,15 +69,15 @@ class Tracer:
         """(n,) of contact coordinates."""
         return np.repeat([self.units.length, self.units.speed], self.n // 2)
 
-    def _around(self, centre, reach) -> np.ndarray:
-        found = self.oscillators.around(centre, reach)
+    def _around(self, centre) -> np.ndarray:
+        found = self.oscillators.around(centre, self.unit / 2)
         if found is None:
             raise NoPlaneError(f"box: around {tuple(map(float, centre))} the oscillator is no smooth function of it")
         return found
 
     def recentre(self, place: Place) -> None:
         """Polynomials around this place."""
-        self.planes = self._around(place.p, np.ptp(self.box, axis=1) / 2)
+        self.planes = self._around(place.p)
 
     def do(self, task: int, place: Place, row: np.ndarray | None = None) -> float:
         """One task of `stepper.at`; what it leaves is in `bench`."""
@@ -142,7 +143,7 @@ class Tracer:
         """`start`, as it is; None where the oscillator has no forced motion."""
         s, place = self.start.solution, new_place(self.K, self.n)
         place.phases[:], place.jumps[:] = s.family.linear.omega * s.times + self.tau, s.jumps / self.units.speed
-        place.p[:2] = [s.family.numbers[name] for name in self.names]
+        place.p[: len(self.names)] = [s.family.numbers[name] for name in self.names]
         place.p[THETA] = self.start.theta
         if not self.go_to(place):
             return None
@@ -160,7 +161,8 @@ class Tracer:
         if is_critical(self.problem):
             self._take_null_vectors(place)
         if row is None:
-            row = self._first_direction(place)
+            is_single = conditions(self.problem) == unknowns(self.problem)
+            row = self.direction(place) if is_single else self._first_direction(place)
         return None if row is None else self.correct(place, row)
 
     def beside(self, place: Place) -> list[Place]:
@@ -248,7 +250,7 @@ class Tracer:
                 return None
             if change <= 1e-15 or (change < 1e-8 and change >= 0.3 * before):
                 place.tests[RESIDUAL] = change
-                length = np.linalg.norm(self.direction(place))
+                length = np.linalg.norm(self.direction(place)) or 1.0  # a single point has no tangent
                 place.tangent[:] /= length
                 place.tangent_p[:] /= length
                 return place if self.take(place) and self.do(stepper.EXAMINE, place) else None
@@ -271,6 +273,13 @@ class Tracer:
         moved = (b.p - a.p) / [*self.problem.unit, 1.0]
         moved[unknowns(self.problem) :] = 0.0
         return np.concatenate([b.phases - a.phases, b.jumps - a.jumps, moved])
+
+    def is_real(self, place: Place) -> bool:
+        """Whether all impulses but the grazing one push, and every flight stays inside."""
+        pushes = -self.problem.sides * place.jumps
+        if self.problem.kind >= GRAZE:
+            pushes = np.delete(pushes, self.problem.index)
+        return bool(np.all(pushes > 0) and place.tests[MARGIN] > -TOUCHING)
 
     def family(self, place: Place) -> Family:
         return self.oscillators.at(place.p)

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.continuation.chatter import written_out
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves import curve_text
-from vibro_sweep.analysis.curves.chatter import written_out
 from vibro_sweep.analysis.curves.curve_points import dataset
-from vibro_sweep.analysis.curves.events import is_real
 from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.curves.way import CurvePoint, Way
@@ -118,8 +117,8 @@ def bifurcation_curve(
         raise ValueError(f"special: this {special.type} cannot be followed; it may belong to several curves at once")
     if len(special.parameters) > 1 or special.type != start.type:  # perhaps of codimension two: begin beside it
         places = tracer.beside(first)
-        first = next((place for place in places if is_real(tracer, place)), (places or [first])[0])
-    if not (virtual or is_real(tracer, first)):
+        first = next((place for place in places if tracer.is_real(place)), (places or [first])[0])
+    if not (virtual or tracer.is_real(first)):
         raise ValueError(f"special: beside this {special.type} there is no motion")
     rates = first.tangent_p[:2]
     sign = -1 if rates[np.argmax(np.abs(rates) > LEVEL)] > 0 else 1  # down in the first parameter that changes

@@ -227,14 +227,6 @@ def is_sharp(tracer: Tracer, event: Event, place: Place) -> bool:
     return event.test != curve_tests.PAIR or not np.any(impulses < SLOW)
 
 
-def is_real(tracer: Tracer, place: Place) -> bool:
-    """Whether all impulses but the grazing one push, and every flight stays inside."""
-    pushes = -tracer.problem.sides * place.jumps
-    if tracer.problem.kind >= GRAZE:
-        pushes = np.delete(pushes, tracer.problem.index)
-    return bool(np.all(pushes > 0) and place.tests[curve_tests.MARGIN] > -curve_tests.TOUCHING)
-
-
 def event_near(tracer: Tracer, place: Place, length: float, types) -> Found | None:
     """The first event of these types on the curve on either side of `place`, a few times `length` away at most."""
     for factor in REACH:

@@ -6,9 +6,10 @@ from typing import overload
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.special import Chatter, SpecialPoint, bare, inserted
+from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.switching import switch as switch_branches
 from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.continuation.chatter import Chatter
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.born import born, box_around

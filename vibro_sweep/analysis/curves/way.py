@@ -7,11 +7,11 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied, copy
-from vibro_sweep.analysis.curves.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.curves.chord import root
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
-from vibro_sweep.analysis.curves.events import Event, beside, found_between, found_to_edge, is_real, without_echoes
+from vibro_sweep.analysis.curves.events import Event, beside, found_between, found_to_edge, without_echoes
 from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.continuation import curve_tests, stepper
@@ -136,7 +136,7 @@ class Way:
         A curve without virtual points ends where its orbit stops being real.
         """
         w = self.tracer
-        ends = not (self.virtual or is_real(w, b))
+        ends = not (self.virtual or w.is_real(b))
         found = without_echoes(w, (found_to_edge if ends else found_between)(w, a, b))
         for one in found:
             self._add(one.place)
@@ -154,8 +154,8 @@ class Way:
         """Whether this is a bifurcation of a motion, real there or at the edge of what is real; no neutral saddle."""
         w = self.tracer
         if event.test is None and not event.type.startswith("resonance"):
-            return is_real(w, a) or is_real(w, b)
-        if not is_real(w, place):
+            return w.is_real(a) or w.is_real(b)
+        if not w.is_real(place):
             return False
         if event.test == curve_tests.PAIR:
             solution = w.solution(place)
@@ -205,7 +205,7 @@ class Way:
         if end is None:
             return False
         last = just_before(w, a, b, end)
-        if last is not None and not (self.virtual or is_real(w, last) or found_to_edge(w, a, last)):
+        if last is not None and not (self.virtual or w.is_real(last) or found_to_edge(w, a, last)):
             last = None  # no edge but the end itself
         if last is None or self._pass(a, last):
             self._end(end)

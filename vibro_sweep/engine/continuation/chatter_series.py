@@ -54,12 +54,13 @@ class Tail(NamedTuple):
     sides: np.ndarray  # (3, W): right sides
     Q: np.ndarray  # (n, W + 2): the number, its derivatives, and that by s
     numbers: np.ndarray  # (2,): see chatter_sum.py
+    by_end: np.ndarray  # (n,): see chatter_tail.py
 
 
 def new_tail(n: int) -> Tail:
     W, L = n + 3, ORDERS
     shapes = (3, L + 3, n), (3, L + 1, n), L + 3, (L + 3, W), L + 2, (L + 2, W), (L, L + 3), (SLOPES, L + 3, W)
-    more = (L, L + 1), (SLOPES, L + 1, W), L, (SLOPES, W), W, (3, W), (n, W + 2), 2
+    more = (L, L + 1), (SLOPES, L + 1, W), L, (SLOPES, W), W, (3, W), (n, W + 2), 2, n
     return Tail(*map(np.zeros, [*shapes, *more]))
 
 

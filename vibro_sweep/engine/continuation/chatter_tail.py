@@ -41,7 +41,8 @@ def put_tail(f, c, place, b, panel):
     """Add Q to the rows of the last flight.
 
     Q depends on y_1, phi_1, the length and the parameters. dphi_1 is eliminated by then, so that it is taken from the
-    row of acceleration = 0: alpha xi_1 + beta dphi_1 + gamma dp + a = 0.
+    row of acceleration = 0: alpha xi_1 + beta dphi_1 + gamma dp + a = 0. `tail.by_end`: how much of that row the others
+    have taken.
     """
     n, first, tail, omega = f.A.shape[0], b.events[0], b.tail, f.numbers[OMEGA]
     X, p, F, V = 2 * n + 2, 3 * n + 2, 3 * n + 2 + f.parameters, n + 4  # V: of Q by the length
@@ -70,5 +71,6 @@ def put_tail(f, c, place, b, panel):
             panel[i, X + k] -= c.sigma * Q[r, 1 + k]
         for j in range(f.parameters):
             panel[i, p + j] -= c.sigma * (Q[r, n + 2 + j] - Q[r, V] * length / omega * f.number_slopes[j, OMEGA])
+        tail.by_end[r] = by_phase / beta
         for j in range(X, F + 1):
-            panel[i, j] -= by_phase / beta * line[j]
+            panel[i, j] -= tail.by_end[r] * line[j]

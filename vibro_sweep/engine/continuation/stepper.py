@@ -58,7 +58,7 @@ def normalise(c, place):
     size = 0.0
     for k in range(measured(c, place)):
         size += rate(c, place, k) ** 2
-    scale = 1.0 / math.sqrt(size)
+    scale = 1.0 / math.sqrt(size) if size > 0.0 else 0.0  # a single point has no tangent
     for i in range(len(place.x)):
         for r in range(place.x.shape[1]):
             place.tangent[i, r] *= scale

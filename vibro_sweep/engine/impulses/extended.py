@@ -2,14 +2,13 @@
 
 On Windows and on ARM longdouble is a float. There `Twofold` takes its place, with the error-free sums and products of
 Knuth and Dekker (T. J. Dekker, Numer. Math. 18, 1971): 106 bits, in ten times the time. Arrays of either kind are made
-here; sums, products, slices, `@`, np.concatenate, np.stack and np.where then do the same with both.
+here; sums, products, slices, `@`, np.concatenate and np.stack then do the same with both.
 """
 
 import numpy as np
 
 NATIVE = np.finfo(np.longdouble).nmant >= 63
 SPLIT = 2.0**27 + 1
-HALF_TURN = 1.5707963267948966, 6.123233995736766e-17, -1.4973849048591833e-33  # pi/2 in three floats
 
 
 def extended(values):
@@ -25,11 +24,6 @@ def zeros(shape):
 
 def identity(n: int):
     return extended(np.eye(n))
-
-
-def cosine_and_sine(x):
-    """cos and sin of an array of either kind."""
-    return x.cosine_and_sine() if isinstance(x, Twofold) else (np.cos(x), np.sin(x))
 
 
 def _sum(a, b):
@@ -60,9 +54,6 @@ class Twofold:
         return cls(*_sum(high, low))
 
     def __array_function__(self, function, kinds, arguments, options):
-        if function is np.where:
-            chosen, a, b = arguments[0], *map(extended, arguments[1:])
-            return Twofold(np.where(chosen, a.high, b.high), np.where(chosen, a.low, b.low))
         if function in (np.concatenate, np.stack):
             parts = [Twofold(part) if not isinstance(part, Twofold) else part for part in arguments[0]]
             both = ([part.high for part in parts], [part.low for part in parts])
@@ -86,10 +77,6 @@ class Twofold:
         return float(self.high + self.low)
 
     def astype(self, kind):
-        """Rounded to floats; of ints downwards, where they are not negative."""
-        if kind is int:
-            floor = np.floor(self.high)
-            return (floor - ((self.high == floor) & (self.low < 0))).astype(int)
         return (self.high + self.low).astype(kind)
 
     def __neg__(self):
@@ -140,19 +127,3 @@ class Twofold:
         return Twofold(other) @ self
 
     __radd__, __rmul__ = __add__, __mul__
-
-    def cosine_and_sine(self):
-        """By their series at what whole quarters of a turn leave."""
-        turns = np.round(self.high / HALF_TURN[0])
-        x = self
-        for part in HALF_TURN:
-            x = x - Twofold(turns) * part
-        square, cos, sin = x * x, Twofold(np.ones(self.shape)), x
-        term, other = cos, sin
-        for n in range(1, 15):
-            term, other = -(term * square) / ((2 * n - 1) * 2.0 * n), -(other * square) / (2 * n * (2.0 * n + 1))
-            cos, sin = cos + term, sin + other
-        quarter = turns.astype(int) % 4
-        turned = np.where(quarter % 2 == 1, sin, cos), np.where(quarter % 2 == 1, cos, sin)
-        signs = np.where((quarter == 1) | (quarter == 2), -1.0, 1.0), np.where(quarter > 1, -1.0, 1.0)
-        return turned[0] * signs[0], turned[1] * signs[1]

@@ -1,11 +1,12 @@
-"""How many impacts of a chatter sequence are written out along a curve of sticking onsets.
+"""How many impacts of a chatter sequence are written out at an onset of sticking.
 
 The last of them must lie within the reach of the series, and not far below it: slow impacts add nothing but rounding.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from vibro_sweep.analysis.branches.special import Chatter, bare
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.chatter_sum import NEXT, REACH
@@ -14,6 +15,19 @@ from vibro_sweep.engine.continuation.workspace import Place, new_place
 
 NEAR_END = 0.45  # of the reach: all earlier impacts are written out
 MOST_IMPACTS = 120
+
+
+@dataclass(frozen=True, eq=False)
+class Chatter:
+    """The orbit at an onset of sticking: what infinitely many impacts leave out.
+
+    solution : impacts from the end of the chatter sequence, as one without impulse, to the last written out before the
+        same end, one period (sigma = -1: half a period, mirrored) later
+    state : (2N,) at that end, in contact coordinates
+    """
+
+    solution: Solution
+    state: np.ndarray
 
 
 def written_out(tracer: Tracer, place: Place) -> tuple[Tracer, Place] | None:
@@ -68,7 +82,3 @@ def chatter_at(tracer: Tracer, place: Place, touches: bool) -> Chatter:
     u = np.insert(solution.u, [k, solution.K + k], [time, 0.0])
     sides = (*solution.sides[:k], side, *solution.sides[k:])
     return Chatter(Solution(solution.family, solution.sigma, solution.halves, sides, u), state)
-
-
-def without_impact(chatter: Chatter, k: int) -> Chatter:
-    return Chatter(bare(chatter.solution, k), chatter.state)

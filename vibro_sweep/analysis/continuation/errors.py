@@ -1,0 +1,39 @@
+"""By how much rounding moves the parameters of a point: what the inverse of the Jacobian makes of that of each row."""
+
+import numpy as np
+
+from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.engine.continuation import stepper
+from vibro_sweep.engine.continuation.problem import STICK, conditions, unknowns
+from vibro_sweep.engine.continuation.workspace import Place
+
+DIGITS = 8 * np.finfo(float).eps  # of the parameters themselves
+ROWS = 2 * np.finfo(float).eps  # of the size of each row
+
+
+def rounding_error(tracer: Tracer, place: Place, row: np.ndarray) -> float:
+    """Of the parameters of a point on the plane across `row`."""
+    return float(DIGITS * np.abs(place.p[:2]).max() + ROWS * sensitivity(tracer, place, row))
+
+
+def sensitivity(tracer: Tracer, place: Place, row: np.ndarray) -> float:
+    """By how much a parameter moves, on the plane across `row`, where each equation is off by its own size."""
+    if not tracer.assemble(place, row):
+        return 0.0
+    c, n, work, events = tracer.problem, tracer.n, tracer.bench.work[0], tracer.bench.events
+    free, found = unknowns(c), []
+    try:
+        inverse = np.linalg.inv(work["ends"][: n + free, : n + free])
+    except np.linalg.LinAlgError:
+        return 0.0
+    for j in range(c.parameters):
+        by_last, by_rows = inverse[n + j, :n], inverse[n + j, n:]
+        work["left"][:] = by_last
+        events["sides"][:] = -np.einsum("ikr,k->ir", events["factors"][:, :free], by_rows)
+        tracer.do(stepper.TAKE_UP, place)
+        if c.kind == STICK:
+            place.left[0, 0] -= place.left[-2, 2:] @ tracer.bench.tail.by_end
+        rows = np.abs(place.left)
+        total = rows[:-1, :2].sum() + rows[-2, 2:].sum() + np.abs(by_rows[: conditions(c)]).sum()
+        found.append(total * c.unit[j])
+    return float(max(found))
