@@ -72,11 +72,10 @@ def points(solution: Solution, name="b", bounds=(3.3, 4.3)) -> tuple[float, floa
     walk = Walk(solution, name, bounds[1] - bounds[0])
     first = walk.first(-1.0)
     length = LONGEST_STEP / 25  # so that a run has enough points to be timed
-    track = Track(first, walk, bounds, 0, length, SHORTEST_STEP, STRAIGHT)
     counts = []
 
     def job():
-        assert track.begin(first, length)
+        track = Track(first, walk, bounds, 0, length, (LONGEST_STEP, SHORTEST_STEP, STRAIGHT))
         counts.append(track.record_steps(1)[1:])
 
     seconds = least(job)

@@ -1,4 +1,4 @@
-"""Compiled steps along a branch against the equations in times and impulses, which have their own tests."""
+"""Compiled steps along a branch: points, tests and certificate, beside orbits and multipliers found by themselves."""
 
 import numpy as np
 import pytest
@@ -10,12 +10,12 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.branches.way import FIRST_STEP, LONGEST_STEP, SHORTEST_STEP, STRAIGHT
-from vibro_sweep.analysis.periodic.media import still_medium
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses import places
-from vibro_sweep.engine.impulses.checks import may_turn
-from vibro_sweep.engine.impulses.flow import rates
+from vibro_sweep.engine.continuation.branch_tests import ABOVE, BELOW, CROSSING, ON_CIRCLE, PAIRS, RATE, REFLECTED
+from vibro_sweep.engine.continuation.certificate import may_turn
+from vibro_sweep.engine.continuation.curve_tests import MINUS, PAIR
+from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.model.linear import Family
 
@@ -23,9 +23,7 @@ from vibro_sweep.model.linear import Family
 def track_of(solution, name, bounds, forwards=1.0):
     walk = Walk(solution, name, bounds[1] - bounds[0])
     first = walk.first(forwards)
-    track = Track(first, walk, bounds, 0, LONGEST_STEP, SHORTEST_STEP, STRAIGHT)
-    assert track.begin(first, FIRST_STEP)
-    return first, track
+    return first, Track(first, walk, bounds, 0, FIRST_STEP, (LONGEST_STEP, SHORTEST_STEP, STRAIGHT))
 
 
 CASES = [
@@ -70,11 +68,9 @@ def test_points_are_orbits(system, itinerary, name, bounds):
         family = first.walk.family.replace(**{name: rows.p[i]})
         s = orbit._solution
         u = np.concatenate([rows.t[i], rows.D[i]])
-        if s.equations.free:
-            point = first.walk.equations(rows.p[i])
-            u = np.append(u, 0.0)
-            u[-1] = -np.mean(point.evaluate(s.sides, u)[0][: s.K])
-        exact = Solution(family, s.sigma, s.halves, s.sides, u).corrected()
+        start = Solution(family, s.sigma, s.halves, s.sides, u)
+        start = start.with_mean() if start.equations.free else start
+        exact, u = start.corrected(), start.u
         size = exact.size_of_gap
         _, J, _, _ = exact.equations.evaluate(s.sides, exact.u)
         error = 3e-13 * size * np.abs(np.linalg.inv(J)).sum(axis=1)  # what so much in the equations does
@@ -88,37 +84,34 @@ def test_points_are_orbits(system, itinerary, name, bounds):
 
 @pytest.mark.parametrize(("system", "itinerary", "name", "bounds"), CASES)
 def test_tests_have_the_signs_of_the_precise_ones(system, itinerary, name, bounds):
-    """Of det J(-1) up to a factor of one sign, of the torus test, of the tangent; and the count of multipliers."""
+    """Of det G(-1) up to a factor of one sign, of the torus test, of the tangent; and the count of multipliers."""
     orbit = orbit_of(system, itinerary)
     first, track = track_of(orbit._solution, name, bounds)
-    precise, found = [first], [track.a.numbers.copy()]
+    precise, found = [first], [track.a.tests.copy()]
     for _ in range(4):
         track.run(1)
         precise.append(track.point(track.a))
-        found.append(track.a.numbers.copy())
+        found.append(track.a.tests.copy())
         precise.append(track.point(track.b))
-        found.append(track.b.numbers.copy())
+        found.append(track.b.tests.copy())
         track.accept(precise[-2], precise[-1])
-    signs = {x.reflection[0] * np.sign(n[places.REFLECTION]) for x, n in zip(precise, found, strict=True) if x}
-    assert len(signs) == 1
+    pairs = [(x.solution.multipliers, n) for x, n in zip(precise, found, strict=True) if x]
+    assert len({np.sign(np.prod(1 + mu).real * n[MINUS]) for mu, n in pairs}) == 1
     for x, n in zip(precise, found, strict=True):
         if x is not None:
             if len(x.solution.multipliers) > 2:  # else it cannot vanish
-                assert n[places.TORUS] == pytest.approx(
-                    x.torus, rel=1e-6, abs=1e-9 * np.abs(x.solution.multipliers).max()
-                )
-            along = x.tangent[-1] * x.walk.scale[-1]  # of another length where a free mode adds an unknown
-            assert n[places.TANGENT] == pytest.approx(along, rel=1e-3 if x.equations.free else 1e-6, abs=1e-9)
+                assert n[PAIR] == pytest.approx(x.torus, rel=1e-6, abs=1e-9 * np.abs(x.solution.multipliers).max())
+            assert n[RATE] == pytest.approx(x.tangent[-1], rel=1e-6, abs=1e-9)
             mu = x.solution.multipliers
             out, real = np.abs(mu) > 1, mu.imag == 0
-            assert n[places.ABOVE] == np.count_nonzero(out & real & (mu.real > 0))
-            assert n[places.BELOW] == np.count_nonzero(out & real & (mu.real < 0))
-            assert 2 * n[places.PAIRS] == np.count_nonzero(out & ~real)
-            assert n[places.ON_CIRCLE] == 0
+            assert n[ABOVE] == np.count_nonzero(out & real & (mu.real > 0))
+            assert n[BELOW] == np.count_nonzero(out & real & (mu.real < 0))
+            assert 2 * n[PAIRS] == np.count_nonzero(out & ~real)
+            assert n[ON_CIRCLE] == 0
             r, (i, j) = np.prod(np.hypot(1, abs(mu))), np.triu_indices(len(mu), 1)
             crossing = np.prod(1 - mu[i] * mu[j]).real / r ** (len(mu) - 1) if len(mu) > 2 else 1.0
-            assert n[places.FLIP] == pytest.approx(np.prod(1 + mu).real / r, rel=1e-6, abs=1e-9)
-            assert n[places.CROSSING] == pytest.approx(crossing, rel=1e-6, abs=1e-9)
+            assert n[REFLECTED] == pytest.approx(np.prod(1 + mu).real / r, rel=1e-6, abs=1e-9)
+            assert n[CROSSING] == pytest.approx(crossing, rel=1e-6, abs=1e-9)
 
 
 @pytest.mark.parametrize("count", [4, 30])
@@ -131,33 +124,39 @@ def test_orbit_written_out_several_times_has_the_same_branch(count):
     for track in (one, many):
         point = track.point(track.a)
         same = vs.periodic_orbit(PAPER.replace(b=point.p), itinerary="R")._solution
-        assert np.abs(track.a.D - same.jumps).max() < 1e-11
-        assert np.abs(track.a.z - same.states[0, :4]).max() < 1e-11
+        assert np.abs(point.solution.jumps - same.jumps).max() < 1e-11
+        assert np.abs(point.solution.states[:, :4] - same.states[0, :4]).max() < 1e-11
 
 
 @entry
-def asked(media, states, low, high, nearest, answers):
+def asked(planes, states, turns, low, high, nearest, answers):
     for i in range(len(states)):
-        answers[i] = may_turn(media[0], states[i], low[i], high[i], nearest[i])
+        answers[i] = may_turn(planes[0], states[i], turns[i], low[i], high[i], nearest[i])
 
 
-@pytest.mark.parametrize("system", [PAPER.replace(b=3.0), ONE_MASS.replace(F=0.37), CAVITY])
-def test_cells_left_out_have_no_turning_point_of_interest(system):
+@pytest.mark.parametrize(
+    ("system", "itinerary", "name"),
+    [(PAPER.replace(b=3.0), "LR", "b"), (ONE_MASS.replace(F=0.37), "R", "F"), (CAVITY, "LR", "b")],
+)
+def test_cells_left_out_have_no_turning_point_of_interest(system, itinerary, name):
     """Against 400 samples of each cell, by matrix exponentials: 4000 random flights, both bounds have work to do."""
     rng, count, samples = np.random.default_rng(5), 4000, 400
-    q = system.linear
-    medium = still_medium(q, 2)
-    B, width = rates(q), float(medium["width"][0])
-    m = len(B)
-    states = rng.normal(size=(count, m)) * 10.0 ** rng.uniform(-2, 2, (count, 1))
-    phase = rng.uniform(0, 2 * np.pi, count)
-    states[:, m - 3], states[:, m - 2], states[:, m - 1] = np.cos(phase), np.sin(phase), 1.0
-    steps = [expm(B * s)[[0, (m - 3) // 2]] for s in np.linspace(0, width, samples)]
-    gap, slope = np.einsum("sij,pj->ips", steps, states)
+    tracer = Walk(orbit_of(system, itinerary)._solution, name, 0.1).tracer
+    tracer.go_to(tracer.guess())
+    plane = tracer.planes[0]
+    A, width, omega, swing = plane["A"], float(plane["width"]), float(plane["numbers"][OMEGA]), plane["Z"][0]
+    n = len(A)
+    B = np.vstack([A, np.zeros(n + 1)])
+    states = rng.normal(size=(count, n)) * 10.0 ** rng.uniform(-2, 2, (count, 1))
+    turned = np.exp(1j * rng.uniform(0, 2 * np.pi, count))
+    times, full = np.linspace(0, width, samples), np.column_stack([states, np.ones(count)])
+    gap, slope = np.einsum("sij,pj->ips", [expm(B * s)[[0, n // 2]] for s in times], full)
+    steady = swing * turned[:, None] * np.exp(1j * omega * times)
+    gap, slope = gap + steady.real, slope + (1j * omega * steady).real
     high, low = rng.uniform(0.1, 100, count), -rng.uniform(0.1, 100, count)
     nearest = np.where(rng.random(count) < 0.5, np.inf, rng.uniform(0, 50, count))
     answers = np.zeros(count, bool)
-    asked(medium, states, low, high, nearest, answers)
+    asked(tracer.planes, states, turned, low, high, nearest, answers)
     turns = np.any(slope[:, 1:] * slope[:, :-1] < 0, axis=1)
     distance = np.minimum(high - gap.max(axis=1), gap.min(axis=1) - low)
     assert not np.any(~answers & turns & (distance < nearest))

@@ -9,7 +9,6 @@ from scipy.linalg import expm
 from support.oscillators import BALL, CAVITY, CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic.impulse_equations import Equations, contacts_of, flow, multipliers_of
 from vibro_sweep.engine.impulses.green import MOST_CELLS, ResonanceError, TooStiffError, space, train
 from vibro_sweep.model.linear import family_of, forcing_period
@@ -142,10 +141,6 @@ def test_kernels_are_not_given_arrays_that_are_too_short():
     short = replace(whole, u=whole.u[: 2 * whole.K])
     with pytest.raises(AssertionError, match="unknowns"):
         short.equations.evaluate(short.sides, short.u)
-    walk = Walk(whole, "b", 1.0)
-    axis = np.eye(2 * whole.K + 1)[-1]
-    with pytest.raises(AssertionError, match="unknowns"):
-        walk.correct(np.append(short.u, damper.b) / np.delete(walk.scale, -2), axis, axis)
 
 
 def test_impacts_out_of_order_have_no_multipliers():

@@ -1,12 +1,10 @@
 """Where ends and bifurcations of a branch lie: the ways to find them against each other."""
 
-import numpy as np
 import pytest
 from support.oscillators import BALL, CAVITY, ONE_MASS, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import locating
-from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.model.linear import Family, family_of
 
 ORBITS = [
@@ -48,26 +46,7 @@ def test_ends_found_at_once_are_those_of_a_search_along_the_branch(system, itine
         )
 
 
-@pytest.mark.parametrize(("system", "itinerary", "name", "bounds"), ORBITS, ids=IDS)
-def test_compiled_corrections_are_those_in_python(system, itinerary, name, bounds):
-    """The same point, derivatives and motion, from a guess beside the branch."""
-    start = orbit_of(system, itinerary)._solution
-    compiled, python = (Walk(start, name, bounds[1] - bounds[0]) for _ in range(2))
-    assert compiled._straight
-    python._straight = False
-    guess = compiled.first(1.0).x + 1e-3 * np.random.default_rng(3).standard_normal(start.size + 1)
-    tangent = compiled.first(1.0).tangent
-    one, other = (walk.correct(guess, tangent, tangent) for walk in (compiled, python))
-    np.testing.assert_allclose(one.x, other.x, rtol=1e-12, atol=1e-13)
-    np.testing.assert_allclose(one.J, other.J, rtol=1e-9, atol=1e-11 * np.abs(other.J).max())
-    np.testing.assert_allclose(one.motion, other.motion, rtol=1e-9, atol=1e-10 * np.abs(other.motion).max())
-    assert abs(tangent @ (one.x - guess)) < 1e-14
-    far = [guess + size * np.random.default_rng(4).standard_normal(start.size + 1) for size in (0.1, 0.5, 2.0, 10.0)]
-    failed = [[walk.correct(one, tangent, tangent) is None for one in far] for walk in (compiled, python)]
-    assert failed[0] == failed[1] and failed[0][-1]
-
-
-def test_stops_that_do_not_move_in_proportion_are_followed_by_python():
+def test_stops_that_do_not_move_in_proportion():
     """b = 3 c^2: the branch in c has the ends of the branch in b, at the square roots."""
     paper = family_of(PAPER)
 
@@ -76,7 +55,6 @@ def test_stops_that_do_not_move_in_proportion_are_followed_by_python():
 
     squared = Family(build, {"c": 1.0})
     orbit = vs.periodic_orbit(squared, itinerary="LR", periods=1)
-    assert not Walk(orbit._solution, "c", 1.0)._straight
     found = vs.continue_orbit(orbit, "c", (0.4, 1.5)).special
     expected = vs.continue_orbit(orbit_of(PAPER.replace(b=3.0), "LR"), "b", (0.48, 6.75)).special
     assert [one.type for one in found] == [one.type for one in expected] == ["graze", "pitchfork", "graze"]

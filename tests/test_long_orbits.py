@@ -112,7 +112,7 @@ def test_long_orbit_is_followed_like_the_short_one():
     point = walk.step(start, 0.01)
     found = vs.periodic_orbit(PAPER.replace(b=point.p), itinerary="R")
     assert point.solution.jumps == pytest.approx(-1.8 * found.impacts["v1"][0], rel=1e-12)
-    assert point.reflection[0] == start.reflection[0]
+    assert np.sign(point.reflection) == np.sign(start.reflection)
 
 
 @pytest.mark.parametrize("system", [PAPER, *slow_cases(CHAIN)])

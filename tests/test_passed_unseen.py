@@ -11,7 +11,7 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.branches import way
 from vibro_sweep.analysis.branches.crossings import explained, stands_alone
 from vibro_sweep.analysis.branches.looking import extremum
-from vibro_sweep.engine.impulses.checks import FARTHER
+from vibro_sweep.engine.continuation.branch_tests import FARTHER
 
 BESIDE = vs.Oscillator(
     M=[[1.013195585878699, -0.55204056781175], [-0.55204056781175, 2.637855657462587]],

@@ -31,20 +31,19 @@ def same_points(branch, expected, tolerance=1e-12):
 def other_steps(factor):
     """Branches are followed by steps `factor` times as long as they are otherwise. Compiled steps are seen to do so."""
     longest, straight, first = way.LONGEST_STEP, way.STRAIGHT, way.Way.first_step
-    begin, seen = Track.begin, set()
+    begin, seen = Track.__init__, set()
 
-    def watched(track, point, length):
-        begins = begin(track, point, length)
-        seen.add((track.steps.longest, track.steps.straight, length, begins))
-        return begins
+    def watched(track, point, walk, bounds, origin, length, steps):
+        begin(track, point, walk, bounds, origin, length, steps)
+        seen.add((steps[0], steps[2], length))
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(way, "LONGEST_STEP", factor * longest)
         patch.setattr(way, "STRAIGHT", factor * straight)
         patch.setattr(way.Way, "first_step", factor * first)
-        patch.setattr(Track, "begin", watched)
+        patch.setattr(Track, "__init__", watched)
         yield
-    assert seen == {(factor * longest, factor * straight, factor * first, True)}
+    assert seen == {(factor * longest, factor * straight, factor * first)}
 
 
 @pytest.fixture(scope="session")

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.branches.walk import Point, Walk, walk_of
 from vibro_sweep.analysis.continuation.start import keeps_symmetry
-from vibro_sweep.analysis.periodic.long_orbits import is_sparse, residual
 from vibro_sweep.analysis.periodic.solution import Solution
 
 BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # in units of a walk; near the onset of sticking branches are short
@@ -28,15 +27,15 @@ def start_of_walk(solution: Solution, name: str, lo: float, hi: float, stable: b
     """
     if solution.sigma == -1 and not keeps_symmetry(solution.family, name):
         solution = solution.whole()
-    walk = Walk(solution, name, max(hi - lo, NARROW * max(abs(lo), abs(hi))))
+    walk = walk_of(solution, name, max(hi - lo, NARROW * max(abs(lo), abs(hi))))
     first = walk.first(1.0)
     if first is not None and not is_special(first):
         return walk
     for length in BESIDE if first is not None else (*BESIDE, *FARTHER):
         for sign in (1, -1):
-            beside = _neighbour(walk, sign * length)
+            beside = walk.beside_start(sign * length)
             if beside is not None and lo <= beside.p <= hi and is_real(beside) and (is_stable(beside) or not stable):
-                there = Walk(beside.solution, name, float(walk.scale[-1]))
+                there = walk_of(beside.solution, name, walk.unit)
                 if there.first(1.0) is not None:
                     return there
     if first is None:
@@ -73,20 +72,3 @@ def is_real(point: Point, least: float = 0.0) -> bool:
 
 def is_stable(point: Point) -> bool:
     return bool(np.all(np.abs(point.solution.multipliers) < 1))
-
-
-def _neighbour(walk: Walk, length: float) -> Point | None:
-    """The point of the branch at a distance from the start, also where that is a fold."""
-    start = walk.start
-    e = walk.equations(walk.family.numbers[walk.name])
-    x = np.append(start.u, walk.family.numbers[walk.name]) / walk.scale
-    if not start.rests and is_sparse(e, start.sides):
-        _, Fp, motion = residual(e, start.sides, start.u)
-        tangent, zeros = np.ones(len(x)), np.zeros(len(x) - 1)
-        for _ in range(2):  # first across any direction, which may lie badly
-            tangent = walk.solve(e, x, Fp[:, None] * walk.scale[-1], motion, tangent, zeros, 1.0)
-            tangent /= np.linalg.norm(tangent)
-    else:
-        _, J, Fp, _ = e.evaluate(start.sides, start.u)
-        tangent = np.linalg.svd(np.hstack([J, Fp[:, None]]) * walk.scale)[2][-1]
-    return walk.correct(x + length * tangent, tangent, tangent)

@@ -8,12 +8,12 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, slopes
-from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.branches.walk import walk_of
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE
 
 AMPLITUDE = 1e-3  # of a branch that is born, in the units of a walk
-ROUNDING = 1e-12  # of a multiplier on the unit circle, where nothing is lost
 LARGER = (4.0, 16.0, 64.0)  # times as large: where the branch leaves nearly along the born orbits
 
 
@@ -32,7 +32,7 @@ def born(special: SpecialPoint, sign: int) -> Solution | None:
 
 def is_steady(solution: Solution, name: str) -> bool:
     """Whether Newton's method stands still at the solution, so that its branch can be followed from there."""
-    return Walk(solution, name, size_of(solution, name)).first(1.0) is not None
+    return walk_of(solution, name, size_of(solution, name)).first(1.0) is not None
 
 
 def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | None]:
@@ -42,12 +42,12 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
     for the times, and -sigma for the impulses. The parameter is found with the solution.
     """
     parent = special.orbit._solution
-    name, value = next(iter(special.parameters.items()))
+    name = next(iter(special.parameters))
     K, rests = parent.K, len(parent.rests)
     size = 2 * K + rests
     twice = doubled(parent)
-    walk = Walk(twice, name, size_of(parent, name))
-    scale = np.concatenate([walk.scale[:K], walk.scale[2 * K : 3 * K], walk.scale[4 * K : 4 * K + rests]])
+    walk, units = walk_of(twice, name, size_of(parent, name)), twice.units
+    scale = np.concatenate([units[:K], units[2 * K : 3 * K], units[4 * K : 4 * K + rests]])
     if rests:
         J = parent.equations.linearised(-1, parent.sides, parent.u, parent.motion)
         critical = np.linalg.svd(J * scale)[2][-1]
@@ -55,11 +55,14 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
         critical = Linearised(parent).critical_direction(-1) / scale
     critical *= -np.copysign(1.0, critical[K : 2 * K].sum())  # a choice: which of two mirror images comes first
     dt, dD, de = critical[:K], critical[K : 2 * K], critical[2 * K :]
-    normal = np.zeros(len(walk.scale))
-    normal[: 2 * size] = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])
-    normal /= np.linalg.norm(normal)
+    change = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])
+    change /= np.linalg.norm(change)
+    normal = np.append(change, 0.0)
     for amplitude in amplitudes:
-        point = walk.correct(np.append(twice.u, value) / walk.scale + amplitude * normal, normal, normal)
+        moved = twice.u.copy()
+        moved[: 2 * size] += amplitude * change * units[: 2 * size]
+        guess = walk.of(replace(twice, u=moved))
+        point = guess and walk.correct(guess, normal, normal)
         yield point and point.solution
 
 
@@ -93,5 +96,8 @@ def criticality(special: SpecialPoint) -> str | None:
     beside = replace(parent, family=family, u=parent.u + step * du).corrected()
     if beside is None:
         return None
-    critical = beside.multipliers[np.argmin(np.abs(beside.multipliers + 1))]
-    return "super" if abs(critical) > 1 + ROUNDING else "sub"
+    mu = beside.multipliers
+    near = mu[np.argmin(np.abs(mu + 1))]
+    both = [near, *mu[np.abs(mu * near - 1) < ON_SQUARE]]  # without losses there are two: one is outside, or none
+    critical = np.abs(both).max()
+    return "super" if critical > 1 + ON_PAIR else "sub"

@@ -16,7 +16,7 @@ from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.sticking import sticking_onset
 from vibro_sweep.analysis.branches.track import Rows, join, row_of
-from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.branches.walk import Walk, walk_of
 from vibro_sweep.analysis.branches.way import Way
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
@@ -113,7 +113,7 @@ def not_followed(orbit: PeriodicOrbit, parameter: str) -> Branch:
     s, frame = orbit._solution, orbit._canonical_frame
     value = s.family.numbers[parameter]
     end = SpecialPoint("failed", {parameter: value}, orbit, s.multipliers)
-    walk = Walk(s, parameter, size_of(s, parameter))
+    walk = walk_of(s, parameter, size_of(s, parameter))
     return Branch(parameter, [end], end, end, False, walk, frame, row_of(value, s, frame))
 
 

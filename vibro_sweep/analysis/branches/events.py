@@ -7,7 +7,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.locating import Event, locate
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
-from vibro_sweep.engine.impulses import branch
+from vibro_sweep.engine.continuation.branch_tests import PASSED
 from vibro_sweep.engine.impulses.pairs import ON_PAIR
 
 
@@ -57,7 +57,7 @@ def earliest(located: list, length: float):
 
 def _passes(point: Point) -> bool:
     """Whether a flight is beyond its stop by more than rounding."""
-    return bool(point.solution.margin < -branch.PASSED * point.solution.size_of_gap)
+    return bool(point.solution.margin < -PASSED * point.solution.size_of_gap)
 
 
 def _bifurcations(walk: Walk, a: Point, b: Point) -> list[Event]:
@@ -65,7 +65,7 @@ def _bifurcations(walk: Walk, a: Point, b: Point) -> list[Event]:
     if a.tangent[-1] * b.tangent[-1] < 0:
         events.append(Event("fold", lambda point: point.tangent[-1]))
     if walk.start.K:
-        if a.reflection[0] * b.reflection[0] < 0:
+        if np.sign(a.reflection) * np.sign(b.reflection) < 0:
             kind = "pitchfork" if walk.start.sigma == -1 else "flip"
             events.append(Event(kind, reflection_test(a, b)))
         torus = torus_test(a, b) if np.all(b.solution.pushes > 0) else None
@@ -103,8 +103,8 @@ def _beyond(limit: float, side: int, inside: Point):
 
 
 def reflection_test(a: Point, b: Point):
-    size = max(a.reflection[1], b.reflection[1])
-    return lambda point: point.reflection[0] * math.exp(point.reflection[1] - size)
+    size = max(abs(a.reflection), abs(b.reflection))
+    return lambda point: point.reflection / size
 
 
 def torus_test(a: Point, b: Point, scaled: bool = False):

@@ -15,8 +15,9 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.special import inserted
 from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.continuation.errors import DIGITS, ROWS
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses import branch
+from vibro_sweep.engine.continuation.branch_tests import PASSED
 
 ROUNDED = np.finfo(float).eps  # relative to the coordinates of a point: nearer ones are the same
 MOST_TRIES = 100
@@ -49,8 +50,8 @@ class Event:
 def locate(walk: Walk, event: Event, a: Point, b: Point, length: float):
     """(event, distance from a, point, error): where the event lies between a and b; None if it cannot be found.
 
-    The error is what rounding of the gap does to the parameter. Of the zero of a test it is at least several times the
-    difference between this zero and what points beside it say, which round differently.
+    The error is what rounding of the equations does to the parameter. Of the zero of a test it is at least several
+    times the difference between this zero and what points beside it say, which round differently.
     """
     found = None
     if event.unknown is not None:
@@ -66,25 +67,18 @@ def locate(walk: Walk, event: Event, a: Point, b: Point, length: float):
 
 
 def rounding(point: Point, normal: np.ndarray) -> float:
-    """What rounding of the gap does to the parameter of a point that was found on the plane with this normal."""
-    return float(16 * np.finfo(float).eps * (abs(point.p) + point.sensitivity(normal)))
-
-
-def _between(a: Point, b: Point, share: float) -> np.ndarray:
-    """Coordinates on the cubic through a and b with their tangents."""
-    rest, length = 1 - share, np.linalg.norm(b.x - a.x)
-    bend = share * rest * length * (rest * a.tangent - share * b.tangent)
-    return rest**2 * (1 + 2 * share) * a.x + share**2 * (1 + 2 * rest) * b.x + bend
+    """What rounding of the equations does to the parameter of a point that was found on the plane with this normal."""
+    return float(DIGITS * abs(point.p) + ROWS * point.sensitivity(normal))
 
 
 def _at_value(walk: Walk, unknown: tuple[int, float], a: Point, b: Point) -> tuple[Point, float] | None:
     """The point where an unknown has a value, and the error of its parameter."""
-    index, value = unknown[0], unknown[1] / walk.scale[unknown[0]]
+    index, value = unknown[0], unknown[1] / walk.unit  # other unknowns have the value 0
     before, behind = a.x[index] - value, b.x[index] - value
     if not before * behind < 0:
         return None
-    guess, normal = _between(a, b, before / (before - behind)), np.zeros(len(a.x))
-    guess[index], normal[index] = value, 1.0
+    guess, normal = walk.with_value(walk.between(a, b, before / (before - behind)), index, value), np.zeros(len(a.x))
+    normal[index] = 1.0
     point = walk.correct(guess, normal, a.tangent)
     return None if point is None else (point, rounding(point, normal))
 
@@ -96,14 +90,14 @@ def _at_touch(walk: Walk, a: Point, b: Point) -> tuple[Point, float] | None:
         return None
     touching, index = inserted(b.solution)
     new = [index, walk.start.K + index]  # places of the impact's time and impulse
-    guess = np.insert(_between(a, b, before / (before - behind)), new, [touching.times[index] / walk.scale[0], 0.0])
-    normal = np.zeros(len(guess))
+    guess = walk.with_touch(walk.between(a, b, before / (before - behind)), touching, index)
+    normal = np.zeros(len(a.x) + 2)
     normal[new[1] + 1] = 1.0
-    found = walk.with_impact(touching, index).correct(guess, normal, np.insert(a.tangent, new, 0.0))
+    found = walk.with_impact(touching).correct(guess, normal, np.insert(a.tangent, new, 0.0))
     if found is None:
         return None
-    point = walk.correct(np.delete(found.x, [new[0], new[1] + 1]), a.tangent, a.tangent)
-    if point is None or not _touches(point.solution, float(found.x[index] * walk.scale[0])):
+    point = walk.correct(walk.without_touch(found.guess, index), a.tangent, a.tangent)
+    if point is None or not _touches(point.solution, float(found.solution.times[index])):
         return None
     return point, rounding(found, normal)
 
@@ -114,7 +108,7 @@ def _touches(s: Solution, time: float) -> bool:
     P, size = s.equations.P, s.size_of_gap
     apart = (nearest - time + P / 2) % P - P / 2
     same = abs(apart) * s.family.linear.omega < SAME_TURN
-    return abs(distance) <= (TOUCHES if same else branch.PASSED) * size
+    return abs(distance) <= (TOUCHES if same else PASSED) * size
 
 
 class _Seen(NamedTuple):
@@ -148,11 +142,11 @@ def _scatter(walk: Walk, event: Event, a: Point, found: _Seen, step: float, slop
     Each says p - test dp/dtest; a straight line through these takes away what the slope is wrong. The plane on which
     points are found may hold the parameter itself, as in narrow bounds: then rounding is in the test alone.
     """
-    rate = found.point.tangent[-1] * walk.scale[-1] / slope
+    rate = found.point.tangent[-1] * walk.unit / slope
     said = [(0, -found.test * rate)]
-    shaken = found.point.x + SHAKEN * np.random.default_rng(0).standard_normal((len(SHARES), len(a.x)))
-    for share, guess in zip(SHARES, shaken, strict=True):
-        point = walk.step(a, found.s + share * step, guess)
+    shaken = SHAKEN * np.random.default_rng(0).standard_normal((len(SHARES), len(a.x)))
+    for share, change in zip(SHARES, shaken, strict=True):
+        point = walk.step(a, found.s + share * step, walk.shaken(found.point.guess, change))
         if point is not None:
             said.append((share, point.p - found.point.p - event.test(point) * rate))
     shares, apart = np.array(said).reshape(-1, 2).T
@@ -188,7 +182,7 @@ def _zero(walk: Walk, test: Callable[[Point], float], seen: list[_Seen]) -> _See
         near = min(low, high, key=lambda one: abs(one.s - s))
         if abs(s - near.s) <= ROUNDED * np.abs(near.point.x).max():
             return near
-        point = walk.step(seen[0].point, s, near.point.x)
+        point = walk.step(seen[0].point, s, near.point.guess)
         if point is None:
             return None
         seen.append(_Seen(s, point, test(point)))

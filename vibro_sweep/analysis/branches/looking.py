@@ -10,7 +10,7 @@ from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_tor
 from vibro_sweep.analysis.branches.events import is_outside, torus_test
 from vibro_sweep.analysis.branches.response import touching
 from vibro_sweep.analysis.branches.walk import Point, Walk
-from vibro_sweep.engine.impulses.checks import FARTHER
+from vibro_sweep.engine.continuation.branch_tests import FARTHER
 from vibro_sweep.engine.impulses.pairs import ON_SQUARE
 
 SHARES = (0.5, 0.4, 0.6, 0.3)  # of the way to the next point, where the first lies on a bifurcation by chance
@@ -35,7 +35,7 @@ def hidden_between(walk: Walk, bounds, a: Point, b: Point, found: list, beside: 
     cuts = [a]
     for one, other in pairwise(found):
         if other[1] - one[1] > APART * length:
-            cuts.append(walk.step(a, (one[1] + other[1]) / 2, one[2].x))
+            cuts.append(walk.step(a, (one[1] + other[1]) / 2, one[2].guess))
             if cuts[-1] is None:
                 return None
     cuts.append(b)
@@ -128,7 +128,7 @@ def _touched(walk: Walk, beside: tuple, places: list[Point], found: list) -> Poi
 
 
 def touches(walk: Walk, before: Point, a: Point, b: Point) -> bool:
-    """Whether a test may vanish twice beside a (as the compiled `touches` of engine/impulses/checks.py)."""
+    """Whether a test may vanish twice beside a (as the compiled `touches` of engine/continuation/branch_tests.py)."""
     if walk.start.K == 0:
         return False
     tests = [test for _, test in _crossing(walk, before, b)] + [lambda point: point.solution.margin]
@@ -156,7 +156,7 @@ def _beyond_extremum(walk: Walk, test: Test, a: Point, b: Point, triple) -> Poin
         if at is None:
             return None
         at = _apart(s + at, (r, s, t))
-        point = walk.step(a, at, middle.x)
+        point = walk.step(a, at, middle.guess)
         if point is None:
             return None
         value = test(point)
@@ -172,7 +172,7 @@ def _beyond_extremum(walk: Walk, test: Test, a: Point, b: Point, triple) -> Poin
 
 def extremum(before: float, behind: float, x: float, y: float, z: float) -> float | None:
     """Where the parabola through three values is nearest to zero, from the middle one; None where it comes no nearer by
-    a quarter, and the middle one is not much nearer than the others (`dips` of engine/impulses/checks.py)."""
+    a quarter, and the middle one is not much nearer than the others (`dips` of engine/continuation/branch_tests.py)."""
     if y < 0:
         x, y, z = -x, -y, -z
     if not (0 < y <= x and y <= z and math.isfinite(x + z) and before > 0 < behind):

@@ -4,17 +4,14 @@ What tells the two halves of its orbits apart changes its sign as a whole, and t
 pitchfork. On the branch itself that point is singular, so it is located on the parent's.
 """
 
-from dataclasses import replace
-
 import numpy as np
 
 from vibro_sweep.analysis.branches.crossings import counts_of
 from vibro_sweep.analysis.branches.events import reflection_test
 from vibro_sweep.analysis.branches.locating import Event, locate, rounding
-from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.branches.walk import Point, Walk, walk_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.pairs import ON_SQUARE
-from vibro_sweep.model.linear import family_of
 
 BEFORE = 0.02, 0.1, 0.4  # of the way to a birth, beside which a multiplier is 1 to rounding
 NEAR = 0.1  # in scaled units: a birth that rounding beside it may hide
@@ -22,7 +19,7 @@ LANDS = 0.3  # of what tells the halves apart before a step, at its end
 APART = 4.0  # times its rounding: so far a point lies from a birth at least, to be told from it
 
 
-def own_birth(walk: Walk, system, a: Point, b: Point, length: float):
+def own_birth(walk: Walk, a: Point, b: Point, length: float):
     """(distance from a, event, point of the parent's branch, error) of the birth between a and b; None without one."""
     for sigma in (1, -1):
         parts = [halves_apart(point.solution, sigma) for point in (a, b)]
@@ -32,7 +29,7 @@ def own_birth(walk: Walk, system, a: Point, b: Point, length: float):
         if not parts[0] @ parts[1] < -0.5 * sizes[0] * sizes[1]:
             continue
         fraction = sizes[0] / sum(sizes)
-        found = _on_parent(walk, system, (1 - fraction) * a.x + fraction * b.x, sigma)
+        found = _on_parent(walk, walk.solution(walk.between(a, b, fraction)), sigma)
         if found is not None:
             return fraction * length, *found
     return None
@@ -56,27 +53,27 @@ def before_birth(walk: Walk, a: Point, distance: float, parent: Point) -> Point 
     return None
 
 
-def over_birth(walk: Walk, system, a: Point) -> tuple[Point, Point] | None:
+def over_birth(walk: Walk, a: Point) -> tuple[Point, Point] | None:
     """The point beyond the birth to which a leads, and the parent; None where it leads to none within `NEAR`."""
-    ahead = replace(a.solution, u=a.solution.u + a.tangent[:-1] * walk.scale[:-1])
+    ahead = walk.ahead(a)
     for sigma in (1, -1):
         here, there = (halves_apart(solution, sigma) for solution in (a.solution, ahead))
         if here is None or not here @ (there - here) < 0:
             continue
         distance = float(here @ here / (here @ (here - there)))
         b = walk.step(a, 2 * distance) if distance < NEAR else None
-        birth = None if b is None else own_birth(walk, system, a, b, 2 * distance)
+        birth = None if b is None else own_birth(walk, a, b, 2 * distance)
         if birth is not None:
             return b, birth[2]
     return None
 
 
-def lands_on_birth(walk: Walk, system, a: Point, b: Point) -> Point | None:
+def lands_on_birth(walk: Walk, a: Point, b: Point) -> Point | None:
     """The point beyond the birth to which a leads, where rounding does not tell b from the birth."""
     for sigma in (1, -1):
         parts = [halves_apart(point.solution, sigma) for point in (a, b)]
         if all(part is not None for part in parts) and np.linalg.norm(parts[1]) < LANDS * np.linalg.norm(parts[0]):
-            over = over_birth(walk, system, a)
+            over = over_birth(walk, a)
             if over is not None and abs(b.p - over[1].p) < APART * rounding(b, b.tangent):
                 return over[0]
     return None
@@ -86,19 +83,16 @@ def _ones(multipliers: np.ndarray) -> int:
     return int(np.sum(np.abs(multipliers - 1) < ON_SQUARE))
 
 
-def _on_parent(walk: Walk, system, x: np.ndarray, sigma: int):
-    system = system.replace(**{walk.name: float(x[-1] * walk.scale[-1])})
-    u = x[:-1] * walk.scale[:-1]
-    whole = Solution(family_of(system), 1, walk.start.halves, walk.start.sides, u, 0.0, walk.start.rests)
+def _on_parent(walk: Walk, whole: Solution, sigma: int):
     parent = whole.part(2, sigma, alike=0.1)
     if parent is None:
         return None
-    beside = Walk(parent, walk.name, float(walk.scale[-1]))
+    beside = walk_of(parent, walk.name, walk.unit)
     first = beside.first(1.0)
     kind, reach = "pitchfork" if sigma == -1 else "flip", 1e-6
     while first is not None and reach < 0.05:
         ends = [beside.step(first, sign * reach) for sign in (-1, 1)]
-        if None not in ends and ends[0].reflection[0] * ends[1].reflection[0] < 0:
+        if None not in ends and ends[0].reflection * ends[1].reflection < 0:
             found = locate(beside, Event(kind, reflection_test(*ends)), *ends, 2 * reach)
             return None if found is None else (found[0], *found[2:])
         reach *= 4

@@ -42,7 +42,7 @@ def passed(walk: Walk, rows: list[Rows], behind: Point | None) -> list[int]:
     return sorted(found)
 
 
-def before_passed(walk: Walk, system, track: Track, rows: Rows, counts: Iterable[int], first: Point):
+def before_passed(walk: Walk, track: Track, rows: Rows, counts: Iterable[int], first: Point):
     """(points before a birth, the last of them, a point behind it); None where no birth is found.
 
     counts : of points that lie before one perhaps, as `passed` gives them
@@ -52,7 +52,7 @@ def before_passed(walk: Walk, system, track: Track, rows: Rows, counts: Iterable
         for count in range(last, max(0, last - BACK), -1):
             kept = Rows(*(values[:count] for values in rows))
             a = track.point_behind(kept) if count > 1 else first
-            over = None if a is None else over_birth(walk, system, a)
+            over = None if a is None else over_birth(walk, a)
             if over is not None:
                 return kept, a, over[0]
     return None

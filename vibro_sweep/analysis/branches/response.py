@@ -26,7 +26,7 @@ def longest_step(point: Point) -> float:
         return np.inf
     root = np.linalg.cholesky(q.M)  # in the norm of the kinetic energy, which units do not change
     Z, change = (np.linalg.solve(root, np.linalg.solve(root, of_z).T).T for of_z in (dynamic_stiffness(q), change))
-    share = np.linalg.norm(np.linalg.lstsq(Z, change)[0], 2) * walk.scale[-1]
+    share = np.linalg.norm(np.linalg.lstsq(Z, change)[0], 2) * walk.unit
     return max(SHARE / share, SHORTEST) if share > 0 else np.inf
 
 

@@ -1,18 +1,19 @@
-"""Compiled steps along a branch (engine/impulses/branch.py), from one place where something happens to the next."""
+"""Compiled steps along a branch (engine/continuation/stepper.py), from one event to the next."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from vibro_sweep.analysis.branches.walk import Point, Walk
-from vibro_sweep.analysis.periodic.media import medium_of
+from vibro_sweep.analysis.continuation.tracer import NoPlaneError, copied, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses import branch, places
+from vibro_sweep.engine.continuation import stepper
+from vibro_sweep.engine.continuation.branch_tests import RATE
+from vibro_sweep.engine.continuation.curve_tests import LENGTH, MARGIN, MINUS, RESIDUAL
+from vibro_sweep.engine.continuation.path import Path
+from vibro_sweep.engine.continuation.workspace import Place, new_place
 from vibro_sweep.engine.impulses.flow import contact_coordinates
-from vibro_sweep.engine.impulses.places import Place, Steps, new_place, new_record, new_work
-
-AT_ONCE = 1024  # points of one call
 
 
 class Rows(NamedTuple):
@@ -43,79 +44,63 @@ def row_of(p: float, s: Solution, frame: tuple[int, int]) -> Rows:
 class Track:
     """Steps one way along a branch from its first point."""
 
-    def __init__(self, first: Point, walk: Walk, bounds, origin: int, longest: float, shortest: float, straight: float):
-        self.walk, self.bounds, self.origin = walk, bounds, origin
-        K, n = walk.start.K, first.solution.states.shape[1] - 3
-        scale = walk.scale
-        self.steps = Steps(
-            float(scale[0]), float(scale[K]), float(scale[-1]), longest, shortest, straight, *map(float, bounds)
+    def __init__(self, first: Point, walk: Walk, bounds, origin: int, length: float, steps: tuple[float, float, float]):
+        """origin : forcing periods, at which states are recorded
+        length : of the first step
+        steps : longest and shortest length, and radians between tangents of neighbouring points
+        """
+        self.walk, self.tracer, self.origin = walk, walk.tracer, origin
+        self.path: Path = self.tracer.path._replace(
+            longest=steps[0], shortest=steps[1], straight=steps[2], box=np.array([bounds, (-np.inf, np.inf)], float)
         )
-        self.sides, self.sigma = np.array(walk.start.sides, float), float(walk.start.sigma)
-        self.a, self.b, self.first = (new_place(K, n) for _ in range(3))
-        self.work, self.record = new_work(K, n), new_record(AT_ONCE, K, n)
-        self.size = float(first.solution.size_of_gap)
-        self.medium = self._medium(first.p)
+        self.b = new_place(len(walk.start.sides), self.tracer.n)
+        copy(first.guess, self.a)
+        self.a.tests[LENGTH] = length
+        self.path.before[0] = 0.0
+        copy(self.a, self.path.first)
 
-    def _medium(self, p: float) -> np.ndarray | None:
-        known = self.walk.media  # both ways begin at the same place
-        if p not in known:
-            walk = self.walk
-            known[p] = medium_of(walk.family, walk.start.halves, walk.name, p, float(walk.scale[-1]))
-        return known[p]
-
-    def begin(self, first: Point, length: float) -> bool:
-        """Stand at the first point. False where compiled steps cannot start."""
-        if self.medium is None:
-            return False
-        K, a, scale = len(self.sides), self.a, self.walk.scale
-        u = first.x[:-1] * scale[:-1]
-        a.t[:], a.D[:], a.z[:] = u[:K], u[K : 2 * K], first.solution.states[:, :-3]
-        tangent = first.tangent * scale
-        a.tangent_t[:], a.tangent_jump[:] = tangent[:K], tangent[K : 2 * K]
-        a.numbers[places.P], a.numbers[places.TANGENT] = first.p, tangent[-1]
-        nothing = new_record(0, K, a.z.shape[1])  # no step is made
-        if self._walk(1, nothing, True)[0] == branch.NO_START:
-            return False
-        a.numbers[places.LENGTH] = length
-        for here, there in zip(a, self.first, strict=True):
-            there[...] = here
-        return True
-
-    def _walk(self, passed: int, record, begins: bool) -> tuple[int, int, int]:
-        """Reason, points recorded, corrections made."""
-        return branch.walk(
-            self.medium, self.sides, self.sigma, self.steps, self.size, float(self.origin), passed, self.first, self.a,
-            self.b, record, self.work, begins,
-        )  # fmt: skip
+    @property
+    def a(self) -> Place:
+        """Where the last step began."""
+        return self.path.a
 
     def record_steps(self, passed: int) -> tuple[int, int, int]:
-        """The compiled part of `run`: reason, points, corrections."""
-        return self._walk(passed, self.record, False)
+        """The compiled part of `run`: reason, points, corrections; passed: points of the branch so far."""
+        path = self.path
+        path.counts[0] = passed
+        return int(self._do(stepper.WALK)), int(path.counts[1]), int(path.counts[2])
+
+    def _do(self, task: int) -> float:
+        w = self.tracer
+        return stepper.at(task, w.planes, w.problem, self.path, self.b, np.zeros(2 * w.K + 3), w.bench)
 
     def run(self, passed: int) -> tuple[int, Rows]:
-        """Steps until something happens, or `AT_ONCE` points: the reason and the points before the step.
-
-        NO_START: around the last point the oscillator is not to be had as polynomials of the parameter.
-        """
+        """Steps until something happens, or as many points as one call records: the reason and the points before the
+        step. FAILED too where around the last point the oscillator is not to be had as polynomials of the parameter."""
         reason, count, _ = self.record_steps(passed)
-        if reason == branch.FAR:
-            self.medium = self._medium(float(self.a.numbers[places.P]))
-            if self.medium is None:
-                reason = branch.NO_START
-        r = self.record
-        numbers = r.numbers[:count].copy()
-        p = numbers[:, places.P]
-        state = self._masses(p, r.state[:count])
-        t, D, motion = (values[:count].copy() for values in (r.t, r.D, r.motion))
-        margin, residual = numbers[:, places.MARGIN], numbers[:, places.DEFECT_HERE] / self.size
-        rows = Rows(p, t, D, np.zeros((count, 0)), motion, margin, residual, state)
+        r, units, n = self.path.record, self.tracer.units, self.tracer.n
+        p, x = r.p[:count, 0].copy(), r.x[:count]
+        tau = np.array([self.walk.tau(value) for value in p.tolist()])
+        r.phase[:count] = 2 * np.pi * self.origin + tau
+        self._do(stepper.STATES)
+        if reason == stepper.FAR:
+            try:
+                self.tracer.recentre(self.a)
+            except NoPlaneError:
+                reason = stepper.FAILED
+        omega = r.omega[:count] * units.rate
+        t = (x[..., n] - tau[:, None]) / omega[:, None]
+        motion = r.motion[:count] * units.speed * [1.0, units.rate]
+        state = self._masses(p, r.state[:count] * self.tracer.state_units)
+        margin, residual = r.tests[:count, MARGIN] * units.length, r.tests[:count, RESIDUAL].copy()
+        rows = Rows(p, t, x[..., n + 1] * units.speed, np.zeros((count, 0)), motion, margin, residual, state)
         return reason, rows
 
     def _masses(self, p: np.ndarray, states: np.ndarray) -> np.ndarray:
         """x1 v1 .. xN vN from contact coordinates."""
         slope = self.walk.family.derivative(self.walk.name)
         if np.any(slope.M) or np.any(slope.along):
-            values = [self.walk.family.replace(**{self.walk.name: value}).linear for value in p.tolist()]
+            values = self.walk.oscillators(p)
             found = [contact_coordinates(q).to_masses(state) for q, state in zip(values, states, strict=True)]
             return np.reshape(found, states.shape)
         return contact_coordinates(self.walk.family.linear).to_masses(states)
@@ -126,41 +111,33 @@ class Track:
         Where signs have changed in compiled steps but not from point to point, rounding decides: the next step is to
         look for the change again.
         """
-        past, numbers = self.a.numbers, self.b.numbers
-        for i, change in ((places.TANGENT, a.tangent[-1] * b.tangent[-1]),
-                          (places.REFLECTION, a.reflection[0] * b.reflection[0])):  # fmt: skip
-            if past[i] * numbers[i] < 0 < change:
-                numbers[i] *= -1
-        self.work.past[:] = past
-        self.work.past[places.LENGTH] = numbers[places.LENGTH]
-        self.work.past_multipliers[:] = self.a.multipliers
-        for here, there in zip(self.b, self.a, strict=True):
-            there[...] = here
+        past, tests = self.a.tests, self.b.tests
+        for i, before, behind in ((RATE, a.tangent[-1], b.tangent[-1]), (MINUS, a.reflection, b.reflection)):
+            if past[i] * tests[i] < 0 < before * behind:
+                tests[i] *= -1
+        copy(self.b, self.a)
 
     def point(self, place: Place) -> Point | None:
-        """The same point, corrected with the walk's own equations."""
-        return self._corrected(place.t, place.D, float(place.numbers[places.P]), *_tangent(place))
+        """The same point, corrected with the oscillator itself."""
+        direction = self.tracer.direction(place)[:-2]
+        return self.walk.correct(copied(place), direction, direction)
 
     def point_of(self, rows: Rows) -> Point | None:
         """The last of recorded points, which lies before the place a."""
-        return self._corrected(rows.t[-1], rows.D[-1], float(rows.p[-1]), *_tangent(self.a))
+        return self._corrected(rows, self.tracer.direction(self.a)[:-2])
 
     def point_behind(self, rows: Rows) -> Point | None:
         """The last of two or more points; forwards is from the one before."""
-        t, D, p = (values[-1] - values[-2] for values in (rows.t, rows.D, rows.p))
-        return self._corrected(rows.t[-1], rows.D[-1], float(rows.p[-1]), np.concatenate([t, D]), float(p))
+        change = [self.walk.of(self._solution(rows, i)) for i in (-2, -1)]
+        direction = Point(self.walk, change[1]).x - Point(self.walk, change[0]).x
+        return self._corrected(rows, direction / np.linalg.norm(direction))
 
-    def _corrected(self, t, D, p: float, tangent: np.ndarray, rate: float) -> Point | None:
-        w, K = self.walk, len(self.sides)
-        u = np.concatenate([t, D])
-        if w.start.equations.free:
-            e = w.equations(p)
-            u, tangent = np.append(u, 0.0), np.append(tangent, 0.0)
-            u[-1] = -np.mean(e.evaluate(w.start.sides, u)[0][:K])
-        x = np.append(u, p) / w.scale
-        direction = np.append(tangent, rate) / w.scale
-        return w.correct(x, direction, direction)
+    def _corrected(self, rows: Rows, direction: np.ndarray) -> Point | None:
+        guess = self.walk.of(self._solution(rows, -1))
+        return guess and self.walk.correct(guess, direction, direction)
 
-
-def _tangent(place: Place) -> tuple[np.ndarray, float]:
-    return np.concatenate([place.tangent_t, place.tangent_jump]), float(place.numbers[places.TANGENT])
+    def _solution(self, rows: Rows, i: int) -> Solution:
+        s, walk = self.walk.start, self.walk
+        family = walk.family.replace(**{walk.name: float(rows.p[i])})
+        found = Solution(family, s.sigma, s.halves, s.sides, np.concatenate([rows.t[i], rows.D[i]]))
+        return found.with_mean() if found.equations.free else found

@@ -1,7 +1,7 @@
-"""Pseudo-arclength steps along a branch of periodic orbits, with exact derivatives by the unknowns and the parameter.
+"""Points of a branch of periodic orbits, and steps between them, on the continuation core.
 
-A point of the branch is x = (t_1 .. t_K, D_1 .. D_K, (c), p). Distances are measured in units of 1/omega for times, of
-the fastest impulse for impulses, and of the parameter's range.
+Distances along a branch are measured over phases, over impulses in units of omega times the size of the gap, and over
+the parameter in that of its range.
 """
 
 from copy import copy
@@ -10,108 +10,68 @@ from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.impulse_equations import (
-    Equations,
-    check_unknowns,
-    contacts_of,
-    moves_stops_only,
-    moves_stops_straight,
-)
-from vibro_sweep.analysis.periodic.long_orbits import (
-    SPARSE,
-    influence,
-    is_sparse,
-    residual,
-    sign_and_log_det,
-    solve_bordered,
-)
-from vibro_sweep.analysis.periodic.solution import Solution, equations_for
-from vibro_sweep.engine.impulses import across
-from vibro_sweep.engine.impulses.across import MOST_CORRECTIONS
-from vibro_sweep.engine.impulses.equations import ROUNDING
-from vibro_sweep.engine.impulses.green import space
-from vibro_sweep.model.linear import CONTACT, Linear
+from vibro_sweep.analysis.branches.resting_walk import RestingWalk
+from vibro_sweep.analysis.continuation.errors import sensitivity
+from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.continuation.tracer import Tracer, copied
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.continuation.branch_tests import RATE
+from vibro_sweep.engine.continuation.curve_tests import MINUS
+from vibro_sweep.engine.continuation.workspace import Place
+from vibro_sweep.model.linear import Linear
 
-PHASE = 1 / 16  # of the rounding of the gap: that of 1 radian of the force, twice what is lost at most
 STILL = 1e-5  # in units of a walk: an orbit that Newton's method takes farther off is another one
 
 
 @dataclass(eq=False)
 class Point:
-    """A point of a branch; `x` in scaled units."""
+    """A point of a branch. What it is measured by: K phases, K impulses and the parameter, in units of the walk."""
 
     walk: "Walk"
-    x: np.ndarray
-    equations: Equations
-    J: np.ndarray  # (n, n + 1), by scaled unknowns and parameter; where the equations are sparse (n, 1), by the latter
-    motion: np.ndarray
-    change: float
-    corrections: int
-    direction: np.ndarray  # roughly forwards
+    guess: Place
     held: float | None = None  # the parameter, where it is given
 
     @property
     def p(self) -> float:
-        return self.held if self.held is not None else float(self.x[-1] * self.walk.scale[-1])
+        return self.held if self.held is not None else float(self.guess.p[0])
 
     def hold(self, value: float) -> None:
         """The parameter is `value`, to the last bit: rounding may put it beyond what is allowed."""
-        self.held = value
+        self.held = self.guess.p[0] = value
         self.__dict__.pop("solution", None)
 
     def backwards(self) -> "Point":
         """The same point of the branch in the other direction."""
-        other = copy(self)
-        other.direction = -self.direction
-        other.__dict__.pop("tangent", None)
-        return other
+        return Point(self.walk, self.walk.turned(self.guess), self.held)
 
-    @cached_property
+    @property
+    def x(self) -> np.ndarray:
+        """(2K + 1,)."""
+        place, walk = self.guess, self.walk
+        return np.concatenate([place.phases, place.jumps, place.p[:1] / walk.unit])
+
+    @property
     def tangent(self) -> np.ndarray:
-        """Unit tangent of the branch, scaled units."""
-        n = len(self.x)
-        t = self.walk.solve(self.equations, self.x, self.J, self.motion, self.direction, np.zeros(n - 1), 1.0)
-        return t / np.linalg.norm(t)
+        """(2K + 1,) unit tangent."""
+        return self.walk.tracer.direction(self.guess)[:-2]
 
     @cached_property
     def solution(self) -> Solution:
-        w = self.walk
-        u = self.x[:-1] * w.scale[:-1]
-        family = w.family.replace(**{w.name: self.p})
-        s = w.start
-        if self.held is None:
-            family.__dict__["linear"] = self.equations.q
-        solution = Solution(family, s.sigma, s.halves, s.sides, u, self.change, s.rests)
-        solution.__dict__["equations"] = self.equations  # both are known
-        return solution
+        return self.walk.solution(self.guess)
+
+    @property
+    def residual(self) -> float:
+        """The last change of Newton's method."""
+        return self.solution.change
 
     def sensitivity(self, normal: np.ndarray) -> float:
-        """By how much the parameter moves, on the plane with this normal, where all gaps at impacts are off by their
-        size. Of a long orbit also where gaps and speeds are off, each by chance, as far as rounding of omega t moves
-        the force: that grows with t."""
-        w, K = self.walk, self.walk.start.K
-        if is_sparse(self.equations, w.start.sides):
-            u, column = self.x[:-1] * w.scale[:-1], self.J[:, -1] / w.scale[-1]
-            weights = influence(self.equations, w.start.sides, u, self.motion, column, normal / w.scale)
-            late = PHASE * np.abs(u[:K]) * self.equations.q.omega
-            speed = self.solution.size_of_gap * self.equations.q.omega
-            turned = np.hypot(weights[:K] * self.solution.size_of_gap, weights[K : 2 * K] * speed) * late
-            return float(np.abs(weights[:K]).sum() * self.solution.size_of_gap + np.linalg.norm(turned))
-        else:
-            axis = np.zeros(len(self.x))
-            axis[-1] = w.scale[-1]
-            weights = np.linalg.solve(np.vstack([self.J, normal]).T, axis)
-        return float(np.abs(weights[:K]).sum() * self.solution.size_of_gap)
+        """By how much the parameter moves, on the plane with this normal, where each equation is off by its size."""
+        return sensitivity(self.walk.tracer, self.guess, np.append(normal, [0.0, 0.0]))
 
-    @cached_property
-    def reflection(self) -> tuple[float, float]:
-        """Sign and logarithm of |det J(-1)|, zero at a flip (pitchfork)."""
-        w = self.walk
-        u, sides = self.x[:-1] * w.scale[:-1], w.start.sides
-        if is_sparse(self.equations, sides):
-            return sign_and_log_det(self.equations, sides, u, self.motion, -1)
-        sign, size = np.linalg.slogdet(self.equations.linearised(-1, sides, u, self.motion))
-        return float(sign), float(size)
+    @property
+    def reflection(self) -> float:
+        """det G(-1), zero at a flip (pitchfork)."""
+        return float(self.guess.tests[MINUS])
 
     @cached_property
     def torus(self) -> float:
@@ -125,137 +85,48 @@ class Point:
     @cached_property
     def releases(self) -> np.ndarray:
         """(K,) acceleration away from the stop just after an impact with R = 0; infinite for other impacts."""
-        e, sides = self.equations, np.array(self.walk.start.sides, float)
-        s = space(e.q)
-        after = self.motion[:, 1] + self.solution.jumps * (s.e_g @ s.A @ (s.A @ s.e_v))
-        leaves = np.where(e.q.restitution(sides) == 0, -sides * after, np.inf)
-        leaves[list(self.walk.start.rests)] = np.inf
-        return leaves
+        return self.walk.releases(self.guess)
 
-    @cached_property
-    def stays(self) -> float:
-        """The least of what makes a rest: its length, in 1/omega, and the acceleration into the stop; inf without."""
-        s, omega = self.solution, self.solution.family.linear.omega
-        if not s.rests:
-            return np.inf
-        lengths = (s.ends - s.times[list(s.rests)]) * omega
-        return float(min(lengths.min(), s.hold / (omega**2 * s.size_of_gap)))
+    stays = np.inf  # nothing rests
 
 
 class Walk:
-    """A branch through `start` in the parameter `name`."""
+    """A branch through `start`, an orbit with impacts and without rests, in the parameter `name`."""
 
     def __init__(self, start: Solution, name: str, span: float):
-        self.start, self.name, self.family = start, name, start.family
-        self.media: dict[float, np.ndarray | None] = {}  # of compiled steps, by where they are centred
-        self.scale = np.append(start.units, span)
-        self._contact_only = not start.rests and moves_stops_only(self.family.derivative(name))
-        self._straight = self._contact_only and moves_stops_straight(self.family, name, float(span))
+        self.start, self.name, self.family, self.unit = start, name, start.family, span
+        self._taus = [(start.family.numbers[name], float(start.family.linear.tau))]
+
+    @cached_property
+    def tracer(self) -> Tracer:
+        """Raises NoPlaneError, ResonanceError."""
+        value = self.family.numbers[self.name]
+        return Tracer(Start("orbit", self.start), (self.name,), [(value - self.unit, value + self.unit)], [self.unit])
 
     def oscillators(self, values: np.ndarray) -> list[Linear]:
         """At values of the parameter that points of the branch have."""
-        if self._straight:
-            q, slope = self.family.stops(self.name, self.family.linear)
-            at_start, slopes = (np.array(one[-len(CONTACT) :]) for one in (q, slope))
-            moved = np.multiply.outer(values - self.family.numbers[self.name], slopes)
-            return [q._replace(**dict(zip(CONTACT, row, strict=True))) for row in (at_start + moved).tolist()]
-        families = [self.family.replace(**{self.name: p}) for p in values.tolist()]
-        if self._contact_only:
-            return [family.stops(self.name, self.family.linear)[0] for family in families]
-        return [family.linear for family in families]
+        return [self.family.replace(**{self.name: p}).linear for p in values.tolist()]
 
-    def with_impact(self, start: Solution, index: int) -> "Walk":
-        """The same for `start`, orbits of this walk with one impact more, which is its impact `index`."""
-        longer, K = copy(self), self.start.K
-        for name in ("_contacts", "_first"):
-            longer.__dict__.pop(name, None)
-        longer.start = start
-        longer.scale = np.insert(self.scale, [index, K + index], self.scale[[0, K]])
+    def with_impact(self, touching: Solution) -> "Walk":
+        """The same for orbits with one impact more."""
+        longer = copy(self)
+        longer.start, longer.tracer = touching, self.tracer.through(touching)
         return longer
 
-    def equations(self, p: float) -> Equations:
-        """Raises ParameterError where the parameter leaves what is allowed."""
-        family = self.family.replace(**{self.name: p})
-        if self._contact_only:
-            return self.start.equations.with_stops(*family.stops(self.name, self.start.equations.q))
-        q = family.linear
-        return equations_for(self.start, q, family.derivative(self.name, q))
-
-    @cached_property
-    def _contacts(self) -> np.ndarray:
-        q, slope = self.family.stops(self.name, self.family.linear)
-        return contacts_of(q, slope, self.start.sides)
-
-    def correct(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
+    def correct(self, guess: Place, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
         """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""
-        sparse = is_sparse(self.start.equations, self.start.sides)
-        if self._straight and self.start.K < SPARSE:  # the kernel eliminates one by one; LAPACK is faster from there on
-            return self._corrected_at_once(guess, normal, forwards)
-        x, before = guess.copy(), np.inf
-        for corrections in range(1, MOST_CORRECTIONS + 1):
-            try:
-                e = self.equations(float(x[-1] * self.scale[-1]))
-                u = x[:-1] * self.scale[:-1]
-                if sparse:
-                    F, Fp, motion = residual(e, self.start.sides, u)
-                    rows = Fp[:, None] * self.scale[-1]
-                else:
-                    F, J, Fp, motion = e.evaluate(self.start.sides, u)
-                    rows = np.hstack([J, Fp[:, None]]) * self.scale
-                step = self.solve(e, x, rows, motion, normal, F, normal @ (x - guess))
-            except (np.linalg.LinAlgError, ValueError):  # also a parameter beyond its range
-                return None
-            change = float(np.abs(step).max())
-            if not change <= 1:
-                return None
-            x = x - step
-            t = x[: self.start.K] * self.scale[0]
-            if len(t) and not (np.all(np.diff(t) > 0) and t[-1] - t[0] < e.P):
-                return None
-            held = np.abs(F[: self.start.K]).max(initial=0.0) <= ROUNDING * self.start.size_of_gap
-            if change <= 1e-15 or (change < (1e-7 if held else 1e-9) and change >= 0.3 * before):
-                e = self._moved(e, x, np.abs(rows[: self.start.K, -1] * step[-1]).max(initial=0.0))
-                return e and Point(self, x, e, rows, motion, change, corrections, forwards)
-            before = change
-        return None
-
-    def _moved(self, e: Equations, x: np.ndarray, left: float) -> Equations | None:
-        """The equations at x, after a last correction that leaves `left` of the gaps in those before it, e.
-
-        Rounding moves the parameter of a long, nearly neutral orbit by more than what it leaves of the gaps elsewhere.
-        None where the parameter is beyond its range.
-        """
-        if left <= ROUNDING * self.start.size_of_gap:
-            return e
-        try:
-            return self.equations(float(x[-1] * self.scale[-1]))
-        except ValueError:
+        place = self.tracer.correct(guess, np.append(normal, [0.0, 0.0]))
+        if place is None:
             return None
+        if self.tracer.direction(place)[:-2] @ forwards < 0:
+            place = self.turned(place)
+        return Point(self, place)
 
-    def _corrected_at_once(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
-        """`correct` by a kernel (engine/impulses/across.py)."""
-        n, e = len(guess) - 1, self.start.equations
-        check_unknowns(guess[:-1], e.size(self.start.sides))
-        x, J, motion = np.empty(n + 1), np.empty((n, n + 1)), np.empty((self.start.K, 3))
-        count, change = across.correct(
-            e.train, e.steady, self._contacts, float(self.family.numbers[self.name]), np.empty((self.start.K, 4)),
-            self.scale, guess, normal, float(self.start.size_of_gap), x, J, motion,
-            np.empty((7, max(n + 1, 4))), np.empty((n + 1, n + 1)),
-        )  # fmt: skip
-        if not count:
-            return None
-        try:
-            moved = self.equations(float(x[-1] * self.scale[-1]))
-        except ValueError:  # the parameter is beyond its range
-            return None
-        return Point(self, x, moved, J, motion, change, count, forwards)
-
-    def solve(self, e: Equations, x, J, motion, row, F, last: float) -> np.ndarray:
-        """The solution of [J; row] step = [F; last] in scaled units; J, as of `Point`, belongs to x. LinAlgError."""
-        if not is_sparse(e, self.start.sides):
-            return np.linalg.solve(np.vstack([J, row]), np.append(F, last))
-        u, scale = x[:-1] * self.scale[:-1], self.scale
-        return solve_bordered(e, self.start.sides, u, motion, J[:, -1] / scale[-1], row / scale, F, last) / scale
+    def turned(self, place: Place) -> Place:
+        """The same place with its tangent backwards."""
+        other = copied(place)
+        other.tangent[:], other.tangent_p[:], other.tests[RATE] = -place.tangent, -place.tangent_p, -place.tests[RATE]
+        return other
 
     def first(self, forwards: float) -> Point | None:
         """`start` itself; `forwards`: sign of the parameter's change.
@@ -267,20 +138,106 @@ class Walk:
 
     @cached_property
     def _first(self) -> Point | None:
-        value = self.family.numbers[self.name]
-        x = np.append(self.start.u, value) / self.scale
-        axis = np.zeros(len(x))
-        axis[-1] = 1.0
-        point = self.correct(x, axis, axis)
-        if point is None or np.abs(point.x - x).max() > STILL:
+        try:
+            guess = self.tracer.guess()
+        except ValueError:
             return None
-        point.hold(value)
+        axis = np.zeros(2 * self.start.K + 1)
+        axis[-1] = 1.0
+        point = guess and self.correct(guess, axis, axis)
+        if point is None or np.abs(point.x - Point(self, guess).x).max() > STILL:
+            return None
+        point.hold(self.family.numbers[self.name])
         return point
 
-    def step(self, point: Point, length: float, secant: np.ndarray | None = None) -> Point | None:
-        """The point of the branch whose projection on the tangent at `point` is `length`."""
+    def step(self, point: Point, length: float, near: Place | None = None) -> Point | None:
+        """The point of the branch whose projection on the tangent at `point` is `length`; near: a guess."""
         tangent = point.tangent
-        guess = point.x + length * tangent
-        if secant is not None:
-            guess = secant + (length - tangent @ (secant - point.x)) * tangent
+        if near is not None:
+            length -= float(tangent @ (Point(self, near).x - point.x))
+        guess = self.tracer.moved(near or point.guess, length, point.guess)
         return self.correct(guess, tangent, tangent)
+
+    def beside_start(self, length: float) -> Point | None:
+        """The point of the branch at a distance from the start, also where that is a fold."""
+        guess = self.tracer.guess()
+        row = guess and self.tracer.first_direction(guess)
+        if row is None:
+            return None
+        return self.correct(self.tracer.moved(guess, length), row[:-2], row[:-2])
+
+    def between(self, a: Point, b: Point, share: float) -> Place:
+        """On the cubic through a and b with their tangents."""
+        rest, length, w = 1 - share, float(np.linalg.norm(b.x - a.x)), self.tracer
+        guess = w.shifted(a.guess, a.guess, b.guess, share**2 * (1 + 2 * rest))
+        guess = w.moved(guess, share * rest**2 * length, a.guess)
+        return w.moved(guess, -(share**2) * rest * length, b.guess)
+
+    def with_value(self, guess: Place, index: int, value: float) -> Place:
+        """With another value of the unknown `index`, of those by which points are measured."""
+        K = self.start.K
+        unknowns = [*((guess.x, (i, -2)) for i in range(K)), *((guess.x, (i, -1)) for i in range(K)), (guess.p, 0)]
+        values, place = unknowns[index]
+        values[place] = value * (self.unit if values is guess.p else 1.0)
+        return guess
+
+    def shaken(self, guess: Place, change: np.ndarray) -> Place:
+        """Moved by a small change of what points are measured by."""
+        K, other = self.start.K, copied(guess)
+        other.phases[:] += change[:K]
+        other.jumps[:] += change[K:-1]
+        other.p[0] += change[-1] * self.unit
+        return other
+
+    def of(self, solution: Solution) -> Place | None:
+        """A guess that is this orbit."""
+        return self.tracer.guess(solution, self.tau(solution.family.numbers[self.name]))
+
+    def solution(self, guess: Place) -> Solution:
+        """The orbit of a guess."""
+        return self.tracer.solution(guess, self.tau(float(guess.p[0])))
+
+    def tau(self, p: float) -> float:
+        """The phase of the force, a continuous function of the parameter: times of impacts do not jump."""
+        if not self._phase_moves:
+            return self._taus[0][1]
+        near = min(self._taus, key=lambda known: abs(known[0] - p))
+        if near[0] == p:
+            return near[1]
+        tau = float(self.family.replace(**{self.name: p}).linear.tau)
+        self._taus.append((p, tau + 2 * np.pi * round((near[1] - tau) / (2 * np.pi))))
+        return self._taus[-1][1]
+
+    @cached_property
+    def _phase_moves(self) -> bool:
+        return bool(self.family.derivative(self.name).tau)
+
+    def ahead(self, point: Point) -> Solution:
+        """The orbit to which the tangent leads, at the distance 1, with the parameter of the point."""
+        guess = self.tracer.moved(point.guess, 1.0)
+        guess.p[0] = point.p
+        return self.solution(guess)
+
+    def with_touch(self, guess: Place, touching: Solution, index: int) -> Place:
+        """The guess with one event more, the impact `index` of `touching`, which has no speed."""
+        return self.tracer.with_event(guess, touching, index)
+
+    def without_touch(self, place: Place, index: int) -> Place:
+        """The place of a walk with one impact more, without that."""
+        return self.tracer.without_event(place, index)
+
+    def releases(self, place: Place) -> np.ndarray:
+        """`Point.releases`."""
+        w, sides = self.tracer, np.array(self.start.sides, float)
+        R = self.family.replace(**{self.name: float(place.p[0])}).linear.restitution(sides)
+        if np.all(R > 0):
+            return np.full(len(sides), np.inf)
+        w.assemble(place)
+        N, events = w.n // 2, w.bench.events
+        after = events["motion"][:, 1] + w.planes[0]["numbers"][4] * events["bend"][:, N]
+        return np.where(R == 0, -sides * after, np.inf)
+
+
+def walk_of(start: Solution, name: str, span: float):
+    """The branch through an orbit: `Walk`, or without impacts and with rests `RestingWalk`."""
+    return RestingWalk(start, name, span) if start.rests or start.K == 0 else Walk(start, name, span)

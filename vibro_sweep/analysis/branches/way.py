@@ -16,12 +16,13 @@ from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth
 from vibro_sweep.analysis.branches.pairs import coarse
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.response import longest_step
+from vibro_sweep.analysis.branches.resting_walk import RestingPoint
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
 from vibro_sweep.analysis.branches.track import Rows, Track, join, row_of
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses import branch, places
+from vibro_sweep.engine.continuation import stepper
 
 # The first step is not AMPLITUDE of births.py: from an orbit that was just born it would end at the birth itself, where
 # the branch has no tangent, and pass it unseen.
@@ -60,13 +61,11 @@ class Way:
     def go(self) -> None:
         """To the branch's end: by compiled steps where they can be, that is with impacts."""
         self._add(self.first)
-        start, steps = self.walk.start, (LONGEST_STEP, SHORTEST_STEP, STRAIGHT)
-        compiled = start.K > 0 and not start.rests
-        track = Track(self.first, self.walk, self.bounds, self.frame[1], *steps) if compiled else None
-        if track is not None and track.begin(self.first, self.first_step):
-            self._run(track)
+        if isinstance(self.walk, Walk):
+            steps = LONGEST_STEP, SHORTEST_STEP, STRAIGHT
+            self._run(Track(self.first, self.walk, self.bounds, self.frame[1], self.first_step, steps))
         else:
-            self._step(self.first, 1)
+            self._step(self.first)
 
     def _run(self, track: Track) -> None:
         a, count, looked = self.first, 1, 0
@@ -76,25 +75,22 @@ class Way:
             if len(rows.p):
                 self.rows.append(rows)
                 self._passed = None
-            self._tell(count, track.a.numbers[places.P])
-            if reason in (branch.FULL, branch.FAR):
+            self._tell(count, track.a.p[0])
+            if reason in (stepper.FULL, stepper.FAR):
                 continue
             a, b = track.point(track.a), track.point(track.b)
             before = self._count(looked)
             if self._over_birth(track, [before + more for more in passed(self.walk, self.rows[looked:], a)]):
                 return
             looked = len(self.rows) - 1
-            if reason == branch.NO_START and a is not None:
-                self._step(a, count)
-                return
-            if reason == branch.FAILED or a is None or b is None:
+            if reason == stepper.FAILED or a is None or b is None:
                 if self._over_birth(track, [self._count()]):
                     return
                 break
-            if reason == branch.CLOSED:
+            if reason == stepper.CLOSED:
                 self._close()
                 return
-            before = self._point_before(track) if reason == branch.TOUCH else None
+            before = self._point_before(track) if reason == stepper.TOUCH else None
             if before is not None and self._again(before, a, b):
                 return
             if self._pass(a, b, float((b.x - a.x) @ a.tangent), beside=(before, None)):
@@ -102,22 +98,22 @@ class Way:
             track.accept(a, b)
         self.special.append(self._at("failed", a or self.first, math.nan))
 
-    def _step(self, a: Point, passed: int) -> None:
-        """The same in Python: for orbits without impacts or with rests, and where compiled steps cannot go."""
-        length, before = self.first_step, None
+    def _step(self, a: RestingPoint) -> None:
+        """The same in Python, for orbits without impacts or with rests."""
+        length, before, passed = self.first_step, None, 1
         while passed < MOST_POINTS and length >= SHORTEST_STEP:
             if a.solution.K == 0:
                 length = min(length, longest_step(a))
             b = self.walk.step(a, length)
             turn = math.acos(min(1.0, a.tangent @ b.tangent)) if b is not None else math.inf
-            if turn > STRAIGHT or (length > branch.COARSE * LONGEST_STEP and coarse(before, a, b)):
+            if turn > STRAIGHT or (length > stepper.COARSE * LONGEST_STEP and coarse(before, a, b)):
                 length /= 2
                 continue
             if before is not None and touches(self.walk, before, a, b) and self._again(before, a, b):
                 return
             if self._pass(a, b, length, beside=(before, None)):
                 return
-            if passed >= branch.EARLY and self._comes_back(a, length):
+            if passed >= stepper.EARLY and self._comes_back(a, length):
                 self._close()
                 return
             if turn < STRAIGHT / 3 and b.corrections <= 5:
@@ -135,7 +131,7 @@ class Way:
 
     def _over_birth(self, track: Track, counts: list[int]) -> bool:
         """End at the birth that lies behind one of so many points. False: there is none (`before_passed`)."""
-        found = before_passed(self.walk, self.system, track, self.points, counts, self.first) if counts else None
+        found = before_passed(self.walk, track, self.points, counts, self.first) if counts else None
         if found is None:
             return False
         kept, a, b = found
@@ -189,7 +185,7 @@ class Way:
         """
         self._passed = a, len(self.rows), len(self.special)
         self._divisions = DIVISIONS
-        over = lands_on_birth(self.walk, self.system, a, b)
+        over = lands_on_birth(self.walk, a, b)
         if over is not None:
             b, length, beside = over, float((over.x - a.x) @ a.tangent), (beside[0], None)
         return self._divide(a, b, length, beside)
@@ -202,12 +198,12 @@ class Way:
             self.special.append(self._at("failed", a, math.nan))
             return True
         last, reach = (end[2], end[1]) if end else (b, length)
-        birth = own_birth(self.walk, self.system, a, last, reach)
+        birth = own_birth(self.walk, a, last, reach)
         before = None
         if birth:
             before = before_birth(self.walk, a, birth[0], birth[2])
         elif end and end[0].type == "graze" and end[0].index is not None:
-            before = self.walk.step(a, (1 - BEFORE) * reach, last.x)
+            before = self.walk.step(a, (1 - BEFORE) * reach, last.guess)
         found = [] if birth else bifurcations(self.walk, a, last, reach)
         if before is not None:
             known = {place[0].type for place in found}

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from vibro_sweep.analysis.periodic.impulse_equations import flow
-from vibro_sweep.analysis.periodic.media import sizes_of_rates
 from vibro_sweep.engine.continuation import moving_flow
 from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.extended import extended, identity, zeros
+from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import rates
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.model.linear import Family, Linear
@@ -142,6 +142,7 @@ class Oscillators:
         at_centre = sampled(q, self.units)
         r["fit"][0, 0][np.isinf(at_centre)] = at_centre[np.isinf(at_centre)]
         r["half_turns"] = self.halves
+        r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))
         longest = np.pi * self.halves / values[..., -1].min()
         r["bits"] = min(max(int(np.ceil(np.log2(2 * longest / r["width"]))), 1), moving_flow.BITS)
         exact_tables(r, at_centre[: n * (n + 1)].reshape(n, n + 1))
@@ -174,5 +175,5 @@ def _sizes(values: np.ndarray, n: int) -> np.ndarray:
     size = np.abs(values).max(axis=0)
     forces = np.zeros(len(size) - NUMBERS, bool)
     forces[n : n * (n + 1) : n + 1] = forces[n * (n + 1) :] = True
-    size[:-NUMBERS] = sizes_of_rates(size[:-NUMBERS], forces)
+    size[:-NUMBERS] = np.where(forces, size[:-NUMBERS][forces].max(), size[:-NUMBERS][~forces].max())
     return np.maximum(size, 1e-300)

@@ -1,4 +1,4 @@
-"""Points of a bifurcation curve with the exact oscillator: the first one, corrections, what is read there."""
+"""Points of a branch or a curve with the exact oscillator: the first one, corrections, what is read there."""
 
 from copy import copy as copy_object
 
@@ -57,6 +57,13 @@ class Tracer:
         self.problem = Problem(kind, start.index, sides, float(s.sigma), count, self.unit, repeats, mirrors)
         self.bench = new_bench(K, self.n)
         self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
+
+    def through(self, solution: Solution) -> "Tracer":
+        """For a branch of orbits with other impacts, of the same oscillator."""
+        other = copy_object(self)
+        other.start = Start("orbit", solution)
+        other._take_sides(solution.sides)
+        return other
 
     def resized(self, K: int) -> "Tracer":
         """For the same curve with K impacts: without the last, or with more on the same stop."""
@@ -139,10 +146,17 @@ class Tracer:
         place = self.guess()
         return place and self.settle(place, row)
 
-    def guess(self) -> Place | None:
-        """`start`, as it is; None where the oscillator has no forced motion."""
-        s, place = self.start.solution, new_place(self.K, self.n)
-        place.phases[:], place.jumps[:] = s.family.linear.omega * s.times + self.tau, s.jumps / self.units.speed
+    def guess(self, solution: Solution | None = None, tau: float | None = None) -> Place | None:
+        """`start`, or another orbit with the same impacts, as it is; None where the oscillator has no forced motion.
+
+        tau : as of `solution`
+        """
+        s, place = solution or self.start.solution, new_place(self.K, self.n)
+        q = s.family.linear
+        place.phases[:], place.jumps[:] = (
+            q.omega * s.times + (q.tau if tau is None else tau),
+            s.jumps / self.units.speed,
+        )
         place.p[: len(self.names)] = [s.family.numbers[name] for name in self.names]
         place.p[THETA] = self.start.theta
         if not self.go_to(place):
@@ -162,7 +176,7 @@ class Tracer:
             self._take_null_vectors(place)
         if row is None:
             is_single = conditions(self.problem) == unknowns(self.problem)
-            row = self.direction(place) if is_single else self._first_direction(place)
+            row = self.direction(place) if is_single else self.first_direction(place)
         return None if row is None else self.correct(place, row)
 
     def beside(self, place: Place) -> list[Place]:
@@ -190,12 +204,27 @@ class Tracer:
         row[2 * self.K + parameter] = 1.0
         return row
 
-    def moved(self, place: Place, length: float) -> Place:
-        """A guess on the tangent."""
-        guess = copied(place)
-        guess.x[:] += length * place.tangent
-        guess.p[:] += length * place.tangent_p * [*self.problem.unit, 1.0]
+    def moved(self, place: Place, length: float, along: Place | None = None) -> Place:
+        """A guess on the tangent, or on one parallel to that at another place."""
+        guess, along = copied(place), along or place
+        guess.x[:] += length * along.tangent
+        guess.p[:] += length * along.tangent_p * [*self.problem.unit, 1.0]
         return guess
+
+    def with_event(self, place: Place, solution: Solution, index: int) -> Place:
+        """A guess with one event more: impact `index` of an orbit near it, without speed."""
+        longer, q = new_place(self.K + 1, self.n), self.planes[0]
+        phase = solution.family.linear.omega * solution.times[index] + solution.family.linear.tau
+        state = solution.states[index, : self.n] / self.state_units - (q["Z"] * np.exp(1j * phase)).real
+        longer.x[:] = np.insert(place.x, index, [*state, phase, 0.0], axis=0)
+        longer.p[:] = place.p
+        return longer
+
+    def without_event(self, place: Place, index: int) -> Place:
+        """A place of a tracer with one event more, without that."""
+        shorter = new_place(self.K, self.n)
+        shorter.x[:], shorter.p[:] = np.delete(place.x, index, axis=0), place.p
+        return shorter
 
     def _take_null_vectors(self, place: Place) -> None:
         """v and w of the critical multiplier, at a place that has none."""
@@ -205,13 +234,19 @@ class Tracer:
             for here, found in ((place.v, self.bench.events["v"]), (place.w, place.left)):
                 here[:] = found / np.linalg.norm(found)
 
-    def _first_direction(self, place: Place) -> np.ndarray | None:
-        """The tangent of the curve at a place to which the oscillator was moved."""
+    def first_direction(self, place: Place) -> np.ndarray | None:
+        """The tangent at a place to which the oscillator was moved; it is kept there."""
         if not self.do(stepper.ASSEMBLE, place):
             return None
-        size = self.n + unknowns(self.problem)
+        n, size = self.n, self.n + unknowns(self.problem)
         null = np.linalg.svd(self.bench.work[0]["ends"][: size - 1, :size])[2][-1]
-        return self.unit_row(self.taken_apart(place, null[: self.n], null[self.n :]))
+        change, events = self.taken_apart(place, null[:n], null[n:]), self.bench.events
+        length = np.linalg.norm(change)
+        place.tangent[:] = events["changes"][:, 1]
+        place.tangent[:, :n] += events["rate"] * place.tangent[:, n, None]
+        place.tangent[:] /= length
+        place.tangent_p[:] = change[-3:] / length
+        return change / length
 
     def taken_apart(self, place: Place, first: np.ndarray, parameters: np.ndarray) -> np.ndarray:
         """(2 K + 3,) phases, jumps, parameters of a change with this xi_1, after `assemble`."""
@@ -284,12 +319,16 @@ class Tracer:
     def family(self, place: Place) -> Family:
         return self.oscillators.at(place.p)
 
-    def solution(self, place: Place) -> Solution:
-        """The orbit of a point; its times are those of the oscillator with its own phase."""
+    def solution(self, place: Place, tau: float | None = None) -> Solution:
+        """The orbit of a point; its times are those of the oscillator with its own phase.
+
+        tau : that phase, of those that differ by whole turns; by default times are as near to the start's as they can
+        """
         s, family = self.start.solution, self.family(place)
         q = family.linear
-        t = (place.phases - q.tau) / q.omega
-        t -= forcing_period(q) * np.round((t[0] - s.times[0]) / forcing_period(q)) if self.K else 0.0
+        t = (place.phases - (q.tau if tau is None else tau)) / q.omega
+        if tau is None and self.K:
+            t -= forcing_period(q) * np.round((t[0] - s.times[0]) / forcing_period(q))
         u, sides = np.concatenate([t, place.jumps * self.units.speed]), tuple(map(int, self.problem.sides))
         found = Solution(family, s.sigma, s.halves, sides, u, float(place.tests[RESIDUAL]))
         e = equations_for(found, q)

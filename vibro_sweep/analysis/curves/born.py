@@ -122,19 +122,19 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
         pair = mu[np.argmin(np.where(mu.imag > 1e-6, np.abs(np.abs(mu) - 1), np.inf))]
         return Entry(Start(name, child, theta=abs(float(np.angle(pair**2)))), change, None)
     across = int(np.argmin(np.abs(place.tangent_p[:2])))
-    found = _with_amplitude(child, change, names[across], values[across])
+    found = _with_amplitude(child, change, names[across])
     theta = found and _angle_near_one(found)
     return Entry(Start(name, found, theta=theta), change, None) if theta else None
 
 
-def _with_amplitude(guess: Solution, change: np.ndarray, name: str, value: float) -> Solution | None:
+def _with_amplitude(guess: Solution, change: np.ndarray, name: str) -> Solution | None:
     """The orbit near a guess with its amplitude in the direction `change`; the parameter is found with it."""
     guess = guess.with_mean() if guess.is_free else guess
     walk = Walk(guess, name, size_of(guess, name))
-    row = np.zeros(len(walk.scale))
-    row[: len(change)] = change / walk.scale[: len(change)]
+    row = np.append(change / guess.units[: len(change)], 0.0)
     row /= np.linalg.norm(row)
-    point = walk.correct(np.append(guess.u, value) / walk.scale, row, row)
+    place = walk.of(guess)
+    point = place and walk.correct(place, row, row)
     return point and point.solution
 
 

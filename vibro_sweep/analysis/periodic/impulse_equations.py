@@ -18,7 +18,7 @@ from vibro_sweep.engine.impulses.green import (
     space_slopes,
     train,
 )
-from vibro_sweep.model.linear import CONTACT, Family, Keyed, Linear, amplitude_slopes, amplitudes, forcing_period
+from vibro_sweep.model.linear import Keyed, Linear, amplitude_slopes, amplitudes, forcing_period
 
 UNORDERED = 1e-9  # of the period: by so much rounding may exchange impacts
 
@@ -223,19 +223,6 @@ TABLES = ("M", "K", "C", "along", "constant", "sine", "cosine", "omega", "tau")
 def moves_stops_only(slope: Linear) -> bool:
     """Whether a parameter changes the stops and the restitution, and no table."""
     return not any(np.any(getattr(slope, name)) for name in TABLES)
-
-
-def moves_stops_straight(family: Family, name: str, span: float) -> bool:
-    """Whether it does so in proportion: stops and restitution change by the same at other values, within `span`."""
-    if not moves_stops_only(family.derivative(name)):
-        return False
-    value, q, slopes = family.numbers[name], family.linear, []
-    try:
-        for share in (0.0, -0.37, 0.59):
-            slopes.append(family.replace(**{name: value + share * span}).stops(name, q)[1])
-    except ValueError:  # beyond its range
-        return False
-    return all(slope[-len(CONTACT) :] == slopes[0][-len(CONTACT) :] for slope in slopes)
 
 
 @lru_cache(maxsize=16)

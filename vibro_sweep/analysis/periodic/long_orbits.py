@@ -116,14 +116,6 @@ def solve_bordered(e: Equations, sides, u, motion, column, row, F, last: float, 
     return lu.solve(right)[places]
 
 
-def influence(e: Equations, sides, u, motion, column, row) -> np.ndarray:
-    """(2K + 1,) derivatives of the last unknown of `solve_bordered` by its right-hand side (F, last)."""
-    lu, places = _bordered(e, sides, u, motion, column, row)
-    axis = np.zeros(lu.shape[0])
-    axis[-1] = 1.0
-    return lu.solve(axis, "T")[places]
-
-
 def critical_direction(e: Equations, sides, u, motion, mu: int, scale) -> np.ndarray:
     """(2K,) of length 1 in units `scale`: what a singular J(mu) takes to zero."""
     nothing, column, row = np.zeros(2 * len(sides)), np.ones(2 * len(sides)), 1 / scale

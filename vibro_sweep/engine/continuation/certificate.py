@@ -1,15 +1,13 @@
-"""The certificate of an orbit on a bifurcation curve: how far its turning points stay from their stops."""
+"""The certificate of an orbit: how far its turning points stay from their stops."""
 
 import cmath
-import math
 
 import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_sum import NEXT
-from vibro_sweep.engine.continuation.factors import square
-from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, polynomial
+from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, polynomial
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
-from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
+from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
 
@@ -25,7 +23,6 @@ def certify(f, c, place, b):
     passed over; if nothing nearer is found, they are looked at again.
     """
     work = b.work[0]
-    weigh(f, work.weights)
     far = work.nearest[0] + FARTHER * abs(work.nearest[0])
     if not far < np.inf:
         far = np.inf
@@ -38,25 +35,19 @@ def certify(f, c, place, b):
 
 
 @jit
-def weigh(f, weights):
-    """Bounds, over a cell, of how far the gap moves by each coordinate of the state, which is 1, and by the shift."""
-    n, power = f.A.shape[0], f.width * OVERLAP
-    for r in range(n + 1):
-        weights[r] = 0.0
-    for q in range(1, ORDER + 1):
-        for r in range(n + 1):
-            weights[r] += power * abs(f.series[q, 0, r])
-        power *= f.width * OVERLAP
-
-
-@jit
-def is_far(f, y, e, swing, weights, distance):
-    """Whether the gap stays farther than `distance` from both stops over a cell; swing: a bound of the steady part."""
-    n = f.A.shape[0]
-    gap, moved = y[0] + (f.Z[0] * e).real, swing + weights[n]
+def may_turn(f, y, e, low, high, nearest):
+    """`turns_near` of the cell that begins in the state y, where the steady motion is Re(Z e)."""
+    n, swing = f.A.shape[0], f.Z[0] * e
+    p0, p1, p2, p3, rest = f.middle[n, 0], f.middle[n, 1], f.middle[n, 2], f.middle[n, 3], f.rest[n] + f.swing_rest
     for r in range(n):
-        moved += weights[r] * abs(y[r])
-    return f.numbers[HIGH] - gap - moved > distance and gap - moved - f.numbers[LOW] > distance
+        p0 += y[r] * f.middle[r, 0]
+        p1 += y[r] * f.middle[r, 1]
+        p2 += y[r] * f.middle[r, 2]
+        p3 += y[r] * f.middle[r, 3]
+        rest += abs(y[r]) * f.rest[r]
+    p0, p1 = p0 + (swing * f.swing[0]).real, p1 + (swing * f.swing[1]).real
+    p2, p3 = p2 + (swing * f.swing[2]).real, p3 + (swing * f.swing[3]).real
+    return turns_near(p0, p1, p2, p3, rest, low, high, nearest)
 
 
 @jit
@@ -76,9 +67,10 @@ def look(f, c, place, b):
     """Lower `work.nearest` to the nearest turning point."""
     K, n, omega, work = len(place.x), f.A.shape[0], f.numbers[OMEGA], b.work[0]
     nearest, y, other = work.nearest, work.flying[0], work.flying[1]
-    aside, most = ASIDE / omega, math.sqrt(square(f.Z[0])) * omega * f.width * OVERLAP
+    aside = ASIDE / omega
     for i in range(K):
         begin, length = place.x[i, n], b.events[i].length
+        gain = GAIN_HIGH if c.sides[i] > 0 else GAIN_LOW
         for r in range(n):
             y[r] = b.events[i].after[r]
         if c.kind >= GRAZE:
@@ -92,8 +84,10 @@ def look(f, c, place, b):
         cells = int(length / f.width)
         for k in range(cells + 1):
             width = min(f.width * OVERLAP, length - k * f.width)
-            if width > 0.0 and not is_far(f, y, e, most, work.weights, nearest[0]):
+            if width > 0.0 and may_turn(f, y, e, f.numbers[LOW], f.numbers[HIGH], nearest[0]):
                 expand_gap(f, y, e, work.cell)
+                if k == 0 and f.numbers[gain] == 1.0:  # not even rounding is left of the velocity
+                    work.cell[1] = 0.0
                 if extremes_of_cell(work.cell, width, f.numbers[LOW], f.numbers[HIGH], nearest, work.waiting):
                     nearest[1] = begin + omega * (nearest[1] + k * f.width)
             if k < cells:

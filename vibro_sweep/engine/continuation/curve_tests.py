@@ -36,24 +36,29 @@ def determinant(c, b, n, mu):
 
 
 @jit
-def pair_test(c, place, b, n):
-    """prod_{i<j} (1 - mu_i mu_j) of the multipliers but the critical one: eigenvalues of -sigma ahead^-1 behind.
-
-    Zero where a pair passes the unit circle, and at a neutral saddle. 1 without losses.
-    """
+def eigenvalues_of(c, b, n):
+    """Multipliers, real parts in `work.re` and imaginary ones in `work.im`: eigenvalues of -sigma ahead^-1 behind."""
     work, X = b.work[0], 2 * n + 2
     for r in range(n):
         for j in range(n):
             work.image[r, j], work.image[r, n + j] = work.last[r, j], -c.sigma * work.last[r, X + j]
     if not solve(work.image):
-        return 1.0
+        return False
     for r in range(n):
         for j in range(n):
             work.matrix[r, j] = work.image[r, n + j]
-    re, im = work.re, work.im
-    if not eigenvalues(work.matrix, n, re, im):
+    return eigenvalues(work.matrix, n, work.re, work.im)
+
+
+@jit
+def pair_test(c, place, b, n):
+    """prod_{i<j} (1 - mu_i mu_j) of the multipliers but the critical one.
+
+    Zero where a pair passes the unit circle, and at a neutral saddle. 1 without losses.
+    """
+    if not eigenvalues_of(c, b, n):
         return 1.0
-    left = -1
+    re, im, left = b.work[0].re, b.work[0].im, -1
     if c.kind == FOLD or c.kind == FLIP:
         mu, least = 1.0 if c.kind == FOLD else -1.0, math.inf
         for i in range(n):  # where mu is double, rounding makes a complex pair of it
@@ -126,6 +131,12 @@ def examine_null_vectors(c, place, b, n):
 
 
 @jit
+def changes_sign(x, y):
+    """Of two numbers whose product may underflow."""
+    return (x > 0.0 > y) or (x < 0.0 < y)
+
+
+@jit
 def passes(a, b):
     """Whether a margin changes its sign by more than rounding: where both stops are touched at once, it is zero."""
     return (a > TOUCHING and b < -TOUCHING) or (a < -TOUCHING and b > TOUCHING)
@@ -155,7 +166,7 @@ def happens(c, a, b):
     if (c.repeats and is_born(c, 1.0, a, b)) or (c.mirrors and is_born(c, -1.0, a, b)):
         return True
     for i in range(SIGNED):
-        if (a.tests[i] > 0.0 > b.tests[i]) or (a.tests[i] < 0.0 < b.tests[i]):  # their product may underflow
+        if changes_sign(a.tests[i], b.tests[i]):
             return True
     D = a.x.shape[1] - 1
     for i in range(len(a.x)):

@@ -7,9 +7,12 @@ All numbers are polynomials of the parameters (analysis/continuation/oscillators
 to any of their values. Where A changes there, the tables of the flight are built anew at each point.
 """
 
+import math
+
 import numpy as np
 
 from vibro_sweep.engine.continuation.factors import factorise, square, substitute
+from vibro_sweep.engine.impulses.extremes import MIDDLE
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.memory import record
@@ -56,6 +59,12 @@ def plane_of(masses: int) -> np.dtype:
         ("series_slopes", float, (2, ORDER + 1, n, n + 1)),
         ("powers", float, (BITS, n, n + 1)),  # exp(B width 2^j)
         ("power_slopes", float, (2, BITS, n, n + 1)),
+        ("middle_weights", float, (ORDER + 1, MIDDLE)),  # see extremes.py
+        ("rest_weights", float, ORDER + 1),
+        ("middle", float, (n + 1, MIDDLE)),  # of the gap over a cell, by each coordinate of the state, and the shift
+        ("rest", float, n + 1),
+        ("swing", complex, MIDDLE),  # the same of Re(Z e), times Z
+        ("swing_rest", float),
         ("stiffness", complex, (masses, masses)),  # factors of what Z is solved from
         ("order", np.int64, masses),
     ])  # fmt: skip
@@ -65,7 +74,8 @@ def plane_of(masses: int) -> np.dtype:
 def fit_at(f, p, q):
     """Values and slopes of the polynomials at the parameters (p, q)."""
     s, u = (p - f.centre[0]) / f.reach[0], (q - f.centre[1]) / f.reach[1]
-    for i in range(len(f.values)):
+    first = len(f.values) - NUMBERS if f.is_still > 0 and f.is_known > 0 else 0
+    for i in range(first, len(f.values)):
         value, by_s, by_u = 0.0, 0.0, 0.0
         for k in range(f.degree[0], -1, -1):
             row, slope = 0.0, 0.0
@@ -93,20 +103,23 @@ def spread(f):
     n = f.A.shape[0]
     N = n // 2
     size = n * (n + 1)
-    for r in range(n):
-        for c in range(n + 1):
-            f.A[r, c] = f.values[r * (n + 1) + c]
-            for j in range(f.parameters):
-                f.A_slopes[j, r, c] = f.slopes[j, r * (n + 1) + c]
     for i in range(NUMBERS):
         f.numbers[i] = f.values[size + n + i]
         for j in range(f.parameters):
             f.number_slopes[j, i] = f.slopes[j, size + n + i]
-    if f.moves[0] > 0 or f.moves[1] > 0:
-        build_series(f)
-        build_powers(f)
     if f.is_still > 0 and f.is_known > 0:
         return True
+    moves = f.moves[0] > 0 or f.moves[1] > 0
+    if moves or f.is_known == 0:
+        for r in range(n):
+            for c in range(n + 1):
+                f.A[r, c] = f.values[r * (n + 1) + c]
+                for j in range(f.parameters):
+                    f.A_slopes[j, r, c] = f.slopes[j, r * (n + 1) + c]
+        if moves:
+            build_series(f)
+            build_powers(f)
+        build_middle(f)
     f.is_known = 1
     # Z_q = W Y, Z_u = i omega Y,    (-omega^2 - i omega A_uu - A_uq W) Y = cosine - i sine
     omega, S = f.numbers[OMEGA], f.stiffness
@@ -137,7 +150,37 @@ def spread(f):
             f.Z_slopes[j, r] += f.A[r, N] * f.Z_slopes[j, 0] + f.A_slopes[j, r, N] * f.Z[0]
     for r in range(1, N):
         f.Z[r] += f.A[r, N] * f.Z[0]
+    build_swing(f)
     return True
+
+
+@jit
+def build_middle(f):
+    """What the gap does over a cell, from its Taylor coefficients."""
+    for r in range(f.A.shape[0] + 1):
+        f.rest[r] = 0.0
+        for k in range(MIDDLE):
+            f.middle[r, k] = 0.0
+        for q in range(ORDER + 1):
+            f.rest[r] += abs(f.series[q, 0, r]) * f.rest_weights[q]
+            for k in range(MIDDLE):
+                f.middle[r, k] += f.series[q, 0, r] * f.middle_weights[q, k]
+
+
+@jit
+def build_swing(f):
+    """The same of the steady motion."""
+    power, size = 1.0 + 0j, 1.0
+    f.swing_rest = 0.0
+    for k in range(MIDDLE):
+        f.swing[k] = 0.0
+    for q in range(ORDER + 1):
+        f.swing_rest += size * f.rest_weights[q]
+        for k in range(MIDDLE):
+            f.swing[k] += power * f.middle_weights[q, k]
+        power *= 1j * f.numbers[OMEGA] / (q + 1)
+        size *= f.numbers[OMEGA] / (q + 1)
+    f.swing_rest *= math.sqrt(square(f.Z[0]))
 
 
 @jit

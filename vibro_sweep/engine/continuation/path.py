@@ -1,10 +1,12 @@
-"""Along a bifurcation curve: how far steps may go, what is recorded, and whether it leaves its box or comes back."""
+"""Along a branch or a curve: how far steps may go, what is recorded, and whether it leaves its box or comes back."""
 
+import cmath
 import math
 from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.continuation.moving_flow import OMEGA, flight
 from vibro_sweep.engine.continuation.problem import index_of, unknowns
 from vibro_sweep.engine.continuation.workspace import TESTS, Place, new_place
 from vibro_sweep.engine.simd.jit import jit
@@ -20,28 +22,32 @@ class Record(NamedTuple):
     p: np.ndarray  # (most, 3)
     tests: np.ndarray  # (most, TESTS)
     omega: np.ndarray  # (most,): of the force
+    phase: np.ndarray  # (most,) at which states are asked for
+    state: np.ndarray  # (most, n) before an impact there, in contact coordinates
 
 
 class Path(NamedTuple):
-    """How to step, in the units of the curve, and what is passed."""
+    """How to step, in the units of the problem, and what is passed."""
 
     longest: float
     shortest: float
     straight: float  # radians between neighbouring tangents
     box: np.ndarray  # (2, 2): ends of both parameters
-    counts: np.ndarray  # (3,) integers: points of the curve before this call; points and corrections of this call
-    first: Place  # of the curve
+    counts: np.ndarray  # (3,) integers: points before this call; points and corrections of this call
+    first: Place
     a: Place  # where the last step began
     record: Record
     past: np.ndarray  # (n, 2) multipliers of the point before a
+    past_tests: np.ndarray  # (TESTS,)
     before: np.ndarray  # (1,) the distance from there to a; 0 where it is not known
 
 
 def new_path(most: int, K: int, n: int, longest: float, shortest: float, straight: float, box) -> Path:
     """most: points of one call."""
-    record = Record(*map(np.zeros, [(most, K, n + 2), (most, K, 2), (most, 3), (most, TESTS), most]))
-    places, past = (new_place(K, n), new_place(K, n)), (np.zeros((n, 2)), np.zeros(1))
-    return Path(longest, shortest, straight, box, np.zeros(3, np.int64), *places, record, *past)
+    shapes = (most, K, n + 2), (most, K, 2), (most, 3), (most, TESTS), most, most, (most, n)
+    places, past = (new_place(K, n), new_place(K, n)), (np.zeros((n, 2)), np.zeros(TESTS), np.zeros(1))
+    record, counts = Record(*map(np.zeros, shapes)), np.zeros(3, np.int64)
+    return Path(longest, shortest, straight, box, counts, *places, record, *past)
 
 
 @jit
@@ -67,6 +73,8 @@ def remember(path, a, length):
     """Keep a as the point before the next one, at this distance."""
     for r in range(len(path.past)):
         path.past[r, 0], path.past[r, 1] = a.multipliers[r, 0], a.multipliers[r, 1]
+    for j in range(TESTS):
+        path.past_tests[j] = a.tests[j]
     path.before[0] = length
 
 
@@ -83,6 +91,25 @@ def keep(place, b, omega, record, count):
         record.p[count, j] = place.p[j]
     for j in range(TESTS):
         record.tests[count, j] = place.tests[j]
+
+
+@jit
+def state_at(f, sigma, x, phase, work, state):
+    """The state (n,) of an orbit x (K, n + 2) at a phase, before an impact there."""
+    n, K, E, length = f.A.shape[0], len(x), work.E, math.pi * f.half_turns
+    turns = math.ceil((phase - x[0, n]) / length) - 1.0
+    s = phase - turns * length  # in (phi_1, phi_1 + length]
+    i = K - 1
+    while i > 0 and not x[i, n] < s:
+        i -= 1
+    flight(f, max(s - x[i, n], 0.0) / f.numbers[OMEGA], E, work.other)
+    turn = cmath.exp(1j * s)
+    sign = 1.0 if sigma > 0.0 or turns % 2.0 == 0.0 else -1.0
+    for r in range(n):
+        total = (f.Z[r] * turn).real + E[0, r, n] + E[0, r, n // 2] * x[i, n + 1]
+        for j in range(n):
+            total += E[0, r, j] * x[i, j]
+        state[r] = sign * total
 
 
 @jit

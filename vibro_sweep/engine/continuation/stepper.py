@@ -1,13 +1,15 @@
-"""Many steps along a bifurcation curve: predictor, corrector, tests and certificate of every point.
+"""Many steps along a branch or a bifurcation curve: predictor, corrector, tests and certificate of every point.
 
-Distances are measured in the units of the curve, over phases, jumps, parameters and theta. A call ends where something
-happens between two points, so that the caller can locate it; both points are kept.
+Distances are measured in the units of the problem, over phases, jumps, parameters and theta. A call ends where
+something happens between two points, so that the caller can locate it; both points are kept. It ends too where
+something may happen twice between two points of a branch, unseen by their tests: then the caller looks between them.
 """
 
 import math
 
 import numpy as np
 
+from vibro_sweep.engine.continuation.branch_tests import ON_CIRCLE, examine_branch, happens_on_branch, touches
 from vibro_sweep.engine.continuation.corrector import (
     assemble,
     in_order,
@@ -26,19 +28,22 @@ from vibro_sweep.engine.continuation.path import (
     outside,
     rate,
     remember,
+    state_at,
 )
-from vibro_sweep.engine.continuation.problem import STICK, TORUS
+from vibro_sweep.engine.continuation.problem import ORBIT, STICK, TORUS
 from vibro_sweep.engine.continuation.reflections import take_apart, take_up
 from vibro_sweep.engine.continuation.residual import fly_through, follow
 from vibro_sweep.engine.continuation.workspace import FIRST, SECOND, THETA
 from vibro_sweep.engine.impulses.pairs import coarse, exchanged
 from vibro_sweep.engine.simd.jit import entry, jit
 
-FULL, EVENT, CLOSED, FAILED, FAR, LEFT, STRONG, CHATTER = range(8)
+FULL, EVENT, CLOSED, FAILED, FAR, LEFT, STRONG, CHATTER, TOUCH = range(9)
 # why a call ends; FAR: beyond the reach of the plane, LEFT: perhaps out of the box, STRONG: near the resonance 1:1 or
-# 1:2, CHATTER: more or fewer impacts of a chatter sequence are to be written out
+# 1:2, CHATTER: more or fewer impacts of a chatter sequence are to be written out, TOUCH: something may vanish twice
 MOST_CORRECTIONS = 6
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
+SHIFTED = 0.8  # of a step, where its end lies on a bifurcation by chance
+MOST_SHIFTS = 5  # of one step
 BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
 EARLY = 10  # points before which a curve is not yet taken to be closed
 COARSE = 0.03  # of the longest step: to that they are shortened where they do not tell pairs of multipliers apart
@@ -97,14 +102,25 @@ def correct(f, c, place, row, b):
 
 @jit
 def set_up(f, c, place, b):
-    """What tests of a corrected point need: equations, but for a chatter sequence, whose tail changes little since the
-    last correction. False: singular."""
+    """What tests of a corrected point need. False: singular.
+
+    Of a branch, and of a chatter sequence, the equations have changed little since the last correction.
+    """
     if not move_to(f, place.p[FIRST], place.p[SECOND]):
         return False
-    if c.kind == STICK:
+    if c.kind == STICK or c.kind == ORBIT:
         fly_through(f, c, place, b)
         return True
     return assemble(f, c, place, b)
+
+
+@jit
+def look_at(f, c, place, b):
+    """Tests and certificate of a corrected point. False: singular."""
+    if c.kind == ORBIT:
+        examine_branch(f, c, place, b)
+        return True
+    return examine(f, c, place, b)
 
 
 @jit
@@ -120,10 +136,10 @@ def walk(f, c, path, place, row, b):
 
     Recorded are the points before the step in which it happens; path.a and place are the two points of this step.
     """
-    a, record, counts = path.a, path.record, path.counts
+    a, counts, shifts = path.a, path.counts, 0
     counts[1] = counts[2] = 0
     length = a.tests[LENGTH]
-    while counts[1] < len(record.p):
+    while counts[1] < len(path.record.p):
         for j in range(2):
             if not abs(a.p[j] - f.centre[j]) <= f.reach[j]:
                 a.tests[LENGTH] = length
@@ -145,23 +161,34 @@ def walk(f, c, path, place, row, b):
                 return FAILED
             continue
         place.tests[LENGTH] = length
-        if outside(path, place):
+        if c.kind != ORBIT and outside(path, place):
             return LEFT
-        if not (set_up(f, c, place, b) and examine(f, c, place, b)):
+        if not (set_up(f, c, place, b) and look_at(f, c, place, b)):
             return FAILED
+        if place.tests[ON_CIRCLE] > a.tests[ON_CIRCLE] and shifts < MOST_SHIFTS:  # signs there would be rounding
+            length *= SHIFTED
+            shifts += 1
+            continue
+        shifts = 0
         if length > COARSE * path.longest and hides(path, a, place, length):
             length *= 0.5
             continue
+        touching = c.kind == ORBIT and touches(path, a, place)
         remember(path, a, length)
-        if bulges(path, c, a, place):  # the curve may leave and come back, and if not it goes on from here
+        if c.kind == ORBIT:
+            if happens_on_branch(path, c, a, place):
+                return EVENT
+        elif bulges(path, c, a, place):  # the curve may leave and come back, and if not it goes on from here
             return LEFT
         if c.kind == TORUS and not NEAR_STRONG < place.p[THETA] < math.pi - NEAR_STRONG:
             return STRONG
-        if happens(c, a, place):
+        if c.kind != ORBIT and happens(c, a, place):
             return EVENT
+        if touching:
+            return TOUCH
         if counts[0] + counts[1] >= EARLY and comes_back(c, a, path.first, length):
             return CLOSED
-        keep(place, b, f.numbers[OMEGA], record, counts[1])
+        keep(place, b, f.numbers[OMEGA], path.record, counts[1])
         counts[1] += 1
         if turn < path.straight / 3 and made <= 3:
             length = min(1.5 * length, path.longest)
@@ -170,7 +197,18 @@ def walk(f, c, path, place, row, b):
     return FULL
 
 
-MOVE, ASSEMBLE, CORRECT, EXAMINE, NEAR, WALK, FOLLOW, TAKE_APART, TAKE_UP = range(9)  # what `at` is to do
+@jit
+def take_states(f, c, path, work):
+    """States of the recorded points at their phases. 0.0 where one has no forced motion."""
+    record = path.record
+    for i in range(path.counts[1]):
+        if not move_to(f, record.p[i, 0], record.p[i, 1]):
+            return 0.0
+        state_at(f, c.sigma, record.x[i], record.phase[i], work, record.state[i])
+    return 1.0
+
+
+MOVE, ASSEMBLE, CORRECT, EXAMINE, NEAR, WALK, STATES, FOLLOW, TAKE_APART, TAKE_UP = range(10)  # what `at` is to do
 
 
 @entry
@@ -179,7 +217,8 @@ def at(task, planes, c, path, place, row, b):
 
     MOVE: to the parameters of `place`, with the values `exact` of the plane; CORRECT, one step of Newton's method (its
     size is returned), and EXAMINE, tests, do that first. ASSEMBLE: equations, and null vectors. NEAR: all steps of
-    Newton's method, with the polynomials of the plane, and tests. WALK: why it ends. FOLLOW: states before all events
+    Newton's method, with the polynomials of the plane, and tests. WALK: why it ends. STATES:
+    of the recorded points, at `record.phase`. FOLLOW: states before all events
     from that before the first. TAKE_APART: the change of all events, `events.changes[1]`, for xi_1 and parameters in
     `work.null`. TAKE_UP: the left vector, in `place.left`, for those of the last and of the eliminated equations.
     """
@@ -193,6 +232,8 @@ def at(task, planes, c, path, place, row, b):
         return change if in_order(f, place) else np.nan
     if task == WALK:
         return float(walk(f, c, path, place, row, b))
+    if task == STATES:
+        return take_states(f, c, path, b.work[0])
     if task == FOLLOW:
         follow(f, place, b)
         return 1.0
@@ -209,6 +250,6 @@ def at(task, planes, c, path, place, row, b):
     if not assemble(f, c, place, b):
         return 0.0
     if task == EXAMINE or task == NEAR:
-        return 1.0 if examine(f, c, place, b) else 0.0
+        return 1.0 if look_at(f, c, place, b) else 0.0
     put_plane(f, c, b, row)
     return 1.0

@@ -16,7 +16,7 @@ from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.memory import new_lines, record
 
 FIRST, SECOND, THETA = range(3)  # of `Place.p`: both parameters, and theta of a Neimark-Sacker curve
-TESTS = 13
+TESTS = 22  # see curve_tests.py and branch_tests.py
 TERMS = 10  # of a power series in z and its conjugate, to third order
 PARAMETERS = 2  # of the oscillator that may be free
 ROWS = 3  # most scalar rows: conditions, and the plane across a tangent
@@ -33,8 +33,8 @@ class Place(NamedTuple):
     w: np.ndarray  # (K + 1, n + 2) complex: left null vector, rows 1 and 2 of the event and those of the flight after
     # it; last those of xi_1 - xi_1 = 0
     left: np.ndarray  # (K + 1, n + 2) complex: room for w of a trial
-    tests: np.ndarray  # (TESTS,): see curve_tests.py
-    multipliers: np.ndarray  # (n, 2): real and imaginary parts of those of the test PAIR; NaN where they are not known
+    tests: np.ndarray  # (TESTS,)
+    multipliers: np.ndarray  # (n, 2): real and imaginary parts; on a curve but the critical one. NaN: not known
 
     @property
     def phases(self) -> np.ndarray:
@@ -97,6 +97,7 @@ def work_of(masses: int) -> np.dtype:
         ("null", float, n + ROWS),  # xi_1 and parameters of a vector that is taken apart
         ("row_p", float, (ROWS, ROWS)),  # scalar rows by the parameters
         ("row_left", float, ROWS),  # and their residuals
+        ("E", float, (3, n, n + 1)),  # of a flight, and room for one
         ("other", float, (3, n, n + 1)),
         ("mirror", float, (n + 2, 2 * n + 2)),
         ("image", float, (n, 2 * n)),
@@ -106,7 +107,6 @@ def work_of(masses: int) -> np.dtype:
         ("cell", float, ORDER + 1),
         ("nearest", float, 3),  # turning point nearest to its stop: distance, phase, side
         ("waiting", float, (PIECES, 2)),
-        ("weights", float, n + 1),  # see certificate.py
         ("flying", float, (2, n)),
         ("order", np.int64, n + ROWS),
         ("border", complex, (n + 1, n + 1)),

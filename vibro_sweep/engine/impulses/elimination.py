@@ -38,23 +38,6 @@ def solve(a):
 
 
 @jit
-def sign_of_determinant(a):
-    """Of a square matrix, which is destroyed."""
-    n, sign = len(a), 1.0
-    for j in range(n):
-        sign *= bring_up(a, j)
-        if sign == 0.0:
-            return 0.0
-        if a[j, j] < 0.0:
-            sign = -sign
-        for i in range(j + 1, n):
-            factor = a[i, j] / a[j, j]
-            for k in range(j, n):
-                a[i, k] -= factor * a[j, k]
-    return sign
-
-
-@jit
 def solve_scaled(J, F, size, rows):
     """Overwrite F by J^-1 F, of the first `size` rows, each scaled by its largest entry. False where J is singular.
 

@@ -1,0 +1,235 @@
+"""Points of a branch without impacts or with rests, and steps between them (as walk.py, of the others).
+
+A point of the branch is x = (t_1 .. t_K, D_1 .. D_K, ends of the rests, p), in units of 1/omega for times, of the
+fastest impulse for impulses, and of the parameter's range.
+"""
+
+from copy import copy
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.impulse_equations import Equations
+from vibro_sweep.analysis.periodic.resting import RestEquations
+from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.engine.impulses.equations import ROUNDING
+from vibro_sweep.engine.impulses.green import space
+from vibro_sweep.model.linear import Linear
+
+GAPS = 8.0  # times the rounding of a gap at an impact that other equations add to it
+MOST_CORRECTIONS = 12
+STILL = 1e-5  # in units of a walk: an orbit that Newton's method takes farther off is another one
+
+
+@dataclass(eq=False)
+class RestingPoint:
+    """A point of a branch; `x` in scaled units."""
+
+    walk: "RestingWalk"
+    x: np.ndarray
+    equations: Equations | RestEquations
+    J: np.ndarray  # (n, n + 1), by scaled unknowns and parameter
+    motion: np.ndarray
+    residual: float
+    corrections: int
+    direction: np.ndarray  # roughly forwards
+    held: float | None = None  # the parameter, where it is given
+
+    @property
+    def guess(self) -> np.ndarray:
+        return self.x
+
+    @property
+    def p(self) -> float:
+        return self.held if self.held is not None else float(self.x[-1] * self.walk.unit)
+
+    def hold(self, value: float) -> None:
+        """The parameter is `value`, to the last bit: rounding may put it beyond what is allowed."""
+        self.held = value
+        self.__dict__.pop("solution", None)
+
+    def backwards(self) -> "RestingPoint":
+        """The same point of the branch in the other direction."""
+        other = copy(self)
+        other.direction = -self.direction
+        other.__dict__.pop("tangent", None)
+        return other
+
+    @cached_property
+    def tangent(self) -> np.ndarray:
+        """Unit tangent of the branch, scaled units."""
+        t = np.linalg.solve(np.vstack([self.J, self.direction]), np.append(np.zeros(len(self.J)), 1.0))
+        return t / np.linalg.norm(t)
+
+    @cached_property
+    def solution(self) -> Solution:
+        return self.walk.solution(np.append(self.x[:-1], self.p / self.walk.unit))
+
+    def sensitivity(self, normal: np.ndarray) -> float:
+        """By how much the parameter moves, on the plane with this normal, where all gaps at impacts are off by their
+        size."""
+        axis = np.zeros(len(self.x))
+        axis[-1] = self.walk.unit
+        weights = np.linalg.solve(np.vstack([self.J, normal]).T, axis)
+        return float(GAPS * np.abs(weights[: self.walk.start.K]).sum() * self.solution.size_of_gap)
+
+    @cached_property
+    def reflection(self) -> float:
+        """det J(-1), zero at a flip (pitchfork)."""
+        w = self.walk
+        u = self.x[:-1] * w.scale[:-1]
+        sign, size = np.linalg.slogdet(self.equations.linearised(-1, w.start.sides, u, self.motion))
+        return float(sign * np.exp(min(size, 700.0)))
+
+    @cached_property
+    def torus(self) -> float:
+        """prod_{i<j} (1 - mu_i mu_j): zero at a Neimark-Sacker point, and at a neutral saddle. 1 without losses."""
+        mu = self.solution.multipliers
+        if abs(abs(np.prod(mu)) - 1) < 1e-9:
+            return 1.0
+        i, j = np.triu_indices(len(mu), 1)
+        return float(np.prod(1 - mu[i] * mu[j]).real)
+
+    @cached_property
+    def releases(self) -> np.ndarray:
+        """(K,) acceleration away from the stop just after an impact with R = 0; infinite for other impacts."""
+        e, sides = self.equations, np.array(self.walk.start.sides, float)
+        s = space(e.q)
+        after = self.motion[:, 1] + self.solution.jumps * (s.e_g @ s.A @ (s.A @ s.e_v))
+        leaves = np.where(e.q.restitution(sides) == 0, -sides * after, np.inf)
+        leaves[list(self.walk.start.rests)] = np.inf
+        return leaves
+
+    @cached_property
+    def stays(self) -> float:
+        """The least of what makes a rest: its length, in 1/omega, and the acceleration into the stop; inf without."""
+        s, omega = self.solution, self.solution.family.linear.omega
+        if not s.rests:
+            return np.inf
+        lengths = (s.ends - s.times[list(s.rests)]) * omega
+        return float(min(lengths.min(), s.hold / (omega**2 * s.size_of_gap)))
+
+
+class RestingWalk:
+    """A branch through `start` in the parameter `name`."""
+
+    def __init__(self, start: Solution, name: str, span: float):
+        self.start, self.name, self.family, self.unit = start, name, start.family, span
+        self.scale = np.append(start.units, span)
+
+    def oscillators(self, values: np.ndarray) -> list[Linear]:
+        """At values of the parameter that points of the branch have."""
+        return [self.family.replace(**{self.name: p}).linear for p in values.tolist()]
+
+    def with_impact(self, touching: Solution) -> "RestingWalk":
+        """The same for orbits with one impact more."""
+        longer, K = RestingWalk(touching, self.name, self.unit), self.start.K
+        if K:
+            longer.scale[K + 1 : 2 * K + 2] = self.scale[K]
+        return longer
+
+    def equations(self, p: float) -> Equations | RestEquations:
+        """Raises ParameterError where the parameter leaves what is allowed."""
+        q = self.family.replace(**{self.name: p}).linear
+        return equations_for(self.start, q, self.family.derivative(self.name, q))
+
+    def correct(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> RestingPoint | None:
+        """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""
+        x, before, K = guess.copy(), np.inf, self.start.K
+        for corrections in range(1, MOST_CORRECTIONS + 1):
+            try:
+                e = self.equations(float(x[-1] * self.unit))
+                F, J, Fp, motion = e.evaluate(self.start.sides, x[:-1] * self.scale[:-1])
+                rows = np.hstack([J, Fp[:, None]]) * self.scale
+                step = np.linalg.solve(np.vstack([rows, normal]), np.append(F, normal @ (x - guess)))
+            except (np.linalg.LinAlgError, ValueError):  # also a parameter beyond its range
+                return None
+            change = float(np.abs(step).max())
+            if not change <= 1:
+                return None
+            x = x - step
+            t = x[:K] * self.scale[0]
+            if len(t) and not (np.all(np.diff(t) > 0) and t[-1] - t[0] < e.P):
+                return None
+            size = ROUNDING * self.start.size_of_gap
+            held = np.abs(F[:K]).max(initial=0.0) <= size
+            if change <= 1e-15 or (change < (1e-7 if held else 1e-9) and change >= 0.3 * before):
+                try:  # rounding moves the parameter of a nearly neutral orbit by more than what it leaves of the gaps
+                    moved = np.abs(rows[:K, -1] * step[-1]).max(initial=0.0) > size
+                    e = self.equations(float(x[-1] * self.unit)) if moved else e
+                except ValueError:
+                    return None
+                return RestingPoint(self, x, e, rows, motion, change, corrections, forwards)
+            before = change
+        return None
+
+    def first(self, forwards: float) -> RestingPoint | None:
+        """`start` itself; `forwards`: sign of the parameter's change.
+
+        None where Newton's method fails, or leads to another orbit.
+        """
+        point = self._first
+        return point if point is None or forwards == 1 else point.backwards()
+
+    @cached_property
+    def _first(self) -> RestingPoint | None:
+        x, axis = self.of(self.start), np.zeros(len(self.scale))
+        axis[-1] = 1.0
+        point = self.correct(x, axis, axis)
+        if point is None or np.abs(point.x - x).max() > STILL:
+            return None
+        point.hold(self.family.numbers[self.name])
+        return point
+
+    def step(self, point: RestingPoint, length: float, near: np.ndarray | None = None) -> RestingPoint | None:
+        """The point of the branch whose projection on the tangent at `point` is `length`; near: a guess."""
+        tangent = point.tangent
+        guess = point.x + length * tangent
+        if near is not None:
+            guess = near + (length - tangent @ (near - point.x)) * tangent
+        return self.correct(guess, tangent, tangent)
+
+    def beside_start(self, length: float) -> RestingPoint | None:
+        """The point of the branch at a distance from the start, also where that is a fold."""
+        start = self.start
+        _, J, Fp, _ = self.equations(self.family.numbers[self.name]).evaluate(start.sides, start.u)
+        tangent = np.linalg.svd(np.hstack([J, Fp[:, None]]) * self.scale)[2][-1]
+        return self.correct(self.of(start) + length * tangent, tangent, tangent)
+
+    def between(self, a: RestingPoint, b: RestingPoint, share: float) -> np.ndarray:
+        """On the cubic through a and b with their tangents."""
+        rest, length = 1 - share, np.linalg.norm(b.x - a.x)
+        bend = share * rest * length * (rest * a.tangent - share * b.tangent)
+        return rest**2 * (1 + 2 * share) * a.x + share**2 * (1 + 2 * rest) * b.x + bend
+
+    def with_value(self, guess: np.ndarray, index: int, value: float) -> np.ndarray:
+        """With another value of the unknown `index`."""
+        guess[index] = value
+        return guess
+
+    def shaken(self, guess: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """Moved by a small change."""
+        return guess + change
+
+    def of(self, solution: Solution) -> np.ndarray:
+        """A guess that is this orbit."""
+        return np.append(solution.u, solution.family.numbers[self.name]) / self.scale
+
+    def solution(self, guess: np.ndarray) -> Solution:
+        """The orbit of a guess."""
+        family, s = self.family.replace(**{self.name: float(guess[-1] * self.unit)}), self.start
+        return Solution(family, s.sigma, s.halves, s.sides, guess[:-1] * self.scale[:-1], 0.0, s.rests)
+
+    def ahead(self, point: RestingPoint) -> Solution:
+        """The orbit to which the tangent leads, at the distance 1, with the parameter of the point."""
+        return self.solution(np.append((point.x + point.tangent)[:-1], point.p / self.unit))
+
+    def with_touch(self, guess: np.ndarray, touching: Solution, index: int) -> np.ndarray:
+        """The guess with one impact more, the impact `index` of `touching`, which has no speed."""
+        phase = touching.times[index] * self.start.family.linear.omega
+        return np.insert(guess, [index, self.start.K + index], [phase, 0.0])
+
+    def without_touch(self, guess: np.ndarray, index: int) -> np.ndarray:
+        """A guess of a walk with one impact more, without that."""
+        return np.delete(guess, [index, self.start.K + 1 + index])
