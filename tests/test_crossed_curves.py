@@ -5,7 +5,7 @@ from support import slow_cases
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.curves import tracer
+from vibro_sweep.analysis.continuation import tracer
 from vibro_sweep.model.linear import amplitudes
 
 

@@ -7,8 +7,9 @@ from support.oscillators import PAPER
 from support.random_branches import attractors, random_oscillator
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.continuation import tracer
 from vibro_sweep.analysis.continuation.oscillators import BEYOND, Oscillators, Units
-from vibro_sweep.analysis.curves import tracer, way
+from vibro_sweep.analysis.curves import way
 from vibro_sweep.model.linear import family_of
 
 NAMES, BOX = ("b", "omega"), ((0.3, 9), (0.5, 0.8))

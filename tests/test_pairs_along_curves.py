@@ -3,7 +3,7 @@
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.curves import tracer
+from vibro_sweep.analysis.continuation import tracer
 
 
 @pytest.fixture(scope="module")

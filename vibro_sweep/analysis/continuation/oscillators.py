@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from vibro_sweep.analysis.periodic.impulse_equations import flow
+from vibro_sweep.analysis.periodic.impulse_equations import flow, moves_stops_only
 from vibro_sweep.engine.continuation import moving_flow
 from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.extended import extended, identity, zeros
@@ -40,8 +40,13 @@ def sampled(q: Linear, units: Units) -> np.ndarray:
     B[:N] /= rate * np.repeat([1.0, 1 / rate, length], [N, N, 3])
     B[N:n] /= rate**2 * np.repeat([1.0, 1 / rate, length], [N, N, 3])
     A = np.column_stack([B[:n, :n], B[:n, n + 2]])
-    numbers = [q.low / length, q.high / length, 1 + q.R_low, 1 + q.R_high, q.omega / rate]
-    return np.concatenate([A.ravel(), B[N:n, n], B[N:n, n + 1], numbers])
+    return np.concatenate([A.ravel(), B[N:n, n], B[N:n, n + 1], numbers_of(q, units)])
+
+
+def numbers_of(q: Linear, units: Units) -> list[float]:
+    """Stops, 1 + R at each, omega: the last of `sampled`."""
+    length, rate = units
+    return [q.low / length, q.high / length, 1 + q.R_low, 1 + q.R_high, q.omega / rate]
 
 
 class Oscillators:
@@ -49,6 +54,8 @@ class Oscillators:
 
     def __init__(self, family: Family, names: tuple[str, ...], halves: int, units: Units):
         self.family, self.names, self.halves, self.units = family, names, halves, units
+        still = all(moves_stops_only(family.derivative(name)) for name in names)
+        self._still = sampled(family.linear, units) if still else None
 
     def at(self, p) -> Family:
         return self.family.replace(**dict(zip(self.names, map(float, p[: len(self.names)]), strict=True)))
@@ -56,7 +63,12 @@ class Oscillators:
     def values(self, p) -> np.ndarray:
         """`sampled` at the parameters p; the phase, which that does not need, is not looked for."""
         family = self.at(p)
-        return sampled(family.build(**family.numbers), self.units)
+        q = family.build(**family.numbers)
+        if self._still is None:
+            return sampled(q, self.units)
+        values = self._still.copy()
+        values[-NUMBERS:] = numbers_of(q, self.units)
+        return values
 
     def _sample(self, p) -> np.ndarray:
         try:

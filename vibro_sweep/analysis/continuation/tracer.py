@@ -77,7 +77,7 @@ class Tracer:
         return np.repeat([self.units.length, self.units.speed], self.n // 2)
 
     def _around(self, centre) -> np.ndarray:
-        found = self.oscillators.around(centre, self.unit / 2)
+        found = self.oscillators.around(centre, self.unit / len(self.names))
         if found is None:
             raise NoPlaneError(f"box: around {tuple(map(float, centre))} the oscillator is no smooth function of it")
         return found
