@@ -71,10 +71,16 @@ def plane_of(masses: int) -> np.dtype:
 
 
 @jit
+def moves(f):
+    """Whether A depends on a parameter."""
+    return f.moves[0] > 0 or f.moves[1] > 0
+
+
+@jit
 def fit_at(f, p, q):
     """Values and slopes of the polynomials at the parameters (p, q)."""
     s, u = (p - f.centre[0]) / f.reach[0], (q - f.centre[1]) / f.reach[1]
-    first = len(f.values) - NUMBERS if f.is_still > 0 and f.is_known > 0 else 0
+    first = len(f.values) - NUMBERS if f.is_still > 0 and f.is_known > 0 and not moves(f) else 0
     for i in range(first, len(f.values)):
         value, by_s, by_u = 0.0, 0.0, 0.0
         for k in range(f.degree[0], -1, -1):
@@ -107,19 +113,18 @@ def spread(f):
         f.numbers[i] = f.values[size + n + i]
         for j in range(f.parameters):
             f.number_slopes[j, i] = f.slopes[j, size + n + i]
-    if f.is_still > 0 and f.is_known > 0:
-        return True
-    moves = f.moves[0] > 0 or f.moves[1] > 0
-    if moves or f.is_known == 0:
+    if moves(f) or f.is_known == 0:
         for r in range(n):
             for c in range(n + 1):
                 f.A[r, c] = f.values[r * (n + 1) + c]
                 for j in range(f.parameters):
                     f.A_slopes[j, r, c] = f.slopes[j, r * (n + 1) + c]
-        if moves:
+        if moves(f):
             build_series(f)
             build_powers(f)
         build_middle(f)
+    if f.is_still > 0 and f.is_known > 0:
+        return True
     f.is_known = 1
     # Z_q = W Y, Z_u = i omega Y,    (-omega^2 - i omega A_uu - A_uq W) Y = cosine - i sine
     omega, S = f.numbers[OMEGA], f.stiffness
