@@ -15,7 +15,6 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.special import inserted
 from vibro_sweep.analysis.branches.walk import Point, Walk
-from vibro_sweep.analysis.continuation.errors import DIGITS, ROWS
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.branch_tests import PASSED
 
@@ -66,11 +65,6 @@ def locate(walk: Walk, event: Event, a: Point, b: Point, length: float):
     return _at_zero(walk, event, a, b, length)
 
 
-def rounding(point: Point, normal: np.ndarray) -> float:
-    """What rounding of the equations does to the parameter of a point that was found on the plane with this normal."""
-    return float(DIGITS * abs(point.p) + ROWS * point.sensitivity(normal))
-
-
 def _at_value(walk: Walk, unknown: tuple[int, float], a: Point, b: Point) -> tuple[Point, float] | None:
     """The point where an unknown has a value, and the error of its parameter."""
     index, value = unknown[0], unknown[1] / walk.unit  # other unknowns have the value 0
@@ -80,7 +74,7 @@ def _at_value(walk: Walk, unknown: tuple[int, float], a: Point, b: Point) -> tup
     guess, normal = walk.with_value(walk.between(a, b, before / (before - behind)), index, value), np.zeros(len(a.x))
     normal[index] = 1.0
     point = walk.correct(guess, normal, a.tangent)
-    return None if point is None else (point, rounding(point, normal))
+    return None if point is None else (point, point.rounding(normal))
 
 
 def _at_touch(walk: Walk, a: Point, b: Point) -> tuple[Point, float] | None:
@@ -99,7 +93,7 @@ def _at_touch(walk: Walk, a: Point, b: Point) -> tuple[Point, float] | None:
     point = walk.correct(walk.without_touch(found.guess, index), a.tangent, a.tangent)
     if point is None or not _touches(point.solution, float(found.solution.times[index])):
         return None
-    return point, rounding(found, normal)
+    return point, found.rounding(normal)
 
 
 def _touches(s: Solution, time: float) -> bool:
@@ -129,7 +123,7 @@ def _at_zero(walk: Walk, event: Event, a: Point, b: Point, length: float):
     beside = [one for one in seen if abs(one.s - s) > BESIDE * abs(seen[1].s)]
     near = min(beside, key=lambda one: abs(one.s - s), default=found)
     slope = (near.test - found.test) / (near.s - s) if near is not found else 0.0
-    error = rounding(point, point.tangent)
+    error = point.rounding(point.tangent)
     if slope != 0:
         scatter = _scatter(walk, event, a, found, max(NEARBY * abs(seen[1].s), LEAST), slope)
         error = max(error, TIMES * scatter)  # not their sum: most errors are then the same from whichever start

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.crossings import counts_of
 from vibro_sweep.analysis.branches.events import reflection_test
-from vibro_sweep.analysis.branches.locating import Event, locate, rounding
+from vibro_sweep.analysis.branches.locating import Event, locate
 from vibro_sweep.analysis.branches.walk import Point, Walk, walk_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.pairs import ON_SQUARE
@@ -44,7 +44,7 @@ def before_birth(walk: Walk, a: Point, distance: float, parent: Point) -> Point 
     most = _ones(parent.solution.multipliers**2) - 1
     for share in BEFORE:
         point = walk.step(a, (1 - share) * distance)
-        if point is None or abs(point.p - parent.p) < APART * rounding(point, point.tangent):
+        if point is None or abs(point.p - parent.p) < APART * point.rounding(point.tangent):
             continue
         if _ones(point.solution.multipliers) <= most:
             turned = (counts_of(point).above - counts_of(a).above) % 2 == 1
@@ -74,7 +74,7 @@ def lands_on_birth(walk: Walk, a: Point, b: Point) -> Point | None:
         parts = [halves_apart(point.solution, sigma) for point in (a, b)]
         if all(part is not None for part in parts) and np.linalg.norm(parts[1]) < LANDS * np.linalg.norm(parts[0]):
             over = over_birth(walk, a)
-            if over is not None and abs(b.p - over[1].p) < APART * rounding(b, b.tangent):
+            if over is not None and abs(b.p - over[1].p) < APART * b.rounding(b.tangent):
                 return over[0]
     return None
 

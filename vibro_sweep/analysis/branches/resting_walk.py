@@ -17,7 +17,7 @@ from vibro_sweep.engine.impulses.equations import ROUNDING
 from vibro_sweep.engine.impulses.green import space
 from vibro_sweep.model.linear import Linear
 
-GAPS = 8.0  # times the rounding of a gap at an impact that other equations add to it
+ROUNDED = 16 * np.finfo(float).eps  # of the parameter, and of the gap at each impact
 MOST_CORRECTIONS = 12
 STILL = 1e-5  # in units of a walk: an orbit that Newton's method takes farther off is another one
 
@@ -66,13 +66,13 @@ class RestingPoint:
     def solution(self) -> Solution:
         return self.walk.solution(np.append(self.x[:-1], self.p / self.walk.unit))
 
-    def sensitivity(self, normal: np.ndarray) -> float:
-        """By how much the parameter moves, on the plane with this normal, where all gaps at impacts are off by their
-        size."""
+    def rounding(self, normal: np.ndarray) -> float:
+        """What rounding of the gap does to the parameter of the point, found on the plane with this normal."""
         axis = np.zeros(len(self.x))
         axis[-1] = self.walk.unit
         weights = np.linalg.solve(np.vstack([self.J, normal]).T, axis)
-        return float(GAPS * np.abs(weights[: self.walk.start.K]).sum() * self.solution.size_of_gap)
+        moved = np.abs(weights[: self.walk.start.K]).sum() * self.solution.size_of_gap
+        return float(ROUNDED * (abs(self.p) + moved))
 
     @cached_property
     def reflection(self) -> float:

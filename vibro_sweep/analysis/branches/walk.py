@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from vibro_sweep.analysis.branches.resting_walk import RestingWalk
-from vibro_sweep.analysis.continuation.errors import sensitivity
+from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -64,9 +64,9 @@ class Point:
         """The last change of Newton's method."""
         return self.solution.change
 
-    def sensitivity(self, normal: np.ndarray) -> float:
-        """By how much the parameter moves, on the plane with this normal, where each equation is off by its size."""
-        return sensitivity(self.walk.tracer, self.guess, np.append(normal, [0.0, 0.0]))
+    def rounding(self, normal: np.ndarray) -> float:
+        """What rounding of the equations does to the parameter of the point, found on the plane with this normal."""
+        return rounding_error(self.walk.tracer, self.guess, np.append(normal, [0.0, 0.0]))
 
     @property
     def reflection(self) -> float:
