@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.orbit_text import itinerary_of, motion, multipliers_text, span, system_text, told
 
 if TYPE_CHECKING:
@@ -28,11 +29,16 @@ def of_branch(branch: "Branch") -> str:
     largest = np.hypot(points.multiplier_re.values, points.multiplier_im.values).max(axis=1, initial=0.0)
     where = f"{branch.parameter} from {p.min():.10g} to {p.max():.10g}"
     lines = [
-        f"<Branch of {itinerary_of(branch.begins.orbit)} along {where}, {len(p):,} points, status {branch.status}",
+        f"<Branch of {itinerary_of(_orbit_on(branch))} along {where}, {len(p):,} points, status {branch.status}",
         f"stable at {stable:,} of {len(p):,} points; largest modulus of multipliers {span(largest)}",
         *way_of(branch.begins, branch.special, branch.ends, branch.closed),
     ]
     return told(lines)
+
+
+def _orbit_on(branch: "Branch") -> PeriodicOrbit:
+    """One of its own orbits: at a birth it is that of the parent."""
+    return PeriodicOrbit(branch._walk.family, "ok", branch._walk.start)
 
 
 def way_of(begins: "SpecialPoint", special: "Sequence[SpecialPoint]", ends: "SpecialPoint", closed: bool) -> list[str]:
@@ -51,7 +57,7 @@ def of_followed(followed: "Followed") -> str:
     ends = f"{branch.begins.type} .. {branch.ends.type}".replace("_", "-")
     reached = "" if followed.special is None else f" over {event(followed.special)} of branch {followed.parent}"
     p = span(branch.points[branch.parameter].values)
-    kind = f"{itinerary_of(branch.begins.orbit)}, {branch.parameter} {p}, {ends}, status {branch.status}"
+    kind = f"{itinerary_of(_orbit_on(branch))}, {branch.parameter} {p}, {ends}, status {branch.status}"
     return f"<Followed, generation {followed.generation}{reached}: {kind}>"
 
 

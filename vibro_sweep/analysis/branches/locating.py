@@ -23,6 +23,7 @@ MOST_TRIES = 100
 SHARES = (-1, 1, 2)  # of a small step: so far beside a zero points round differently
 NEARBY, LEAST = 1e-9, 1e-12  # that step, of the step in which the zero is, and in units of a walk
 SHAKEN = 1e-10  # in units of a walk: so far from them Newton's method begins
+OF_TESTS = 2.5  # times what rounding of the equations does, where rounding of a test comes to it
 TIMES = 6.0  # the largest difference between what they say
 BESIDE = 1e-6  # of a step: so far from its zero a test says how steep it is, and not how it rounds
 SAME_TURN = 1e-4  # of omega t: a turning point of a flight this near to another is the same
@@ -123,7 +124,7 @@ def _at_zero(walk: Walk, event: Event, a: Point, b: Point, length: float):
     beside = [one for one in seen if abs(one.s - s) > BESIDE * abs(seen[1].s)]
     near = min(beside, key=lambda one: abs(one.s - s), default=found)
     slope = (near.test - found.test) / (near.s - s) if near is not found else 0.0
-    error = point.rounding(point.tangent)
+    error = OF_TESTS * point.rounding(point.tangent)
     if slope != 0:
         scatter = _scatter(walk, event, a, found, max(NEARBY * abs(seen[1].s), LEAST), slope)
         error = max(error, TIMES * scatter)  # not their sum: most errors are then the same from whichever start
