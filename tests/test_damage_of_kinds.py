@@ -1,5 +1,6 @@
 """Every kind of file, damaged or edited, before every command: a few cases always, all of them with `-m soak`."""
 
+import json
 import shutil
 from pathlib import Path
 
@@ -54,7 +55,10 @@ def test_a_changed_digit_of_a_periodic_orbit(kinds, tmp_path):
     begin, end = text.index("unknowns"), text.index("residual")
     places = [i for i in range(begin, end) if text[i].isdigit()]
     for i in places[:: len(places) // 20]:
-        path.write_text(text[:i] + str((int(text[i]) + 1) % 10) + text[i + 1 :])
+        changed = text[:i] + str((int(text[i]) + 1) % 10) + text[i + 1 :]
+        if json.loads(changed) == json.loads(text):  # the last of seventeen digits
+            continue
+        path.write_text(changed)
         with pytest.raises(ValueError, match=r"x\.json: damaged: its "):
             vs.load_orbit(path)
 

@@ -11,6 +11,7 @@ from vibro_sweep.analysis.branches.continuation import Branch
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses.green import checked_cells
 from vibro_sweep.model.bifurcations import BRANCH_STATUSES, CODES, CRITICALITIES, KINDS, TYPES
 from vibro_sweep.model.linear import family_of, forcing_period
 from vibro_sweep.model.state import state
@@ -104,7 +105,7 @@ def _special_points(branch: Branch, p: np.ndarray) -> Flat:
 
 
 def solution_of(flat: Flat, system, t, v, t_off) -> Solution:
-    """The solution with these impacts (K,) of a branch, for the oscillator `system`; not corrected."""
+    """The solution with these impacts (K,) of a branch, for the oscillator `system`; not corrected. TooStiffError."""
     family, symmetric = family_of(system), bool(flat["branch_symmetric"])
     period, sides = int(flat["branch_period"]), flat["impact_side"]
     K = len(sides) // 2 if symmetric else len(sides)
@@ -113,6 +114,7 @@ def solution_of(flat: Flat, system, t, v, t_off) -> Solution:
     D = -(1 + family.linear.restitution(sides)) * v[:K]
     u = np.concatenate([t[:K], D, t_off[list(rests)]])
     sigma, halves = (-1, period) if symmetric else (1, 2 * period)
+    checked_cells(family.linear, halves)
     found = Solution(family, sigma, halves, sides, u, 0.0, rests)
     return found.with_mean() if K and not rests and found.is_free else found
 

@@ -11,6 +11,7 @@ from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.extended import extended, identity, zeros
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import rates
+from vibro_sweep.engine.impulses.green import checked_cells
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.model.linear import Family, Linear
 
@@ -50,9 +51,10 @@ def numbers_of(q: Linear, units: Units) -> list[float]:
 
 
 class Oscillators:
-    """Of a family, along two of its parameters, or fewer."""
+    """Of a family, along two of its parameters, or fewer, over so many half forcing periods. Raises TooStiffError."""
 
     def __init__(self, family: Family, names: tuple[str, ...], halves: int, units: Units):
+        checked_cells(family.linear, halves)
         self.family, self.names, self.halves, self.units = family, names, halves, units
         still = all(moves_stops_only(family.derivative(name)) for name in names)
         self._still = sampled(family.linear, units) if still else None

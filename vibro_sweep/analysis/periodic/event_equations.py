@@ -13,7 +13,7 @@ from vibro_sweep.engine.continuation import guesses, moving_flow
 from vibro_sweep.engine.continuation.problem import ORBIT, Problem
 from vibro_sweep.engine.continuation.workspace import new_bench, new_place
 from vibro_sweep.engine.impulses.flow import contact_coordinates, unseen_modes
-from vibro_sweep.engine.impulses.green import MOST_CELLS, TooStiffError, cells_needed
+from vibro_sweep.engine.impulses.green import checked_cells
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.model.linear import Keyed, Linear, amplitudes
 
@@ -67,8 +67,7 @@ def contact_of(q: Linear) -> list[float]:
 def _tables(key: Keyed, sigma: int, halves: int) -> tuple[np.ndarray, np.ndarray]:
     """(1,) `plane_of` of an oscillator, without its contact; `closing` in its units."""
     q = key.q
-    if cells_needed(q) * halves > MOST_CELLS:
-        raise TooStiffError(f"{halves} half periods need more than {MOST_CELLS} cells")
+    checked_cells(q, halves)
     steady_gap(q), push_of_free_mode(q)  # where they do not exist there is no such orbit
     f = flow(q)
     m = len(f.B)

@@ -142,6 +142,14 @@ def cells_needed(q: Linear) -> int:
     return max(math.ceil(norm * forcing_period(q) / 2 / REACH), 4)
 
 
+def checked_cells(q: Linear, halves: int) -> int:
+    """Cells in so many half forcing periods. Raises TooStiffError."""
+    cells = cells_needed(q) * halves
+    if cells > MOST_CELLS:
+        raise TooStiffError(f"tables over {halves} half periods need {cells} cells, at most {MOST_CELLS} are allowed")
+    return cells
+
+
 def _regular(matrix: np.ndarray) -> bool:
     try:
         inverse = np.linalg.inv(matrix)
@@ -199,10 +207,7 @@ def _partial(arrays) -> Linear:
 def _train(M, K, C, along, omega, ratio, halves, changes) -> Train:
     q = _partial([value.value for value in (M, K, C, along, omega)])
     slope = _partial([value.value for value in changes]) if changes else None
-    per_half = cells_needed(q)
-    cells = per_half * halves
-    if cells > MOST_CELLS:
-        raise TooStiffError(f"tables over {halves} half periods need {cells} cells, at most {MOST_CELLS} are allowed")
+    cells = checked_cells(q, halves)
     s = space(q)
     ds = space_slopes(q, slope) if slope is not None else None
     n = len(s.e_g)
