@@ -1,6 +1,6 @@
 """Special points of a branch: what they are, and what happens at a graze."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -111,17 +111,15 @@ def inserted(solution: Solution, slow=()) -> tuple[Solution, int]:
 
     slow : indices of impacts without speed, whose own turning points are left out
     """
-    K, rests = solution.K, np.array(solution.rests, int)
+    K, period = solution.K, solution.P
     _, time, side = _nearest_aside(solution, slow) if len(slow) else solution.nearest
-    period = solution.P
     index = int(np.searchsorted(solution.times, time))
     if K == 0 and time >= period:  # found where the period begins again, with the mirror for sigma = -1
         time, side = time - period, solution.sigma * side
-    u = np.insert(solution.u, [index, K + index], [time, 0.0])
-    sides = (*solution.sides[:index], side, *solution.sides[index:])
+    found = solution.with_touch(index, time, side)
     if K == 0 and solution.family.linear.symmetric is False and solution.is_free:
-        u = np.append(u, 0.0)
-    return _with(solution, sides, u, rests + (rests >= index)), index
+        found = replace(found, u=np.append(found.u, 0.0))
+    return found, index
 
 
 def _nearest_aside(solution: Solution, slow) -> tuple[float, float, int]:

@@ -76,12 +76,17 @@ class Map:
         return total
 
 
+def critical_angle(solution: Solution) -> float:
+    """Of the complex multiplier nearest to the unit circle."""
+    mu = solution.multipliers
+    return float(np.angle(mu[np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf))]))
+
+
 def criticality(solution: Solution) -> str | None:
     """ "super" or "sub" of a Neimark-Sacker point; None where the coefficient does not tell, also at a resonance."""
     if solution.rests:
         return None
-    mu = solution.multipliers
-    theta = float(np.angle(mu[np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf))]))
+    theta = critical_angle(solution)
     if min(abs(np.exp(1j * k * theta) - 1) for k in range(1, 5)) < RESONANT:
         return None
     try:

@@ -78,7 +78,4 @@ def chatter_at(tracer: Tracer, place: Place, touches: bool) -> Chatter:
         return Chatter(solution, state)
     time, side = tracer.nearest(place)
     time += solution.times[0] - tracer.times(place)[0]
-    k = int(np.searchsorted(solution.times, time))
-    u = np.insert(solution.u, [k, solution.K + k], [time, 0.0])
-    sides = (*solution.sides[:k], side, *solution.sides[k:])
-    return Chatter(Solution(solution.family, solution.sigma, solution.halves, sides, u), state)
+    return Chatter(solution.with_touch(int(np.searchsorted(solution.times, time)), time, side), state)

@@ -28,12 +28,11 @@ from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.pair import in_time, rates_of_pair, second_order
+from vibro_sweep.analysis.curves.start import as_special
 from vibro_sweep.analysis.curves.way import CurvePoint
-from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.workspace import THETA, Place
@@ -162,15 +161,12 @@ def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
         return None
     if guess.start.theta and abs(place.p[THETA] - guess.start.theta) > ALIKE * guess.start.theta:
         return None
-    solution = tracer.solution(place)
-    parameters = dict(zip(names, map(float, place.p[:2]), strict=True))
-    orbit, error = orbit_of(special.orbit.system.replace(**parameters), solution), float(special.error)
-    if guess.start.type != "graze":
-        return SpecialPoint(guess.start.type, parameters, orbit, solution.multipliers, error)
-    (stop, impact), without = stop_and_impact(solution, guess.start.index), bare(solution, guess.start.index)
-    if without.margin < -TOUCHING * without.size_of_gap:  # the other half passes the stop
-        return None
-    return SpecialPoint("graze", parameters, orbit, without.multipliers, error, stop=stop, impact=impact)
+    found = replace(guess.start, solution=tracer.solution(place))
+    if found.type == "graze":
+        without = bare(found.solution, found.index)
+        if without.margin < -TOUCHING * without.size_of_gap:  # the other half passes the stop
+            return None
+    return as_special(found, names, special.orbit.system, special.error)
 
 
 def box_around(special: CurvePoint) -> np.ndarray:

@@ -16,8 +16,8 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.start import KINDS, Start, keeps_symmetry
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.continuation import bifurcation_curve
-from vibro_sweep.analysis.curves.flat import as_special, flatten, solution_at, start_from
-from vibro_sweep.analysis.curves.start import start_at
+from vibro_sweep.analysis.curves.flat import flatten, solution_at, start_from
+from vibro_sweep.analysis.curves.start import as_special, start_at
 from vibro_sweep.analysis.curves.switching import ENDS, switch
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import orbit_of
@@ -103,8 +103,7 @@ class CurveTask(NamedTuple):
 def trace(task: CurveTask) -> Flat:
     """The curve of a task, with the seeds on it, as `packed_curves` has them; nothing where there is no curve."""
     seed, names = task.seed, task.names
-    values = dict(zip(names, seed.orbit.place(names).tolist(), strict=True))
-    special = as_special(seed.start, {name: values[name] for name in seed.parameters}, seed.orbit.system)
+    special = as_special(seed.start, seed.parameters, seed.orbit.system)
     try:
         curve = bifurcation_curve(special, names, task.box, virtual=False)
     except ValueError:  # it belongs to several curves at once, or there is no motion beside it

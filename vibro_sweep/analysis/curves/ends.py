@@ -85,9 +85,7 @@ def in_full(tracer: Tracer, end: End) -> Solution:
     touching, index = inserted(solution)  # both halves touch the stop, and that of the curve is meant
     k, half = tracer.problem.index, solution.P / 2
     time = touching.times[index] + half * np.sign(k - index)
-    sides = (*solution.sides[:k], int(tracer.problem.sides[k]), *solution.sides[k:])
-    u = np.insert(solution.u, [k, solution.K + k], [time, 0.0])
-    return Solution(solution.family, solution.sigma, solution.halves, sides, u)
+    return solution.with_touch(k, time, tracer.problem.sides[k])
 
 
 def just_before(tracer: Tracer, a: Place, b: Place, end: End) -> Place | None:

@@ -6,8 +6,7 @@ The arrays, `SHAPES`, have the names that they have in files. Words are codes of
 import numpy as np
 
 from vibro_sweep.analysis.branches.flat import Flat, solution_of
-from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.branches.way import stop_and_impact
+from vibro_sweep.analysis.branches.torus import critical_angle
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.curves.continuation import BifurcationCurve
 from vibro_sweep.analysis.curves.way import CurvePoint
@@ -101,10 +100,7 @@ def solution_at(flat: Flat, point: int, system) -> Solution:
 def start_from(flat: Flat, point: int, system) -> Start:
     """The bifurcation at a point of a curve, to follow it again from there."""
     solution = solution_at(flat, point, system)
-    theta = 0.0
-    if type_of(flat) == "neimark_sacker":
-        mu = solution.multipliers
-        theta = float(np.angle(mu[np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf))]))
+    theta = critical_angle(solution) if type_of(flat) == "neimark_sacker" else 0.0
     return Start(type_of(flat), solution, max(int(flat["branch_grazing"]), 0), theta)
 
 
@@ -121,13 +117,3 @@ def point_of_codimension_two(flat: Flat, index: int, names: list[str], system) -
         kind, parameters, orbit_of(there, solution), none, float(flat["special_error"][index]),
         curve=type_of(flat), touches=bool(flat["special_touches"][index]),
     )  # fmt: skip
-
-
-def as_special(start: Start, parameters: dict[str, float], system) -> SpecialPoint:
-    """A start as a special point from which `bifurcation_curve` begins."""
-    orbit = orbit_of(system, start.solution)
-    none = np.full(2 * len(start.solution.family.linear.along), np.nan, complex)
-    if start.type != "graze":
-        return SpecialPoint(start.type, parameters, orbit, none)
-    stop, impact = stop_and_impact(start.solution, start.index)
-    return SpecialPoint("graze", parameters, orbit, none, stop=stop, impact=impact)

@@ -4,8 +4,13 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted, vanishing
 from vibro_sweep.analysis.branches.switching import index_in
+from vibro_sweep.analysis.branches.torus import critical_angle
+from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.continuation.start import KINDS, Start, keeps_symmetry
+from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
+
+SLOW = 1e-9  # impulse, in parts of the gap's size times omega, below which an impact is a graze
 
 
 def start_at(special: SpecialPoint, names: tuple[str, ...] = ()) -> Start:
@@ -25,6 +30,29 @@ def start_at(special: SpecialPoint, names: tuple[str, ...] = ()) -> Start:
             "orbit have an onset of their own"
         )
     return Start("fold" if start.type == "pitchfork" else start.type, start.solution.whole(), start.index, start.theta)
+
+
+def as_special(start: Start, names, system, error: float = np.nan) -> SpecialPoint:
+    """A start as a special point in these parameters, from which `bifurcation_curve` begins.
+
+    Its multipliers are not known where an impact has no speed, but for the one that grazes.
+    """
+    s, stop, impact = start.solution, None, None
+    parameters = {name: float(s.family.numbers[name]) for name in names}
+    if start.type == "graze":
+        (stop, impact), multipliers = stop_and_impact(s, start.index), bare(s, start.index).multipliers
+    elif len(slow_impacts(s)):
+        multipliers = np.full(2 * len(s.family.linear.along), np.nan, complex)
+    else:
+        multipliers = s.multipliers
+    orbit = orbit_of(system.replace(**parameters), s)
+    return SpecialPoint(start.type, parameters, orbit, multipliers, float(error), stop=stop, impact=impact)
+
+
+def slow_impacts(solution: Solution) -> list[int]:
+    """Indices of the impacts that have no speed."""
+    least = SLOW * solution.family.linear.omega * solution.size_of_gap
+    return np.flatnonzero(np.abs(solution.jumps) < least).tolist()
 
 
 def _solution(special: SpecialPoint) -> Solution:
@@ -48,11 +76,8 @@ def _start(special: SpecialPoint, solution: Solution, symmetric: bool) -> Start:
         if special.impact is not None:
             return _grazing(solution, index_in(special), symmetric)
         return Start("graze", *inserted(solution))
-    if special.type != "neimark_sacker":
-        return Start(special.type, solution)
-    mu = solution.multipliers
-    critical = mu[np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf))]
-    return Start("neimark_sacker", solution, theta=float(np.angle(critical)))
+    theta = critical_angle(solution) if special.type == "neimark_sacker" else 0.0
+    return Start(special.type, solution, theta=theta)
 
 
 def _grazing(solution: Solution, index: int, symmetric: bool) -> Start:

@@ -8,20 +8,19 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.switching import switch as switch_branches
-from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.continuation.chatter import Chatter
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.born import born, box_around
+from vibro_sweep.analysis.curves.start import as_special, slow_impacts
 from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.linearised import Linearised
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.model.arguments import check_type
 
 SINGULAR = 1e-8  # least singular value of G(mu), of its largest, below which mu is a multiplier
-SLOW = 1e-9  # impulse, in parts of the gap's size times omega, below which an impact is a graze
 ON_CIRCLE = 1e-8  # | |mu| - 1 | of a Neimark-Sacker pair
 BESIDE = 0.2  # theta at which the Neimark-Sacker curve of a double multiplier 1 (-1) is entered
 ENDS = ("closed", "limit", "failed")
@@ -65,8 +64,8 @@ def _starts(special: CurvePoint) -> list[Start]:
         return _sticking(special._chatter)
     whole = special.orbit._solution
     if special.touches:
-        whole = inserted(whole, _slow(whole))[0]
-    slow = _slow(whole)
+        whole = inserted(whole, slow_impacts(whole))[0]
+    slow = slow_impacts(whole)
     starts = []
     for count in range(len(slow) + 1):
         for dropped in combinations(slow, count):
@@ -80,16 +79,10 @@ def _starts(special: CurvePoint) -> list[Start]:
     return starts
 
 
-def _slow(solution: Solution) -> list[int]:
-    """Indices of the impacts that have no speed."""
-    least = SLOW * solution.family.linear.omega * solution.size_of_gap
-    return np.flatnonzero(np.abs(solution.jumps) < least).tolist()
-
-
 def _sticking(chatter: Chatter) -> list[Start]:
     """The onset of the orbits with and without the impact that has no speed."""
     s = chatter.solution
-    _, k = _slow(s)  # the first is the end of the chatter
+    _, k = slow_impacts(s)  # the first is the end of the chatter
     return [Start("sticking", solution, state=chatter.state) for solution in (s, bare(s, k))]
 
 
@@ -114,19 +107,12 @@ def is_singular(solution: Solution, mu: int) -> bool:
 
 
 def _special(special: CurvePoint, start: Start) -> SpecialPoint:
-    s = start.solution
-    if start.state is not None:
-        chatter, none = Chatter(s, start.state), np.empty(0, complex)
-        orbit = special.orbit
-        return SpecialPoint("sticking", special.parameters, orbit, none, special.error, special.stop, _chatter=chatter)
-    orbit = orbit_of(special.orbit.system, s)
-    if start.type != "graze":
-        slow = np.abs(s.motion[:, 0]).min() < SLOW * s.family.linear.omega * s.size_of_gap
-        values = np.full(2 * len(s.family.linear.along), np.nan, complex) if slow else s.multipliers
-        return SpecialPoint(start.type, special.parameters, orbit, values, special.error)
-    stop, impact = stop_and_impact(s, start.index)
-    values = bare(s, start.index).multipliers
-    return SpecialPoint("graze", special.parameters, orbit, values, special.error, stop=stop, impact=impact)
+    if start.state is None:
+        return as_special(start, special.parameters, special.orbit.system, special.error)
+    chatter, none = Chatter(start.solution, start.state), np.empty(0, complex)
+    return SpecialPoint(
+        "sticking", special.parameters, special.orbit, none, special.error, special.stop, _chatter=chatter
+    )
 
 
 def _beside_strong(special: CurvePoint) -> SpecialPoint | None:
@@ -138,7 +124,4 @@ def _beside_strong(special: CurvePoint) -> SpecialPoint | None:
     place = tracer.first(tracer.axis(THETA))
     if place is None:
         return None
-    found = tracer.solution(place)
-    parameters = dict(zip(names, map(float, place.p[:2]), strict=True))
-    orbit = orbit_of(special.orbit.system.replace(**parameters), found)
-    return SpecialPoint("neimark_sacker", parameters, orbit, found.multipliers, float(special.error))
+    return as_special(Start("neimark_sacker", tracer.solution(place)), names, special.orbit.system, special.error)

@@ -163,6 +163,12 @@ class Solution:
         found = replace(self, u=ends[0], change=float(change[0]))
         return found.with_mean() if found.is_free else found
 
+    def with_touch(self, index: int, time: float, side: int) -> "Solution":
+        """The same motion with one impact more, which has no speed."""
+        u = np.insert(self.u, [index, self.K + index], [time, 0.0])
+        sides = (*self.sides[:index], int(side), *self.sides[index:])
+        return replace(self, sides=sides, u=u, change=0.0, rests=tuple(k + (k >= index) for k in self.rests))
+
     def whole(self) -> "Solution":
         """The same orbit over its whole period, sigma = +1."""
         if self.sigma == 1:
