@@ -4,10 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mpmath import lu_solve, mp, mpf
+from reference.resting import Resting
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.periodic.resting import RestEquations
+from vibro_sweep.analysis.branches.walk import walk_of
+from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.model.linear import family_of
 
 DEAD = PAPER.replace(R=0.0)
@@ -58,23 +61,46 @@ def test_multipliers_are_those_of_the_simulated_map(resting):
     assert np.all(orbit.multipliers[2:] == 0)
 
 
-@pytest.mark.parametrize("name", ["b", "omega", "zeta", "mu_m", "mu_k", "f2"])
-def test_derivatives_are_those_of_differences(resting, name):
-    solution, family = resting[0]._solution, family_of(resting[0].system)
-    whole = solution.whole()
-    for s in (solution, whole):
-        u, h = s.u + 0.01 * np.arange(len(s.u)), 1e-6
-        e = RestEquations(family.linear, s.sigma, s.halves, family.derivative(name), s.rests)
-        _, J, Fp, _ = e.evaluate(s.sides, u)
-        for j, axis in enumerate(np.eye(len(u))):
-            slope = (e.evaluate(s.sides, u + h * axis)[0] - e.evaluate(s.sides, u - h * axis)[0]) / (2 * h)
-            assert slope == pytest.approx(J[:, j], abs=1e-7)
-        value = family.numbers[name]
-        sides = [
-            RestEquations(family.replace(**{name: value + d}).linear, s.sigma, s.halves, None, s.rests) for d in (h, -h)
-        ]
-        slope = (sides[0].evaluate(s.sides, u)[0] - sides[1].evaluate(s.sides, u)[0]) / (2 * h)
-        assert slope == pytest.approx(Fp, abs=1e-6)
+@pytest.mark.parametrize("b", [0.05, 0.5, 1.6])  # the last with a flight between two impacts on the same stop
+def test_orbit_and_derivatives_are_those_of_matrix_exponentials(b):
+    s = settled(b)[0]._solution
+    q, rests = s.family.linear, list(s.rests)
+    assert s.K == (2 if b > 1.5 else 1)
+    with mp.workdps(50):
+        exact = Resting(q, s.sigma, s.halves, s.sides, rests)
+        x = contact_coordinates(q).to_masses(s.states[:1, :4])[0]
+        found = [*x[::2], *x[1::2], *s.times, *s.ends]
+        w = exact.solve(found)
+        assert np.array(found) == pytest.approx(np.array(w, float), abs=1e-13)
+        expected = np.array([complex(mu) for mu in exact.multipliers(w)])
+        assert s.multipliers == pytest.approx(
+            expected[np.lexsort((-expected.imag, -np.abs(expected).round(12)))], abs=1e-12
+        )
+        J, h = exact.jacobian(w), mpf(10) ** -15
+        for name in ("b", "omega", "zeta", "mu_m", "mu_k", "f2"):
+            slope = s.family.derivative(name)
+            sides = [Resting(q, s.sigma, s.halves, s.sides, rests, slope, d).residual(w) for d in (h, -h)]
+            moved = np.array(lu_solve(J, (sides[1] - sides[0]) / (2 * h))[4:], float).ravel()
+            tangent = walk_of(s, name, 1.0).first(1.0).tangent
+            tangent /= tangent[-1]
+            phases, lengths = tangent[: s.K], tangent[s.K : -1][rests]
+            t = (phases - slope.tau - s.times * slope.omega) / q.omega
+            ends = t[rests] + (lengths - (s.ends - s.times[rests]) * slope.omega) / q.omega
+            assert np.append(t, ends) == pytest.approx(moved, rel=1e-10), name
+
+
+@pytest.mark.parametrize("b", [0.05, 0.5, 1.2])
+def test_acceleration_into_the_stop_is_that_of_sampled_states(b):
+    """Its least value where the rest begins, or where it turns."""
+    orbit = settled(b)[0]
+    q, (begin, end, side) = orbit._solution.family.linear, orbit.sticking[0]
+    t = np.linspace(begin + 1e-9, end, 4001)
+    states, angle = orbit.sample(t), q.omega * t + q.tau
+    force = q.constant + np.outer(np.sin(angle), q.sine) + np.outer(np.cos(angle), q.cosine)
+    a = side * (force - states[:, ::2] @ q.K - states[:, 1::2] @ q.C) @ np.linalg.inv(q.M) @ q.along
+    turns = np.flatnonzero((a[1:-1] < a[:-2]) & (a[1:-1] < a[2:])) + 1
+    assert orbit._solution.hold == pytest.approx(np.append(a[turns], a[0]).min(), rel=1e-6)
+    assert abs(a[-1]) < 1e-12
 
 
 def test_branch_ends_where_the_rest_does_not_begin_at_once(branch):

@@ -48,16 +48,13 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
     twice = doubled(parent)
     walk, units = walk_of(twice, name, size_of(parent, name)), twice.units
     scale = np.concatenate([units[:K], units[2 * K : 3 * K], units[4 * K : 4 * K + rests]])
-    if rests:
-        J = parent.equations.linearised(-1, parent.sides, parent.u, parent.motion)
-        critical = np.linalg.svd(J * scale)[2][-1]
-    else:
-        critical = Linearised(parent).critical_direction(-1) / scale
+    critical = Linearised(parent).critical_direction(-1) / scale
     critical *= -np.copysign(1.0, critical[K : 2 * K].sum())  # a choice: which of two mirror images comes first
     dt, dD, de = critical[:K], critical[K : 2 * K], critical[2 * K :]
     change = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])
     change /= np.linalg.norm(change)
-    normal = np.append(change, 0.0)
+    normal, rests = np.append(change[: 4 * K], 0.0), np.array(twice.rests, int)
+    normal[2 * K + rests] = change[4 * K :] - change[rests]  # walks measure lengths of rests
     for amplitude in amplitudes:
         moved = twice.u.copy()
         moved[: 2 * size] += amplitude * change * units[: 2 * size]

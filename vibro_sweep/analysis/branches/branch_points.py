@@ -7,7 +7,8 @@ import numpy as np
 from vibro_sweep.analysis.branches.track import Rows
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
-from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.analysis.periodic.resting import RestingOrbit
+from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import Linear, forcing_period
 
 if TYPE_CHECKING:
@@ -74,7 +75,8 @@ def _multipliers(start: Solution, oscillators: list[Linear], rows: Rows) -> np.n
     for q, t, D, ends, motion in zip(oscillators, rows.t, rows.D, rows.ends, rows.motion, strict=True):
         if start.rests:
             u = np.concatenate([t, D, ends])
-            result.append(equations_for(start, q).multipliers(start.sides, u, motion))
+            orbit = RestingOrbit(q, start.sigma, start.halves, start.sides, start.rests, u)
+            result.append(orbit.multipliers())
             continue
         contacts[:, 1] = 1 + q.restitution(sides)
         P, u = forcing_period(q) / 2 * start.halves, np.concatenate([t, D])

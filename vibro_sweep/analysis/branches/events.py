@@ -20,7 +20,7 @@ def ends_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
     for i in range(K):
         if b.solution.pushes[i] <= 0:
             test = _positive_at(a, lambda point, i=i: point.solution.pushes[i])
-            events.append(Event("graze", test, i, unknown=(K + i, 0.0)))
+            events.append(Event("graze", test, i, unknown=None if i in walk.start.rests else (K + i, 0.0)))
         if a.releases[i] > 0 >= b.releases[i]:
             events.append(Event("sticking", lambda point, i=i: point.releases[i], i))
     if a.stays > 0 >= b.stays:

@@ -108,6 +108,7 @@ def _touched(walk: Walk, beside: tuple, places: list[Point], found: list) -> Poi
     """A point between the first and the last of `places` at which a test has changed its sign, to change it again."""
     a, b = places[0], places[-1]
     K, pushing = walk.start.K, a.solution.pushes > 0
+    pushing[list(walk.start.rests)] = False
     tests = [test for kind, test in _crossing(walk, a, b) if kind not in {place[0].type for place in found}]
     tests += [lambda point: point.solution.margin]
     seen = [point for point in (beside[0], *places, beside[1]) if point is not None]
@@ -125,15 +126,6 @@ def _touched(walk: Walk, beside: tuple, places: list[Point], found: list) -> Poi
             if point is not None:
                 return point
     return None
-
-
-def touches(walk: Walk, before: Point, a: Point, b: Point) -> bool:
-    """Whether a test may vanish twice beside a (as the compiled `touches` of engine/continuation/branch_tests.py)."""
-    if walk.start.K == 0:
-        return False
-    tests = [test for _, test in _crossing(walk, before, b)] + [lambda point: point.solution.margin]
-    lengths = [float((y.x - x.x) @ x.tangent) for x, y in ((before, a), (a, b))]
-    return any(extremum(*lengths, *(test(point) for point in (before, a, b))) is not None for test in tests)
 
 
 def _least(a: Point, b: Point, i: int) -> float:

@@ -9,7 +9,7 @@ from vibro_sweep.analysis.continuation.chatter import Chatter
 from vibro_sweep.analysis.periodic.impulse_equations import flow
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
-from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
 
 
@@ -93,17 +93,8 @@ def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
         without, touching = _with(solution, sides, u, rests - np.searchsorted(gone, rests)), solution
     du, q = slopes(touching, name), solution.family.linear
     speed_slope = -side * du[touching.K + index] / (1 + q.restitution([side])[0])
-    if not touching.rests:
-        distance_slope = Linearised(touching, solution.family.derivative(name), gone).distance_slope(index)
-        return Graze(without, touching, index, distance_slope, float(speed_slope))
-    # At D = 0 the first equation of that impact is the gap less the stop, as the others leave it: take its change
-    # along the orbits without the impact, whose own times and impulses move by their own slopes.
-    held = np.zeros(touching.size)
-    held[np.delete(np.arange(touching.size), [*gone, *(touching.K + gone)])] = slopes(without, name)
-    e = equations_for(touching, q, solution.family.derivative(name))
-    _, J, Fp, _ = e.evaluate(touching.sides, touching.u)
-    distance_slope = -side * float((J[index] @ held) + Fp[index])
-    return Graze(without, touching, index, float(distance_slope), float(speed_slope))
+    distance_slope = Linearised(touching, solution.family.derivative(name), gone).distance_slope(index)
+    return Graze(without, touching, index, distance_slope, float(speed_slope))
 
 
 def inserted(solution: Solution, slow=()) -> tuple[Solution, int]:
@@ -153,11 +144,8 @@ def _with(solution: Solution, sides, u, rests) -> Solution:
 
 def slopes(solution: Solution, name: str) -> np.ndarray:
     """du/dp of an orbit that is not at a fold. Without impacts a free mode may stand anywhere: it stays."""
-    slope = solution.family.derivative(name)
-    if solution.rests:
-        _, J, Fp, _ = equations_for(solution, solution.family.linear, slope).evaluate(solution.sides, solution.u)
-        return -np.linalg.solve(J, Fp)
     result = np.zeros(solution.size)  # the mean gap follows from times and impulses
     if solution.K:
-        result[: 2 * solution.K] = Linearised(solution, slope).slopes()
+        moved = Linearised(solution, solution.family.derivative(name)).slopes()
+        result[: len(moved)] = moved
     return result

@@ -93,7 +93,10 @@ class Track:
         motion = r.motion[:count] * units.speed * [1.0, units.rate]
         state = self._masses(p, r.state[:count] * self.tracer.state_units)
         margin, residual = r.tests[:count, MARGIN] * units.length, r.tests[:count, RESIDUAL].copy()
-        rows = Rows(p, t, x[..., n + 1] * units.speed, np.zeros((count, 0)), motion, margin, residual, state)
+        rests = self.tracer.problem.rests
+        D = np.where(rests, -motion[..., 0], x[..., n + 1] * units.speed)
+        ends = (t + x[..., n + 1] / omega[:, None])[:, rests]
+        rows = Rows(p, t, D, ends, motion, margin, residual, state)
         return reason, rows
 
     def _masses(self, p: np.ndarray, states: np.ndarray) -> np.ndarray:
@@ -139,5 +142,6 @@ class Track:
     def _solution(self, rows: Rows, i: int) -> Solution:
         s, walk = self.walk.start, self.walk
         family = walk.family.replace(**{walk.name: float(rows.p[i])})
-        found = Solution(family, s.sigma, s.halves, s.sides, np.concatenate([rows.t[i], rows.D[i]]))
-        return found.with_mean() if found.equations.free else found
+        u = np.concatenate([rows.t[i], rows.D[i], rows.ends[i]])
+        found = Solution(family, s.sigma, s.halves, s.sides, u, 0.0, s.rests)
+        return found.with_mean() if found.is_free else found

@@ -10,12 +10,12 @@ from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.resting_walk import RestingWalk
+from vibro_sweep.analysis.branches.free_walk import FreeWalk
 from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.continuation.branch_tests import RATE
+from vibro_sweep.engine.continuation.branch_tests import HOLD, RATE
 from vibro_sweep.engine.continuation.curve_tests import MINUS
 from vibro_sweep.engine.continuation.workspace import Place
 from vibro_sweep.model.linear import Linear
@@ -87,11 +87,14 @@ class Point:
         """(K,) acceleration away from the stop just after an impact with R = 0; infinite for other impacts."""
         return self.walk.releases(self.guess)
 
-    stays = np.inf  # nothing rests
+    @property
+    def stays(self) -> float:
+        """The least of what makes a rest: its length, the acceleration into the stop and the speed before it."""
+        return float(min(self.guess.jumps[list(self.walk.start.rests)].min(initial=np.inf), self.guess.tests[HOLD]))
 
 
 class Walk:
-    """A branch through `start`, an orbit with impacts and without rests, in the parameter `name`."""
+    """A branch through `start`, an orbit with impacts, in the parameter `name`."""
 
     def __init__(self, start: Solution, name: str, span: float):
         self.start, self.name, self.family, self.unit = start, name, start.family, span
@@ -235,9 +238,9 @@ class Walk:
         w.assemble(place)
         N, events = w.n // 2, w.bench.events
         after = events["motion"][:, 1] + w.planes[0]["numbers"][4] * events["bend"][:, N]
-        return np.where(R == 0, -sides * after, np.inf)
+        return np.where((R == 0) & ~w.problem.rests, -sides * after, np.inf)
 
 
 def walk_of(start: Solution, name: str, span: float):
-    """The branch through an orbit: `Walk`, or without impacts and with rests `RestingWalk`."""
-    return RestingWalk(start, name, span) if start.rests or start.K == 0 else Walk(start, name, span)
+    """The branch through an orbit: `Walk`, or without impacts `FreeWalk`."""
+    return FreeWalk(start, name, span) if start.K == 0 else Walk(start, name, span)

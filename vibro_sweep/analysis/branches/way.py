@@ -10,13 +10,13 @@ from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.births import criticality, doubled
 from vibro_sweep.analysis.branches.crossings import is_torus
 from vibro_sweep.analysis.branches.events import bifurcations, ends_between, first_end
+from vibro_sweep.analysis.branches.free_walk import FreePoint
 from vibro_sweep.analysis.branches.locating import Event
-from vibro_sweep.analysis.branches.looking import hidden_between, touches
+from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.pairs import coarse
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.response import longest_step
-from vibro_sweep.analysis.branches.resting_walk import RestingPoint
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
 from vibro_sweep.analysis.branches.track import Rows, Track, join, row_of
 from vibro_sweep.analysis.branches.walk import Point, Walk
@@ -98,19 +98,16 @@ class Way:
             track.accept(a, b)
         self.special.append(self._at("failed", a or self.first, math.nan))
 
-    def _step(self, a: RestingPoint) -> None:
-        """The same in Python, for orbits without impacts or with rests."""
+    def _step(self, a: FreePoint) -> None:
+        """The same in Python, for orbits without impacts."""
         length, before, passed = self.first_step, None, 1
         while passed < MOST_POINTS and length >= SHORTEST_STEP:
-            if a.solution.K == 0:
-                length = min(length, longest_step(a))
+            length = min(length, longest_step(a))
             b = self.walk.step(a, length)
             turn = math.acos(min(1.0, a.tangent @ b.tangent)) if b is not None else math.inf
             if turn > STRAIGHT or (length > stepper.COARSE * LONGEST_STEP and coarse(before, a, b)):
                 length /= 2
                 continue
-            if before is not None and touches(self.walk, before, a, b) and self._again(before, a, b):
-                return
             if self._pass(a, b, length, beside=(before, None)):
                 return
             if passed >= stepper.EARLY and self._comes_back(a, length):
@@ -173,8 +170,6 @@ class Way:
 
     def _comes_back(self, a: Point, length: float) -> bool:
         offset = self.first.x - a.x
-        K, T = self.walk.start.K, 2 * np.pi
-        offset[:K] -= T * np.round(offset[:K].mean() / T) if K else 0.0
         along = offset @ a.tangent
         return 0 <= along <= length and float(np.linalg.norm(offset - along * a.tangent)) < 0.1 * length
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.analysis.continuation.oscillators import Oscillators, Units
 from vibro_sweep.analysis.continuation.start import Start, keeps_symmetry
-from vibro_sweep.analysis.periodic.solution import Solution, equations_for
+from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import path, stepper
 from vibro_sweep.engine.continuation.curve_tests import MARGIN, RESIDUAL, TOUCHING
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, conditions, is_critical, unknowns
@@ -53,8 +53,8 @@ class Tracer:
         repeats = whole and s.halves % 4 == 0 and struck[:half] == struck[half:]
         symmetric = q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
         mirrors = whole and symmetric and s.halves % 4 == 2 and struck[:half] == tuple(-side for side in struck[half:])
-        sides, count = np.array(which, float), len(self.names)
-        self.problem = Problem(kind, start.index, sides, float(s.sigma), count, self.unit, repeats, mirrors)
+        sides, rests, count = np.array(which, float), np.isin(np.arange(K), s.rests), len(self.names)
+        self.problem = Problem(kind, start.index, sides, rests, float(s.sigma), count, self.unit, repeats, mirrors)
         self.bench = new_bench(K, self.n)
         self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
 
@@ -157,6 +157,8 @@ class Tracer:
             q.omega * s.times + (q.tau if tau is None else tau),
             s.jumps / self.units.speed,
         )
+        rests = list(s.rests)
+        place.jumps[rests] = q.omega * (s.ends - s.times[rests])
         place.p[: len(self.names)] = [s.family.numbers[name] for name in self.names]
         place.p[THETA] = self.start.theta
         if not self.go_to(place):
@@ -329,14 +331,18 @@ class Tracer:
         t = (place.phases - (q.tau if tau is None else tau)) / q.omega
         if tau is None and self.K:
             t -= forcing_period(q) * np.round((t[0] - s.times[0]) / forcing_period(q))
-        u, sides = np.concatenate([t, place.jumps * self.units.speed]), tuple(map(int, self.problem.sides))
-        found = Solution(family, s.sigma, s.halves, sides, u, float(place.tests[RESIDUAL]))
-        e = equations_for(found, q)
-        if e.free:
-            u = np.append(found.u, 0.0)
-            u[-1] = -np.mean(e.evaluate(s.sides, u)[0][: self.K])
-            found = Solution(family, s.sigma, s.halves, s.sides, u, found.change)
-        return found
+        sides, rests = tuple(map(int, self.problem.sides)), self.problem.rests
+        ends = (t + place.jumps / q.omega)[rests]
+        jumps = np.where(rests, -self.speeds(place), place.jumps) if len(ends) else place.jumps
+        u = np.concatenate([t, jumps * self.units.speed, ends])
+        found = Solution(family, s.sigma, s.halves, sides, u, float(place.tests[RESIDUAL]), s.rests)
+        return found.with_mean() if found.is_free else found
+
+    def speeds(self, place: Place) -> np.ndarray:
+        """(K,) velocities of the gap before the impacts, in units of the curve."""
+        self.go_to(place)
+        N = self.n // 2
+        return place.x[:, N] + (self.planes[0]["Z"][N] * np.exp(1j * place.phases)).real
 
 
 def copied(place: Place) -> Place:

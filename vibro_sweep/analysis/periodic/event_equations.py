@@ -3,15 +3,16 @@
 Phases are in radians of the force and lengths as they are, so that omega is 1 there.
 """
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from vibro_sweep.analysis.periodic.impulse_equations import TABLES, closing, flow
 from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
-from vibro_sweep.engine.continuation import guesses, moving_flow
+from vibro_sweep.engine.continuation import guesses, moving_flow, path, stepper
 from vibro_sweep.engine.continuation.problem import ORBIT, Problem
 from vibro_sweep.engine.continuation.workspace import new_bench, new_place
+from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import contact_coordinates, unseen_modes
 from vibro_sweep.engine.impulses.green import checked_cells
 from vibro_sweep.engine.impulses.tables import ORDER
@@ -25,20 +26,38 @@ class EventEquations:
     Raises ResonanceError, TooStiffError (green.py).
     """
 
-    def __init__(self, q: Linear, sigma: int, halves: int, sides):
+    def __init__(self, q: Linear, sigma: int, halves: int, sides, rests=()):
+        """rests : indices of impacts after which the mass rests"""
         self.q, self.K, self.n = q, len(sides), 2 * len(q.along)
-        planes, self.closing = _tables(Keyed(q, TABLES), sigma, halves)
+        planes, self.closing = _tables(Keyed(q, TABLES), sigma, halves, bool(rests))
         self.planes = planes.copy()  # kernels write the contact's numbers into it
-        self.problem = Problem(ORBIT, 0, np.array(sides, float), float(sigma), 0, np.ones(2), False, False)
+        self.planes[0]["exact"][-moving_flow.NUMBERS :] = [*contact_of(q), 1.0]
+        resting = np.isin(np.arange(self.K), rests)
+        self.problem = Problem(ORBIT, 0, np.array(sides, float), resting, float(sigma), 0, np.ones(2), False, False)
         self.place, self.bench = new_place(self.K, self.n), new_bench(self.K, self.n)
 
     @classmethod
     def of(cls, solution) -> "EventEquations":
-        """Those of a `Solution` without rests."""
-        return cls(solution.family.linear, solution.sigma, solution.halves, solution.sides)
+        """Those of a `Solution`."""
+        return cls(solution.family.linear, solution.sigma, solution.halves, solution.sides, solution.rests)
+
+    @cached_property
+    def _path(self) -> path.Path:
+        return path.new_path(1, self.K, self.n, 1.0, 1.0, 1.0, np.zeros((2, 2)))
+
+    def move(self) -> None:
+        """Leave in `planes` what tasks need beyond Newton's method."""
+        self.planes["is_known"] = 0
+        self.do(stepper.MOVE)
+
+    def do(self, task: int) -> float:
+        """A task of engine/continuation/stepper.py."""
+        row = np.zeros(2 * self.K + 3)
+        return stepper.at(task, self.planes, self.problem, self._path, self.place, row, self.bench)
 
     def newton(self, starts, contacts=None) -> tuple[np.ndarray, np.ndarray]:
-        """Newton's method from guesses (m, 2K) of times and jumps: solutions, and the last change, NaN: none found.
+        """Newton's method from guesses (m, 2K) of times and jumps, without rests: solutions, and the last change, NaN:
+        none found.
 
         contacts : (m, 4) stops and 1 + R as of `contact_of`, where they are not those of `q`
         """
@@ -64,11 +83,13 @@ def contact_of(q: Linear) -> list[float]:
 
 
 @lru_cache(maxsize=64)
-def _tables(key: Keyed, sigma: int, halves: int) -> tuple[np.ndarray, np.ndarray]:
-    """(1,) `plane_of` of an oscillator, without its contact; `closing` in its units."""
+def _tables(key: Keyed, sigma: int, halves: int, rests: bool) -> tuple[np.ndarray, np.ndarray | None]:
+    """(1,) `plane_of` of an oscillator, without its contact; `closing` in its units, without rests."""
     q = key.q
     checked_cells(q, halves)
-    steady_gap(q), push_of_free_mode(q)  # where they do not exist there is no such orbit
+    steady_gap(q)  # where it does not exist there is no such orbit; nor where this does not, but rests hold the gap
+    if not rests:
+        push_of_free_mode(q)
     f = flow(q)
     m = len(f.B)
     n = m - 3
@@ -83,7 +104,12 @@ def _tables(key: Keyed, sigma: int, halves: int) -> tuple[np.ndarray, np.ndarray
     r["series"] = f.series.reshape(-1, m, m)[:, :n, columns] * scale * rates[:, None, None]
     r["powers"] = f.powers[:, :n, columns] * scale
     r["width"], r["bits"], r["is_still"], r["is_known"] = f.width * q.omega, moving_flow.BITS, 1, 1
-    r["numbers"][moving_flow.OMEGA], r["half_turns"] = 1.0, halves
+    r["numbers"][moving_flow.OMEGA], r["half_turns"], r["reach"] = 1.0, halves, 1.0
+    r["exact"][: n * (n + 1)] = r["A"].ravel()
+    r["exact"][n * (n + 1) : n * (n + 2)] = f.B[n // 2 : n, n : n + 2].T.ravel() / q.omega**2
+    r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))
+    if rests:
+        return result, None
     if sigma == 1:
         r["held"] = unseen_modes(q) / np.outer(units, units)
         r["is_held"] = bool(np.any(r["held"]))

@@ -19,7 +19,7 @@ from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import DOUBLINGS, Flow, contact_coordinates
 from vibro_sweep.engine.impulses.tables import exponential, taylor_rows
 from vibro_sweep.model.contact import push_of
-from vibro_sweep.model.linear import Linear, amplitude_slopes, amplitudes
+from vibro_sweep.model.linear import Linear
 
 
 def state_slopes(e: Equations, u, states: np.ndarray) -> np.ndarray:
@@ -95,13 +95,6 @@ def rate_slopes(q: Linear, slope: Linear) -> np.ndarray:
         dB[N:n, column] = d.by_force @ getattr(q, name) + to.by_force @ getattr(slope, name)
     dB[n, n + 1], dB[n + 1, n] = -slope.omega, slope.omega
     return dB
-
-
-def motion_slopes(q: Linear, slope: Linear) -> np.ndarray:
-    """(2N,) derivative of the amplitudes of the steady motion in contact coordinates, at a fixed phase."""
-    to, d, X, dX = contact_coordinates(q), coordinate_slopes(q, slope), amplitudes(q), amplitude_slopes(q, slope)
-    speeds = slope.omega * (to.U @ X) + q.omega * (d.U @ X + to.U @ dX)
-    return np.concatenate([d.P @ X + to.P @ dX, 1j * speeds])
 
 
 def _flow_of_both(f: Flow, dB: np.ndarray) -> Flow:

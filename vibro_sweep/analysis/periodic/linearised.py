@@ -1,4 +1,4 @@
-"""The linearised equations of an orbit without rests: how it moves with a number, and what a multiplier 1 or -1 moves.
+"""The linearised equations of an orbit: how it moves with a number, and what a multiplier 1 or -1 moves.
 
 In the units of event_equations.py. A change of the orbit is (xi, dphi, dD) at each event: of the state at a fixed
 phase, of the phase, and of the jump.
@@ -6,9 +6,9 @@ phase, of the phase, and of the jump.
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.event_equations import EventEquations, contact_of
-from vibro_sweep.analysis.periodic.flight_slopes import motion_slopes, rate_slopes
-from vibro_sweep.engine.continuation import moving_flow, path, stepper
+from vibro_sweep.analysis.periodic.event_equations import EventEquations
+from vibro_sweep.analysis.periodic.flight_slopes import rate_slopes
+from vibro_sweep.engine.continuation import moving_flow, stepper
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD
 from vibro_sweep.model.linear import Linear
 
@@ -23,7 +23,6 @@ class Linearised:
     def __init__(self, solution, slope: Linear | None = None, watched=()):
         e = self.equations = EventEquations.of(solution)
         self.solution, self.slope, self.q = solution, slope, e.q
-        self.path = path.new_path(1, e.K, e.n, 1.0, 1.0, 1.0, np.zeros((2, 2)))
         e.problem = e.problem._replace(parameters=int(slope is not None))
         e.problem.sides[list(watched)] = 0.0
         self._take_oscillator()
@@ -32,33 +31,27 @@ class Linearised:
         steady = (e.planes[0]["Z"] * np.exp(1j * self.phases[:, None])).real
         x[:, : e.n] = solution.states[: e.K, : e.n] / units - steady
         x[:, e.n], x[:, e.n + 1] = self.phases, solution.jumps / self.q.omega
+        x[e.problem.rests, e.n + 1] = self.q.omega * (solution.ends - solution.times[e.problem.rests])
 
     def _take_oscillator(self) -> None:
         """The numbers of the kernels, and their derivatives as polynomials of degree 1 of the number's change."""
         r, n, omega = self.equations.planes[0], self.equations.n, self.q.omega
-        values = r["exact"]
-        values[: n * (n + 1)] = r["A"].ravel()
-        values[-moving_flow.NUMBERS :] = [*contact_of(self.q), 1.0]
-        r["fit"][0, 0], r["reach"] = values, 1.0
+        r["fit"][0, 0] = r["exact"]
         if self.slope is not None:
             slope, units = self.slope, np.append(np.repeat([1.0, omega], n // 2), 1.0)
-            dA = rate_slopes(self.q, slope)[:n][:, [*range(n), n + 2]] * units / units[:n, None] / omega
+            dB = rate_slopes(self.q, slope)[:n]
+            dA = dB[:, [*range(n), n + 2]] * units / units[:n, None] / omega
             r["parameters"], r["degree"], r["moves"][0] = 1, [1, 0], bool(np.any(dA))
             r["fit"][1, 0, : n * (n + 1)] = dA.ravel()
+            r["fit"][1, 0, n * (n + 1) : n * (n + 2)] = dB[n // 2 :, n : n + 2].T.ravel() / omega**2
             r["fit"][1, 0, -moving_flow.NUMBERS :] = [
                 *(slope.low, slope.high, slope.R_low, slope.R_high),
                 slope.omega / omega,
             ]
-            r["Z_slopes"][0] = motion_slopes(self.q, slope) / units[:n]
-        self._do(stepper.MOVE)
-
-    def _do(self, task: int) -> bool:
-        e = self.equations
-        row = np.zeros(2 * e.K + 3)
-        return bool(stepper.at(task, e.planes, e.problem, self.path, e.place, row, e.bench))
+        self.equations.move()
 
     def _assembled(self):
-        if not self._do(stepper.ASSEMBLE):
+        if not self.equations.do(stepper.ASSEMBLE):
             raise np.linalg.LinAlgError("the equations are singular")
         return self.equations.bench.work[0]
 
@@ -74,14 +67,24 @@ class Linearised:
         work["null"][:n] = np.linalg.lstsq(G, right)[0] if alone else np.linalg.solve(G, right)
         work["null"][n:] = 0.0
         work["null"][n] = 1.0
-        self._do(stepper.TAKE_APART)
+        e.do(stepper.TAKE_APART)
         return e.bench.events["changes"][:, 1].copy()
 
     def slopes(self) -> np.ndarray:
-        """(2K,) du/dp."""
-        moved, n, q = self.tangent(), self.equations.n, self.q
-        late = self.slope.omega * self.solution.times + self.slope.tau
-        return np.concatenate([(moved[:, n] - late) / q.omega, moved[:, n + 1] * q.omega])
+        """(2K + rests,) du/dp."""
+        return self._of_times(self.tangent(), self.slope)
+
+    def _of_times(self, moved: np.ndarray, slope: Linear | None = None) -> np.ndarray:
+        """(2K + rests,) changes of times, jumps and ends of rests, from those of phases and states."""
+        e, n, q, rests = self.equations, self.equations.n, self.q, self.equations.problem.rests
+        phases, ends = moved[:, n].copy(), (moved[:, n] + moved[:, n + 1])[rests]
+        speeds = moved[:, n // 2] + e.bench.events["motion"][:, 1] * phases
+        if slope is not None:
+            speeds += (e.planes[0]["Z_slopes"][0, n // 2] * np.exp(1j * self.phases)).real
+            phases -= slope.omega * self.solution.times + slope.tau
+            ends -= slope.omega * self.solution.ends + slope.tau
+        jumps = np.where(rests, -speeds, moved[:, n + 1])
+        return np.concatenate([phases / q.omega, jumps * q.omega, ends / q.omega])
 
     def distance_slope(self, index: int) -> float:
         """Of a watched turning point: how fast its distance from its stop grows with the number."""
@@ -90,14 +93,14 @@ class Linearised:
         return float(side * (self.slope.stop([side])[0] - moved[0] - steady))
 
     def critical_direction(self, mu: int) -> np.ndarray:
-        """(2K,) what a multiplier mu = 1 or -1 moves: of the times and jumps."""
-        e, n = self.equations, self.equations.n
+        """(2K + rests,) what a multiplier mu = 1 or -1 moves: of times, jumps and ends of rests."""
+        e = self.equations
         e.problem = e.problem._replace(kind=FOLD if mu == 1 else FLIP)
         for _ in range(2):  # first across any direction, which may lie badly, then across the one that is found
             self._assembled()
             for here, found in ((e.place.v, e.bench.events["v"]), (e.place.w, e.place.left)):
                 here[:] = found / np.linalg.norm(found)
-        return np.concatenate([e.place.v[:, n].real / self.q.omega, e.place.v[:, n + 1].real * self.q.omega])
+        return self._of_times(e.place.v.real)
 
     def closure(self, mu: int) -> np.ndarray:
         """(n, n) G(mu), which is singular where mu is a multiplier."""

@@ -199,10 +199,9 @@ class PeriodicOrbit:
         N, m = len(s.family.linear.along), flow(s.family.linear).B.shape[0]
         if s.rests:
             whole = s.whole()
-            pieces = whole.equations.starts(whole.sides, whole.u)
+            begins, starts, held = whole.resting.pieces()
             _, shift = self._frame or self._canonical_frame
-            begins = np.array([begin for _, _, begin, _, _ in pieces]) - shift * forcing_period(s.family.linear)
-            return begins, np.array([zeta for *_, zeta in pieces]), np.array([kind == "rest" for kind, *_ in pieces])
+            return begins - shift * forcing_period(s.family.linear), starts, held
         t, _, D, states = self._whole
         starts = np.zeros((max(len(t), 1), m))
         starts[:, : 2 * N] = states[: len(starts)]

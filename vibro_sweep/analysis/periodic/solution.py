@@ -9,7 +9,7 @@ from vibro_sweep.analysis.periodic import long_orbits
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.impulse_equations import Equations, contacts_of, flow, fly, multipliers_of
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
-from vibro_sweep.analysis.periodic.resting import RestEquations
+from vibro_sweep.analysis.periodic.resting import RestingOrbit
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses.green import has_free_gap
 from vibro_sweep.model.linear import Family, Linear, forcing_period
@@ -36,8 +36,16 @@ class Solution:
     rests: tuple[int, ...] = ()
 
     @cached_property
-    def equations(self) -> Equations | RestEquations:
+    def equations(self) -> Equations:
         return equations_for(self, self.family.linear)
+
+    @cached_property
+    def resting(self) -> RestingOrbit:
+        """The motion of an orbit with rests."""
+        return self._resting()
+
+    def _resting(self) -> RestingOrbit:
+        return RestingOrbit(self.family.linear, self.sigma, self.halves, self.sides, self.rests, self.u)
 
     @property
     def K(self) -> int:
@@ -73,13 +81,13 @@ class Solution:
     @cached_property
     def hold(self) -> float:
         """The least free acceleration into the stop during the rests; inf without a rest."""
-        return self.equations.hold(self.sides, self.u) if self.rests else np.inf
+        return self._flights[2] if self.rests else np.inf
 
     @cached_property
     def motion(self) -> np.ndarray:
         """(K, 3) gap velocity, acceleration and jerk before each impact; the velocity as the jump says."""
         if self.rests:
-            return self.equations.residual(self.sides, self.u)[2]
+            return self.resting.motion
         q = self.family.linear
         B = flow(q).B
         N, states = len(q.along), self.states[: self.K]
@@ -89,7 +97,7 @@ class Solution:
     @cached_property
     def _flights(self):
         if self.rests:
-            return self.equations.fly(self.sides, self.u)
+            return self.resting.states, *self.resting.certificate()
         return fly(self.family.linear, self.sigma, self.halves, self.sides, self.u)
 
     @property
@@ -111,7 +119,7 @@ class Solution:
     def multipliers(self) -> np.ndarray:
         """Of the map over P, with the mirror for sigma = -1."""
         if self.rests:
-            return self.equations.multipliers(self.sides, self.u, self.motion)
+            return self.resting.multipliers()
         q = self.family.linear
         return multipliers_of(flow(q), self.sigma, self.P, contacts_of(q, None, self.sides), self.u, self.motion)
 
@@ -155,13 +163,20 @@ class Solution:
         if self.K == 0:
             return self
         if self.rests:
-            ends, change = self.equations.newton(self.sides, self.u[None])
-        else:
-            ends, change = EventEquations.of(self).newton(self.u[None, : 2 * self.K])
+            return self._corrected_with_rests()
+        ends, change = EventEquations.of(self).newton(self.u[None, : 2 * self.K])
         if not np.isfinite(change[0]):
             return None
         found = replace(self, u=ends[0], change=float(change[0]))
         return found.with_mean() if found.is_free else found
+
+    def _corrected_with_rests(self) -> "Solution | None":
+        try:
+            found = self._resting()
+            change = found.newton()
+        except np.linalg.LinAlgError:
+            return None
+        return replace(self, u=found.u, change=change) if np.isfinite(change) else None
 
     def with_touch(self, index: int, time: float, side: int) -> "Solution":
         """The same motion with one impact more, which has no speed."""
@@ -236,8 +251,6 @@ class Solution:
         return whole
 
 
-def equations_for(s: Solution, q: Linear, slope: Linear | None = None) -> Equations | RestEquations:
-    """Of orbits like `s`, for the oscillator q; derivatives where it changes by `slope`."""
-    if s.rests:
-        return RestEquations(q, s.sigma, s.halves, slope, s.rests)
+def equations_for(s: Solution, q: Linear, slope: Linear | None = None) -> Equations:
+    """Of orbits like `s`, without rests, for the oscillator q; derivatives where it changes by `slope`."""
     return Equations(q, s.sigma, s.halves, slope, s.K >= long_orbits.SPARSE)

@@ -23,8 +23,9 @@ from vibro_sweep.engine.simd.jit import aside, jit
 # acceleration away from the stop after an impact with R = 0. Multipliers, apart from the ON_CIRCLE: ABOVE 1, BELOW -1,
 # complex PAIRS outside of the unit circle; ABOVE is -1 where they are not known. AWAY: the least |mu|^2 - 1 of those
 # outside. REFLECTED, CROSSING: prod_i (1 + mu_i) over r = prod_i (1 + |mu_i|^2)^(1/2), prod_{i<j} (1 - mu_i mu_j) over
-# r^(n - 1), which poles of multipliers leave finite
-RATE, RELEASE, ABOVE, BELOW, PAIRS, ON_CIRCLE, AWAY, REFLECTED, CROSSING = range(13, 22)
+# r^(n - 1), which poles of multipliers leave finite. HOLD: the least acceleration into the stop during rests, and speed
+# before them
+RATE, RELEASE, ABOVE, BELOW, PAIRS, ON_CIRCLE, AWAY, REFLECTED, CROSSING, HOLD = range(13, 23)
 PASSED = 1e-13  # distance beyond a stop, in units of the gap, which rounding does not explain
 FARTHER = 2.0  # times: a number that is so much nearer to zero than at the points beside changes too fast between them
 ZERO = ON_SQUARE**2, ON_PAIR**2  # of |1 + mu|^2 and |1 - mu_i mu_j|^2: what no point of a branch comes to by chance
@@ -36,8 +37,11 @@ def examine_branch(f, c, place, b):
     """Tests and certificate of a corrected point of a branch, for which `assemble` has filled b."""
     n, x, work = f.A.shape[0], place.tests, b.work[0]
     x[RATE], x[RELEASE], x[MARGIN], x[MINUS] = place.tangent_p[0], np.inf, certify(f, c, place, b), 1.0
+    x[HOLD] = np.inf
     for i in range(len(b.events)):
-        if f.numbers[GAIN_HIGH if c.sides[i] > 0 else GAIN_LOW] == 1.0:
+        if c.rests[i]:
+            x[HOLD] = min(x[HOLD], b.events[i].hold, c.sides[i] * b.events[i].motion[0])
+        elif f.numbers[GAIN_HIGH if c.sides[i] > 0 else GAIN_LOW] == 1.0:
             after = b.events[i].motion[1] + f.numbers[OMEGA] * b.events[i].bend[n // 2]
             x[RELEASE] = min(x[RELEASE], -c.sides[i] * after)
     x[MINUS] = determinant(c, b, n, -1.0)
@@ -128,10 +132,10 @@ def happens_on_branch(path, c, a, b):
     """Whether a test changes its sign between two points, multipliers cross the unit circle, or b is out of the stops
     or of the bounds; or whether something may do so twice."""
     x, y, D = a.tests, b.tests, a.x.shape[1] - 1
-    if outside(path, b) or x[RELEASE] > 0.0 >= y[RELEASE]:
+    if outside(path, b) or x[RELEASE] > 0.0 >= y[RELEASE] or x[HOLD] > 0.0 >= y[HOLD]:
         return True
     for i in range(len(a.x)):
-        side = -c.sides[i]
+        side = 1.0 if c.rests[i] else -c.sides[i]
         here, there = side * a.x[i, D], side * b.x[i, D]
         if not there > 0.0 or turns_back(here, side * a.tangent[i, D], there, side * b.tangent[i, D], y[LENGTH]):
             return True

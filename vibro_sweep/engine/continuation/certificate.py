@@ -5,6 +5,7 @@ import cmath
 import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_sum import NEXT
+from vibro_sweep.engine.continuation.held_gap import press
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, polynomial
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
@@ -80,19 +81,41 @@ def look(f, c, place, b):
                 begin, length = begin + omega * aside, length - aside
             if (i + 1) % K == c.index:
                 length -= b.tail.numbers[NEXT] if c.kind == STICK else aside
+        if c.rests[i]:
+            b.events[i].hold = press(f, c.sides[i], place.x[i], b.events[i], work)
+            begin += place.x[i, n + 1]
+            away = apart(f, y, cmath.exp(1j * begin), length, work.cell)
+            polynomial(n, f.series, away, work.other[0])
+            shift(f, work.other[0], y, other)
+            begin, length = begin + omega * away, length - away
         e, turn = cmath.exp(1j * begin), cmath.exp(1j * omega * f.width)
         cells = int(length / f.width)
         for k in range(cells + 1):
             width = min(f.width * OVERLAP, length - k * f.width)
             if width > 0.0 and may_turn(f, y, e, f.numbers[LOW], f.numbers[HIGH], nearest[0]):
                 expand_gap(f, y, e, work.cell)
-                if k == 0 and f.numbers[gain] == 1.0:  # not even rounding is left of the velocity
+                if k == 0 and f.numbers[gain] == 1.0 and not c.rests[i]:  # not even rounding is left of the velocity
                     work.cell[1] = 0.0
                 if extremes_of_cell(work.cell, width, f.numbers[LOW], f.numbers[HIGH], nearest, work.waiting):
                     nearest[1] = begin + omega * (nearest[1] + k * f.width)
             if k < cells:
                 shift(f, f.powers[0], y, other)
                 e *= turn
+
+
+@jit
+def apart(f, y, e, length, cell):
+    """Time from the end of a rest, as long as the gap leaves the stop like its third power: it does not turn."""
+    expand_gap(f, y, e, cell)
+    u = min(f.width, length)
+    while u > 1e-9 * f.width:
+        most = 0.0
+        for k in range(4, ORDER + 1):
+            most += k * abs(cell[k]) * u ** (k - 3)
+        if most < 3.0 * abs(cell[3]):
+            break
+        u *= 0.5
+    return u
 
 
 @jit

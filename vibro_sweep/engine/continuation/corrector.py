@@ -126,10 +126,11 @@ def move(c, place, tangent, tangent_p, length):
 
 
 @jit
-def in_order(f, place):
+def in_order(f, c, place):
     """Whether the events follow one another."""
     K, n = len(place.x), f.A.shape[0]
     for i in range(K):
-        if not (place.x[i + 1, n] if i + 1 < K else place.x[0, n] + math.pi * f.half_turns) > place.x[i, n]:
+        end = place.x[i, n] + (max(place.x[i, n + 1], 0.0) if c.rests[i] else 0.0)
+        if not (place.x[i + 1, n] if i + 1 < K else place.x[0, n] + math.pi * f.half_turns) > end:
             return False
     return True

@@ -21,7 +21,7 @@ from vibro_sweep.engine.continuation.corrector import in_order
 from vibro_sweep.engine.continuation.factors import factorise, substitute
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, flight
 from vibro_sweep.engine.continuation.reflections import put_last, take_apart
-from vibro_sweep.engine.continuation.residual import approach, eliminate, land
+from vibro_sweep.engine.continuation.residual import approach, eliminate, land, leave
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import entry, jit
 
@@ -92,7 +92,8 @@ def close(f, c, place, closing, b):
         approach(f, x, e)
         if i > 0 and c.sides[i] == c.sides[i - 1] and b.events[i - 1].length < SHORT * f.width:
             follow_shortly(f, place.x[i - 1], b.events[i - 1], e)
-        land(f, x, e)
+        leave(f, c, i, x, e, work)
+        land(f, e)
         for r in range(n):
             e.missed[r] = 0.0
             if last:
@@ -134,7 +135,7 @@ def settle(f, c, place, closing, b):
     for i in range(K):
         size = max(size, abs(f.numbers[HIGH if c.sides[i] > 0 else LOW]))
     for count in range(MOST_STEPS + MORE):
-        if not in_order(f, place):
+        if not in_order(f, c, place):
             return np.nan
         if count == MOST_STEPS:
             if max(earlier, last) < 1e-7 and last > 0.25 * earlier:
@@ -168,7 +169,7 @@ def settle(f, c, place, closing, b):
         if damping == 1.0 and (
             change <= 4e-16 or (change < most and change >= (0.5 if change < 1e-12 else 0.8) * before)
         ):
-            return change if in_order(f, place) else np.nan
+            return change if in_order(f, c, place) else np.nan
         before = change if damping == 1.0 else np.inf
         if count >= MOST_STEPS - LAST:
             last = max(last, before)

@@ -6,8 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.continuation.held_gap import hold_gap
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, flight
 from vibro_sweep.engine.continuation.problem import index_of, unknowns
+from vibro_sweep.engine.continuation.residual import approach, leave
 from vibro_sweep.engine.continuation.workspace import TESTS, Place, new_place
 from vibro_sweep.engine.simd.jit import jit
 
@@ -94,21 +96,29 @@ def keep(place, b, omega, record, count):
 
 
 @jit
-def state_at(f, sigma, x, phase, work, state):
+def state_at(f, c, x, phase, b, state):
     """The state (n,) of an orbit x (K, n + 2) at a phase, before an impact there."""
-    n, K, E, length = f.A.shape[0], len(x), work.E, math.pi * f.half_turns
+    n, K, length, work = f.A.shape[0], len(x), math.pi * f.half_turns, b.work[0]
+    E = work.E
     turns = math.ceil((phase - x[0, n]) / length) - 1.0
     s = phase - turns * length  # in (phi_1, phi_1 + length]
     i = K - 1
     while i > 0 and not x[i, n] < s:
         i -= 1
-    flight(f, max(s - x[i, n], 0.0) / f.numbers[OMEGA], E, work.other)
-    turn = cmath.exp(1j * s)
-    sign = 1.0 if sigma > 0.0 or turns % 2.0 == 0.0 else -1.0
+    e, delay, turn = b.events[i], max(s - x[i, n], 0.0), cmath.exp(1j * s)
+    sign = 1.0 if c.sigma > 0.0 or turns % 2.0 == 0.0 else -1.0
+    approach(f, x[i], e)
+    if c.rests[i] and delay < x[i, n + 1]:
+        hold_gap(f, c.sides[i], x[i], delay, e, work.resting)
+        for r in range(n):
+            state[r] = sign * work.resting[0, r, n]
+        return
+    leave(f, c, i, x[i], e, work)
+    flight(f, (delay - (x[i, n + 1] if c.rests[i] else 0.0)) / f.numbers[OMEGA], E, work.other)
     for r in range(n):
-        total = (f.Z[r] * turn).real + E[0, r, n] + E[0, r, n // 2] * x[i, n + 1]
-        for j in range(n):
-            total += E[0, r, j] * x[i, j]
+        total = (f.Z[r] * turn).real
+        for j in range(n + 1):
+            total += E[0, r, j] * e.after[j]
         state[r] = sign * total
 
 

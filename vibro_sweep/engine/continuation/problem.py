@@ -21,6 +21,7 @@ class Problem(NamedTuple):
     kind: int  # of the condition
     index: int  # of the impact that grazes; 0 of an onset of sticking, where event 0 is the end of a chatter sequence
     sides: np.ndarray  # (K,); 0 of a turning point that is followed and takes part in nothing
+    rests: np.ndarray  # (K,) whether the gap stays at its stop after the impact, where R = 0
     sigma: float
     parameters: int  # numbers of the oscillator that are free
     unit: np.ndarray  # (2,) of these

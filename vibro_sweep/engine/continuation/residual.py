@@ -21,12 +21,13 @@ import cmath
 import math
 
 from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
+from vibro_sweep.engine.continuation.held_gap import put_rest, rest
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, flight
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
 from vibro_sweep.engine.simd.jit import jit
 
-IMPACT, WATCHED, END = range(3)  # laws of events; END: of a chatter sequence at the onset of sticking
+IMPACT, WATCHED, END, REST = range(4)  # laws of events; END: of a chatter sequence at the onset of sticking
 
 
 @jit
@@ -51,6 +52,13 @@ def put_rows(f, law, side, x, e, panel):
     p, F, first, second = 3 * n + 2, 3 * n + 2 + f.parameters, n, n + 1
     stop, gain = (HIGH, GAIN_HIGH) if side > 0 else (LOW, GAIN_LOW)
     v, a = e.motion[0], e.motion[1]
+    if law == IMPACT or law == REST:
+        panel[first, 0], panel[first, n] = 1.0, v / omega
+        panel[first, F] = e.gap - f.numbers[stop]
+        for j in range(f.parameters):
+            panel[first, p + j] = (f.Z_slopes[j, 0] * e.turn).real - f.number_slopes[j, stop]
+        if law == REST:
+            return
     speed = second if law != WATCHED else first  # the row that knows the velocity, and how much of it
     weight = f.numbers[gain] if law != WATCHED else 1.0
     panel[speed, N], panel[speed, n] = weight, weight * a / omega
@@ -61,30 +69,36 @@ def put_rows(f, law, side, x, e, panel):
         panel[speed, p + j] = weight * (f.Z_slopes[j, N] * e.turn).real
         if law != WATCHED:
             panel[speed, p + j] += f.number_slopes[j, gain] * v
-    if law == IMPACT:
-        panel[first, 0], panel[first, n] = 1.0, v / omega
-        panel[first, F] = e.gap - f.numbers[stop]
-        for j in range(f.parameters):
-            panel[first, p + j] = (f.Z_slopes[j, 0] * e.turn).real - f.number_slopes[j, stop]
-    elif law == END:
+    if law == END:
         end_of_chatter(f, x, e, panel)
 
 
 @jit
-def fly(f, length, x, e, other):
-    """The flight of this length after an event."""
-    flight(f, length, e.E, other)
-    land(f, x, e)
+def leave(f, c, i, x, e, work):
+    """The state after event i, and what it does to changes of the state."""
+    n, N = f.A.shape[0], f.A.shape[0] // 2
+    if c.rests[i]:
+        rest(f, c.sides[i], x, e, work.resting)
+        return
+    for r in range(n):
+        e.after[r], e.bend[r] = x[r], f.A[r, N] * x[n + 1] / f.numbers[OMEGA]
+    e.after[N] += x[n + 1]
+    e.after[n] = 1.0
 
 
 @jit
-def land(f, x, e):
-    """The flight `e.E` after an event."""
-    n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
-    for r in range(n):
-        e.after[r], e.bend[r] = x[r], f.A[r, N] * x[n + 1] / omega
-    e.after[N] += x[n + 1]
-    e.after[n] = 1.0
+def fly(f, c, i, length, x, e, work):
+    """From event i on, for this time, to the next one."""
+    leave(f, c, i, x, e, work)
+    e.length = length - x[f.A.shape[0] + 1] / f.numbers[OMEGA] if c.rests[i] else length
+    flight(f, e.length, e.E, work.other)
+    land(f, e)
+
+
+@jit
+def land(f, e):
+    """The end of the flight `e.E`."""
+    n, omega = f.A.shape[0], f.numbers[OMEGA]
     for r in range(n):
         total = 0.0
         for c in range(n + 1):
@@ -98,17 +112,18 @@ def land(f, x, e):
 
 
 @jit
-def put_flight(f, e, panel):
+def put_flight(f, law, e, panel):
     """The last rows of the panel: the flight, whose end is to be the next state."""
     n, N = f.A.shape[0], f.A.shape[0] // 2
     p, F = 3 * n + 2, 3 * n + 2 + f.parameters
     for r in range(n):
         i, by_phase = n + 2 + r, 0.0
-        for c in range(n):
-            panel[i, c] = -e.E[0, r, c]
-            by_phase += e.E[0, r, c] * e.bend[c]
-        panel[i, n], panel[i, n + 1], panel[i, n + 2 + r] = by_phase, -e.E[0, r, N], 1.0
-        panel[i, F] = e.missed[r]
+        if law != REST:
+            for c in range(n):
+                panel[i, c] = -e.E[0, r, c]
+                by_phase += e.E[0, r, c] * e.bend[c]
+            panel[i, n], panel[i, n + 1] = by_phase, -e.E[0, r, N]
+        panel[i, n + 2 + r], panel[i, F] = 1.0, e.missed[r]
         for j in range(f.parameters):
             panel[i, p + j] = e.length * e.landing_rate[r] * f.number_slopes[j, OMEGA]
             if f.moves[j] > 0:
@@ -132,9 +147,9 @@ def fly_through(f, c, place, b):
     for i in range(K):
         e, x, last = b.events[i], place.x[i], i + 1 == K
         following = place.x[0 if last else i + 1]
-        e.length = (following[n] + (math.pi * f.half_turns if last else 0.0) - x[n]) / f.numbers[OMEGA]
+        length = (following[n] + (math.pi * f.half_turns if last else 0.0) - x[n]) / f.numbers[OMEGA]
         approach(f, x, e)
-        fly(f, e.length, x, e, b.work[0].other)
+        fly(f, c, i, length, x, e, b.work[0])
         for r in range(n):
             e.missed[r] = (c.sigma if last else 1.0) * following[r] - e.landing[r]
 
@@ -153,14 +168,16 @@ def eliminate(f, c, place, b, watched):
         panel[r, r], panel[r, X + r] = 1.0, -1.0
     for i in range(K):
         e, x, last = b.events[i], place.x[i], i + 1 == K
-        law = END if c.kind == STICK and i == 0 else IMPACT
+        law = REST if c.rests[i] else END if c.kind == STICK and i == 0 else IMPACT
         if c.sides[i] == 0.0 or (watched and i == c.index):
             law = WATCHED
         for r in range(n, 2 * n + 2):
             for j in range(width):
                 panel[r, j] = 0.0
         put_rows(f, law, c.sides[i], x, e, panel)
-        put_flight(f, e, panel)
+        put_flight(f, law, e, panel)
+        if law == REST:
+            put_rest(f, e, panel)
         if last and f.is_held > 0:
             hold(f, panel)
         if c.kind == STICK and last:
@@ -183,11 +200,12 @@ def eliminate(f, c, place, b, watched):
 
 
 @jit
-def follow(f, place, b):
+def follow(f, c, place, b):
     """States before all events from that before the first."""
     n = f.A.shape[0]
     for i in range(len(place.x) - 1):
         e, x, following = b.events[i], place.x[i], place.x[i + 1]
-        fly(f, (following[n] - x[n]) / f.numbers[OMEGA], x, e, b.work[0].other)
+        approach(f, x, e)
+        fly(f, c, i, (following[n] - x[n]) / f.numbers[OMEGA], x, e, b.work[0])
         for r in range(n):
             following[r] = e.landing[r]

@@ -90,7 +90,7 @@ def correct(f, c, place, row, b):
         if not move_to(f, place.p[FIRST], place.p[SECOND]):
             return 0
         change = newton_step(f, c, place, row, b)
-        if not change <= 1.0 or not in_order(f, place):
+        if not change <= 1.0 or not in_order(f, c, place):
             return 0
         if change < CONVERGED or (change < 1e-7 and change > 0.3 * before):
             place.tests[RESIDUAL] = change
@@ -198,13 +198,13 @@ def walk(f, c, path, place, row, b):
 
 
 @jit
-def take_states(f, c, path, work):
+def take_states(f, c, path, b):
     """States of the recorded points at their phases. 0.0 where one has no forced motion."""
     record = path.record
     for i in range(path.counts[1]):
         if not move_to(f, record.p[i, 0], record.p[i, 1]):
             return 0.0
-        state_at(f, c.sigma, record.x[i], record.phase[i], work, record.state[i])
+        state_at(f, c, record.x[i], record.phase[i], b, record.state[i])
     return 1.0
 
 
@@ -229,13 +229,13 @@ def at(task, planes, c, path, place, row, b):
             return 1.0 if moved else np.nan if task == CORRECT else 0.0
     if task == CORRECT:
         change = newton_step(f, c, place, row, b)
-        return change if in_order(f, place) else np.nan
+        return change if in_order(f, c, place) else np.nan
     if task == WALK:
         return float(walk(f, c, path, place, row, b))
     if task == STATES:
-        return take_states(f, c, path, b.work[0])
+        return take_states(f, c, path, b)
     if task == FOLLOW:
-        follow(f, place, b)
+        follow(f, c, place, b)
         return 1.0
     if task == TAKE_APART:
         for j in range(3):

@@ -16,7 +16,7 @@ from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.memory import new_lines, record
 
 FIRST, SECOND, THETA = range(3)  # of `Place.p`: both parameters, and theta of a Neimark-Sacker curve
-TESTS = 22  # see curve_tests.py and branch_tests.py
+TESTS = 23  # see curve_tests.py and branch_tests.py
 TERMS = 10  # of a power series in z and its conjugate, to third order
 PARAMETERS = 2  # of the oscillator that may be free
 ROWS = 3  # most scalar rows: conditions, and the plane across a tangent
@@ -67,7 +67,12 @@ def event_of(masses: int) -> np.dtype:
         ("landing_rate", float, n),  # y' there
         ("missed", float, n),  # by which it misses the next state
         ("bend", float, n),  # rho: the jump of y' at it
-        ("gap", float),  # before it
+        ("carry", float, (n, n + 2 + PARAMETERS)),  # xi after a rest by xi, dphi, ds and the parameters
+        ("pull", float),  # free acceleration of the gap at the end of a rest
+        ("release", float, n + 2 + PARAMETERS),  # its derivatives, as of `carry`
+        ("course", float, ORDER + 1),  # its Taylor coefficients in the last part of the rest
+        ("hold", float),  # the least of it during the rest, into the stop
+        ("gap", float),  # before the event
         ("motion", float, 2),  # and its velocity and acceleration
         ("rows", float, (ROWS, n + 2)),  # entries of the scalar rows, by xi, dphi, dD
         ("factors", float, (ROWS, n + 2)),  # with which `kept` was subtracted from them
@@ -102,10 +107,12 @@ def work_of(masses: int) -> np.dtype:
         ("mirror", float, (n + 2, 2 * n + 2)),
         ("image", float, (n, 2 * n)),
         ("matrix", float, (n, n)),
+        ("resting", float, (3, n, n + 1 + PARAMETERS)),  # see held_gap.py
         ("re", float, n),
         ("im", float, n),
         ("cell", float, ORDER + 1),
         ("nearest", float, 3),  # turning point nearest to its stop: distance, phase, side
+        ("turning", float, 3),  # the same of the free acceleration during a rest
         ("waiting", float, (PIECES, 2)),
         ("flying", float, (2, n)),
         ("order", np.int64, n + ROWS),

@@ -1,7 +1,8 @@
-"""Points of a branch without impacts or with rests, and steps between them (as walk.py, of the others).
+"""Points of a branch without impacts, and steps between them (as walk.py, of the others).
 
-A point of the branch is x = (t_1 .. t_K, D_1 .. D_K, ends of the rests, p), in units of 1/omega for times, of the
-fastest impulse for impulses, and of the parameter's range.
+A point of the branch is x = (t_1, D_1, mean gap, p), in units of 1/omega for times, of the fastest impulse for
+impulses, and of the parameter's range. There is an impact where a flight touches a stop, and a mean gap where a mode is
+free.
 """
 
 from copy import copy
@@ -11,10 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from vibro_sweep.analysis.periodic.impulse_equations import Equations
-from vibro_sweep.analysis.periodic.resting import RestEquations
 from vibro_sweep.analysis.periodic.solution import Solution, equations_for
 from vibro_sweep.engine.impulses.equations import ROUNDING
-from vibro_sweep.engine.impulses.green import space
 from vibro_sweep.model.linear import Linear
 
 ROUNDED = 16 * np.finfo(float).eps  # of the parameter, and of the gap at each impact
@@ -23,12 +22,12 @@ STILL = 1e-5  # in units of a walk: an orbit that Newton's method takes farther 
 
 
 @dataclass(eq=False)
-class RestingPoint:
+class FreePoint:
     """A point of a branch; `x` in scaled units."""
 
-    walk: "RestingWalk"
+    walk: "FreeWalk"
     x: np.ndarray
-    equations: Equations | RestEquations
+    equations: Equations
     J: np.ndarray  # (n, n + 1), by scaled unknowns and parameter
     motion: np.ndarray
     residual: float
@@ -49,7 +48,7 @@ class RestingPoint:
         self.held = value
         self.__dict__.pop("solution", None)
 
-    def backwards(self) -> "RestingPoint":
+    def backwards(self) -> "FreePoint":
         """The same point of the branch in the other direction."""
         other = copy(self)
         other.direction = -self.direction
@@ -75,14 +74,6 @@ class RestingPoint:
         return float(ROUNDED * (abs(self.p) + moved))
 
     @cached_property
-    def reflection(self) -> float:
-        """det J(-1), zero at a flip (pitchfork)."""
-        w = self.walk
-        u = self.x[:-1] * w.scale[:-1]
-        sign, size = np.linalg.slogdet(self.equations.linearised(-1, w.start.sides, u, self.motion))
-        return float(sign * np.exp(min(size, 700.0)))
-
-    @cached_property
     def torus(self) -> float:
         """prod_{i<j} (1 - mu_i mu_j): zero at a Neimark-Sacker point, and at a neutral saddle. 1 without losses."""
         mu = self.solution.multipliers
@@ -91,27 +82,10 @@ class RestingPoint:
         i, j = np.triu_indices(len(mu), 1)
         return float(np.prod(1 - mu[i] * mu[j]).real)
 
-    @cached_property
-    def releases(self) -> np.ndarray:
-        """(K,) acceleration away from the stop just after an impact with R = 0; infinite for other impacts."""
-        e, sides = self.equations, np.array(self.walk.start.sides, float)
-        s = space(e.q)
-        after = self.motion[:, 1] + self.solution.jumps * (s.e_g @ s.A @ (s.A @ s.e_v))
-        leaves = np.where(e.q.restitution(sides) == 0, -sides * after, np.inf)
-        leaves[list(self.walk.start.rests)] = np.inf
-        return leaves
-
-    @cached_property
-    def stays(self) -> float:
-        """The least of what makes a rest: its length, in 1/omega, and the acceleration into the stop; inf without."""
-        s, omega = self.solution, self.solution.family.linear.omega
-        if not s.rests:
-            return np.inf
-        lengths = (s.ends - s.times[list(s.rests)]) * omega
-        return float(min(lengths.min(), s.hold / (omega**2 * s.size_of_gap)))
+    releases, stays = np.empty(0), np.inf  # nothing rests
 
 
-class RestingWalk:
+class FreeWalk:
     """A branch through `start` in the parameter `name`."""
 
     def __init__(self, start: Solution, name: str, span: float):
@@ -122,19 +96,16 @@ class RestingWalk:
         """At values of the parameter that points of the branch have."""
         return [self.family.replace(**{self.name: p}).linear for p in values.tolist()]
 
-    def with_impact(self, touching: Solution) -> "RestingWalk":
+    def with_impact(self, touching: Solution) -> "FreeWalk":
         """The same for orbits with one impact more."""
-        longer, K = RestingWalk(touching, self.name, self.unit), self.start.K
-        if K:
-            longer.scale[K + 1 : 2 * K + 2] = self.scale[K]
-        return longer
+        return FreeWalk(touching, self.name, self.unit)
 
-    def equations(self, p: float) -> Equations | RestEquations:
+    def equations(self, p: float) -> Equations:
         """Raises ParameterError where the parameter leaves what is allowed."""
         q = self.family.replace(**{self.name: p}).linear
         return equations_for(self.start, q, self.family.derivative(self.name, q))
 
-    def correct(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> RestingPoint | None:
+    def correct(self, guess: np.ndarray, normal: np.ndarray, forwards: np.ndarray) -> FreePoint | None:
         """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""
         x, before, K = guess.copy(), np.inf, self.start.K
         for corrections in range(1, MOST_CORRECTIONS + 1):
@@ -149,9 +120,6 @@ class RestingWalk:
             if not change <= 1:
                 return None
             x = x - step
-            t = x[:K] * self.scale[0]
-            if len(t) and not (np.all(np.diff(t) > 0) and t[-1] - t[0] < e.P):
-                return None
             size = ROUNDING * self.start.size_of_gap
             held = np.abs(F[:K]).max(initial=0.0) <= size
             if change <= 1e-15 or (change < (1e-7 if held else 1e-9) and change >= 0.3 * before):
@@ -160,11 +128,11 @@ class RestingWalk:
                     e = self.equations(float(x[-1] * self.unit)) if moved else e
                 except ValueError:
                     return None
-                return RestingPoint(self, x, e, rows, motion, change, corrections, forwards)
+                return FreePoint(self, x, e, rows, motion, change, corrections, forwards)
             before = change
         return None
 
-    def first(self, forwards: float) -> RestingPoint | None:
+    def first(self, forwards: float) -> FreePoint | None:
         """`start` itself; `forwards`: sign of the parameter's change.
 
         None where Newton's method fails, or leads to another orbit.
@@ -173,7 +141,7 @@ class RestingWalk:
         return point if point is None or forwards == 1 else point.backwards()
 
     @cached_property
-    def _first(self) -> RestingPoint | None:
+    def _first(self) -> FreePoint | None:
         x, axis = self.of(self.start), np.zeros(len(self.scale))
         axis[-1] = 1.0
         point = self.correct(x, axis, axis)
@@ -182,7 +150,7 @@ class RestingWalk:
         point.hold(self.family.numbers[self.name])
         return point
 
-    def step(self, point: RestingPoint, length: float, near: np.ndarray | None = None) -> RestingPoint | None:
+    def step(self, point: FreePoint, length: float, near: np.ndarray | None = None) -> FreePoint | None:
         """The point of the branch whose projection on the tangent at `point` is `length`; near: a guess."""
         tangent = point.tangent
         guess = point.x + length * tangent
@@ -190,14 +158,14 @@ class RestingWalk:
             guess = near + (length - tangent @ (near - point.x)) * tangent
         return self.correct(guess, tangent, tangent)
 
-    def beside_start(self, length: float) -> RestingPoint | None:
+    def beside_start(self, length: float) -> FreePoint | None:
         """The point of the branch at a distance from the start, also where that is a fold."""
         start = self.start
         _, J, Fp, _ = self.equations(self.family.numbers[self.name]).evaluate(start.sides, start.u)
         tangent = np.linalg.svd(np.hstack([J, Fp[:, None]]) * self.scale)[2][-1]
         return self.correct(self.of(start) + length * tangent, tangent, tangent)
 
-    def between(self, a: RestingPoint, b: RestingPoint, share: float) -> np.ndarray:
+    def between(self, a: FreePoint, b: FreePoint, share: float) -> np.ndarray:
         """On the cubic through a and b with their tangents."""
         rest, length = 1 - share, np.linalg.norm(b.x - a.x)
         bend = share * rest * length * (rest * a.tangent - share * b.tangent)
@@ -219,9 +187,9 @@ class RestingWalk:
     def solution(self, guess: np.ndarray) -> Solution:
         """The orbit of a guess."""
         family, s = self.family.replace(**{self.name: float(guess[-1] * self.unit)}), self.start
-        return Solution(family, s.sigma, s.halves, s.sides, guess[:-1] * self.scale[:-1], 0.0, s.rests)
+        return Solution(family, s.sigma, s.halves, s.sides, guess[:-1] * self.scale[:-1])
 
-    def ahead(self, point: RestingPoint) -> Solution:
+    def ahead(self, point: FreePoint) -> Solution:
         """The orbit to which the tangent leads, at the distance 1, with the parameter of the point."""
         return self.solution(np.append((point.x + point.tangent)[:-1], point.p / self.unit))
 
