@@ -12,6 +12,7 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic import long_orbits
 from vibro_sweep.analysis.periodic.flight_slopes import rate_slopes
+from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.solution import equations_for
 from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.engine.impulses.flow import rates
@@ -156,15 +157,16 @@ def test_windows_of_long_orbits_are_those_of_the_dense_equations(case, monkeypat
 
 
 @pytest.mark.slow
-def test_newton_stands_still_at_what_rounding_leaves_of_an_orbit_beside_a_fold():
-    """5e-14 from it, 711 impacts with a free mass: steps came down to 2e-8 and were no solution; beyond it is none."""
+def test_newton_finds_an_orbit_of_many_impacts_beside_a_fold():
+    """5e-14 from it, 711 impacts with a free mass, where rounding is large; beyond the fold is none."""
     ball = dict(mass_ratio=0.1742756546125067, zeta=0.04364419723740718, F=0.9339197298888937, tau=1.278286292243059)
     ball |= dict(omega=1.973006977361091, R=0.9134945151458826, b=0.32)
     system = vs.Oscillator.named("ball_in_cavity", **ball)
     branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="LRR", periods=1), "b", (0.3, 0.36))
     (fold,) = [special for special in branch.special if special.type == "fold"]
     there, end = fold.orbit._solution, fold.parameters["b"]
-    critical = np.linalg.svd(there.equations.linearised(1, there.sides, there.u, there.motion))[2][-1]
+    critical = np.append(Linearised(there).critical_direction(1), 0.0)  # the mean gap follows
+    critical /= np.linalg.norm(critical)
 
     def beside(distance, amplitude):
         guess = replace(there, family=family_of(system.replace(b=end + distance)), u=there.u + amplitude * critical)
@@ -175,9 +177,9 @@ def test_newton_stands_still_at_what_rounding_leaves_of_an_orbit_beside_a_fold()
     if (far.u - near.u) @ critical < 0:
         critical = -critical
     one = beside(side * 5e-14, (near.u - there.u) @ critical * 5e-6**0.5)
-    shifts = np.repeat(np.arange(237) * one.equations.P, one.K)
+    shifts = np.repeat(np.arange(237) * one.P, one.K)
     u = np.concatenate([np.tile(one.times, 237) + shifts, np.tile(one.jumps, 237), one.u[-1:]])
     many = replace(one, halves=237 * one.halves, sides=one.sides * 237, u=u)
     found = many.corrected()
-    assert 1e-9 < found.change < 1e-7 and np.abs(found.u - many.u).max() < 1e-6
+    assert found.change < 1e-7 and np.abs(found.u - many.u).max() < 1e-6
     assert replace(many, family=family_of(system.replace(b=end - side * 1e-9))).corrected() is None

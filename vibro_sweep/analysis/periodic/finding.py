@@ -188,10 +188,8 @@ def _seeded(start: Solution):
     """Solutions from fixed seeds, different ones, those whose impulses push first."""
     e, K, q = EventEquations.of(start), start.K, start.family.linear
     rng, T, sides = np.random.default_rng(0), forcing_period(q), np.array(start.sides)
-    push = push_of_free_mode(q) if start.is_free else 0.0
-    size = max(
-        q.omega * abs(steady_gap(q).swing), abs(push) * start.P / K, *(q.omega * abs(x) for x in q.stop(start.sides))
-    )
+    stops, pushed = np.abs(q.stop(start.sides)).max(), abs(push_of_free_mode(q)) * start.P / K
+    size = max(q.omega * abs(steady_gap(q).swing), q.omega * stops, pushed)
     t = np.sort(rng.uniform(0, start.P, (SEEDS, K)), axis=1)
     t += rng.uniform(0, start.P, (SEEDS, 1)) - t[:, :1]
     guesses = np.hstack([t, -sides * size * 10 ** rng.uniform(-2, 0.5, (SEEDS, K))])
