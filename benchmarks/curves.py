@@ -51,7 +51,7 @@ def longer(start: Start, times: int) -> Start:
     s = start.solution
     shifts = np.repeat(np.arange(times), s.K)
     signs = np.repeat(float(s.sigma) ** np.arange(times), s.K)
-    u = np.concatenate([np.tile(s.times, times) + shifts * s.equations.P, np.tile(s.jumps, times) * signs])
+    u = np.concatenate([np.tile(s.times, times) + shifts * s.P, np.tile(s.jumps, times) * signs])
     sides = tuple(int(side * sign) for side, sign in zip(s.sides * times, signs, strict=True))
     theta = abs(float(np.angle(np.exp(1j * times * start.theta))))
     solution = Solution(s.family, s.sigma**times, s.halves * times, sides, u)

@@ -11,7 +11,7 @@ from support.random_branches import random_oscillator, random_system
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import way
-from vibro_sweep.analysis.branches.walk import walk_of
+from vibro_sweep.analysis.branches.free_walk import walk_of
 
 B_STAR = 6.7057167409730219272  # |e_1.(K - omega^2 M + i omega C)^-1 P| in 40 digits
 

@@ -1,4 +1,4 @@
-"""Orbits with many impacts: the sparse equations give what the dense ones give, at a cost that grows like K."""
+"""Orbits with many impacts are found, followed and differentiated as short ones are."""
 
 from dataclasses import replace
 
@@ -9,54 +9,31 @@ from support.branches import repeated
 from support.oscillators import CHAIN, PAPER
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.branches.flat import orbit_at
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.periodic import long_orbits
 from vibro_sweep.analysis.periodic.flight_slopes import rate_slopes
 from vibro_sweep.analysis.periodic.linearised import Linearised
-from vibro_sweep.analysis.periodic.solution import equations_for
 from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.engine.impulses.flow import rates
+from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.model.linear import family_of
 
 DAMPER = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.27, zeta=0.116, F=0.99, omega=0.65, R=0.9, b=1.3)
-
-
-@pytest.mark.parametrize("system", [PAPER, CHAIN])
-@pytest.mark.parametrize("count", [1, 7, 40])
-def test_sparse_equations_are_the_dense_ones(system, count):
-    solution = repeated(vs.periodic_orbit(system, itinerary="LR"), count)
-    e, K = solution.equations, solution.K
-    _, J, _, motion = e.evaluate(solution.sides, solution.u)
-    rng = np.random.default_rng(0)
-    column, row, F = rng.normal(size=2 * K), rng.normal(size=2 * K + 1), rng.normal(size=2 * K)
-    expected = np.linalg.solve(np.vstack([np.column_stack([J, column]), row]), np.append(F, 0.3))
-    found = long_orbits.solve_bordered(e, solution.sides, solution.u, motion, column, row, F, 0.3)
-    assert found == pytest.approx(expected, rel=1e-9, abs=1e-11)
-    for mu in (1, -1):
-        sign, size = np.linalg.slogdet(e.linearised(mu, solution.sides, solution.u, motion))
-        A = long_orbits.flow(e.q).B[: 2 * len(e.q.along), : 2 * len(e.q.along)]
-        states = np.prod(1 - np.exp(np.linalg.eigvals(A) * e.P) / mu).real
-        found = long_orbits.sign_and_log_det(e, solution.sides, solution.u, motion, mu)
-        assert found[0] == sign * np.sign(states)
-        assert found[1] == pytest.approx(size + np.log(abs(states)), abs=1e-8)
 
 
 @pytest.mark.parametrize(
     ("system", "name"),
     [(system, name) for system in (PAPER, CHAIN) for name in ("R", "b", "omega")] + [(PAPER, "mu_m"), (CHAIN, "c")],
 )
-def test_flights_leave_the_residual_of_the_sums(system, name):
-    """Beside an orbit of 160 impacts, where nothing vanishes; and the slopes of all unknowns on it."""
-    solution = repeated(vs.periodic_orbit(system, itinerary="LR"), 80)
-    q = solution.family.linear
-    e, sides = equations_for(solution, q, solution.family.derivative(name)), solution.sides
-    assert long_orbits.is_sparse(e, sides)
-    u = solution.u * (1 + 1e-4 * np.random.default_rng(1).normal(size=solution.size))
-    for one, other in zip(long_orbits.residual(e, sides, u), e.residual(sides, u), strict=True):
-        assert one == pytest.approx(other, rel=1e-10, abs=1e-10 * np.abs(other).max())
-    _, J, Fp, _ = e.evaluate(sides, solution.u)
-    exact = np.linalg.solve(J, -Fp)
-    assert long_orbits.slopes(e, sides, solution.u) == pytest.approx(exact, rel=1e-6, abs=1e-8 * np.abs(exact).max())
+def test_slopes_of_a_long_orbit_are_those_of_the_short_one(system, name):
+    short = vs.periodic_orbit(system, itinerary="LR")._solution
+    solution, times = repeated(vs.periodic_orbit(system, itinerary="LR"), 80), 80 if short.sigma == 1 else 160
+    slope, K = solution.family.derivative(name), short.K
+    found, one = Linearised(solution, slope).slopes(), Linearised(short, slope).slopes()
+    later = -short.P * slope.omega / solution.family.linear.omega  # dP/dp
+    shifts = np.repeat(np.arange(times), K)
+    expected = np.tile(one[:K], times) + later * shifts, np.tile(one[K:], times) * float(short.sigma) ** shifts
+    assert found == pytest.approx(np.concatenate(expected), rel=1e-6, abs=1e-8 * np.abs(found).max())
 
 
 @pytest.mark.parametrize("system", [PAPER, CHAIN, DAMPER])
@@ -77,14 +54,11 @@ def test_slopes_of_the_rates_are_those_of_differences(system):
 def test_the_critical_direction_of_a_long_orbit():
     """A pitchfork of the paper's oscillator, written out: J(1) of 81 half orbits is singular as J(-1) of one is."""
     orbit = vs.periodic_orbit(PAPER.replace(b=3.892819435563419), itinerary="LR")
-    solution = repeated(orbit, 61)
-    e, sides, u, motion = solution.equations, solution.sides, solution.u, solution.motion
-    assert long_orbits.is_sparse(e, sides)
-    scale = np.abs(np.random.default_rng(4).normal(1, 0.1, 2 * solution.K))
-    _, sizes, rows = np.linalg.svd(e.linearised(1, sides, u, motion) * scale)
-    assert sizes[-1] < 1e-8 * sizes[-2]
-    found = long_orbits.critical_direction(e, sides, u, motion, 1, scale)
-    assert abs(found @ rows[-1]) == pytest.approx(1, abs=1e-9)
+    short, solution = orbit._solution, repeated(orbit, 61)
+    one, found = Linearised(short).critical_direction(-1), Linearised(solution).critical_direction(1)
+    signs = (-1.0) ** np.arange(122)
+    expected = np.concatenate([one[0] * signs, -short.sigma * one[1] * np.ones(122)])
+    assert abs(found @ expected) == pytest.approx(np.linalg.norm(found) * np.linalg.norm(expected), rel=1e-8)
 
 
 def test_long_orbit_is_followed_like_the_short_one():
@@ -100,17 +74,18 @@ def test_long_orbit_is_followed_like_the_short_one():
 
 
 @pytest.mark.parametrize("system", [PAPER, *slow_cases(CHAIN)])
-def test_newton_finds_what_the_equations_of_sums_say(system):
+def test_newton_finds_a_long_orbit(system):
     long = repeated(vs.periodic_orbit(system, itinerary="LR"), 35)
     rng = np.random.default_rng(0)
     near = replace(long, u=long.u * (1 + 1e-6 * rng.normal(size=long.size)))
     found = near.corrected()
-    ends, _ = near.equations.newton(near.sides, near.u[None])
-    assert found.change < 1e-11 and np.abs(found.u - ends[0]).max() < 1e-11 and np.abs(found.u - long.u).max() < 1e-11
-    assert found.real
+    assert found.change < 1e-11 and np.abs(found.u - long.u).max() < 1e-11 and found.real
     far = replace(long, u=long.u * (1 + 0.3 * rng.normal(size=long.size))).corrected()
     if far is not None:
-        assert np.abs(far.equations.evaluate(far.sides, far.u)[0]).max() < 1e-9
+        q, states = far.family.linear, far.states
+        assert np.abs(states[:, 0] - q.stop(far.sides)).max() < 1e-9
+        gains = 1 + q.restitution(far.sides)
+        assert np.abs(far.jumps + gains * states[:, len(q.along)]).max() < 1e-9
 
 
 # from random sweeps of chains of three: system, its swept number, period, bounds, a state of the recorded orbit
@@ -141,19 +116,22 @@ LONG = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", LONG)
-def test_windows_of_long_orbits_are_those_of_the_dense_equations(case, monkeypatch):
-    """And their ends differ by no more than the stated errors; K = 121 to 311."""
+def test_windows_of_long_orbits(case):
+    """At their ends an impact vanishes or appears, or a multiplier is on the unit circle."""
     numbers, name, period, bounds, state = LONG[case]
     job = Job(vs.Oscillator.named("chain", **numbers), np.array(state), period, name, bounds)
     flat = window_of(job).flat
-    assert len(flat["impact_side"]) == int(case.split()[1]) >= long_orbits.SPARSE and not flat["branch_symmetric"]
-    monkeypatch.setattr(long_orbits, "SPARSE", 10**9)
-    dense = window_of(job).flat
-    assert np.array_equal(flat["special_type"], dense["special_type"])
-    assert np.array_equal(flat["impact_side"], dense["impact_side"])
-    apart = np.abs(flat["special_value"] - dense["special_value"])
-    assert np.all(apart <= flat["special_error"] + dense["special_error"])
+    assert len(flat["impact_side"]) == int(case.split()[1]) and not flat["branch_symmetric"]
     assert np.all(flat["special_error"] < 2e-11)
+    for point, kind, value in zip((0, -1), flat["special_type"], flat["special_value"], strict=True):
+        system = job.system.replace(**{name: float(value)})
+        orbit = orbit_at(flat, point, system)
+        solution = orbit._solution
+        if TYPES[int(kind)].name == "graze":
+            slowest = solution.pushes.min() / np.abs(solution.jumps).max()
+            assert min(abs(orbit.margin) / solution.size_of_gap, abs(slowest)) < 1e-8
+        elif TYPES[int(kind)].name != "limit":
+            assert np.abs(np.abs(orbit.multipliers) - 1).min() < 1e-4
 
 
 @pytest.mark.slow

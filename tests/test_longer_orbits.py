@@ -118,7 +118,7 @@ def test_grazes_of_the_orbits_that_are_born(kind, one_sided_branch, asymmetric_g
         assert end.parameters == pytest.approx(special.parameters, abs=1e-11)
         report = Report(0)
         for k in chosen(curve, 9)[1:-1]:
-            t, P = curve.points.impact_t[k].values, solution_at(curve, k).equations.P
+            t, P = curve.points.impact_t[k].values, solution_at(curve, k).P
             assert np.abs((t + P / 2 - t[:, None] + P / 4) % P - P / 4).min() > 1e-4  # no orbit taken twice
             simulate_beside(report, curve, k, kind)
         assert report.points >= 6 and report.wrong == []

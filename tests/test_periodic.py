@@ -10,6 +10,7 @@ from reference.shooting import Shooting
 from support.oscillators import BALL, CAVITY, CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import canonical_start
 
 
@@ -209,14 +210,14 @@ def test_thousand_guesses_give_the_orbit_or_an_honest_failure():
     rng = np.random.default_rng(1)
     solution = orbit._solution
     guesses = solution.u * (1 + rng.uniform(-0.3, 0.3, (1000, 2)))
-    ends, change = solution.equations.newton(solution.sides, guesses)
+    ends, change = EventEquations.of(solution).newton(guesses)
     found = np.isfinite(change)
     assert found.mean() > 0.9
-    for end in np.unique(np.round(ends[found], 6), axis=0):
-        residual = solution.equations.evaluate(solution.sides, end)[0]
-        assert np.abs(residual).max() < 1e-4
-    residuals = [np.abs(solution.equations.evaluate(solution.sides, end)[0]).max() for end in ends[found]]
-    assert max(residuals) < 1e-12
+    q = solution.family.linear
+    for end in ends[found]:
+        one = replace(solution, u=end)
+        assert np.abs(one.states[:, 0] - q.stop(one.sides)).max() < 1e-12
+        assert np.abs(one.jumps + 1.8 * one.states[:, len(q.along)]).max() < 1e-12
 
 
 def test_shooting_of_the_reference_finds_the_same_orbit():

@@ -9,7 +9,7 @@ from reference.resting import Resting
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.walk import walk_of
+from vibro_sweep.analysis.branches.free_walk import walk_of
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.model.linear import family_of
 

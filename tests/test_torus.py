@@ -62,7 +62,7 @@ def test_series_of_the_map_agree_with_differences_of_simulation(itinerary):
     """Third order in a displacement: what is left falls like its fourth power."""
     orbit = vs.periodic_orbit(PAPER.replace(b=3.5, tau=0.4), itinerary=itinerary)
     s = orbit._solution
-    f, P = torus.Map(s), s.equations.P
+    f, P = torus.Map(s), s.P
     direction = np.array([0.3, -0.2, 0.5, 0.4])  # of x1, x2, v1, v2
     series = np.zeros((4, 4, 4), complex)
     series[:, 1, 0] = direction

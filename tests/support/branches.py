@@ -75,7 +75,7 @@ def branch_of(b, n, bounds=(6.3, 6.9)):
 def repeated(orbit, times):
     """The orbit as one of `times` its period: as many impacts more."""
     s = orbit._solution.whole()
-    shifts = np.repeat(np.arange(times) * s.equations.P, s.K)
+    shifts = np.repeat(np.arange(times) * s.P, s.K)
     u = np.concatenate([np.tile(s.times, times) + shifts, np.tile(s.jumps, times)])
     return Solution(s.family, 1, s.halves * times, s.sides * times, u)
 

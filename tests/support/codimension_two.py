@@ -67,7 +67,7 @@ def without_grazes(special):
     solution, count = special.orbit._solution, int(special.touches)
     for k in reversed(slow_impacts(solution)):
         solution, count = bare(solution, k), count + 1
-    first, P = solution.times[0], solution.equations.P
+    first, P = solution.times[0], solution.P
     times = first + np.linspace(0, P, 40_001)[1:-1]
     gap = PeriodicOrbit(special.orbit.system, "ok", solution, (0, 0)).sample(times)[:, 0]
     q, found = solution.family.linear, []

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.walk import Point, Walk, walk_of
+from vibro_sweep.analysis.branches.free_walk import walk_of
+from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.continuation.start import keeps_symmetry
 from vibro_sweep.analysis.periodic.solution import Solution
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.free_walk import walk_of
 from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, slopes
-from vibro_sweep.analysis.branches.walk import walk_of
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE
@@ -68,8 +68,7 @@ def doubled(parent: Solution) -> Solution:
     if parent.sigma == -1:
         return parent.whole()
     t, D, P, K = parent.times, parent.jumps, parent.P, parent.K
-    tail = [parent.ends, parent.ends + P] if parent.rests else [parent.u[2 * K :]]
-    u = np.concatenate([t, t + P, D, D, *tail])
+    u = np.concatenate([t, t + P, D, D, parent.ends, parent.ends + P])
     rests = (*parent.rests, *(k + K for k in parent.rests))
     return Solution(parent.family, 1, 2 * parent.halves, parent.sides * 2, u, 0.0, rests)
 

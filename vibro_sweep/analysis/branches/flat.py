@@ -115,8 +115,7 @@ def solution_of(flat: Flat, system, t, v, t_off) -> Solution:
     u = np.concatenate([t[:K], D, t_off[list(rests)]])
     sigma, halves = (-1, period) if symmetric else (1, 2 * period)
     checked_cells(family.linear, halves)
-    found = Solution(family, sigma, halves, sides, u, 0.0, rests)
-    return found.with_mean() if K and not rests and found.is_free else found
+    return Solution(family, sigma, halves, sides, u, 0.0, rests)
 
 
 def orbit_at(flat: Flat, point: int, system) -> PeriodicOrbit:

@@ -81,7 +81,7 @@ def _at_value(walk: Walk, unknown: tuple[int, float], a: Point, b: Point) -> tup
 def _at_touch(walk: Walk, a: Point, b: Point) -> tuple[Point, float] | None:
     """The point where the flight that passes its stop at b touches it, and the error of its parameter."""
     before, behind = a.solution.margin, b.solution.margin
-    if not (behind < 0 < before < math.inf) or (walk.start.equations.free and walk.start.K == 0):
+    if not (behind < 0 < before < math.inf) or (walk.start.is_free and walk.start.K == 0):
         return None
     touching, index = inserted(b.solution)
     new = [index, walk.start.K + index]  # places of the impact's time and impulse
@@ -100,7 +100,7 @@ def _at_touch(walk: Walk, a: Point, b: Point) -> tuple[Point, float] | None:
 def _touches(s: Solution, time: float) -> bool:
     """Whether no flight passes its stop, and one touches it: the one at this time, whose own distance is rounding."""
     distance, nearest, _ = s.nearest
-    P, size = s.equations.P, s.size_of_gap
+    P, size = s.P, s.size_of_gap
     apart = (nearest - time + P / 2) % P - P / 2
     same = abs(apart) * s.family.linear.omega < SAME_TURN
     return abs(distance) <= (TOUCHES if same else PASSED) * size

@@ -8,8 +8,9 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.crossings import counts_of
 from vibro_sweep.analysis.branches.events import reflection_test
+from vibro_sweep.analysis.branches.free_walk import walk_of
 from vibro_sweep.analysis.branches.locating import Event, locate
-from vibro_sweep.analysis.branches.walk import Point, Walk, walk_of
+from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.pairs import ON_SQUARE
 
@@ -104,7 +105,7 @@ def halves_apart(solution: Solution, sigma: int) -> np.ndarray | None:
     oscillator does, which may be symmetric at one value of the parameter only."""
     if not may_be_born(solution, sigma):
         return None
-    half, t, D, P = solution.K // 2, solution.times, solution.jumps, solution.equations.P
+    half, t, D, P = solution.K // 2, solution.times, solution.jumps, solution.P
     omega, speed = solution.family.linear.omega, np.abs(D).max()
     return np.concatenate([(t[half:] - t[:half] - P / 2) * omega, (D[half:] - sigma * D[:half]) / speed])
 

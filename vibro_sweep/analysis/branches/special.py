@@ -107,10 +107,7 @@ def inserted(solution: Solution, slow=()) -> tuple[Solution, int]:
     index = int(np.searchsorted(solution.times, time))
     if K == 0 and time >= period:  # found where the period begins again, with the mirror for sigma = -1
         time, side = time - period, solution.sigma * side
-    found = solution.with_touch(index, time, side)
-    if K == 0 and solution.family.linear.symmetric is False and solution.is_free:
-        found = replace(found, u=np.append(found.u, 0.0))
-    return found, index
+    return solution.with_touch(index, time, side), index
 
 
 def _nearest_aside(solution: Solution, slow) -> tuple[float, float, int]:
@@ -143,9 +140,5 @@ def _with(solution: Solution, sides, u, rests) -> Solution:
 
 
 def slopes(solution: Solution, name: str) -> np.ndarray:
-    """du/dp of an orbit that is not at a fold. Without impacts a free mode may stand anywhere: it stays."""
-    result = np.zeros(solution.size)  # the mean gap follows from times and impulses
-    if solution.K:
-        moved = Linearised(solution, solution.family.derivative(name)).slopes()
-        result[: len(moved)] = moved
-    return result
+    """du/dp of an orbit that is not at a fold."""
+    return Linearised(solution, solution.family.derivative(name)).slopes() if solution.K else np.zeros(0)

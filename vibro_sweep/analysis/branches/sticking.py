@@ -35,7 +35,7 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
     name = next(iter(special.parameters))
     solution, index = inserted(special.orbit._solution)
     R = float(solution.family.linear.restitution(solution.sides[index : index + 1])[0])
-    if not 0 < R < 1 or solution.equations.free:
+    if not 0 < R < 1 or solution.is_free:
         return None
     found = [onset for guess in _guesses(solution, index) if (onset := _onset(guess, name)) is not None]
     if not found:

@@ -88,7 +88,6 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
 def mirrored(solution: Solution) -> Solution:
     """x -> -x, t -> t + T/2."""
     shift = math.pi / solution.family.linear.omega
-    K = solution.K
-    u = np.concatenate([solution.times + shift, -solution.jumps, -solution.u[2 * K :]])
+    u = np.concatenate([solution.times + shift, -solution.jumps])
     sides = tuple(-side for side in solution.sides)
     return Solution(solution.family, solution.sigma, solution.halves, sides, u, solution.change)

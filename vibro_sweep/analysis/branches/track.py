@@ -143,5 +143,4 @@ class Track:
         s, walk = self.walk.start, self.walk
         family = walk.family.replace(**{walk.name: float(rows.p[i])})
         u = np.concatenate([rows.t[i], rows.D[i], rows.ends[i]])
-        found = Solution(family, s.sigma, s.halves, s.sides, u, 0.0, s.rests)
-        return found.with_mean() if found.is_free else found
+        return Solution(family, s.sigma, s.halves, s.sides, u, 0.0, s.rests)

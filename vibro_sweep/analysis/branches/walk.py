@@ -10,7 +10,6 @@ from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.free_walk import FreeWalk
 from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied
@@ -239,8 +238,3 @@ class Walk:
         N, events = w.n // 2, w.bench.events
         after = events["motion"][:, 1] + w.planes[0]["numbers"][4] * events["bend"][:, N]
         return np.where((R == 0) & ~w.problem.rests, -sides * after, np.inf)
-
-
-def walk_of(start: Solution, name: str, span: float):
-    """The branch through an orbit: `Walk`, or without impacts `FreeWalk`."""
-    return FreeWalk(start, name, span) if start.K == 0 else Walk(start, name, span)

@@ -335,8 +335,7 @@ class Tracer:
         ends = (t + place.jumps / q.omega)[rests]
         jumps = np.where(rests, -self.speeds(place), place.jumps) if len(ends) else place.jumps
         u = np.concatenate([t, jumps * self.units.speed, ends])
-        found = Solution(family, s.sigma, s.halves, sides, u, float(place.tests[RESIDUAL]), s.rests)
-        return found.with_mean() if found.is_free else found
+        return Solution(family, s.sigma, s.halves, sides, u, float(place.tests[RESIDUAL]), s.rests)
 
     def speeds(self, place: Place) -> np.ndarray:
         """(K,) velocities of the gap before the impacts, in units of the curve."""

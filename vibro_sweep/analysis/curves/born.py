@@ -128,7 +128,6 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
 
 def _with_amplitude(guess: Solution, change: np.ndarray, name: str) -> Solution | None:
     """The orbit near a guess with its amplitude in the direction `change`; the parameter is found with it."""
-    guess = guess.with_mean() if guess.is_free else guess
     walk = Walk(guess, name, size_of(guess, name))
     row = np.append(change / guess.units[: len(change)], 0.0)
     row /= np.linalg.norm(row)

@@ -132,8 +132,6 @@ def _from_guess(system, family, rows, periods) -> PeriodicOrbit:
     t, v = np.array([row[0] for row in rows]), np.array([row[2] for row in rows])
     u = np.concatenate([t, -(1 + R) * v])
     start = Solution(family, 1, 2 * periods, sides, u)
-    if start.is_free and sides:
-        start = start.with_mean()
     if sides and t[-1] >= t[0] + start.P:
         raise ValueError(not_allowed("guess", rows, "(t, side, v) for each impact within one period"))
     found = start.corrected()
@@ -200,8 +198,7 @@ def _seeded(start: Solution):
         for end, change in zip(ends, changes, strict=True):
             if np.all((np.abs(known - end) > SAME * (units + np.abs(known))).any(axis=1)):
                 known = np.vstack([known, end])
-                found = Solution(start.family, start.sigma, start.halves, start.sides, end, float(change))
-                yield found.with_mean() if found.is_free else found
+                yield Solution(start.family, start.sigma, start.halves, start.sides, end, float(change))
 
     for first in range(0, SEEDS, AT_ONCE):
         ends, changes = e.newton(guesses[first : first + AT_ONCE])

@@ -1,53 +1,12 @@
-"""How the states before the impacts move with a parameter of the flights, at fixed times and impulses.
-
-With zeta' = B zeta (engine/impulses/flow.py) the derivative s of zeta obeys s' = B s + (dB/dp) zeta, so that both fly
-together:
-
-    (s, zeta)' = [[B, dB/dp], [0, B]] (s, zeta)
-
-A flight begins with the derivative of the state before its impact and that of the forcing; where the period changes
-too, the last one ends later. The cost grows like the number of impacts; sums over all impacts at each impact, as in
-engine/impulses/equations.py, take seconds for a thousand of them.
-"""
+"""How rates in contact coordinates change with a number (engine/impulses/flow.py)."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.impulse_equations import Equations, closing, flow
-from vibro_sweep.engine.impulses import flights
-from vibro_sweep.engine.impulses.flow import DOUBLINGS, Flow, contact_coordinates
-from vibro_sweep.engine.impulses.tables import exponential, taylor_rows
+from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.model.contact import push_of
 from vibro_sweep.model.linear import Linear
-
-
-def state_slopes(e: Equations, u, states: np.ndarray) -> np.ndarray:
-    """(K, n) derivatives by the parameter of the states (K, m) before the impacts of `Equations.fly`, at fixed u.
-
-    Without free modes that the contact sees, and with R > 0 at all impacts.
-    """
-    f = flow(e.q)
-    K, m = states.shape
-    n, P_slope = m - 3, -e.P * e.slope.omega / e.q.omega
-    t, both = u[:K], _flow_of_both(f, rate_slopes(e.q, e.slope))
-    starts, ends, room = np.zeros((K, 2 * m)), np.empty((K, 2 * m)), flights.new_room(2 * m)
-    turned = e.slope.omega * t + e.slope.tau
-    starts[:, n], starts[:, n + 1] = -states[:, n + 1] * turned, states[:, n] * turned
-    starts[:, m:] = states
-    starts[:, m + n // 2] += u[K : 2 * K]
-    flights.sample_flights(both, starts, t, np.arange(K), np.append(t[1:], t[0] + e.P), ends, room)
-    added = ends[:, :n]
-    added[-1] += (f.B @ ends[-1, m:])[:n] * P_slope
-    E = np.empty((K, n, n))
-    flights.flight_matrices(f, np.diff(np.append(t, t[0] + e.P)), E, flights.new_room(m))
-    result = np.zeros((K + 1, n))
-    for k in range(K):
-        result[k + 1] = E[k] @ result[k] + added[k]
-    result[0] = closing(e.q, e.sigma, e.halves)[:, :n] @ result[K]
-    for k in range(K - 1):
-        result[k + 1] = E[k] @ result[k] + added[k]
-    return result[:K]
 
 
 class Slopes(NamedTuple):
@@ -95,17 +54,3 @@ def rate_slopes(q: Linear, slope: Linear) -> np.ndarray:
         dB[N:n, column] = d.by_force @ getattr(q, name) + to.by_force @ getattr(slope, name)
     dB[n, n + 1], dB[n + 1, n] = -slope.omega, slope.omega
     return dB
-
-
-def _flow_of_both(f: Flow, dB: np.ndarray) -> Flow:
-    """Tables of (s, zeta) in double precision: derivatives need no more digits. What looks for turning points is not
-    among them."""
-    m = len(f.B)
-    B = np.block([[f.B, dB], [np.zeros((m, m)), f.B]])
-    step = exponential(B, f.width).astype(float)
-    powers = [step]
-    with np.errstate(over="ignore", invalid="ignore"):  # as of a flow: flights may grow
-        while len(powers) < DOUBLINGS:
-            powers.append(powers[-1] @ powers[-1])
-    series = taylor_rows(B, np.eye(2 * m)).reshape(-1, 4 * m * m)
-    return f._replace(B=B, powers=np.array(powers), series=series)

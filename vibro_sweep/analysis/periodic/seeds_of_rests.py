@@ -34,7 +34,7 @@ def evenly(start: Solution):
     for first in np.arange(PHASES) / PHASES:
         times = (first + np.arange(K) / K) * P
         jumps = -np.array(start.sides) * q.omega * np.abs(q.stop(start.sides))
-        u = np.concatenate([times, jumps, np.zeros(int(start.is_free))])
+        u = np.concatenate([times, jumps])
         yield Solution(start.family, start.sigma, start.halves, start.sides, u)
 
 

@@ -5,14 +5,13 @@ from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic import long_orbits
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
-from vibro_sweep.analysis.periodic.impulse_equations import Equations, contacts_of, flow, fly, multipliers_of
+from vibro_sweep.analysis.periodic.impulse_equations import contacts_of, flow, fly, multipliers_of
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
 from vibro_sweep.analysis.periodic.resting import RestingOrbit
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses.green import has_free_gap
-from vibro_sweep.model.linear import Family, Linear, forcing_period
+from vibro_sweep.model.linear import Family, forcing_period
 
 # Relative difference below which two halves (periods) of an orbit are the same. An orbit that is born at a pitchfork or
 # flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not tell the two orbits apart.
@@ -34,10 +33,6 @@ class Solution:
     u: np.ndarray
     change: float = 0.0  # of the last Newton step
     rests: tuple[int, ...] = ()
-
-    @cached_property
-    def equations(self) -> Equations:
-        return equations_for(self, self.family.linear)
 
     @cached_property
     def resting(self) -> RestingOrbit:
@@ -151,11 +146,10 @@ class Solution:
 
     @cached_property
     def units(self) -> np.ndarray:
-        """(size,) of the unknowns: 1/omega, and omega times the size of the gap; of a mean gap omega times less."""
-        K, q = self.K, self.family.linear
-        speed, units = q.omega * self.size_of_gap, np.empty(self.size)
-        units[:K], units[K : 2 * K] = 1 / q.omega, speed
-        units[2 * K :] = 1 / q.omega if self.rests else speed / q.omega
+        """(size,) of the unknowns: 1/omega, and omega times the size of the gap."""
+        omega, units = self.family.linear.omega, np.empty(self.size)
+        units[:] = 1 / omega
+        units[self.K : 2 * self.K] = omega * self.size_of_gap
         return units
 
     def corrected(self) -> "Solution | None":
@@ -164,11 +158,10 @@ class Solution:
             return self
         if self.rests:
             return self._corrected_with_rests()
-        ends, change = EventEquations.of(self).newton(self.u[None, : 2 * self.K])
+        ends, change = EventEquations.of(self).newton(self.u[None])
         if not np.isfinite(change[0]):
             return None
-        found = replace(self, u=ends[0], change=float(change[0]))
-        return found.with_mean() if found.is_free else found
+        return replace(self, u=ends[0], change=float(change[0]))
 
     def _corrected_with_rests(self) -> "Solution | None":
         try:
@@ -192,19 +185,7 @@ class Solution:
         u = np.concatenate([t, t + P, D, -D, self.ends, self.ends + P])
         sides = (*self.sides, *(-side for side in self.sides))
         rests = (*self.rests, *(k + self.K for k in self.rests))
-        whole = Solution(self.family, 1, 2 * self.halves, sides, u, self.change, rests)
-        return whole.with_mean() if whole.is_free else whole
-
-    def with_mean(self) -> "Solution":
-        """With the mean gap, which a free mode leaves open, as last unknown: what the gaps at impacts lack.
-
-        Newton's method would find it too, but not where the orbit is singular, as a symmetric one is at its pitchfork.
-        Without impacts any mean will do, and it is 0.
-        """
-        found = replace(self, u=np.append(self.u, 0.0))
-        if self.K:
-            found.u[-1] = -np.mean(found.equations.evaluate(found.sides, found.u)[0][: found.K])
-        return found
+        return Solution(self.family, 1, 2 * self.halves, sides, u, self.change, rests)
 
     def part(self, count: int, sigma: int, alike: float = ALIKE, exact: bool = True) -> "Solution | None":
         """The first of `count` equal parts (mirrored ones for sigma = -1), if they are equal to the share `alike`.
@@ -222,8 +203,6 @@ class Solution:
             return None
         u = np.concatenate([shifted.mean(0), aligned.mean(0), self.ends[: len(rests)]])
         found = Solution(self.family, sigma, self.halves // count, tuple(self.sides[:K]), u, 0.0, rests)
-        if found.is_free:
-            found = Solution(self.family, sigma, found.halves, found.sides, np.append(u, self.u[-1]))
         if not exact:
             return found
         found = found.corrected()
@@ -249,8 +228,3 @@ class Solution:
             if half is not None:
                 return half
         return whole
-
-
-def equations_for(s: Solution, q: Linear, slope: Linear | None = None) -> Equations:
-    """Of orbits like `s`, without rests, for the oscillator q; derivatives where it changes by `slope`."""
-    return Equations(q, s.sigma, s.halves, slope, s.K >= long_orbits.SPARSE)

@@ -73,7 +73,7 @@ def _sections(flat: Flat, system, parameter: str, values: np.ndarray) -> list[np
     there = [family.replace(**{parameter: float(value)}) for value in values]
     first = solution_of(flat, there[0], *(part[0] for part in parts))
     q = first.family.linear
-    if not moves_stops_only(family.derivative(parameter)) or first.rests or first.is_free:
+    if not moves_stops_only(family.derivative(parameter)) or first.rests:
         return [_section_states(solution_of(flat, one, *impacts)) for one, *impacts in zip(there, *parts, strict=True)]
     oscillators, sides = [one.stops(parameter, q)[0] for one in there], np.array(first.sides)
     gains = np.array([1 + one.restitution(sides) for one in oscillators]).reshape(len(values), first.K)
