@@ -35,6 +35,6 @@ def test_impacts_out_of_order_have_no_multipliers():
     moved = s.u.copy()
     moved[0] += 100 * s.P
     q = s.family.linear
-    given = flow(q), s.sigma, s.P, contacts_of(q, None, s.sides)
+    given = flow(q), s.sigma, s.P, contacts_of(q, s.sides)
     assert np.isnan(multipliers_of(*given, moved, s.motion)).all()
     assert np.isfinite(multipliers_of(*given, s.u, s.motion)).all()

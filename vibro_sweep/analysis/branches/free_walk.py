@@ -15,6 +15,7 @@ from vibro_sweep.model.linear import Linear
 
 ROUNDED = 16 * np.finfo(float).eps  # of the parameter
 
+
 @dataclass(eq=False)
 class FreePoint:
     """A point of a branch."""

@@ -1,6 +1,6 @@
 """Special points of a branch: what they are, and what happens at a graze."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 

@@ -116,7 +116,7 @@ class Solution:
         if self.rests:
             return self.resting.multipliers()
         q = self.family.linear
-        return multipliers_of(flow(q), self.sigma, self.P, contacts_of(q, None, self.sides), self.u, self.motion)
+        return multipliers_of(flow(q), self.sigma, self.P, contacts_of(q, self.sides), self.u, self.motion)
 
     @property
     def pushes(self) -> np.ndarray:

@@ -3,7 +3,7 @@ that long periods add no rounding."""
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.extended import extended, identity, zeros
+from vibro_sweep.engine.impulses.extended import extended, identity
 
 ORDER = 15  # of the Taylor polynomials: 0.5^16/16! = 7e-19
 REACH = 0.5  # largest |A| times the width of a cell
@@ -28,27 +28,9 @@ def power(E: np.ndarray, count: int) -> np.ndarray:
     return result
 
 
-def nodes(E: np.ndarray, start: np.ndarray, count: int) -> np.ndarray:
-    """start, E start, E^2 start, ...: (count, len(start))."""
-    block = start[None]
-    while len(block) < count:
-        block = np.concatenate([block, block @ E.T])
-        E = E @ E
-    return block[:count]
-
-
 def taylor_rows(A: np.ndarray, row: np.ndarray) -> np.ndarray:
     """row A^n/n! for n = 0 .. ORDER; of a row or a matrix of them."""
     rows = [row]
     for n in range(1, ORDER + 1):
         rows.append(rows[-1] @ A / float(n))
     return np.stack(rows)
-
-
-def solve_refined(matrix, right):
-    """Solve in double precision, refined with residuals in extended precision."""
-    inverse = np.linalg.inv(matrix.astype(float))
-    solution = zeros(right.shape)
-    for _ in range(3):
-        solution = solution + inverse @ (right - matrix @ solution)
-    return solution
