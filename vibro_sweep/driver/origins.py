@@ -8,7 +8,6 @@ import numpy as np
 
 from vibro_sweep import store
 from vibro_sweep.analysis.branches.flat import special_point
-from vibro_sweep.analysis.branches.generations import WAYS
 from vibro_sweep.analysis.branches.seeds import Seed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import switch
@@ -24,7 +23,7 @@ from vibro_sweep.analysis.windows.rows import Row
 from vibro_sweep.driver.source_file import SourceError
 from vibro_sweep.driver.windows import cover_of, rows_in
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.bifurcations import CURVES
+from vibro_sweep.model.bifurcations import CURVES, WAYS
 from vibro_sweep.model.branch_file import CHART, WINDOWS
 from vibro_sweep.model.refusals import cut, shown
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene

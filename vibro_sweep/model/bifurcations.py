@@ -1,50 +1,116 @@
-"""Types of special points of branches, declared once: codes and words of files, labels of pictures."""
+"""Types of bifurcations, of codimension one and two, declared once: what follows from a type looks it up here."""
 
 from typing import NamedTuple
 
 
 class Bifurcation(NamedTuple):
+    """A type of special point of branches.
+
+    label, words, mark, colour : in pictures; without a label it is not marked. curve_colour : of its curve in charts
+    condition : the equation that holds along its curve in two parameters; "": it has no curve
+    sigma : of the orbits that have it; 0: all
+    crosses : how many multipliers cross the circle there: one above 1, one below -1, a pair; all 0: the test is another
+    beyond : what branches off, a key of `BEYOND` in analysis/branches/switching.py; "": nothing
+    """
+
     name: str
-    label: str  # in pictures; empty: it is not marked
     text: str
+    label: str = ""
+    words: str = ""
+    mark: str = ""
+    colour: str = ""
+    curve_colour: str = ""
+    condition: str = ""
+    sigma: int = 0
+    crosses: tuple[int, int, int] = (0, 0, 0)
+    beyond: str = ""
 
 
 TYPES = (
-    Bifurcation("fold", "LP", "two orbits meet and vanish"),
-    Bifurcation("flip", "PD", "period doubling, multiplier -1"),
-    Bifurcation("pitchfork", "BP", "a symmetric orbit loses its symmetry"),
-    Bifurcation("neimark_sacker", "NS", "a torus is born, a pair of multipliers of modulus 1"),
-    Bifurcation("graze", "GR", "an impact appears or vanishes"),
-    Bifurcation("sticking", "ST", "a rest on a stop begins, ends or is interrupted"),
-    Bifurcation("closed", "", "the branch comes back to itself"),
-    Bifurcation("limit", "", "end of the range that was looked at"),
-    Bifurcation("failed", "", "the branch could not be followed any further"),
-)
+    Bifurcation("fold", "two orbits meet and vanish", "LP", "fold", "s", "#b2182b", "#2f8fd8",
+                condition="fold", crosses=(1, 0, 0)),
+    Bifurcation("flip", "period doubling, multiplier -1", "PD", "flip", "D", "#2f8fd8", "#e0a030",
+                condition="flip", sigma=1, crosses=(0, 1, 0), beyond="doubled"),
+    Bifurcation("pitchfork", "a symmetric orbit loses its symmetry",
+                "BP", "pitchfork", "^", "#e0a030", "#b2182b",
+                condition="flip", sigma=-1, crosses=(0, 1, 0), beyond="mirror images"),
+    Bifurcation("neimark_sacker", "a torus is born, a pair of multipliers of modulus 1",
+                "NS", "Neimark-Sacker", "p", "#7b3294", "#1a1a5e", condition="torus", crosses=(0, 0, 1)),
+    Bifurcation("graze", "an impact appears or vanishes", "GR", "graze", "o", "#1a1a2e", "#8a8a96",
+                condition="graze", beyond="graze"),
+    Bifurcation("sticking", "a rest on a stop begins, ends or is interrupted",
+                "ST", "sticking", "X", "#446644", "#9600fa", condition="stick"),
+    Bifurcation("closed", "the branch comes back to itself"),
+    Bifurcation("limit", "end of the range that was looked at"),
+    Bifurcation("failed", "the branch could not be followed any further"),
+)  # fmt: skip
+BY_NAME = {one.name: one for one in TYPES}
 CODES = {one.name: code for code, one in enumerate(TYPES)}
-CURVES = ("fold", "flip", "pitchfork", "neimark_sacker", "graze")  # those that are curves in two parameters
+CURVES = tuple(one.name for one in TYPES if one.condition not in ("", "stick"))  # those of which files hold curves
+ON_CIRCLE = tuple(one.name for one in TYPES if any(one.crosses))  # with a multiplier of modulus 1
+BIRTHS = tuple(one.name for one in TYPES if one.condition == "flip")  # of a doubled or an asymmetric orbit
+WAYS = tuple(one.name for one in reversed(TYPES) if one.beyond)  # from which branches are followed
 
-CODIMENSION_TWO = (  # labels: those of MatCont where it has one
-    Bifurcation("cusp", "CP", "two folds meet"),
-    Bifurcation("fold_flip", "LPPD", "multipliers 1 and -1"),
-    Bifurcation("fold_neimark_sacker", "LPNS", "multiplier 1 and a pair on the unit circle"),
-    Bifurcation("flip_neimark_sacker", "PDNS", "multiplier -1 and a pair on the unit circle"),
-    Bifurcation("resonance_1_1", "R1", "the multiplier 1 is double"),
-    Bifurcation("resonance_1_2", "R2", "the multiplier -1 is double"),
-    Bifurcation("resonance_1_3", "R3", "a pair at a third of a turn"),
-    Bifurcation("resonance_1_4", "R4", "a pair at a quarter of a turn"),
-    Bifurcation("degenerate_flip", "GPD", "a flip (pitchfork) changes its criticality"),
-    Bifurcation("degenerate_neimark_sacker", "CH", "a Neimark-Sacker point changes its criticality"),
-    Bifurcation("fold_graze", "LPGR", "a fold at a graze"),
-    Bifurcation("flip_graze", "PDGR", "a flip at a graze"),
-    Bifurcation("pitchfork_graze", "PFGR", "a pitchfork at a graze"),
-    Bifurcation("neimark_sacker_graze", "NSGR", "a Neimark-Sacker point at a graze"),
-    Bifurcation("resonant_graze", "RG", "a graze whose square root vanishes"),
-    Bifurcation("double_graze", "GRGR", "two grazes of one orbit"),
-    Bifurcation("sticking_graze", "STGR", "another impact grazes at the onset of sticking"),
-    Bifurcation("closed", "", "the curve comes back to itself"),
-    Bifurcation("limit", "", "edge of the box that was looked at"),
-    Bifurcation("failed", "", "the curve could not be followed any further"),
-)
+
+def name_of(condition: str, sigma: int) -> str:
+    """The type that a condition is, of orbits with this sigma; "" where there is none."""
+    return next((one.name for one in TYPES if one.condition == condition and one.sigma in (0, sigma)), "")
+
+
+class Point(NamedTuple):
+    """A type of points of codimension two of curves. Labels: those of MatCont where it has one.
+
+    tests : (condition of the curve, what changes its sign there) for each kind of curve: a test of
+        engine/continuation/curve_tests.py; "vanishes", the speed of another impact; "touches", the distance of a flight
+        from its stop
+    turn : angle of the pair of multipliers, in whole turns, where that defines it
+    sigma : of the orbits that have it; 0: all
+    begins : conditions of the curves of orbits with two (at 1:4 four) times the period that begin there
+    ends : conditions of the curves of such orbits that may end there
+    """
+
+    name: str
+    label: str
+    text: str
+    tests: tuple[tuple[str, str], ...] = ()
+    turn: float = 0.0
+    sigma: int = 0
+    begins: tuple[str, ...] = ()
+    ends: tuple[str, ...] = ()
+
+
+CODIMENSION_TWO = (
+    Point("cusp", "CP", "two folds meet", (("fold", "cusp"),)),
+    Point("fold_flip", "LPPD", "multipliers 1 and -1", (("fold", "minus"), ("flip", "plus")),
+          begins=("torus",), ends=("fold", "torus")),
+    Point("fold_neimark_sacker", "LPNS", "multiplier 1 and a pair on the unit circle",
+          (("fold", "pair"), ("torus", "plus"))),
+    Point("flip_neimark_sacker", "PDNS", "multiplier -1 and a pair on the unit circle",
+          (("flip", "pair"), ("torus", "minus")), begins=("torus",), ends=("flip", "torus")),
+    Point("resonance_1_1", "R1", "the multiplier 1 is double", (("fold", "double"),)),
+    Point("resonance_1_2", "R2", "the multiplier -1 is double", (("flip", "double"),),
+          begins=("torus",), ends=("fold", "torus")),
+    Point("resonance_1_3", "R3", "a pair at a third of a turn", turn=1 / 3),
+    Point("resonance_1_4", "R4", "a pair at a quarter of a turn", turn=1 / 4, begins=("fold", "fold", "torus")),
+    Point("degenerate_flip", "GPD", "a flip (pitchfork) changes its criticality", (("flip", "normal"),),
+          begins=("fold",), ends=("fold",)),
+    Point("degenerate_neimark_sacker", "CH", "a Neimark-Sacker point changes its criticality", (("torus", "normal"),)),
+    Point("fold_graze", "LPGR", "a fold at a graze", (("fold", "touches"), ("graze", "bare_plus"))),
+    Point("flip_graze", "PDGR", "a flip at a graze", (("flip", "touches"), ("graze", "bare_minus")),
+          sigma=1, begins=("graze",), ends=("graze",)),
+    Point("pitchfork_graze", "PFGR", "a pitchfork at a graze", (("flip", "touches"), ("graze", "bare_minus")),
+          sigma=-1, begins=("graze",), ends=("graze",)),
+    Point("neimark_sacker_graze", "NSGR", "a Neimark-Sacker point at a graze",
+          (("torus", "vanishes"), ("torus", "touches"), ("graze", "pair"))),
+    Point("resonant_graze", "RG", "a graze whose square root vanishes",
+          (("fold", "vanishes"), ("flip", "vanishes"), ("graze", "plus"), ("graze", "minus")), ends=("graze",)),
+    Point("double_graze", "GRGR", "two grazes of one orbit", (("graze", "vanishes"), ("graze", "touches"))),
+    Point("sticking_graze", "STGR", "another impact grazes at the onset of sticking",
+          (("stick", "vanishes"), ("stick", "touches"))),
+    Point("closed", "", "the curve comes back to itself"),
+    Point("limit", "", "edge of the box that was looked at"),
+    Point("failed", "", "the curve could not be followed any further"),
+)  # fmt: skip
 CODES_OF_CURVES = {one.name: code for code, one in enumerate(CODIMENSION_TWO)}
 
 KINDS = ("none", "persistence", "nonsmooth_fold")  # of a graze

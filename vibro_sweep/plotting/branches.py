@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.lines import Line2D
 
+from vibro_sweep.model.bifurcations import ON_CIRCLE
 from vibro_sweep.model.branch_file import BRANCHES
 from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import joined, sweeps
@@ -16,7 +17,6 @@ from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, SPECIAL, axis_n
 
 LINES = (LEFT, "#c26a00", "#446644", "#7b3294", "#77541f", "#1a1a2e")  # of branches, in turn
 MOST = 3.0  # modulus of a multiplier that is shown: at a graze it is infinite
-ON_CIRCLE = ("fold", "flip", "pitchfork", "neimark_sacker")  # special points with a multiplier of modulus 1
 
 
 def variables(file: FlatFile) -> tuple[str, ...]:

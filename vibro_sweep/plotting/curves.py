@@ -8,20 +8,12 @@ import numpy as np
 from matplotlib import patheffects
 from matplotlib.lines import Line2D
 
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO
+from vibro_sweep.model.bifurcations import BY_NAME, CODIMENSION_TWO, TYPES
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.look import Look
-from vibro_sweep.plotting.style import FAINT, INK, axis_name, with_unit
+from vibro_sweep.plotting.style import INK, axis_name, with_unit
 
-COLOURS = {
-    "fold": "#2f8fd8",
-    "flip": "#e0a030",
-    "pitchfork": "#b2182b",
-    "neimark_sacker": "#1a1a5e",
-    "graze": FAINT,
-    "sticking": "#9600fa",
-}
-LABELS = {"neimark_sacker": "Neimark-Sacker"}
+COLOURS = {one.name: one.curve_colour for one in TYPES if one.condition}
 # of orbits of different periods, beside the colours of the types but for the graze's
 ORBITS = ("#8a8a96", "#5ce4ff", "#521433", "#9aca91", "#425a8a", "#ff5c5c", "#8a425a", "#660099", "#ff00d5")
 MOSTLY, DIFFERENT = 0.6, 3  # from this part of the curves on, and so many periods, one type is told apart by periods
@@ -144,7 +136,7 @@ def handles(curves: list[Drawn], frame=None) -> list[Line2D]:
 def _words(name: str) -> str:
     """The name of a type of point, as texts have it."""
     words = name.replace("neimark_sacker", "Neimark-Sacker").replace("resonance_1_", "resonance 1:").split("_")
-    return (" + " if words[0] in COLOURS or words[0] == LABELS["neimark_sacker"] else " ").join(words)
+    return (" + " if words[0] in {BY_NAME[kind].words for kind in COLOURS} else " ").join(words)
 
 
 def _dot(size: float) -> dict:
@@ -178,7 +170,7 @@ def _by_period(curves: list[Drawn]) -> dict[int, str]:
 
 def _style(curve: Drawn, by_period) -> tuple[str, str]:
     """Colour and label of a curve."""
-    name = LABELS.get(curve.type, curve.type)
+    name = BY_NAME[curve.type].words
     if curve.type not in by_period:
         return COLOURS[curve.type], name
     colour = by_period[curve.type].get(curve.period)

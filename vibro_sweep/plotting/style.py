@@ -7,6 +7,7 @@ from matplotlib.colors import ListedColormap, to_rgba
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.model.catalogue import BY_NAME, NUMBERS
 from vibro_sweep.model.units import shown_unit, unit_in
 
@@ -60,15 +61,13 @@ PERIODS = (
     *("#771188", "#446644", "#eeaa44", "#9966aa", "#aa6611", "#dd99ff"),
 )
 
-# Special points: label, name, marker, colour; filled or not.
+# Special points: label, name, marker, colour; filled or not. Those of a graze, which are two, come first.
+SPECIAL = {one.name: (one.label, one.words, one.mark, one.colour, True) for one in TYPES if one.label}
+_, _, *_GRAZE = SPECIAL.pop("graze")
 SPECIAL = {
-    "graze": ("GR", "graze, persistence", "o", "#1a1a2e", True),
-    "nonsmooth_fold": ("GR", "graze, nonsmooth fold", "o", "#1a1a2e", False),
-    "fold": ("LP", "fold", "s", "#b2182b", True),
-    "flip": ("PD", "flip", "D", "#2f8fd8", True),
-    "pitchfork": ("BP", "pitchfork", "^", "#e0a030", True),
-    "neimark_sacker": ("NS", "Neimark-Sacker", "p", "#7b3294", True),
-    "sticking": ("ST", "sticking", "X", "#446644", True),
+    "graze": ("GR", "graze, persistence", *_GRAZE),
+    "nonsmooth_fold": ("GR", "graze, nonsmooth fold", *_GRAZE[:-1], False),
+    **SPECIAL,
 }
 
 

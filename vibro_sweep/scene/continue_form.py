@@ -5,13 +5,12 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, Strict, create_model
 
-from vibro_sweep.model.bifurcations import CURVES
+from vibro_sweep.model.bifurcations import CURVES, WAYS
 from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.model.state import coordinates
 
 from .fields import Form, Whole, given
 
-WAYS = ("graze", "pitchfork", "flip")
 ORIGINS = ("state", "itinerary", "sweep", "grazing", "free", "branches")  # keys of `from`, one of which is given
 
 

@@ -9,11 +9,11 @@ from vibro_sweep.analysis.branches.walk import Point
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.continuation.branch_tests import FAR_OUTSIDE
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE
+from vibro_sweep.model.bifurcations import BY_NAME
 
 PRODUCT_ONE = 1e-6  # of a product of two multipliers: within it, it is 1
 COMPLEX = 1e-9  # imaginary part of a multiplier that is not real
 MEET = (2, 0, 1), (0, 2, 1)  # two real ones of one sign that become a pair, or the reverse: above, below, pairs
-CROSSES = {"fold": (1, 0, 0), "flip": (0, 1, 0), "pitchfork": (0, 1, 0), "neimark_sacker": (0, 0, 1)}
 
 
 class Counts(NamedTuple):
@@ -47,8 +47,7 @@ def explained(a: Point, b: Point, types: list[str]) -> bool:
     """
     x, y = counts_of(a), counts_of(b)
     change = tuple(abs(np.subtract(y[:3], x[:3])).tolist())
-    folds, tori = types.count("fold"), types.count("neimark_sacker")
-    crossed = folds, len(types) - folds - tori, tori
+    crossed = tuple(sum(BY_NAME[kind].crosses[i] for kind in types) for i in range(3))
     if x.on_circle != y.on_circle or a.torus == 1.0:
         return all((one - other) % 2 == 0 for one, other in zip(change[:2], crossed[:2], strict=True))
     if exchanged(a, b):
@@ -66,7 +65,7 @@ def stands_alone(a: Point, b: Point, point: Point, kind: str) -> bool:
     comes back by a flip looks from a to b like a flip alone, but not at the flip.
     """
     x, at, y = counts_of(a), counts_of(point), counts_of(b)
-    crossing = CROSSES[kind]
+    crossing = BY_NAME[kind].crosses
     if x.on_circle or y.on_circle or at.on_circle != (2 if kind == "neimark_sacker" else 1) or a.torus == 1.0:
         return True
     if kind == "neimark_sacker" and keeps_side(point, a, b):

@@ -9,6 +9,7 @@ from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.continuation.branch_tests import PASSED
 from vibro_sweep.engine.impulses.pairs import ON_PAIR
+from vibro_sweep.model.bifurcations import name_of
 
 
 def ends_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
@@ -65,8 +66,8 @@ def _bifurcations(walk: Walk, a: Point, b: Point) -> list[Event]:
     if a.tangent[-1] * b.tangent[-1] < 0:
         events.append(Event("fold", lambda point: point.tangent[-1]))
     if walk.start.K:
-        if np.sign(a.reflection) * np.sign(b.reflection) < 0:
-            kind = "pitchfork" if walk.start.sigma == -1 else "flip"
+        kind = name_of("flip", walk.start.sigma)
+        if kind and np.sign(a.reflection) * np.sign(b.reflection) < 0:
             events.append(Event(kind, reflection_test(a, b)))
         torus = torus_test(a, b) if np.all(b.solution.pushes > 0) else None
         if torus is not None and torus(a) * torus(b) < 0:

@@ -12,7 +12,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.green import checked_cells
-from vibro_sweep.model.bifurcations import BRANCH_STATUSES, CODES, CRITICALITIES, KINDS, TYPES
+from vibro_sweep.model.bifurcations import BIRTHS, BRANCH_STATUSES, CODES, CRITICALITIES, KINDS, TYPES
 from vibro_sweep.model.linear import family_of, forcing_period
 from vibro_sweep.model.state import state
 
@@ -129,7 +129,7 @@ def special_point(flat: Flat, index: int, parameter: str, system) -> SpecialPoin
     kind, value = TYPES[flat["special_type"][index]].name, float(flat["special_value"][index])
     there, point = system.replace(**{parameter: value}), int(flat["special_point"][index])
     orbit = PeriodicOrbit(there, "sticking") if point < 0 else orbit_at(flat, point, there)
-    if kind in ("flip", "pitchfork") and index in (flat["branch_begins"], flat["branch_ends"]):  # a birth
+    if kind in BIRTHS and index in (flat["branch_begins"], flat["branch_ends"]):  # a birth
         orbit = orbit_of(orbit.system, orbit._solution.reduced())
     impact, graze = int(flat["special_impact"][index]), kind == "graze"
     multipliers = orbit.multipliers if point < 0 else orbit._solution.multipliers

@@ -11,9 +11,8 @@ from vibro_sweep.analysis.branches.seeds import packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.model.arguments import check_call, check_type, checked_count
+from vibro_sweep.model.bifurcations import WAYS
 from vibro_sweep.model.refusals import not_allowed
-
-WAYS = ("graze", "pitchfork", "flip")
 
 
 @dataclass(frozen=True, eq=False, repr=False)

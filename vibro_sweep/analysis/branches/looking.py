@@ -12,6 +12,7 @@ from vibro_sweep.analysis.branches.response import touching
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.engine.continuation.branch_tests import FARTHER
 from vibro_sweep.engine.impulses.pairs import ON_SQUARE
+from vibro_sweep.model.bifurcations import name_of
 
 SHARES = (0.5, 0.4, 0.6, 0.3)  # of the way to the next point, where the first lies on a bifurcation by chance
 APART = 1e-9  # share of a step: bifurcations that are nearer to each other are not separated
@@ -92,8 +93,8 @@ def _with_sign(walk: Walk, test: Test, c: Point, b: Point) -> Point | None:
 def _crossing(walk: Walk, a: Point, b: Point) -> list[tuple[str, Test]]:
     """Tests that vanish where multipliers cross the circle, of a size that poles do not change."""
     torus = torus_test(a, b, scaled=True)
-    kind = "pitchfork" if walk.start.sigma == -1 else "flip"
-    tests = [("fold", lambda point: float(point.tangent[-1])), (kind, _flip)]
+    kind = name_of("flip", walk.start.sigma)
+    tests = [("fold", lambda point: float(point.tangent[-1])), *([(kind, _flip)] if kind else [])]
     return tests if torus is None else [*tests, ("neimark_sacker", torus)]
 
 

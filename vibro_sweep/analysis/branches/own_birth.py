@@ -13,6 +13,7 @@ from vibro_sweep.analysis.branches.locating import Event, locate
 from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.pairs import ON_SQUARE
+from vibro_sweep.model.bifurcations import name_of
 
 BEFORE = 0.02, 0.1, 0.4  # of the way to a birth, beside which a multiplier is 1 to rounding
 NEAR = 0.1  # in scaled units: a birth that rounding beside it may hide
@@ -90,8 +91,8 @@ def _on_parent(walk: Walk, whole: Solution, sigma: int):
         return None
     beside = walk_of(parent, walk.name, walk.unit)
     first = beside.first(1.0)
-    kind, reach = "pitchfork" if sigma == -1 else "flip", 1e-6
-    while first is not None and reach < 0.05:
+    kind, reach = name_of("flip", sigma), 1e-6
+    while kind and first is not None and reach < 0.05:
         ends = [beside.step(first, sign * reach) for sign in (-1, 1)]
         if None not in ends and ends[0].reflection * ends[1].reflection < 0:
             found = locate(beside, Event(kind, reflection_test(*ends)), *ends, 2 * reach)

@@ -11,6 +11,8 @@ from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, slopes
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.bifurcations import BY_NAME, WAYS
+from vibro_sweep.model.refusals import not_allowed
 
 BESIDE = 1e-4  # relative distance of the parameter from a graze
 NEAR = 0.1  # of the orbit beside a graze to what its slopes say, in 1/omega and the speed of the gap
@@ -24,12 +26,9 @@ def switch(special: SpecialPoint) -> list[PeriodicOrbit]:
     no branch begins with it. Raises ValueError for a special point of another type.
     """
     check_type("special", special, SpecialPoint, "a special point of a branch")
-    if special.type in ("pitchfork", "flip"):
-        found = [born(special, sign) for sign in ((1, -1) if special.type == "pitchfork" else (1,))]
-    elif special.type == "graze":
-        found = _beyond_graze(special)
-    else:
-        raise ValueError(f"type: {special.type!r} is not allowed; it must be pitchfork, flip or graze")
+    if special.type not in WAYS:
+        raise ValueError(not_allowed("type", special.type, f"one of {', '.join(WAYS)}"))
+    found = BEYOND[BY_NAME[special.type].beyond](special)
     system = special.orbit.system
     name = next(iter(special.parameters))
     orbits = [
@@ -52,6 +51,13 @@ def _beyond_graze(special: SpecialPoint) -> list[Solution | None]:
         one = _beside(Solution(family, 1, 2, (), np.empty(0)), name, None)
         result += [one, one and mirrored(one)]
     return result
+
+
+BEYOND = {  # what branches off a type of special point
+    "doubled": lambda special: [born(special, 1)],
+    "mirror images": lambda special: [born(special, sign) for sign in (1, -1)],
+    "graze": _beyond_graze,
+}
 
 
 def index_in(special: SpecialPoint) -> int:

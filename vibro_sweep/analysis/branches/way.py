@@ -23,6 +23,7 @@ from vibro_sweep.analysis.branches.walk import Point, Walk
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
+from vibro_sweep.model.bifurcations import BIRTHS
 
 # The first step is not AMPLITUDE of births.py: from an orbit that was just born it would end at the birth itself, where
 # the branch has no tangent, and pass it unseen.
@@ -230,7 +231,7 @@ class Way:
             if event.type == "neimark_sacker" and not is_torus(point):
                 continue
             special = self._at(event.type, point, error)
-            if event.type in ("flip", "pitchfork"):
+            if event.type in BIRTHS:
                 special = replace(special, criticality=criticality(special))
             elif event.type == "neimark_sacker":
                 special = replace(special, criticality=torus.criticality(point.solution))

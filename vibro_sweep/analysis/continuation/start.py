@@ -5,17 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.continuation import problem
+from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, ORBIT, STICK, TORUS
+from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.model.linear import Family
 
-KINDS = {
-    "fold": problem.FOLD,
-    "flip": problem.FLIP,
-    "pitchfork": problem.FLIP,
-    "neimark_sacker": problem.TORUS,
-    "graze": problem.GRAZE,
-    "sticking": problem.STICK,
-}
+CONDITIONS = {"": ORBIT, "fold": FOLD, "flip": FLIP, "torus": TORUS, "graze": GRAZE, "stick": STICK}
+KINDS = {one.name: CONDITIONS[one.condition] for one in TYPES if one.condition}
 
 
 @dataclass(frozen=True)
@@ -30,7 +25,7 @@ class Start:
 
     @property
     def kind(self) -> int:
-        return KINDS.get(self.type, problem.ORBIT)
+        return KINDS.get(self.type, ORBIT)
 
 
 def keeps_symmetry(family: Family, name: str) -> bool:

@@ -36,20 +36,13 @@ from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.workspace import THETA, Place
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, name_of
 
 AMPLITUDES = (0.01, 0.005, 0.0025, 0.00125, 0.02, 0.04)  # in the units of a curve, in the order in which they are tried
 REACH = 0.2  # of the parameters around the point, relative
 FARTHEST = 0.02  # relative distance of the point that is found, in both parameters
 ALIKE = 0.3  # relative difference from what the normal form says
-BEGINS = {  # curves, and which of two
-    "degenerate_flip": (("fold", 1),),
-    "flip_graze": (("graze", 1),),
-    "pitchfork_graze": (("graze", 1),),
-    "flip_neimark_sacker": (("neimark_sacker", 1),),
-    "resonance_1_2": (("neimark_sacker", 1),),
-    "fold_flip": (("neimark_sacker", 1),),
-    "resonance_1_4": (("fold", 1), ("fold", -1), ("neimark_sacker", 1)),
-}
+BEGINS = {one.name: one.begins for one in CODIMENSION_TWO}
 
 
 class Entry(NamedTuple):
@@ -67,12 +60,13 @@ def born(special: CurvePoint) -> list[SpecialPoint]:
     solution = special.orbit._solution
     if solution is None:  # of an onset of sticking
         return []
-    if special.type in ("flip_graze", "pitchfork_graze") and not special.touches:
+    if "graze" in BEGINS[special.type] and not special.touches:
         solution = bare(solution, int(np.argmin(np.abs(solution.jumps))))
-    flip = Start("pitchfork" if solution.sigma == -1 else "flip", solution)
+    flip = Start(name_of("flip", solution.sigma), solution)
     quarter = Start("neimark_sacker", solution, theta=np.pi / 2)
     found = []
-    for name, sign in BEGINS.get(special.type, ()):
+    for i, condition in enumerate(BEGINS[special.type]):
+        name, sign = name_of(condition, 1), -1 if condition in BEGINS[special.type][:i] else 1  # which of two folds
         parent, count = (quarter, 4) if special.type == "resonance_1_4" else (flip, 2)
         for amplitude in AMPLITUDES:
             points = [

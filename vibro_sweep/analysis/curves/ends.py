@@ -15,12 +15,13 @@ import numpy as np
 from vibro_sweep.analysis.branches.births import doubled
 from vibro_sweep.analysis.branches.own_birth import halves_apart
 from vibro_sweep.analysis.branches.special import bare, inserted
-from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.continuation.start import CONDITIONS, Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.events import Found, event_near
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, TORUS
+from vibro_sweep.engine.continuation.problem import FOLD, GRAZE, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA, Place
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, name_of
 
 NEAR = 0.2  # in the units of the curve: how far from the expected end the other curve is entered
 SHORTEST = 1e-6
@@ -31,11 +32,8 @@ ALIKE = 1e-6  # what tells the halves apart, of one orbit taken twice
 LEAST = 1e-4  # the same, where tests, which vanish like its square, still have their signs
 NEARLY = 0.05  # what tells the halves apart, in 1/omega and the fastest impulse, next to a birth
 LENGTHS = (1e-6, 1e-5, 1e-4, 1e-3)  # in which the end is looked for there
-BIRTHS = {
-    FOLD: ("degenerate_flip", "fold_flip", "resonance_1_2"),
-    FLIP: ("flip_neimark_sacker",),
-    TORUS: ("flip_neimark_sacker", "resonance_1_2", "fold_flip"),
-    GRAZE: ("flip_graze", "pitchfork_graze", "resonant_graze"),
+ENDS = {
+    kind: tuple(one.name for one in CODIMENSION_TWO if condition in one.ends) for condition, kind in CONDITIONS.items()
 }
 
 
@@ -166,8 +164,8 @@ def _first_found(tracer: Tracer, aim: Place, sigma: int, lengths) -> End | None:
         if quarter is not None:
             starts.append((Start("neimark_sacker", quarter, theta=math.pi / 2), ("resonance_1_4",)))
     parent = solution.part(2, sigma, alike=0.1, exact=False)
-    if parent is not None:
-        starts.append((Start("pitchfork" if sigma < 0 else "flip", parent), BIRTHS[kind]))
+    if parent is not None and name_of("flip", sigma):
+        starts.append((Start(name_of("flip", sigma), parent), ENDS[kind]))
     for start, types in starts:
         found = _on_other(tracer, start, aim, lengths, types)
         if found is not None:

@@ -2,48 +2,30 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.analysis.continuation.start import CONDITIONS
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.chord import root
 from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
 from vibro_sweep.analysis.curves.errors import error_of
 from vibro_sweep.engine.continuation import curve_tests
 from vibro_sweep.engine.continuation.curve_tests import RESIDUAL
-from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS
+from vibro_sweep.engine.continuation.problem import GRAZE, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA, Place
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO
 
-# what a test is zero at, on each kind of curve
-NAMES = {
-    (FOLD, curve_tests.MINUS): "fold_flip",
-    (FOLD, curve_tests.DOUBLE): "resonance_1_1",
-    (FOLD, curve_tests.CUSP): "cusp",
-    (FOLD, curve_tests.PAIR): "fold_neimark_sacker",
-    (FLIP, curve_tests.PLUS): "fold_flip",
-    (FLIP, curve_tests.DOUBLE): "resonance_1_2",
-    (FLIP, curve_tests.PAIR): "flip_neimark_sacker",
-    (FLIP, curve_tests.NORMAL): "degenerate_flip",
-    (TORUS, curve_tests.NORMAL): "degenerate_neimark_sacker",
-    (TORUS, curve_tests.PLUS): "fold_neimark_sacker",
-    (TORUS, curve_tests.MINUS): "flip_neimark_sacker",
-    (GRAZE, curve_tests.PLUS): "resonant_graze",
-    (GRAZE, curve_tests.MINUS): "resonant_graze",
-    (GRAZE, curve_tests.BARE_PLUS): "fold_graze",
-    (GRAZE, curve_tests.BARE_MINUS): "flip_graze",
-    (GRAZE, curve_tests.PAIR): "neimark_sacker_graze",
-}
-VANISHES = {
-    FOLD: "resonant_graze",
-    FLIP: "resonant_graze",
-    TORUS: "neimark_sacker_graze",
-    GRAZE: "double_graze",
-    STICK: "sticking_graze",
-}
-TOUCHES = VANISHES | {FOLD: "fold_graze", FLIP: "flip_graze"}
-ANGLES = {"resonance_1_3": 2 * math.pi / 3, "resonance_1_4": math.pi / 2}
+# (kind of curve, what changes its sign) -> types, by the sigma of their orbits; angles of a pair
+VANISHES, TOUCHES = "vanishes", "touches"
+TYPES: dict[tuple, dict[int, str]] = {}
+for one in CODIMENSION_TWO:
+    for condition, test in one.tests:
+        at = test if test in (VANISHES, TOUCHES) else getattr(curve_tests, test.upper())
+        TYPES.setdefault((CONDITIONS[condition], at), {})[one.sigma] = one.name
+ANGLES = {one.name: 2 * math.pi * one.turn for one in CODIMENSION_TWO if one.turn}
 ROUNDING = 1e-10  # of the box: points nearer to each other are one
 PIECE = 0.02  # of the distance between two events
 VANISHED = 1e-12  # of a test: more than rounding leaves of it at a zero
@@ -75,19 +57,19 @@ def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
     for i in range(curve_tests.SIGNED):
         if np.sign(a.tests[i]) * np.sign(b.tests[i]) < 0:
             size = max(abs(a.tests[i]), abs(b.tests[i]))
-            name = NAMES[kind, i]
-            events.append(Event(name, lambda place, i=i, size=size: place.tests[i] / size, test=i))
+            events.append(Event(type_at(tracer, i), lambda place, i=i, size=size: place.tests[i] / size, test=i))
     for i in range(tracer.K):
         if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == tracer.problem.index):
-            events.append(Event(VANISHES[kind], lambda place, i=i: place.jumps[i], impact=i))
+            events.append(Event(type_at(tracer, VANISHES), lambda place, i=i: place.jumps[i], impact=i))
     least, most = sorted(place.tests[curve_tests.MARGIN] for place in (a, b))
     if least < -curve_tests.TOUCHING and most > curve_tests.TOUCHING:
-        events.append(Event(TOUCHES[kind], lambda place: min(place.tests[curve_tests.MARGIN], 1.0), touches=True))
+        name = type_at(tracer, TOUCHES)
+        events.append(Event(name, lambda place: min(place.tests[curve_tests.MARGIN], 1.0), touches=True))
     if kind == TORUS:
         for name, angle in ANGLES.items():
             if (a.p[THETA] - angle) * (b.p[THETA] - angle) < 0:
                 events.append(Event(name, lambda place, angle=angle: place.p[THETA] - angle))
-    return [named(tracer, event) for event in events]
+    return [event for event in events if event.type]
 
 
 class Found(NamedTuple):
@@ -186,11 +168,10 @@ def beside(tracer: Tracer, a: Place, b: Place, one: Found, found: list[Found]) -
     return places
 
 
-def named(tracer: Tracer, event: Event) -> Event:
-    """A flip of a symmetric orbit's half map is a pitchfork."""
-    if event.type == "flip_graze" and tracer.problem.sigma < 0:
-        return replace(event, type="pitchfork_graze")
-    return event
+def type_at(tracer: Tracer, test: int | str) -> str:
+    """The type at which this changes its sign along the curve; "" where there is none for its orbits."""
+    types = TYPES[tracer.problem.kind, test]
+    return types.get(0) or types.get(int(tracer.problem.sigma), "")
 
 
 def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:

@@ -9,6 +9,7 @@ from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.continuation.start import KINDS, Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.model.bifurcations import BIRTHS
 
 SLOW = 1e-9  # impulse, in parts of the gap's size times omega, below which an impact is a graze
 
@@ -29,7 +30,8 @@ def start_at(special: SpecialPoint, names: tuple[str, ...] = ()) -> Start:
             f"parameters: {names!r} is not allowed: where the symmetry is broken, both chatter sequences of this "
             "orbit have an onset of their own"
         )
-    return Start("fold" if start.type == "pitchfork" else start.type, start.solution.whole(), start.index, start.theta)
+    name = "fold" if start.type in BIRTHS else start.type
+    return Start(name, start.solution.whole(), start.index, start.theta)
 
 
 def as_special(start: Start, names, system, error: float = np.nan) -> SpecialPoint:

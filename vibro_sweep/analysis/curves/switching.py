@@ -19,11 +19,12 @@ from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, name_of
 
 SINGULAR = 1e-8  # least singular value of G(mu), of its largest, below which mu is a multiplier
 ON_CIRCLE = 1e-8  # | |mu| - 1 | of a Neimark-Sacker pair
 BESIDE = 0.2  # theta at which the Neimark-Sacker curve of a double multiplier 1 (-1) is entered
-ENDS = ("closed", "limit", "failed")
+ENDS = tuple(one.name for one in CODIMENSION_TWO if not one.label)
 STRONG = ("resonance_1_1", "resonance_1_2")
 
 
@@ -90,8 +91,8 @@ def _smooth(solution: Solution, no_pair: bool) -> list[Start]:
     """Fold, flip and Neimark-Sacker of an orbit; no_pair: not the last, as where rounding makes a pair of a double
     multiplier 1 (-1)."""
     found = []
-    for mu, name in ((1, "fold"), (-1, "pitchfork" if solution.sigma == -1 else "flip")):
-        if is_singular(solution, mu):
+    for mu, name in ((1, "fold"), (-1, name_of("flip", solution.sigma))):
+        if name and is_singular(solution, mu):
             found.append(Start(name, solution))
     if not no_pair:
         values = solution.multipliers

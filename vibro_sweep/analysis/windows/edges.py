@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches.flat import Flat
-from vibro_sweep.model.bifurcations import CURVES
+from vibro_sweep.model.bifurcations import BY_NAME, CURVES
 
 SLACK = 0.25  # of a cell: curves are drawn by chords
 
@@ -54,7 +54,7 @@ def passing(plane: Plane, edges: Edges, flat: Flat) -> np.ndarray:
     as well.
     """
     period, at = int(flat["branch_period"]), flat["value"]
-    own = [period, 2 * period] if CURVES[int(flat["branch_type"])] == "flip" else [period]
+    own = [period, 2 * period] if BY_NAME[CURVES[int(flat["branch_type"])]].beyond == "doubled" else [period]
     able = np.isin(edges.periods, own).any(axis=1)
     bounds = flat["unstable"] == 0
     pieces = np.flatnonzero(bounds[:-1] | bounds[1:])

@@ -9,7 +9,7 @@ from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import ALIKE, Solution
 from vibro_sweep.analysis.windows.job import is_near
 from vibro_sweep.engine.impulses.flow import contact_coordinates
-from vibro_sweep.model.bifurcations import TYPES
+from vibro_sweep.model.bifurcations import BIRTHS, BY_NAME, TYPES
 from vibro_sweep.model.linear import Linear, family_of
 
 
@@ -54,9 +54,9 @@ def _turns(flat: Flat, end: int) -> bool:
     if kind == "fold":
         return True
     K, t, v = len(flat["impact_side"]), flat["impact_t"][end], flat["impact_v"][end]
-    if kind not in ("flip", "pitchfork") or flat["branch_symmetric"] or K % 2:
+    if kind not in BIRTHS or flat["branch_symmetric"] or K % 2:
         return False
-    sign = -1 if kind == "pitchfork" else 1
+    sign = BY_NAME[kind].sigma
     lengths, speeds = np.diff(t), v[K // 2 :] - sign * v[: K // 2]
     apart = np.abs(lengths[K // 2 :] - lengths[: K // 2 - 1]).max(initial=0.0)
     return bool(np.abs(speeds).max() < ALIKE * np.abs(v).max() and apart < ALIKE * lengths.max())
