@@ -19,6 +19,7 @@ from vibro_sweep.engine.continuation.curve_tests import MINUS
 from vibro_sweep.engine.continuation.workspace import Place
 from vibro_sweep.model.linear import Linear
 
+SLOW = 1e-5  # impulse, relative to the largest, of an impact that is next to a graze
 STILL = 1e-5  # in units of a walk: an orbit that Newton's method takes farther off is another one
 
 
@@ -146,11 +147,17 @@ class Walk:
             return None
         axis = np.zeros(2 * self.start.K + 1)
         axis[-1] = 1.0
-        point = guess and self.correct(guess, axis, axis)
+        point = guess and (self.correct(guess, axis, axis) or self._across(guess, axis))
         if point is None or np.abs(point.x - Point(self, guess).x).max() > STILL:
             return None
         point.hold(self.family.numbers[self.name])
         return point
+
+    def _across(self, guess: Place, axis: np.ndarray) -> Point | None:
+        """The start on the plane across its tangent, where impacts are so slow that the parameter hardly tells them."""
+        speeds = np.abs(self.start.jumps)
+        row = self.tracer.first_direction(guess) if speeds.min() < SLOW * speeds.max() else None
+        return None if row is None else self.correct(guess, row[:-2], axis)
 
     def step(self, point: Point, length: float, near: Place | None = None) -> Point | None:
         """The point of the branch whose projection on the tangent at `point` is `length`; near: a guess."""

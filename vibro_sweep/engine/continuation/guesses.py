@@ -12,7 +12,6 @@ Towards the end of a chatter sequence flights and speeds vanish. From one impact
 the same stop, only what changes is summed up, so that rounding shrinks with the flight.
 """
 
-import cmath
 import math
 
 import numpy as np
@@ -21,8 +20,7 @@ from vibro_sweep.engine.continuation.corrector import in_order
 from vibro_sweep.engine.continuation.factors import factorise, substitute
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, flight
 from vibro_sweep.engine.continuation.reflections import put_last, take_apart
-from vibro_sweep.engine.continuation.residual import approach, eliminate, land, leave
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.continuation.residual import approach, eliminate, grown, is_short, land, leave
 from vibro_sweep.engine.simd.jit import entry, jit
 
 MOST_STEPS = 30
@@ -30,7 +28,6 @@ LAST = 5  # of them
 MORE = 100  # beside a fold, where rounding throws steps about: one of them leads to the solution
 THROWN = 1e-5  # sizes of these steps
 ROUNDING = 1e-13  # of the gap's size
-SHORT = 1 / 16  # of a cell: a flight of which only what changes is summed up
 
 
 @jit
@@ -39,27 +36,6 @@ def length_after(f, place, i):
     n, x, omega = f.A.shape[0], place.x, f.numbers[OMEGA]
     following = x[i + 1, n] if i + 1 < len(x) else x[0, n] + math.pi * f.half_turns
     return (following - x[i, n]) / omega
-
-
-@jit
-def rise(f, e, r):
-    """By how much coordinate r of the free part grows in the flight after an event: not a difference."""
-    n, power, total = f.A.shape[0], 1.0, 0.0
-    for k in range(1, ORDER + 1):
-        power *= e.length
-        for j in range(n + 1):
-            total += f.series[k, r, j] * power * e.after[j]
-    return total
-
-
-@jit
-def follow_shortly(f, x, before, e):
-    """Gap and velocity before an event that comes a short flight after another one, from those there."""
-    n = f.A.shape[0]
-    turned = f.numbers[OMEGA] * before.length
-    swing = before.turn * cmath.exp(0.5j * turned) * complex(0.0, 2.0 * math.sin(0.5 * turned))
-    e.gap = before.gap + rise(f, before, 0) + (f.Z[0] * swing).real
-    e.motion[0] = before.motion[0] + x[n + 1] + rise(f, before, n // 2) + (f.Z[n // 2] * swing).real
 
 
 @jit
@@ -90,8 +66,10 @@ def close(f, c, place, closing, b):
     for i in range(K):
         e, x, last = b.events[i], place.x[i], i + 1 == K
         approach(f, x, e)
-        if i > 0 and c.sides[i] == c.sides[i - 1] and b.events[i - 1].length < SHORT * f.width:
-            follow_shortly(f, place.x[i - 1], b.events[i - 1], e)
+        if i > 0 and is_short(f, c, b, i - 1):
+            before = b.events[i - 1]
+            e.gap = before.gap + grown(f, before, 0)
+            e.motion[0] = before.motion[0] + place.x[i - 1, n + 1] + grown(f, before, N)
         leave(f, c, i, x, e, work)
         land(f, e)
         for r in range(n):

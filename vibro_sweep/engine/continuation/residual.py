@@ -25,8 +25,10 @@ from vibro_sweep.engine.continuation.held_gap import put_rest, rest
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, flight
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
+from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
 
+SHORT = 1 / 16  # of a cell: a flight of which only what changes is summed up
 IMPACT, WATCHED, END, REST = range(4)  # laws of events; END: of a chatter sequence at the onset of sticking
 
 
@@ -141,6 +143,25 @@ def hold(f, panel):
 
 
 @jit
+def is_short(f, c, b, i):
+    """Whether the flight after event i comes back to the same stop so soon that states would lose its digits."""
+    same = c.sides[i] != 0.0 and c.sides[i] == c.sides[i + 1] and not (c.rests[i] or c.rests[i + 1])
+    return same and not (c.kind == STICK and i == 0) and b.events[i].length < SHORT * f.width
+
+
+@jit
+def grown(f, e, r):
+    """By how much coordinate r grows in the flight after an event, all of its motion: not a difference."""
+    n, turned, power, total = f.A.shape[0], f.numbers[OMEGA] * e.length, 1.0, 0.0
+    for k in range(1, ORDER + 1):
+        power *= e.length
+        for j in range(n + 1):
+            total += f.series[k, r, j] * power * e.after[j]
+    swing = e.turn * cmath.exp(0.5j * turned) * complex(0.0, 2.0 * math.sin(0.5 * turned))
+    return total + (f.Z[r] * swing).real
+
+
+@jit
 def fly_through(f, c, place, b):
     """The motion through all events, at the parameters to which f was moved."""
     K, n = len(place.x), f.A.shape[0]
@@ -152,6 +173,11 @@ def fly_through(f, c, place, b):
         fly(f, c, i, length, x, e, b.work[0])
         for r in range(n):
             e.missed[r] = (c.sigma if last else 1.0) * following[r] - e.landing[r]
+    for i in range(K - 1):
+        if is_short(f, c, b, i):
+            e, following = b.events[i], b.events[i + 1]
+            e.missed[0] = following.gap - e.gap - grown(f, e, 0)
+            e.missed[n // 2] = following.motion[0] - e.motion[0] - place.x[i, n + 1] - grown(f, e, n // 2)
 
 
 @jit
