@@ -13,7 +13,7 @@ from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, condi
 from vibro_sweep.engine.continuation.workspace import THETA, Place, new_bench, new_place
 from vibro_sweep.model.linear import Family, forcing_period
 
-MOST_CORRECTIONS = 12
+MOST_CORRECTIONS = 20
 LONGEST_STEP, SHORTEST_STEP = 0.05, 1e-10
 STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
 BESIDE = 2e-3
