@@ -16,6 +16,7 @@ from vibro_sweep.analysis.continuation.tracer import Tracer, copied
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.branch_tests import HOLD, RATE
 from vibro_sweep.engine.continuation.curve_tests import MINUS
+from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.workspace import Place
 from vibro_sweep.model.linear import Linear
 
@@ -243,5 +244,5 @@ class Walk:
             return np.full(len(sides), np.inf)
         w.assemble(place)
         N, events = w.n // 2, w.bench.events
-        after = events["motion"][:, 1] + w.planes[0]["numbers"][4] * events["bend"][:, N]
+        after = events["motion"][:, 1] + w.planes[0]["numbers"][OMEGA] * events["bend"][:, N]
         return np.where((R == 0) & ~w.problem.rests, -sides * after, np.inf)

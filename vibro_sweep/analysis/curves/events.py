@@ -20,11 +20,18 @@ from vibro_sweep.model.bifurcations import CODIMENSION_TWO
 
 # (kind of curve, what changes its sign) -> types, by the sigma of their orbits; angles of a pair
 VANISHES, TOUCHES = "vanishes", "touches"
-TYPES: dict[tuple, dict[int, str]] = {}
-for one in CODIMENSION_TWO:
-    for condition, test in one.tests:
-        at = test if test in (VANISHES, TOUCHES) else getattr(curve_tests, test.upper())
-        TYPES.setdefault((CONDITIONS[condition], at), {})[one.sigma] = one.name
+
+
+def _types() -> dict[tuple, dict[int, str]]:
+    found: dict[tuple, dict[int, str]] = {}
+    for one in CODIMENSION_TWO:
+        for condition, test in one.tests:
+            at = test if test in (VANISHES, TOUCHES) else getattr(curve_tests, test.upper())
+            found.setdefault((CONDITIONS[condition], at), {})[one.sigma] = one.name
+    return found
+
+
+TYPES = _types()
 ANGLES = {one.name: 2 * math.pi * one.turn for one in CODIMENSION_TWO if one.turn}
 ROUNDING = 1e-10  # of the box: points nearer to each other are one
 PIECE = 0.02  # of the distance between two events
