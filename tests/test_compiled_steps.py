@@ -101,7 +101,9 @@ def test_tests_have_the_signs_of_the_precise_ones(system, itinerary, name, bound
     for x, n in zip(precise, found, strict=True):
         if x is not None:
             if len(x.solution.multipliers) > 2:  # else it cannot vanish
-                assert n[PAIR] == pytest.approx(x.torus, rel=1e-6, abs=1e-9 * np.abs(x.solution.multipliers).max())
+                assert n[PAIR] == pytest.approx(
+                    x.solution.torus, rel=1e-6, abs=1e-9 * np.abs(x.solution.multipliers).max()
+                )
             assert n[RATE] == pytest.approx(x.tangent[-1], rel=1e-6, abs=1e-9)
             mu = x.solution.multipliers
             out, real = np.abs(mu) > 1, mu.imag == 0

@@ -48,7 +48,7 @@ def explained(a: Point, b: Point, types: list[str]) -> bool:
     x, y = counts_of(a), counts_of(b)
     change = tuple(abs(np.subtract(y[:3], x[:3])).tolist())
     crossed = tuple(sum(BY_NAME[kind].crosses[i] for kind in types) for i in range(3))
-    if x.on_circle != y.on_circle or a.torus == 1.0:
+    if x.on_circle != y.on_circle or a.solution.torus == 1.0:
         return all((one - other) % 2 == 0 for one, other in zip(change[:2], crossed[:2], strict=True))
     if exchanged(a, b):
         return False
@@ -66,7 +66,7 @@ def stands_alone(a: Point, b: Point, point: Point, kind: str) -> bool:
     """
     x, at, y = counts_of(a), counts_of(point), counts_of(b)
     crossing = BY_NAME[kind].crosses
-    if x.on_circle or y.on_circle or at.on_circle != (2 if kind == "neimark_sacker" else 1) or a.torus == 1.0:
+    if x.on_circle or y.on_circle or at.on_circle != (2 if kind == "neimark_sacker" else 1) or a.solution.torus == 1.0:
         return True
     if kind == "neimark_sacker" and keeps_side(point, a, b):
         return False

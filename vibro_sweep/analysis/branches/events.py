@@ -114,7 +114,7 @@ def torus_test(a: Point, b: Point, scaled: bool = False):
     Without factors that are zero both at a and at b, to rounding, as of a mode without losses that the contact does not
     see. scaled : over prod_i (1 + |mu_i|^2)^((n - 1)/2), so that the product has no poles
     """
-    if len(a.solution.multipliers) < 3 or a.torus == 1.0 or b.torus == 1.0:
+    if len(a.solution.multipliers) < 3 or a.solution.torus == 1.0 or b.solution.torus == 1.0:
         return None
     left_out = min(int(np.sum(np.abs(1 - _products(point)) < ON_PAIR)) for point in (a, b))
 

@@ -55,15 +55,6 @@ class FreePoint:
         """What rounding does to the parameter of the point."""
         return float(ROUNDED * abs(self.p))
 
-    @cached_property
-    def torus(self) -> float:
-        """prod_{i<j} (1 - mu_i mu_j): zero at a Neimark-Sacker point, and at a neutral saddle. 1 without losses."""
-        mu = self.solution.multipliers
-        if abs(abs(np.prod(mu)) - 1) < 1e-9:
-            return 1.0
-        i, j = np.triu_indices(len(mu), 1)
-        return float(np.prod(1 - mu[i] * mu[j]).real)
-
 
 class FreeWalk:
     """A branch through `start` in the parameter `name`."""

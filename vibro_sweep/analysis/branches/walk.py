@@ -75,15 +75,6 @@ class Point:
         return float(self.guess.tests[MINUS])
 
     @cached_property
-    def torus(self) -> float:
-        """prod_{i<j} (1 - mu_i mu_j): zero at a Neimark-Sacker point, and at a neutral saddle. 1 without losses."""
-        mu = self.solution.multipliers
-        if abs(abs(np.prod(mu)) - 1) < 1e-9:
-            return 1.0
-        i, j = np.triu_indices(len(mu), 1)
-        return float(np.prod(1 - mu[i] * mu[j]).real)
-
-    @cached_property
     def releases(self) -> np.ndarray:
         """(K,) acceleration away from the stop just after an impact with R = 0; infinite for other impacts."""
         return self.walk.releases(self.guess)

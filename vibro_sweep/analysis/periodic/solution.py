@@ -118,6 +118,15 @@ class Solution:
         q = self.family.linear
         return multipliers_of(flow(q), self.sigma, self.P, contacts_of(q, self.sides), self.u, self.motion)
 
+    @cached_property
+    def torus(self) -> float:
+        """prod_{i<j} (1 - mu_i mu_j): zero at a Neimark-Sacker point, and at a neutral saddle. 1 without losses."""
+        mu = self.multipliers
+        if abs(abs(np.prod(mu)) - 1) < 1e-9:
+            return 1.0
+        i, j = np.triu_indices(len(mu), 1)
+        return float(np.prod(1 - mu[i] * mu[j]).real)
+
     @property
     def pushes(self) -> np.ndarray:
         """(K,) sizes of the impulses; negative for one that pulls."""
