@@ -93,6 +93,7 @@ def look(f, c, place, b):
         for k in range(cells + 1):
             width = min(f.width * OVERLAP, length - k * f.width)
             if width > 0.0 and may_turn(f, y, e, f.numbers[LOW], f.numbers[HIGH], nearest[0]):
+                e = cmath.exp(1j * (begin + omega * k * f.width))  # products have rounded from cell to cell
                 expand_gap(f, y, e, work.cell)
                 if k == 0 and f.numbers[gain] == 1.0 and not c.rests[i]:  # not even rounding is left of the velocity
                     work.cell[1] = 0.0
