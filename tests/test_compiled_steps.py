@@ -10,6 +10,7 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.branches.way import FIRST_STEP, LONGEST_STEP, SHORTEST_STEP, STRAIGHT
+from vibro_sweep.analysis.continuation.first_point import guess_of
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -145,7 +146,7 @@ def test_cells_left_out_have_no_turning_point_of_interest(system, itinerary, nam
     """Against 400 samples of each cell, by matrix exponentials: 4000 random flights, both bounds have work to do."""
     rng, count, samples = np.random.default_rng(5), 4000, 400
     tracer = Walk(orbit_of(system, itinerary)._solution, name, 0.1).tracer
-    tracer.go_to(tracer.guess())
+    tracer.go_to(guess_of(tracer))
     plane = tracer.planes[0]
     A, width, omega, swing = plane["A"], float(plane["width"]), float(plane["numbers"][OMEGA]), plane["Z"][0]
     n = len(A)

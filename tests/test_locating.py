@@ -1,10 +1,13 @@
 """Where ends and bifurcations of a branch lie: the ways to find them against each other."""
 
+import numpy as np
 import pytest
 from support.oscillators import BALL, CAVITY, ONE_MASS, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import locating
+from vibro_sweep.analysis.branches.special import inserted
+from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.model.linear import Family, family_of
 
 ORBITS = [
@@ -60,3 +63,14 @@ def test_stops_that_do_not_move_in_proportion():
     assert [one.type for one in found] == [one.type for one in expected] == ["graze", "pitchfork", "graze"]
     for one, other in zip(found, expected, strict=True):
         assert 3 * one.parameters["c"] ** 2 == pytest.approx(other.parameters["b"], abs=1e-12)
+
+
+def test_an_impact_without_speed_lies_between_its_neighbours_whatever_turn_phases_are_counted_from():
+    """The phase of the force is continuous along a branch, and so may be a turn off what the oscillator says."""
+    start = orbit_of(PAPER.replace(b=4.0), "R")._solution
+    walk = Walk(start, "omega", 0.1)
+    walk._taus[0] = (walk._taus[0][0], walk._taus[0][1] + 2 * np.pi)
+    point = walk.first(1.0)
+    touching, index = inserted(point.solution)
+    phases = walk.with_touch(point.guess, touching, index).phases
+    assert np.all(np.diff(phases) > 0) and phases[-1] - phases[0] < np.pi * start.halves

@@ -11,6 +11,7 @@ from vibro_sweep.analysis.branches.sizes import LEAST, least_size
 from vibro_sweep.analysis.branches.special import SpecialPoint, inserted
 from vibro_sweep.analysis.continuation.chatter import Chatter, chatter_at, written_out
 from vibro_sweep.analysis.continuation.errors import rounding_error
+from vibro_sweep.analysis.continuation.first_point import guess_of, settle
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import NoPlaneError, Tracer
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
@@ -78,11 +79,11 @@ def _onset(guess: Chatter, name: str) -> tuple[Tracer, Place] | None:
         tracer = Tracer(Start("sticking", s, state=guess.state), (name,), [(value - size / 2, value + size / 2)])
     except NoPlaneError:
         return None
-    first = tracer.guess()
+    first = guess_of(tracer)
     found = first and written_out(tracer, first)
     if not found:
         return None
-    tracer, place = found[0], found[0].settle(found[1])
+    tracer, place = found[0], settle(*found)
     if place is None or not tracer.is_real(place):
         return None
     shared = slice(1, min(s.K, tracer.K))

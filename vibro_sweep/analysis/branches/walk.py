@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from vibro_sweep.analysis.continuation.errors import rounding_error
+from vibro_sweep.analysis.continuation.first_point import first_direction, guess_of
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -134,7 +135,7 @@ class Walk:
     @cached_property
     def _first(self) -> Point | None:
         try:
-            guess = self.tracer.guess()
+            guess = guess_of(self.tracer)
         except ValueError:
             return None
         axis = np.zeros(2 * self.start.K + 1)
@@ -148,7 +149,7 @@ class Walk:
     def _across(self, guess: Place, axis: np.ndarray) -> Point | None:
         """The start on the plane across its tangent, where impacts are so slow that the parameter hardly tells them."""
         speeds = np.abs(self.start.jumps)
-        row = self.tracer.first_direction(guess) if speeds.min() < SLOW * speeds.max() else None
+        row = first_direction(self.tracer, guess) if speeds.min() < SLOW * speeds.max() else None
         return None if row is None else self.correct(guess, row[:-2], axis)
 
     def step(self, point: Point, length: float, near: Place | None = None) -> Point | None:
@@ -161,8 +162,8 @@ class Walk:
 
     def beside_start(self, length: float) -> Point | None:
         """The point of the branch at a distance from the start, also where that is a fold."""
-        guess = self.tracer.guess()
-        row = guess and self.tracer.first_direction(guess)
+        guess = guess_of(self.tracer)
+        row = guess and first_direction(self.tracer, guess)
         if row is None:
             return None
         return self.correct(self.tracer.moved(guess, length), row[:-2], row[:-2])
@@ -192,7 +193,7 @@ class Walk:
 
     def of(self, solution: Solution) -> Place | None:
         """A guess that is this orbit."""
-        return self.tracer.guess(solution, self.tau(solution.family.numbers[self.name]))
+        return guess_of(self.tracer, solution, self.tau(solution.family.numbers[self.name]))
 
     def solution(self, guess: Place) -> Solution:
         """The orbit of a guess."""
@@ -221,7 +222,7 @@ class Walk:
 
     def with_touch(self, guess: Place, touching: Solution, index: int) -> Place:
         """The guess with one event more, the impact `index` of `touching`, which has no speed."""
-        return self.tracer.with_event(guess, touching, index)
+        return self.tracer.with_event(guess, touching, index, self.tau(touching.family.numbers[self.name]))
 
     def without_touch(self, place: Place, index: int) -> Place:
         """The place of a walk with one impact more, without that."""

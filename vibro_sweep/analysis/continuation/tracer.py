@@ -1,4 +1,4 @@
-"""Points of a branch or a curve with the exact oscillator: the first one, corrections, what is read there."""
+"""Points of a branch or a curve with the exact oscillator: corrections, and what is read there."""
 
 from copy import copy as copy_object
 
@@ -9,8 +9,8 @@ from vibro_sweep.analysis.continuation.start import Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import path, stepper
 from vibro_sweep.engine.continuation.curve_tests import MARGIN, RESIDUAL, TOUCHING
-from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, conditions, is_critical, unknowns
-from vibro_sweep.engine.continuation.workspace import THETA, Place, new_bench, new_place
+from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, unknowns
+from vibro_sweep.engine.continuation.workspace import Place, new_bench, new_place
 from vibro_sweep.model.linear import Family, forcing_period
 
 MOST_CORRECTIONS = 20
@@ -141,46 +141,6 @@ class Tracer:
     def period(self, place: Place) -> float:
         return float(np.pi * self.start.solution.halves / self.omega(place))
 
-    def first(self, row: np.ndarray | None = None) -> Place | None:
-        """The point of the curve at `start`, or near it on the plane across `row`; None where it is not isolated."""
-        place = self.guess()
-        return place and self.settle(place, row)
-
-    def guess(self, solution: Solution | None = None, tau: float | None = None) -> Place | None:
-        """`start`, or another orbit with the same impacts, as it is; None where the oscillator has no forced motion.
-
-        tau : as of `solution`
-        """
-        s, place = solution or self.start.solution, new_place(self.K, self.n)
-        q = s.family.linear
-        place.phases[:], place.jumps[:] = (
-            q.omega * s.times + (q.tau if tau is None else tau),
-            s.jumps / self.units.speed,
-        )
-        rests = list(s.rests)
-        place.jumps[rests] = q.omega * (s.ends - s.times[rests])
-        place.p[: len(self.names)] = [s.family.numbers[name] for name in self.names]
-        place.p[THETA] = self.start.theta
-        if not self.go_to(place):
-            return None
-        states = s.states[: self.K, : self.n] if self.start.state is None else self.start.state[None]
-        steady = (self.planes[0]["Z"] * np.exp(1j * place.phases[:, None])).real
-        place.x[:, : self.n] = states / self.state_units - steady
-        if self.start.state is not None:
-            self.do(stepper.FOLLOW, place)
-        return place
-
-    def settle(self, place: Place, row: np.ndarray | None = None) -> Place | None:
-        """The point of the curve near a guess without a tangent."""
-        if not self.go_to(place):
-            return None
-        if is_critical(self.problem):
-            self._take_null_vectors(place)
-        if row is None:
-            is_single = conditions(self.problem) == unknowns(self.problem)
-            row = self.direction(place) if is_single else self.first_direction(place)
-        return None if row is None else self.correct(place, row)
-
     def beside(self, place: Place) -> list[Place]:
         """Points of the curve within the box, a little beside `place`."""
         found = [self.along(place, length) for length in (BESIDE, -BESIDE)]
@@ -213,10 +173,10 @@ class Tracer:
         guess.p[:] += length * along.tangent_p * [*self.problem.unit, 1.0]
         return guess
 
-    def with_event(self, place: Place, solution: Solution, index: int) -> Place:
-        """A guess with one event more: impact `index` of an orbit near it, without speed."""
+    def with_event(self, place: Place, solution: Solution, index: int, tau: float) -> Place:
+        """A guess with one event more: impact `index` of an orbit near it, without speed; tau: as of `solution`."""
         longer, q = new_place(self.K + 1, self.n), self.planes[0]
-        phase = solution.family.linear.omega * solution.times[index] + solution.family.linear.tau
+        phase = solution.family.linear.omega * solution.times[index] + tau
         state = solution.states[index, : self.n] / self.state_units - (q["Z"] * np.exp(1j * phase)).real
         longer.x[:] = np.insert(place.x, index, [*state, phase, 0.0], axis=0)
         longer.p[:] = place.p
@@ -227,28 +187,6 @@ class Tracer:
         shorter = new_place(self.K, self.n)
         shorter.x[:], shorter.p[:] = np.delete(place.x, index, axis=0), place.p
         return shorter
-
-    def _take_null_vectors(self, place: Place) -> None:
-        """v and w of the critical multiplier, at a place that has none."""
-        place.v[:], place.w[:] = 0.0, 0.0
-        for _ in range(2):  # with any border, then with what that gives
-            self.do(stepper.ASSEMBLE, place)
-            for here, found in ((place.v, self.bench.events["v"]), (place.w, place.left)):
-                here[:] = found / np.linalg.norm(found)
-
-    def first_direction(self, place: Place) -> np.ndarray | None:
-        """The tangent at a place to which the oscillator was moved; it is kept there."""
-        if not self.do(stepper.ASSEMBLE, place):
-            return None
-        n, size = self.n, self.n + unknowns(self.problem)
-        null = np.linalg.svd(self.bench.work[0]["ends"][: size - 1, :size])[2][-1]
-        change, events = self.taken_apart(place, null[:n], null[n:]), self.bench.events
-        length = np.linalg.norm(change)
-        place.tangent[:] = events["changes"][:, 1]
-        place.tangent[:, :n] += events["rate"] * place.tangent[:, n, None]
-        place.tangent[:] /= length
-        place.tangent_p[:] = change[-3:] / length
-        return change / length
 
     def taken_apart(self, place: Place, first: np.ndarray, parameters: np.ndarray) -> np.ndarray:
         """(2 K + 3,) phases, jumps, parameters of a change with this xi_1, after `assemble`."""

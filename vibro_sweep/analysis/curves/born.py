@@ -28,6 +28,7 @@ from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.pair import in_time, rates_of_pair, second_order
@@ -90,7 +91,7 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
     """For orbits with `count` times the period at this amplitude; sign: which of two folds. None: there are none."""
     names, values = tuple(special.parameters), np.array(list(special.parameters.values()))
     tracer = Tracer(parent, names, box_around(special))
-    place = tracer.first()
+    place = first_place(tracer)
     if place is None:
         return None
     K, critical = tracer.K, place.v[:, -2:].T.ravel()  # of phases and jumps
@@ -142,9 +143,9 @@ def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
     """The point of the curve with the amplitude of the guess, if it is near."""
     names, values = tuple(special.parameters), np.array(list(special.parameters.values()))
     tracer = Tracer(guess.start, names, box_around(special))
-    place = tracer.guess()
+    place = guess_of(tracer)
     row = None if place is None else np.append(guess.change / in_time(tracer, place), np.zeros(3))
-    place = place and tracer.settle(place, tracer.unit_row(row))
+    place = place and settle(tracer, place, tracer.unit_row(row))
     if place is None:
         return None
     far = np.abs(place.p[:2] - values) > FARTHEST * sizes_of(special.orbit._solution, names)

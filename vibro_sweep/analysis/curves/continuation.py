@@ -12,6 +12,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.chatter import written_out
+from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves import curve_text
 from vibro_sweep.analysis.curves.curve_points import dataset
@@ -138,7 +139,7 @@ def bifurcation_curve(
 def first_of(tracer: Tracer) -> tuple[Tracer, Place | None]:
     """The first point, if there is one; of an onset of sticking with as many impacts as are needed."""
     if tracer.start.state is None:
-        return tracer, tracer.first()
-    guess = tracer.guess()
+        return tracer, first_place(tracer)
+    guess = guess_of(tracer)
     found = guess and written_out(tracer, guess)
-    return (found[0], found[0].settle(found[1])) if found else (tracer, None)
+    return (found[0], settle(*found)) if found else (tracer, None)

@@ -13,6 +13,7 @@ from vibro_sweep.analysis.branches.flat import Flat
 from vibro_sweep.analysis.branches.search import Evaluate, Node, search
 from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of, unpacked
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.start import KINDS, Start, keeps_symmetry
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.continuation import bifurcation_curve
@@ -167,7 +168,7 @@ def _crossings(flat: Flat, seed: CurveSeed, names, box: Box, place, size):
         row = min(max(row, 1), len(at) - 2) if len(at) > 2 else row  # at its ends a curve may be singular
         system = seed.orbit.system.replace(**dict(zip(names, map(float, flat["value"][row]), strict=True)))
         tracer = Tracer(start_from(flat, row, system), names, box)
-        first, axis = tracer.first(), int(abs(chord[i, 1]) > abs(chord[i, 0]))
+        first, axis = first_place(tracer), int(abs(chord[i, 1]) > abs(chord[i, 0]))
         found = None if first is None else tracer.level(first, axis, float(place[axis]))
         if found is not None and np.all(np.abs(found.p[:2] - place) <= SAME * size):
             yield tracer.solution(found)

@@ -15,6 +15,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.births import doubled
 from vibro_sweep.analysis.branches.own_birth import halves_apart
 from vibro_sweep.analysis.branches.special import bare, inserted
+from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.start import CONDITIONS, Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.events import Found, event_near
@@ -176,7 +177,7 @@ def _first_found(tracer: Tracer, aim: Place, sigma: int, lengths) -> End | None:
 def _on_other(tracer: Tracer, start: Start, aim: Place, lengths, types) -> End | None:
     """The event on the curve from `start` that is nearest to its first point, which is near `aim`."""
     other = Tracer(start, tracer.names, tracer.box)
-    first = other.first()
+    first = first_place(other)
     if first is None or np.abs((first.p - aim.p)[:2] / np.ptp(tracer.box, axis=1)).max() > NEAR:
         return None
     for length in lengths:

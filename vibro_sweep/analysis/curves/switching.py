@@ -9,6 +9,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.switching import switch as switch_branches
 from vibro_sweep.analysis.continuation.chatter import Chatter
+from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.born import born, box_around
@@ -122,7 +123,7 @@ def _beside_strong(special: CurvePoint) -> SpecialPoint | None:
     names = tuple(special.parameters)
     theta = BESIDE if special.type == "resonance_1_1" else math.pi - BESIDE
     tracer = Tracer(Start("neimark_sacker", solution, theta=theta), names, box_around(special))
-    place = tracer.first(tracer.axis(THETA))
+    place = first_place(tracer, tracer.axis(THETA))
     if place is None:
         return None
     return as_special(Start("neimark_sacker", tracer.solution(place)), names, special.orbit.system, special.error)
