@@ -5,8 +5,9 @@ import cmath
 import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_sum import NEXT
+from vibro_sweep.engine.continuation.flight_tables import polynomial
 from vibro_sweep.engine.continuation.held_gap import press
-from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, polynomial
+from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
 from vibro_sweep.engine.impulses.tables import ORDER

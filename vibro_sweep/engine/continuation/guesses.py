@@ -18,7 +18,8 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.corrector import in_order
 from vibro_sweep.engine.continuation.factors import factorise, substitute
-from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, flight
+from vibro_sweep.engine.continuation.flight_tables import flight
+from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA
 from vibro_sweep.engine.continuation.reflections import put_last, take_apart
 from vibro_sweep.engine.continuation.residual import approach, eliminate, grown, is_short, land, leave
 from vibro_sweep.engine.simd.jit import entry, jit

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.continuation.flight_tables import flight
 from vibro_sweep.engine.continuation.held_gap import hold_gap
-from vibro_sweep.engine.continuation.moving_flow import OMEGA, flight
+from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.problem import index_of, unknowns
 from vibro_sweep.engine.continuation.residual import approach, leave
 from vibro_sweep.engine.continuation.workspace import TESTS, Place, new_place

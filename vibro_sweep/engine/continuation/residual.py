@@ -21,8 +21,9 @@ import cmath
 import math
 
 from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
+from vibro_sweep.engine.continuation.flight_tables import flight
 from vibro_sweep.engine.continuation.held_gap import put_rest, rest
-from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA, flight
+from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
 from vibro_sweep.engine.impulses.tables import ORDER
