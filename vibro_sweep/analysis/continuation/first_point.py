@@ -57,7 +57,7 @@ def _take_null_vectors(tracer: Tracer, place: Place) -> None:
     place.v[:], place.w[:] = 0.0, 0.0
     for _ in range(2):  # with any border, then with what that gives
         tracer.do(stepper.ASSEMBLE, place)
-        for here, found in ((place.v, tracer.bench.events["v"]), (place.w, place.left)):
+        for here, found in ((place.v, tracer.bench.events["v"]), (place.w, tracer.bench.trial)):
             here[:] = found / np.linalg.norm(found)
 
 

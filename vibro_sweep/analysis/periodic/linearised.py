@@ -98,7 +98,7 @@ class Linearised:
         e.problem = e.problem._replace(kind=FOLD if mu == 1 else FLIP)
         for _ in range(2):  # first across any direction, which may lie badly, then across the one that is found
             self._assembled()
-            for here, found in ((e.place.v, e.bench.events["v"]), (e.place.w, e.place.left)):
+            for here, found in ((e.place.v, e.bench.events["v"]), (e.place.w, e.bench.trial)):
                 here[:] = found / np.linalg.norm(found)
         return self._of_times(e.place.v.real)
 

@@ -30,7 +30,7 @@ def end_of_chatter(f, x, e, panel):
 @jit
 def sum_tail(f, c, place, b):
     """Q, of the sequence that follows the last flight, with its derivatives."""
-    first, rate, last = b.events[0], b.work[0].re, b.events[len(b.events) - 1]
+    first, rate, last = b.events[0], b.work[0].rate, b.events[len(b.events) - 1]
     for r in range(len(rate)):
         rate[r] = f.numbers[OMEGA] * first.rate[r]
     sum_chatter(f, c.sides[0], 0.0, rate, place.x[0], first.turn, last.length, b.tail)

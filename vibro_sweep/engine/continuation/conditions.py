@@ -93,11 +93,11 @@ def null_vectors(c, place, b, n, mu):
     g = side[n]
     clear_sides(b)
     expand(c, b, n, mu, v)
-    take_up(b, n, w, place.left)
+    take_up(b, n, w, b.trial)
     for i in range(len(b.events)):
         e = b.events[i]
         for r in range(n + 2):
-            e.w[r] = place.left[i, r]
+            e.w[r] = b.trial[i, r]
     return g
 
 
@@ -107,8 +107,8 @@ def keep_null_vectors(place, b, n):
     K, size_v, size_w, turn_v, turn_w = len(b.events), 0.0, 0.0, 0j, 0j
     for i in range(K + 1):
         for r in range(n + 2):
-            size_w += square(place.left[i, r])
-            turn_w += place.left[i, r] * place.w[i, r].conjugate()
+            size_w += square(b.trial[i, r])
+            turn_w += b.trial[i, r] * place.w[i, r].conjugate()
             if i < K:
                 size_v += square(b.events[i].v[r])
                 turn_v += b.events[i].v[r] * place.v[i, r].conjugate()
@@ -116,7 +116,7 @@ def keep_null_vectors(place, b, n):
     scale_v, scale_w = turned(turn_v) / size_v, turned(turn_w) / size_w
     for i in range(K + 1):
         for r in range(n + 2):
-            place.w[i, r] = place.left[i, r] * scale_w
+            place.w[i, r] = b.trial[i, r] * scale_w
             if i < K:
                 place.v[i, r] = b.events[i].v[r] * scale_v
     return scale_v, scale_w

@@ -148,7 +148,7 @@ def residuals(f, c, place, b, mu):
 @jit
 def solve_order(f, c, place, b, mu, m):
     """The coefficient of order m from its residual. False where mu^j mu*^k is a multiplier."""
-    K, n, work, rows = len(place.x), f.A.shape[0], b.work[0], place.left
+    K, n, work, rows = len(place.x), f.A.shape[0], b.work[0], b.trial
     factor = factor_of(mu, m)
     put_matrix(c, b, n, factor, work.border)
     if square(factorise(work.border, n, work.order)) == 0.0:

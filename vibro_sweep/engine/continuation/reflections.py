@@ -143,7 +143,7 @@ def take_apart(f, c, b, s, first, p, with_residual):
         if i + 1 < K:
             substitute_back(e, n, b.events[i + 1].changes[s], first, x)
         else:
-            after = b.work[0].re
+            after = b.work[0].closure
             for r in range(n):
                 after[r] = c.sigma * first[r]
             substitute_back(e, n, after, first, x)

@@ -53,7 +53,7 @@ def differentiate_flight(f, place, b, i, mu):
     """What the rows of a flight add."""
     K, n, N, omega = len(b.events), f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
     e, following, work = b.events[i], b.events[i + 1 if i + 1 < K else 0], b.work[0]
-    y, Ey, by_state, through = work.column, work.side, work.left, work.right
+    y, Ey, by_state, through = work.along[0], work.along[1], work.along[2], work.along[3]
     for r in range(n):
         y[r] = e.v[r] + e.rate[r] * e.v[n]
     y[N] += e.v[n + 1]

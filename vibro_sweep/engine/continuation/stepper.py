@@ -220,7 +220,7 @@ def at(task, planes, c, path, place, row, b):
     Newton's method, with the polynomials of the plane, and tests. WALK: why it ends. STATES:
     of the recorded points, at `record.phase`. FOLLOW: states before all events
     from that before the first. TAKE_APART: the change of all events, `events.changes[1]`, for xi_1 and parameters in
-    `work.null`. TAKE_UP: the left vector, in `place.left`, for those of the last and of the eliminated equations.
+    `work.null`. TAKE_UP: the left vector, in `trial`, for those of the last and of the eliminated equations.
     """
     f = planes[0]
     if task == MOVE or task == CORRECT or task == EXAMINE:
@@ -243,7 +243,7 @@ def at(task, planes, c, path, place, row, b):
         take_apart(f, c, b, 1, b.work[0].null, b.work[0].step_p[1], False)
         return 1.0
     if task == TAKE_UP:
-        take_up(b, f.A.shape[0], b.work[0].left, place.left)
+        take_up(b, f.A.shape[0], b.work[0].left, b.trial)
         return 1.0
     if task == NEAR and not (correct(f, c, place, row, b) > 0 and move_to(f, place.p[FIRST], place.p[SECOND])):
         return 0.0

@@ -32,7 +32,6 @@ class Place(NamedTuple):
     v: np.ndarray  # (K, n + 2) complex: right null vector of a critical multiplier, (xi, dphi, dD)
     w: np.ndarray  # (K + 1, n + 2) complex: left null vector, rows 1 and 2 of the event and those of the flight after
     # it; last those of xi_1 - xi_1 = 0
-    left: np.ndarray  # (K + 1, n + 2) complex: room for w of a trial
     tests: np.ndarray  # (TESTS,)
     multipliers: np.ndarray  # (n, 2): real and imaginary parts; on a curve but the critical one. NaN: not known
 
@@ -48,7 +47,7 @@ class Place(NamedTuple):
 
 
 def new_place(K: int, n: int) -> Place:
-    real, vectors = [(K, n + 2), 3, (K, n + 2), 3], [np.zeros((count, n + 2), complex) for count in (K, K + 1, K + 1)]
+    real, vectors = [(K, n + 2), 3, (K, n + 2), 3], [np.zeros((count, n + 2), complex) for count in (K, K + 1)]
     return Place(*map(np.zeros, real), *vectors, np.zeros(TESTS), np.full((n, 2), np.nan))
 
 
@@ -121,6 +120,9 @@ def work_of(masses: int) -> np.dtype:
         ("right", complex, n),
         ("side", complex, n + 1),
         ("column", complex, 2 * n + 2),
+        ("closure", float, n),  # xi_{K+1}
+        ("rate", float, n),  # y' before the first event, by time
+        ("along", complex, (4, n)),  # of a flight: v at its begin, at its end, w A, w A E (second_derivative.py)
         ("slopes_p", complex, ROWS),  # of a condition by the parameters
         ("missed", complex),  # see second_derivative.py
     ])  # fmt: skip
@@ -132,6 +134,7 @@ class Bench(NamedTuple):
     work: np.ndarray  # (1,) `work_of`
     events: np.ndarray  # (K,) `event_of`
     tail: Tail
+    trial: np.ndarray  # (K + 1, n + 2) complex: a vector over all rows, as `Place.w`, that is not kept yet
     series: np.ndarray  # (K, 2, TERMS) complex: of dphi_i and dD_i, see normal_form.py
     first: np.ndarray  # (n, TERMS) complex: of y_1
     left: np.ndarray  # (K, 2, TERMS) complex: of rows 1 and 2
@@ -141,6 +144,6 @@ class Bench(NamedTuple):
 
 
 def new_bench(K: int, n: int) -> Bench:
-    shapes = (K, 2, TERMS), (n, TERMS), (K, 2, TERMS), (n, TERMS), (3, n, TERMS), (3, TERMS)
+    shapes = (K + 1, n + 2), (K, 2, TERMS), (n, TERMS), (K, 2, TERMS), (n, TERMS), (3, n, TERMS), (3, TERMS)
     room = new_lines(1, work_of(n // 2)), new_lines(K, event_of(n // 2)), new_tail(n)
     return Bench(*room, *(np.zeros(shape, complex) for shape in shapes))
