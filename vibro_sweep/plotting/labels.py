@@ -6,6 +6,7 @@ from matplotlib import patheffects
 from vibro_sweep.plotting.style import type_size
 
 GAP = 2.5  # points (1/72 inch) between a name and what is beside it
+MARK = 2.4  # points from the middle of a mark to its edge, with the white rim of a name
 SAME = 4.0  # points between marks of one name, of which nearer ones have it once
 CORNERS = ((1, 1), (-1, 1), (1, -1), (-1, -1))  # of a mark, where its name may stand
 SIZES, HIGHEST = (8, 7, 6, 5), 0.35  # of the type of a legend, and the part of the page that it takes at most
@@ -35,7 +36,7 @@ def name_beside(ax, names, places, lines=(), taken=(), most=None) -> list[np.nda
             break
         if any(name == other and np.hypot(*(mark - at)) < scale * SAME for other, at in written):
             continue
-        found = _free_corner(sizes[name], mark, scale * GAP, marks, lines, frame, boxes)
+        found = _free_corner(sizes[name], mark, scale, marks, lines, frame, boxes)
         if found is None:
             continue
         (right, up), box = found
@@ -64,15 +65,15 @@ def _size(ax, name: str) -> np.ndarray:
     return size
 
 
-def _free_corner(size, mark, gap, marks, lines, frame, taken):
+def _free_corner(size, mark, scale, marks, lines, frame, taken):
     """((+-1, +-1), box) of the corner of a mark where a name of this size covers no mark and no taken box, and the
     fewest points of lines; None where there is no such corner within the frame."""
-    best = None
+    best, gap, rim = None, scale * GAP, scale * MARK * np.array([[-1.0], [1.0]])
     for corner in CORNERS:
         ends = mark + gap * np.array(corner), mark + (gap + size) * corner
         box = np.array([np.minimum(*ends), np.maximum(*ends)])
         inside = np.all((frame[0] <= box) & (box <= frame[1]))
-        if not inside or _within(marks, box) or any(overlap(box, other) for other in taken):
+        if not inside or _within(marks, box + rim) or any(overlap(box, other) for other in taken):
             continue
         covered = _within(lines, box)
         if best is None or covered < best[0]:
