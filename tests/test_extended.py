@@ -5,15 +5,15 @@ import pytest
 from mpmath import mp, mpf
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.periodic import impulse_equations
-from vibro_sweep.engine.impulses import extended, flow, green
+from vibro_sweep.analysis.periodic import motion_between
+from vibro_sweep.engine.impulses import extended, flow, state_space
 from vibro_sweep.engine.impulses.tables import exponential, power
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=3.0, tau=0.1)
 
 
 def forget():
-    for module in (green, flow, impulse_equations):
+    for module in (state_space, flow, motion_between):
         for thing in vars(module).values():
             getattr(thing, "cache_clear", lambda: None)()
 

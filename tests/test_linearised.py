@@ -10,7 +10,7 @@ from support.oscillators import CAVITY, CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.periodic.linearised import Linearised
-from vibro_sweep.engine.impulses.green import space
+from vibro_sweep.engine.impulses.state_space import space
 from vibro_sweep.model.linear import family_of
 
 ORBITS = {

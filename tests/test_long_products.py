@@ -5,7 +5,7 @@ import pytest
 from mpmath import mp, mpf
 from support.oscillators import PAPER
 
-from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
+from vibro_sweep.analysis.periodic.motion_between import flow, multipliers_of
 
 P = 5.0
 

@@ -11,7 +11,7 @@ from vibro_sweep.analysis.branches.continuation import Branch
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.green import checked_cells
+from vibro_sweep.engine.impulses.state_space import checked_cells
 from vibro_sweep.model.bifurcations import BIRTHS, BRANCH_STATUSES, CODES, CRITICALITIES, KINDS, TYPES
 from vibro_sweep.model.linear import family_of, forcing_period
 from vibro_sweep.model.state import state

@@ -11,7 +11,7 @@ order. A series is an array (.., 4, 4) of the coefficients of r^j s^k; those wit
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.impulse_equations import flow
+from vibro_sweep.analysis.periodic.motion_between import flow
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
 

@@ -5,13 +5,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from vibro_sweep.analysis.periodic.impulse_equations import flow, moves_stops_only
+from vibro_sweep.analysis.periodic.motion_between import flow, moves_stops_only
 from vibro_sweep.engine.continuation import moving_flow
 from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.extended import extended, identity, zeros
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import rates
-from vibro_sweep.engine.impulses.green import checked_cells
+from vibro_sweep.engine.impulses.state_space import checked_cells
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.model.linear import Family, Linear
 

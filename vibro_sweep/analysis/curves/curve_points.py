@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.rows import Rows
-from vibro_sweep.analysis.periodic.impulse_equations import flow, multipliers_of
+from vibro_sweep.analysis.periodic.motion_between import flow, multipliers_of
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA

@@ -7,14 +7,14 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.impulse_equations import TABLES, closing, flow
+from vibro_sweep.analysis.periodic.motion_between import TABLES, closing, flow
 from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
 from vibro_sweep.engine.continuation import guesses, moving_flow, path, stepper
 from vibro_sweep.engine.continuation.problem import ORBIT, Problem
 from vibro_sweep.engine.continuation.workspace import new_bench, new_place
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import contact_coordinates, unseen_modes
-from vibro_sweep.engine.impulses.green import checked_cells
+from vibro_sweep.engine.impulses.state_space import checked_cells
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.model.linear import Keyed, Linear, amplitudes
 
@@ -23,7 +23,7 @@ class EventEquations:
     """Orbits of `q` with impacts on `sides`, z(t + P) = sigma z(t), P = halves T/2.
 
     sigma = +1 and an even number of halves, or sigma = -1 and an odd one (symmetric orbits).
-    Raises ResonanceError, TooStiffError (green.py).
+    Raises ResonanceError, TooStiffError (state_space.py).
     """
 
     def __init__(self, q: Linear, sigma: int, halves: int, sides, rests=()):

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
-from vibro_sweep.analysis.periodic.impulse_equations import closing, flow
 from vibro_sweep.analysis.periodic.itinerary import canonical_start
+from vibro_sweep.analysis.periodic.motion_between import closing, flow
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses import flights
-from vibro_sweep.engine.impulses.green import has_free_gap
+from vibro_sweep.engine.impulses.state_space import has_free_gap
 from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.model.linear import Linear, family_of, forcing_period
 from vibro_sweep.model.refusals import not_allowed

@@ -7,7 +7,7 @@ some shares of the time to the next impact are tried.
 import numpy as np
 
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.green import space
+from vibro_sweep.engine.impulses.state_space import space
 
 SHARES = (0.3, 0.6, 0.1, 0.9)  # of the time to the next impact
 PHASES = 8  # of the first impact, where nothing is known

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.green import ResonanceError, free_modes, has_free_gap, space
+from vibro_sweep.engine.impulses.state_space import ResonanceError, free_modes, has_free_gap, space
 from vibro_sweep.model.linear import Linear, amplitude_slopes, amplitudes
 
 

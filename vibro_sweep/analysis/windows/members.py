@@ -4,7 +4,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.flat import Flat, section_states, solution_of
 from vibro_sweep.analysis.periodic.event_equations import EventEquations, contact_of
-from vibro_sweep.analysis.periodic.impulse_equations import moves_stops_only, sections_of
+from vibro_sweep.analysis.periodic.motion_between import moves_stops_only, sections_of
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import ALIKE, Solution
 from vibro_sweep.analysis.windows.job import is_near

@@ -13,7 +13,7 @@ import numpy as np
 
 from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.extremes import middle_weights
-from vibro_sweep.engine.impulses.green import (
+from vibro_sweep.engine.impulses.state_space import (
     MOST_CELLS,
     ResonanceError,
     TooStiffError,
