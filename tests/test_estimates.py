@@ -99,6 +99,16 @@ def test_orbits_are_measured_in_blocks_like_those_of_the_run(monkeypatch):
     assert set(run) == {1}
 
 
+def test_a_pause_of_the_processor_does_not_count(monkeypatch):
+    """The first measurement of an orbit is twice as long as it should be; those that follow are right."""
+    clock = Clock(1e-3, 1e-6, call=0.0)
+    found = clock.measure(monkeypatch, scene_of(f"{FEW}\norbit: {{transient: 0, record: 10}}\nobserve: [impacts]"))
+    slow = found._replace(seconds=2 * found.seconds, sample_seconds=2 * found.sample_seconds)
+    right = measuring.repeated(slow)
+    assert right.seconds == pytest.approx(found.seconds)
+    assert right.sample_seconds == pytest.approx(found.sample_seconds)
+
+
 @pytest.mark.parametrize(("extent", "places", "beside"), [(100, 8, 1), (100, 8, 8), (1000, 3, 8), (5, 8, 8), (1, 1, 1)])
 def test_places_are_spread_over_an_axis(extent, places, beside):
     """As many on either side of the middle: no end counts for more than the parts between."""

@@ -21,6 +21,7 @@ from vibro_sweep.scene import Scene
 
 CROWDED = 0.1  # seconds for which all workers compute, to see how they get on
 FEW_BYTES, WRITTEN = 10**6, 16 * 10**6  # of a file: those that take no time worth saying; those that are written to see
+TRIES = 3  # of a file, of which the least counts: others wait for the disk as well
 COPIES = 2  # results are written into the part, and from there into the file
 BLOCKS_PER_WORKER = 8  # at least, so that workers end together
 BLOCK_SECONDS = 1.0  # of a thread's block: long enough for its overhead not to count, short enough to lose
@@ -53,6 +54,7 @@ def estimate(scene: Scene, workers: int | None = None) -> Estimate:
     with event.install_timer("numba:compile", compiling.append):
         cost = orbit_cost(scene, count)
     beginning = max(0.0, time.perf_counter() - began - sum(compiling))
+    cost = measuring.repeated(cost)
     alone = run_seconds(scene, cost, orbits, count)
     beside = alone * crowding(cost, threads_of(scene, count))
     rest = beginning + writing_seconds(size)
@@ -65,17 +67,23 @@ def writing_seconds(size: int) -> float:
     if size < FEW_BYTES:
         return 0.0
     some = os.urandom(FEW_BYTES) * (min(size, WRITTEN) // FEW_BYTES)
-    folder = os.curdir if os.access(os.curdir, os.W_OK) else None
-    began = time.perf_counter()
     try:
-        with tempfile.TemporaryFile(dir=folder) as file:
-            zlib.crc32(some)
-            file.write(some)
-            file.flush()
-            os.fsync(file.fileno())
+        least = min(_written(some) for _ in range(TRIES))
     except OSError:  # a full disk: the run will say so
         return 0.0
-    return COPIES * size / len(some) * (time.perf_counter() - began)
+    return COPIES * size / len(some) * least
+
+
+def _written(some: bytes) -> float:
+    """Seconds in which a temporary file with these bytes is on the disk."""
+    folder = os.curdir if os.access(os.curdir, os.W_OK) else None
+    began = time.perf_counter()
+    with tempfile.TemporaryFile(dir=folder) as file:
+        zlib.crc32(some)
+        file.write(some)
+        file.flush()
+        os.fsync(file.fileno())
+    return time.perf_counter() - began
 
 
 def orbit_cost(scene: Scene, workers: int) -> OrbitCost:
