@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Iterable, Iterator
 
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES, EDGES, REASONS, TYPES, WAYS
 from vibro_sweep.model.catalogue import NUMBERS
 from vibro_sweep.model.dimensions import DIMENSIONS
 from vibro_sweep.model.models import DEFAULT, MODELS
@@ -27,7 +28,9 @@ _BOUNDS = {"exclusiveMinimum": "> {}", "minimum": ">= {}", "maximum": "<= {}"}
 
 def page() -> str:
     """The page as Markdown."""
-    return "\n".join([HEAD, *_scene(), *_words(), *_variables(), *_numbers(), *_statuses(), *_pictures()])
+    return "\n".join(
+        [HEAD, *_scene(), *_words(), *_variables(), *_numbers(), *_statuses(), *_bifurcations(), *_pictures()]
+    )
 
 
 def _table(head: tuple[str, ...], rows: Iterable[tuple]) -> Iterator[str]:
@@ -149,6 +152,47 @@ def _statuses() -> Iterator[str]:
     yield "## Status codes\n"
     rows = ((code, f"`{one.name}`", one.text) for code, one in STATUSES.items())
     yield from _table(("code", "name", "meaning"), rows)
+
+
+def _bifurcations() -> Iterator[str]:
+    yield "## Types of special points\n"
+    yield "Of branches (`special_type`), and which of them are followed as curves: by `bifurcation_curve`, and in files"
+    yield "(`branch_type`).\n"
+    rows = (
+        (
+            f"`{one.name}`",
+            one.label,
+            one.text,
+            "yes" if one.name in CURVES else "not in files" if one.condition else "",
+            f"`{one.name}`" if one.name in WAYS else "",
+        )
+        for one in TYPES
+    )
+    yield from _table(("type", "in pictures", "meaning", "curve", "word of `follow`"), rows)
+    yield "## Types of points of codimension two\n"
+    yield "Of curves (`special_type` of their files), with the curves of orbits of a longer period that begin there.\n"
+    rows = (
+        (
+            f"`{one.name}`",
+            one.label,
+            _types({condition for condition, _ in one.tests} | ({"torus"} if one.turn else set()), one.sigma),
+            one.text,
+            _types(one.begins, 1),
+        )
+        for one in CODIMENSION_TWO
+    )
+    yield from _table(("type", "in pictures", "on which curves", "meaning", "begins"), rows)
+    for title, words in (
+        ("Reasons of orbits of a sweep in no window (`orbit_reason`)", REASONS),
+        ("Reasons of edges of a plane (`edge_reason`)", EDGES),
+    ):
+        yield f"## {title}\n"
+        yield from _table(("name", "meaning"), ((f"`{name}`", text) for name, text in words.items()))
+
+
+def _types(conditions: Iterable[str], sigma: int) -> str:
+    """The types of curves of orbits with this sigma, or any, along which one of these conditions holds."""
+    return _names(one.name for one in TYPES if one.condition in conditions and sigma * one.sigma >= 0)
 
 
 def _pictures() -> Iterator[str]:

@@ -135,7 +135,10 @@ def handles(curves: list[Drawn], frame=None) -> list[Line2D]:
 
 def _words(name: str) -> str:
     """The name of a type of point, as texts have it."""
-    words = name.replace("neimark_sacker", "Neimark-Sacker").replace("resonance_1_", "resonance 1:").split("_")
+    text = name.replace("resonance_1_", "resonance 1:")
+    for kind in COLOURS:
+        text = text.replace(kind, BY_NAME[kind].words)
+    words = text.split("_")
     return (" + " if words[0] in {BY_NAME[kind].words for kind in COLOURS} else " ").join(words)
 
 

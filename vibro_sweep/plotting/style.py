@@ -63,10 +63,10 @@ PERIODS = (
 
 # Special points: label, name, marker, colour; filled or not. Those of a graze, which are two, come first.
 SPECIAL = {one.name: (one.label, one.words, one.mark, one.colour, True) for one in TYPES if one.label}
-_, _, *_GRAZE = SPECIAL.pop("graze")
+_LABEL, _WORDS, *_GRAZE, _ = SPECIAL.pop("graze")
 SPECIAL = {
-    "graze": ("GR", "graze, persistence", *_GRAZE),
-    "nonsmooth_fold": ("GR", "graze, nonsmooth fold", *_GRAZE[:-1], False),
+    "graze": (_LABEL, f"{_WORDS}, persistence", *_GRAZE, True),
+    "nonsmooth_fold": (_LABEL, f"{_WORDS}, nonsmooth fold", *_GRAZE, False),
     **SPECIAL,
 }
 
