@@ -11,10 +11,9 @@ from support.oscillators import CHAIN, PAPER
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.flat import orbit_at
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.periodic.flight_slopes import rate_slopes
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.windows.job import Job, window_of
-from vibro_sweep.engine.impulses.flow import rates
+from vibro_sweep.engine.impulses.flow import rate_slopes, rates
 from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.model.linear import family_of
 
@@ -120,7 +119,7 @@ def test_windows_of_long_orbits(case):
     """At their ends an impact vanishes or appears, or a multiplier is on the unit circle."""
     numbers, name, period, bounds, state = LONG[case]
     job = Job(vs.Oscillator.named("chain", **numbers), np.array(state), period, name, bounds)
-    flat = window_of(job).flat
+    flat = window_of(job)
     assert len(flat["impact_side"]) == int(case.split()[1]) and not flat["branch_symmetric"]
     assert np.all(flat["special_error"] < 2e-11)
     for point, kind, value in zip((0, -1), flat["special_type"], flat["special_value"], strict=True):

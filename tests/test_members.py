@@ -5,8 +5,9 @@ import pytest
 from support.windows import SYSTEM, few  # noqa: F401
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.windows import members
-from vibro_sweep.analysis.windows.members import solution_in
+from vibro_sweep.analysis.branches.flat import section_states
+from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.windows.members import members, solution_in
 
 
 def test_section_states_are_those_of_simulated_orbits(few):  # noqa: F811
@@ -15,10 +16,10 @@ def test_section_states_are_those_of_simulated_orbits(few):  # noqa: F811
     assert {window.symmetric for window in windows} == {True, False} and windows[-1].itinerary == ""
     for window in windows:
         values = window.lo + (window.hi - window.lo) * np.array([0.1, 0.5, 0.93])
-        found = members._sections(window._flat, SYSTEM, "b", values)
-        for value, states in zip(values, found, strict=True):
-            assert len(states) == window.period * (1 if window.symmetric else 2)
+        for value in values:
             system = SYSTEM.replace(b=value)
+            states = section_states(orbit_of(system, solution_in(window._flat, value, system)))
+            assert len(states) == window.period * (1 if window.symmetric else 2)
             flight = vs.simulate(system, states[0], window.period)
             assert np.abs(flight.section[-1] - states[0]).max() < 1e-9
             mirrored = -flight.sample(system.period * (np.arange(window.period) + 0.5))
@@ -28,7 +29,7 @@ def test_section_states_are_those_of_simulated_orbits(few):  # noqa: F811
 
 
 @pytest.mark.parametrize("key, values", [("b", [6.598, 6.6, 6.606, 6.609]), ("omega", [0.6299, 0.63, 0.6302])])
-def test_members_are_found_one_by_one_as_all_at_once(key, values, tmp_path, monkeypatch):
+def test_recorded_states_are_members(key, values, tmp_path):
     """Recorded states are members, states that are 1 % away from all of the orbit's are none."""
     start = {"random": 4, "seed": 3}
     vs.sweep(SYSTEM, {key: values}, start=start, transient=1500, record=60, output=tmp_path / "m.h5", workers=1).close()
@@ -40,9 +41,7 @@ def test_members_are_found_one_by_one_as_all_at_once(key, values, tmp_path, monk
     there, states = np.array(values)[inside], states[inside]
     expected = (windows.window[inside] >= 0) & (np.array([one.period for one in windows])[windows.window[inside]] == 13)
     assert expected.any()
-    for _ in range(2):
-        assert (members.members(window._flat, SYSTEM, key, there, states) == expected).all()
-        assert not members.members(window._flat, SYSTEM, key, there, 1.01 * states + 0.02).any()
-        monkeypatch.setattr(members, "moves_stops_only", lambda slope: False)
+    assert (members(window._flat, SYSTEM, key, there, states) == expected).all()
+    assert not members(window._flat, SYSTEM, key, there, 1.01 * states + 0.02).any()
     system = SYSTEM.replace(**{key: there[0]})
     assert solution_in(window._flat, float(there[0]), system).real

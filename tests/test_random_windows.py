@@ -12,7 +12,8 @@ from vibro_sweep import store
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.windows import members
 from vibro_sweep.analysis.windows.cover import Cover
-from vibro_sweep.analysis.windows.job import Job, Result, window_of
+from vibro_sweep.analysis.windows.job import Job, window_of
+from vibro_sweep.analysis.windows.rows import REASON_CODES
 from vibro_sweep.driver.windows import rows_in
 from vibro_sweep.model.bifurcations import REASONS
 
@@ -62,7 +63,7 @@ def test_a_window_from_an_orbit_at_its_fold(b, state):
     """3e-11 to 2e-13 of its width inside: the walk began on the unstable side, and came to 0.1622 .. 0.1806."""
     ball = dict(mass_ratio=0.11034866750723367, zeta=0.030816339144821438, F=0.28850344990689725, b=b)
     ball |= dict(omega=0.6214661466051168, tau=1.838287462997773, R=0.4039709200133826)
-    flat = window_of(Job(vs.Oscillator.named("ball_in_cavity", **ball), np.array(state), 1, "b", (4e-4, 0.98))).flat
+    flat = window_of(Job(vs.Oscillator.named("ball_in_cavity", **ball), np.array(state), 1, "b", (4e-4, 0.98)))
     assert np.abs(flat["special_value"][[0, -1]] - [0.16708787864496785, 0.18060386953228552]).max() < 1e-12
 
 
@@ -80,7 +81,7 @@ def test_a_window_ends_at_the_first_of_three_tori(b):
     orbit = vs.periodic_orbit(chain, itinerary="LLLLRRRR", periods=1)
     assert orbit.ok and orbit.stable and orbit.symmetric
     job = Job(chain, orbit.state, 1, "b", (0.04355645683167664, 0.479121025148443))
-    ends = window_of(job).flat["special_value"][[0, -1]]
+    ends = window_of(job)["special_value"][[0, -1]]
     assert np.abs(ends - [0.1483689674509671, 0.1539479263887112]).max() < 1e-12
 
 
@@ -90,12 +91,12 @@ def test_an_orbit_without_a_window_of_its_own_is_in_the_one_that_covers_it(few):
         cover = Cover(rows_in(data, "b"))
     refused = []
 
-    def evaluate(points, jobs):
+    def evaluate(names, jobs):
         results = []
-        for point, job in zip(points, jobs, strict=True):
+        for name, job in zip(names, jobs, strict=True):
             refuses = job.period == 13 and not refused
-            refused.extend([point] * refuses)
-            results.append(Result(None, "not_settled") if refuses else window_of(job))
+            refused.extend([tuple(map(int, name.split(":")))] * refuses)
+            results.append({"reason": REASON_CODES["not_settled"]} if refuses else window_of(job))
         return results
 
     cover.search(evaluate)
@@ -124,7 +125,7 @@ def test_orbits_of_a_window_beside_its_birth_are_its_own(tmp_path):
             value = (window.hi, window.lo)[1 - k] + (window.lo - window.hi) * share * (1 if k else -1)
             system = damper.replace(R=value)
             orbit = orbit_of(system, members.solution_in(window._flat, value, system))
-            (guess,) = members._between(window._flat, np.array([value]))[1]
+            _, guess, _ = members.guess_at(window._flat, value)
             half = len(guess) // 2
             apart, guessed = (np.abs(v[half:] + v[:half]).max() for v in (orbit.impacts["v1"], guess))
             assert orbit.stable and apart > 1e-6 and 0.5 < guessed / apart < 2, share

@@ -143,15 +143,16 @@ def other_starts(report, wrong, window, bounds) -> None:
         )
         report.counted["starts"] += 1
         beside = min(share, 1 - share) <= 1e-6  # there Newton's method may find no orbit, and Cover takes it back
-        if result.flat is None:
-            report.counted[f"starts {result.reason}"] += 1
+        if "reason" in result:
+            reason = list(REASONS)[int(result["reason"])]
+            report.counted[f"starts {reason}"] += 1
             if not beside:
-                wrong(f"start in the window: {result.reason}", words)
+                wrong(f"start in the window: {reason}", words)
             continue
-        lo, hi = result.flat["special_value"][[0, -1]].tolist()
+        lo, hi = result["special_value"][[0, -1]].tolist()
         if max(abs(lo - window.lo), abs(hi - window.hi)) <= CLOSE * size:
             continue
-        found = solution_in(result.flat, (lo + hi) / 2, inner.system.replace(**{window.parameter: (lo + hi) / 2}))
+        found = solution_in(result, (lo + hi) / 2, inner.system.replace(**{window.parameter: (lo + hi) / 2}))
         matrix = conditions.at_point(orbit_of(inner.system.replace(**{window.parameter: (lo + hi) / 2}), found))[
             0
         ].matrix[0]

@@ -8,17 +8,17 @@ from types import NoneType
 import numpy as np
 
 from vibro_sweep import store
+from vibro_sweep.analysis.branches.flat import Flat
 from vibro_sweep.analysis.windows.cover import Cover
-from vibro_sweep.analysis.windows.job import Result, window_of
+from vibro_sweep.analysis.windows.job import window_of
 from vibro_sweep.analysis.windows.rows import Row, check_data, chosen_key, rows_of
 from vibro_sweep.analysis.windows.unseen import unseen_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
-from vibro_sweep.driver.jobs import results, workers_of
+from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.source_file import computed_from
 from vibro_sweep.driver.usable import is_window
 from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.branch_file import WINDOWS, columns_of
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.files import checked_path, file_to_write
@@ -30,8 +30,6 @@ from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.flat_files import Subject
 from vibro_sweep.store.joining import joined
 from vibro_sweep.store.pieces import Pieces, pieces
-
-_CODES = {name: code for code, name in enumerate(REASONS)}
 
 
 def windows(path: str | Path, key: str | None = None) -> Windows:
@@ -57,7 +55,7 @@ def windows(path: str | Path, key: str | None = None) -> Windows:
             cover = Cover(rows_in(data, key))
         with given_or_bar(None, cover.total) as tell:
 
-            def evaluate(_, jobs) -> list[Result]:
+            def evaluate(_, jobs) -> list[Flat]:
                 found = []
                 for job in jobs:
                     found.append(window_of(job))
@@ -103,19 +101,8 @@ def cover_of(
 ) -> Cover:
     """The windows of rows; those that `file` has pieces of are not followed again."""
     cover = Cover(rows)
-
-    def evaluate(points, jobs) -> list[Result]:
-        named = {":".join(map(str, point)): job for point, job in zip(points, jobs, strict=True)}
-        kept = {name: file.get(name, is_window) for name in named}
-        missing = [(name, job) for name, job in named.items() if kept[name] is None]
-        for name, result in results(pool, window_of, missing):
-            kept[name] = _arrays(result)
-            file.write(name, kept[name])
-            if progress:
-                progress(cover.done, cover.total)
-        return [_result(arrays) for arrays in kept.values()]
-
-    cover.search(evaluate)
+    tell = (lambda *_: progress(cover.done, cover.total)) if progress else None
+    cover.search(computed(window_of, is_window, pool, file, tell))
     return cover
 
 
@@ -133,16 +120,6 @@ def _subject(data: Contents, key: str) -> Subject:
     names = [key, *(str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"]) if name != key)]
     attributes = {"sweep": data.attrs.get("identity", ""), "key": key, "parameters": names}
     return Subject(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)
-
-
-def _arrays(result: Result) -> dict[str, np.ndarray]:
-    return result.flat if result.flat is not None else {"reason": np.int8(_CODES[result.reason])}
-
-
-def _result(arrays: dict[str, np.ndarray]) -> Result:
-    if "reason" in arrays:
-        return Result(None, list(REASONS)[int(arrays["reason"])])
-    return Result(arrays, "in_a_window")
 
 
 def _contents(cover: Cover) -> tuple:

@@ -99,7 +99,7 @@ def coordinates(along: np.ndarray, spare: int) -> tuple[np.ndarray, np.ndarray]:
     """P (N, N) and its inverse: the gap, and the masses but `spare` in their order."""
     n = len(along)
     others = [i for i in range(n) if i != spare]
-    P, back = np.zeros((2, n, n))
+    P, back = np.zeros((2, n, n), np.result_type(along, float))
     P[0] = along
     back[spare, 0] = 1 / along[spare]
     for row, i in enumerate(others, 1):

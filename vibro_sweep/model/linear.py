@@ -17,7 +17,6 @@ from vibro_sweep.model.refusals import not_allowed
 
 DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
 FORCED = ("M", "K", "C", "along", "constant", "sine", "cosine", "omega")  # fields that move the steady motion
-CONTACT = ("low", "high", "R_low", "R_high", "middle")  # fields of the stops, the last ones of a `Linear`
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 
 
@@ -71,14 +70,6 @@ class Family:
         built = self.build(**self.numbers)
         return built._replace(tau=grazing_phase(built)) if built.tau is None else built
 
-    def stops(self, name: str, linear: Linear) -> tuple[Linear, Linear]:
-        """`linear` with this one's stops and restitution, and their derivatives by `name`, which moves nothing else."""
-        step = self.build(**(self.numbers | {name: self.numbers[name] + 1j * STEP}))
-        contact = {field: getattr(step, field) for field in CONTACT}
-        slope = {field: float(np.imag(value)) / STEP for field, value in contact.items()}
-        moved = {field: float(np.real(value)) for field, value in contact.items()}
-        return linear._replace(**moved), _no_slope(len(linear.along))._replace(**slope)
-
     def derivative(self, name: str, linear: Linear | None = None) -> Linear:
         """Derivatives of all fields by the parameter `name`, exact to rounding. linear: this one's, if it is known."""
         step = self.build(**(self.numbers | {name: self.numbers[name] + 1j * STEP}))
@@ -92,19 +83,13 @@ class Family:
         return slope
 
 
-@lru_cache
-def _no_slope(masses: int) -> Linear:
-    """Of a parameter that changes nothing."""
-    square, column = np.zeros((masses, masses)), np.zeros(masses)
-    return Linear(square, square, square, column, column, column, column, *[0.0] * 6)
-
-
 class Keyed:
     """An oscillator as a key of what depends on these fields alone: equal where all of them are."""
 
     def __init__(self, q: Linear, names: tuple[str, ...]):
         self.q = q
-        self.key = tuple(np.asarray(getattr(q, name), float).tobytes() for name in names)
+        values = [getattr(q, name) for name in names]
+        self.key = tuple(value.tobytes() if isinstance(value, np.ndarray) else value for value in values)
 
     def __hash__(self):
         return hash(self.key)

@@ -7,9 +7,9 @@ phase, of the phase, and of the jump.
 import numpy as np
 
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
-from vibro_sweep.analysis.periodic.flight_slopes import rate_slopes
 from vibro_sweep.engine.continuation import moving_flow, stepper
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD
+from vibro_sweep.engine.impulses.flow import rate_slopes
 from vibro_sweep.model.linear import Linear
 
 

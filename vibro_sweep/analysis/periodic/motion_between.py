@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from vibro_sweep.engine.impulses import flights, multipliers, sections
+from vibro_sweep.engine.impulses import flights, multipliers
 from vibro_sweep.engine.impulses import flow as free_flight
 from vibro_sweep.model.linear import Keyed, Linear, forcing_period
 
@@ -20,19 +20,6 @@ def fly(q: Linear, sigma: int, halves: int, sides, u) -> tuple[np.ndarray, np.nd
     P = forcing_period(q) / 2 * halves
     flights.fly_orbit(f, close, contacts_of(q, sides), u, P, q.low, q.high, states, nearest, room)
     return states[:-1], nearest
-
-
-def sections_of(q: Linear, sigma: int, halves: int, unknowns, gaps) -> np.ndarray:
-    """(m, 2n, 2N) states at the multiples of T/2 of orbits over n forcing periods, in contact coordinates.
-
-    unknowns : (m, 2K), of orbits whose stops and restitutions may differ from those of `q`
-    gaps : (m,) at the first impact
-    """
-    f, close = flow(q), closing(q, sigma, halves)
-    m, count, K, T = len(f.B), halves if sigma == 1 else 2 * halves, np.shape(unknowns)[1] // 2, forcing_period(q)
-    out, flying, room = np.empty((len(unknowns), count, m - 3)), np.empty((2, m)), flights.new_room(m)
-    sections.sections(f, close, unknowns, gaps, K, float(sigma), T / 2 * halves, T, out, flying, room)
-    return out
 
 
 def multipliers_of(f: free_flight.Flow, sigma: int, P: float, contacts: np.ndarray, u, motion) -> np.ndarray:

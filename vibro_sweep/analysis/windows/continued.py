@@ -5,14 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.single.tables import table_of
-from vibro_sweep.analysis.windows.rows import Row
+from vibro_sweep.analysis.windows.rows import REASON_CODES, Row, first_reason
 from vibro_sweep.engine import points
 from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.impulses.state_space import has_free_gap
 from vibro_sweep.engine.one_system import plan_of
 from vibro_sweep.engine.records import new_results
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.exponents import sign_of
 from vibro_sweep.model.linear import family_of
 from vibro_sweep.model.status import NOT_SETTLED, stands
@@ -22,7 +21,6 @@ MORE = 3800  # forcing periods after them: the exponents' errors are then some 4
 MUCH_MORE = 40_000  # for those that are still on their way: the last ones of a window take longest
 LONGEST = 1000  # period that is looked at; a longer one counts as not settled
 AT_ONCE = 256  # orbits
-_CODES = {name: code for code, name in enumerate(REASONS)}
 
 
 class Continued(NamedTuple):
@@ -35,19 +33,19 @@ class Continued(NamedTuple):
 
 def continued(row: Row, i: np.ndarray, j: np.ndarray) -> Continued:
     """The orbits of a row at the values i of the starts j, some periods on: `MORE`, where they need it `MUCH_MORE`."""
-    found = _continued(row, i, row.states[i, j], 0)
-    slow = np.flatnonzero(found.reason == _CODES["not_settled"])
+    blocks = [(i[at : at + AT_ONCE], j[at : at + AT_ONCE]) for at in range(0, len(i), AT_ONCE)]
+    parts = [_far_enough(row, *block) for block in blocks]
+    return Continued(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+def _far_enough(row: Row, i: np.ndarray, j: np.ndarray) -> Continued:
+    found = _computed(row, i, row.states[i, j], 0)
+    slow = np.flatnonzero(found.reason == REASON_CODES["not_settled"])
     if len(slow):
-        later = _continued(row, i[slow], found.state[slow], MUCH_MORE)
+        later = _computed(row, i[slow], found.state[slow], MUCH_MORE)
         for values, new in zip(found, later, strict=True):
             values[slow] = new
     return found
-
-
-def _continued(row: Row, i: np.ndarray, states: np.ndarray, transient: int) -> Continued:
-    blocks = [slice(at, at + AT_ONCE) for at in range(0, len(i), AT_ONCE)]
-    parts = [_computed(row, i[block], states[block], transient) for block in blocks]
-    return Continued(*map(np.concatenate, zip(*parts, strict=True)))
 
 
 def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Continued:
@@ -66,9 +64,9 @@ def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Con
     period = np.where(stands(found["status"]) & (found["period"] <= LONGEST), found["period"], 0)
     reasons = _reasons(found)
     free = found["impacts_left"] + found["impacts_right"] == 0
-    for m in np.flatnonzero(free & (reasons == _CODES["quasi_periodic"])):
+    for m in np.flatnonzero(free & (reasons == REASON_CODES["quasi_periodic"])):
         if has_free_gap(family_of(row.system_at(row.values[i[m]])).linear):  # a mass that flies towards a stop
-            reasons[m] = _CODES["not_settled"]
+            reasons[m] = REASON_CODES["not_settled"]
     return Continued(period, found["end"].copy(), reasons)
 
 
@@ -76,13 +74,11 @@ def _reasons(found: np.ndarray) -> np.ndarray:
     """Codes of `REASONS`: 0 for periodic orbits."""
     largest = found["lyapunov"][:, 0]
     sign = sign_of(largest, found["lyapunov_error"][:, 0])
-    chosen = [
-        (~stands(found["status"]), "failed"),
-        ((found["period"] > 0) & (found["period"] <= LONGEST), "in_a_window"),
-        (sign > 0, "chaos"),
-        (found["sticking_time"] > 0, "sticking"),
-        ((found["status"] == NOT_SETTLED) | (sign < 0), "not_settled"),
-        (np.isfinite(largest), "quasi_periodic"),
-    ]
-    conditions, names = zip(*chosen, strict=True)
-    return np.select(conditions, [_CODES[name] for name in names], _CODES["not_settled"]).astype(np.int8)
+    return first_reason(
+        failed=~stands(found["status"]),
+        in_a_window=(found["period"] > 0) & (found["period"] <= LONGEST),
+        chaos=sign > 0,
+        sticking=found["sticking_time"] > 0,
+        not_settled=(found["status"] == NOT_SETTLED) | (sign < 0),
+        quasi_periodic=np.isfinite(largest),
+    )

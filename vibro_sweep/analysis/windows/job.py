@@ -10,6 +10,7 @@ from vibro_sweep.analysis.branches.flat import Flat, flatten, section_states
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.windows.rows import REASON_CODES
 from vibro_sweep.analysis.windows.stretch import representative, stable_stretch
 
 SLACK = 1e-9  # of the range: an orbit that is so far from a window's end may be counted as beyond it
@@ -27,35 +28,33 @@ class Job(NamedTuple):
     bounds: tuple[float, float]
 
 
-class Result(NamedTuple):
-    """A window as a branch between its two ends; or, where `flat` is None, the reason why there is none."""
-
-    flat: Flat | None
-    reason: str
-
-
 @one_thread()
-def window_of(job: Job) -> Result:
-    """The window of a recorded orbit."""
+def window_of(job: Job) -> Flat:
+    """The window of a recorded orbit, as a branch between its two ends; or `reason`, why there is none."""
+    found = _found(job)
+    return {"reason": np.int8(REASON_CODES[found])} if isinstance(found, str) else found
+
+
+def _found(job: Job) -> Flat | str:
     try:
         orbit = periodic_orbit(job.system, job.state, job.period)
     except ValueError:  # impacts of the recorded orbit that are none of a period
-        return Result(None, "failed")
+        return "failed"
     if not orbit.ok:
-        return Result(None, WITHOUT.get(str(orbit.status), "failed"))
+        return WITHOUT.get(str(orbit.status), "failed")
     if not orbit.stable or not lies_on(orbit, job.state):
-        return Result(None, "not_settled")
+        return "not_settled"
     if changes_rests(orbit._solution, job.parameter):  # at any other R the rest begins after infinitely many impacts
-        return Result(None, "sticking")
+        return "sticking"
     chosen = representative(orbit, job.parameter)
     try:
         branch = stable_stretch(chosen, job.parameter, job.bounds)
     except ValueError:  # an orbit of hundreds of impacts, which rounding does not let Newton's method correct
-        return Result(None, "failed")
+        return "failed"
     value = chosen._solution.family.numbers[job.parameter]
     if not holds(branch, value, SLACK * (job.bounds[1] - job.bounds[0])):
-        return Result(None, "not_settled")
-    return Result(flatten(branch, value), "in_a_window")
+        return "not_settled"
+    return flatten(branch, value)
 
 
 def holds(branch: Branch, value: float, slack: float) -> bool:
@@ -67,10 +66,10 @@ def holds(branch: Branch, value: float, slack: float) -> bool:
 
 def lies_on(orbit: PeriodicOrbit, state: np.ndarray) -> bool:
     """Whether a section state is one of an orbit, or of its mirror image where the oscillator has one."""
-    return is_near(section_states(orbit), state)
+    return bool(are_near(section_states(orbit), state[None])[0])
 
 
-def is_near(sections: np.ndarray, state: np.ndarray) -> bool:
-    """Whether a state (2N,) is one of the section states (s, 2N) of an orbit; s may be 0."""
-    distance = np.abs(sections - state).max(axis=1).min(initial=np.inf)
-    return bool(distance <= NEAR * max(np.abs(state).max(), 1e-300))
+def are_near(sections: np.ndarray, states: np.ndarray) -> np.ndarray:
+    """(m,) whether states (m, 2N) are among the section states (s, 2N) of an orbit."""
+    distance = np.abs(sections - states[:, None]).max(axis=2).min(axis=1)
+    return distance <= NEAR * np.maximum(np.abs(states).max(axis=1), 1e-300)

@@ -15,7 +15,7 @@ from vibro_sweep.model.status import NOT_COMPUTED, stands
 
 BEYOND = 1.0  # of the sweep's length: so far beyond its ends windows are followed
 BEFORE = 0.25  # of the way from where a number must not be: there a frequency's period is infinite
-_CODES = {name: code for code, name in enumerate(REASONS)}
+REASON_CODES = {name: code for code, name in enumerate(REASONS)}
 
 
 class Contents(Protocol):
@@ -72,9 +72,14 @@ class Row:
         return lo, min(hi, allowed.get("maximum", np.inf))
 
 
+def swept_in(data: Contents) -> list[str]:
+    """The keys of a sweep, in the order of its file."""
+    return [str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"])]
+
+
 def chosen_key(data: Contents, system, key: str | None) -> str:
     """The swept number along which windows are followed, by default the first. Raises ValueError."""
-    swept = [str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"])]
+    swept = swept_in(data)
     able = [name for name in swept if name in system.described and data.sizes[name] > 1]
     if not able:
         raise ValueError(f"sweep: {', '.join(swept) or 'nothing'} is swept; windows need a number of the system")
@@ -93,9 +98,9 @@ def check_data(data: Contents) -> None:
 
 def rows_of(data: Contents, system, key: str) -> Iterator[Row]:
     """The rows of a sweep of `system` along `key`, in the order of the file."""
-    others = [name for name in np.atleast_1d(data.attrs["sweep_dimensions"]) if name != key]
+    swept = swept_in(data)
+    others = [name for name in swept if name != key]
     lead = [*others, key, *(["start"] if "start" in data.dims("period") else [])]
-
     last = [data.values(name, lead)[..., -1] for name in state(system.masses)]
     arrays = {"states": np.stack(last, axis=-1), "period": data.values("period", lead)}
     arrays["reason"] = _reasons(data.values("status", lead), arrays["period"])
@@ -103,16 +108,19 @@ def rows_of(data: Contents, system, key: str) -> Iterator[Row]:
         arrays = {name: np.expand_dims(values, len(lead)) for name, values in arrays.items()}
     axes = {name: data.values(name) for name in (*others, key)}
     order = np.argsort(axes[key], kind="stable")
-    axis = list(np.atleast_1d(data.attrs["sweep_dimensions"])).index(key)
     for place in np.ndindex(*(data.sizes[name] for name in others)):
-        held = {str(name): float(axes[name][i]) for name, i in zip(others, place, strict=True)}
+        held = {name: float(axes[name][i]) for name, i in zip(others, place, strict=True)}
         there = system.replace(**{name: value for name, value in held.items() if name in system.described})
         parts = {name: values[place][order] for name, values in arrays.items()}
-        yield Row(there, key, held, axis, axes[key][order].astype(float), order, **parts)
+        yield Row(there, key, held, swept.index(key), axes[key][order].astype(float), order, **parts)
 
 
 def _reasons(status: np.ndarray, period: np.ndarray) -> np.ndarray:
     """Codes of `REASONS`: 0 for periodic orbits, `not_settled` for others until they have been computed further."""
-    chosen = [(status == NOT_COMPUTED, "not_computed"), (~stands(status), "failed"), (period > 0, "in_a_window")]
-    conditions, names = zip(*chosen, strict=True)
-    return np.select(conditions, [_CODES[name] for name in names], _CODES["not_settled"]).astype(np.int8)
+    return first_reason(not_computed=status == NOT_COMPUTED, failed=~stands(status), in_a_window=period > 0)
+
+
+def first_reason(**holds: np.ndarray) -> np.ndarray:
+    """Codes of the first of these reasons that holds; `not_settled` where none does."""
+    codes = [REASON_CODES[name] for name in holds]
+    return np.select(list(holds.values()), codes, REASON_CODES["not_settled"]).astype(np.int8)

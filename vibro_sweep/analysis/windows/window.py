@@ -109,8 +109,8 @@ def in_file_order(cover: Cover) -> tuple[np.ndarray, np.ndarray]:
     """Windows and reasons of all orbits, (*sweep, starts)."""
     row = cover.rows[0]
     found = []
-    for parts in (cover.window, cover.reason):
-        values = np.empty((len(cover.rows), *row.period.shape), parts[0].dtype)
-        values[:, row.places] = np.stack(parts)
+    for part in (cover.window, cover.reason):
+        values = np.empty_like(part)
+        values[:, row.places] = part
         found.append(np.moveaxis(values, 0, 1 - row.axis) if row.held else values[0])
     return found[0], found[1]

@@ -23,7 +23,7 @@ from vibro_sweep.engine.impulses.state_space import (
 )
 from vibro_sweep.engine.impulses.tables import ORDER, exponential, power, taylor_rows
 from vibro_sweep.model.contact import coordinates, push_of
-from vibro_sweep.model.linear import Keyed, Linear, amplitudes, forcing_period
+from vibro_sweep.model.linear import STEP, Keyed, Linear, amplitudes, forcing_period
 
 DOUBLINGS = 18
 
@@ -61,8 +61,8 @@ def contact_coordinates(q: Linear) -> Coordinates:
 def _coordinates(key: Keyed) -> Coordinates:
     q = key.q
     P, back = coordinates(q.along, int(np.argmax(np.abs(q.along))))
-    W, inverse = np.eye(len(P)), np.eye(len(P))
     push = push_of(q, P)
+    W, inverse = (np.eye(len(P), dtype=push.dtype) for _ in range(2))
     W[1:, 0], inverse[1:, 0] = push[1:], 0.0 - push[1:]
     U = inverse @ P
     return Coordinates(P, back, U, back @ W, U @ np.linalg.inv(q.M))
@@ -94,18 +94,25 @@ def rates(q: Linear) -> np.ndarray:
     N = len(q.along)
     to = contact_coordinates(q)
     n = 2 * N
-    B = np.zeros((n + 3, n + 3))
-    B[:n, :n] = free_rates(q)
+    A = free_rates(q)
+    B = np.zeros((n + 3, n + 3), A.dtype)
+    B[:n, :n] = A
     B[N:n, n], B[N:n, n + 1], B[N:n, n + 2] = (to.by_force @ force for force in (q.cosine, q.sine, q.constant))
     B[n, n + 1], B[n + 1, n] = -q.omega, q.omega
     return B
+
+
+def rate_slopes(q: Linear, slope: Linear) -> np.ndarray:
+    """Derivative of B, (m, m), where q changes by `slope`, by a complex step."""
+    step = Linear(*(value + 1j * STEP * np.asarray(change) for value, change in zip(q, slope, strict=True)))
+    return rates(step).imag / STEP
 
 
 def free_rates(q: Linear) -> np.ndarray:
     """The part of it that knows no force, (n, n)."""
     N = len(q.along)
     to = contact_coordinates(q)
-    A = np.zeros((2 * N, 2 * N))
+    A = np.zeros((2 * N, 2 * N), to.U.dtype)
     A[:N, N:] = to.P @ to.U_back
     A[N:, :N], A[N:, N:] = -to.by_force @ q.K @ to.P_back, -to.by_force @ q.C @ to.U_back
     return A
