@@ -8,7 +8,8 @@ from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
-from vibro_sweep.analysis.periodic.motion_between import contacts_of, flow, multipliers_of
+from vibro_sweep.analysis.periodic.motion_between import contacts_of, multipliers_of
+from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.engine.impulses.state_space import MOST_CELLS, ResonanceError, TooStiffError
 from vibro_sweep.model.linear import family_of
 

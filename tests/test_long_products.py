@@ -5,7 +5,8 @@ import pytest
 from mpmath import mp, mpf
 from support.oscillators import PAPER
 
-from vibro_sweep.analysis.periodic.motion_between import flow, multipliers_of
+from vibro_sweep.analysis.periodic.motion_between import multipliers_of
+from vibro_sweep.engine.impulses.flow import flow
 
 P = 5.0
 

@@ -241,7 +241,7 @@ def test_a_free_mass_that_the_contact_does_not_see(itinerary):
         vs.Oscillator([[1.0]], [[0.0]], **numbers | dict(force=[0.5], along=[1.0])), itinerary=itinerary
     )
     s = both._solution.whole()
-    beside = replace(s, u=s.u * (1 + 1e-6 * np.random.default_rng(0).normal(size=s.size))).corrected()
+    beside = replace(s, u=s.u * (1 + 1e-6 * np.random.default_rng(0).normal(size=len(s.u)))).corrected()
     assert both.ok and np.abs(beside.u - s.u).max() < 1e-13
     for name in ("t", "side"):
         assert both.impacts[name] == pytest.approx(one.impacts[name], abs=1e-12)

@@ -51,5 +51,5 @@ def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
 
 def edges_in_file(plane: Plane, found: Explained) -> dict[str, np.ndarray]:
     """The columns of `OF_EDGES`."""
-    one, other = ends_of(plane, found.edges)
+    one, other = np.moveaxis(ends_of(plane, found.edges), 1, 0)
     return {"edge_from": one, "edge_to": other, "edge_reason": found.reason, "edge_curve": found.curve}

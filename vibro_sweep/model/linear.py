@@ -8,7 +8,7 @@ An impulse acts along M^-1 n: it changes the velocity of the gap g = n.x, with t
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, wraps
 from typing import NamedTuple
 
 import numpy as np
@@ -98,23 +98,36 @@ class Keyed:
         return self.key == other.key
 
 
+def remembered(*names: str, most: int = 64):
+    """A function of an oscillator and other arguments, whose last results are kept for equal fields `names`."""
+
+    def keeping(function):
+        @lru_cache(most)
+        def known(key: Keyed, *others):
+            return function(key.q, *others)
+
+        @wraps(function)
+        def of(q: Linear, *others):
+            return known(Keyed(q, names), *others)
+
+        return of
+
+    return keeping
+
+
 def dynamic_stiffness(q: Linear) -> np.ndarray:
     """K - omega^2 M + i omega C, (N, N)."""
     with np.errstate(all="ignore"):  # beyond the range of the floats it is infinite
         return q.K - q.omega * q.omega * q.M + 1j * q.omega * q.C
 
 
+@remembered(*FORCED, most=1024)  # as many as a curve has points
 def amplitudes(q: Linear) -> np.ndarray:
     """Complex amplitudes X (N,) of the steady motion Re(X e^{i(omega t + tau)}). LinAlgError in undamped resonance.
 
     Where the force does not drive the mode in resonance, the steady motion without that mode.
     """
-    return _amplitudes(Keyed(q, FORCED))
-
-
-@lru_cache(maxsize=1024)  # as many as a curve has points
-def _amplitudes(key: Keyed) -> np.ndarray:
-    found = _response(key.q, key.q.cosine - 1j * key.q.sine)
+    found = _response(q, q.cosine - 1j * q.sine)
     found.flags.writeable = False  # it is shared
     return found
 
@@ -154,14 +167,9 @@ def grazing_phase(q: Linear) -> float:
     return 0.0 if gain is None else 0.0 - float(np.angle(gain))
 
 
+@remembered(*FORCED, most=1024)
 def steady_gain(q: Linear) -> complex | None:
     """G of the steady gap g_s + Re(G e^{i(omega t + tau)}); None where there is no steady motion."""
-    return _steady_gain(Keyed(q, FORCED))
-
-
-@lru_cache(maxsize=1024)
-def _steady_gain(key: Keyed) -> complex | None:
-    q = key.q
     try:
         gain = complex(q.along @ amplitudes(q))
     except np.linalg.LinAlgError:

@@ -6,9 +6,10 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.track import Rows
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.periodic.motion_between import flow, multipliers_of
+from vibro_sweep.analysis.periodic.motion_between import multipliers_of
 from vibro_sweep.analysis.periodic.resting import RestingOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.model.linear import Linear, forcing_period
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ import numpy as np
 from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.continuation.chatter import Chatter
 from vibro_sweep.analysis.periodic.linearised import Linearised
-from vibro_sweep.analysis.periodic.motion_between import flow
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
+from vibro_sweep.engine.impulses.flow import flow
 
 
 @dataclass(frozen=True, eq=False, repr=False)

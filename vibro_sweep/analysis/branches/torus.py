@@ -11,9 +11,9 @@ order. A series is an array (.., 4, 4) of the coefficients of r^j s^k; those wit
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.motion_between import flow
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
+from vibro_sweep.engine.impulses.flow import flow
 
 ORDER = 3
 RESONANT = 1e-3  # |e^{i k theta} - 1| for k = 1 .. 4 below which a does not decide

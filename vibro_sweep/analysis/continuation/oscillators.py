@@ -5,12 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from vibro_sweep.analysis.periodic.motion_between import flow, moves_stops_only
 from vibro_sweep.engine.continuation import moving_flow
 from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.extended import extended, identity, zeros
 from vibro_sweep.engine.impulses.extremes import middle_weights
-from vibro_sweep.engine.impulses.flow import rates
+from vibro_sweep.engine.impulses.flow import TABLES, flow, rates
 from vibro_sweep.engine.impulses.state_space import checked_cells
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.model.linear import Family, Linear
@@ -56,7 +55,7 @@ class Oscillators:
     def __init__(self, family: Family, names: tuple[str, ...], halves: int, units: Units):
         checked_cells(family.linear, halves)
         self.family, self.names, self.halves, self.units = family, names, halves, units
-        still = all(moves_stops_only(family.derivative(name)) for name in names)
+        still = not any(np.any(getattr(family.derivative(name), field)) for name in names for field in TABLES)
         self._still = sampled(family.linear, units) if still else None
 
     def at(self, p) -> Family:

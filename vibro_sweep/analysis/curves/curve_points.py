@@ -7,12 +7,12 @@ import numpy as np
 
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.rows import Rows
-from vibro_sweep.analysis.periodic.motion_between import flow, multipliers_of
+from vibro_sweep.analysis.periodic.motion_between import multipliers_of
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.engine.impulses.flights import free_part, new_room
-from vibro_sweep.engine.impulses.flow import Flow, contact_coordinates, steady_motion
+from vibro_sweep.engine.impulses.flow import Flow, contact_coordinates, flow, steady_motion
 from vibro_sweep.model.linear import Linear, forcing_period
 from vibro_sweep.model.state import state
 

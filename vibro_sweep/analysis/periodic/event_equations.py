@@ -3,20 +3,19 @@
 Phases are in radians of the force and lengths as they are, so that omega is 1 there.
 """
 
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.motion_between import TABLES, closing, flow
 from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
 from vibro_sweep.engine.continuation import guesses, moving_flow, path, stepper
 from vibro_sweep.engine.continuation.problem import ORBIT, Problem
 from vibro_sweep.engine.continuation.workspace import new_bench, new_place
 from vibro_sweep.engine.impulses.extremes import middle_weights
-from vibro_sweep.engine.impulses.flow import contact_coordinates, unseen_modes
+from vibro_sweep.engine.impulses.flow import TABLES, closing, contact_coordinates, flow, unseen_modes
 from vibro_sweep.engine.impulses.state_space import checked_cells
 from vibro_sweep.engine.impulses.tables import ORDER
-from vibro_sweep.model.linear import Keyed, Linear, amplitudes
+from vibro_sweep.model.linear import Linear, amplitudes, remembered
 
 
 class EventEquations:
@@ -29,7 +28,7 @@ class EventEquations:
     def __init__(self, q: Linear, sigma: int, halves: int, sides, rests=()):
         """rests : indices of impacts after which the mass rests"""
         self.q, self.K, self.n = q, len(sides), 2 * len(q.along)
-        planes, self.closing = _tables(Keyed(q, TABLES), sigma, halves, bool(rests))
+        planes, self.closing = _tables(q, sigma, halves, bool(rests))
         self.planes = planes.copy()  # kernels write the contact's numbers into it
         self.planes[0]["exact"][-moving_flow.NUMBERS :] = [*contact_of(q), 1.0]
         resting = np.isin(np.arange(self.K), rests)
@@ -82,10 +81,9 @@ def contact_of(q: Linear) -> list[float]:
     return [q.low, q.high, 1 + q.R_low, 1 + q.R_high]
 
 
-@lru_cache(maxsize=64)
-def _tables(key: Keyed, sigma: int, halves: int, rests: bool) -> tuple[np.ndarray, np.ndarray | None]:
+@remembered(*TABLES)
+def _tables(q: Linear, sigma: int, halves: int, rests: bool) -> tuple[np.ndarray, np.ndarray | None]:
     """(1,) `plane_of` of an oscillator, without its contact; `closing` in its units, without rests."""
-    q = key.q
     checked_cells(q, halves)
     steady_gap(q)  # where it does not exist there is no such orbit; nor where this does not, but rests hold the gap
     if not rests:

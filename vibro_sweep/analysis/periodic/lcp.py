@@ -10,16 +10,17 @@ distance.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import canonical_start
-from vibro_sweep.analysis.periodic.motion_between import closing, flow
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses import flights
+from vibro_sweep.engine.impulses.flow import closing, flow
 from vibro_sweep.engine.impulses.state_space import has_free_gap
 from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.model.linear import Linear, family_of, forcing_period
@@ -53,16 +54,20 @@ class Born:
         return self.orbit.itinerary
 
 
-@dataclass(frozen=True)
-class _Graze:
-    """The steady motion touches the stops `sides` at `times` within the period n T."""
+class _Graze(NamedTuple):
+    """Where the steady motion touches the stops."""
 
     b: float
     amplitude: float  # of the gap
-    times: np.ndarray
-    sides: np.ndarray
-    per_period: int  # touches in a forcing period
+    first: float  # time
+    side: int  # then
+    per_period: int  # touches in a forcing period, of the stops in turn
     mirrors: bool  # whether mirror images of orbits are orbits
+
+    def touches(self, n: int, T: float) -> tuple[np.ndarray, np.ndarray]:
+        """Times and sides within the period n T."""
+        j = np.arange(n * self.per_period)
+        return self.first + T / self.per_period * j, self.side * (-1) ** (j * (self.per_period - 1))
 
 
 def born_at_grazing(system, periods: int = 6) -> list[Born]:
@@ -80,7 +85,7 @@ def born_at_grazing(system, periods: int = 6) -> list[Born]:
         raise ValueError(not_allowed("system", system, "one with a clearance b"))
     if has_free_gap(family.linear):
         raise ValueError(not_allowed("system", system, "one without a free mode, which has no steady motion"))
-    graze = _graze(family, 1)
+    graze = _graze(family.linear, family.numbers["b"])
     if graze.amplitude == 0:
         raise ValueError(not_allowed("system", system, "one whose gap a force moves, so that it grazes"))
     most = MOST_PLACES // graze.per_period
@@ -88,34 +93,31 @@ def born_at_grazing(system, periods: int = 6) -> list[Born]:
         raise ValueError(not_allowed("periods", periods, f"at most {most}"))
     result = []
     for n in range(1, periods + 1):
-        result += _of_period(system, family, n)
+        result += _of_period(system, family, graze, n)
     return result
 
 
-def _graze(family, n: int) -> _Graze:
-    q, b = family.linear, family.numbers["b"]
-    EventEquations(q, 1, 2 * n, ())  # or there are no such orbits
-    s, T = steady_gap(q), forcing_period(q)
+def _graze(q: Linear, b: float) -> _Graze:
+    s = steady_gap(q)
     amplitude = abs(s.swing)
     right = b + s.mean + amplitude - q.high  # -inf without that stop
     left = b + q.low - s.mean + amplitude
     double = abs(right - left) <= 1e-12 * amplitude
     first = -(np.angle(s.swing) + q.tau) / q.omega
     side = 1 if right >= left or double else -1
-    count = 2 * n if double else n
-    step = T / 2 if double else T
-    times = first + (0 if side > 0 else T / 2) + step * np.arange(count)
-    sides = side * (-1) ** np.arange(count) if double else np.full(count, side)
-    return _Graze(max(right, left), amplitude, times, sides, count // n, double and q.R_low == q.R_high)
+    first += 0 if side > 0 else forcing_period(q) / 2
+    return _Graze(max(right, left), amplitude, first, side, 1 + double, double and q.R_low == q.R_high)
 
 
-def _of_period(system, family, n: int) -> list[Born]:
-    graze = _graze(family, n)
-    count = len(graze.times)
-    j, gamma = np.arange(count), _gamma(family.linear, n, count)
-    M = graze.sides[:, None] * graze.sides * gamma[(j[:, None] - j) % count]
+def _of_period(system, family, graze: _Graze, n: int) -> list[Born]:
+    q = family.linear
+    EventEquations(q, 1, 2 * n, ())  # or there are no such orbits
+    times, sides = graze.touches(n, forcing_period(q))
+    count = len(times)
+    j, gamma = np.arange(count), _gamma(q, n, count)
+    M = sides[:, None] * sides * gamma[(j[:, None] - j) % count]
     result = [
-        _confirmed(system, family, graze, n, np.flatnonzero(hit), d, side)
+        _confirmed(system, family, graze, n, times[hit], sides[hit], d, side)
         for hit, d, side in complementary(M, representatives(count, graze.per_period, graze.mirrors))
     ]
     return sorted(result, key=lambda item: (len(item.speed_per_distance), item.itinerary, item.born))
@@ -178,9 +180,9 @@ def complementary(M: np.ndarray, sets: np.ndarray):
                     yield chosen[i], -side * y[i], side
 
 
-def _confirmed(system, family, graze: _Graze, n: int, hit, d, side: int) -> Born:
+def _confirmed(system, family, graze: _Graze, n: int, t, sides, d, side: int) -> Born:
     """The orbit at a small distance on its side, by Newton's method from what lowest order says."""
-    t, sides, P = graze.times[hit], graze.sides[hit], n * forcing_period(family.linear)
+    P = n * forcing_period(family.linear)
     R = family.linear.restitution(sides)
     orbit = PeriodicOrbit(system, "not_converged")
     for share in BESIDE:

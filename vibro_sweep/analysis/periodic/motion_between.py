@@ -1,12 +1,10 @@
-"""The motion of an orbit between its impacts, its multipliers, and what tables a parameter moves."""
-
-from functools import lru_cache
+"""The motion of an orbit between its impacts, and its multipliers."""
 
 import numpy as np
 
 from vibro_sweep.engine.impulses import flights, multipliers
-from vibro_sweep.engine.impulses import flow as free_flight
-from vibro_sweep.model.linear import Keyed, Linear, forcing_period
+from vibro_sweep.engine.impulses.flow import Flow, closing, flow
+from vibro_sweep.model.linear import Linear, forcing_period
 
 UNORDERED = 1e-9  # of the period: by so much rounding may exchange impacts
 
@@ -22,7 +20,7 @@ def fly(q: Linear, sigma: int, halves: int, sides, u) -> tuple[np.ndarray, np.nd
     return states[:-1], nearest
 
 
-def multipliers_of(f: free_flight.Flow, sigma: int, P: float, contacts: np.ndarray, u, motion) -> np.ndarray:
+def multipliers_of(f: Flow, sigma: int, P: float, contacts: np.ndarray, u, motion) -> np.ndarray:
     """(2N,) of the map over P, with the mirror for sigma = -1; by falling modulus, of a pair +im first.
 
     contacts : (K, 2 or more) stop, 1 + R
@@ -49,38 +47,3 @@ def contacts_of(q: Linear, sides) -> np.ndarray:
     """(K, 2) stop and 1 + R."""
     sides = np.asarray(sides)
     return np.column_stack([q.stop(sides), 1 + q.restitution(sides)])
-
-
-TABLES = ("M", "K", "C", "along", "constant", "sine", "cosine", "omega", "tau")
-
-
-def moves_stops_only(slope: Linear) -> bool:
-    """Whether a parameter changes the stops and the restitution, and no table."""
-    return not any(np.any(getattr(slope, name)) for name in TABLES)
-
-
-@lru_cache(maxsize=16)
-def _flow(key: Keyed) -> free_flight.Flow:
-    return free_flight.flow(key.q)
-
-
-@lru_cache(maxsize=16)
-def _held_flow(key: Keyed) -> free_flight.Flow:
-    return free_flight.held_flow(key.q)
-
-
-@lru_cache(maxsize=64)
-def _closing(key: Keyed, sigma: int, halves: int) -> np.ndarray:
-    return free_flight.closing(key.q, sigma, halves)
-
-
-def flow(q: Linear) -> free_flight.Flow:
-    return _flow(Keyed(q, TABLES))
-
-
-def held_flow(q: Linear) -> free_flight.Flow:
-    return _held_flow(Keyed(q, TABLES))
-
-
-def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
-    return _closing(Keyed(q, ("M", "K", "C", "along", "omega")), sigma, halves)

@@ -10,10 +10,9 @@ import numpy as np
 from vibro_sweep.analysis.periodic import orbit_text
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
-from vibro_sweep.analysis.periodic.motion_between import flow, held_flow
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
-from vibro_sweep.engine.impulses.flow import contact_coordinates
+from vibro_sweep.engine.impulses.flow import contact_coordinates, flow, held_flow
 from vibro_sweep.engine.impulses.state_space import ResonanceError
 from vibro_sweep.engine.one_system import IMPACT, STICKING
 from vibro_sweep.model.arguments import LATEST, checked_times

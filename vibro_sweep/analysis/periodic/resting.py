@@ -8,7 +8,6 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.engine.continuation import stepper
-from vibro_sweep.engine.impulses.flow import rates
 from vibro_sweep.model.linear import Linear
 
 MOST_STEPS = 30
@@ -43,8 +42,8 @@ class RestingOrbit:
         self.equations.do(stepper.FOLLOW)
         self.equations.do(stepper.ASSEMBLE)
 
-    def newton(self) -> float:
-        """Newton's method from here: the last relative change; NaN: no orbit was found. Raises LinAlgError."""
+    def newton(self) -> tuple[np.ndarray, float]:
+        """Newton's method from here: u, and the last relative change, NaN: no orbit was found. Raises LinAlgError."""
         x, n, e, before = self.place.x, self.n, self.events, np.inf
         swing, struck = abs(self.Z[0]), np.flatnonzero(~self.equations.problem.rests)
         for _ in range(MOST_STEPS):
@@ -56,17 +55,17 @@ class RestingOrbit:
             turned = np.append(np.abs(step[:, 0]), np.abs(step[self.rests].sum(axis=1))).max()
             change = max(turned / self.length, np.abs(step[struck, 1]).max(initial=0.0) / fastest)
             if not change < np.inf:
-                return np.nan
+                break
             share = min(1.0, LONGEST / max(change, 1e-300))
             x[:, n:] = start[:, n:] - share * step
             following = np.append(x[1:, n], x[0, n] + self.length)
             if np.any(x[self.rests, n + 1] < 0) or np.any(following < self._ends):
-                return np.nan
+                break
             self._close()
             if share == 1.0 and (change <= 4e-16 or (change < 1e-9 and change >= 0.5 * before)):
-                return float(change)
+                return self.u, change
             before = change if share == 1.0 else np.inf
-        return np.nan
+        return self.u, np.nan
 
     @property
     def _ends(self) -> np.ndarray:
@@ -90,12 +89,6 @@ class RestingOrbit:
     def states(self) -> np.ndarray:
         """(K, 2N + 3) before the impacts."""
         return self._whole(self.place.x[:, : self.n], self.place.phases)
-
-    @property
-    def motion(self) -> np.ndarray:
-        """(K, 3) gap velocity, acceleration and jerk before the impacts."""
-        B, states = rates(self.q), self.states
-        return np.stack([(states @ power.T)[:, 0] for power in (B, B @ B, B @ B @ B)], axis=1)
 
     def certificate(self) -> tuple[np.ndarray, float]:
         """(distance, t, side) of the turning point nearest to its stop, inf where there is none; and the least free

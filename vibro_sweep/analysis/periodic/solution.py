@@ -7,9 +7,10 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
-from vibro_sweep.analysis.periodic.motion_between import contacts_of, flow, fly, multipliers_of
+from vibro_sweep.analysis.periodic.motion_between import contacts_of, fly, multipliers_of
 from vibro_sweep.analysis.periodic.resting import RestingOrbit
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
+from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.engine.impulses.state_space import has_free_gap
 from vibro_sweep.model.linear import Family, forcing_period
 
@@ -37,9 +38,6 @@ class Solution:
     @cached_property
     def resting(self) -> RestingOrbit:
         """The motion of an orbit with rests."""
-        return self._resting()
-
-    def _resting(self) -> RestingOrbit:
         return RestingOrbit(self.family.linear, self.sigma, self.halves, self.sides, self.rests, self.u)
 
     @property
@@ -54,11 +52,6 @@ class Solution:
     def is_free(self) -> bool:
         """Whether the contact sees a free mode, which no rest holds."""
         return self.sigma == 1 and not self.rests and has_free_gap(self.family.linear)
-
-    @property
-    def size(self) -> int:
-        """Number of unknowns."""
-        return len(self.u)
 
     @property
     def times(self) -> np.ndarray:
@@ -81,8 +74,6 @@ class Solution:
     @cached_property
     def motion(self) -> np.ndarray:
         """(K, 3) gap velocity, acceleration and jerk before each impact; the velocity as the jump says."""
-        if self.rests:
-            return self.resting.motion
         q = self.family.linear
         B = flow(q).B
         N, states = len(q.along), self.states[: self.K]
@@ -155,30 +146,22 @@ class Solution:
 
     @cached_property
     def units(self) -> np.ndarray:
-        """(size,) of the unknowns: 1/omega, and omega times the size of the gap."""
-        omega, units = self.family.linear.omega, np.empty(self.size)
-        units[:] = 1 / omega
-        units[self.K : 2 * self.K] = omega * self.size_of_gap
-        return units
+        """(2K + rests,) of the unknowns: 1/omega, and omega times the size of the gap."""
+        omega = self.family.linear.omega
+        return np.repeat([1 / omega, omega * self.size_of_gap, 1 / omega], [self.K, self.K, len(self.rests)])
 
     def corrected(self) -> "Solution | None":
         """By Newton's method from here; None without convergence."""
         if self.K == 0:
             return self
         if self.rests:
-            return self._corrected_with_rests()
-        ends, change = EventEquations.of(self).newton(self.u[None])
-        if not np.isfinite(change[0]):
-            return None
-        return replace(self, u=ends[0], change=float(change[0]))
-
-    def _corrected_with_rests(self) -> "Solution | None":
-        try:
-            found = self._resting()
-            change = found.newton()
-        except np.linalg.LinAlgError:
-            return None
-        return replace(self, u=found.u, change=change) if np.isfinite(change) else None
+            try:
+                u, change = replace(self).resting.newton()
+            except np.linalg.LinAlgError:
+                return None
+        else:
+            (u,), (change,) = EventEquations.of(self).newton(self.u[None])
+        return replace(self, u=u, change=float(change)) if np.isfinite(change) else None
 
     def with_touch(self, index: int, time: float, side: int) -> "Solution":
         """The same motion with one impact more, which has no speed."""

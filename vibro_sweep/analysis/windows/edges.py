@@ -19,32 +19,32 @@ class Plane(NamedTuple):
 
 
 class Edges(NamedTuple):
-    """place : (edges, 2) indices of the point with the smaller value
-    axis : (edges,) 0 or 1, along which the other one lies
+    """places : (edges, 2, 2) indices of both points, that with the smaller value first
     periods : (edges, 2) of both
     """
 
-    place: np.ndarray
-    axis: np.ndarray
+    places: np.ndarray
     periods: np.ndarray
 
+    @property
+    def axis(self) -> np.ndarray:
+        """(edges,) 0 or 1, along which the points are neighbours."""
+        return np.argmax(np.diff(self.places, axis=1)[:, 0], axis=1)
 
-def ends_of(plane: Plane, edges: Edges) -> tuple[np.ndarray, np.ndarray]:
-    """(edges, 2) twice: both numbers at the two points of each edge."""
-    other = edges.place.copy()
-    other[np.arange(len(other)), edges.axis] += 1
-    one, other = (np.column_stack([plane.values[j][at[:, j]] for j in (0, 1)]) for at in (edges.place, other))
-    return one, other
+
+def ends_of(plane: Plane, edges: Edges) -> np.ndarray:
+    """(edges, 2, 2) both numbers at the two points of each edge."""
+    return np.stack([values[edges.places[..., j]] for j, values in enumerate(plane.values)], axis=-1)
 
 
 def edges_of(plane: Plane) -> Edges:
     """All edges of a plane, those along the first number first."""
     found = []
-    for axis in (0, 1):
-        one, other = (np.take(plane.period, range(a, plane.period.shape[axis] - 1 + a), axis) for a in (0, 1))
-        place = np.argwhere(one != other)
-        found.append((place, np.full(len(place), axis), np.column_stack([one[one != other], other[one != other]])))
-    return Edges(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
+    for axis, step in enumerate(np.eye(2, dtype=int)):
+        first = np.argwhere(np.diff(plane.period, axis=axis))
+        found.append(np.stack([first, first + step], axis=1))
+    places = np.concatenate(found)
+    return Edges(places, plane.period[places[..., 0], places[..., 1]])
 
 
 def passing(plane: Plane, edges: Edges, flat: Flat) -> np.ndarray:
@@ -62,6 +62,7 @@ def passing(plane: Plane, edges: Edges, flat: Flat) -> np.ndarray:
     for axis in (0, 1):
         across, along = plane.values[1 - axis], plane.values[axis]
         wanted = np.flatnonzero(able & (edges.axis == axis))
+        places = edges.places[wanted]
         if not len(wanted) or not len(pieces):
             continue
         crossed: dict[int, list[float]] = {}
@@ -70,10 +71,9 @@ def passing(plane: Plane, edges: Edges, flat: Flat) -> np.ndarray:
             lo, hi = np.searchsorted(across, sorted((level, other)))
             for line in range(lo, hi):
                 crossed.setdefault(line, []).append(u + (v - u) * (across[line] - level) / (other - level))
-        lines, starts = edges.place[wanted, 1 - axis], along[edges.place[wanted, axis]]
-        size = along[edges.place[wanted, axis] + 1] - starts
-        for edge, line, start, length in zip(wanted.tolist(), lines.tolist(), starts, size, strict=True):
-            where = (np.array(crossed.get(line, ())) - start) / length
+        lines = places[:, 0, 1 - axis].tolist()
+        for edge, line, (start, end) in zip(wanted.tolist(), lines, along[places[..., axis]], strict=True):
+            where = (np.array(crossed.get(line, ())) - start) / (end - start)
             if np.any((where >= -SLACK) & (where <= 1 + SLACK)):
                 result.append(edge)
     return np.array(result, int)

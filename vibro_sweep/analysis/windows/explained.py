@@ -84,7 +84,7 @@ def explain(
     """Curves for the edges of a plane. states : (n, m, 2N), of the orbits; probed, traced : give `probe` and `trace` of
     tasks by their names."""
     edges = edges_of(plane)
-    count = len(edges.axis)
+    count = len(edges.periods)
     reason, curve = np.full(count, _CODES["open"]), np.full(count, -1)
     tried = edges.periods == 0  # (edges, 2): whether the orbits of both points have been followed
     known: list[Node] = []
@@ -119,9 +119,7 @@ def _picked(plane: Plane, edges: Edges, tried: np.ndarray) -> list[tuple[int, in
         label, _ = ndimage.label(plane.period == period, np.ones((3, 3)))
         for side in (0, 1):
             there = np.flatnonzero(~tried[:, side] & (edges.periods[:, side] == period) & ((side == 0) | tried[:, 0]))
-            at = edges.place[there].copy()
-            at[np.arange(len(at)), edges.axis[there]] += side
-            region = label[at[:, 0], at[:, 1]]
+            region = label[tuple(edges.places[there, side].T)]
             for one in np.unique(region):
                 own = there[region == one]
                 found += [(int(own[i]), side) for i in range(len(own) % SHARE // 2, len(own), SHARE)]
@@ -130,9 +128,7 @@ def _picked(plane: Plane, edges: Edges, tried: np.ndarray) -> list[tuple[int, in
 
 def _task(plane: Plane, states, system, names, edges: Edges, edge: int, side: int) -> Probe:
     axis = int(edges.axis[edge])
-    ends = [edges.place[edge].copy(), edges.place[edge].copy()]
-    ends[1][axis] += 1
-    here, there = ends[side], ends[1 - side]
+    here, there = edges.places[edge][[side, 1 - side]]
     at = {name: float(plane.values[j][here[j]]) for j, name in enumerate(names)}
     one, other = plane.values[axis][here[axis]], plane.values[axis][there[axis]]
     beyond = float(other + BEYOND * (other - one))

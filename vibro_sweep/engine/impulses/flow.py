@@ -6,7 +6,6 @@ which the first is the gap, and u1 = q1', uj = qj' - p_j q1': an impulse changes
     q' = W u,    W u = u + (0, p_2, p_3, ..) u_1,    zeta' = B zeta
 """
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.state_space import (
+    MATRICES,
     MOST_CELLS,
     ResonanceError,
     TooStiffError,
@@ -23,9 +23,10 @@ from vibro_sweep.engine.impulses.state_space import (
 )
 from vibro_sweep.engine.impulses.tables import ORDER, exponential, power, taylor_rows
 from vibro_sweep.model.contact import coordinates, push_of
-from vibro_sweep.model.linear import STEP, Keyed, Linear, amplitudes, forcing_period
+from vibro_sweep.model.linear import STEP, Linear, amplitudes, forcing_period, remembered
 
 DOUBLINGS = 18
+TABLES = (*MATRICES, "constant", "sine", "cosine", "tau")  # fields that move the tables of a flight
 
 
 class Coordinates(NamedTuple):
@@ -51,15 +52,10 @@ class Coordinates(NamedTuple):
         return result
 
 
+@remembered("M", "along")
 def contact_coordinates(q: Linear) -> Coordinates:
     """Those of the masses where n = e_1 and M is diagonal. Which mass is left out depends on n alone: what follows from
     the coordinates stays smooth along branches."""
-    return _coordinates(Keyed(q, ("M", "along")))
-
-
-@lru_cache(maxsize=16)
-def _coordinates(key: Keyed) -> Coordinates:
-    q = key.q
     P, back = coordinates(q.along, int(np.argmax(np.abs(q.along))))
     push = push_of(q, P)
     W, inverse = (np.eye(len(P), dtype=push.dtype) for _ in range(2))
@@ -118,12 +114,14 @@ def free_rates(q: Linear) -> np.ndarray:
     return A
 
 
+@remembered(*TABLES, most=16)
 def flow(q: Linear) -> Flow:
     """Tables of the free flight. Raises TooStiffError."""
     B = rates(q)
     return _flow(q, B, np.eye(len(B))[0])
 
 
+@remembered(*TABLES, most=16)
 def held_flow(q: Linear) -> Flow:
     """Tables of the motion while the gap stays as it is; rows: of what the gap's free acceleration is then."""
     B = rates(q)
@@ -163,6 +161,7 @@ def _flow(q: Linear, B: np.ndarray, row: np.ndarray) -> Flow:
     )
 
 
+@remembered(*MATRICES)
 def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
     """(n, n + 1): from what a period adds to a zero state, and the gap, the state that repeats itself with sigma.
 

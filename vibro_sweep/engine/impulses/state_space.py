@@ -1,15 +1,15 @@
 """The state space of an oscillator, its free modes, and how fine its tables have to be."""
 
 import math
-from functools import wraps
 from typing import NamedTuple
 
 import numpy as np
 
 from vibro_sweep.engine.impulses.tables import REACH
-from vibro_sweep.model.linear import Linear, forcing_period
+from vibro_sweep.model.linear import Linear, forcing_period, remembered
 
 MOST_CELLS = 1 << 17
+MATRICES = ("M", "K", "C", "along", "omega")  # fields that move the free flight
 
 
 class TooStiffError(ValueError):
@@ -29,23 +29,7 @@ class Space(NamedTuple):
     effective_mass: float
 
 
-def by_matrices(function):
-    """Remember the last results for equal M, K, C, n, omega."""
-    known: dict = {}
-
-    @wraps(function)
-    def remembered(q: Linear):
-        key = q.M.tobytes(), q.K.tobytes(), q.C.tobytes(), q.along.tobytes(), float(q.omega)
-        if key not in known:
-            if len(known) >= 64:
-                known.clear()
-            known[key] = function(q)
-        return known[key]
-
-    return remembered
-
-
-@by_matrices
+@remembered(*MATRICES)
 def space(q: Linear) -> Space:
     """z' = A z + ...; n.z_x is the gap, an impulse of gap velocity D changes z by D e_v."""
     N = len(q.along)
@@ -58,7 +42,7 @@ def space(q: Linear) -> Space:
     return Space(A, np.concatenate([q.along, zero]), e_v, effective_mass)
 
 
-@by_matrices
+@remembered(*MATRICES)
 def free_modes(q: Linear) -> tuple[np.ndarray, np.ndarray]:
     """Shapes of the free modes (N, count), the one that the contact sees first, and what the contact sees of each.
 
@@ -82,7 +66,7 @@ def has_free_gap(q: Linear) -> bool:
     return bool(np.any(free_modes(q)[1]))
 
 
-@by_matrices
+@remembered(*MATRICES)
 def cells_needed(q: Linear) -> int:
     """Cells in half a forcing period."""
     A = space(q).A
