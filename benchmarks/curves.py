@@ -21,8 +21,7 @@ from vibro_sweep.analysis.continuation.tracer import LONGEST_STEP, Tracer, copy
 from vibro_sweep.analysis.curves.continuation import first_of
 from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.continuation import curve_tests
-from vibro_sweep.engine.continuation.workspace import new_place
+from vibro_sweep.engine.continuation.workspace import TEST, new_place
 
 ROUNDS = 5
 PIECES = 40  # a step is so much shorter than usual
@@ -37,7 +36,7 @@ def speed(start: Start, names, box) -> tuple[float, float, int]:
     for _ in range(ROUNDS):
         for aim in (tracer.path.first, tracer.path.a):
             copy(first, aim)
-        tracer.path.a.tests[curve_tests.LENGTH] = LONGEST_STEP / PIECES
+        tracer.path.a.tests[TEST.length] = LONGEST_STEP / PIECES
         began = time.process_time()
         tracer.walk(place)
         spent = time.process_time() - began

@@ -14,10 +14,9 @@ from vibro_sweep.analysis.continuation.first_point import guess_of
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.continuation.branch_tests import ABOVE, BELOW, CROSSING, ON_CIRCLE, PAIRS, RATE, REFLECTED
 from vibro_sweep.engine.continuation.certificate import may_turn
-from vibro_sweep.engine.continuation.curve_tests import MINUS, PAIR
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
+from vibro_sweep.engine.continuation.workspace import TEST
 from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.model.linear import Family
 
@@ -98,24 +97,24 @@ def test_tests_have_the_signs_of_the_precise_ones(system, itinerary, name, bound
         found.append(track.b.tests.copy())
         track.accept(precise[-2], precise[-1])
     pairs = [(x.solution.multipliers, n) for x, n in zip(precise, found, strict=True) if x]
-    assert len({np.sign(np.prod(1 + mu).real * n[MINUS]) for mu, n in pairs}) == 1
+    assert len({np.sign(np.prod(1 + mu).real * n[TEST.minus]) for mu, n in pairs}) == 1
     for x, n in zip(precise, found, strict=True):
         if x is not None:
             if len(x.solution.multipliers) > 2:  # else it cannot vanish
-                assert n[PAIR] == pytest.approx(
+                assert n[TEST.pair] == pytest.approx(
                     x.solution.torus, rel=1e-6, abs=1e-9 * np.abs(x.solution.multipliers).max()
                 )
-            assert n[RATE] == pytest.approx(x.tangent[-1], rel=1e-6, abs=1e-9)
+            assert n[TEST.rate] == pytest.approx(x.tangent[-1], rel=1e-6, abs=1e-9)
             mu = x.solution.multipliers
             out, real = np.abs(mu) > 1, mu.imag == 0
-            assert n[ABOVE] == np.count_nonzero(out & real & (mu.real > 0))
-            assert n[BELOW] == np.count_nonzero(out & real & (mu.real < 0))
-            assert 2 * n[PAIRS] == np.count_nonzero(out & ~real)
-            assert n[ON_CIRCLE] == 0
+            assert n[TEST.above] == np.count_nonzero(out & real & (mu.real > 0))
+            assert n[TEST.below] == np.count_nonzero(out & real & (mu.real < 0))
+            assert 2 * n[TEST.pairs] == np.count_nonzero(out & ~real)
+            assert n[TEST.on_circle] == 0
             r, (i, j) = np.prod(np.hypot(1, abs(mu))), np.triu_indices(len(mu), 1)
             crossing = np.prod(1 - mu[i] * mu[j]).real / r ** (len(mu) - 1) if len(mu) > 2 else 1.0
-            assert n[REFLECTED] == pytest.approx(np.prod(1 + mu).real / r, rel=1e-6, abs=1e-9)
-            assert n[CROSSING] == pytest.approx(crossing, rel=1e-6, abs=1e-9)
+            assert n[TEST.reflected] == pytest.approx(np.prod(1 + mu).real / r, rel=1e-6, abs=1e-9)
+            assert n[TEST.crossing] == pytest.approx(crossing, rel=1e-6, abs=1e-9)
 
 
 @pytest.mark.parametrize("count", [4, 30])

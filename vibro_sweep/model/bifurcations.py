@@ -7,6 +7,7 @@ class Bifurcation(NamedTuple):
     """A type of special point of branches.
 
     label, words, mark, colour : in pictures; without a label it is not marked. curve_colour : of its curve in charts
+    test : of engine/continuation/branch_tests.py, that changes its sign there; "": impacts and flights tell
     condition : the equation that holds along its curve in two parameters; "": it has no curve
     sigma : of the orbits that have it; 0: all
     crosses : how many multipliers cross the circle there: one above 1, one below -1, a pair; all 0: the test is another
@@ -20,6 +21,7 @@ class Bifurcation(NamedTuple):
     mark: str = ""
     colour: str = ""
     curve_colour: str = ""
+    test: str = ""
     condition: str = ""
     sigma: int = 0
     crosses: tuple[int, int, int] = (0, 0, 0)
@@ -28,14 +30,14 @@ class Bifurcation(NamedTuple):
 
 TYPES = (
     Bifurcation("fold", "two orbits meet and vanish", "LP", "fold", "s", "#b2182b", "#2f8fd8",
-                condition="fold", crosses=(1, 0, 0)),
+                test="rate", condition="fold", crosses=(1, 0, 0)),
     Bifurcation("flip", "period doubling, multiplier -1", "PD", "flip", "D", "#2f8fd8", "#e0a030",
-                condition="flip", sigma=1, crosses=(0, 1, 0), beyond="doubled"),
+                test="minus", condition="flip", sigma=1, crosses=(0, 1, 0), beyond="doubled"),
     Bifurcation("pitchfork", "a symmetric orbit loses its symmetry",
                 "BP", "pitchfork", "^", "#e0a030", "#b2182b",
-                condition="flip", sigma=-1, crosses=(0, 1, 0), beyond="mirror images"),
+                test="minus", condition="flip", sigma=-1, crosses=(0, 1, 0), beyond="mirror images"),
     Bifurcation("neimark_sacker", "a torus is born, a pair of multipliers of modulus 1",
-                "NS", "Neimark-Sacker", "p", "#7b3294", "#1a1a5e", condition="torus", crosses=(0, 0, 1)),
+                "NS", "Neimark-Sacker", "p", "#7b3294", "#1a1a5e", test="pair", condition="torus", crosses=(0, 0, 1)),
     Bifurcation("graze", "an impact appears or vanishes", "GR", "graze", "o", "#1a1a2e", "#8a8a96",
                 condition="graze", beyond="graze"),
     Bifurcation("sticking", "a rest on a stop begins, ends or is interrupted",

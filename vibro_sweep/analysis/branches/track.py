@@ -9,10 +9,8 @@ from vibro_sweep.analysis.continuation.tracer import NoPlaneError, copied, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
-from vibro_sweep.engine.continuation.branch_tests import RATE
-from vibro_sweep.engine.continuation.curve_tests import LENGTH, MARGIN, MINUS, RESIDUAL
 from vibro_sweep.engine.continuation.path import Path
-from vibro_sweep.engine.continuation.workspace import Place, new_place
+from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST, Place, new_place
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 
 
@@ -55,7 +53,7 @@ class Track:
         )
         self.b = new_place(len(walk.start.sides), self.tracer.n)
         copy(first.guess, self.a)
-        self.a.tests[LENGTH] = length
+        self.a.tests[TEST.length] = length
         self.path.before[0] = 0.0
         copy(self.a, self.path.first)
 
@@ -92,7 +90,7 @@ class Track:
         t = (x[..., n] - tau[:, None]) / omega[:, None]
         motion = r.motion[:count] * units.speed * [1.0, units.rate]
         state = self._masses(p, r.state[:count] * self.tracer.state_units)
-        margin, residual = r.tests[:count, MARGIN] * units.length, r.tests[:count, RESIDUAL].copy()
+        margin, residual = r.tests[:count, TEST.margin] * units.length, r.tests[:count, TEST.residual].copy()
         rests = self.tracer.problem.rests
         D = np.where(rests, -motion[..., 0], x[..., n + 1] * units.speed)
         ends = (t + x[..., n + 1] / omega[:, None])[:, rests]
@@ -114,10 +112,9 @@ class Track:
         Where signs have changed in compiled steps but not from point to point, rounding decides: the next step is to
         look for the change again.
         """
-        past, tests = self.a.tests, self.b.tests
-        for i, before, behind in ((RATE, a.tangent[-1], b.tangent[-1]), (MINUS, a.reflection, b.reflection)):
-            if past[i] * tests[i] < 0 < before * behind:
-                tests[i] *= -1
+        for i in BRANCH_TESTS:
+            if self.a.tests[i] * self.b.tests[i] < 0 < a.guess.tests[i] * b.guess.tests[i]:
+                self.b.tests[i] *= -1
         copy(self.b, self.a)
 
     def point(self, place: Place) -> Point | None:

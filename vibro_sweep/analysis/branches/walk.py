@@ -15,10 +15,8 @@ from vibro_sweep.analysis.continuation.first_point import first_direction, guess
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.continuation.branch_tests import HOLD, RATE
-from vibro_sweep.engine.continuation.curve_tests import MINUS
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
-from vibro_sweep.engine.continuation.workspace import Place
+from vibro_sweep.engine.continuation.workspace import TEST, Place
 from vibro_sweep.model.linear import Linear
 
 SLOW = 1e-5  # impulse, relative to the largest, of an impact that is next to a graze
@@ -73,7 +71,7 @@ class Point:
     @property
     def reflection(self) -> float:
         """det G(-1), zero at a flip (pitchfork)."""
-        return float(self.guess.tests[MINUS])
+        return float(self.guess.tests[TEST.minus])
 
     @cached_property
     def releases(self) -> np.ndarray:
@@ -83,7 +81,9 @@ class Point:
     @property
     def stays(self) -> float:
         """The least of what makes a rest: its length, the acceleration into the stop and the speed before it."""
-        return float(min(self.guess.jumps[list(self.walk.start.rests)].min(initial=np.inf), self.guess.tests[HOLD]))
+        return float(
+            min(self.guess.jumps[list(self.walk.start.rests)].min(initial=np.inf), self.guess.tests[TEST.hold])
+        )
 
 
 class Walk:
@@ -121,7 +121,11 @@ class Walk:
     def turned(self, place: Place) -> Place:
         """The same place with its tangent backwards."""
         other = copied(place)
-        other.tangent[:], other.tangent_p[:], other.tests[RATE] = -place.tangent, -place.tangent_p, -place.tests[RATE]
+        other.tangent[:], other.tangent_p[:], other.tests[TEST.rate] = (
+            -place.tangent,
+            -place.tangent_p,
+            -place.tests[TEST.rate],
+        )
         return other
 
     def first(self, forwards: float) -> Point | None:

@@ -10,7 +10,8 @@ import numpy as np
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.chatter_sum import NEXT, REACH
-from vibro_sweep.engine.continuation.stepper import FOLLOW, LATEST
+from vibro_sweep.engine.continuation.curve_tests import LATEST
+from vibro_sweep.engine.continuation.stepper import FOLLOW
 from vibro_sweep.engine.continuation.workspace import Place, new_place
 
 NEAR_END = 0.45  # of the reach: all earlier impacts are written out

@@ -8,9 +8,9 @@ from vibro_sweep.analysis.continuation.oscillators import Oscillators, Units
 from vibro_sweep.analysis.continuation.start import Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import path, stepper
-from vibro_sweep.engine.continuation.curve_tests import MARGIN, RESIDUAL, TOUCHING
+from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, unknowns
-from vibro_sweep.engine.continuation.workspace import Place, new_bench, new_place
+from vibro_sweep.engine.continuation.workspace import TEST, Place, new_bench, new_place
 from vibro_sweep.model.linear import Family, forcing_period
 
 MOST_CORRECTIONS = 20
@@ -224,7 +224,7 @@ class Tracer:
             if not change <= 1.0:
                 return None
             if change <= 1e-15 or (change < 1e-8 and change >= 0.3 * before):
-                place.tests[RESIDUAL] = change
+                place.tests[TEST.residual] = change
                 length = np.linalg.norm(self.direction(place)) or 1.0  # a single point has no tangent
                 place.tangent[:] /= length
                 place.tangent_p[:] /= length
@@ -254,7 +254,7 @@ class Tracer:
         pushes = -self.problem.sides * place.jumps
         if self.problem.kind >= GRAZE:
             pushes = np.delete(pushes, self.problem.index)
-        return bool(np.all(pushes > 0) and place.tests[MARGIN] > -TOUCHING)
+        return bool(np.all(pushes > 0) and place.tests[TEST.margin] > -TOUCHING)
 
     def family(self, place: Place) -> Family:
         return self.oscillators.at(place.p)
@@ -273,7 +273,7 @@ class Tracer:
         ends = (t + place.jumps / q.omega)[rests]
         jumps = np.where(rests, -self.speeds(place), place.jumps) if len(ends) else place.jumps
         u = np.concatenate([t, jumps * self.units.speed, ends])
-        return Solution(family, s.sigma, s.halves, sides, u, float(place.tests[RESIDUAL]), s.rests)
+        return Solution(family, s.sigma, s.halves, sides, u, float(place.tests[TEST.residual]), s.rests)
 
     def speeds(self, place: Place) -> np.ndarray:
         """(K,) velocities of the gap before the impacts, in units of the curve."""

@@ -10,9 +10,8 @@ import numpy as np
 from vibro_sweep.analysis.continuation.errors import DIGITS, ROWS, sensitivity
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied
 from vibro_sweep.analysis.curves.chord import Chord
-from vibro_sweep.engine.continuation.curve_tests import RESIDUAL
 from vibro_sweep.engine.continuation.stepper import EXAMINE
-from vibro_sweep.engine.continuation.workspace import Place
+from vibro_sweep.engine.continuation.workspace import TEST, Place
 
 REACH = 5e-3  # in units of a curve: the distance of the points farthest off
 NODES = np.array([-1.0, -2 / 3, -1 / 3, 1 / 3, 2 / 3, 1.0])
@@ -66,7 +65,7 @@ def crossed(tracer: Tracer, a: Place, b: Place, impact: int) -> tuple[float, Pla
     place = copied(places[0])
     for name in ("x", "p", "tangent", "tangent_p", "v", "w"):
         getattr(place, name)[:] = np.tensordot(weights, [getattr(one, name) for one in places], 1)
-    place.jumps[impact], place.tests[RESIDUAL] = 0.0, 0.0
+    place.jumps[impact], place.tests[TEST.residual] = 0.0, 0.0
     if not (tracer.take(place) and tracer.do(EXAMINE, place)):
         return None
     lost = np.abs(weights) @ [sensitivity(tracer, one, chord.row) for one in places]

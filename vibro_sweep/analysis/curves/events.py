@@ -12,10 +12,9 @@ from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.chord import root
 from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
 from vibro_sweep.analysis.curves.errors import error_of
-from vibro_sweep.engine.continuation import curve_tests
-from vibro_sweep.engine.continuation.curve_tests import RESIDUAL
+from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import GRAZE, TORUS
-from vibro_sweep.engine.continuation.workspace import THETA, Place
+from vibro_sweep.engine.continuation.workspace import CURVE_TESTS, NAMES, TEST, THETA, Place
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO
 
 # (kind of curve, what changes its sign) -> types, by the sigma of their orbits; angles of a pair
@@ -26,7 +25,7 @@ def _types() -> dict[tuple, dict[int, str]]:
     found: dict[tuple, dict[int, str]] = {}
     for one in CODIMENSION_TWO:
         for condition, test in one.tests:
-            at = test if test in (VANISHES, TOUCHES) else getattr(curve_tests, test.upper())
+            at = test if test in (VANISHES, TOUCHES) else NAMES.index(test)
             found.setdefault((CONDITIONS[condition], at), {})[one.sigma] = one.name
     return found
 
@@ -46,7 +45,7 @@ SAME = 1e-3  # of a step: a margin that vanishes with an impact does so like the
 class Event:
     """A type of codimension two, and a test that changes its sign there.
 
-    test : index of the test where it is one of `curve_tests`, else None
+    test : index of the test where it is one of these, else None
     impact : index of the impact that vanishes, else None
     touches : whether a flight touches a stop
     """
@@ -61,17 +60,17 @@ class Event:
 def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
     """What changes its sign from a to b."""
     kind, events = tracer.problem.kind, []
-    for i in range(curve_tests.SIGNED):
+    for i in CURVE_TESTS:
         if np.sign(a.tests[i]) * np.sign(b.tests[i]) < 0:
             size = max(abs(a.tests[i]), abs(b.tests[i]))
             events.append(Event(type_at(tracer, i), lambda place, i=i, size=size: place.tests[i] / size, test=i))
     for i in range(tracer.K):
         if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == tracer.problem.index):
             events.append(Event(type_at(tracer, VANISHES), lambda place, i=i: place.jumps[i], impact=i))
-    least, most = sorted(place.tests[curve_tests.MARGIN] for place in (a, b))
-    if least < -curve_tests.TOUCHING and most > curve_tests.TOUCHING:
+    least, most = sorted(place.tests[TEST.margin] for place in (a, b))
+    if least < -TOUCHING and most > TOUCHING:
         name = type_at(tracer, TOUCHES)
-        events.append(Event(name, lambda place: min(place.tests[curve_tests.MARGIN], 1.0), touches=True))
+        events.append(Event(name, lambda place: min(place.tests[TEST.margin], 1.0), touches=True))
     if kind == TORUS:
         for name, angle in ANGLES.items():
             if (a.p[THETA] - angle) * (b.p[THETA] - angle) < 0:
@@ -189,7 +188,7 @@ def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
     The error (`error_of`) is an estimate from several locations and from what rounding of the equations does.
     """
     found = root(tracer, a, b, event.value)
-    settled = found is not None and found[1].tests[RESIDUAL] <= SETTLED
+    settled = found is not None and found[1].tests[TEST.residual] <= SETTLED
     if event.impact is not None:
         settled = settled and not is_on_other(tracer, a, b, found[1], event.impact)
         if not settled or is_lost(tracer, a, b, found[1]):
@@ -212,7 +211,7 @@ def is_sharp(tracer: Tracer, event: Event, place: Place) -> bool:
     impulses = np.abs(place.jumps)
     if tracer.problem.kind == GRAZE:
         impulses = np.delete(impulses, tracer.problem.index)
-    return event.test != curve_tests.PAIR or not np.any(impulses < SLOW)
+    return event.test != TEST.pair or not np.any(impulses < SLOW)
 
 
 def event_near(tracer: Tracer, place: Place, length: float, types) -> Found | None:

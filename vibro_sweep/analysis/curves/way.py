@@ -14,10 +14,11 @@ from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, ju
 from vibro_sweep.analysis.curves.events import Event, beside, found_between, found_to_edge, without_echoes
 from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
-from vibro_sweep.engine.continuation import curve_tests, stepper
+from vibro_sweep.engine.continuation import stepper
+from vibro_sweep.engine.continuation.curve_tests import NEAR_STRONG
 from vibro_sweep.engine.continuation.path import Record
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK, TORUS
-from vibro_sweep.engine.continuation.workspace import THETA, Place, new_place
+from vibro_sweep.engine.continuation.workspace import TEST, THETA, Place, new_place
 from vibro_sweep.engine.impulses.flow import steady_motion
 
 FIRST_STEP = 1e-3
@@ -66,7 +67,7 @@ class Way:
         a = path.a
         copy(self.first, path.first)
         copy(self.first, a)
-        a.tests[curve_tests.LENGTH], path.before[0] = FIRST_STEP, 0.0
+        a.tests[TEST.length], path.before[0] = FIRST_STEP, 0.0
         while passed < MOST_POINTS:
             path.counts[0] = passed
             reason, count = w.walk(b), int(path.counts[1])
@@ -88,8 +89,8 @@ class Way:
                 self.closed = True
                 self.special.append(self._at("closed", self.first, np.nan))
                 return
-            elif reason in (stepper.EVENT, stepper.STRONG, stepper.CLOSED, stepper.LEFT):
-                if self._ends(a, b, reason):
+            elif reason in (stepper.EVENT, stepper.CLOSED, stepper.LEFT):
+                if self._ends(a, b, reason != stepper.LEFT):
                     return
                 if not passable(w, b):
                     break
@@ -157,7 +158,7 @@ class Way:
             return w.is_real(a) or w.is_real(b)
         if not w.is_real(place):
             return False
-        if event.test == curve_tests.PAIR:
+        if event.test == TEST.pair:
             solution = w.solution(place)
             mu = (bare(solution, w.problem.index) if w.problem.kind == GRAZE else solution).multipliers
             i, j = np.triu_indices(len(mu), 1)
@@ -178,7 +179,7 @@ class Way:
         sign = np.sign(w.direction(a) @ w.direction(place)) or 1.0
         place.tangent[:] *= sign
         place.tangent_p[:] *= sign
-        if not self._ends(a, place, stepper.LEFT) and self._pass(a, place):
+        if not self._ends(a, place, False) and self._pass(a, place):
             self.special.append(self._at("limit", place, 0.0))
 
     def _at_limit(self, a: Place, b: Place, j: int, limit: float) -> Place | None:
@@ -196,10 +197,13 @@ class Way:
         found = root(self.tracer, a, b, lambda place: (place.p[j] - limit) / np.ptp(self.tracer.box[j]))
         return found and found[1]
 
-    def _ends(self, a: Place, b: Place, reason: int) -> bool:
-        """Whether the curve ends: its pair meets at 1 or -1 ahead, or its orbit is born between a and b."""
+    def _ends(self, a: Place, b: Place, inside: bool) -> bool:
+        """Whether the curve ends: its pair meets at 1 or -1 ahead of b, or its orbit is born between a and b.
+
+        inside : whether the curve goes on from b within its box
+        """
         w = self.tracer
-        end = strong_resonance(w, a, b) if reason == stepper.STRONG else None
+        end = strong_resonance(w, a, b) if inside and is_near_strong(w, b) else None
         if end is None and (w.problem.repeats or w.problem.mirrors):
             end = birth(w, a, b)
         if end is None:
@@ -250,7 +254,7 @@ def rows_of(tracer: Tracer, x, motion, p, tested, omega) -> Rows:
     """Points, of what kernels have of them; omega: (points,) of the force."""
     units, n = tracer.units, tracer.n
     times, speeds = (x[..., n] - tracer.tau) / omega[:, None], motion * units.speed * [1.0, units.rate]
-    margin, residual = tested[:, curve_tests.MARGIN] * units.length, tested[:, curve_tests.RESIDUAL].copy()
+    margin, residual = tested[:, TEST.margin] * units.length, tested[:, TEST.residual].copy()
     jumps, states = x[..., n + 1] * units.speed, x[:, 0, :n] * tracer.state_units
     return Rows(p.copy(), times, jumps, speeds, margin, residual, states)
 
@@ -268,6 +272,11 @@ def outside_between(tracer: Tracer, a: Place, b: Place) -> Place | None:
 def passable(tracer: Tracer, place: Place) -> bool:
     """False where a Neimark-Sacker curve has passed the end that was not found."""
     return tracer.problem.kind != TORUS or 0 < place.p[THETA] < math.pi
+
+
+def is_near_strong(tracer: Tracer, place: Place) -> bool:
+    """Whether the pair of a Neimark-Sacker curve is about to meet at 1 or -1."""
+    return tracer.problem.kind == TORUS and not NEAR_STRONG < place.p[THETA] < math.pi - NEAR_STRONG
 
 
 def closes(tracer: Tracer, a: Place, b: Place, first: Place) -> bool:

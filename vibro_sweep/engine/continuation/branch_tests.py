@@ -5,27 +5,12 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.continuation.certificate import certify
-from vibro_sweep.engine.continuation.curve_tests import (
-    LENGTH,
-    MARGIN,
-    MINUS,
-    PAIR,
-    changes_sign,
-    determinant,
-    eigenvalues_of,
-)
+from vibro_sweep.engine.continuation.curve_tests import changes_sign, determinant, eigenvalues_of
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, OMEGA
-from vibro_sweep.engine.continuation.path import outside
+from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE, exchanged
 from vibro_sweep.engine.simd.jit import aside, jit
 
-# of `Place.tests`, beside MINUS, PAIR and MARGIN: RATE of the parameter along the branch, in its unit; the least
-# acceleration away from the stop after an impact with R = 0. Multipliers, apart from the ON_CIRCLE: ABOVE 1, BELOW -1,
-# complex PAIRS outside of the unit circle; ABOVE is -1 where they are not known. AWAY: the least |mu|^2 - 1 of those
-# outside. REFLECTED, CROSSING: prod_i (1 + mu_i) over r = prod_i (1 + |mu_i|^2)^(1/2), prod_{i<j} (1 - mu_i mu_j) over
-# r^(n - 1), which poles of multipliers leave finite. HOLD: the least acceleration into the stop during rests, and speed
-# before them
-RATE, RELEASE, ABOVE, BELOW, PAIRS, ON_CIRCLE, AWAY, REFLECTED, CROSSING, HOLD = range(13, 23)
 PASSED = 1e-13  # distance beyond a stop, in units of the gap, which rounding does not explain
 FARTHER = 2.0  # times: a number that is so much nearer to zero than at the points beside changes too fast between them
 ZERO = ON_SQUARE**2, ON_PAIR**2  # of |1 + mu|^2 and |1 - mu_i mu_j|^2: what no point of a branch comes to by chance
@@ -36,43 +21,45 @@ FAR_OUTSIDE = 0.5  # of |mu|^2 - 1: multipliers from there on do not reach the c
 def examine_branch(f, c, place, b):
     """Tests and certificate of a corrected point of a branch, for which `assemble` has filled b."""
     n, x, work = f.A.shape[0], place.tests, b.work[0]
-    x[RATE], x[RELEASE], x[MARGIN], x[MINUS] = place.tangent_p[0], np.inf, certify(f, c, place, b), 1.0
-    x[HOLD] = np.inf
+    x[TEST.rate], x[TEST.margin] = place.tangent_p[0], certify(f, c, place, b)
+    x[TEST.release] = x[TEST.hold] = x[TEST.away] = np.inf
+    x[TEST.pair] = x[TEST.reflected] = x[TEST.crossing] = 1.0
+    x[TEST.below] = x[TEST.pairs] = x[TEST.on_circle] = 0.0
+    x[TEST.above] = -1.0
     for i in range(len(b.events)):
         if c.rests[i]:
-            x[HOLD] = min(x[HOLD], b.events[i].hold, c.sides[i] * b.events[i].motion[0])
+            x[TEST.hold] = min(x[TEST.hold], b.events[i].hold, c.sides[i] * b.events[i].motion[0])
         elif f.numbers[GAIN_HIGH if c.sides[i] > 0 else GAIN_LOW] == 1.0:
             after = b.events[i].motion[1] + f.numbers[OMEGA] * b.events[i].bend[n // 2]
-            x[RELEASE] = min(x[RELEASE], -c.sides[i] * after)
-    x[MINUS] = determinant(c, b, n, -1.0)
-    x[PAIR], x[ABOVE], x[BELOW], x[PAIRS], x[ON_CIRCLE], x[AWAY] = 1.0, -1.0, 0.0, 0.0, 0.0, np.inf
-    x[REFLECTED], x[CROSSING] = 1.0, 1.0
+            x[TEST.release] = min(x[TEST.release], -c.sides[i] * after)
+    x[TEST.minus] = determinant(c, b, n, -1.0)
     for i in range(n):
         place.multipliers[i, 0] = place.multipliers[i, 1] = np.nan
     if not eigenvalues_of(c, b, n):
         return
-    x[ABOVE], squares = 0.0, 1.0
+    x[TEST.above], squares = 0.0, 1.0
     for i in range(n):
         re, im = work.re[i], work.im[i]
         place.multipliers[i, 0], place.multipliers[i, 1] = re, im
         size = re * re + im * im
         squares *= 1.0 + size
         if abs(size - 1.0) < (ON_SQUARE if im == 0.0 else ON_PAIR):
-            x[ON_CIRCLE] += 1.0
+            x[TEST.on_circle] += 1.0
         elif size > 1.0:
-            x[AWAY] = min(x[AWAY], size - 1.0)
+            x[TEST.away] = min(x[TEST.away], size - 1.0)
             if im != 0.0:
-                x[PAIRS] += 0.5
+                x[TEST.pairs] += 0.5
             else:
-                x[ABOVE if re > 0.0 else BELOW] += 1.0
-    take_products(work.re, work.im, math.sqrt(squares), x[ON_CIRCLE] > 0.0, x)
+                x[TEST.above if re > 0.0 else TEST.below] += 1.0
+    take_products(work.re, work.im, math.sqrt(squares), x[TEST.on_circle] > 0.0, x)
 
 
 @aside
 def take_products(re, im, root, without_zeros, x):
-    """REFLECTED, PAIR and CROSSING; where multipliers are on the circle, without factors that are zero at all points.
+    """The tests `reflected`, `pair` and `crossing`; where multipliers are on the circle, without factors that are zero
+    at all points.
 
-    PAIR is zero at a Neimark-Sacker point, and at a neutral saddle; 1 without losses.
+    `pair` is zero at a Neimark-Sacker point, and at a neutral saddle; 1 without losses.
     """
     X, Y, p, q, u, v = 1.0, 0.0, 1.0, 0.0, 1.0, 0.0
     n = len(re)
@@ -85,9 +72,9 @@ def take_products(re, im, root, without_zeros, x):
             r, s = 1.0 - re[i] * re[j] + im[i] * im[j], -re[i] * im[j] - im[i] * re[j]
             if not without_zeros or r * r + s * s > ZERO[1]:
                 X, Y = X * r - Y * s, X * s + Y * r
-    x[REFLECTED] = p / root
+    x[TEST.reflected] = p / root
     if n > 2 and abs(math.hypot(u, v) - 1.0) > 1e-9:
-        x[PAIR], x[CROSSING] = X, X / root ** (n - 1)
+        x[TEST.pair], x[TEST.crossing] = X, X / root ** (n - 1)
 
 
 @jit
@@ -96,15 +83,15 @@ def counts_differ(x, y):
 
     Two real ones of one sign that become a pair, or the reverse, do so outside of it where all are far from it.
     """
-    if x[ABOVE] < 0.0 or y[ABOVE] < 0.0:
+    if x[TEST.above] < 0.0 or y[TEST.above] < 0.0:
         return False
-    above, below, pairs = y[ABOVE] - x[ABOVE], y[BELOW] - x[BELOW], y[PAIRS] - x[PAIRS]
-    if x[ON_CIRCLE] != y[ON_CIRCLE]:
+    above, below, pairs = y[TEST.above] - x[TEST.above], y[TEST.below] - x[TEST.below], y[TEST.pairs] - x[TEST.pairs]
+    if x[TEST.on_circle] != y[TEST.on_circle]:
         return True
     if above == 0.0 and below == 0.0 and pairs == 0.0:
         return False
     collide = above + below + 2.0 * pairs == 0.0 and above % 2.0 == 0.0 and below % 2.0 == 0.0
-    return not (collide and min(x[AWAY], y[AWAY]) > FAR_OUTSIDE)
+    return not (collide and min(x[TEST.away], y[TEST.away]) > FAR_OUTSIDE)
 
 
 @jit
@@ -128,31 +115,34 @@ def turns_back(x, slope, y, later, length):
 
 
 @jit
-def happens_on_branch(path, c, a, b):
-    """Whether a test changes its sign between two points, multipliers cross the unit circle, or b is out of the stops
-    or of the bounds; or whether something may do so twice."""
+def happens_on_branch(c, a, b):
+    """Whether a test changes its sign between two points, multipliers cross the unit circle, or b is out of the stops;
+    or whether something may do so twice."""
     x, y, D = a.tests, b.tests, a.x.shape[1] - 1
-    if outside(path, b) or x[RELEASE] > 0.0 >= y[RELEASE] or x[HOLD] > 0.0 >= y[HOLD]:
+    if x[TEST.release] > 0.0 >= y[TEST.release] or x[TEST.hold] > 0.0 >= y[TEST.hold]:
         return True
     for i in range(len(a.x)):
         side = 1.0 if c.rests[i] else -c.sides[i]
         here, there = side * a.x[i, D], side * b.x[i, D]
-        if not there > 0.0 or turns_back(here, side * a.tangent[i, D], there, side * b.tangent[i, D], y[LENGTH]):
+        if not there > 0.0 or turns_back(here, side * a.tangent[i, D], there, side * b.tangent[i, D], y[TEST.length]):
             return True
-    if x[MARGIN] > 0.0 >= y[MARGIN] or y[MARGIN] < -PASSED:
+    if x[TEST.margin] > 0.0 >= y[TEST.margin] or y[TEST.margin] < -PASSED:
         return True
     if counts_differ(x, y) or exchanged(a.multipliers, b.multipliers):
         return True
-    return changes_sign(x[RATE], y[RATE]) or changes_sign(x[MINUS], y[MINUS]) or changes_sign(x[PAIR], y[PAIR])
+    for i in BRANCH_TESTS:
+        if changes_sign(x[i], y[i]):
+            return True
+    return False
 
 
 @jit
-def touches(path, a, b):
+def touches_on_branch(path, a, b):
     """Whether what is watched may vanish twice beside a, which lies between the point before it and b."""
     before, x, y, z = path.before[0], path.past_tests, a.tests, b.tests
     if before == 0.0:
         return False
-    for i in (RATE, MARGIN, REFLECTED, CROSSING):
-        if dips(x[i], y[i], z[i], before, z[LENGTH]):
+    for i in (TEST.rate, TEST.margin, TEST.reflected, TEST.crossing):
+        if dips(x[i], y[i], z[i], before, z[TEST.length]):
             return True
     return False

@@ -12,16 +12,13 @@ from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.normal_form import coefficient
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS, is_critical
 from vibro_sweep.engine.continuation.residual import eliminate
-from vibro_sweep.engine.continuation.workspace import THETA
+from vibro_sweep.engine.continuation.workspace import CURVE_TESTS, TEST, THETA
 from vibro_sweep.engine.impulses.elimination import solve
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
-# of `Place.tests`; those that do not belong to a kind of curve are 1
-PLUS, MINUS, DOUBLE, CUSP, PAIR, BARE_PLUS, BARE_MINUS, NORMAL, MARGIN, LENGTH, RESIDUAL, LAST, BEFORE = range(13)
-# LAST, BEFORE: time from the last impact written out, and from the one before, to the end of the chatter, in units of
-# the reach of its series
-SIGNED = 8  # so many of them are zero at points of codimension two
+LATEST, EARLIEST = 0.9, 0.4  # of the tests `last` and `before`, where another number of impacts is to be written out
+NEAR_STRONG = 0.05  # theta from 0 or pi: the resonance 1:1 or 1:2
 TOUCHING = 1e-12  # margin, in parts of the size of the gap, that counts as zero
 
 
@@ -78,38 +75,38 @@ def pair_test(c, place, b, n):
 
 
 @jit
-def examine(f, c, place, b):
+def examine_curve(f, c, place, b):
     """Tests and certificate of a corrected point, for which `assemble` has filled b; its new v and w. False: singular.
 
     Of a graze, those of the orbit without the impact come from a second elimination, in which it is only watched.
     """
     n, tests = f.A.shape[0], place.tests
-    for i in range(SIGNED):
+    for i in CURVE_TESTS:
         tests[i] = 1.0
     for r in range(n):
         place.multipliers[r, 0] = place.multipliers[r, 1] = np.nan
-    tests[MARGIN] = certify(f, c, place, b)
+    tests[TEST.margin] = certify(f, c, place, b)
     if c.kind == STICK:
         K, reach = len(place.x), b.tail.numbers[REACH] * f.numbers[OMEGA]
         end = place.x[0, n] + math.pi * f.half_turns
-        tests[LAST], tests[BEFORE] = (end - place.x[K - 1, n]) / reach, (end - place.x[K - 2, n]) / reach
+        tests[TEST.last], tests[TEST.before] = (end - place.x[K - 1, n]) / reach, (end - place.x[K - 2, n]) / reach
         return True
     if is_critical(c):
         examine_null_vectors(c, place, b, n)
     if c.kind != FOLD:
-        tests[PLUS] = determinant(c, b, n, 1.0)
+        tests[TEST.plus] = determinant(c, b, n, 1.0)
     if c.kind != FLIP:
-        tests[MINUS] = determinant(c, b, n, -1.0)
+        tests[TEST.minus] = determinant(c, b, n, -1.0)
     if c.kind == FLIP or c.kind == TORUS:  # det G(1) takes away the pole where the orbit has the multiplier 1 as well
-        tests[NORMAL] = coefficient(f, c, place, b) * tests[PLUS]
+        tests[TEST.normal] = coefficient(f, c, place, b) * tests[TEST.plus]
     if c.kind == GRAZE:
         b.work[0].sign = eliminate(f, c, place, b, True)
         if b.work[0].sign == 0.0:
             return False
-        tests[BARE_PLUS] = determinant(c, b, n, 1.0)
-        tests[BARE_MINUS] = determinant(c, b, n, -1.0)
+        tests[TEST.bare_plus] = determinant(c, b, n, 1.0)
+        tests[TEST.bare_minus] = determinant(c, b, n, -1.0)
     if c.kind != TORUS and n > 2:
-        tests[PAIR] = pair_test(c, place, b, n)
+        tests[TEST.pair] = pair_test(c, place, b, n)
     return True
 
 
@@ -125,9 +122,9 @@ def examine_null_vectors(c, place, b, n):
     for r in range(n):
         double += place.w[K - 1, 2 + r] * place.v[0, r]
     if c.kind != TORUS:
-        place.tests[DOUBLE] = double.real
+        place.tests[TEST.double] = double.real
     if c.kind == FOLD:
-        place.tests[CUSP] = (cusp * scale_v * scale_v * scale_w).real
+        place.tests[TEST.cusp] = (cusp * scale_v * scale_v * scale_w).real
 
 
 @jit
@@ -161,21 +158,28 @@ def is_born(c, sign, a, b):
 
 
 @jit
-def happens(c, a, b):
-    """Whether a test changes its sign between two points."""
+def happens_on_curve(c, a, b):
+    """Whether a test changes its sign between two points, or a pair comes near to 1 or -1."""
     if (c.repeats and is_born(c, 1.0, a, b)) or (c.mirrors and is_born(c, -1.0, a, b)):
         return True
-    for i in range(SIGNED):
+    for i in CURVE_TESTS:
         if changes_sign(a.tests[i], b.tests[i]):
             return True
     D = a.x.shape[1] - 1
     for i in range(len(a.x)):
         if a.x[i, D] * b.x[i, D] < 0.0 and not (c.kind >= GRAZE and i == c.index):
             return True
-    if passes(a.tests[MARGIN], b.tests[MARGIN]):
+    if passes(a.tests[TEST.margin], b.tests[TEST.margin]):
         return True
     if c.kind == TORUS:
         for angle in (math.pi / 2, 2 * math.pi / 3):
             if (a.p[THETA] - angle) * (b.p[THETA] - angle) <= 0.0:
                 return True
+        return not NEAR_STRONG < b.p[THETA] < math.pi - NEAR_STRONG
     return False
+
+
+@jit
+def overflows(c, place):
+    """Whether more or fewer impacts of a chatter sequence are to be written out."""
+    return c.kind == STICK and (place.tests[TEST.last] > LATEST or place.tests[TEST.before] < EARLIEST)

@@ -11,7 +11,7 @@ from vibro_sweep.engine.continuation.held_gap import hold_gap
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.problem import index_of, unknowns
 from vibro_sweep.engine.continuation.residual import approach, leave
-from vibro_sweep.engine.continuation.workspace import TESTS, Place, new_place
+from vibro_sweep.engine.continuation.workspace import TEST, Place, new_place
 from vibro_sweep.engine.simd.jit import jit
 
 CAUTION = 0.1  # of the height to which a parameter rises between two points: what a cubic may be wrong by
@@ -23,7 +23,7 @@ class Record(NamedTuple):
     x: np.ndarray  # (most, K, n + 2)
     motion: np.ndarray  # (most, K, 2)
     p: np.ndarray  # (most, 3)
-    tests: np.ndarray  # (most, TESTS)
+    tests: np.ndarray  # (most, len(TEST))
     omega: np.ndarray  # (most,): of the force
     phase: np.ndarray  # (most,) at which states are asked for
     state: np.ndarray  # (most, n) before an impact there, in contact coordinates
@@ -41,14 +41,14 @@ class Path(NamedTuple):
     a: Place  # where the last step began
     record: Record
     past: np.ndarray  # (n, 2) multipliers of the point before a
-    past_tests: np.ndarray  # (TESTS,)
+    past_tests: np.ndarray  # (len(TEST),)
     before: np.ndarray  # (1,) the distance from there to a; 0 where it is not known
 
 
 def new_path(most: int, K: int, n: int, longest: float, shortest: float, straight: float, box) -> Path:
     """most: points of one call."""
-    shapes = (most, K, n + 2), (most, K, 2), (most, 3), (most, TESTS), most, most, (most, n)
-    places, past = (new_place(K, n), new_place(K, n)), (np.zeros((n, 2)), np.zeros(TESTS), np.zeros(1))
+    shapes = (most, K, n + 2), (most, K, 2), (most, 3), (most, len(TEST)), most, most, (most, n)
+    places, past = (new_place(K, n), new_place(K, n)), (np.zeros((n, 2)), np.zeros(len(TEST)), np.zeros(1))
     record, counts = Record(*map(np.zeros, shapes)), np.zeros(3, np.int64)
     return Path(longest, shortest, straight, box, counts, *places, record, *past)
 
@@ -65,7 +65,7 @@ def copy_place(a, b):
             b.w[i, r] = a.w[i, r]
     for j in range(3):
         b.p[j], b.tangent_p[j] = a.p[j], a.tangent_p[j]
-    for j in range(TESTS):
+    for j in range(len(TEST)):
         b.tests[j] = a.tests[j]
     for r in range(width - 2):
         b.multipliers[r, 0], b.multipliers[r, 1] = a.multipliers[r, 0], a.multipliers[r, 1]
@@ -76,7 +76,7 @@ def remember(path, a, length):
     """Keep a as the point before the next one, at this distance."""
     for r in range(len(path.past)):
         path.past[r, 0], path.past[r, 1] = a.multipliers[r, 0], a.multipliers[r, 1]
-    for j in range(TESTS):
+    for j in range(len(TEST)):
         path.past_tests[j] = a.tests[j]
     path.before[0] = length
 
@@ -92,7 +92,7 @@ def keep(place, b, omega, record, count):
             record.motion[count, i, j] = b.events[i].motion[j]
     for j in range(3):
         record.p[count, j] = place.p[j]
-    for j in range(TESTS):
+    for j in range(len(TEST)):
         record.tests[count, j] = place.tests[j]
 
 

@@ -9,15 +9,9 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.continuation.branch_tests import ON_CIRCLE, examine_branch, happens_on_branch, touches
-from vibro_sweep.engine.continuation.corrector import (
-    assemble,
-    in_order,
-    move,
-    newton_step,
-    put_plane,
-)
-from vibro_sweep.engine.continuation.curve_tests import BEFORE, LAST, LENGTH, RESIDUAL, examine, happens
+from vibro_sweep.engine.continuation.corrector import assemble, in_order, move, newton_step, put_plane
+from vibro_sweep.engine.continuation.curve_tests import overflows
+from vibro_sweep.engine.continuation.looking_at import examine, happens, refresh, touches
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, move_exactly, move_to
 from vibro_sweep.engine.continuation.path import (
     bulges,
@@ -30,16 +24,15 @@ from vibro_sweep.engine.continuation.path import (
     remember,
     state_at,
 )
-from vibro_sweep.engine.continuation.problem import ORBIT, STICK, TORUS
 from vibro_sweep.engine.continuation.reflections import take_apart, take_up
-from vibro_sweep.engine.continuation.residual import fly_through, follow
-from vibro_sweep.engine.continuation.workspace import FIRST, SECOND, THETA
+from vibro_sweep.engine.continuation.residual import follow
+from vibro_sweep.engine.continuation.workspace import FIRST, SECOND, TEST
 from vibro_sweep.engine.impulses.pairs import coarse, exchanged
 from vibro_sweep.engine.simd.jit import entry, jit
 
-FULL, EVENT, CLOSED, FAILED, FAR, LEFT, STRONG, CHATTER, TOUCH = range(9)
-# why a call ends; FAR: beyond the reach of the plane, LEFT: perhaps out of the box, STRONG: near the resonance 1:1 or
-# 1:2, CHATTER: more or fewer impacts of a chatter sequence are to be written out, TOUCH: something may vanish twice
+FULL, EVENT, CLOSED, FAILED, FAR, LEFT, CHATTER, TOUCH = range(8)
+# why a call ends; FAR: beyond the reach of the plane, LEFT: perhaps out of the box, CHATTER: more or fewer impacts of a
+# chatter sequence are to be written out, TOUCH: something may vanish twice
 MOST_CORRECTIONS = 6
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
 SHIFTED = 0.8  # of a step, where its end lies on a bifurcation by chance
@@ -47,8 +40,6 @@ MOST_SHIFTS = 5  # of one step
 BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
 EARLY = 10  # points before which a curve is not yet taken to be closed
 COARSE = 0.03  # of the longest step: to that they are shortened where they do not tell pairs of multipliers apart
-NEAR_STRONG = 0.05  # theta from 0 or pi
-LATEST, EARLIEST = 0.9, 0.4  # values of LAST and BEFORE at which another number of impacts is to be written out
 
 
 @jit
@@ -93,34 +84,11 @@ def correct(f, c, place, row, b):
         if not change <= 1.0 or not in_order(f, c, place):
             return 0
         if change < CONVERGED or (change < 1e-7 and change > 0.3 * before):
-            place.tests[RESIDUAL] = change
+            place.tests[TEST.residual] = change
             normalise(c, place)
             return count
         before = change
     return 0
-
-
-@jit
-def set_up(f, c, place, b):
-    """What tests of a corrected point need. False: singular.
-
-    Of a branch, and of a chatter sequence, the equations have changed little since the last correction.
-    """
-    if not move_to(f, place.p[FIRST], place.p[SECOND]):
-        return False
-    if c.kind == STICK or c.kind == ORBIT:
-        fly_through(f, c, place, b)
-        return True
-    return assemble(f, c, place, b)
-
-
-@jit
-def look_at(f, c, place, b):
-    """Tests and certificate of a corrected point. False: singular."""
-    if c.kind == ORBIT:
-        examine_branch(f, c, place, b)
-        return True
-    return examine(f, c, place, b)
 
 
 @jit
@@ -138,14 +106,14 @@ def walk(f, c, path, place, row, b):
     """
     a, counts, shifts = path.a, path.counts, 0
     counts[1] = counts[2] = 0
-    length = a.tests[LENGTH]
+    length = a.tests[TEST.length]
     while counts[1] < len(path.record.p):
         for j in range(2):
             if not abs(a.p[j] - f.centre[j]) <= f.reach[j]:
-                a.tests[LENGTH] = length
+                a.tests[TEST.length] = length
                 return FAR
-        if c.kind == STICK and (a.tests[LAST] > LATEST or a.tests[BEFORE] < EARLIEST):
-            a.tests[LENGTH] = length
+        if overflows(c, a):
+            a.tests[TEST.length] = length
             return CHATTER
         copy_place(a, place)
         take_row(c, a, row)
@@ -160,12 +128,11 @@ def walk(f, c, path, place, row, b):
             if length < path.shortest:
                 return FAILED
             continue
-        place.tests[LENGTH] = length
-        if c.kind != ORBIT and outside(path, place):
-            return LEFT
-        if not (set_up(f, c, place, b) and look_at(f, c, place, b)):
-            return FAILED
-        if place.tests[ON_CIRCLE] > a.tests[ON_CIRCLE] and shifts < MOST_SHIFTS:  # signs there would be rounding
+        place.tests[TEST.length] = length
+        left = outside(path, place)
+        if not (move_to(f, place.p[FIRST], place.p[SECOND]) and refresh(f, c, place, b) and examine(f, c, place, b)):
+            return LEFT if left else FAILED
+        if place.tests[TEST.on_circle] > a.tests[TEST.on_circle] and shifts < MOST_SHIFTS:  # signs would be rounding
             length *= SHIFTED
             shifts += 1
             continue
@@ -173,16 +140,11 @@ def walk(f, c, path, place, row, b):
         if length > COARSE * path.longest and hides(path, a, place, length):
             length *= 0.5
             continue
-        touching = c.kind == ORBIT and touches(path, a, place)
+        touching = touches(path, c, a, place)
         remember(path, a, length)
-        if c.kind == ORBIT:
-            if happens_on_branch(path, c, a, place):
-                return EVENT
-        elif bulges(path, c, a, place):  # the curve may leave and come back, and if not it goes on from here
+        if left or bulges(path, c, a, place):  # it may leave and come back, and if not it goes on from here
             return LEFT
-        if c.kind == TORUS and not NEAR_STRONG < place.p[THETA] < math.pi - NEAR_STRONG:
-            return STRONG
-        if c.kind != ORBIT and happens(c, a, place):
+        if happens(c, a, place):
             return EVENT
         if touching:
             return TOUCH
@@ -193,7 +155,7 @@ def walk(f, c, path, place, row, b):
         if turn < path.straight / 3 and made <= 3:
             length = min(1.5 * length, path.longest)
         copy_place(place, a)
-        a.tests[LENGTH] = length
+        a.tests[TEST.length] = length
     return FULL
 
 
@@ -250,6 +212,6 @@ def at(task, planes, c, path, place, row, b):
     if not assemble(f, c, place, b):
         return 0.0
     if task == EXAMINE or task == NEAR:
-        return 1.0 if look_at(f, c, place, b) else 0.0
+        return 1.0 if examine(f, c, place, b) else 0.0
     put_plane(f, c, b, row)
     return 1.0

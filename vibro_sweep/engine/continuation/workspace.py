@@ -4,6 +4,7 @@ Lengths are in units of the gap's size and times in units of 1/omega of the star
 The unknowns of an event are its state y before it, its phase phi and its velocity jump D: a row (n + 2), n = 2N.
 """
 
+from collections import namedtuple
 from functools import cache
 from typing import NamedTuple
 
@@ -14,12 +15,33 @@ from vibro_sweep.engine.continuation.problem import width_of
 from vibro_sweep.engine.impulses.extremes import PIECES
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.memory import new_lines, record
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, TYPES
 
 FIRST, SECOND, THETA = range(3)  # of `Place.p`: both parameters, and theta of a Neimark-Sacker curve
-TESTS = 23  # see curve_tests.py and branch_tests.py
 TERMS = 10  # of a power series in z and its conjugate, to third order
 PARAMETERS = 2  # of the oscillator that may be free
 ROWS = 3  # most scalar rows: conditions, and the plane across a tangent
+
+# What is known of each point, by name: tests of bifurcations, as their table names them, and
+#     margin, length, residual    distance of the flights from the stops, of the next step, Newton's last change
+#     last, before                time from the last impact written out, and from the one before, to the end of the
+#                                 chatter, in units of the reach of its series
+#     release                     least acceleration away from the stop after an impact with R = 0
+#     above, below, pairs         multipliers outside of the unit circle: real > 1, real < -1, complex; above is -1
+#                                 where they are not known
+#     on_circle, away             multipliers on it; the least |mu|^2 - 1 of those outside
+#     reflected, crossing         prod_i (1 + mu_i)/r, r = prod_i (1 + |mu_i|^2)^(1/2), and
+#                                 prod_{i<j} (1 - mu_i mu_j)/r^(n - 1), which poles of multipliers leave finite
+#     hold                        least acceleration into the stop during rests, and speed before them
+ALONG_BRANCHES = tuple(dict.fromkeys(one.test for one in TYPES if one.test))
+ALONG_CURVES = tuple(
+    dict.fromkeys(test for one in CODIMENSION_TWO for _, test in one.tests if test not in ("vanishes", "touches"))
+)
+OTHERS = "margin length residual last before release above below pairs on_circle away reflected crossing hold".split()
+NAMES = tuple(dict.fromkeys([*ALONG_CURVES, *ALONG_BRANCHES, *OTHERS]))
+TEST = namedtuple("Test", NAMES)(*range(len(NAMES)))  # the index of each
+BRANCH_TESTS = tuple(NAMES.index(name) for name in ALONG_BRANCHES)
+CURVE_TESTS = tuple(range(len(ALONG_CURVES)))
 
 
 class Place(NamedTuple):
@@ -32,7 +54,7 @@ class Place(NamedTuple):
     v: np.ndarray  # (K, n + 2) complex: right null vector of a critical multiplier, (xi, dphi, dD)
     w: np.ndarray  # (K + 1, n + 2) complex: left null vector, rows 1 and 2 of the event and those of the flight after
     # it; last those of xi_1 - xi_1 = 0
-    tests: np.ndarray  # (TESTS,)
+    tests: np.ndarray  # as TEST says
     multipliers: np.ndarray  # (n, 2): real and imaginary parts; on a curve but the critical one. NaN: not known
 
     @property
@@ -48,7 +70,7 @@ class Place(NamedTuple):
 
 def new_place(K: int, n: int) -> Place:
     real, vectors = [(K, n + 2), 3, (K, n + 2), 3], [np.zeros((count, n + 2), complex) for count in (K, K + 1)]
-    return Place(*map(np.zeros, real), *vectors, np.zeros(TESTS), np.full((n, 2), np.nan))
+    return Place(*map(np.zeros, real), *vectors, np.zeros(len(TEST)), np.full((n, 2), np.nan))
 
 
 @cache

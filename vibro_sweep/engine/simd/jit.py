@@ -46,7 +46,7 @@ for _kind in (types.Record, types.NamedTuple, types.NamedUniTuple):
     _kind.mangling_args = _mangling
 
 ENGINE, MODEL = Path(__file__).parents[1], Path(__file__).parents[2] / "model"
-SHARED = ("exponents.py", "status.py")  # of the model: constants and formulas that are compiled into kernels
+SHARED = "bifurcations.py", "exponents.py", "status.py"  # of the model: constants and formulas in kernels
 
 
 @functools.cache  # of the sources as they were imported

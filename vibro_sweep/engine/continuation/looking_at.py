@@ -1,0 +1,41 @@
+"""What is looked at in each point of a branch or a curve, and what happens between two of them."""
+
+from vibro_sweep.engine.continuation.branch_tests import examine_branch, happens_on_branch, touches_on_branch
+from vibro_sweep.engine.continuation.corrector import assemble
+from vibro_sweep.engine.continuation.curve_tests import examine_curve, happens_on_curve
+from vibro_sweep.engine.continuation.problem import ORBIT, STICK
+from vibro_sweep.engine.continuation.residual import fly_through
+from vibro_sweep.engine.simd.jit import jit
+
+
+@jit
+def refresh(f, c, place, b):
+    """Leave in b what tests of a corrected point need. False: singular.
+
+    Of a branch, and of a chatter sequence, the equations have changed little since the last correction.
+    """
+    if c.kind == STICK or c.kind == ORBIT:
+        fly_through(f, c, place, b)
+        return True
+    return assemble(f, c, place, b)
+
+
+@jit
+def examine(f, c, place, b):
+    """Tests and certificate of a corrected point. False: singular."""
+    if c.kind == ORBIT:
+        examine_branch(f, c, place, b)
+        return True
+    return examine_curve(f, c, place, b)
+
+
+@jit
+def happens(c, a, b):
+    """Whether something happens between two points, as far as their tests tell."""
+    return happens_on_branch(c, a, b) if c.kind == ORBIT else happens_on_curve(c, a, b)
+
+
+@jit
+def touches(path, c, a, b):
+    """Whether something may happen twice beside a, unseen by the tests."""
+    return c.kind == ORBIT and touches_on_branch(path, a, b)
