@@ -97,7 +97,7 @@ def test_a_step_that_lands_before_a_birth_by_less_than_rounding():
     for share in np.geomspace(1e-3, 0.8, 10):
         way, length = Way(walk, 1.0, *bounds, system), (1 - share) * birth
         if (b := walk.step(a, length)) is not None:
-            assert way._pass(a, b, length) == (len(way.special) == 1)
+            assert way._pass(a, b) == (len(way.special) == 1)
             assert [special.type for special in way.special] in ([], ["flip"])
             ended += len(way.special)
             for special in way.special:

@@ -1,22 +1,22 @@
-"""Where ends and bifurcations of a branch lie: the ways to find them against each other."""
+"""Where ends and bifurcations of a branch lie."""
 
-import numpy as np
 import pytest
 from support.oscillators import BALL, CAVITY, ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import locating
-from vibro_sweep.analysis.branches.special import inserted
-from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.continuation.first_point import first_place
+from vibro_sweep.analysis.continuation.start import KINDS
+from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.model.linear import Family, family_of
 
 ORBITS = [
     (PAPER.replace(b=3.0), "LR", "b", (0.3, 6.8)),
     (PAPER.replace(b=4.0), "R", "b", (3.0, 6.8)),
-    (PAPER.replace(b=1.0), "LLRR", "R", (0.7, 0.9)),
-    (PAPER.replace(b=4.0), "R", "offset", (-0.2, 0.2)),
+    (PAPER.replace(b=1.0), "LLRR", "b", (0.3, 3.0)),
+    (PAPER.replace(b=4.0), "R", "offset", (-3.0, 3.0)),
     (ONE_MASS.replace(F=0.37), "R", "b", (0.5, 1.5)),
-    (CAVITY, "LR", "b", (0.3, 0.8)),
+    (CAVITY, "LR", "b", (0.1, 4.0)),
     (BALL.replace(A=0.5), "L", "R", (0.2, 0.9)),
 ]
 IDS = [f"{itinerary}-{name}-{i}" for i, (_, itinerary, name, _) in enumerate(ORBITS)]
@@ -30,23 +30,14 @@ def orbit_of(system, itinerary):
 
 
 @pytest.mark.parametrize(("system", "itinerary", "name", "bounds"), ORBITS, ids=IDS)
-def test_ends_found_at_once_are_those_of_a_search_along_the_branch(system, itinerary, name, bounds, monkeypatch):
-    orbit = orbit_of(system, itinerary)
-    at_once = vs.continue_orbit(orbit, name, bounds)
-    used = []
-    for way in ("_at_value", "_at_touch"):
-        monkeypatch.setattr(locating, way, lambda *args: used.append(args))
-    searched = vs.continue_orbit(orbit, name, bounds)
-    assert used and [special.type for special in at_once.special] == [special.type for special in searched.special]
-    for one, other in zip(at_once.special, searched.special, strict=True):
-        apart = abs(one.parameters[name] - other.parameters[name])
-        assert apart <= max(one.error + other.error, 1e-14) < 1e-12, (one, other)
-        assert (one.stop, one.kind, one.impact, one.direction) == (
-            other.stop,
-            other.kind,
-            other.impact,
-            other.direction,
-        )
+def test_special_points_are_where_their_equations_hold(system, itinerary, name, bounds):
+    """Where a test vanishes along the branch, beside Newton's method for the orbit and the parameter at once, with the
+    equation of the bifurcation."""
+    found = [one for one in vs.continue_orbit(orbit_of(system, itinerary), name, bounds).special if one.type in KINDS]
+    assert found
+    for special in found:
+        place = first_place(Tracer(start_at(special, (name,)), (name,), [bounds]))
+        assert abs(place.p[0] - special.parameters[name]) <= max(special.error, 1e-14) < 1e-12, special
 
 
 def test_stops_that_do_not_move_in_proportion():
@@ -63,14 +54,3 @@ def test_stops_that_do_not_move_in_proportion():
     assert [one.type for one in found] == [one.type for one in expected] == ["graze", "pitchfork", "graze"]
     for one, other in zip(found, expected, strict=True):
         assert 3 * one.parameters["c"] ** 2 == pytest.approx(other.parameters["b"], abs=1e-12)
-
-
-def test_an_impact_without_speed_lies_between_its_neighbours_whatever_turn_phases_are_counted_from():
-    """The phase of the force is continuous along a branch, and so may be a turn off what the oscillator says."""
-    start = orbit_of(PAPER.replace(b=4.0), "R")._solution
-    walk = Walk(start, "omega", 0.1)
-    walk._taus[0] = (walk._taus[0][0], walk._taus[0][1] + 2 * np.pi)
-    point = walk.first(1.0)
-    touching, index = inserted(point.solution)
-    phases = walk.with_touch(point.guess, touching, index).phases
-    assert np.all(np.diff(phases) > 0) and phases[-1] - phases[0] < np.pi * start.halves

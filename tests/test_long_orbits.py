@@ -13,6 +13,7 @@ from vibro_sweep.analysis.branches.flat import orbit_at
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.windows.job import Job, window_of
+from vibro_sweep.engine.continuation.workspace import TEST
 from vibro_sweep.engine.impulses.flow import rate_slopes, rates
 from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.model.linear import family_of
@@ -69,7 +70,7 @@ def test_long_orbit_is_followed_like_the_short_one():
     point = walk.step(start, 0.01)
     found = vs.periodic_orbit(PAPER.replace(b=point.p), itinerary="R")
     assert point.solution.jumps == pytest.approx(-1.8 * found.impacts["v1"][0], rel=1e-12)
-    assert np.sign(point.reflection) == np.sign(start.reflection)
+    assert np.sign(point.guess.tests[TEST.minus]) == np.sign(start.guess.tests[TEST.minus])
 
 
 @pytest.mark.parametrize("system", [PAPER, *slow_cases(CHAIN)])

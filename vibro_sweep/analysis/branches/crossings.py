@@ -66,9 +66,9 @@ def stands_alone(a: Point, b: Point, point: Point, kind: str) -> bool:
     """
     x, at, y = counts_of(a), counts_of(point), counts_of(b)
     crossing = BY_NAME[kind].crosses
-    if x.on_circle or y.on_circle or at.on_circle != (2 if kind == "neimark_sacker" else 1) or a.solution.torus == 1.0:
+    if x.on_circle or y.on_circle or at.on_circle != np.dot(crossing, (1, 1, 2)) or a.solution.torus == 1.0:
         return True
-    if kind == "neimark_sacker" and keeps_side(point, a, b):
+    if crossing[2] and keeps_side(point, a, b):
         return False
     for side in (x, y):
         more = np.subtract(side[:3], at[:3])

@@ -4,36 +4,37 @@ import math
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.locating import Event, locate
-from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.branches.locating import Event, Test, locate
+from vibro_sweep.analysis.branches.walk import Point, Walk, along
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.continuation.branch_tests import PASSED
-from vibro_sweep.engine.impulses.pairs import ON_PAIR
-from vibro_sweep.model.bifurcations import name_of
+from vibro_sweep.engine.continuation.workspace import NAMES
+from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE
+from vibro_sweep.model.bifurcations import TYPES
 
 
 def ends_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
     """What may end the branch on the way from a, which is real, to b."""
-    events, K = [], walk.start.K
+    events = []
     for limit, side in zip(bounds, (-1, 1), strict=True):
         if (b.p - limit) * side > 0:
-            events.append(Event("limit", _beyond(limit, side, a), unknown=(-1, limit)))
-    for i in range(K):
+            events.append(Event("limit", _beyond(limit, side, a)))
+    for i in range(walk.K):
         if b.solution.pushes[i] <= 0:
             test = _positive_at(a, lambda point, i=i: point.solution.pushes[i])
-            events.append(Event("graze", test, i, unknown=None if i in walk.start.rests else (K + i, 0.0)))
+            events.append(Event("graze", test, i))
         if a.releases[i] > 0 >= b.releases[i]:
             events.append(Event("sticking", lambda point, i=i: point.releases[i], i))
     if a.stays > 0 >= b.stays:
         events.append(Event("sticking", lambda point: min(point.stays, 1.0)))
-    if b.solution.margin <= 0 < a.solution.margin or _passes(b):
-        most = 2 * abs(a.solution.margin) if math.isfinite(a.solution.margin) else 1.0
-        test = _positive_at(a, lambda point: min(point.solution.margin, most))
+    if b.margin <= 0 < a.margin or _passes(b):
+        most = 2 * abs(a.margin) if math.isfinite(a.margin) else 1.0
+        test = _positive_at(a, lambda point: min(point.margin, most))
         events.append(Event("graze", test, touches=True))
     return events
 
 
-def first_end(walk: Walk, events: list[Event], a: Point, b: Point, length: float):
+def first_end(walk: Walk, events: list[Event], a: Point, b: Point):
     """The first of these events, as `locate` gives it; None where none is found.
 
     Behind an impact that vanishes, and often behind a limit, a flight passes its stop: where none does so at the first
@@ -41,12 +42,12 @@ def first_end(walk: Walk, events: list[Event], a: Point, b: Point, length: float
     """
     located = []
     for event in sorted(events, key=lambda event: event.touches):
-        if event.touches and located and not _passes(earliest(located, length)[2]):
+        if event.touches and located and not _passes(earliest(located, along(a, b))[2]):
             break
-        found = locate(walk, event, a, b, length)
+        found = locate(walk, event, a, b)
         if found is not None:
             located.append(found)
-    return earliest(located, length) if located else None
+    return earliest(located, along(a, b)) if located else None
 
 
 def earliest(located: list, length: float):
@@ -58,27 +59,38 @@ def earliest(located: list, length: float):
 
 def _passes(point: Point) -> bool:
     """Whether a flight is beyond its stop by more than rounding."""
-    return bool(point.solution.margin < -PASSED * point.solution.size_of_gap)
+    return bool(point.margin < -PASSED * point.solution.size_of_gap)
 
 
-def _bifurcations(walk: Walk, a: Point, b: Point) -> list[Event]:
-    events = []
-    if a.tangent[-1] * b.tangent[-1] < 0:
-        events.append(Event("fold", lambda point: point.tangent[-1]))
-    if walk.start.K:
-        kind = name_of("flip", walk.start.sigma)
-        if kind and np.sign(a.reflection) * np.sign(b.reflection) < 0:
-            events.append(Event(kind, reflection_test(a, b)))
-        torus = torus_test(a, b) if np.all(b.solution.pushes > 0) else None
-        if torus is not None and torus(a) * torus(b) < 0:
-            events.append(Event("neimark_sacker", torus))
-    return events
-
-
-def bifurcations(walk: Walk, a: Point, b: Point, length: float) -> list:
+def bifurcations(walk: Walk, a: Point, b: Point) -> list:
     """What lies between a and b and ends no branch, as far as tests differ, as `locate` gives it, in order."""
-    found = [place for event in _bifurcations(walk, a, b) if (place := locate(walk, event, a, b, length)) is not None]
+    found = []
+    for name, test in tests_between(walk, a, b):
+        if np.sign(test(a)) * np.sign(test(b)) < 0 and (place := locate(walk, Event(name, test), a, b)) is not None:
+            found.append(place)
     return sorted(found, key=lambda place: place[1])
+
+
+def tests_between(walk: Walk, a: Point, b: Point, scaled: bool = False) -> list[tuple[str, Test]]:
+    """The types of the table that orbits of this branch may have between a and b, with their tests.
+
+    scaled : those of multipliers of a size that poles do not change, to tell where they are nearest to zero
+    """
+    found = []
+    for one in TYPES if walk.K else ():
+        test = test_of(one.test)
+        if one.test == "pair":
+            test = torus_test(a, b, scaled) if scaled or np.all(b.solution.pushes > 0) else None
+        elif one.test == "minus" and scaled:
+            test = reflected
+        if one.test and one.sigma in (0, walk.start.sigma) and test is not None:
+            found.append((one.name, test))
+    return found
+
+
+def test_of(name: str) -> Test:
+    """As the engine computes it at each point (engine/continuation/branch_tests.py)."""
+    return lambda point: float(point.guess.tests[NAMES.index(name)])
 
 
 def is_outside(walk: Walk, bounds, point: Point) -> bool:
@@ -103,12 +115,14 @@ def _beyond(limit: float, side: int, inside: Point):
     return test
 
 
-def reflection_test(a: Point, b: Point):
-    size = max(abs(a.reflection), abs(b.reflection))
-    return lambda point: point.reflection / size
+def reflected(point: Point) -> float:
+    """prod_i (1 + mu_i)/(1 + |mu_i|^2)^(1/2), without factors that are zero at all points."""
+    mu = point.solution.multipliers
+    factors = 1 + mu
+    return float(np.prod(factors[np.abs(factors) > ON_SQUARE]).real / np.prod(np.hypot(1, np.abs(mu))))
 
 
-def torus_test(a: Point, b: Point, scaled: bool = False):
+def torus_test(a: Point, b: Point, scaled: bool = False) -> Test | None:
     """prod_{i<j} (1 - mu_i mu_j), zero at a Neimark-Sacker point and at a neutral saddle; None without losses.
 
     Without factors that are zero both at a and at b, to rounding, as of a mode without losses that the contact does not

@@ -10,7 +10,6 @@ import numpy as np
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.continuation.workspace import Place
 from vibro_sweep.model.linear import Linear
 
 ROUNDED = 16 * np.finfo(float).eps  # of the parameter
@@ -51,9 +50,10 @@ class FreePoint:
     def solution(self) -> Solution:
         return self.walk.at(self.p)
 
-    def rounding(self, _) -> float:
-        """What rounding does to the parameter of the point."""
-        return float(ROUNDED * abs(self.p))
+    @property
+    def margin(self) -> float:
+        """Least distance from the stops."""
+        return self.solution.margin
 
 
 class FreeWalk:
@@ -93,33 +93,29 @@ class FreeWalk:
         """The point of the branch at a distance from the start."""
         return self.correct(self.of(self.start) + length, None, np.ones(1))
 
-    def between(self, a: FreePoint, b: FreePoint, share: float) -> np.ndarray:
-        return a.x + share * (b.x - a.x)
+    @property
+    def K(self) -> int:
+        return 0
 
-    def with_value(self, _guess, _index, value: float) -> np.ndarray:
-        """With another value of the unknown `index`, which is the parameter."""
-        return np.array([value])
+    def difference(self, a: FreePoint, b: FreePoint) -> np.ndarray:
+        """(1,) from a to b."""
+        return b.x - a.x
 
-    def shaken(self, guess: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """Moved by a small change."""
-        return guess + change
+    def on_chord(self, near: FreePoint, a: FreePoint, b: FreePoint, share: float, *_) -> FreePoint | None:
+        """The point at this share of the way from a to b beside a known one."""
+        return self.correct(near.x + share * (b.x - a.x), None, b.x - a.x)
+
+    def parameters(self, point: FreePoint) -> np.ndarray:
+        """(1,)."""
+        return np.array([point.p])
+
+    def rounding(self, point: FreePoint, _) -> float:
+        """What rounding does to the parameter of a point."""
+        return float(ROUNDED * abs(point.p))
 
     def of(self, solution: Solution) -> np.ndarray:
         """A guess that is this motion."""
         return np.array([solution.family.numbers[self.name] / self.unit])
-
-    def with_impact(self, touching: Solution) -> Walk:
-        """The same for orbits with one impact more."""
-        return Walk(touching, self.name, self.unit)
-
-    def with_touch(self, guess: np.ndarray, touching: Solution, _) -> Place | None:
-        """The guess with one impact more, that of `touching`, which has no speed."""
-        family = self.family.replace(**{self.name: float(guess[0] * self.unit)})
-        return self.with_impact(touching).of(replace(touching, family=family))
-
-    def without_touch(self, place: Place, _) -> np.ndarray:
-        """A guess of a walk with one impact more, without that."""
-        return place.p[:1] / self.unit
 
 
 def walk_of(start: Solution, name: str, span: float) -> Walk | FreeWalk:

@@ -1,24 +1,22 @@
 """Where to look between two points of a branch for what their tests do not show."""
 
 import math
-from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
 
 from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_torus, stands_alone
-from vibro_sweep.analysis.branches.events import is_outside, torus_test
+from vibro_sweep.analysis.branches.events import is_outside, tests_between
+from vibro_sweep.analysis.branches.locating import Test
 from vibro_sweep.analysis.branches.response import touching
-from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.branches.walk import Point, Walk, along
 from vibro_sweep.engine.continuation.branch_tests import FARTHER
-from vibro_sweep.engine.impulses.pairs import ON_SQUARE
-from vibro_sweep.model.bifurcations import name_of
+from vibro_sweep.model.bifurcations import BY_NAME
 
 SHARES = (0.5, 0.4, 0.6, 0.3)  # of the way to the next point, where the first lies on a bifurcation by chance
 APART = 1e-9  # share of a step: bifurcations that are nearer to each other are not separated
 CLOSE = 1e-6  # share of a step: so near to an end of the branch
 MOST_LOOKS = 8  # for one extremum
-Test = Callable[[Point], float]
 
 
 def hidden_between(walk: Walk, bounds, a: Point, b: Point, found: list, beside: tuple) -> Point | None:
@@ -27,9 +25,9 @@ def hidden_between(walk: Walk, bounds, a: Point, b: Point, found: list, beside: 
     found : bifurcations between a and b, as `locate` gives them, in order
     beside : the points before a and behind b, None where they are not known
     """
-    if walk.start.K == 0:
+    if walk.K == 0:
         return touching(walk, a, b)
-    length = float((b.x - a.x) @ a.tangent)
+    length = along(a, b)
     for _, at, point, _ in found:
         if at < (1 - CLOSE) * length and is_outside(walk, bounds, point):
             return point
@@ -50,18 +48,19 @@ def hidden_between(walk: Walk, bounds, a: Point, b: Point, found: list, beside: 
 
 def _are_all(walk: Walk, a: Point, b: Point, found: list) -> bool:
     """Whether nothing but these bifurcations, at one place, lies between a and b, as far as a and b tell."""
-    crossed = [(event.type, point) for event, _, point, _ in found if event.type != "neimark_sacker" or is_torus(point)]
+    at = [(event.type, point) for event, _, point, _ in found if any(BY_NAME[event.type].crosses)]
+    crossed = [(kind, point) for kind, point in at if not BY_NAME[kind].crosses[2] or is_torus(point)]
     if not explained(a, b, [kind for kind, _ in crossed]):
         return False
     if len(crossed) == 1 and not stands_alone(a, b, crossed[0][1], crossed[0][0]):
         return False
     types = {place[0].type for place in found}
-    return all((test(a) * test(b) < 0) == (kind in types) for kind, test in _crossing(walk, a, b))
+    return all((test(a) * test(b) < 0) == (kind in types) for kind, test in tests_between(walk, a, b, scaled=True))
 
 
 def _middle(walk: Walk, a: Point, b: Point, found: list) -> Point | None:
     """A point on the longer side of what was found, with no multiplier on the circle by chance."""
-    length = float((b.x - a.x) @ a.tangent)
+    length = along(a, b)
     at = found[0][1] if found else 0.0
     low, high = (at, length) if at < length / 2 else (0.0, at)
     for share in SHARES:
@@ -74,7 +73,7 @@ def _middle(walk: Walk, a: Point, b: Point, found: list) -> Point | None:
 def _divided(walk: Walk, places: list[Point], found: list) -> Point | None:
     """A point beside a bifurcation at which another test has the other sign than before and behind it."""
     for (event, _, _, _), a, c, b in zip(found, places, places[1:], places[2:], strict=False):
-        for kind, test in _crossing(walk, a, b):
+        for kind, test in tests_between(walk, a, b, scaled=True):
             if kind != event.type and test(a) * test(c) < 0 and test(c) * test(b) < 0:
                 return _with_sign(walk, test, c, b)
     return None
@@ -82,7 +81,7 @@ def _divided(walk: Walk, places: list[Point], found: list) -> Point | None:
 
 def _with_sign(walk: Walk, test: Test, c: Point, b: Point) -> Point | None:
     """A point between c and b at which the test has the sign that it has at c."""
-    length = float((b.x - c.x) @ c.tangent)
+    length = along(c, b)
     for k in range(1, 40):
         point = walk.step(c, length * 0.5**k)
         if point is None or test(point) * test(c) > 0:
@@ -90,35 +89,22 @@ def _with_sign(walk: Walk, test: Test, c: Point, b: Point) -> Point | None:
     return None
 
 
-def _crossing(walk: Walk, a: Point, b: Point) -> list[tuple[str, Test]]:
-    """Tests that vanish where multipliers cross the circle, of a size that poles do not change."""
-    torus = torus_test(a, b, scaled=True)
-    kind = name_of("flip", walk.start.sigma)
-    tests = [("fold", lambda point: float(point.tangent[-1])), *([(kind, _flip)] if kind else [])]
-    return tests if torus is None else [*tests, ("neimark_sacker", torus)]
-
-
-def _flip(point: Point) -> float:
-    """prod_i (1 + mu_i)/(1 + |mu_i|^2)^(1/2), without factors that are zero at all points."""
-    mu = point.solution.multipliers
-    factors = 1 + mu
-    return float(np.prod(factors[np.abs(factors) > ON_SQUARE]).real / np.prod(np.hypot(1, np.abs(mu))))
-
-
 def _touched(walk: Walk, beside: tuple, places: list[Point], found: list) -> Point | None:
     """A point between the first and the last of `places` at which a test has changed its sign, to change it again."""
     a, b = places[0], places[-1]
     K, pushing = walk.start.K, a.solution.pushes > 0
     pushing[list(walk.start.rests)] = False
-    tests = [test for kind, test in _crossing(walk, a, b) if kind not in {place[0].type for place in found}]
-    tests += [lambda point: point.solution.margin]
+    tests = [
+        test for kind, test in tests_between(walk, a, b, scaled=True) if kind not in {place[0].type for place in found}
+    ]
+    tests += [lambda point: point.margin]
     seen = [point for point in (beside[0], *places, beside[1]) if point is not None]
     for test in tests:
         for triple in zip(seen, seen[1:], seen[2:], strict=False):
             point = _beyond_extremum(walk, test, a, b, triple)
             if point is not None:
                 return point
-    sides, length = np.array(walk.start.sides), float((b.x - a.x) @ a.tangent)
+    sides, length = np.array(walk.start.sides), along(a, b)
     slopes = [-sides * point.tangent[K : 2 * K] for point in (a, b)]
     for i in np.flatnonzero(pushing & (slopes[0] < 0) & (slopes[1] > 0) & (b.solution.pushes > 0)):
         middle = walk.step(a, length * _least(a, b, K + i))
@@ -141,8 +127,8 @@ def _least(a: Point, b: Point, i: int) -> float:
 
 def _beyond_extremum(walk: Walk, test: Test, a: Point, b: Point, triple) -> Point | None:
     """The extremum of a test near the middle one of three points, if it lies between a and b with another sign."""
-    seen = [(float((point.x - a.x) @ a.tangent), test(point)) for point in triple]
-    middle, length = triple[1], float((b.x - a.x) @ a.tangent)
+    seen = [(along(a, point), test(point)) for point in triple]
+    middle, length = triple[1], along(a, b)
     for _ in range(MOST_LOOKS):
         (r, x), (s, y), (t, z) = seen
         at = extremum(s - r, t - s, x, y, z)

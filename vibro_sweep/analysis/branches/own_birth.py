@@ -7,10 +7,10 @@ pitchfork. On the branch itself that point is singular, so it is located on the 
 import numpy as np
 
 from vibro_sweep.analysis.branches.crossings import counts_of
-from vibro_sweep.analysis.branches.events import reflection_test
+from vibro_sweep.analysis.branches.events import test_of
 from vibro_sweep.analysis.branches.free_walk import walk_of
 from vibro_sweep.analysis.branches.locating import Event, locate
-from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.branches.walk import Point, Walk, along
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.pairs import ON_SQUARE
 from vibro_sweep.model.bifurcations import name_of
@@ -21,7 +21,7 @@ LANDS = 0.3  # of what tells the halves apart before a step, at its end
 APART = 4.0  # times its rounding: so far a point lies from a birth at least, to be told from it
 
 
-def own_birth(walk: Walk, a: Point, b: Point, length: float):
+def own_birth(walk: Walk, a: Point, b: Point):
     """(distance from a, event, point of the parent's branch, error) of the birth between a and b; None without one."""
     for sigma in (1, -1):
         parts = [halves_apart(point.solution, sigma) for point in (a, b)]
@@ -31,9 +31,9 @@ def own_birth(walk: Walk, a: Point, b: Point, length: float):
         if not parts[0] @ parts[1] < -0.5 * sizes[0] * sizes[1]:
             continue
         fraction = sizes[0] / sum(sizes)
-        found = _on_parent(walk, walk.solution(walk.between(a, b, fraction)), sigma)
+        found = _on_parent(walk, walk.solution(walk.tracer.between(a.guess, b.guess, fraction)), sigma)
         if found is not None:
-            return fraction * length, *found
+            return fraction * along(a, b), *found
     return None
 
 
@@ -64,7 +64,7 @@ def over_birth(walk: Walk, a: Point) -> tuple[Point, Point] | None:
             continue
         distance = float(here @ here / (here @ (here - there)))
         b = walk.step(a, 2 * distance) if distance < NEAR else None
-        birth = None if b is None else own_birth(walk, a, b, 2 * distance)
+        birth = None if b is None else own_birth(walk, a, b)
         if birth is not None:
             return b, birth[2]
     return None
@@ -93,9 +93,9 @@ def _on_parent(walk: Walk, whole: Solution, sigma: int):
     first = beside.first(1.0)
     kind, reach = name_of("flip", sigma), 1e-6
     while kind and first is not None and reach < 0.05:
-        ends = [beside.step(first, sign * reach) for sign in (-1, 1)]
-        if None not in ends and ends[0].reflection * ends[1].reflection < 0:
-            found = locate(beside, Event(kind, reflection_test(*ends)), *ends, 2 * reach)
+        event, ends = Event(kind, test_of("minus")), [beside.step(first, sign * reach) for sign in (-1, 1)]
+        if None not in ends and event.test(ends[0]) * event.test(ends[1]) < 0:
+            found = locate(beside, event, *ends)
             return None if found is None else (found[0], *found[2:])
         reach *= 4
     return None

@@ -4,14 +4,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.walk import Point
+from vibro_sweep.analysis.branches.walk import Point, along
 from vibro_sweep.engine.impulses import pairs
 
 
 def coarse(before: Point | None, a: Point, b: Point) -> bool:
     """Whether a step is too long to tell if a pair of multipliers crosses the unit circle twice from a to b."""
     known = [point for point in (before, a, b) if point is not None]
-    lengths = [float((y.x - x.x) @ x.tangent) for x, y in pairwise(known)]
+    lengths = [along(x, y) for x, y in pairwise(known)]
     return pairs.coarse(_parts(before or a), _parts(a), _parts(b), lengths[0] if before else 0.0, lengths[-1])
 
 

@@ -6,8 +6,8 @@ Where Z^-1 Z' times the step is small, X follows its tangent within the step, an
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.locating import zero_between
 from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.continuation.chord import root
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap, steady_gap_slopes
 from vibro_sweep.model.linear import dynamic_stiffness
 
@@ -37,9 +37,9 @@ def touching(walk: Walk, a: Point, b: Point) -> Point | None:
     forwards = a.tangent[-1]
     for side in (1, -1):
         if _distance(a, side)[1] * forwards < 0 < _distance(b, side)[1] * forwards:
-            point = zero_between(walk, lambda point, side=side: _distance(point, side)[1], a, b)
-            if point is not None and point.solution.margin < 0:
-                return point
+            found = root(walk, a, b, lambda point, side=side: _distance(point, side)[1])
+            if found is not None and found[1].margin < 0:
+                return found[1]
     return None
 
 

@@ -4,13 +4,11 @@ Distances along a branch are measured over phases, over impulses in units of ome
 the parameter in that of its range.
 """
 
-from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.first_point import first_direction, guess_of
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied
@@ -40,6 +38,11 @@ class Point:
         self.held = self.guess.p[0] = value
         self.__dict__.pop("solution", None)
 
+    def touch(self, index: int) -> None:
+        """The impact `index` vanishes, to the last bit."""
+        self.guess.jumps[index] = 0.0
+        self.__dict__.pop("solution", None)
+
     def backwards(self) -> "Point":
         """The same point of the branch in the other direction."""
         return Point(self.walk, self.walk.turned(self.guess), self.held)
@@ -66,12 +69,12 @@ class Point:
 
     def rounding(self, normal: np.ndarray) -> float:
         """What rounding of the equations does to the parameter of the point, found on the plane with this normal."""
-        return rounding_error(self.walk.tracer, self.guess, np.append(normal, [0.0, 0.0]))
+        return self.walk.rounding(self, np.append(normal, [0.0, 0.0]))
 
     @property
-    def reflection(self) -> float:
-        """det G(-1), zero at a flip (pitchfork)."""
-        return float(self.guess.tests[TEST.minus])
+    def margin(self) -> float:
+        """Least distance of the flights from the stops."""
+        return float(self.guess.tests[TEST.margin] * self.walk.tracer.units.length)
 
     @cached_property
     def releases(self) -> np.ndarray:
@@ -84,6 +87,11 @@ class Point:
         return float(
             min(self.guess.jumps[list(self.walk.start.rests)].min(initial=np.inf), self.guess.tests[TEST.hold])
         )
+
+
+def along(a: Point, b: Point) -> float:
+    """How far b lies ahead of a, along the tangent there."""
+    return float((b.x - a.x) @ a.tangent)
 
 
 class Walk:
@@ -102,12 +110,6 @@ class Walk:
     def oscillators(self, values: np.ndarray) -> list[Linear]:
         """At values of the parameter that points of the branch have."""
         return [self.family.replace(**{self.name: p}).linear for p in values.tolist()]
-
-    def with_impact(self, touching: Solution) -> "Walk":
-        """The same for orbits with one impact more."""
-        longer = copy(self)
-        longer.start, longer.tracer = touching, self.tracer.through(touching)
-        return longer
 
     def correct(self, guess: Place, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
         """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""
@@ -172,28 +174,26 @@ class Walk:
             return None
         return self.correct(self.tracer.moved(guess, length), row[:-2], row[:-2])
 
-    def between(self, a: Point, b: Point, share: float) -> Place:
-        """On the cubic through a and b with their tangents."""
-        rest, length, w = 1 - share, float(np.linalg.norm(b.x - a.x)), self.tracer
-        guess = w.shifted(a.guess, a.guess, b.guess, share**2 * (1 + 2 * rest))
-        guess = w.moved(guess, share * rest**2 * length, a.guess)
-        return w.moved(guess, -(share**2) * rest * length, b.guess)
+    @property
+    def K(self) -> int:
+        return self.start.K
 
-    def with_value(self, guess: Place, index: int, value: float) -> Place:
-        """With another value of the unknown `index`, of those by which points are measured."""
-        K = self.start.K
-        unknowns = [*((guess.x, (i, -2)) for i in range(K)), *((guess.x, (i, -1)) for i in range(K)), (guess.p, 0)]
-        values, place = unknowns[index]
-        values[place] = value * (self.unit if values is guess.p else 1.0)
-        return guess
+    def difference(self, a: Point, b: Point) -> np.ndarray:
+        """(2K + 3,) from a to b."""
+        return self.tracer.difference(a.guess, b.guess)
 
-    def shaken(self, guess: Place, change: np.ndarray) -> Place:
-        """Moved by a small change of what points are measured by."""
-        K, other = self.start.K, copied(guess)
-        other.phases[:] += change[:K]
-        other.jumps[:] += change[K:-1]
-        other.p[0] += change[-1] * self.unit
-        return other
+    def on_chord(self, near: Point, a: Point, b: Point, share: float, row: np.ndarray, exact: bool) -> Point | None:
+        """The point on the plane across `row` at this share of the chord from a to b beside a known point."""
+        place = self.tracer.on_chord(near.guess, a.guess, b.guess, share, row, exact)
+        return place and Point(self, place)
+
+    def parameters(self, point: Point) -> np.ndarray:
+        """(1,)."""
+        return np.array([point.p])
+
+    def rounding(self, point: Point, row: np.ndarray) -> float:
+        """What rounding of the equations does to the parameter of a point on the plane across `row`."""
+        return self.tracer.rounding(point.guess, row)
 
     def of(self, solution: Solution) -> Place | None:
         """A guess that is this orbit."""
@@ -223,14 +223,6 @@ class Walk:
         guess = self.tracer.moved(point.guess, 1.0)
         guess.p[0] = point.p
         return self.solution(guess)
-
-    def with_touch(self, guess: Place, touching: Solution, index: int) -> Place:
-        """The guess with one event more, the impact `index` of `touching`, which has no speed."""
-        return self.tracer.with_event(guess, touching, index, self.tau(touching.family.numbers[self.name]))
-
-    def without_touch(self, place: Place, index: int) -> Place:
-        """The place of a walk with one impact more, without that."""
-        return self.tracer.without_event(place, index)
 
     def releases(self, place: Place) -> np.ndarray:
         """`Point.releases`."""

@@ -19,7 +19,7 @@ from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_
 from vibro_sweep.analysis.branches.response import longest_step
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
 from vibro_sweep.analysis.branches.track import Rows, Track, join, row_of
-from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.branches.walk import Point, Walk, along
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
@@ -94,7 +94,7 @@ class Way:
             before = self._point_before(track) if reason == stepper.TOUCH else None
             if before is not None and self._again(before, a, b):
                 return
-            if self._pass(a, b, float((b.x - a.x) @ a.tangent), beside=(before, None)):
+            if self._pass(a, b, beside=(before, None)):
                 return
             track.accept(a, b)
         self.special.append(self._at("failed", a or self.first, math.nan))
@@ -109,10 +109,7 @@ class Way:
             if turn > STRAIGHT or (length > stepper.COARSE * LONGEST_STEP and coarse(before, a, b)):
                 length /= 2
                 continue
-            if self._pass(a, b, length, beside=(before, None)):
-                return
-            if passed >= stepper.EARLY and self._comes_back(a, length):
-                self._close()
+            if self._pass(a, b, beside=(before, None)):
                 return
             if turn < STRAIGHT / 3 and b.corrections <= 5:
                 length = min(1.5 * length, LONGEST_STEP)
@@ -135,7 +132,7 @@ class Way:
         kept, a, b = found
         self.rows = [kept]
         del self.special[how_many_on(kept, self.special) :]
-        if not self._pass(a, b, float((b.x - a.x) @ a.tangent)):
+        if not self._pass(a, b):
             self.special.append(self._at("failed", a, math.nan))
         return True
 
@@ -153,7 +150,7 @@ class Way:
         else:
             _, rows, special = self._passed
             del self.rows[rows:], self.special[special:]
-        return self._pass(before, a, float((a.x - before.x) @ before.tangent), beside=(None, b))
+        return self._pass(before, a, beside=(None, b))
 
     def _tell(self, passed: int, value: float) -> None:
         if self.progress is not None:
@@ -169,12 +166,7 @@ class Way:
     def _add_solution(self, p: float, s: Solution) -> None:
         self.rows.append(row_of(p, s, self.frame))
 
-    def _comes_back(self, a: Point, length: float) -> bool:
-        offset = self.first.x - a.x
-        along = offset @ a.tangent
-        return 0 <= along <= length and float(np.linalg.norm(offset - along * a.tangent)) < 0.1 * length
-
-    def _pass(self, a: Point, b: Point, length: float, beside=(None, None)) -> bool:
+    def _pass(self, a: Point, b: Point, beside=(None, None)) -> bool:
         """Record what lies between a and b, and b. True where the branch ends there.
 
         beside : the points before a and behind b, None where they are not known
@@ -183,35 +175,36 @@ class Way:
         self._divisions = DIVISIONS
         over = lands_on_birth(self.walk, a, b)
         if over is not None:
-            b, length, beside = over, float((over.x - a.x) @ a.tangent), (beside[0], None)
-        return self._divide(a, b, length, beside)
+            b, beside = over, (beside[0], None)
+        return self._divide(a, b, beside)
 
-    def _divide(self, a: Point, b: Point, length: float, beside) -> bool:
+    def _divide(self, a: Point, b: Point, beside) -> bool:
         """`_pass`, in as many parts as it takes until tests at their ends tell what lies in them."""
         ends = ends_between(self.walk, self.bounds, a, b)
-        end = first_end(self.walk, ends, a, b, length)
+        end = first_end(self.walk, ends, a, b)
         if ends and end is None:  # what follows is no motion
             self.special.append(self._at("failed", a, math.nan))
             return True
-        last, reach = (end[2], end[1]) if end else (b, length)
-        birth = own_birth(self.walk, a, last, reach)
+        last, reach = (end[2], end[1]) if end else (b, along(a, b))
+        if end and end[0].type == "graze" and end[0].index is not None:
+            last.touch(end[0].index)
+        birth = own_birth(self.walk, a, last)
         before = None
         if birth:
             before = before_birth(self.walk, a, birth[0], birth[2])
         elif end and end[0].type == "graze" and end[0].index is not None:
             before = self.walk.step(a, (1 - BEFORE) * reach, last.guess)
-        found = [] if birth else bifurcations(self.walk, a, last, reach)
+        found = [] if birth else bifurcations(self.walk, a, last)
         if before is not None:
             known = {place[0].type for place in found}
-            found += [place for place in bifurcations(self.walk, a, before, reach) if place[0].type not in known]
+            found += [place for place in bifurcations(self.walk, a, before) if place[0].type not in known]
             found.sort(key=lambda place: place[1])
-        if self._divisions and length > SHORTEST_STEP and (before or not birth):
+        if self._divisions and along(a, b) > SHORTEST_STEP and (before or not birth):
             behind = None if end or birth else beside[1]
             c = hidden_between(self.walk, self.bounds, a, before or last, found, (beside[0], behind))
             if c is not None:
                 self._divisions -= 1
-                one, other = (float((y.x - x.x) @ x.tangent) for x, y in ((a, c), (c, b)))
-                return self._divide(a, c, one, (beside[0], b)) or self._divide(c, b, other, (a, beside[1]))
+                return self._divide(a, c, (beside[0], b)) or self._divide(c, b, (a, beside[1]))
         if self._bifurcate(found):
             return True
         if birth:
@@ -254,7 +247,7 @@ class Way:
 
     def _end(self, event: Event, point: Point, error: float) -> SpecialPoint:
         if event.type != "graze":
-            return self._at(event.type, point, error)
+            return self._at(event.type, point, 0.0 if event.type == "limit" else error)
         index = event.index
         if index is not None:  # of those that vanish at once the first
             first = orbit_of(None, point.solution)._canonical_frame[0]

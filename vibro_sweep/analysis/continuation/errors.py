@@ -1,22 +1,26 @@
 """By how much rounding moves the parameters of a point: what the inverse of the Jacobian makes of that of each row."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.problem import STICK, conditions, unknowns
 from vibro_sweep.engine.continuation.workspace import Place
+
+if TYPE_CHECKING:
+    from vibro_sweep.analysis.continuation.tracer import Tracer
 
 DIGITS = 8 * np.finfo(float).eps  # of the parameters themselves
 ROWS = 2 * np.finfo(float).eps  # of the size of each row
 
 
-def rounding_error(tracer: Tracer, place: Place, row: np.ndarray) -> float:
+def rounding_error(tracer: "Tracer", place: Place, row: np.ndarray) -> float:
     """Of the parameters of a point on the plane across `row`."""
     return float(DIGITS * np.abs(place.p[:2]).max() + ROWS * sensitivity(tracer, place, row))
 
 
-def sensitivity(tracer: Tracer, place: Place, row: np.ndarray) -> float:
+def sensitivity(tracer: "Tracer", place: Place, row: np.ndarray) -> float:
     """By how much a parameter moves, on the plane across `row`, where each equation is off by its own size."""
     if not tracer.assemble(place, row):
         return 0.0

@@ -4,13 +4,14 @@ from copy import copy as copy_object
 
 import numpy as np
 
+from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.oscillators import Oscillators, Units
 from vibro_sweep.analysis.continuation.start import Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import path, stepper
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, unknowns
-from vibro_sweep.engine.continuation.workspace import TEST, Place, new_bench, new_place
+from vibro_sweep.engine.continuation.workspace import TEST, Place, new_bench
 from vibro_sweep.model.linear import Family, forcing_period
 
 MOST_CORRECTIONS = 20
@@ -57,13 +58,6 @@ class Tracer:
         self.problem = Problem(kind, start.index, sides, rests, float(s.sigma), count, self.unit, repeats, mirrors)
         self.bench = new_bench(K, self.n)
         self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
-
-    def through(self, solution: Solution) -> "Tracer":
-        """For a branch of orbits with other impacts, of the same oscillator."""
-        other = copy_object(self)
-        other.start = Start("orbit", solution)
-        other._take_sides(solution.sides)
-        return other
 
     def resized(self, K: int) -> "Tracer":
         """For the same curve with K impacts: without the last, or with more on the same stop."""
@@ -173,21 +167,6 @@ class Tracer:
         guess.p[:] += length * along.tangent_p * [*self.problem.unit, 1.0]
         return guess
 
-    def with_event(self, place: Place, solution: Solution, index: int, tau: float) -> Place:
-        """A guess with one event more: impact `index` of an orbit near it, without speed; tau: as of `solution`."""
-        longer, q = new_place(self.K + 1, self.n), self.planes[0]
-        phase = solution.family.linear.omega * solution.times[index] + tau
-        state = solution.states[index, : self.n] / self.state_units - (q["Z"] * np.exp(1j * phase)).real
-        longer.x[:] = np.insert(place.x, index, [*state, phase, 0.0], axis=0)
-        longer.p[:] = place.p
-        return longer
-
-    def without_event(self, place: Place, index: int) -> Place:
-        """A place of a tracer with one event more, without that."""
-        shorter = new_place(self.K, self.n)
-        shorter.x[:], shorter.p[:] = np.delete(place.x, index, axis=0), place.p
-        return shorter
-
     def taken_apart(self, place: Place, first: np.ndarray, parameters: np.ndarray) -> np.ndarray:
         """(2 K + 3,) phases, jumps, parameters of a change with this xi_1, after `assemble`."""
         null = self.bench.work[0]["null"]
@@ -231,6 +210,18 @@ class Tracer:
                 return place if self.take(place) and self.do(stepper.EXAMINE, place) else None
             before = change
         return None
+
+    def on_chord(self, near: Place, a: Place, b: Place, share: float, row: np.ndarray, exact: bool) -> Place | None:
+        """The point on the plane across `row` at this share of the chord from a to b beside a known point."""
+        return self.correct(self.shifted(near, a, b, share), row, exact)
+
+    def parameters(self, place: Place) -> np.ndarray:
+        """(1,) or (2,)."""
+        return place.p[: len(self.names)]
+
+    def rounding(self, place: Place, row: np.ndarray) -> float:
+        """What rounding of the equations does to the parameters of a point on the plane across `row`."""
+        return rounding_error(self, place, row)
 
     def between(self, a: Place, b: Place, share: float) -> Place:
         """On the chord."""

@@ -7,11 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.analysis.continuation.chord import error_of, root
 from vibro_sweep.analysis.continuation.start import CONDITIONS
 from vibro_sweep.analysis.continuation.tracer import Tracer
-from vibro_sweep.analysis.curves.chord import root
 from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
-from vibro_sweep.analysis.curves.errors import error_of
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import GRAZE, TORUS
 from vibro_sweep.engine.continuation.workspace import CURVE_TESTS, NAMES, TEST, THETA, Place

@@ -8,8 +8,8 @@ import numpy as np
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, written_out
+from vibro_sweep.analysis.continuation.chord import root
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied, copy
-from vibro_sweep.analysis.curves.chord import root
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
 from vibro_sweep.analysis.curves.events import Event, beside, found_between, found_to_edge, without_echoes
 from vibro_sweep.analysis.curves.rows import Rows, join
@@ -184,18 +184,11 @@ class Way:
 
     def _at_limit(self, a: Place, b: Place, j: int, limit: float) -> Place | None:
         """Where a parameter is at its limit."""
-        w = self.tracer
-        guess = w.between(a, b, (limit - a.p[j]) / (b.p[j] - a.p[j]))
-        guess.p[j] = limit
-        place = w.correct(guess, w.axis(j)) or self._across(a, b, j, limit)
-        if place is not None:
-            place.p[j] = limit
-        return place
-
-    def _across(self, a: Place, b: Place, j: int, limit: float) -> Place | None:
-        """The same, where the curve is nearly parallel to that side of the box."""
         found = root(self.tracer, a, b, lambda place: (place.p[j] - limit) / np.ptp(self.tracer.box[j]))
-        return found and found[1]
+        if found is None:
+            return None
+        found[1].p[j] = limit
+        return found[1]
 
     def _ends(self, a: Place, b: Place, inside: bool) -> bool:
         """Whether the curve ends: its pair meets at 1 or -1 ahead of b, or its orbit is born between a and b.

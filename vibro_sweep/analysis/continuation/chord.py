@@ -1,0 +1,145 @@
+"""Where a test vanishes between two points of a branch or a curve: on planes across the chord between them.
+
+A `Line` is what the points lie on: a `Tracer` and its places, or a branch (`Walk`, `FreeWalk`) and its points.
+"""
+
+from collections.abc import Callable
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+from scipy.optimize import brentq
+
+MANY = 60  # impacts of a long orbit
+ROUNDING = 1e-15  # of tests, in their units
+ASIDE = 1e-7  # of a chord: a zero found by polynomials is exact to far less
+LEAST = 1e-14  # of a chord, far below what rounding of tests leaves of a zero
+NOISE = 1e-11  # of a chord: nearer to a zero rounding of a test may lie
+COARSE = 1e3  # times both, of orbits of many impacts: their tests round by more, and each point takes long
+STEPS = 4
+BESIDE = (-3e-12, -1e-12, 1e-12, 3e-12)  # of a chord: beside the zero, so near that only rounding differs
+TIMES = 6.0  # the largest difference between locations
+
+
+P = TypeVar("P")  # a point
+
+
+class Line(Protocol[P]):
+    """A solution set."""
+
+    K: int
+
+    def difference(self, a: P, b: P) -> np.ndarray:
+        """From a to b, over what distances are measured by."""
+
+    def on_chord(self, near: P, a: P, b: P, share: float, row: np.ndarray, exact: bool) -> P | None:
+        """The point on the plane across `row` that lies this share of the chord from a to b beside a known one."""
+
+    def parameters(self, point: P) -> np.ndarray:
+        """The free numbers."""
+
+    def rounding(self, point: P, row: np.ndarray) -> float:
+        """What rounding of the equations does to them on that plane."""
+
+
+def root(line: Line[P], a: P, b: P, test: Callable[[P], float]) -> tuple[float, P] | None:
+    """(share of the chord from a to b, point) where the test, of size 1, vanishes."""
+    chord = Chord(line, a, b, test)
+    try:
+        if chord.value(0.0) * chord.value(1.0) > 0:
+            return None
+        share = chord.near_zero()
+        if share is None:
+            share = brentq(chord.value, 0.0, 1.0, xtol=chord.coarse * LEAST, rtol=1e-15, maxiter=100)
+            chord.value(share)
+    except (ArithmeticError, RuntimeError):
+        return None
+    return share, chord.seen[share]
+
+
+class Chord(Generic[P]):
+    """A test along the line between a and b, over shares of the chord. ArithmeticError where there is no point."""
+
+    def __init__(self, line: Line[P], a: P, b: P, test: Callable[[P], float]):
+        self.line, self.a, self.b, self.test = line, a, b, test
+        change = line.difference(a, b)
+        self.row = change / np.linalg.norm(change)
+        self.coarse = COARSE if line.K >= MANY else 1.0
+        self.seen = {0.0: a, 1.0: b}
+
+    def value(self, share: float) -> float:
+        if share not in self.seen:
+            self.seen[share] = self._point(share, self.seen, exact=True)
+        found = self.test(self.seen[share])
+        return found if abs(found) > ROUNDING else 0.0  # or the search may creep where rounding has one sign
+
+    def near_zero(self) -> float | None:
+        """The zero, by Newton's method from that of the polynomials; None where that does not find it."""
+        seen = dict(self.seen)
+
+        def rough(share: float) -> float:
+            if share not in seen:
+                seen[share] = self._point(share, seen, exact=False)
+            return self.test(seen[share])
+
+        try:
+            begin = brentq(rough, 0.0, 1.0, xtol=ASIDE / 100, maxiter=100)
+            beside = begin + (ASIDE if begin < 0.5 else -ASIDE)
+            slope = (rough(beside) - rough(begin)) / (beside - begin)
+            if begin not in self.seen:
+                self.seen[begin] = self._point(begin, seen, exact=True)
+            return self._refined(begin, slope) if slope else None
+        except (ArithmeticError, RuntimeError, ValueError):
+            return None
+
+    def _refined(self, begin: float, slope: float) -> float | None:
+        """The zero near `begin`, as far as rounding of the test lets it be told."""
+        zero = begin
+        for _ in range(STEPS):
+            left = self.value(zero)
+            if abs(left) <= self.coarse * LEAST * abs(slope):
+                break
+            moved = zero - left / slope
+            if not (0.0 <= moved <= 1.0 and abs(moved - begin) <= ASIDE):
+                return None
+            if not abs(self.value(moved)) < 0.5 * abs(left):
+                break
+            zero = moved
+        return zero if abs(self.value(zero)) <= self.coarse * NOISE * abs(slope) else None
+
+    def at(self, share: float, exact: bool = True) -> P:
+        """The point at a share of the chord, without keeping it."""
+        return self._point(share, self.seen, exact)
+
+    def _point(self, share: float, seen: dict[float, P], exact: bool) -> P:
+        near = min(seen, key=lambda other: abs(other - share))
+        point = self.line.on_chord(seen[near], self.a, self.b, share - near, self.row, exact)
+        if point is None:
+            raise ArithmeticError
+        return point
+
+
+def error_of(line: Line[P], a: P, b: P, test: Callable[[P], float], share: float, point: P) -> float | None:
+    """Of the parameters of a zero at a share of the chord from a to b; None: there are no points beside it.
+
+    Rounding of the equations moves the line, and rounding of the test moves its zero along the line. The second is seen
+    in several locations that round differently.
+    """
+    chord = Chord(line, a, b, test)
+    chord.seen[share] = point
+    try:
+        apart = np.abs(estimates(chord, share) - line.parameters(point))
+    except ArithmeticError:
+        return None
+    return float(TIMES * apart[np.isfinite(apart)].max(initial=0.0) + line.rounding(point, chord.row))
+
+
+def estimates(chord: Chord, share: float) -> np.ndarray:
+    """(m, parameters) of the zero at `share` as points beside it tell them, with slopes of the polynomials; not finite
+    where these have none. Raises ArithmeticError."""
+    aside = share + (ASIDE if share < 0.5 else -ASIDE)
+    near, far = (chord.at(s, exact=False) for s in (share, aside))
+    beside = [chord.at(share + step) for step in BESIDE]
+    tests, p = (np.array([of(point) for point in beside]) for of in (chord.test, chord.line.parameters))
+    change = chord.line.parameters(far) - chord.line.parameters(near)
+    with np.errstate(all="ignore"):
+        return p - np.outer(tests / np.float64(chord.test(far) - chord.test(near)), change)
