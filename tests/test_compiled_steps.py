@@ -104,7 +104,7 @@ def test_tests_have_the_signs_of_the_precise_ones(system, itinerary, name, bound
                 assert n[TEST.pair] == pytest.approx(
                     x.solution.torus, rel=1e-6, abs=1e-9 * np.abs(x.solution.multipliers).max()
                 )
-            assert n[TEST.rate] == pytest.approx(x.tangent[-1], rel=1e-6, abs=1e-9)
+            assert n[TEST.rate] == pytest.approx(x.rate, rel=1e-6, abs=1e-9)
             mu = x.solution.multipliers
             out, real = np.abs(mu) > 1, mu.imag == 0
             assert n[TEST.above] == np.count_nonzero(out & real & (mu.real > 0))

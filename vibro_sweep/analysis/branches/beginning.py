@@ -57,7 +57,7 @@ def is_special(point: Point) -> bool:
     s = point.solution
     mu = s.multipliers
     i, j = np.triu_indices(len(mu), 1)
-    zeros = [abs(point.tangent[-1]), np.abs(mu + 1).min()]
+    zeros = [abs(point.rate), np.abs(mu + 1).min()]
     if len(mu) > 2 and point.solution.torus != 1.0:
         zeros.append(np.abs(1 - mu[i] * mu[j]).min())
     return min(zeros) < NEAR or not is_real(point, TOUCHES)

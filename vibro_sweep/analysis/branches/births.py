@@ -53,13 +53,13 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
     dt, dD, de = critical[:K], critical[K : 2 * K], critical[2 * K :]
     change = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])
     change /= np.linalg.norm(change)
-    normal, rests = np.append(change[: 4 * K], 0.0), np.array(twice.rests, int)
+    normal, rests = np.append(change[: 4 * K], [0.0, 0.0, 0.0]), np.array(twice.rests, int)
     normal[2 * K + rests] = change[4 * K :] - change[rests]  # walks measure lengths of rests
     for amplitude in amplitudes:
         moved = twice.u.copy()
         moved[: 2 * size] += amplitude * change * units[: 2 * size]
         guess = walk.of(replace(twice, u=moved))
-        point = guess and walk.correct(guess, normal, normal)
+        point = guess and walk.correct(guess, normal)
         yield point and point.solution
 
 

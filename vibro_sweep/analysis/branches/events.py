@@ -18,13 +18,13 @@ def ends_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
     events = []
     for limit, side in zip(bounds, (-1, 1), strict=True):
         if (b.p - limit) * side > 0:
-            events.append(Event("limit", _beyond(limit, side, a)))
+            events.append(Event("limit", _beyond(limit, side, a), limit=limit))
     for i in range(walk.K):
         if b.solution.pushes[i] <= 0:
             test = _positive_at(a, lambda point, i=i: point.solution.pushes[i])
             events.append(Event("graze", test, i))
         if a.releases[i] > 0 >= b.releases[i]:
-            events.append(Event("sticking", lambda point, i=i: point.releases[i], i))
+            events.append(Event("sticking", lambda point, i=i: point.releases[i]))
     if a.stays > 0 >= b.stays:
         events.append(Event("sticking", lambda point: min(point.stays, 1.0)))
     if b.margin <= 0 < a.margin or _passes(b):
@@ -54,7 +54,7 @@ def earliest(located: list, length: float):
     """Of ends at the same place the impact that vanishes: behind it the motion passes the stop, which looks alike."""
     first = min(found[1] for found in located)
     same = [found for found in located if found[1] <= first + 1e-7 * length]
-    return min(same, key=lambda found: (found[0].index is None, found[1]))
+    return min(same, key=lambda found: (found[0].vanishes is None, found[1]))
 
 
 def _passes(point: Point) -> bool:

@@ -51,6 +51,11 @@ class FreePoint:
         return self.walk.at(self.p)
 
     @property
+    def rate(self) -> float:
+        """Of the parameter, in its unit."""
+        return float(self.tangent[0])
+
+    @property
     def margin(self) -> float:
         """Least distance from the stops."""
         return self.solution.margin
@@ -69,7 +74,7 @@ class FreeWalk:
     def at(self, p: float) -> Solution:
         return replace(self.start, family=self.family.replace(**{self.name: p}))
 
-    def correct(self, guess: np.ndarray, _, forwards: np.ndarray) -> FreePoint | None:
+    def correct(self, guess: np.ndarray, forwards: np.ndarray) -> FreePoint | None:
         """The point of the branch at `guess`; None where there is no such motion."""
         point = FreePoint(self, guess, np.sign(forwards))
         try:
@@ -80,18 +85,18 @@ class FreeWalk:
 
     def first(self, forwards: float) -> FreePoint | None:
         """`start` itself; `forwards`: sign of the parameter's change."""
-        point = self.correct(self.of(self.start), None, np.array([forwards]))
+        point = self.correct(self.of(self.start), np.array([forwards]))
         if point is not None:
             point.hold(self.family.numbers[self.name])
         return point
 
     def step(self, point: FreePoint, length: float, _=None) -> FreePoint | None:
         """The point of the branch at a distance along the tangent at `point`."""
-        return self.correct(point.x + length * point.tangent, None, point.tangent)
+        return self.correct(point.x + length * point.tangent, point.tangent)
 
     def beside_start(self, length: float) -> FreePoint | None:
         """The point of the branch at a distance from the start."""
-        return self.correct(self.of(self.start) + length, None, np.ones(1))
+        return self.correct(self.of(self.start) + length, np.ones(1))
 
     @property
     def K(self) -> int:
@@ -103,7 +108,11 @@ class FreeWalk:
 
     def on_chord(self, near: FreePoint, a: FreePoint, b: FreePoint, share: float, *_) -> FreePoint | None:
         """The point at this share of the way from a to b beside a known one."""
-        return self.correct(near.x + share * (b.x - a.x), None, b.x - a.x)
+        return self.correct(near.x + share * (b.x - a.x), b.x - a.x)
+
+    def at_value(self, a: FreePoint, b: FreePoint, value: float) -> FreePoint | None:
+        """The point where the parameter has this value, which lies between those of a and b."""
+        return self.correct(np.array([value / self.unit]), b.x - a.x)
 
     def parameters(self, point: FreePoint) -> np.ndarray:
         """(1,)."""

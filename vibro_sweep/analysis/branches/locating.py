@@ -7,6 +7,7 @@ from vibro_sweep.analysis.branches.free_walk import FreePoint, FreeWalk
 from vibro_sweep.analysis.branches.walk import Point, Walk, along
 from vibro_sweep.analysis.continuation.chord import error_of, root
 
+ROUNDED = 1e-9  # of a step, by which rounding may put an event behind its end
 Test = Callable[[Point | FreePoint], float]
 
 
@@ -14,13 +15,15 @@ Test = Callable[[Point | FreePoint], float]
 class Event:
     """Something that a step from a to b passes: the type, and a test that changes its sign there.
 
-    index : of the impact that it belongs to, if any
+    vanishes : index of the impact that vanishes there, if one does
+    limit : of the parameter, where it is that
     touches : whether a flight touches a stop there
     """
 
     type: str
     test: Test
-    index: int | None = None
+    vanishes: int | None = None
+    limit: float | None = None
     touches: bool = False
 
 
@@ -29,6 +32,10 @@ def locate(walk: Walk | FreeWalk, event: Event, a: Point, b: Point):
 
     The distance is that along the tangent at a.
     """
+    point = None if event.limit is None else walk.at_value(a, b, event.limit)
+    if point is not None and 0 <= along(a, point) <= (1 + ROUNDED) * along(a, b):
+        point.hold(event.limit)
+        return event, along(a, point), point, 0.0
     size = max(abs(event.test(a)), abs(event.test(b)))
     if size == 0:
         return None
@@ -38,4 +45,11 @@ def locate(walk: Walk | FreeWalk, event: Event, a: Point, b: Point):
 
     found = root(walk, a, b, test)
     error = found and error_of(walk, a, b, test, *found)
-    return None if error is None else (event, along(a, found[1]), found[1], error)
+    if error is None:
+        return None
+    point = found[1]
+    if event.limit is not None:
+        point.hold(event.limit)
+    elif event.vanishes is not None:
+        point.touch(event.vanishes)
+    return event, along(a, point), point, error

@@ -46,11 +46,11 @@ def before_birth(walk: Walk, a: Point, distance: float, parent: Point) -> Point 
     most = _ones(parent.solution.multipliers**2) - 1
     for share in BEFORE:
         point = walk.step(a, (1 - share) * distance)
-        if point is None or abs(point.p - parent.p) < APART * point.rounding(point.tangent):
+        if point is None or abs(point.p - parent.p) < APART * point.rounding:
             continue
         if _ones(point.solution.multipliers) <= most:
             turned = (counts_of(point).above - counts_of(a).above) % 2 == 1
-            if turned == (a.tangent[-1] * point.tangent[-1] < 0):
+            if turned == (a.rate * point.rate < 0):
                 return point
     return None
 
@@ -76,7 +76,7 @@ def lands_on_birth(walk: Walk, a: Point, b: Point) -> Point | None:
         parts = [halves_apart(point.solution, sigma) for point in (a, b)]
         if all(part is not None for part in parts) and np.linalg.norm(parts[1]) < LANDS * np.linalg.norm(parts[0]):
             over = over_birth(walk, a)
-            if over is not None and abs(b.p - over[1].p) < APART * b.rounding(b.tangent):
+            if over is not None and abs(b.p - over[1].p) < APART * b.rounding:
                 return over[0]
     return None
 

@@ -34,7 +34,7 @@ def touching(walk: Walk, a: Point, b: Point) -> Point | None:
     """The point between a and b, which stay inside, at which the motion is farthest beyond a stop."""
     if a.solution.is_free or min(a.solution.margin, b.solution.margin) <= 0:
         return None
-    forwards = a.tangent[-1]
+    forwards = a.rate
     for side in (1, -1):
         if _distance(a, side)[1] * forwards < 0 < _distance(b, side)[1] * forwards:
             found = root(walk, a, b, lambda point, side=side: _distance(point, side)[1])

@@ -119,12 +119,11 @@ class Track:
 
     def point(self, place: Place) -> Point | None:
         """The same point, corrected with the oscillator itself."""
-        direction = self.tracer.direction(place)[:-2]
-        return self.walk.correct(copied(place), direction, direction)
+        return self.walk.correct(copied(place), self.tracer.direction(place))
 
     def point_of(self, rows: Rows) -> Point | None:
         """The last of recorded points, which lies before the place a."""
-        return self._corrected(rows, self.tracer.direction(self.a)[:-2])
+        return self._corrected(rows, self.tracer.direction(self.a))
 
     def point_behind(self, rows: Rows) -> Point | None:
         """The last of two or more points; forwards is from the one before."""
@@ -134,7 +133,7 @@ class Track:
 
     def _corrected(self, rows: Rows, direction: np.ndarray) -> Point | None:
         guess = self.walk.of(self._solution(rows, -1))
-        return guess and self.walk.correct(guess, direction, direction)
+        return guess and self.walk.correct(guess, direction)
 
     def _solution(self, rows: Rows, i: int) -> Solution:
         s, walk = self.walk.start, self.walk

@@ -49,14 +49,19 @@ class Point:
 
     @property
     def x(self) -> np.ndarray:
-        """(2K + 1,)."""
-        place, walk = self.guess, self.walk
-        return np.concatenate([place.phases, place.jumps, place.p[:1] / walk.unit])
+        """(2K + 3,): as `tangent`, the last two 0."""
+        place = self.guess
+        return np.concatenate([place.phases, place.jumps, [place.p[0] / self.walk.unit, 0.0, 0.0]])
 
     @property
     def tangent(self) -> np.ndarray:
-        """(2K + 1,) unit tangent."""
-        return self.walk.tracer.direction(self.guess)[:-2]
+        """(2K + 3,) unit tangent: phases, impulses, the parameter in its unit."""
+        return self.walk.tracer.direction(self.guess)
+
+    @property
+    def rate(self) -> float:
+        """Of the parameter, in its unit."""
+        return float(self.guess.tangent_p[0])
 
     @cached_property
     def solution(self) -> Solution:
@@ -67,9 +72,10 @@ class Point:
         """The last change of Newton's method."""
         return self.solution.change
 
-    def rounding(self, normal: np.ndarray) -> float:
-        """What rounding of the equations does to the parameter of the point, found on the plane with this normal."""
-        return self.walk.rounding(self, np.append(normal, [0.0, 0.0]))
+    @property
+    def rounding(self) -> float:
+        """What rounding of the equations does to the parameter of the point, on the plane across the tangent."""
+        return self.walk.rounding(self, self.tangent)
 
     @property
     def margin(self) -> float:
@@ -111,14 +117,11 @@ class Walk:
         """At values of the parameter that points of the branch have."""
         return [self.family.replace(**{self.name: p}).linear for p in values.tolist()]
 
-    def correct(self, guess: Place, normal: np.ndarray, forwards: np.ndarray) -> Point | None:
-        """The point of the branch on the plane through `guess` with this normal; None if Newton's method fails."""
-        place = self.tracer.correct(guess, np.append(normal, [0.0, 0.0]))
-        if place is None:
-            return None
-        if self.tracer.direction(place)[:-2] @ forwards < 0:
-            place = self.turned(place)
-        return Point(self, place)
+    def correct(self, guess: Place, row: np.ndarray) -> Point | None:
+        """The point on the plane through `guess` across `row`, to which its tangent leads; None if Newton's method
+        fails."""
+        place = self.tracer.correct(guess, row)
+        return place and Point(self, place)
 
     def turned(self, place: Place) -> Place:
         """The same place with its tangent backwards."""
@@ -144,19 +147,17 @@ class Walk:
             guess = guess_of(self.tracer)
         except ValueError:
             return None
-        axis = np.zeros(2 * self.start.K + 1)
-        axis[-1] = 1.0
-        point = guess and (self.correct(guess, axis, axis) or self._across(guess, axis))
+        point = guess and (self.correct(guess, self.tracer.axis(0)) or self._across(guess))
         if point is None or np.abs(point.x - Point(self, guess).x).max() > STILL:
             return None
         point.hold(self.family.numbers[self.name])
         return point
 
-    def _across(self, guess: Place, axis: np.ndarray) -> Point | None:
+    def _across(self, guess: Place) -> Point | None:
         """The start on the plane across its tangent, where impacts are so slow that the parameter hardly tells them."""
         speeds = np.abs(self.start.jumps)
         row = first_direction(self.tracer, guess) if speeds.min() < SLOW * speeds.max() else None
-        return None if row is None else self.correct(guess, row[:-2], axis)
+        return None if row is None else self.correct(guess, np.copysign(1.0, row[-3]) * row)
 
     def step(self, point: Point, length: float, near: Place | None = None) -> Point | None:
         """The point of the branch whose projection on the tangent at `point` is `length`; near: a guess."""
@@ -164,7 +165,7 @@ class Walk:
         if near is not None:
             length -= float(tangent @ (Point(self, near).x - point.x))
         guess = self.tracer.moved(near or point.guess, length, point.guess)
-        return self.correct(guess, tangent, tangent)
+        return self.correct(guess, tangent)
 
     def beside_start(self, length: float) -> Point | None:
         """The point of the branch at a distance from the start, also where that is a fold."""
@@ -172,7 +173,7 @@ class Walk:
         row = guess and first_direction(self.tracer, guess)
         if row is None:
             return None
-        return self.correct(self.tracer.moved(guess, length), row[:-2], row[:-2])
+        return self.correct(self.tracer.moved(guess, length), row)
 
     @property
     def K(self) -> int:
@@ -185,6 +186,11 @@ class Walk:
     def on_chord(self, near: Point, a: Point, b: Point, share: float, row: np.ndarray, exact: bool) -> Point | None:
         """The point on the plane across `row` at this share of the chord from a to b beside a known point."""
         place = self.tracer.on_chord(near.guess, a.guess, b.guess, share, row, exact)
+        return place and Point(self, place)
+
+    def at_value(self, a: Point, b: Point, value: float) -> Point | None:
+        """The point between a and b where the parameter has this value."""
+        place = self.tracer.at_value(a.guess, b.guess, 0, value)
         return place and Point(self, place)
 
     def parameters(self, point: Point) -> np.ndarray:

@@ -186,13 +186,11 @@ class Way:
             self.special.append(self._at("failed", a, math.nan))
             return True
         last, reach = (end[2], end[1]) if end else (b, along(a, b))
-        if end and end[0].type == "graze" and end[0].index is not None:
-            last.touch(end[0].index)
         birth = own_birth(self.walk, a, last)
         before = None
         if birth:
             before = before_birth(self.walk, a, birth[0], birth[2])
-        elif end and end[0].type == "graze" and end[0].index is not None:
+        elif end and end[0].vanishes is not None:
             before = self.walk.step(a, (1 - BEFORE) * reach, last.guess)
         found = [] if birth else bifurcations(self.walk, a, last)
         if before is not None:
@@ -210,8 +208,6 @@ class Way:
         if birth:
             self._birth(*birth[1:])
             return True
-        if end and end[0].type == "limit":
-            last.hold(min(self.bounds, key=lambda limit: abs(limit - last.p)))
         self._add(last)
         if end:
             self.special.append(self._end(end[0], last, end[3]))
@@ -247,8 +243,8 @@ class Way:
 
     def _end(self, event: Event, point: Point, error: float) -> SpecialPoint:
         if event.type != "graze":
-            return self._at(event.type, point, 0.0 if event.type == "limit" else error)
-        index = event.index
+            return self._at(event.type, point, error)
+        index = event.vanishes
         if index is not None:  # of those that vanish at once the first
             first = orbit_of(None, point.solution)._canonical_frame[0]
             index = min(vanishing(point.solution, index).tolist(), key=lambda i: (i - first) % point.solution.K)

@@ -154,6 +154,13 @@ class Tracer:
         guess.p[axis] = value
         return self.correct(guess, self.axis(axis))
 
+    def at_value(self, a: Place, b: Place, axis: int, value: float) -> Place | None:
+        """The point between a and b where the parameter `axis` has this value, which lies between theirs."""
+        change = b.p[axis] - a.p[axis]
+        guess = self.between(a, b, (value - a.p[axis]) / change)
+        guess.p[axis] = value
+        return self.correct(guess, np.sign(change) * self.axis(axis))
+
     def axis(self, parameter: int) -> np.ndarray:
         """The plane on which a parameter (or theta) is held."""
         row = np.zeros(2 * self.K + 3)

@@ -124,10 +124,10 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
 def _with_amplitude(guess: Solution, change: np.ndarray, name: str) -> Solution | None:
     """The orbit near a guess with its amplitude in the direction `change`; the parameter is found with it."""
     walk = Walk(guess, name, size_of(guess, name))
-    row = np.append(change / guess.units[: len(change)], 0.0)
+    row = np.append(change / guess.units[: len(change)], [0.0, 0.0, 0.0])
     row /= np.linalg.norm(row)
     place = walk.of(guess)
-    point = place and walk.correct(place, row, row)
+    point = place and walk.correct(place, row)
     return point and point.solution
 
 

@@ -176,19 +176,19 @@ class Way:
             self.special.append(self._at("failed", a, np.nan))
             return
         place = min(found, key=lambda one: max((one.p[j] - limit) * side for j, limit, side in sides))
-        sign = np.sign(w.direction(a) @ w.direction(place)) or 1.0
-        place.tangent[:] *= sign
-        place.tangent_p[:] *= sign
         if not self._ends(a, place, False) and self._pass(a, place):
             self.special.append(self._at("limit", place, 0.0))
 
     def _at_limit(self, a: Place, b: Place, j: int, limit: float) -> Place | None:
-        """Where a parameter is at its limit."""
-        found = root(self.tracer, a, b, lambda place: (place.p[j] - limit) / np.ptp(self.tracer.box[j]))
-        if found is None:
-            return None
-        found[1].p[j] = limit
-        return found[1]
+        """Where a parameter is at its limit; the curve may be nearly parallel to that side of the box."""
+        w = self.tracer
+        place = w.at_value(a, b, j, limit)
+        if place is None:
+            found = root(w, a, b, lambda place: (place.p[j] - limit) / np.ptp(w.box[j]))
+            place = found and found[1]
+        if place is not None:
+            place.p[j] = limit
+        return place
 
     def _ends(self, a: Place, b: Place, inside: bool) -> bool:
         """Whether the curve ends: its pair meets at 1 or -1 ahead of b, or its orbit is born between a and b.
