@@ -193,6 +193,8 @@ class Way:
         elif end and end[0].vanishes is not None:
             before = self.walk.step(a, (1 - BEFORE) * reach, last.guess)
         found = [] if birth else bifurcations(self.walk, a, last)
+        if end and end[0].limit is not None:  # where rounding does not tell them from the end they may lie beyond it
+            found = [place for place in found if abs(place[2].p - last.p) > place[3]]
         if before is not None:
             known = {place[0].type for place in found}
             found += [place for place in bifurcations(self.walk, a, before) if place[0].type not in known]
