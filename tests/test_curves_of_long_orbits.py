@@ -6,8 +6,8 @@ from support.drawn_branches import drawn_oscillator
 from support.random_switching import attractor
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.continuation import chord
 from vibro_sweep.analysis.continuation.tracer import Tracer
-from vibro_sweep.analysis.curves import chord
 
 SEED = [1, 840]
 

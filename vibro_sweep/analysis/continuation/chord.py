@@ -18,6 +18,7 @@ COARSE = 1e3  # times both, of orbits of many impacts: their tests round by more
 STEPS = 4
 BESIDE = (-3e-12, -1e-12, 1e-12, 3e-12)  # of a chord: beside the zero, so near that only rounding differs
 TIMES = 6.0  # the largest difference between locations
+OF_TESTS = 3.5  # times what rounding of the equations does, where rounding of a test comes to it
 
 
 P = TypeVar("P")  # a point
@@ -122,15 +123,20 @@ def error_of(line: Line[P], a: P, b: P, test: Callable[[P], float], share: float
     """Of the parameters of a zero at a share of the chord from a to b; None: there are no points beside it.
 
     Rounding of the equations moves the line, and rounding of the test moves its zero along the line. The second is seen
-    in several locations that round differently.
+    in several locations that round differently; it is not added, so that most errors are the same from whichever start.
     """
     chord = Chord(line, a, b, test)
     chord.seen[share] = point
     try:
-        apart = np.abs(estimates(chord, share) - line.parameters(point))
+        apart = estimates(chord, share) - line.parameters(point)
     except ArithmeticError:
         return None
-    return float(TIMES * apart[np.isfinite(apart)].max(initial=0.0) + line.rounding(point, chord.row))
+    scatter = 0.0
+    if np.isfinite(apart).all():
+        steps, apart = np.append(BESIDE, 0.0), np.vstack([apart, np.zeros_like(apart[:1])])
+        slope, mean = np.polyfit(steps, apart, 1)  # by which that of the test is wrong
+        scatter = np.abs(apart - np.outer(steps, slope) - mean).max()
+    return float(max(TIMES * scatter, OF_TESTS * line.rounding(point, chord.row)))
 
 
 def estimates(chord: Chord, share: float) -> np.ndarray:
