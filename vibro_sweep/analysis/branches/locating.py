@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from vibro_sweep.analysis.branches.free_walk import FreePoint, FreeWalk
 from vibro_sweep.analysis.branches.walk import Point, Walk, along
 from vibro_sweep.analysis.continuation.chord import error_of, root
@@ -44,12 +46,14 @@ def locate(walk: Walk | FreeWalk, event: Event, a: Point, b: Point):
         return event.test(point) / size
 
     found = root(walk, a, b, test)
-    error = found and error_of(walk, a, b, test, *found)
-    if error is None:
+    if found is None:
         return None
-    point = found[1]
+    share, point = found
     if event.limit is not None:
         point.hold(event.limit)
-    elif event.vanishes is not None:
+    if event.vanishes is not None:  # one of the unknowns has a value: no test rounds
         point.touch(event.vanishes)
-    return event, along(a, point), point, error
+        error = walk.rounding(point, np.eye(1, len(point.x), walk.K + event.vanishes)[0])
+    else:
+        error = error_of(walk, a, b, test, share, point)
+    return None if error is None else (event, along(a, point), point, error)

@@ -17,8 +17,8 @@ NOISE = 1e-11  # of a chord: nearer to a zero rounding of a test may lie
 COARSE = 1e3  # times both, of orbits of many impacts: their tests round by more, and each point takes long
 STEPS = 4
 BESIDE = (-3e-12, -1e-12, 1e-12, 3e-12)  # of a chord: beside the zero, so near that only rounding differs
-TIMES = 6.0  # the largest difference between locations
-OF_TESTS = 3.5  # times what rounding of the equations does, where rounding of a test comes to it
+TIMES = 5.0  # the largest difference between locations
+OF_TESTS = 3.0  # times what rounding of the equations does, where rounding of a test comes to it
 
 
 P = TypeVar("P")  # a point

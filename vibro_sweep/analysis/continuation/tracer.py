@@ -163,9 +163,7 @@ class Tracer:
 
     def axis(self, parameter: int) -> np.ndarray:
         """The plane on which a parameter (or theta) is held."""
-        row = np.zeros(2 * self.K + 3)
-        row[2 * self.K + parameter] = 1.0
-        return row
+        return np.eye(1, 2 * self.K + 3, 2 * self.K + parameter)[0]
 
     def moved(self, place: Place, length: float, along: Place | None = None) -> Place:
         """A guess on the tangent, or on one parallel to that at another place."""
