@@ -17,9 +17,9 @@ from support.branches import repeated
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.branches.branch_way import LONGEST_STEP, SHORTEST_STEP, STRAIGHT
 from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.branches.way import LONGEST_STEP, SHORTEST_STEP, STRAIGHT
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution

@@ -8,11 +8,11 @@ from support.same_branch import follow
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.beginning import start_of_walk
+from vibro_sweep.analysis.branches.branch_way import Way
 from vibro_sweep.analysis.branches.own_birth import halves_apart
 from vibro_sweep.analysis.branches.passed_births import passed
 from vibro_sweep.analysis.branches.track import Rows
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.branches.way import Way
 from vibro_sweep.analysis.windows.stretch import stable_end
 
 TURNED = vs.Oscillator.named(

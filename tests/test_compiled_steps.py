@@ -7,9 +7,9 @@ from support.branches import repeated
 from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.branches.branch_way import FIRST_STEP, LONGEST_STEP, SHORTEST_STEP, STRAIGHT
 from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.branches.way import FIRST_STEP, LONGEST_STEP, SHORTEST_STEP, STRAIGHT
 from vibro_sweep.analysis.continuation.first_point import guess_of
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit

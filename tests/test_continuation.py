@@ -10,7 +10,7 @@ from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
 from support.random_branches import random_oscillator, random_system
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import way
+from vibro_sweep.analysis.branches import branch_way
 from vibro_sweep.analysis.branches.free_walk import walk_of
 
 B_STAR = 6.7057167409730219272  # |e_1.(K - omega^2 M + i omega C)^-1 P| in 40 digits
@@ -105,7 +105,7 @@ def test_special_points_do_not_depend_on_the_step(symmetric_branch, one_sided_br
 
 def undivided(orbit, name, bounds, factor, monkeypatch):
     """Types on the branch if no step is divided in which more happens than its tests tell."""
-    monkeypatch.setattr(way, "DIVISIONS", 0)
+    monkeypatch.setattr(branch_way, "DIVISIONS", 0)
     with other_steps(factor):
         return [special.type for special in vs.continue_orbit(orbit, name, bounds).special]
 

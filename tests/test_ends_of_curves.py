@@ -9,7 +9,7 @@ from support.random_branches import attractors, random_oscillator
 import vibro_sweep as vs
 from vibro_sweep.analysis.continuation import tracer
 from vibro_sweep.analysis.continuation.oscillators import BEYOND, Oscillators, Units
-from vibro_sweep.analysis.curves import way
+from vibro_sweep.analysis.curves import curve_way
 from vibro_sweep.model.linear import family_of
 
 NAMES, BOX = ("b", "omega"), ((0.3, 9), (0.5, 0.8))
@@ -154,6 +154,6 @@ def test_an_impact_that_vanishes_on_a_virtual_stretch_is_left_out(monkeypatch):
     special = curves.start_of_curve(record)
     monkeypatch.setattr(tracer, "LONGEST_STEP", 2 * tracer.LONGEST_STEP)
     monkeypatch.setattr(tracer, "STRAIGHT", 2 * tracer.STRAIGHT)
-    monkeypatch.setattr(way, "FIRST_STEP", 2 * way.FIRST_STEP)
+    monkeypatch.setattr(curve_way, "FIRST_STEP", 2 * curve_way.FIRST_STEP)
     curve = vs.bifurcation_curve(special, tuple(record["names"]), record["box"])
     assert [one.type for one in curve.special] == ["limit", "resonant_graze", "resonance_1_4"]

@@ -7,7 +7,7 @@ from support.drawn_branches import Case
 from support.same_branch import follow
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.events import torus_test
+from vibro_sweep.analysis.branches.branch_events import torus_test
 from vibro_sweep.engine.impulses import pairs
 
 

@@ -7,7 +7,7 @@ from vibro_sweep.analysis.branches.continuation import Branch
 from vibro_sweep.analysis.branches.generations import Followed
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.continuation import BifurcationCurve
-from vibro_sweep.analysis.curves.way import CurvePoint
+from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.periodic.lcp import Born
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.single.discontinuity import DiscontinuityMap

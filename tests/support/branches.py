@@ -9,7 +9,7 @@ from reference.shooting import Shooting
 
 import vibro_sweep as vs
 from support.oscillators import PAPER
-from vibro_sweep.analysis.branches import way
+from vibro_sweep.analysis.branches import branch_way
 from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import contact_coordinates
@@ -30,7 +30,7 @@ def same_points(branch, expected, tolerance=1e-12):
 @contextmanager
 def other_steps(factor):
     """Branches are followed by steps `factor` times as long as they are otherwise. Compiled steps are seen to do so."""
-    longest, straight, first = way.LONGEST_STEP, way.STRAIGHT, way.Way.first_step
+    longest, straight, first = branch_way.LONGEST_STEP, branch_way.STRAIGHT, branch_way.Way.first_step
     begin, seen = Track.__init__, set()
 
     def watched(track, point, walk, bounds, origin, length, steps):
@@ -38,9 +38,9 @@ def other_steps(factor):
         seen.add((steps[0], steps[2], length))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(way, "LONGEST_STEP", factor * longest)
-        patch.setattr(way, "STRAIGHT", factor * straight)
-        patch.setattr(way.Way, "first_step", factor * first)
+        patch.setattr(branch_way, "LONGEST_STEP", factor * longest)
+        patch.setattr(branch_way, "STRAIGHT", factor * straight)
+        patch.setattr(branch_way.Way, "first_step", factor * first)
         patch.setattr(Track, "__init__", watched)
         yield
     assert seen == {(factor * longest, factor * straight, factor * first)}

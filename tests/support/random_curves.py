@@ -13,8 +13,8 @@ import numpy as np
 import vibro_sweep as vs
 from support.curves import chosen, solution_at
 from support.random_branches import attractors, random_system
+from vibro_sweep.analysis.branches.branch_way import stop_and_impact
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.continuation import tracer
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 

@@ -7,7 +7,7 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.drawn_branches import Case
-from vibro_sweep.analysis.branches import way
+from vibro_sweep.analysis.branches import branch_way
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows import stretch
 
@@ -27,7 +27,8 @@ def steps(factor: float):
     The first step is bound to the class when it is made: there it is changed.
     """
     places = (
-        (way, "LONGEST_STEP"), (way, "STRAIGHT"), (way.Way, "first_step"), (stretch.StableWay, "first_step"),
+        (branch_way, "LONGEST_STEP"), (branch_way, "STRAIGHT"), (branch_way.Way, "first_step"),
+        (stretch.StableWay, "first_step"),
     )  # fmt: skip
     kept = [(place, name, getattr(place, name)) for place, name in places]
     for place, name, value in kept:

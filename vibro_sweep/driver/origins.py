@@ -11,9 +11,9 @@ from vibro_sweep.analysis.branches.flat import special_point
 from vibro_sweep.analysis.branches.seeds import Seed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import switch
+from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.curves.flat import point_of_codimension_two
 from vibro_sweep.analysis.curves.switching import switch as curves_through
-from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.lcp import born_at_grazing
 from vibro_sweep.analysis.periodic.orbit import STATUS, PeriodicOrbit, orbit_of

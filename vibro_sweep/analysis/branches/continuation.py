@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.branches.beginning import NoStartError, changes_rests, start_of_walk
 from vibro_sweep.analysis.branches.branch_points import dataset
+from vibro_sweep.analysis.branches.branch_way import Way
 from vibro_sweep.analysis.branches.free_walk import walk_of
 from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.sticking import sticking_onset
 from vibro_sweep.analysis.branches.track import Rows, join, row_of
 from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.branches.way import Way
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.model.arguments import check_call, check_type, checked_interval, checked_word

@@ -5,8 +5,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch_events import is_outside, tests_between
 from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_torus, stands_alone
-from vibro_sweep.analysis.branches.events import is_outside, tests_between
 from vibro_sweep.analysis.branches.locating import Test
 from vibro_sweep.analysis.branches.response import touching
 from vibro_sweep.analysis.branches.walk import Point, Walk, along

@@ -6,8 +6,8 @@ pitchfork. On the branch itself that point is singular, so it is located on the 
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch_events import test_of
 from vibro_sweep.analysis.branches.crossings import counts_of
-from vibro_sweep.analysis.branches.events import test_of
 from vibro_sweep.analysis.branches.free_walk import walk_of
 from vibro_sweep.analysis.branches.locating import Event, locate
 from vibro_sweep.analysis.branches.walk import Point, Walk, along

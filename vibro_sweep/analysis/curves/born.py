@@ -31,9 +31,9 @@ from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.curves.pair import in_time, rates_of_pair, second_order
 from vibro_sweep.analysis.curves.start import as_special
-from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.workspace import THETA, Place

@@ -18,7 +18,7 @@ from vibro_sweep.analysis.branches.special import bare, inserted
 from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.start import CONDITIONS, Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
-from vibro_sweep.analysis.curves.events import Found, event_near
+from vibro_sweep.analysis.curves.curve_events import Found, event_near
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import FOLD, GRAZE, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA, Place

@@ -9,7 +9,7 @@ from vibro_sweep.analysis.branches.flat import Flat, solution_of
 from vibro_sweep.analysis.branches.torus import critical_angle
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.curves.continuation import BifurcationCurve
-from vibro_sweep.analysis.curves.way import CurvePoint
+from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import GRAZE

@@ -13,8 +13,8 @@ from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.born import born, box_around
+from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.curves.start import as_special, slow_impacts
-from vibro_sweep.analysis.curves.way import CurvePoint
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution

@@ -1,11 +1,11 @@
 """The stretch of a branch on which its orbit is stable: to the first special point either way."""
 
 from vibro_sweep.analysis.branches.beginning import start_of_walk
+from vibro_sweep.analysis.branches.branch_way import Way
 from vibro_sweep.analysis.branches.continuation import Branch
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import mirrored
 from vibro_sweep.analysis.branches.track import Rows, join
-from vibro_sweep.analysis.branches.way import Way
 from vibro_sweep.analysis.continuation.start import keeps_symmetry
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 

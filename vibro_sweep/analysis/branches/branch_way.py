@@ -8,8 +8,8 @@ import numpy as np
 
 from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.births import criticality, doubled
+from vibro_sweep.analysis.branches.branch_events import bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.crossings import is_torus
-from vibro_sweep.analysis.branches.events import bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.free_walk import FreePoint
 from vibro_sweep.analysis.branches.locating import Event
 from vibro_sweep.analysis.branches.looking import hidden_between

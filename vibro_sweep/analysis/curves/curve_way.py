@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch_way import stop_and_impact
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
-from vibro_sweep.analysis.branches.way import stop_and_impact
 from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.continuation.chord import root
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied, copy
+from vibro_sweep.analysis.curves.curve_events import Event, beside, found_between, found_to_edge, without_echoes
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
-from vibro_sweep.analysis.curves.events import Event, beside, found_between, found_to_edge, without_echoes
 from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.continuation import stepper
