@@ -77,10 +77,10 @@ def test_long_orbit_is_followed_like_the_short_one():
 def test_newton_finds_a_long_orbit(system):
     long = repeated(vs.periodic_orbit(system, itinerary="LR"), 35)
     rng = np.random.default_rng(0)
-    near = replace(long, u=long.u * (1 + 1e-6 * rng.normal(size=long.size)))
+    near = replace(long, u=long.u * (1 + 1e-6 * rng.normal(size=len(long.u))))
     found = near.corrected()
     assert found.change < 1e-11 and np.abs(found.u - long.u).max() < 1e-11 and found.real
-    far = replace(long, u=long.u * (1 + 0.3 * rng.normal(size=long.size))).corrected()
+    far = replace(long, u=long.u * (1 + 0.3 * rng.normal(size=len(long.u)))).corrected()
     if far is not None:
         q, states = far.family.linear, far.states
         assert np.abs(states[:, 0] - q.stop(far.sides)).max() < 1e-9

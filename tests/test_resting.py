@@ -10,6 +10,8 @@ from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.free_walk import walk_of
+from vibro_sweep.analysis.branches.switching import mirrored
+from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.model.linear import family_of
 
@@ -45,6 +47,13 @@ def test_orbit_is_what_the_engine_simulates(b):
         there = simulated.sticking[(simulated.sticking["side"] == side) & (simulated.sticking["t_on"] > 0)][0]
         assert (t_on - there["t_on"]) / length == pytest.approx(round((t_on - there["t_on"]) / length), abs=1e-12)
         assert t_off - t_on == pytest.approx(there["t_off"] - there["t_on"], abs=1e-12)
+
+
+def test_mirror_image_of_a_symmetric_orbit_is_the_orbit(resting):
+    whole = resting[0]._solution.whole()
+    image = orbit_of(resting[0].system, mirrored(whole))
+    assert image.ok and len(image.sticking) == 2 and image.stable
+    assert np.abs(image.state - resting[0].state).max() < 1e-13
 
 
 def test_multipliers_are_those_of_the_simulated_map(resting):

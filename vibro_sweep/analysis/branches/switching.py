@@ -94,6 +94,5 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
 def mirrored(solution: Solution) -> Solution:
     """x -> -x, t -> t + T/2."""
     shift = math.pi / solution.family.linear.omega
-    u = np.concatenate([solution.times + shift, -solution.jumps])
-    sides = tuple(-side for side in solution.sides)
-    return Solution(solution.family, solution.sigma, solution.halves, sides, u, solution.change)
+    u = np.concatenate([solution.times + shift, -solution.jumps, solution.ends + shift])
+    return replace(solution, sides=tuple(-side for side in solution.sides), u=u)

@@ -7,11 +7,11 @@ from numpy.polynomial import chebyshev
 
 from vibro_sweep.engine.continuation import moving_flow
 from vibro_sweep.engine.continuation.moving_flow import NUMBERS
-from vibro_sweep.engine.impulses.extended import extended, identity, zeros
+from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import TABLES, flow, rates
 from vibro_sweep.engine.impulses.state_space import checked_cells
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.tables import exponential, taylor_rows
 from vibro_sweep.model.linear import Family, Linear
 
 DECAYED = 4e-15  # relative size of the last coefficients
@@ -166,14 +166,8 @@ def exact_tables(r, A) -> None:
     """The flight's tables of A (n, n + 1), in extended precision."""
     n = len(A)
     B = extended(np.vstack([A, np.zeros(n + 1)]))
-    series = [identity(n + 1)]
-    for k in range(1, ORDER + 1):
-        series.append(series[-1] @ B / k)
-    power, term = zeros(B.shape), identity(n + 1)
-    for k in range(1, 24):
-        power += term
-        term = term @ B * extended(r["width"]) / k
-    r["series"] = np.stack(series)[:, :n].astype(float)
+    power = exponential(B, extended(r["width"]))
+    r["series"] = taylor_rows(B, identity(n + 1))[:, :n].astype(float)
     for bit in range(int(r["bits"])):
         r["powers"][bit] = power[:n].astype(float)
         power = power @ power

@@ -30,7 +30,8 @@ class EventEquations:
         self.q, self.K, self.n = q, len(sides), 2 * len(q.along)
         planes, self.closing = _tables(q, sigma, halves, bool(rests))
         self.planes = planes.copy()  # kernels write the contact's numbers into it
-        self.planes[0]["exact"][-moving_flow.NUMBERS :] = [*contact_of(q), 1.0]
+        numbers = [q.low, q.high, 1 + q.R_low, 1 + q.R_high, 1.0]
+        self.planes[0]["numbers"] = self.planes[0]["exact"][-moving_flow.NUMBERS :] = numbers
         resting = np.isin(np.arange(self.K), rests)
         self.problem = Problem(ORBIT, 0, np.array(sides, float), resting, float(sigma), 0, np.ones(2), False, False)
         self.place, self.bench = new_place(self.K, self.n), new_bench(self.K, self.n)
@@ -54,31 +55,18 @@ class EventEquations:
         row = np.zeros(2 * self.K + 3)
         return stepper.at(task, self.planes, self.problem, self._path, self.place, row, self.bench)
 
-    def newton(self, starts, contacts=None) -> tuple[np.ndarray, np.ndarray]:
+    def newton(self, starts) -> tuple[np.ndarray, np.ndarray]:
         """Newton's method from guesses (m, 2K) of times and jumps, without rests: solutions, and the last change, NaN:
-        none found.
-
-        contacts : (m, 4) stops and 1 + R as of `contact_of`, where they are not those of `q`
-        """
+        none found."""
         q, K = self.q, self.K
         if not K:
             return starts, np.zeros(len(starts))
-        if contacts is None:
-            contacts = np.repeat([contact_of(q)], len(starts), 0)
         phases = q.omega * starts[:, :K] + q.tau
-        right = self.problem.sides[0] > 0
-        gap = contacts[:, int(right)] - (self.planes[0]["Z"][0] * np.exp(1j * phases[:, 0])).real
+        gap = q.stop(self.problem.sides[0]) - (self.planes[0]["Z"][0] * np.exp(1j * phases[:, 0])).real
         guess = np.column_stack([phases, starts[:, K:] / q.omega, gap])
         ends, changes = np.empty_like(guess), np.empty(len(guess))
-        guesses.settle_all(
-            self.planes, self.problem, self.place, self.closing, self.bench, contacts, guess, ends, changes
-        )
+        guesses.settle_all(self.planes, self.problem, self.place, self.closing, self.bench, guess, ends, changes)
         return np.hstack([(ends[:, :K] - q.tau) / q.omega, ends[:, K : 2 * K] * q.omega]), changes
-
-
-def contact_of(q: Linear) -> list[float]:
-    """Both stops and 1 + R there, in the order of `numbers` (engine/continuation/moving_flow.py)."""
-    return [q.low, q.high, 1 + q.R_low, 1 + q.R_high]
 
 
 @remembered(*TABLES)
@@ -102,7 +90,7 @@ def _tables(q: Linear, sigma: int, halves: int, rests: bool) -> tuple[np.ndarray
     r["series"] = f.series.reshape(-1, m, m)[:, :n, columns] * scale * rates[:, None, None]
     r["powers"] = f.powers[:, :n, columns] * scale
     r["width"], r["bits"], r["is_still"], r["is_known"] = f.width * q.omega, moving_flow.BITS, 1, 1
-    r["numbers"][moving_flow.OMEGA], r["half_turns"], r["reach"] = 1.0, halves, 1.0
+    r["half_turns"], r["reach"] = halves, 1.0
     r["exact"][: n * (n + 1)] = r["A"].ravel()
     r["exact"][n * (n + 1) : n * (n + 2)] = f.B[n // 2 : n, n : n + 2].T.ravel() / q.omega**2
     r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))

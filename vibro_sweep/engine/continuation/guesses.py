@@ -158,16 +158,13 @@ def settle(f, c, place, closing, b):
 
 
 @entry
-def settle_all(planes, c, place, closing, b, contacts, starts, ends, changes):
+def settle_all(planes, c, place, closing, b, starts, ends, changes):
     """`settle` from many guesses.
 
-    contacts : (m, 4) `numbers` of both stops, LOW .. GAIN_HIGH
     starts, ends : (m, 2 K + 1): phases, jumps, the gap at the first impact less the steady motion; changes : (m,)
     """
     f, K, n = planes[0], len(place.x), planes[0].A.shape[0]
     for m in range(len(starts)):
-        for j in range(4):
-            f.numbers[j] = contacts[m, j]
         for i in range(K):
             place.x[i, n], place.x[i, n + 1] = starts[m, i], starts[m, K + i]
         place.x[0, 0] = starts[m, 2 * K]

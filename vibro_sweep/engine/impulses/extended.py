@@ -18,10 +18,6 @@ def extended(values):
     return np.asarray(values).astype(np.longdouble)[()] if NATIVE else Twofold(values)
 
 
-def zeros(shape):
-    return extended(np.zeros(shape))
-
-
 def identity(n: int):
     return extended(np.eye(n))
 
