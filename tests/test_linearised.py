@@ -10,7 +10,6 @@ from support.oscillators import CAVITY, CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.periodic.linearised import Linearised
-from vibro_sweep.engine.impulses.state_space import space
 from vibro_sweep.model.linear import family_of
 
 ORBITS = {
@@ -67,9 +66,12 @@ def test_multipliers_at_a_small_restitution(R):
     """Rows were multiplied by 1 - (1 + R): of the digits of a small R few were left, and of the multipliers seven."""
     guess = [(t, side, v) for t, side, v, *_ in vs.periodic_orbit(PAPER.replace(R=0.1), itinerary="LR").impacts]
     s = vs.periodic_orbit(PAPER.replace(R=R), guess=guess)._solution
-    q, v, a = space(s.family.linear), *s.motion[0, :2]
-    e_s = np.concatenate([np.zeros(2), q.e_g[:2]])
-    S = np.eye(4) - (1 + R) * (np.outer(q.e_v, e_s) + np.outer(q.A @ q.e_v, q.e_g) - a / v * np.outer(q.e_v, q.e_g))
-    expected = np.linalg.eigvals(s.sigma * expm(q.A * s.P) @ S)
+    q, v, a = s.family.linear, *s.motion[0, :2]
+    inverse, zero = np.linalg.inv(q.M), np.zeros(2)
+    A = np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ q.K, -inverse @ q.C]])
+    e_g, e_s = np.append(q.along, zero), np.append(zero, q.along)
+    e_v = np.append(zero, inverse @ q.along / (q.along @ inverse @ q.along))
+    S = np.eye(4) - (1 + R) * (np.outer(e_v, e_s) + np.outer(A @ e_v, e_g) - a / v * np.outer(e_v, e_g))
+    expected = np.linalg.eigvals(s.sigma * expm(A * s.P) @ S)
     expected = expected[np.lexsort((-expected.imag, -np.abs(expected)))]
     assert s.multipliers[:3] == pytest.approx(expected[:3], abs=1e-13)

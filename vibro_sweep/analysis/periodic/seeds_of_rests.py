@@ -7,7 +7,7 @@ some shares of the time to the next impact are tried.
 import numpy as np
 
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.state_space import space
+from vibro_sweep.engine.impulses.flow import flow
 
 SHARES = (0.3, 0.6, 0.1, 0.9)  # of the time to the next impact
 PHASES = 8  # of the first impact, where nothing is known
@@ -42,8 +42,8 @@ def _patterns(solution: Solution) -> list[tuple[int, ...]]:
     """After which impacts it may rest: those that would press into the stop, all with R = 0, the last ones in a row."""
     q, sides = solution.family.linear, np.array(solution.sides, float)
     dead = q.restitution(sides) == 0
-    s = space(q)
-    after = solution.motion[:, 1] + solution.jumps * (s.e_g @ s.A @ (s.A @ s.e_v))
+    N = len(q.along)
+    after = solution.motion[:, 1] + solution.jumps * flow(q).B[N, N]
     last = np.append(sides[1:], solution.sigma * sides[0]) != sides
     chosen = dead & (sides * after > 0), dead, dead & last
     patterns = [tuple(map(int, np.flatnonzero(which))) for which in chosen]

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.state_space import ResonanceError, free_modes, has_free_gap, space
+from vibro_sweep.engine.impulses.flow import contact_coordinates
+from vibro_sweep.engine.impulses.state_space import ResonanceError, free_modes, has_free_gap
 from vibro_sweep.model.linear import Linear, amplitude_slopes, amplitudes
 
 
@@ -45,4 +46,5 @@ def push_of_free_mode(q: Linear) -> float:
     free = int(has_free_gap(q))
     if np.any(np.abs(q.constant @ shapes[:, free:]) > 1e-13 * np.abs(q.constant).max(initial=0)):
         raise ResonanceError("a constant force acts on a free mode that the contact does not hold")
-    return float(shapes[:, 0] @ q.constant / (space(q).effective_mass * seen[0])) if free else 0.0
+    mobility = contact_coordinates(q).by_force[0] @ q.along
+    return float(shapes[:, 0] @ q.constant * mobility / seen[0]) if free else 0.0

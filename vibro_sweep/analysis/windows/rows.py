@@ -64,8 +64,7 @@ class Row:
         more = BEYOND * (hi - lo)
         lo, hi = lo - more, hi + more
         allowed = range_of(self.system.described[self.parameter], self.system.options.get("stops", "both")).bounds
-        if "minimum" in allowed:
-            lo = max(lo, allowed["minimum"])
+        lo = max(lo, allowed.get("minimum", lo))
         if "exclusiveMinimum" in allowed:
             least = allowed["exclusiveMinimum"]
             lo = max(lo, least + BEFORE * (float(self.values[0]) - least))

@@ -1,5 +1,6 @@
 """Where a window's orbit attracts, and no orbit of the sweep went there: coexistence that its starts missed."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -39,27 +40,22 @@ def unseen_in(cover: Cover) -> list[Unseen]:
     return [found for w in range(len(cover.found)) for found in _of_window(cover, w)]
 
 
-def _of_window(cover: Cover, w: int) -> list[Unseen]:
+def _of_window(cover: Cover, w: int) -> Iterator[Unseen]:
     found, values = cover.found[w], cover.rows[cover.found[w].row].values
     ends = found.ends
     inside = np.flatnonzero((ends[0] < values) & (values < ends[1]))
-    if not len(inside):
-        return []
     seen = (cover.window[found.row][inside] == w).any(axis=1)
-    others = cover.elsewhere(w)[inside].any(axis=1)
-    result = []
-    for run in np.split(np.arange(len(inside)), np.flatnonzero(np.diff(seen)) + 1):
-        missed = run[others[run]]
-        if seen[run[0]] or not len(missed):
+    others = cover.elsewhere(w)[inside].any(axis=1) & ~seen
+    for run in np.split(inside, np.flatnonzero(np.diff(seen)) + 1):
+        missed = run[others[run - inside[:1]]]
+        if not len(missed):
             continue
-        lo, hi = values[inside[missed[0]]], values[inside[missed[-1]]]
-        if missed[0] == 0 and inside[0] > 0:
+        lo, hi = values[missed[[0, -1]]].tolist()
+        if 0 < missed[0] == inside[0]:
             lo = ends[0]
-        if missed[-1] == len(inside) - 1 and inside[-1] < len(values) - 1:
+        if inside[-1] == missed[-1] < len(values) - 1:
             hi = ends[1]
-        at, orbit = _start(cover, w, values[inside[missed]])
-        result.append(Unseen(w, float(lo), float(hi), len(missed), at, orbit))
-    return result
+        yield Unseen(w, lo, hi, len(missed), *_start(cover, w, values[missed]))
 
 
 def _start(cover: Cover, w: int, values: np.ndarray) -> tuple[float, PeriodicOrbit]:

@@ -1,7 +1,6 @@
-"""The state space of an oscillator, its free modes, and how fine its tables have to be."""
+"""The free modes of an oscillator, and how fine the tables of its flights have to be."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -18,28 +17,6 @@ class TooStiffError(ValueError):
 
 class ResonanceError(ValueError):
     """An undamped mode repeats itself after P: such orbits do not exist, or are not isolated."""
-
-
-class Space(NamedTuple):
-    """The state space z = (x, x') of an oscillator and the vectors of its contact."""
-
-    A: np.ndarray  # (2N, 2N)
-    e_g: np.ndarray  # (2N,)
-    e_v: np.ndarray  # (2N,)
-    effective_mass: float
-
-
-@remembered(*MATRICES)
-def space(q: Linear) -> Space:
-    """z' = A z + ...; n.z_x is the gap, an impulse of gap velocity D changes z by D e_v."""
-    N = len(q.along)
-    inverse = np.linalg.inv(q.M)
-    A = np.block([[np.zeros((N, N)), np.eye(N)], [-inverse @ q.K, -inverse @ q.C]])
-    direction = inverse @ q.along
-    effective_mass = 1 / (q.along @ direction)
-    zero = np.zeros(N)
-    e_v = np.concatenate([zero, direction * effective_mass])
-    return Space(A, np.concatenate([q.along, zero]), e_v, effective_mass)
 
 
 @remembered(*MATRICES)
@@ -69,11 +46,10 @@ def has_free_gap(q: Linear) -> bool:
 @remembered(*MATRICES)
 def cells_needed(q: Linear) -> int:
     """Cells in half a forcing period."""
-    A = space(q).A
-    N = len(q.along)
-    rate = math.sqrt(np.abs(A[N:, :N]).sum(1).max()) or q.omega
-    scale = np.repeat([1.0, 1 / rate], N)
-    norm = max(np.abs(A * scale[:, None] / scale).sum(1).max(), q.omega)
+    inverse = np.linalg.inv(q.M)
+    stiffness, damping = np.abs(inverse @ q.K), np.abs(inverse @ q.C)
+    rate = math.sqrt(stiffness.sum(1).max()) or q.omega
+    norm = max(rate, (stiffness / rate + damping).sum(1).max(), q.omega)
     return max(math.ceil(norm * forcing_period(q) / 2 / REACH), 4)
 
 
