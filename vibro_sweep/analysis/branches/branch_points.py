@@ -1,5 +1,6 @@
 """The points of a branch as columns, and as a Dataset."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -7,7 +8,6 @@ import numpy as np
 from vibro_sweep.analysis.branches.track import Rows
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic.motion_between import multipliers_of
-from vibro_sweep.analysis.periodic.resting import RestingOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.model.linear import Linear, forcing_period
@@ -33,7 +33,7 @@ def columns(walk: Walk, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:
     start = walk.start
     oscillators = walk.oscillators(rows.p)
     T = np.array([[forcing_period(q)] for q in oscillators])
-    multipliers = _multipliers(walk.start, oscillators, rows)
+    multipliers = _multipliers(walk, oscillators, rows)
     states, (t, sides, v) = rows.state, _impacts(start, frame, rows, T)
     names = [f"{kind}{i + 1}" for i in range(states.shape[1] // 2) for kind in "xv"]
     return {
@@ -70,14 +70,14 @@ def _impacts(start: Solution, frame: tuple[int, int], rows: Rows, T: np.ndarray)
     return t, np.roll(sides, -first), np.roll(v, -first, axis=1)
 
 
-def _multipliers(start: Solution, oscillators: list[Linear], rows: Rows) -> np.ndarray:
+def _multipliers(walk: Walk, oscillators: list[Linear], rows: Rows) -> np.ndarray:
     """(points, 2N) of the whole period, by falling modulus, of a pair +im first."""
+    start = walk.start
     result, sides, contacts = [], np.array(start.sides), np.zeros((start.K, 2))  # where stops are does not matter
-    for q, t, D, ends, motion in zip(oscillators, rows.t, rows.D, rows.ends, rows.motion, strict=True):
+    for p, q, t, D, ends, motion in zip(rows.p, oscillators, rows.t, rows.D, rows.ends, rows.motion, strict=True):
         if start.rests:
-            u = np.concatenate([t, D, ends])
-            orbit = RestingOrbit(q, start.sigma, start.halves, start.sides, start.rests, u)
-            result.append(orbit.multipliers())
+            family = walk.family.replace(**{walk.name: float(p)})
+            result.append(replace(start, family=family, u=np.concatenate([t, D, ends])).multipliers)
             continue
         contacts[:, 1] = 1 + q.restitution(sides)
         P, u = forcing_period(q) / 2 * start.halves, np.concatenate([t, D])

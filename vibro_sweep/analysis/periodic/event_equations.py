@@ -45,6 +45,12 @@ class EventEquations:
     def _path(self) -> path.Path:
         return path.new_path(1, self.K, self.n, 1.0, 1.0, 1.0, np.zeros((2, 2)))
 
+    def take(self, solution) -> None:
+        """The events of a `Solution`, without the states before them."""
+        place, omega, rests = self.place, self.q.omega, self.problem.rests
+        place.phases[:], place.jumps[:] = omega * solution.times + self.q.tau, solution.jumps / omega
+        place.jumps[rests] = omega * (solution.ends - solution.times[rests])
+
     def move(self) -> None:
         """Leave in `planes` what tasks need beyond Newton's method."""
         self.planes["is_known"] = 0

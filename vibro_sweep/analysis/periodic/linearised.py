@@ -26,12 +26,10 @@ class Linearised:
         e.problem = e.problem._replace(parameters=int(slope is not None))
         e.problem.sides[list(watched)] = 0.0
         self._take_oscillator()
-        self.phases = self.q.omega * solution.times + self.q.tau
-        x, units = e.place.x, np.repeat([1.0, self.q.omega], e.n // 2)
+        e.take(solution)
+        self.phases, units = e.place.phases, np.repeat([1.0, self.q.omega], e.n // 2)
         steady = (e.planes[0]["Z"] * np.exp(1j * self.phases[:, None])).real
-        x[:, : e.n] = solution.states[: e.K, : e.n] / units - steady
-        x[:, e.n], x[:, e.n + 1] = self.phases, solution.jumps / self.q.omega
-        x[e.problem.rests, e.n + 1] = self.q.omega * (solution.ends - solution.times[e.problem.rests])
+        e.place.x[:, : e.n] = solution.states[: e.K, : e.n] / units - steady
 
     def _take_oscillator(self) -> None:
         """The numbers of the kernels, and their derivatives as polynomials of degree 1 of the number's change."""

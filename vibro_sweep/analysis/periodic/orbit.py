@@ -14,7 +14,7 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import contact_coordinates, flow, held_flow
 from vibro_sweep.engine.impulses.state_space import ResonanceError
-from vibro_sweep.engine.one_system import IMPACT, STICKING
+from vibro_sweep.engine.one_system import IMPACT, STICKING, impact_of
 from vibro_sweep.model.arguments import LATEST, checked_times
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import Family, forcing_period
@@ -115,8 +115,7 @@ class PeriodicOrbit:
     def impacts(self) -> np.ndarray:
         """Structured, fields t, side, v1 (before), x2, v2; x and xdot (N,) of all masses where there is no System."""
         N = 2 if self._solution is None else len(self._solution.family.linear.along)
-        general = np.dtype([*IMPACT.descr[:3], ("x", float, N), ("xdot", float, N)])
-        kind = IMPACT if isinstance(self.system, System) else general
+        kind = IMPACT if isinstance(self.system, System) else impact_of(N)
         if self._solution is None or not self._solution.K:
             return np.empty(0, kind)
         t, sides, _, states = self._whole

@@ -8,25 +8,20 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.engine.continuation import stepper
-from vibro_sweep.model.linear import Linear
 
 MOST_STEPS = 30
 LONGEST = 0.02  # step of Newton's method, in parts of the period and of the fastest jump
 
 
 class RestingOrbit:
-    """An orbit of `q` with impacts on `sides` and rests after the impacts `rests` (indices), from u as of `Solution`.
+    """The motion of a `Solution` with rests. Raises LinAlgError where none repeats itself."""
 
-    Raises LinAlgError where no motion repeats itself.
-    """
-
-    def __init__(self, q: Linear, sigma: int, halves: int, sides, rests, u):
-        e = self.equations = EventEquations(q, sigma, halves, sides, rests)
-        self.q, self.sigma, self.length, self.n = q, sigma, np.pi * halves, e.n
-        self.rests, self.place, self.events, self.Z = list(rests), e.place, e.bench.events, e.planes[0]["Z"]
+    def __init__(self, solution):
+        e = self.equations = EventEquations.of(solution)
+        self.q, self.sigma, self.length, self.n = e.q, solution.sigma, np.pi * solution.halves, e.n
+        self.rests, self.place, self.events, self.Z = list(solution.rests), e.place, e.bench.events, e.planes[0]["Z"]
         e.move()
-        self.place.phases[:], self.place.jumps[:] = q.omega * u[: e.K] + q.tau, u[e.K : 2 * e.K] / q.omega
-        self.place.jumps[self.rests] = q.omega * (u[2 * e.K :] - u[: e.K][self.rests])
+        e.take(solution)
         self._close()
 
     def _close(self) -> None:

@@ -38,7 +38,7 @@ class Solution:
     @cached_property
     def resting(self) -> RestingOrbit:
         """The motion of an orbit with rests."""
-        return RestingOrbit(self.family.linear, self.sigma, self.halves, self.sides, self.rests, self.u)
+        return RestingOrbit(self)
 
     @property
     def K(self) -> int:
