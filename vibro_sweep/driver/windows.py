@@ -1,6 +1,6 @@
 """From the file of a sweep to its windows: `vibro_sweep.windows`, and the file of windows."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from pathlib import Path
 from types import NoneType
@@ -55,13 +55,11 @@ def windows(path: str | Path, key: str | None = None) -> Windows:
             cover = Cover(rows_in(data, key))
         with given_or_bar(None, cover.total) as tell:
 
-            def evaluate(_, jobs) -> list[Flat]:
-                found = []
+            def evaluate(_, jobs) -> Iterator[Flat]:
                 for job in jobs:
-                    found.append(window_of(job))
+                    yield window_of(job)
                     if tell:
                         tell(cover.done, cover.total)
-                return found
 
             cover.search(evaluate)
         return windows_of(cover)

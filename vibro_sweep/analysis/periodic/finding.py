@@ -3,7 +3,6 @@
 The unknowns are the times and impulses of the impacts, so that nothing is singular at a graze.
 """
 
-import math
 from itertools import pairwise
 
 import numpy as np
@@ -27,7 +26,6 @@ SEEDS = 4000
 AT_ONCE = 250  # of them: the orbit may be among the first
 MOMENTS = 24
 SAME = 1e-7  # relative difference of solutions from two seeds that are one, and in parts of their units
-NO_ROW = (math.nan, 0.0, math.nan)
 MOST_PERIODS = 10**6
 MOST_IMPACTS = 1000  # of an itinerary: each has thousands of seeds
 

@@ -5,7 +5,7 @@ points whose recorded orbits lie on theirs; what is left forms the groups of the
 about once, however many points it has, and the rounds depend on the sweep alone.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -50,7 +50,7 @@ class Cover:
         self.window = np.full(self.reason.shape, -1, np.int32)
 
     @one_thread()
-    def search(self, evaluate: Callable[[list[str], list[Job]], list[Flat]]) -> None:
+    def search(self, evaluate: Callable[[list[str], list[Job]], Iterable[Flat]]) -> None:
         """Follow windows until no periodic point is left. evaluate : gives `window_of` of jobs by their names."""
         while points := list(self._middles()):
             results = evaluate([":".join(map(str, at)) for at in points], [self._job(*at) for at in points])
