@@ -74,23 +74,25 @@ def bifurcations(walk: Walk, a: Point, b: Point) -> list:
 def tests_between(walk: Walk, a: Point, b: Point, scaled: bool = False) -> list[tuple[str, Test]]:
     """The types of the table that orbits of this branch may have between a and b, with their tests.
 
-    scaled : those of multipliers of a size that poles do not change, to tell where they are nearest to zero
+    scaled : all of a size that poles of multipliers do not change, to tell where they are nearest to zero
     """
     found = []
     for one in TYPES if walk.K else ():
-        test = test_of(one.test)
-        if one.test == "pair":
-            test = torus_test(a, b, scaled) if scaled or np.all(b.solution.pushes > 0) else None
-        elif one.test == "minus" and scaled:
-            test = reflected
-        if one.test and one.sigma in (0, walk.start.sigma) and test is not None:
-            found.append((one.name, test))
+        if one.test and one.sigma in (0, walk.start.sigma):
+            test = test_of(one.test)
+            if one.test == "pair":
+                test = torus_test(a, b) if scaled or np.all(b.solution.pushes > 0) else None
+            elif one.test == "minus" and scaled:
+                test = reflected
+            if test is not None:
+                found.append((one.name, test))
     return found
 
 
 def test_of(name: str) -> Test:
     """As the engine computes it at each point (engine/continuation/branch_tests.py)."""
-    return lambda point: float(point.guess.tests[NAMES.index(name)])
+    index = NAMES.index(name)
+    return lambda point: float(point.guess.tests[index])
 
 
 def is_outside(walk: Walk, bounds, point: Point) -> bool:
@@ -122,11 +124,12 @@ def reflected(point: Point) -> float:
     return float(np.prod(factors[np.abs(factors) > ON_SQUARE]).real / np.prod(np.hypot(1, np.abs(mu))))
 
 
-def torus_test(a: Point, b: Point, scaled: bool = False) -> Test | None:
-    """prod_{i<j} (1 - mu_i mu_j), zero at a Neimark-Sacker point and at a neutral saddle; None without losses.
+def torus_test(a: Point, b: Point) -> Test | None:
+    """prod_{i<j} (1 - mu_i mu_j)/prod_i (1 + |mu_i|^2)^((n - 1)/2), zero at a Neimark-Sacker point and at a neutral
+    saddle, without poles; None without losses.
 
     Without factors that are zero both at a and at b, to rounding, as of a mode without losses that the contact does not
-    see. scaled : over prod_i (1 + |mu_i|^2)^((n - 1)/2), so that the product has no poles
+    see.
     """
     if len(a.solution.multipliers) < 3 or a.solution.torus == 1.0 or b.solution.torus == 1.0:
         return None
@@ -135,7 +138,7 @@ def torus_test(a: Point, b: Point, scaled: bool = False) -> Test | None:
     def test(point: Point) -> float:
         factors, mu = 1 - _products(point), point.solution.multipliers
         product = np.prod(factors[np.argsort(np.abs(factors))[left_out:]] if left_out else factors).real
-        return float(product / np.prod(np.hypot(1, np.abs(mu))) ** (len(mu) - 1) if scaled else product)
+        return float(product / np.prod(np.hypot(1, np.abs(mu))) ** (len(mu) - 1))
 
     return test
 
