@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, wraps
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -84,12 +85,11 @@ class Family:
 
 
 class Keyed:
-    """An oscillator as a key of what depends on these fields alone: equal where all of them are."""
+    """An oscillator as a key of what depends on the values of some fields alone: equal where all of them are."""
 
-    def __init__(self, q: Linear, names: tuple[str, ...]):
+    def __init__(self, q: Linear, values: tuple):
         self.q = q
-        values = [getattr(q, name) for name in names]
-        self.key = tuple(value.tobytes() if isinstance(value, np.ndarray) else value for value in values)
+        self.key = tuple([value.tobytes() if isinstance(value, np.ndarray) else value for value in values])
 
     def __hash__(self):
         return hash(self.key)
@@ -101,6 +101,8 @@ class Keyed:
 def remembered(*names: str, most: int = 64):
     """A function of an oscillator and other arguments, whose last results are kept for equal fields `names`."""
 
+    values = attrgetter(*names)
+
     def keeping(function):
         @lru_cache(most)
         def known(key: Keyed, *others):
@@ -108,7 +110,7 @@ def remembered(*names: str, most: int = 64):
 
         @wraps(function)
         def of(q: Linear, *others):
-            return known(Keyed(q, names), *others)
+            return known(Keyed(q, values(q)), *others)
 
         return of
 

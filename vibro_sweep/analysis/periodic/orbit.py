@@ -83,8 +83,9 @@ class PeriodicOrbit:
             states = np.concatenate([states, -states])
         if s.K:
             first, shift = self._frame or self._canonical_frame
-            t = np.concatenate([t[first:], t[:first] + self.period * T]) - shift * T
-            sides, D, states = (np.roll(values, -first, 0) for values in (sides, D, states))
+            order = (np.arange(len(t)) + first) % len(t)
+            t = t[order] + (order < first) * (self.period * T) - shift * T
+            sides, D, states = sides[order], D[order], states[order]
         return t, sides, D, states
 
     @cached_property
