@@ -68,7 +68,7 @@ def test_the_file_holds_the_curve(file, curve):
 
 def test_a_curve_is_known_from_another_of_its_points():
     curves = Curves(NAMES, BOX, CURVES)
-    known = curves.search([seed_at(pitchfork(), NAMES)], 0, lambda _, tasks: [trace(task) for task in tasks])
+    known = curves.run([seed_at(pitchfork(), NAMES)], 0, lambda _, tasks: [trace(task) for task in tasks])
     for omega in (0.612, 0.64):
         assert curves.lies_on(known, seed_at(pitchfork(omega), NAMES))
     beside = pitchfork()

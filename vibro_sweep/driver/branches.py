@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_search import Branches, grow
-from vibro_sweep.analysis.branches.search import Node, search
+from vibro_sweep.analysis.branches.search import Node
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of
 from vibro_sweep.driver.provenance import provenance
@@ -37,7 +37,6 @@ def run_branches(
     the scene's first orbit does not exist, RunError where workers fail.
     """
     output = file_to_write("output", output)
-    ((key, bounds),) = scene.along.items()
     with computed_from_source(scene):
         subject = Subject(BRANCHES, scene.name, scene.text, attributes_of(scene, source_of(scene)))
         with pieces(subject, output, mode, scene.inputs) as file:
@@ -50,7 +49,8 @@ def run_branches(
                     file.drop()
                     raise
                 evaluate = computed(grow, is_branch, pool, file, progress)
-                found = search(Branches(key, bounds, scene.follow), seeds, scene.depth, evaluate)
+                branching = Branches(tuple(scene.along), tuple(scene.along.values()), scene.follow)
+                found = branching.run(seeds, scene.depth, evaluate)
             file.finish(provenance(), *_contents(scene, found))
 
 
@@ -58,16 +58,20 @@ def _contents(scene: Continuation, found: list[Node]) -> tuple:
     """Columns and arrays of the file."""
     names, masses = list(scene.along), scene.system.masses
     arrays = joined([node.flat for node in found], names, [()] * len(found), masses)
-    parents = np.array([node.seed.parent for node in found], int)
-    own = np.array([node.seed.special for node in found], int)
-    first = np.append(0, np.cumsum(arrays["branch_special"]))
     sections = [node.flat["section"].reshape(-1, 2 * masses) for node in found]
     together = np.concatenate(sections) if sections else np.zeros((0, 2 * masses))
     arrays |= {f"section_{name}": together[:, i] for i, name in enumerate(state(masses))}
-    arrays |= {
-        "branch_sections": np.array([node.flat["section"].shape[1] for node in found], int),
+    arrays["branch_sections"] = np.array([node.flat["section"].shape[1] for node in found], int)
+    return columns_of(BRANCHES, names, scene.system), arrays | where_met(found, arrays["branch_special"])
+
+
+def where_met(found: list[Node], counts: np.ndarray) -> dict[str, np.ndarray]:
+    """The columns that say from which special point each branch or curve was reached; counts : of those of each."""
+    parents = np.array([node.seed.parent for node in found], int)
+    own = np.array([node.seed.special for node in found], int)
+    first = np.append(0, np.cumsum(counts))
+    return {
         "branch_parent": parents,
-        "branch_parent_special": np.where(parents >= 0, first[parents] + own, -1) if len(found) else own,
+        "branch_parent_special": np.where(parents >= 0, first[parents] + own, -1),
         "branch_generation": np.array([node.generation for node in found], int),
     }
-    return columns_of(BRANCHES, names, scene.system), arrays

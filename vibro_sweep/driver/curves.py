@@ -8,10 +8,11 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.branch_search import Branches, grow
 from vibro_sweep.analysis.branches.flat import special_point
-from vibro_sweep.analysis.branches.search import Node, search
+from vibro_sweep.analysis.branches.seeds import Seed
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.curves.curve_search import Curves, CurveSeed, seed_at, trace
+from vibro_sweep.analysis.curves.curve_search import Curves, seed_at, trace
 from vibro_sweep.analysis.windows.explained import explain, probe
+from vibro_sweep.driver.branches import where_met
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of, specials_of
 from vibro_sweep.driver.planes import edges_in_file, plane_of
@@ -65,19 +66,19 @@ def _contents(scene: Continuation, of_plane, workers, executor, file, progress) 
             except NoOrbitError:
                 file.drop()
                 raise
-            curves = Curves(names, box, scene.of).search(starts, scene.depth, evaluate)
+            curves = Curves(names, box, scene.of).run(starts, scene.depth, evaluate)
     arrays = joined_curves([one.flat for one in curves], list(names), scene.system.masses)
     held = columns_of(CHART, list(names), scene.system, OF_EDGES if more else ())
-    return held, arrays | _origins(curves, arrays) | more
+    return held, arrays | where_met(curves, arrays["branch_special"]) | more
 
 
-def _starts(scene: Continuation, names, box, pool, file, progress) -> list[CurveSeed]:
+def _starts(scene: Continuation, names, box, pool, file, progress) -> list[Seed]:
     """Where curves begin, within the box."""
     on_branches = scene.origin in BY_BRANCHES
     specials = _on_branches(scene, pool, file, progress) if on_branches else specials_of(scene, file, pool)
     found = [seed_at(special, names) for special in specials if special.type in scene.of]
     lo, hi = np.transpose(box)
-    return [one for one in found if one is not None and np.all((lo <= (at := one.orbit.place(names))) & (at <= hi))]
+    return [one for one in found if one is not None and np.all((lo <= (at := one.place(names))) & (at <= hi))]
 
 
 def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint]:
@@ -88,21 +89,10 @@ def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint
     def evaluate(names, jobs):
         return keep([f"branch {name}" for name in names], jobs)
 
-    nodes = search(Branches(key, bounds, scene.follow), seeds_of(scene, file, pool), scene.depth, evaluate)
+    branching = Branches((key,), (bounds,), scene.follow)
+    nodes = branching.run(seeds_of(scene, file, pool), scene.depth, evaluate)
     return [
         special_point(node.flat, i, key, node.seed.system)
         for node in nodes
         for i in range(len(node.flat["special_type"]))
     ]
-
-
-def _origins(curves: list[Node], arrays) -> dict[str, np.ndarray]:
-    """Where each curve was met."""
-    parents = np.array([one.seed.orbit.parent for one in curves], int)
-    own = np.array([one.seed.orbit.special for one in curves], int)
-    first = np.append(0, np.cumsum(arrays["branch_special"]))
-    return {
-        "branch_parent": parents,
-        "branch_parent_special": np.where(parents >= 0, first[parents] + own, -1) if len(curves) else own,
-        "branch_generation": np.array([one.generation for one in curves], int),
-    }

@@ -9,7 +9,6 @@ import numpy as np
 
 from vibro_sweep.analysis.branches import flat as branches
 from vibro_sweep.analysis.branches import seeds
-from vibro_sweep.analysis.curves import curve_search
 from vibro_sweep.analysis.curves import flat as curves
 from vibro_sweep.model.bifurcations import EDGES, REASONS
 from vibro_sweep.model.branch_file import CHART, WINDOWS, columns
@@ -34,19 +33,19 @@ def is_branch(piece: Arrays) -> bool:
 def is_curve(piece: Arrays) -> bool:
     """Of `trace`: nothing, where there is no curve."""
     return not piece or (
-        _fits(piece, curves.SHAPES | curve_search.SHAPES, columns(CHART, [], 0)) and curve_search.fit_together(piece)
+        _fits(piece, curves.SHAPES | seeds.SHAPES, columns(CHART, [], 0)) and seeds.fit_together(piece)
     )
 
 
 def is_probe(piece: Arrays) -> bool:
     """Of `probe`."""
-    shapes = curve_search.SHAPES | {"": "reason"}
-    return _fits(piece, shapes, []) and 0 <= piece["reason"] < len(EDGES) and curve_search.fit_together(piece)
+    shapes = seeds.SHAPES | {"": "reason"}
+    return _fits(piece, shapes, []) and 0 <= piece["reason"] < len(EDGES) and seeds.fit_together(piece)
 
 
 def _fits(piece: Arrays, shapes: Mapping[str, str], known: Iterable[Column]) -> bool:
     """Whether a piece has these arrays and no others, of lengths that agree, and indices and codes that there are."""
-    lengths = {"2": 2}
+    lengths = {"2": 2, "4": 4}
     names = {name: dimensions.split() for dimensions, words in shapes.items() for name in words.split()}
     if set(piece) != set(names):
         return False

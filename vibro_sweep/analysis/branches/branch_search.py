@@ -4,47 +4,38 @@ Of the orbits that it finds beyond these, those that lie on a branch that is kno
 same generation that an earlier one has passed.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from vibro_sweep.analysis.branches.continuation import Branch, continue_orbit, not_followed
 from vibro_sweep.analysis.branches.flat import Flat, flatten, orbit_at, section_states
 from vibro_sweep.analysis.branches.recognising import clearest, passes, point_of
-from vibro_sweep.analysis.branches.search import Node
-from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of, unpacked
+from vibro_sweep.analysis.branches.search import Node, Search, Task
+from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import switch
+from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 
 LEAST = 1e-4  # distance of a graze from the onset of sticking, as a part of the range, to which branches are followed
-
-
-class Task(NamedTuple):
-    """A branch to be followed, and the types of special points at which to look for others."""
-
-    seed: Seed
-    parameter: str
-    bounds: tuple[float, float]
-    follow: tuple[str, ...]
 
 
 @one_thread()
 def grow(task: Task) -> Flat:
     """The branch of a task, with `section`, and with the seeds beyond it, as `packed` has them."""
     branch = followed(task)
-    flat = flatten(branch, task.seed.solution.family.numbers[task.parameter])
+    (origin,) = task.seed.place(task.names)
+    flat = flatten(branch, origin)
     flat["section"] = _sections(flat, task)
-    return flat | packed(beyond(branch, task), (task.parameter,))
+    return flat | packed(beyond(branch, task), task.names)
 
 
 def followed(task: Task, progress=None) -> Branch:
     """The branch of a task; with the status failed where it cannot be followed, so that the others are not lost."""
-    orbit = task.seed.orbit()
+    orbit, (parameter,), (bounds,) = task.seed.orbit(), task.names, task.box
     try:
-        return continue_orbit(orbit, task.parameter, task.bounds, progress)
+        return continue_orbit(orbit, parameter, bounds, progress)
     except ValueError:  # no orbit beside a special point is within the bounds
-        return not_followed(orbit, task.parameter)
+        return not_followed(orbit, parameter)
 
 
 def beyond(branch: Branch, task: Task) -> list[Seed]:
@@ -53,12 +44,11 @@ def beyond(branch: Branch, task: Task) -> list[Seed]:
     Towards an onset of sticking branches without end follow each other, with one impact more on each: beyond grazes
     that are nearer to it than a small part of the range nothing is looked for.
     """
-    lo, hi = task.bounds
-    found = []
+    (lo, hi), found = task.box[0], []
     for index, special in enumerate(branch.special):
-        if special.type in task.follow and not accumulates(branch, special, LEAST * (hi - lo)):
-            orbits = [orbit for orbit in switch(special) if lo <= orbit._solution.family.numbers[task.parameter] <= hi]
-            found += [seed_of(orbit)._replace(special=index) for orbit in orbits]
+        if special.type in task.of and not accumulates(branch, special, LEAST * (hi - lo)):
+            seeds = [seed_of(orbit.system, Start("orbit", orbit._solution), (), index) for orbit in switch(special)]
+            found += [seed for seed in seeds if lo <= seed.place(task.names)[0] <= hi]
     return found
 
 
@@ -72,31 +62,18 @@ def accumulates(branch: Branch, end: SpecialPoint, reach: float) -> bool:
 
 def _sections(flat: Flat, task: Task) -> np.ndarray:
     """(n, m, 2N) all section states of each point: those at t = 0 mod T of the orbit and of its mirror image."""
-    systems = [task.seed.system.replace(**{task.parameter: value}) for value in flat["value"].tolist()]
+    systems = [task.seed.system.replace(**{task.names[0]: value}) for value in flat["value"].tolist()]
     return np.array([section_states(orbit_at(flat, i, system)) for i, system in enumerate(systems)])
 
 
-class Branches(NamedTuple):
-    """What a search for branches is told (`Searched`): along `parameter` within `bounds`, beyond special points of the
-    types `follow`."""
+class Branches(Search):
+    """A search for branches in one parameter."""
 
-    parameter: str
-    bounds: tuple[float, float]
-    follow: tuple[str, ...]
-
-    def task(self, seed: Seed, look: bool) -> Task:
-        return Task(seed, self.parameter, self.bounds, self.follow if look else ())
-
-    def lies_on(self, known: list[Node], seed: Seed) -> bool:
-        s = seed.solution
-        return any(passes(node.flat, self.parameter, seed.system, s) for node in known)
+    def passes(self, flat: Flat, seed: Seed) -> bool:
+        return passes(flat, self.names[0], seed.system, seed.solution)
 
     def is_known(self, known: list[Node], flat: Flat, seed: Seed) -> bool:
         """Also where that could not be told from the seed, which lies next to a birth or a fold."""
         i = clearest(flat)
-        system = seed.system.replace(**{self.parameter: float(flat["value"][i])})
-        s = point_of(flat, i, system)
-        return any(passes(node.flat, self.parameter, system, s) for node in known)
-
-    def beyond(self, node: Node, index: int) -> list[Seed]:
-        return unpacked(node.flat, (self.parameter,), node.seed.system, index)
+        system = seed.system.replace(**{self.names[0]: float(flat["value"][i])})
+        return self.lies_on(known, seed_of(system, Start("orbit", point_of(flat, i, system))))

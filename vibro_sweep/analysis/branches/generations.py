@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 
 from vibro_sweep.analysis.branches import branch_text
-from vibro_sweep.analysis.branches.branch_search import Branches, Task, beyond, followed
+from vibro_sweep.analysis.branches.branch_search import Branches, beyond, followed
 from vibro_sweep.analysis.branches.continuation import Branch, continue_orbit
 from vibro_sweep.analysis.branches.flat import Flat, outline
-from vibro_sweep.analysis.branches.search import search
+from vibro_sweep.analysis.branches.search import Task
 from vibro_sweep.analysis.branches.seeds import packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.model.arguments import check_call, check_type, checked_count
 from vibro_sweep.model.bifurcations import WAYS
@@ -67,7 +68,8 @@ def follow_branches(
         return result
 
     lo, hi = map(float, bounds)
-    nodes = search(Branches(parameter, (lo, hi), tuple(follow)), [seed_of(orbit)], depth, evaluate, at_once=1)
+    branching = Branches((parameter,), ((lo, hi),), tuple(follow), at_once=1)
+    nodes = branching.run([seed_of(orbit.system, Start("orbit", orbit._solution))], depth, evaluate)
     found: list[Followed] = []
     for node in nodes:
         parent, special = node.seed.parent, None

@@ -7,6 +7,7 @@ from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.solution import Solution
 
 SAME = 1e-7  # relative difference of the impact speeds of one orbit, found twice
+MIRROR = str.maketrans("RLrl", "LRlr")
 IMPACTS = ("impact_t", "impact_v", "impact_t_off")
 
 
@@ -46,11 +47,20 @@ def _may_pass(flat: Flat, s: Solution) -> bool:
     known = len(flat["impact_side"]), 2 * int(flat["branch_period"]), 1 + int(flat["branch_symmetric"]), rests
     if known != (len(sides), halves * s.halves, halves, halves * len(s.rests)):
         return False
-    rotations = 2 * word(flat["impact_side"])
-    images = [sides, [-side for side in sides]] if s.family.linear.symmetric else [sides]
-    return any(word(image) in rotations for image in images)
+    return rotates(word(flat["impact_side"]), word(sides), s.family.linear.symmetric)
+
+
+def rotates(known: str, own: str, mirrors: bool) -> bool:
+    """Whether a word (R, L; r, l for grazes) is a rotation of one that is known, or of its mirror image."""
+    images = [own, own.translate(MIRROR)] if mirrors else [own]
+    return len(known) == len(own) and any(image in 2 * known for image in images)
 
 
 def alike(a: Solution, b: Solution) -> bool:
-    speeds = [np.sort(np.abs(s.jumps)) for s in (a, b)]
-    return bool(np.abs(speeds[0] - speeds[1]).max(initial=0.0) <= SAME * max(speeds[0].max(initial=0.0), 1e-300))
+    return apart(a, b) <= SAME * max(np.abs(a.jumps).max(initial=0.0), 1e-300)
+
+
+def apart(a: Solution, b: Solution) -> float:
+    """The largest difference of the impulses of two orbits, in the order of their size."""
+    speeds = [np.sort(np.abs(s.whole().jumps)) for s in (a, b)]
+    return float(np.abs(speeds[0] - speeds[1]).max(initial=0.0))

@@ -3,12 +3,15 @@
 The tasks of a generation can be done by any worker: the result is the same, in the same order, however many there are.
 """
 
-from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple, Protocol
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 from vibro_sweep.analysis.branches.flat import Flat
+from vibro_sweep.analysis.branches.seeds import Seed, unpacked
 
 Evaluate = Callable[[list[str], list[Any]], list[Flat]]  # the arrays of tasks by their names; none: nothing was found
+Box = tuple[tuple[float, float], ...]
 
 
 class Node(NamedTuple):
@@ -17,52 +20,64 @@ class Node(NamedTuple):
 
     name: str
     flat: Flat
-    seed: Any
+    seed: Seed
     generation: int
 
 
-class Searched(Protocol):
-    """What is searched for: branches (`Branches`) or curves (`Curves`)."""
+class Task(NamedTuple):
+    """A seed to be followed along `names` within `box`, and the types for which to look at the special points."""
 
-    def task(self, seed, look: bool) -> Any:
-        """The task that follows a seed. look: whether it looks beyond the special points as well."""
-
-    def lies_on(self, known: list[Node], seed) -> bool:
-        """Whether a seed lies on one of these."""
-
-    def is_known(self, known: list[Node], flat: Flat, seed) -> bool:
-        """Whether what was found from a seed is one of these."""
-
-    def beyond(self, node: Node, index: int) -> list:
-        """The seeds beyond the special points of what was found as number `index`."""
+    seed: Seed
+    names: tuple[str, ...]
+    box: Box
+    of: tuple[str, ...]
 
 
-def search(
-    of: Searched, seeds: list, depth: int, evaluate: Evaluate, at_once: int | None = None, known: tuple | list = ()
-) -> list[Node]:
-    """All that is found, generation by generation, behind those that are `known`.
+@dataclass(frozen=True)
+class Search:
+    """A search for branches (`Branches`) or curves (`Curves`).
 
-    depth : generations behind the first
+    names, box : the numbers along which they lead, and their limits
+    of : of branches the types of special points beyond which others are looked for, of curves the types that are
     at_once : tasks that are evaluated before it is asked again which seeds lie on what is known; None: all of a
         generation
     """
-    found = list(known)
-    for generation in range(depth + 1):
-        first = len(found)
-        seeds = [seed for seed in seeds if not of.lies_on(found, seed)]
-        for begin, batch in _batches(seeds, at_once):
-            todo = {f"{generation}:{begin + i}": seed for i, seed in enumerate(batch)}
-            todo = {name: seed for name, seed in todo.items() if not of.lies_on(found[first:], seed)}
-            flats = evaluate(list(todo), [of.task(seed, generation < depth) for seed in todo.values()])
-            before = len(found)
-            for (name, seed), flat in zip(todo.items(), flats, strict=True):
-                if flat and not of.lies_on(found[before:], seed) and not of.is_known(found, flat, seed):
-                    found.append(Node(name, flat, seed, generation))
-        seeds = [seed for i in range(first, len(found)) for seed in of.beyond(found[i], i)]
-    return found
 
+    names: tuple[str, ...]
+    box: Box
+    of: tuple[str, ...]
+    at_once: int | None = None
 
-def _batches(items: list, size: int | None) -> Iterator[tuple[int, list]]:
-    size = size or max(len(items), 1)
-    for begin in range(0, len(items), size):
-        yield begin, items[begin : begin + size]
+    def passes(self, flat: Flat, seed: Seed) -> bool:
+        """Whether a seed lies on the branch or curve with these arrays, also as a rotation or a mirror image."""
+        raise NotImplementedError
+
+    def is_known(self, known: list[Node], flat: Flat, seed: Seed) -> bool:
+        """Whether what was found from a seed that lies on none of these is one of them all the same."""
+        return False
+
+    def lies_on(self, known: list[Node], seed: Seed) -> bool:
+        """Whether a seed lies on one of these."""
+        return any(self.passes(node.flat, seed) for node in known)
+
+    def run(self, seeds: list[Seed], depth: int, evaluate: Evaluate, known: list[Node] | tuple = ()) -> list[Node]:
+        """All that is found, generation by generation, up to `depth` behind the first, behind those that are known."""
+        found = list(known)
+        for generation in range(depth + 1):
+            first, of = len(found), self.of if generation < depth else ()
+            seeds = [seed for seed in seeds if not self.lies_on(found, seed)]
+            size = self.at_once or max(len(seeds), 1)
+            for begin in range(0, len(seeds), size):
+                batch = enumerate(seeds[begin : begin + size], begin)
+                todo = {f"{generation}:{i}": seed for i, seed in batch if not self.lies_on(found[first:], seed)}
+                tasks = [Task(seed, self.names, self.box, of) for seed in todo.values()]
+                before = len(found)
+                for (name, seed), flat in zip(todo.items(), evaluate(list(todo), tasks), strict=True):
+                    if flat and not self.lies_on(found[before:], seed) and not self.is_known(found, flat, seed):
+                        found.append(Node(name, flat, seed, generation))
+            seeds = [
+                seed
+                for i, node in enumerate(found[first:], first)
+                for seed in unpacked(node.flat, self.names, node.seed.system, i)
+            ]
+        return found

@@ -5,37 +5,46 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches.flat import Flat
+from vibro_sweep.analysis.continuation.start import KINDS, Start
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import family_of
 
-SCALARS = ("sigma", "halves", "special")
-LISTS = {"sides": int, "u": float, "rests": int}
+TYPES = ("orbit", *KINDS)
+SCALARS = {"sigma": int, "halves": int, "index": int, "theta": float, "special": int}
 SHAPES = {  # of `packed`
-    "q p": "beyond_place",
-    "q": "beyond_sigma beyond_halves beyond_special beyond_sides_count beyond_u_count beyond_rests_count",
-    # of all seeds, one after the other
-    "sides": "beyond_sides",
-    "u": "beyond_u",
-    "rests": "beyond_rests",
+    # values of the p parameters; which of them are those of a seed's special point
+    "q p": "beyond_place beyond_own",
+    "q": f"beyond_type beyond_impacts {' '.join(f'beyond_{name}' for name in SCALARS)}",
+    "k 4": "beyond_impact",  # side, t, D and the end of the rest or NaN, of all seeds one after the other
 }
 
 
 class Seed(NamedTuple):
-    """An orbit, and where it was found: on the branch or curve `parent`, at its special point `special`."""
+    """An orbit, perhaps at a bifurcation, and where it was found: on the branch or curve `parent`, at its special point
+    `special`."""
 
     system: Any
     sigma: int
     halves: int
-    sides: tuple[int, ...]
-    u: tuple[float, ...]
-    rests: tuple[int, ...]
+    impacts: np.ndarray  # (K, 4): side, t, D and the end of the rest or NaN
+    type: str = "orbit"
+    index: int = 0  # of the impact that grazes
+    theta: float = 0.0
+    parameters: tuple[str, ...] = ()  # those of its special point: one of a branch's, two of a curve's
     parent: int = -1
     special: int = -1
 
     @property
+    def start(self) -> Start:
+        return Start(self.type, self.solution, self.index, self.theta)
+
+    @property
     def solution(self) -> Solution:
-        return Solution(family_of(self.system), self.sigma, self.halves, self.sides, np.array(self.u), 0.0, self.rests)
+        side, t, D, ends = self.impacts.T
+        rests = np.flatnonzero(np.isfinite(ends))
+        sides, u = tuple(side.astype(int).tolist()), np.concatenate([t, D, ends[rests]])
+        return Solution(family_of(self.system), self.sigma, self.halves, sides, u, 0.0, tuple(rests.tolist()))
 
     def orbit(self) -> PeriodicOrbit:
         return orbit_of(self.system, self.solution)
@@ -46,38 +55,43 @@ class Seed(NamedTuple):
         return np.array([numbers[name] for name in names], float)
 
 
-def seed_of(orbit: PeriodicOrbit) -> Seed:
-    s = orbit._solution
+def seed_of(system, start: Start, parameters=(), special: int = -1) -> Seed:
+    s = start.solution
+    ends = np.full(s.K, np.nan)
+    ends[list(s.rests)] = s.ends
+    impacts = np.column_stack([s.sides, s.times, s.jumps, ends])
     return Seed(
-        orbit.system, s.sigma, s.halves, tuple(map(int, s.sides)), tuple(s.u.tolist()), tuple(map(int, s.rests))
+        system, s.sigma, s.halves, impacts, start.type, start.index, start.theta, tuple(parameters), special=special
     )
 
 
 def packed(seeds: list[Seed], names: tuple[str, ...]) -> Flat:
     """Arrays `SHAPES` of q seeds that differ from one oscillator in the p parameters `names` alone."""
-    flat = {"place": np.array([seed.place(names) for seed in seeds]).reshape(-1, len(names))}
-    flat |= {name: np.array([getattr(seed, name) for seed in seeds], int) for name in SCALARS}
-    for name, kind in LISTS.items():
-        lists = [getattr(seed, name) for seed in seeds]
-        flat[name] = np.array([one for values in lists for one in values], kind)
-        flat[f"{name}_count"] = np.array([len(values) for values in lists], int)
+    flat = {name: np.array([getattr(seed, name) for seed in seeds], kind) for name, kind in SCALARS.items()} | {
+        "type": np.array([TYPES.index(seed.type) for seed in seeds], int),
+        "place": np.array([seed.place(names) for seed in seeds]).reshape(-1, len(names)),
+        "own": np.array([[n in seed.parameters for n in names] for seed in seeds], bool).reshape(-1, len(names)),
+        "impacts": np.array([len(seed.impacts) for seed in seeds], int),
+        "impact": np.concatenate([np.empty((0, 4)), *(seed.impacts for seed in seeds)]),
+    }
     return {f"beyond_{name}": values for name, values in flat.items()}
 
 
 def fit_together(flat: Flat) -> bool:
-    """Whether arrays of these shapes hold as many numbers as they say."""
-    counts = {name: flat[f"beyond_{name}_count"] for name in LISTS}
-    return all(np.all(count >= 0) and count.sum() == len(flat[f"beyond_{name}"]) for name, count in counts.items())
+    """Whether arrays of these shapes are of seeds."""
+    types, counts = flat["beyond_type"], flat["beyond_impacts"]
+    known = np.all((types >= 0) & (types < len(TYPES)))
+    return bool(known and np.all(counts >= 0) and counts.sum() == len(flat["beyond_impact"]))
 
 
 def unpacked(flat: Flat, names: tuple[str, ...], system, parent: int = -1) -> list[Seed]:
     """The seeds of `packed`. system : one of their oscillators"""
-    scalars = zip(*(flat[f"beyond_{name}"].tolist() for name in SCALARS), strict=True)
-    ends = {name: np.cumsum(flat[f"beyond_{name}_count"]) for name in LISTS}
-    lists = {name: np.split(flat[f"beyond_{name}"], ends[name][:-1]) for name in LISTS}
-    seeds = []
-    for i, (sigma, halves, special) in enumerate(scalars):
+    seeds, ends = [], np.cumsum(flat["beyond_impacts"])
+    for i, end in enumerate(ends):
         there = system.replace(**dict(zip(names, flat["beyond_place"][i].tolist(), strict=True)))
-        sides, u, rests = (tuple(lists[name][i].tolist()) for name in LISTS)
-        seeds.append(Seed(there, sigma, halves, sides, u, rests, parent, special))
+        impacts = flat["beyond_impact"][end - flat["beyond_impacts"][i] : end]
+        own = tuple(name for name, one in zip(names, flat["beyond_own"][i], strict=True) if one)
+        scalars = {name: flat[f"beyond_{name}"][i].item() for name in SCALARS}
+        kind = TYPES[flat["beyond_type"][i]]
+        seeds.append(Seed(there, impacts=impacts, type=kind, parameters=own, parent=parent, **scalars))
     return seeds

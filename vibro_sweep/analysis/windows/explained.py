@@ -12,7 +12,8 @@ from scipy import ndimage
 
 from vibro_sweep.analysis.branches.flat import Flat
 from vibro_sweep.analysis.branches.search import Evaluate, Node
-from vibro_sweep.analysis.curves.curve_search import Curves, CurveSeed, packed_curves, seed_at, unpacked_curves
+from vibro_sweep.analysis.branches.seeds import Seed, packed, unpacked
+from vibro_sweep.analysis.curves.curve_search import Curves, seed_at
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.windows.edges import Edges, Plane, edges_of, passing
@@ -39,13 +40,13 @@ class Probe(NamedTuple):
 
 @one_thread()
 def probe(task: Probe) -> Flat:
-    """What ends the stability of an orbit on its way across an edge: `reason`, a code of EDGES, and, as `packed_curves`
+    """What ends the stability of an orbit on its way across an edge: `reason`, a code of EDGES, and, as `packed`
     has it, a start of a curve or none."""
     reason, seed = _probed(task)
-    return {"reason": np.int8(_CODES[reason])} | packed_curves([] if seed is None else [seed], task.names)
+    return {"reason": np.int8(_CODES[reason])} | packed([] if seed is None else [seed], task.names)
 
 
-def _probed(task: Probe) -> tuple[str, CurveSeed | None]:
+def _probed(task: Probe) -> tuple[str, Seed | None]:
     here = float(task.system.family.numbers[task.parameter])
     bounds = (min(here, task.beyond), max(here, task.beyond))
     try:
@@ -93,7 +94,7 @@ def explain(
         jobs = {f"edge {edge}:{side}": _task(plane, states, system, names, edges, edge, side) for edge, side in picks}
         seeds, before = [], len(known)
         for (edge, side), flat in zip(picks, probed(list(jobs), list(jobs.values())), strict=True):
-            found = unpacked_curves(flat, names, system)
+            found = unpacked(flat, names, system)
             tried[edge, side] = True
             reason[edge] = min(reason[edge], flat["reason"])  # what says most comes first
             if found:
@@ -103,7 +104,7 @@ def explain(
         def evaluate(keys, tasks, turn=turn):
             return traced([f"{turn}:{key}" for key in keys], tasks)
 
-        known = Curves(names, box, of).search([seed for seed in seeds if seed.type in of], depth, evaluate, known)
+        known = Curves(names, box, of).run([seed for seed in seeds if seed.type in of], depth, evaluate, known)
         for i in range(before, len(known)):
             passed = passing(plane, edges, known[i].flat)
             passed = passed[curve[passed] < 0]
