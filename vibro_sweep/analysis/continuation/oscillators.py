@@ -167,9 +167,9 @@ def exact_tables(r, A) -> None:
     n = len(A)
     B = extended(np.vstack([A, np.zeros(n + 1)]))
     power = exponential(B, extended(r["width"]))
-    r["series"] = taylor_rows(B, identity(n + 1))[:, :n].astype(float)
+    r["series"][:, :, : n + 1] = taylor_rows(B, identity(n + 1))[:, :n].astype(float)
     for bit in range(int(r["bits"])):
-        r["powers"][bit] = power[:n].astype(float)
+        r["powers"][bit, :, : n + 1] = power[:n].astype(float)
         power = power @ power
 
 

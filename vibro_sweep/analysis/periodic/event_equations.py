@@ -93,8 +93,8 @@ def _tables(q: Linear, sigma: int, halves: int, rests: bool) -> tuple[np.ndarray
     to, X = contact_coordinates(q), amplitudes(q)
     r["Z"] = np.concatenate([to.P @ X, 1j * (to.U @ X)])
     rates = q.omega ** -np.arange(ORDER + 1.0)
-    r["series"] = f.series.reshape(-1, m, m)[:, :n, columns] * scale * rates[:, None, None]
-    r["powers"] = f.powers[:, :n, columns] * scale
+    r["series"][:, :, : n + 1] = f.series.reshape(-1, m, m)[:, :n, columns] * scale * rates[:, None, None]
+    r["powers"][:, :, : n + 1] = f.powers[:, :n, columns] * scale
     r["width"], r["bits"], r["is_still"], r["is_known"] = f.width * q.omega, moving_flow.BITS, 1, 1
     r["half_turns"], r["reach"] = halves, 1.0
     r["exact"][: n * (n + 1)] = r["A"].ravel()

@@ -1,10 +1,18 @@
 """Tables of the free flight y' = A (y, 1): Taylor coefficients and powers over a cell, and what they give of a flight.
 
-Affine maps are (n, n + 1): the last column is the shift by the constant force. Slopes are by the free numbers.
+Affine maps are (n, n + 1): the last column is the shift by the constant force. Slopes are by the free numbers. Rows are
+kept as whole vectors, which hold zeros beyond.
 """
 
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.simd.memory import eight, put_eight
+
+
+def columns_of(n):
+    """Numbers in a row of an affine map, in whole vectors."""
+    return LANES * (n // LANES + 1)
 
 
 @jit
@@ -19,10 +27,13 @@ def start_product(n, shift, out):
 @jit
 def add_product(n, a, b, out):
     """out += the matrix of a times b, for affine maps (n, n + 1): the last column is the shift."""
+    columns = b.shape[1]
     for r in range(n):
-        for k in range(n):
-            for c in range(n + 1):
-                out[r, c] += a[r, k] * b[k, c]
+        for c in range(0, columns, LANES):
+            total = eight(out, r * columns + c)
+            for k in range(n):
+                total = total + a[r, k] * eight(b, k * columns + c)
+            put_eight(out, r * columns + c, total)
 
 
 @jit
@@ -69,13 +80,12 @@ def build_series(f):
 @jit
 def polynomial(n, series, u, out):
     """out = sum_k series_k u^k, (n, n + 1)."""
-    size = n * (n + 1)
-    terms, total = series.reshape((ORDER + 1, size)), out.reshape(size)  # one long row is computed faster
-    for i in range(size):
-        total[i] = terms[ORDER, i]
-    for k in range(ORDER - 1, -1, -1):
-        for i in range(size):
-            total[i] = total[i] * u + terms[k, i]
+    size = n * out.shape[1]
+    for i in range(0, size, LANES):
+        total = eight(series, ORDER * size + i)
+        for k in range(ORDER - 1, -1, -1):
+            total = total * u + eight(series, k * size + i)
+        put_eight(out, i, total)
 
 
 @jit
@@ -111,8 +121,7 @@ def flight(f, length, out, other):
                     product_slope(n, out[0], out[1 + j], f.powers[bit], f.power_slopes[j, bit], other[1 + j])
             for i in range(1 + f.parameters):
                 if i == 0 or f.moves[i - 1] > 0:
-                    for r in range(n):
-                        for c in range(n + 1):
-                            out[i, r, c] = other[i, r, c]
+                    for place in range(0, n * out.shape[2], LANES):
+                        put_eight(out[i], place, eight(other[i], place))
         cells >>= 1
         bit += 1

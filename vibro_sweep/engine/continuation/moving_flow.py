@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.continuation.factors import factorise, square, substitute
-from vibro_sweep.engine.continuation.flight_tables import build_powers, build_series
+from vibro_sweep.engine.continuation.flight_tables import build_powers, build_series, columns_of
 from vibro_sweep.engine.impulses.extremes import MIDDLE
 from vibro_sweep.engine.impulses.tables import ORDER
 from vibro_sweep.engine.simd.jit import jit
@@ -56,10 +56,10 @@ def plane_of(masses: int) -> np.dtype:
         ("number_slopes", float, (2, NUMBERS)),
         ("Z", complex, n),
         ("Z_slopes", complex, (2, n)),
-        ("series", float, (ORDER + 1, n, n + 1)),  # first rows of B^k/k!, B = (A; 0)
-        ("series_slopes", float, (2, ORDER + 1, n, n + 1)),
-        ("powers", float, (BITS, n, n + 1)),  # exp(B width 2^j)
-        ("power_slopes", float, (2, BITS, n, n + 1)),
+        ("series", float, (ORDER + 1, n, columns_of(n))),  # first rows of B^k/k!, B = (A; 0)
+        ("series_slopes", float, (2, ORDER + 1, n, columns_of(n))),
+        ("powers", float, (BITS, n, columns_of(n))),  # exp(B width 2^j)
+        ("power_slopes", float, (2, BITS, n, columns_of(n))),
         ("middle_weights", float, (ORDER + 1, MIDDLE)),  # see extremes.py
         ("rest_weights", float, ORDER + 1),
         ("middle", float, (n + 1, MIDDLE)),  # of the gap over a cell, by each coordinate of the state, and the shift

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_series import Tail, new_tail
+from vibro_sweep.engine.continuation.flight_tables import columns_of
 from vibro_sweep.engine.continuation.problem import width_of
 from vibro_sweep.engine.impulses.extremes import PIECES
 from vibro_sweep.engine.impulses.tables import ORDER
@@ -20,6 +21,7 @@ from vibro_sweep.model.bifurcations import CODIMENSION_TWO, TYPES
 FIRST, SECOND, THETA = range(3)  # of `Place.p`: both parameters, and theta of a Neimark-Sacker curve
 TERMS = 10  # of a power series in z and its conjugate, to third order
 PARAMETERS = 2  # of the oscillator that may be free
+WIDE = 16  # numbers in a row of equations that are not eliminated event by event
 ROWS = 3  # most scalar rows: conditions, and the plane across a tangent
 
 # What is known of each point, by name: tests of bifurcations, as their table names them, and
@@ -81,7 +83,7 @@ def event_of(masses: int) -> np.dtype:
         ("kept", float, (n + 2, width_of(n, PARAMETERS))),  # what was eliminated, a triangle in front
         ("mirrors", float, (n + 2, 2 * n + 2)),  # m of the reflections 1 - s m m^T
         ("scales", float, n + 2),  # s
-        ("E", float, (3, n, n + 1)),  # the flight after it, and its derivatives by the parameters
+        ("E", float, (3, n, columns_of(n))),  # the flight after it, and its derivatives by the parameters
         ("rate", float, n),  # y' = dy/dphi before it
         ("after", float, n + 1),  # y after it, and 1
         ("landing", float, n),  # y at the end of the flight
@@ -108,11 +110,24 @@ def event_of(masses: int) -> np.dtype:
 
 
 @cache
+def few_of(masses: int) -> np.dtype:
+    """Room for Newton's change of few events, n + K < WIDE (guesses.py)."""
+    n = 2 * masses
+    return record([
+        ("carried", float, (n, WIDE)),
+        ("landed", float, (n, WIDE)),
+        ("kicks", float, (WIDE, WIDE)),
+        ("system", float, (WIDE, WIDE)),
+    ])  # fmt: skip
+
+
+@cache
 def work_of(masses: int) -> np.dtype:
     """Room for one elimination."""
     n = 2 * masses
     wide = width_of(n, PARAMETERS)
     return record([
+        ("few", few_of(masses)),
         ("panel", float, (2 * n + 2, wide)),
         ("line", float, wide),
         ("last", float, (n, wide)),  # what is left: columns of xi_{K+1} (XI), xi_1, parameters, residual
@@ -123,8 +138,8 @@ def work_of(masses: int) -> np.dtype:
         ("null", float, n + ROWS),  # xi_1 and parameters of a vector that is taken apart
         ("row_p", float, (ROWS, ROWS)),  # scalar rows by the parameters
         ("row_left", float, ROWS),  # and their residuals
-        ("E", float, (3, n, n + 1)),  # of a flight, and room for one
-        ("other", float, (3, n, n + 1)),
+        ("E", float, (3, n, columns_of(n))),  # of a flight, and room for one
+        ("other", float, (3, n, columns_of(n))),
         ("mirror", float, (n + 2, 2 * n + 2)),
         ("image", float, (n, 2 * n)),
         ("matrix", float, (n, n)),
