@@ -66,10 +66,14 @@ class Family:
         return Family(self.build, self.numbers | changes)
 
     @cached_property
+    def built(self) -> Linear:
+        """The oscillator; its phase is None where it follows from the motion."""
+        return self.build(**self.numbers)
+
+    @cached_property
     def linear(self) -> Linear:
         """The oscillator, its phase resolved."""
-        built = self.build(**self.numbers)
-        return built._replace(tau=grazing_phase(built)) if built.tau is None else built
+        return self.built._replace(tau=grazing_phase(self.built)) if self.built.tau is None else self.built
 
     def derivative(self, name: str, linear: Linear | None = None) -> Linear:
         """Derivatives of all fields by the parameter `name`, exact to rounding. linear: this one's, if it is known."""

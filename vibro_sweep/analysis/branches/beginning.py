@@ -56,10 +56,9 @@ def is_special(point: Point) -> bool:
     """Whether a test of this point is zero, to rounding or nearly so."""
     s = point.solution
     mu = s.multipliers
-    i, j = np.triu_indices(len(mu), 1)
     zeros = [abs(point.rate), np.abs(mu + 1).min()]
     if len(mu) > 2 and point.solution.torus != 1.0:
-        zeros.append(np.abs(1 - mu[i] * mu[j]).min())
+        zeros.append(np.abs(1 - s.products).min())
     return min(zeros) < NEAR or not is_real(point, TOUCHES)
 
 

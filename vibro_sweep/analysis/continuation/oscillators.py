@@ -1,5 +1,6 @@
 """The oscillator as polynomials of its free numbers, two at most (engine/continuation/moving_flow.py)."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -57,14 +58,14 @@ class Oscillators:
         self.family, self.names, self.halves, self.units = family, names, halves, units
         still = not any(np.any(getattr(family.derivative(name), field)) for name in names for field in TABLES)
         self._still = sampled(family.linear, units) if still else None
+        self._family = lru_cache(64)(lambda *p: family.replace(**dict(zip(names, p, strict=True))))
 
     def at(self, p) -> Family:
-        return self.family.replace(**dict(zip(self.names, map(float, p[: len(self.names)]), strict=True)))
+        return self._family(*map(float, p[: len(self.names)]))
 
     def values(self, p) -> np.ndarray:
         """`sampled` at the parameters p; the phase, which that does not need, is not looked for."""
-        family = self.at(p)
-        q = family.build(**family.numbers)
+        q = self.at(p).built
         if self._still is None:
             return sampled(q, self.units)
         values = self._still.copy()

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import combinations
 
 import numpy as np
 
@@ -110,13 +111,16 @@ class Solution:
         return multipliers_of(flow(q), self.sigma, self.P, contacts_of(q, self.sides), self.u, self.motion)
 
     @cached_property
+    def products(self) -> np.ndarray:
+        """mu_i mu_j, i < j."""
+        return np.array([a * b for a, b in combinations(self.multipliers, 2)])
+
+    @cached_property
     def torus(self) -> float:
         """prod_{i<j} (1 - mu_i mu_j): zero at a Neimark-Sacker point, and at a neutral saddle. 1 without losses."""
-        mu = self.multipliers
-        if abs(abs(np.prod(mu)) - 1) < 1e-9:
+        if abs(abs(np.prod(self.multipliers)) - 1) < 1e-9:
             return 1.0
-        i, j = np.triu_indices(len(mu), 1)
-        return float(np.prod(1 - mu[i] * mu[j]).real)
+        return float(np.prod(1 - self.products).real)
 
     @property
     def pushes(self) -> np.ndarray:

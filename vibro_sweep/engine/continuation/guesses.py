@@ -29,6 +29,7 @@ from vibro_sweep.engine.simd.memory import eight, put_eight
 
 MOST_STEPS = 30
 LAST = 5  # of them
+LOST = 0.01  # size of a step among them that has to be shortened: the others would not do
 MORE = 100  # beside a fold, where rounding throws steps about: one of them leads to the solution
 THROWN = 1e-5  # sizes of these steps
 ROUNDING = 1e-13  # of the gap's size
@@ -213,6 +214,8 @@ def settle(f, c, place, closing, b):
             return np.nan
         most = 1e-7 if left <= ROUNDING * size else 1e-9
         damping = min(1.0, 0.25 * reach / longest) if longest > 0.0 else 1.0
+        if damping < 1.0 and change > LOST and MOST_STEPS - LAST <= count < MOST_STEPS:
+            return np.nan
         e = b.events[0]
         place.x[0, 0] -= damping * (e.changes[0, 0] + e.rate[0] * e.changes[0, n])
         for i in range(K):
