@@ -133,18 +133,11 @@ def torus_test(a: Point, b: Point) -> Test | None:
     """
     if len(a.solution.multipliers) < 3 or a.solution.torus == 1.0 or b.solution.torus == 1.0:
         return None
-    left_out = min(int(np.sum(np.abs(1 - _products(point)) < ON_PAIR)) for point in (a, b))
+    left_out = min(int(np.sum(np.abs(1 - point.solution.products) < ON_PAIR)) for point in (a, b))
 
     def test(point: Point) -> float:
-        factors, mu = 1 - _products(point), point.solution.multipliers
+        factors, mu = 1 - point.solution.products, point.solution.multipliers
         product = np.prod(factors[np.argsort(np.abs(factors))[left_out:]] if left_out else factors).real
         return float(product / np.prod(np.hypot(1, np.abs(mu))) ** (len(mu) - 1))
 
     return test
-
-
-def _products(point: Point) -> np.ndarray:
-    """mu_i mu_j, i < j."""
-    mu = point.solution.multipliers
-    i, j = np.triu_indices(len(mu), 1)
-    return mu[i] * mu[j]

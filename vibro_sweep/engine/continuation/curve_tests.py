@@ -7,13 +7,12 @@ import numpy as np
 from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.chatter_sum import REACH
 from vibro_sweep.engine.continuation.conditions import keep_null_vectors
-from vibro_sweep.engine.continuation.factors import factorise
+from vibro_sweep.engine.continuation.factors import factorise, solve_rows
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.normal_form import coefficient
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS, is_critical
 from vibro_sweep.engine.continuation.residual import eliminate
 from vibro_sweep.engine.continuation.workspace import CURVE_TESTS, TEST, THETA
-from vibro_sweep.engine.impulses.elimination import solve
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
@@ -39,7 +38,7 @@ def eigenvalues_of(c, b, n):
     for r in range(n):
         for j in range(n):
             work.image[r, j], work.image[r, n + j] = work.last[r, j], -c.sigma * work.last[r, X + j]
-    if not solve(work.image):
+    if not solve_rows(work.image, n, 2 * n):
         return False
     for r in range(n):
         for j in range(n):

@@ -1,6 +1,8 @@
 """Triangular factors of a small real or complex matrix, for solutions, adjoint solutions and determinants."""
 
 from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.simd.memory import eight, put_eight
 
 
 @jit
@@ -63,3 +65,30 @@ def substitute_transposed(a, size, order, x):
             x[j] -= a[i, j] * x[i]
     for j in range(size - 1, -1, -1):
         x[j], x[order[j]] = x[order[j]], x[j]
+
+
+@jit
+def solve_rows(a, size, width):
+    """Overwrite columns `size` .. `width` - 1 of a by the solutions of the system before them. False: singular.
+
+    Rows are whole vectors.
+    """
+    stride = a.shape[1]
+    for j in range(size):
+        best, begin = j, j - j % LANES
+        for i in range(j + 1, size):
+            if abs(a[i, j]) > abs(a[best, j]):
+                best = i
+        if not abs(a[best, j]) > 0.0:
+            return False
+        scale = 1.0 / a[best, j]
+        for k in range(begin, width, LANES):
+            pivot = eight(a, stride * best + k)
+            put_eight(a, stride * best + k, eight(a, stride * j + k))
+            put_eight(a, stride * j + k, scale * pivot)
+        for i in range(size):
+            if i != j:
+                factor = a[i, j]
+                for k in range(begin, width, LANES):
+                    put_eight(a, stride * i + k, eight(a, stride * i + k) - factor * eight(a, stride * j + k))
+    return True

@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.continuation.corrector import in_order
-from vibro_sweep.engine.continuation.factors import factorise, substitute
+from vibro_sweep.engine.continuation.factors import factorise, solve_rows, substitute
 from vibro_sweep.engine.continuation.flight_tables import flight
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA
 from vibro_sweep.engine.continuation.reflections import put_last, take_apart
@@ -29,7 +29,7 @@ from vibro_sweep.engine.simd.memory import eight, put_eight
 
 MOST_STEPS = 30
 LAST = 5  # of them
-LOST = 0.01  # size of a step among them that has to be shortened: the others would not do
+LOST = 0.01  # size of a step that those of them which are left do not make good
 MORE = 100  # beside a fold, where rounding throws steps about: one of them leads to the solution
 THROWN = 1e-5  # sizes of these steps
 ROUNDING = 1e-13  # of the gap's size
@@ -104,29 +104,6 @@ def solve(f, c, place, b):
 
 
 @jit
-def solve_rows(a, size):
-    """Linear equations with the right side in column `size`, which becomes the solution. False where singular."""
-    for j in range(size):
-        best, begin = j, j - j % LANES
-        for i in range(j + 1, size):
-            if abs(a[i, j]) > abs(a[best, j]):
-                best = i
-        if not abs(a[best, j]) > 0.0:
-            return False
-        scale = 1.0 / a[best, j]
-        for k in range(begin, size + 1, LANES):
-            pivot = eight(a, WIDE * best + k)
-            put_eight(a, WIDE * best + k, eight(a, WIDE * j + k))
-            put_eight(a, WIDE * j + k, scale * pivot)
-        for i in range(size):
-            if i != j:
-                factor = a[i, j]
-                for k in range(begin, size + 1, LANES):
-                    put_eight(a, WIDE * i + k, eight(a, WIDE * i + k) - factor * eight(a, WIDE * j + k))
-    return True
-
-
-@jit
 def condense(f, c, place, b):
     """As `solve`, with xi_i = carried (xi_1, dphi_1 .. dphi_K, 1) and dD_i = kicks_i (the same)."""
     K, n, N, omega, room = len(b.events), f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA], b.work[0].few
@@ -162,7 +139,7 @@ def condense(f, c, place, b):
             system[K + r, j] = (f.held[r, j] if j < n else 0.0) - carried[r, j]
         system[K + r, r] += c.sigma
         system[K + r, last] = carried[r, last]
-    if not solve_rows(system, last):
+    if not solve_rows(system, last, last + 1):
         return False
     b.events[0].changes[0, 0] = system[0, last]
     for i in range(K):
@@ -214,8 +191,8 @@ def settle(f, c, place, closing, b):
             return np.nan
         most = 1e-7 if left <= ROUNDING * size else 1e-9
         damping = min(1.0, 0.25 * reach / longest) if longest > 0.0 else 1.0
-        if damping < 1.0 and change > LOST and MOST_STEPS - LAST <= count < MOST_STEPS:
-            return np.nan
+        if change > LOST and count < MOST_STEPS and damping < 0.5 ** (MOST_STEPS - LAST - count):
+            return np.nan  # it may at most double from step to step
         e = b.events[0]
         place.x[0, 0] -= damping * (e.changes[0, 0] + e.rate[0] * e.changes[0, n])
         for i in range(K):
