@@ -7,7 +7,15 @@ from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import torus
-from vibro_sweep.analysis.branches.torus import product
+
+
+def product(a, b):
+    """Of two power series in two numbers, to third order."""
+    out = np.zeros((4, 4), complex)
+    for j in range(4):
+        for k in range(4 - j):
+            out[j:, k:] += a[j, k] * b[: 4 - j, : 4 - k]
+    return out
 
 
 class NormalForm:

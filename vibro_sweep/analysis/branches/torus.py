@@ -21,13 +21,13 @@ ROUNDED = 1e-8  # part of its terms below which a is rounding
 ON_CIRCLE = 1e-6  # distance of the computed eigenvalue of A from e^{i theta}, at most
 
 
-def product(a, b) -> np.ndarray:
-    """Of two series."""
-    out = np.zeros(np.broadcast_shapes(a.shape, b.shape), complex)
+def times(b) -> np.ndarray:
+    """(16, 16): what a row of a series' coefficients is multiplied by, for the product with b."""
+    out = np.zeros((ORDER + 1,) * 4, complex)
     for j in range(ORDER + 1):
         for k in range(ORDER + 1 - j):
-            out[..., j:, k:] += a[..., j, k, None, None] * b[..., : ORDER + 1 - j, : ORDER + 1 - k]
-    return out
+            out[j, k, j:, k:] = b[: ORDER + 1 - j, : ORDER + 1 - k]
+    return out.reshape(b.size, b.size)
 
 
 class Map:
@@ -69,11 +69,12 @@ class Map:
 
     def _moved(self, zeta, delay) -> np.ndarray:
         """exp(B delay) zeta for a delay without a constant term."""
-        total = term = zeta
+        total = term = zeta.reshape(len(zeta), -1)
+        by_delay = times(delay)
         for k in range(1, ORDER + 1):
-            term = product(np.tensordot(self.B, term, 1), delay) / k
+            term = self.B @ term @ by_delay / k
             total = total + term
-        return total
+        return total.reshape(zeta.shape)
 
 
 def critical_angle(solution: Solution) -> float:
