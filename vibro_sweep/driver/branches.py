@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_search import Branches, grow
+from vibro_sweep.analysis.branches.flat import SHAPES
 from vibro_sweep.analysis.branches.search import Node
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of
@@ -57,7 +58,7 @@ def run_branches(
 def _contents(scene: Continuation, found: list[Node]) -> tuple:
     """Columns and arrays of the file."""
     names, masses = list(scene.along), scene.system.masses
-    arrays = joined([node.flat for node in found], names, [()] * len(found), masses)
+    arrays = joined([node.flat for node in found], SHAPES, names, masses)
     sections = [node.flat["section"].reshape(-1, 2 * masses) for node in found]
     together = np.concatenate(sections) if sections else np.zeros((0, 2 * masses))
     arrays |= {f"section_{name}": together[:, i] for i, name in enumerate(state(masses))}

@@ -10,6 +10,7 @@ from vibro_sweep.analysis.branches.branch_search import Branches, grow
 from vibro_sweep.analysis.branches.flat import special_point
 from vibro_sweep.analysis.branches.seeds import Seed
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.curves.curve_flat import SHAPES
 from vibro_sweep.analysis.curves.curve_search import Curves, seed_at, trace
 from vibro_sweep.analysis.windows.explained import explain, probe
 from vibro_sweep.driver.branches import where_met
@@ -25,7 +26,7 @@ from vibro_sweep.model.files import file_to_write
 from vibro_sweep.scene import Continuation
 from vibro_sweep.scene.continuation import BY_BRANCHES
 from vibro_sweep.store.flat_files import Subject
-from vibro_sweep.store.joining import joined_curves
+from vibro_sweep.store.joining import joined
 from vibro_sweep.store.pieces import pieces
 
 
@@ -67,7 +68,7 @@ def _contents(scene: Continuation, of_plane, workers, executor, file, progress) 
                 file.drop()
                 raise
             curves = Curves(names, box, scene.of).run(starts, scene.depth, evaluate)
-    arrays = joined_curves([one.flat for one in curves], list(names), scene.system.masses)
+    arrays = joined([one.flat for one in curves], SHAPES, list(names), scene.system.masses)
     held = columns_of(CHART, list(names), scene.system, OF_EDGES if more else ())
     return held, arrays | where_met(curves, arrays["branch_special"]) | more
 

@@ -7,13 +7,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibro_sweep import store
+from vibro_sweep.analysis.branches import flat as branches
 from vibro_sweep.analysis.branches.flat import special_point
 from vibro_sweep.analysis.branches.seeds import Seed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import switch
 from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.curves import curve_flat as curves
+from vibro_sweep.analysis.curves.curve_flat import point_of_codimension_two
 from vibro_sweep.analysis.curves.curve_way import CurvePoint
-from vibro_sweep.analysis.curves.flat import point_of_codimension_two
 from vibro_sweep.analysis.curves.switching import switch as curves_through
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.lcp import born_at_grazing
@@ -29,7 +31,7 @@ from vibro_sweep.model.branch_file import CHART, WINDOWS
 from vibro_sweep.model.refusals import cut, shown
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.store.arrays import Contents
-from vibro_sweep.store.joining import branch_of, curve_of
+from vibro_sweep.store.joining import part_of
 from vibro_sweep.store.pieces import Pieces
 
 
@@ -196,8 +198,8 @@ def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:
     index = int(arrays["special_branch"][scene.special])
     place = scene.special - int(arrays["branch_special"][:index].sum())
     if kind == CHART:
-        return point_of_codimension_two(curve_of(arrays, names, index), place, names, system), names
-    return special_point(branch_of(arrays, names[0], index), place, names[0], system), names
+        return point_of_codimension_two(part_of(arrays, curves.SHAPES, names, index), place, names, system), names
+    return special_point(part_of(arrays, branches.SHAPES, names[:1], index), place, names[0], system), names
 
 
 def _at_special(scene: Continuation, data: Contents) -> tuple[AnyOscillator, list[str]]:

@@ -8,7 +8,7 @@ from types import NoneType
 import numpy as np
 
 from vibro_sweep import store
-from vibro_sweep.analysis.branches.flat import Flat
+from vibro_sweep.analysis.branches.flat import SHAPES, Flat
 from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.job import window_of
 from vibro_sweep.analysis.windows.rows import Row, check_data, chosen_key, rows_of
@@ -126,7 +126,8 @@ def _contents(cover: Cover) -> tuple:
     names = [first.parameter, *first.held]
     masses = first.system.masses
     flats = [one.flat for one in found]
-    arrays = joined(flats, names, [tuple(cover.rows[one.row].held.values()) for one in found], masses)
+    held = [tuple(cover.rows[one.row].held.values()) for one in found]
+    arrays = joined(flats, SHAPES, names, masses, held)
     none = np.full(len(found), -1, np.int32)
     arrays |= {"branch_parent": none, "branch_parent_special": none, "branch_generation": 0 * none}
     ends = np.array([one.ends for one in found]).reshape(len(found), 2)

@@ -4,6 +4,8 @@ The arrays, `SHAPES`, have the names that they have in files. Words are codes of
 does not exist is -1.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_points import columns, impacts
@@ -38,7 +40,7 @@ def outline(branch: Branch) -> Flat:
     start = branch._walk.start
     t, sides, v = impacts(branch._walk, branch._frame, branch._rows)
     return {
-        "branch_period": np.int32(start.halves if start.sigma == -1 else start.halves // 2),
+        "branch_period": np.int32(start.whole().halves // 2),
         "branch_symmetric": np.int8(start.sigma == -1),
         "value": branch._rows.p,
         "impact_t": t,
@@ -51,20 +53,25 @@ def outline(branch: Branch) -> Flat:
 def flatten(branch: Branch, origin: float) -> Flat:
     """The arrays of a branch; origin: the parameter of the orbit that it was followed from."""
     data = {name: values for name, (_, values) in columns(branch._walk, branch._frame, branch._rows).items()}
-    p = data[branch.parameter]
+    p, special = data[branch.parameter], branch.special
     words = state(data["multiplier_re"].shape[1] // 2)
-    result = {
+    result = outline(branch) | common(branch, branch._walk.start, (branch.parameter,), p, CODES)
+    result |= {
         "branch_status": np.int8(BRANCH_STATUSES.index(branch.status)),
-        "branch_closed": np.int8(branch.closed),
         "branch_origin": np.int32(np.argmin(np.abs(p - origin))),
-        "branch_begins": np.int32(branch.special.index(branch.begins)),
-        "branch_ends": np.int32(len(branch.special) - 1 - branch.special[::-1].index(branch.ends)),
         "state": np.stack([data[name] for name in words], axis=-1),
         **{name: data[name] for name in ("multiplier_re", "multiplier_im", "margin", "min_impact_speed", "residual")},
         "unstable": data["unstable"].astype(np.int32),
         "status": np.zeros(len(p), np.int8),
+        "special_impact": np.array([-1 if one.impact is None else one.impact for one in special], np.int32),
     }
-    result |= outline(branch) | _special_points(branch, p)
+    codes = {
+        "special_stop": [one.stop or 0 for one in special],
+        "special_kind": [KINDS.index((one.kind or "none").replace(" ", "_")) for one in special],
+        "special_direction": [one.direction or 0 for one in special],
+        "special_criticality": [CRITICALITIES.index(one.criticality or "none") for one in special],
+    }
+    result |= {name: np.array(values, np.int8) for name, values in codes.items()}
     return {name: np.asarray(values) for name, values in result.items()}
 
 
@@ -81,26 +88,25 @@ def _rest_ends(branch: Branch, t: np.ndarray) -> np.ndarray:
     return ends
 
 
-def _special_points(branch: Branch, p: np.ndarray) -> Flat:
-    values = np.array([special.parameters[branch.parameter] for special in branch.special])
-    points, least = [], 0
-    for value in values:  # special points are among the points, in the same order; a sticking onset is no orbit of it
-        there = np.flatnonzero(p[least:] == value)
+def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Mapping[str, int]) -> Flat:
+    """Arrays of a branch or curve of orbits like `start` in the parameters `names`: what it is, where its special
+    points are. p : (n,) or (n, 2); codes : of their types"""
+    places = np.array([[one.parameters[name] for name in names] for one in of.special])
+    points, least, values = [], 0, p.reshape(len(p), -1)
+    for place in places:  # special points are among the points, in the same order; a sticking onset is no orbit of it
+        there = np.flatnonzero(np.all(values[least:] == place, axis=1))
         least += int(there[0]) if len(there) else 0
         points.append(least if len(there) else -1)
-    codes = {
-        "special_type": [CODES[one.type] for one in branch.special],
-        "special_stop": [one.stop or 0 for one in branch.special],
-        "special_kind": [KINDS.index((one.kind or "none").replace(" ", "_")) for one in branch.special],
-        "special_direction": [one.direction or 0 for one in branch.special],
-        "special_criticality": [CRITICALITIES.index(one.criticality or "none") for one in branch.special],
-    }
     return {
-        **{name: np.array(values, np.int8) for name, values in codes.items()},
-        "special_value": values,
+        "branch_period": np.int32(start.whole().halves // 2),
+        "branch_symmetric": np.int8(start.sigma == -1),
+        "branch_closed": np.int8(of.closed),
+        "branch_begins": np.int32(of.special.index(of.begins)),
+        "branch_ends": np.int32(len(of.special) - 1 - of.special[::-1].index(of.ends)),
+        "special_type": np.array([codes[one.type] for one in of.special], np.int8),
+        "special_value": places.reshape(-1, *p.shape[1:]),
         "special_point": np.array(points, np.int32),
-        "special_impact": np.array([-1 if one.impact is None else one.impact for one in branch.special], np.int32),
-        "special_error": np.array([one.error for one in branch.special]),
+        "special_error": np.array([one.error for one in of.special], float),
     }
 
 

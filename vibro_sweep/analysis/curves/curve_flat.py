@@ -5,7 +5,7 @@ The arrays, `SHAPES`, have the names that they have in files. Words are codes of
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.flat import Flat, solution_of
+from vibro_sweep.analysis.branches.flat import Flat, common, solution_of
 from vibro_sweep.analysis.branches.torus import critical_angle
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.curves.continuation import BifurcationCurve
@@ -43,14 +43,9 @@ def flatten(curve: BifurcationCurve) -> Flat:
     if start.sigma == -1:
         half = np.array([np.pi * start.halves / q.omega for q in oscillators])
         t, v, sides = np.hstack([t, t + half[:, None]]), np.hstack([v, -v]), np.hstack([sides, -sides])
-    result = {
+    result = common(curve, start, curve.parameters, value, CODES_OF_CURVES) | {
         "branch_type": np.int8(CURVES.index(curve.type)),
-        "branch_period": np.int32(start.halves if start.sigma == -1 else start.halves // 2),
-        "branch_symmetric": np.int8(start.sigma == -1),
-        "branch_closed": np.int8(curve.closed),
         "branch_grazing": np.int32(grazing),
-        "branch_begins": np.int32(curve.special.index(curve.begins)),
-        "branch_ends": np.int32(len(curve.special) - 1 - curve.special[::-1].index(curve.ends)),
         "value": value,
         "state": np.column_stack([data[name].values for name in state(data.sizes["multiplier"] // 2)]),
         **{name: data[name].values for name in ("multiplier_re", "multiplier_im", "margin", "residual")},
@@ -61,30 +56,15 @@ def flatten(curve: BifurcationCurve) -> Flat:
         "impact_t": t,
         "impact_v": v,
         "impact_side": sides[0].astype(np.int8),
+        "special_touches": np.array([one.touches for one in curve.special], np.int8),
     }
-    return {name: np.asarray(values) for name, values in (result | _special_points(curve, value)).items()}
+    return {name: np.asarray(values) for name, values in result.items()}
 
 
 def _grazing_clearance(q: Linear) -> float:
     """b at which the free motion touches both stops; NaN where there is none."""
     gain = steady_gain(q) if q.low == -q.high and not np.any(q.constant) else None
     return np.nan if gain is None else abs(gain)
-
-
-def _special_points(curve: BifurcationCurve, value: np.ndarray) -> Flat:
-    own = np.array([[one.parameters[name] for name in curve.parameters] for one in curve.special]).reshape(-1, 2)
-    points, least = [], 0
-    for place in own:  # special points are among the points, in the same order
-        there = np.flatnonzero(np.all(value[least:] == place, axis=1))
-        least += int(there[0]) if len(there) else 0
-        points.append(least if len(there) else -1)
-    return {
-        "special_type": np.array([CODES_OF_CURVES[one.type] for one in curve.special], np.int8),
-        "special_value": own,
-        "special_point": np.array(points, np.int32),
-        "special_touches": np.array([one.touches for one in curve.special], np.int8),
-        "special_error": np.array([one.error for one in curve.special], float),
-    }
 
 
 def type_of(flat: Flat) -> str:
