@@ -8,7 +8,7 @@ from support import slow_cases
 from support.golden import curves, files
 
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied
-from vibro_sweep.analysis.curves.continuation import first_of
+from vibro_sweep.analysis.curves.bifurcation_curve import first_of
 from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.engine.continuation import stepper
 

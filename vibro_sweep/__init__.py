@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from vibro_sweep.analysis.branches.continuation import continue_orbit
     from vibro_sweep.analysis.branches.generations import follow_branches
     from vibro_sweep.analysis.branches.sticking import sticking_onset
-    from vibro_sweep.analysis.curves.continuation import bifurcation_curve
+    from vibro_sweep.analysis.curves.bifurcation_curve import bifurcation_curve
     from vibro_sweep.analysis.curves.switching import switch
     from vibro_sweep.analysis.periodic.file import load_orbit
     from vibro_sweep.analysis.periodic.finding import periodic_orbit
@@ -82,7 +82,7 @@ else:
         "SceneError": "scene",
         "StoreError": "store",
         "System": "model.oscillator",
-        "bifurcation_curve": "analysis.curves.continuation",
+        "bifurcation_curve": "analysis.curves.bifurcation_curve",
         "born_at_grazing": "analysis.periodic.lcp",
         "continue_orbit": "analysis.branches.continuation",
         "discontinuity_map": "analysis.single.discontinuity",

@@ -8,7 +8,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.flat import Flat, common, solution_of
 from vibro_sweep.analysis.branches.torus import critical_angle
 from vibro_sweep.analysis.continuation.start import Start
-from vibro_sweep.analysis.curves.continuation import BifurcationCurve
+from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.analysis.continuation.tracer import Tracer
-from vibro_sweep.analysis.curves.rows import Rows
+from vibro_sweep.analysis.curves.curve_rows import Rows
 from vibro_sweep.analysis.periodic.motion_between import multipliers_of
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS

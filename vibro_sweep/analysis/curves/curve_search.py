@@ -16,7 +16,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.start import keeps_symmetry
 from vibro_sweep.analysis.continuation.tracer import Tracer
-from vibro_sweep.analysis.curves.continuation import bifurcation_curve
+from vibro_sweep.analysis.curves.bifurcation_curve import bifurcation_curve
 from vibro_sweep.analysis.curves.curve_flat import flatten, solution_at, start_from, type_of
 from vibro_sweep.analysis.curves.start import as_special, start_at
 from vibro_sweep.analysis.curves.switching import ENDS, switch

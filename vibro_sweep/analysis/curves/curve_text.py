@@ -8,7 +8,7 @@ from vibro_sweep.analysis.branches.branch_text import way_of
 from vibro_sweep.analysis.periodic.orbit_text import itinerary_of, span, told
 
 if TYPE_CHECKING:
-    from vibro_sweep.analysis.curves.continuation import BifurcationCurve
+    from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 
 
 def of_curve(curve: "BifurcationCurve") -> str:

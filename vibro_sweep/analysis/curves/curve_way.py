@@ -11,8 +11,8 @@ from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, 
 from vibro_sweep.analysis.continuation.chord import root
 from vibro_sweep.analysis.continuation.tracer import Tracer, copied, copy
 from vibro_sweep.analysis.curves.curve_events import Event, beside, found_between, found_to_edge, without_echoes
+from vibro_sweep.analysis.curves.curve_rows import Rows, join
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
-from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.curve_tests import NEAR_STRONG

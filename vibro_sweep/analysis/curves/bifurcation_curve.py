@@ -16,8 +16,8 @@ from vibro_sweep.analysis.continuation.first_point import first_place, guess_of,
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves import curve_text
 from vibro_sweep.analysis.curves.curve_points import dataset
+from vibro_sweep.analysis.curves.curve_rows import Rows, join
 from vibro_sweep.analysis.curves.curve_way import CurvePoint, Way
-from vibro_sweep.analysis.curves.rows import Rows, join
 from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.engine.continuation.workspace import Place
