@@ -109,7 +109,7 @@ def test_windows_in_30_digits(b, periods, count):
 
 @pytest.mark.slow
 def test_criticality_changes_at_the_degenerate_points(symmetric_branch, one_sided_branch):
-    """By other methods: amplitudes of the born branch, and differences of the map (branches/births.py, torus.py)."""
+    """By amplitudes of the born branch (branches/births.py), or the coefficient at neighbouring orbits (torus.py)."""
     for branch, kind, most in ((symmetric_branch, "pitchfork", 2), (one_sided_branch, "neimark_sacker", 3)):
         special = first(branch, kind)
         curve = vs.bifurcation_curve(special, ("b", "omega"), BOXES["b", "omega"])

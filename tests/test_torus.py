@@ -2,93 +2,45 @@
 
 import numpy as np
 import pytest
+from mpmath import mp
+from reference.normal_forms import SectionMap, jacobian, third_order
+from reference.shooting import Shooting
 from scipy.linalg import expm
+from support.branches import NUMBERS
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import torus
+from vibro_sweep.analysis.periodic.linearised import Linearised
+from vibro_sweep.engine.continuation import stepper
+from vibro_sweep.engine.continuation.problem import TORUS
+from vibro_sweep.engine.impulses.flow import flow
 
 
-def product(a, b):
-    """Of two power series in two numbers, to third order."""
-    out = np.zeros((4, 4), complex)
-    for j in range(4):
-        for k in range(4 - j):
-            out[j:, k:] += a[j, k] * b[: 4 - j, : 4 - k]
-    return out
-
-
-class NormalForm:
-    """z -> e^{i theta} z (1 + a |z|^2) and a contraction, seen in other coordinates: y = S (x + quadratic terms)."""
-
-    n = 4
-
-    def __init__(self, theta, a, seed):
-        rng = np.random.default_rng(seed)
-        self.theta, self.a = theta, a
-        self.S, self.terms = rng.normal(size=(4, 4)) + 3 * np.eye(4), rng.normal(size=(4, 4, 4))
-
-    def squares(self, x):
-        return sum(np.multiply.outer(self.terms[:, j, k], product(x[j], x[k])) for j in range(4) for k in range(4))
-
-    def straight(self, y):
-        aim = np.tensordot(np.linalg.inv(self.S), y, 1)
-        x = aim
-        for _ in range(3):
-            x = aim - self.squares(x)
-        return x
-
-    def __call__(self, y):
-        """Of power series (4, 4, 4)."""
-        x = self.straight(y)
-        size = product(x[0], x[0]) + product(x[1], x[1])  # |z|^2 where x is real
-        turned = []
-        for part, other, sign in ((x[0], x[1], -1), (x[1], x[0], 1)):
-            factors = [np.exp(1j * self.theta) * weight for weight in (1, self.a)]
-            real, imag = (
-                factors[0].real * part + factors[1].real * product(size, part),
-                factors[0].imag * other + factors[1].imag * product(size, other),
-            )
-            turned.append(real + sign * imag)
-        x = np.array([*turned, 0.3 * x[2], -0.5 * x[3]])
-        return np.tensordot(self.S, x + self.squares(x), 1)
-
-
-@pytest.mark.parametrize("seed", range(5))
-@pytest.mark.parametrize("a", [0.7, -0.4 + 2j, 0.05 - 1j])
-def test_coefficient_of_a_normal_form_in_other_coordinates(a, seed):
-    """With |q| = 1 in y the coefficient is Re a times the square of |z| along q."""
-    form = NormalForm(1.1, a, seed)
-    found = torus.coefficient(form, 1.1).sum().real
-    q = form.S @ np.array([1, -1j, 0, 0])  # of eigenvalue e^{i theta}, z = 2 times its coordinate
-    expected = np.real(a) * (2 / np.linalg.norm(q)) ** 2
-    assert found == pytest.approx(expected, rel=1e-9)
-
-
-@pytest.mark.parametrize("itinerary", ["R", "LR"])
-def test_series_of_the_map_agree_with_differences_of_simulation(itinerary):
-    """Third order in a displacement: what is left falls like its fourth power."""
-    orbit = vs.periodic_orbit(PAPER.replace(b=3.5, tau=0.4), itinerary=itinerary)
-    s = orbit._solution
-    f, P = torus.Map(s), s.P
-    direction = np.array([0.3, -0.2, 0.5, 0.4])  # of x1, x2, v1, v2
-    series = np.zeros((4, 4, 4), complex)
-    series[:, 1, 0] = direction
-    expected = f(series)[:, :, 0].real
-    begin = s.times[0] - 0.02  # before the first impact, of all displaced motions too
-    short = expm(torus.flow(s.family.linear).B * 0.02)[:4, :4]
-    order = [0, 2, 1, 3]
-
-    def image(size):
-        there = orbit.sample([begin])[0] + np.linalg.solve(short, size * direction)[order]
-        run = vs.simulate(orbit.system, there, 1, begin)
-        return short @ (s.sigma * run.sample([begin + P]) - orbit.sample([begin]))[0][order]
-
-    left = [
-        np.abs(image(size) - expected @ size ** np.arange(4)).max() / np.abs(expected[:, 3]).max()
-        for size in (1e-2, 5e-3)
-    ]
-    assert left[0] < 1e-6 and left[0] / left[1] == pytest.approx(16, rel=0.1)
+@pytest.mark.parametrize("omega", [PAPER.omega, 0.62])
+def test_coefficient_agrees_with_differences_of_the_map_in_50_digits(omega):
+    """Of orbits with one impact: there q, of length 1 in the middle of the flight, is v moved back by half of it."""
+    orbit = vs.periodic_orbit(PAPER.replace(b=4.2, omega=omega), itinerary="R")
+    special = next(s for s in vs.continue_orbit(orbit, "b", (4.2, 4.7)).special if s.type == "neimark_sacker")
+    s = special.orbit._solution
+    linearised, theta = Linearised(s), torus.critical_angle(s)
+    linearised.take_null_vectors(TORUS, theta)
+    e = linearised.equations
+    e.do(stepper.EXAMINE)
+    (found, _), _ = torus.cubic_terms(e.bench, e.problem, e.place)
+    back = expm(-flow(s.family.linear).B * s.P / 2)[:4, :4]
+    size = np.linalg.norm(back @ (e.place.v[0, :4] * [1, 1, s.family.linear.omega, s.family.linear.omega]))
+    with mp.workdps(50):
+        shooting = Shooting({key: s.family.numbers[key] for key in NUMBERS}, s.sigma, s.halves, s.sides)
+        x1, x2, v1, v2 = s.states[0][:4]
+        A, n = shooting.system()
+        u = shooting.unknowns(s.times, (x1, v1, x2, v2))
+        for _ in range(4):
+            J = jacobian(lambda x: shooting.residual(A, n, x), u)
+            u = [a - b for a, b in zip(u, mp.lu_solve(J, mp.matrix(shooting.residual(A, n, u))), strict=True)]
+        expected = float(third_order(SectionMap(shooting, A, n, u), mp.expj(theta)))
+    assert found.real == pytest.approx(expected * size**2, rel=1e-8)
+    assert special.criticality == ("super" if expected < 0 else "sub")
 
 
 def test_criticality_where_the_impact_is_slow():

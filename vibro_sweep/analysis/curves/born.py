@@ -24,9 +24,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
+from vibro_sweep.analysis.branches.torus import cubic_terms
 from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
 from vibro_sweep.analysis.continuation.start import Start
@@ -35,6 +35,7 @@ from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.curves.pair import in_time, rates_of_pair, second_order
 from vibro_sweep.analysis.curves.start import as_special
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.workspace import THETA, Place
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, name_of
@@ -193,21 +194,20 @@ def _bent(child: Solution, tracer: Tracer, place: Place, z: complex, moved) -> S
 
 def _quarter(tracer: Tracer, place: Place, size: float, name: str, sign: int):
     """z, in units of w with |z| = size, the parameters' change, and theta (0 of a fold); None: there are none."""
-    c, d, q = torus.quarter(torus.Map(tracer.solution(place)))
-    xi = place.v[0, : tracer.n] * tracer.state_units
-    scale = (q.conj() @ xi) / (q.conj() @ q)  # xi = scale q
+    tracer.take(place)
+    tracer.do(stepper.EXAMINE, place)
+    (c, d), _ = cubic_terms(tracer.bench, tracer.problem, place)
     A = c / abs(d)
     u = _turn(A, name, sign)
     if u is None:
         return None
-    r = size * abs(scale)
-    z = r * np.exp(1j * (np.angle(d) - np.angle(u)) / 4)
-    eps = -abs(d) * r**2 * (A + u)
+    z = size * np.exp(1j * (np.angle(d) - np.angle(u)) / 4)
+    eps = -abs(d) * size**2 * (A + u)
     rates, _ = rates_of_pair(tracer, place)
     moved = np.linalg.solve(np.array([rates.real, rates.imag]), [eps.real, eps.imag])
     determinant = -8 * (1 + (A * u.conjugate()).real)
-    theta = 4 * abs(d) * r**2 * determinant**0.5 if name == "neimark_sacker" else 0.0
-    return z / scale, moved, theta
+    theta = 4 * abs(d) * size**2 * determinant**0.5 if name == "neimark_sacker" else 0.0
+    return z, moved, theta
 
 
 def _turn(A: complex, name: str, sign: int) -> complex | None:

@@ -9,6 +9,7 @@ import numpy as np
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.engine.continuation import moving_flow, stepper
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD
+from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.engine.impulses.flow import rate_slopes
 from vibro_sweep.model.linear import Linear
 
@@ -92,13 +93,17 @@ class Linearised:
 
     def critical_direction(self, mu: int) -> np.ndarray:
         """(2K + rests,) what a multiplier mu = 1 or -1 moves: of times, jumps and ends of rests."""
+        self.take_null_vectors(FOLD if mu == 1 else FLIP)
+        return self._of_times(self.equations.place.v.real)
+
+    def take_null_vectors(self, kind: int, theta: float = 0.0) -> None:
+        """Leave in `place` those of the critical multiplier of this kind, e^{i theta} of a pair."""
         e = self.equations
-        e.problem = e.problem._replace(kind=FOLD if mu == 1 else FLIP)
+        e.problem, e.place.p[THETA] = e.problem._replace(kind=kind), theta
         for _ in range(2):  # first across any direction, which may lie badly, then across the one that is found
             self._assembled()
             for here, found in ((e.place.v, e.bench.events["v"]), (e.place.w, e.bench.trial)):
                 here[:] = found / np.linalg.norm(found)
-        return self._of_times(e.place.v.real)
 
     def closure(self, mu: int) -> np.ndarray:
         """(n, n) G(mu), which is singular where mu is a multiplier."""

@@ -32,7 +32,7 @@ PRODUCTS = np.array([  # i, j, k: terms i and j make term k
     if (a + c, b + d) in _PLACE
 ])  # fmt: skip
 MIRROR = np.array([_PLACE[k, j] for j, k in POWERS.tolist()])  # of the complex conjugate
-LINEAR, SQUARE, MIXED, CUBE, RESONANT = 1, 3, 4, 6, 7
+LINEAR, SQUARE, MIXED, CUBE, RESONANT, OPPOSITE = 1, 3, 4, 6, 7, 9  # places of z, z^2, z z*, z^3, z^2 z*, z*^3
 
 
 @jit
