@@ -45,7 +45,7 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
     name = next(iter(special.parameters))
     K, rests = parent.K, len(parent.rests)
     size = 2 * K + rests
-    twice = doubled(parent)
+    twice = parent.repeated(2)
     walk, units = walk_of(twice, name, size_of(parent, name)), twice.units
     scale = np.concatenate([units[:K], units[2 * K : 3 * K], units[4 * K : 4 * K + rests]])
     critical = Linearised(parent).critical_direction(-1) / scale
@@ -61,16 +61,6 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
         guess = walk.of(replace(twice, u=moved))
         point = guess and walk.correct(guess, normal)
         yield point and point.solution
-
-
-def doubled(parent: Solution) -> Solution:
-    """The same orbit over the period of the branch that is born."""
-    if parent.sigma == -1:
-        return parent.whole()
-    t, D, P, K = parent.times, parent.jumps, parent.P, parent.K
-    u = np.concatenate([t, t + P, D, D, parent.ends, parent.ends + P])
-    rests = (*parent.rests, *(k + K for k in parent.rests))
-    return Solution(parent.family, 1, 2 * parent.halves, parent.sides * 2, u, 0.0, rests)
 
 
 def criticality(special: SpecialPoint) -> str | None:

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from vibro_sweep.analysis.branches import torus
-from vibro_sweep.analysis.branches.births import criticality, doubled
+from vibro_sweep.analysis.branches.births import criticality
 from vibro_sweep.analysis.branches.branch_events import bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.crossings import is_torus
 from vibro_sweep.analysis.branches.free_walk import FreePoint
@@ -235,7 +235,7 @@ class Way:
         """The branch begins at a flip or pitchfork of its parent."""
         special = self._at(event.type, parent, error)
         special = replace(special, criticality=criticality(special))
-        self._add_solution(parent.p, doubled(special.orbit._solution))
+        self._add_solution(parent.p, special.orbit._solution.repeated(2))
         self.special.append(special)
 
     def _at(self, of_type: str, point: Point, error: float, **more) -> SpecialPoint:

@@ -1,6 +1,6 @@
 """Special points of a branch: what they are, and what happens at a graze."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -81,16 +81,13 @@ def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
 
     Raises LinAlgError where the orbit without the impact is at a fold.
     """
-    rests = np.array(solution.rests, int)
     if impact is None:
         without, (touching, index) = solution, inserted(solution)
-        side, gone = touching.sides[index], np.array([index])
+        gone = np.array([index])
     else:
-        index, side = impact, solution.sides[impact]
-        gone = vanishing(solution, impact)
-        sides = tuple(np.delete(solution.sides, gone).tolist())
-        u = np.delete(solution.u, [*gone, *(solution.K + gone)])
-        without, touching = _with(solution, sides, u, rests - np.searchsorted(gone, rests)), solution
+        touching, index, gone = solution, impact, vanishing(solution, impact)
+        without = bare(solution, gone)
+    side = touching.sides[index]
     du, q = slopes(touching, name), solution.family.linear
     speed_slope = -side * du[touching.K + index] / (1 + q.restitution([side])[0])
     distance_slope = Linearised(touching, solution.family.derivative(name), gone).distance_slope(index)
@@ -126,17 +123,12 @@ def _nearest_aside(solution: Solution, slow) -> tuple[float, float, int]:
     return float(nearest[0]), float(nearest[1]), int(nearest[2])
 
 
-def bare(solution: Solution, index: int) -> Solution:
-    """The same motion as an orbit without the impact that has no speed."""
-    K = solution.K
-    sides = solution.sides[:index] + solution.sides[index + 1 :]
-    u = np.delete(solution.u, [index, K + index])
-    return Solution(solution.family, solution.sigma, solution.halves, sides, u, solution.change)
-
-
-def _with(solution: Solution, sides, u, rests) -> Solution:
-    rests = tuple(map(int, rests))
-    return Solution(solution.family, solution.sigma, solution.halves, tuple(sides), u, 0.0, rests)
+def bare(solution: Solution, gone) -> Solution:
+    """The same motion as an orbit without impacts that have no speed; gone: the index of one, or rising ones."""
+    gone, rests = np.atleast_1d(np.asarray(gone, int)), np.array(solution.rests, int)
+    sides, u = np.delete(solution.sides, gone), np.delete(solution.u, [*gone, *(solution.K + gone)])
+    rests = tuple((rests - np.searchsorted(gone, rests)).tolist())
+    return replace(solution, sides=tuple(sides.tolist()), u=u, rests=rests)
 
 
 def slopes(solution: Solution, name: str) -> np.ndarray:

@@ -95,18 +95,18 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
     place = first_place(tracer)
     if place is None:
         return None
-    K, critical = tracer.K, place.v[:, -2:].T.ravel()  # of phases and jumps
+    critical = place.v[:, -2:].T.ravel()  # of phases and jumps
     w, factor = critical * in_time(tracer, place), amplitude / critical[np.argmax(np.abs(critical))]
     if count == 4:
         found = _quarter(tracer, place, abs(factor), name, sign)
         if found is None:
             return None
         factor, moved, theta = found
-        child, change = repeated(parent.solution, 4, factor * w[:K], factor * w[K : 2 * K], 1j)
+        child, change = repeated(parent.solution, 4, factor * w, 1j)
         family = parent.solution.family.replace(**dict(zip(names, map(float, values + moved), strict=True)))
         child = replace(_bent(child, tracer, place, factor, moved), family=family)
         return Entry(Start(name, child, theta=theta), change, moved)
-    child, change = repeated(parent.solution, 2, factor * w[:K], factor * w[K : 2 * K], -1.0)
+    child, change = repeated(parent.solution, 2, factor * w, -1.0)
     if name == "fold":
         return Entry(Start(name, child), change, None)
     if name == "graze":  # at the turning point that is nearest to its stop
@@ -171,15 +171,13 @@ def box_around(special: CurvePoint) -> np.ndarray:
     return np.column_stack([values - reach, values + reach])
 
 
-def repeated(parent: Solution, count: int, dt, dD, mu: complex) -> tuple[Solution, np.ndarray]:
-    """The orbit taken `count` times, moved by mu^k (dt, dD) and its conjugate in period k; and the change itself."""
-    P, s = parent.P, float(parent.sigma)
-    turns, signs = mu ** np.arange(count)[:, None], s ** np.arange(count)[:, None]
+def repeated(parent: Solution, count: int, w: np.ndarray, mu: complex) -> tuple[Solution, np.ndarray]:
+    """The orbit taken `count` times, moved by mu^k w (2K,) and its conjugate in period k; and the change itself."""
+    dt, dD = w.reshape(2, -1)
+    turns, signs = mu ** np.arange(count)[:, None], float(parent.sigma) ** np.arange(count)[:, None]
     change = np.concatenate([2 * (turns * dt).real.ravel(), 2 * (signs * turns * dD).real.ravel()])
-    t = parent.times + P * np.arange(count)[:, None]
-    sides = tuple(int(side * s**k) for k in range(count) for side in parent.sides)
-    u = np.concatenate([t.ravel(), (signs * parent.jumps).ravel()]) + change
-    return Solution(parent.family, parent.sigma**count, parent.halves * count, sides, u), change
+    child = parent.repeated(count)
+    return replace(child, u=child.u + change), change
 
 
 def _bent(child: Solution, tracer: Tracer, place: Place, z: complex, moved) -> Solution:

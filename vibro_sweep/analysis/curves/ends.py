@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.births import doubled
 from vibro_sweep.analysis.branches.own_birth import halves_apart
 from vibro_sweep.analysis.branches.special import bare, inserted
 from vibro_sweep.analysis.continuation.first_point import first_place
@@ -78,7 +77,7 @@ def in_full(tracer: Tracer, end: End) -> Solution:
     """The orbit at the end with all impacts of the curve that ends there."""
     solution = end.tracer.solution(end.found.place)
     while 2 * solution.K <= tracer.K:
-        solution = doubled(solution)
+        solution = solution.repeated(2)
     if solution.K == tracer.K:
         return solution
     touching, index = inserted(solution)  # both halves touch the stop, and that of the curve is meant

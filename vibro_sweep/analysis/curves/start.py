@@ -89,10 +89,8 @@ def _grazing(solution: Solution, index: int, symmetric: bool) -> Start:
     symmetric : whether the oscillator remains so along the curve; else both halves of a symmetric orbit graze by
         themselves
     """
-    simpler, gone = solution, vanishing(solution, index)
-    for k in reversed(gone):
-        simpler = bare(simpler, k)
-    simpler = simpler.reduced()
+    gone = vanishing(solution, index)
+    simpler = bare(solution, gone).reduced()
     if not symmetric and simpler.sigma == -1:
         simpler = simpler.whole()
     if len(gone) > 1 and simpler.halves < solution.halves:

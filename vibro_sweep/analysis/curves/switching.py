@@ -71,9 +71,7 @@ def _starts(special: CurvePoint) -> list[Start]:
     starts = []
     for count in range(len(slow) + 1):
         for dropped in combinations(slow, count):
-            solution = whole
-            for k in reversed(dropped):
-                solution = bare(solution, k)
+            solution = bare(whole, dropped)
             kept = [k - sum(other < k for other in dropped) for k in slow if k not in dropped]
             starts += [Start("graze", solution, k) for k in kept]
             if solution.K:

@@ -175,13 +175,16 @@ class Solution:
 
     def whole(self) -> "Solution":
         """The same orbit over its whole period, sigma = +1."""
-        if self.sigma == 1:
-            return self
-        t, D, P = self.times, self.jumps, self.P
-        u = np.concatenate([t, t + P, D, -D, self.ends, self.ends + P])
-        sides = (*self.sides, *(-side for side in self.sides))
-        rests = (*self.rests, *(k + self.K for k in self.rests))
-        return Solution(self.family, 1, 2 * self.halves, sides, u, self.change, rests)
+        return self if self.sigma == 1 else self.repeated(2)
+
+    def repeated(self, count: int) -> "Solution":
+        """The same orbit taken `count` times."""
+        turns, K = np.arange(count)[:, None], self.K
+        later, signs = self.P * turns, float(self.sigma) ** turns
+        u = np.concatenate([(self.times + later).ravel(), (signs * self.jumps).ravel(), (self.ends + later).ravel()])
+        sides = tuple(self.sigma**k * side for k in range(count) for side in self.sides)
+        rests = tuple(k + K * i for i in range(count) for k in self.rests)
+        return Solution(self.family, self.sigma**count, self.halves * count, sides, u, self.change, rests)
 
     def part(self, count: int, sigma: int, alike: float = ALIKE, exact: bool = True) -> "Solution | None":
         """The first of `count` equal parts (mirrored ones for sigma = -1), if they are equal to the share `alike`.
