@@ -17,6 +17,8 @@ class Stand:
     def __init__(self, multipliers):
         self.solution, self.torus = self, np.nan
         self.multipliers = multipliers
+        i, j = np.triu_indices(len(multipliers), 1)
+        self.products = multipliers[i] * multipliers[j]
 
 
 def test_a_weakly_damped_pair_crosses_the_circle_between_two_points_near_it():

@@ -16,7 +16,7 @@ LEAST = 1e-14  # of a chord, far below what rounding of tests leaves of a zero
 NOISE = 1e-11  # of a chord: nearer to a zero rounding of a test may lie
 COARSE = 1e3  # times both, of orbits of many impacts: their tests round by more, and each point takes long
 STEPS = 4
-BESIDE = (-3e-12, -1e-12, 1e-12, 3e-12)  # of a chord: beside the zero, so near that only rounding differs
+BESIDE = (-3e-12, -1e-12, 0.0, 1e-12, 3e-12)  # of a chord, from the zero: so near that only rounding differs
 TIMES = 5.0  # the largest difference between locations
 OF_TESTS = 3.0  # times what rounding of the equations does, where rounding of a test comes to it
 
@@ -123,29 +123,22 @@ def error_of(line: Line[P], a: P, b: P, test: Callable[[P], float], share: float
     """Of the parameters of a zero at a share of the chord from a to b; None: there are no points beside it.
 
     Rounding of the equations moves the line, and rounding of the test moves its zero along the line. The second is seen
-    in several locations that round differently; it is not added, so that most errors are the same from whichever start.
+    in what points beside it say, which round differently: p - test dp/dtest, without the straight line that a wrong
+    slope makes of these. It is not added, so that most errors are the same from whichever start.
     """
     chord = Chord(line, a, b, test)
     chord.seen[share] = point
     try:
-        apart = estimates(chord, share) - line.parameters(point)
+        points = [chord.at(share + step) if step else point for step in BESIDE]
+        far = chord.at(share + (ASIDE if share < 0.5 else -ASIDE), exact=False)
     except ArithmeticError:
         return None
-    scatter = 0.0
-    if np.isfinite(apart).all():
-        steps, apart = np.append(BESIDE, 0.0), np.vstack([apart, np.zeros_like(apart[:1])])
-        slope, mean = np.polyfit(steps, apart, 1)  # by which that of the test is wrong
-        scatter = np.abs(apart - np.outer(steps, slope) - mean).max()
-    return float(max(TIMES * scatter, OF_TESTS * line.rounding(point, chord.row)))
-
-
-def estimates(chord: Chord, share: float) -> np.ndarray:
-    """(m, parameters) of the zero at `share` as points beside it tell them, with slopes of the polynomials; not finite
-    where these have none. Raises ArithmeticError."""
-    aside = share + (ASIDE if share < 0.5 else -ASIDE)
-    near, far = (chord.at(s, exact=False) for s in (share, aside))
-    beside = [chord.at(share + step) for step in BESIDE]
-    tests, p = (np.array([of(point) for point in beside]) for of in (chord.test, chord.line.parameters))
-    change = chord.line.parameters(far) - chord.line.parameters(near)
+    tests, p = (np.array([of(one) for one in points]) for of in (test, line.parameters))
+    middle, scatter = BESIDE.index(0.0), 0.0
     with np.errstate(all="ignore"):
-        return p - np.outer(tests / np.float64(chord.test(far) - chord.test(near)), change)
+        rate = (line.parameters(far) - p[middle]) / np.float64(test(far) - tests[middle])
+    if np.isfinite(rate).all():
+        said = p - p[middle] - np.outer(tests, rate)
+        slope, mean = np.polyfit(BESIDE, said, 1)
+        scatter = np.abs(said - np.outer(BESIDE, slope) - mean).max()
+    return float(max(TIMES * scatter, OF_TESTS * line.rounding(point, chord.row)))

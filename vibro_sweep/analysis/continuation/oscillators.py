@@ -1,6 +1,5 @@
 """The oscillator as polynomials of its free numbers, two at most (engine/continuation/moving_flow.py)."""
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +17,7 @@ from vibro_sweep.model.linear import Family, Linear
 DECAYED = 4e-15  # relative size of the last coefficients
 NARROWEST = 1e-7  # of what is asked for
 BEYOND = 1.2  # times the reach, up to where the polynomials hold
+KEPT = 64  # oscillators
 ASIDE = 0.37  # of the reach: where degrees are read off, so that products of both parameters are seen
 
 
@@ -58,10 +58,15 @@ class Oscillators:
         self.family, self.names, self.halves, self.units = family, names, halves, units
         still = not any(np.any(getattr(family.derivative(name), field)) for name in names for field in TABLES)
         self._still = sampled(family.linear, units) if still else None
-        self._family = lru_cache(64)(lambda *p: family.replace(**dict(zip(names, p, strict=True))))
+        self._known: dict[tuple[float, ...], Family] = {}  # the last ones
 
     def at(self, p) -> Family:
-        return self._family(*map(float, p[: len(self.names)]))
+        key = tuple(map(float, p[: len(self.names)]))
+        if key not in self._known:
+            if len(self._known) >= KEPT:
+                del self._known[next(iter(self._known))]
+            self._known[key] = self.family.replace(**dict(zip(self.names, key, strict=True)))
+        return self._known[key]
 
     def values(self, p) -> np.ndarray:
         """`sampled` at the parameters p; the phase, which that does not need, is not looked for."""

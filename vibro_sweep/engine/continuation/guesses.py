@@ -17,19 +17,15 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.continuation.corrector import in_order
-from vibro_sweep.engine.continuation.factors import factorise, solve_rows, substitute
+from vibro_sweep.engine.continuation.factors import factorise, substitute
 from vibro_sweep.engine.continuation.flight_tables import flight
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA
 from vibro_sweep.engine.continuation.reflections import put_last, take_apart
 from vibro_sweep.engine.continuation.residual import approach, eliminate, grown, is_short, land, leave
-from vibro_sweep.engine.continuation.workspace import WIDE
 from vibro_sweep.engine.simd.jit import entry, jit
-from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.engine.simd.memory import eight, put_eight
 
 MOST_STEPS = 30
 LAST = 5  # of them
-LOST = 0.01  # size of a step that those of them which are left do not make good
 MORE = 100  # beside a fold, where rounding throws steps about: one of them leads to the solution
 THROWN = 1e-5  # sizes of these steps
 ROUNDING = 1e-13  # of the gap's size
@@ -104,53 +100,6 @@ def solve(f, c, place, b):
 
 
 @jit
-def condense(f, c, place, b):
-    """As `solve`, with xi_i = carried (xi_1, dphi_1 .. dphi_K, 1) and dD_i = kicks_i (the same)."""
-    K, n, N, omega, room = len(b.events), f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA], b.work[0].few
-    last, carried, landed, kicks, system = n + K, room.carried, room.landed, room.kicks, room.system
-    for r in range(n):
-        for j in range(last + 1):
-            carried[r, j] = 1.0 if r == j else 0.0
-    for i in range(K):
-        e, high = b.events[i], c.sides[i] > 0
-        v, a, gain = e.motion[0], e.motion[1], f.numbers[GAIN_HIGH if high else GAIN_LOW]
-        for j in range(last):
-            system[i, j] = carried[0, j]
-        system[i, n + i] += v / omega
-        system[i, last] = e.gap - f.numbers[HIGH if high else LOW] - carried[0, last]
-        for j in range(0, last + 1, LANES):
-            put_eight(kicks, WIDE * i + j, -gain * eight(carried, WIDE * N + j))
-        kicks[i, n + i] -= gain * a / omega
-        kicks[i, last] += place.x[i, n + 1] + gain * v
-        for j in range(0, last + 1, LANES):
-            put_eight(carried, WIDE * N + j, eight(carried, WIDE * N + j) + eight(kicks, WIDE * i + j))
-        for r in range(n):
-            carried[r, n + i] -= e.bend[r]
-        for r in range(n):
-            for j in range(0, last + 1, LANES):
-                total = e.E[0, r, 0] * eight(carried, j)
-                for k in range(1, n):
-                    total = total + e.E[0, r, k] * eight(carried, WIDE * k + j)
-                put_eight(landed, WIDE * r + j, total)
-            landed[r, last] += e.missed[r]
-        carried, landed = landed, carried
-    for r in range(n):
-        for j in range(last):
-            system[K + r, j] = (f.held[r, j] if j < n else 0.0) - carried[r, j]
-        system[K + r, r] += c.sigma
-        system[K + r, last] = carried[r, last]
-    if not solve_rows(system, last, last + 1):
-        return False
-    b.events[0].changes[0, 0] = system[0, last]
-    for i in range(K):
-        changes = b.events[i].changes
-        changes[0, n], changes[0, n + 1] = system[n + i, last], kicks[i, last]
-        for j in range(last):
-            changes[0, n + 1] += kicks[i, j] * system[j, last]
-    return True
-
-
-@jit
 def settle(f, c, place, closing, b):
     """Newton's method from phases, jumps and the gap at the first impact. Relative size of the last step; NaN: none.
 
@@ -173,7 +122,7 @@ def settle(f, c, place, closing, b):
             if not last < THROWN:
                 return np.nan
         close(f, c, place, closing, b)
-        if not (condense(f, c, place, b) if n + K < WIDE else solve(f, c, place, b)):
+        if not solve(f, c, place, b):
             return np.nan
         left, longest, reach, speed, kick = 0.0, 0.0, np.inf, omega * swing, 0.0
         for i in range(K):
@@ -191,8 +140,6 @@ def settle(f, c, place, closing, b):
             return np.nan
         most = 1e-7 if left <= ROUNDING * size else 1e-9
         damping = min(1.0, 0.25 * reach / longest) if longest > 0.0 else 1.0
-        if change > LOST and count < MOST_STEPS and damping < 0.5 ** (MOST_STEPS - LAST - count):
-            return np.nan  # it may at most double from step to step
         e = b.events[0]
         place.x[0, 0] -= damping * (e.changes[0, 0] + e.rate[0] * e.changes[0, n])
         for i in range(K):

@@ -21,7 +21,6 @@ from vibro_sweep.model.bifurcations import CODIMENSION_TWO, TYPES
 FIRST, SECOND, THETA = range(3)  # of `Place.p`: both parameters, and theta of a Neimark-Sacker curve
 TERMS = 10  # of a power series in z and its conjugate, to third order
 PARAMETERS = 2  # of the oscillator that may be free
-WIDE = 16  # numbers in a row of equations that are not eliminated event by event
 ROWS = 3  # most scalar rows: conditions, and the plane across a tangent
 
 # What is known of each point, by name: tests of bifurcations, as their table names them, and
@@ -110,24 +109,11 @@ def event_of(masses: int) -> np.dtype:
 
 
 @cache
-def few_of(masses: int) -> np.dtype:
-    """Room for Newton's change of few events, n + K < WIDE (guesses.py)."""
-    n = 2 * masses
-    return record([
-        ("carried", float, (n, WIDE)),
-        ("landed", float, (n, WIDE)),
-        ("kicks", float, (WIDE, WIDE)),
-        ("system", float, (WIDE, WIDE)),
-    ])  # fmt: skip
-
-
-@cache
 def work_of(masses: int) -> np.dtype:
     """Room for one elimination."""
     n = 2 * masses
     wide = width_of(n, PARAMETERS)
     return record([
-        ("few", few_of(masses)),
         ("panel", float, (2 * n + 2, wide)),
         ("line", float, wide),
         ("last", float, (n, wide)),  # what is left: columns of xi_{K+1} (XI), xi_1, parameters, residual
