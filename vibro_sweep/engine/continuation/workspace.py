@@ -126,7 +126,6 @@ def work_of(masses: int) -> np.dtype:
         ("row_left", float, ROWS),  # and their residuals
         ("E", float, (3, n, columns_of(n))),  # of a flight, and room for one
         ("other", float, (3, n, columns_of(n))),
-        ("mirror", float, (n + 2, 2 * n + 2)),
         ("image", float, (n, columns_of(2 * n - 1))),
         ("matrix", float, (n, n)),
         ("resting", float, (3, n, n + 1 + PARAMETERS)),  # see held_gap.py
