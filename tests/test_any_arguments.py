@@ -11,7 +11,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pytest
-from support.any_calls import COMPUTING, SLOW, TEXT, calls, inside, methods, objects, public
+from support.any_calls import BRANCHES, COMPUTING, SLOW, TEXT, calls, inside, methods, objects, public
 from support.any_values import VALUES
 
 import vibro_sweep as vs
@@ -26,6 +26,7 @@ def made(tmp_path_factory):
     before = Path.cwd()
     os.chdir(tmp_path_factory.mktemp("arguments"))
     Path("scene.yaml").write_text(TEXT)
+    Path("branches.yaml").write_text(BRANCHES)
     vs.run(vs.load_scene("scene.yaml"), "sweep.h5")
     found = objects()
     found["PeriodicOrbit"].save("orbit.json")

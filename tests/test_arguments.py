@@ -170,7 +170,10 @@ PATH = r"is not allowed; it must be the path of a file"
         (lambda: vs.sweep(lambda **_: SYSTEM, {"status": [6.6]}), r"axes: 'status' is not allowed"),
         (lambda: vs.plot("x.h5", at=["b"]), r"at: \['b'\] is not allowed; it must be a mapping"),
         (lambda: vs.plot("x.h5", kind=np.array(["plane", "energy"])), r"kind: array.* is not allowed"),
-        (lambda: vs.windows("x.h5", key=["b", "R"]), r"key: \['b', 'R'\] is not allowed; it must be the name of"),
+        (
+            lambda: vs.windows("x.h5", parameter=["b", "R"]),
+            r"parameter: \['b', 'R'\] is not allowed; it must be the name of",
+        ),
         (lambda: vs.load_scene(None), f"path: None {PATH}"),
         (lambda: vs.load_scene(3), f"path: 3 {PATH}"),
         (lambda: vs.load_scene(b"x"), f"path: b'x' {PATH}"),

@@ -12,7 +12,7 @@ import vibro_sweep as vs
 from vibro_sweep.cli import main
 from vibro_sweep.driver.branches import run_branches
 from vibro_sweep.model.bifurcations import TYPES
-from vibro_sweep.scene import SceneError, json_schema, load_continuation, parse_continuation, parse_scene
+from vibro_sweep.scene import SceneError, json_schema, parse_continuation, parse_scene
 from vibro_sweep.scene.yaml_text import read_yaml
 
 NUMBERS = "{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 2}"
@@ -174,7 +174,7 @@ def test_variables_that_a_picture_can_show(file, variable, tmp_path):
 
 
 def test_the_scene_that_comes_with_the_package(tmp_path):
-    scene = load_continuation(ROOT / "configs" / "branches" / "symmetric.yaml")
+    scene = vs.load_scene(ROOT / "configs" / "branches" / "symmetric.yaml")
     schema = jsonschema.Draft7Validator(json_schema())
     schema.validate(read_yaml(scene.text))
     assert not schema.is_valid(read_yaml(scene.text + "\norbit: {transient: 1, record: 1}\n"))
@@ -189,7 +189,7 @@ def test_the_scene_that_comes_with_the_package(tmp_path):
 @pytest.mark.slow
 def test_the_cascade_towards_sticking(tmp_path):
     """Impacts added one by one, at grazes that accumulate at the onset of sticking (60 impacts written out)."""
-    run_branches(load_continuation(ROOT / "configs" / "branches" / "sticking.yaml"), tmp_path / "sticking.h5")
+    run_branches(vs.load_scene(ROOT / "configs" / "branches" / "sticking.yaml"), tmp_path / "sticking.h5")
     with vs.open(tmp_path / "sticking.h5") as data:
         assert data["branch_impacts"].values.tolist() == [4 + 2 * i for i in range(13)]
         assert data["branch_parent"].values.tolist() == list(range(-1, 12))

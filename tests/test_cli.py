@@ -163,7 +163,7 @@ def test_bad_points_are_counted_by_name(scene_folder, capsys, monkeypatch):
     report = SimpleNamespace(
         points=1003, bad=3, statuses={"ok": 1000, "chatter": 2, "lost": 1}, seconds=1.234, computed=1
     )
-    monkeypatch.setattr("vibro_sweep.driver.sweep.run", lambda *_: report)
+    monkeypatch.setattr("vibro_sweep.driver.run.run", lambda *_: report)
     assert main(["run", "good.yaml"]) == 1
     assert capsys.readouterr().out == "good.h5: 1,003 points in 1.2 s, 3 with a bad status (chatter 2, lost 1)\n"
     assert main(["run", "good.yaml", "--quiet"]) == 1
@@ -173,7 +173,7 @@ def test_interruption(scene_folder, capsys, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("vibro_sweep.driver.sweep.run", interrupted)
+    monkeypatch.setattr("vibro_sweep.driver.run.run", interrupted)
     assert main(["run", "good.yaml", "-o", "my file.h5"]) == 130
     err = capsys.readouterr().err
     assert err == "vibro-sweep: interrupted; to continue: vibro-sweep run good.yaml -o 'my file.h5' --resume\n"
@@ -186,7 +186,7 @@ def test_what_run_is_told(scene_folder, monkeypatch):
         told.append((scene.name, str(output), workers, executor, progress, mode))
         return SimpleNamespace(points=3, bad=0, statuses={"ok": 3}, seconds=0.0, computed=3)
 
-    monkeypatch.setattr("vibro_sweep.driver.sweep.run", record)
+    monkeypatch.setattr("vibro_sweep.driver.run.run", record)
     assert main(["run", "good.yaml"]) == 0
     assert main(["run", "good.yaml", "--workers", "3", "--resume", "--quiet"]) == 0
     assert main(["run", "good.yaml", "-o", "x.h5", "--overwrite"]) == 0
@@ -203,7 +203,7 @@ def test_progress_on_a_terminal(scene_folder, capsys, monkeypatch):
             progress(done, 3)
         return SimpleNamespace(points=3, bad=0, statuses={"ok": 3}, seconds=0.0, computed=3)
 
-    monkeypatch.setattr("vibro_sweep.driver.sweep.run", run)
+    monkeypatch.setattr("vibro_sweep.driver.run.run", run)
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     assert main(["run", "good.yaml"]) == 0
     assert "3/3" in capsys.readouterr().err

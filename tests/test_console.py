@@ -103,8 +103,8 @@ sys.meta_path.insert(0, AtTheImport())
 from vibro_sweep import interrupt as package
 from vibro_sweep.__main__ import program
 if " " in where:
-    from vibro_sweep.driver import sweep
-    package.TIDYING, sweep.run = 0.5, run_that_loses_it
+    from vibro_sweep.driver import run
+    package.TIDYING, run.run = 0.5, run_that_loses_it
 program()
 """
 ADVICE = "; to continue: vibro-sweep run good.yaml -o good.h5 --resume"

@@ -9,7 +9,7 @@ from support import ROOT
 import vibro_sweep as vs
 from vibro_sweep import examples
 from vibro_sweep.cli import main
-from vibro_sweep.scene import is_continuation_file, load_continuation
+from vibro_sweep.types import Continuation
 
 
 @pytest.fixture
@@ -32,10 +32,8 @@ def test_every_example_is_a_scene_that_finds_its_schema(folder, name):
     assert main(["new", name]) == 0
     text = Path(f"{name}.yaml").read_text()
     assert text.startswith("# yaml-language-server: $schema=./scene.schema.json\n") and "configs/" not in text
-    if is_continuation_file(f"{name}.yaml"):
-        assert load_continuation(f"{name}.yaml").along
-    else:
-        assert vs.load_scene(f"{name}.yaml").n_points > 0
+    scene = vs.load_scene(f"{name}.yaml")
+    assert scene.along if isinstance(scene, Continuation) else scene.n_points > 0
 
 
 def test_an_unchanged_copy_is_no_obstacle(folder, capsys):

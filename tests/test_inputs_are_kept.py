@@ -11,7 +11,6 @@ import vibro_sweep as vs
 from vibro_sweep.cli import main
 from vibro_sweep.driver.branches import run_branches
 from vibro_sweep.driver.windows import run_windows
-from vibro_sweep.scene import load_continuation
 
 SYSTEM = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}\n"
 SWEEP = (
@@ -36,7 +35,7 @@ def made(tmp_path_factory):
         Path("s.yaml").write_text(SWEEP)
         Path("br.yaml").write_text(FROM_SWEEP)
         vs.run(vs.load_scene("s.yaml"), "s.h5")
-        run_branches(load_continuation("br.yaml"), "br.h5")
+        run_branches(vs.load_scene("br.yaml"), "br.h5")
         run_windows("s.h5", "w.h5")
     finally:
         os.chdir(before)
@@ -88,7 +87,7 @@ def test_a_command_leaves_its_inputs_alone(folder, capsys, command):
 
 def test_python_leaves_its_inputs_alone(folder):
     before = contents(folder)
-    scene, branches = vs.load_scene("s.yaml"), load_continuation("br.yaml")
+    scene, branches = vs.load_scene("s.yaml"), vs.load_scene("br.yaml")
     for one in (scene, scene.replace(record=30)):
         for output in ("s.yaml", "scene.h5"):
             with pytest.raises(vs.StoreError, match=re.escape(output)):

@@ -164,7 +164,10 @@ def test_a_missing_file(tmp_path):
         (dict(workers=True), "workers: True is not allowed"),
         (dict(executor=4), "executor: 4 is not allowed; it must be a concurrent.futures.Executor"),
         (dict(progress="bar"), "progress: 'bar' is not allowed; it must be callable"),
-        (dict(scene="q.yaml"), "scene: 'q.yaml' is not allowed; it must be a Scene, as `load_scene` returns it"),
+        (
+            dict(scene="q.yaml"),
+            "scene: 'q.yaml' is not allowed; it must be a Scene or a Continuation, as",
+        ),
         (dict(output=3), "output: 3 is not allowed; it must be the path of a file"),
         (dict(mode="again"), "mode: 'again' is not allowed; it must be one of 'new', 'resume', 'overwrite'"),
     ],

@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     from vibro_sweep.analysis.single.orbit import lyapunov, simulate
     from vibro_sweep.driver.compute import RunError
     from vibro_sweep.driver.from_python import sweep
-    from vibro_sweep.driver.sweep import run
+    from vibro_sweep.driver.run import run
     from vibro_sweep.driver.windows import windows
     from vibro_sweep.model.general import Oscillator
     from vibro_sweep.model.grazing import grazing
@@ -94,7 +94,7 @@ else:
         "open": "store",
         "periodic_orbit": "analysis.periodic.finding",
         "plot": "plotting.front",
-        "run": "driver.sweep",
+        "run": "driver.run",
         "simulate": "analysis.single.orbit",
         "sticking_onset": "analysis.branches.sticking",
         "sweep": "driver.from_python",

@@ -3,7 +3,6 @@
 Commands import what they need when they run, so that `--help` answers at once.
 """
 
-from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +11,7 @@ import typer
 from vibro_sweep.model.pictures import PICTURES
 
 from . import interrupt
-from .computing import Work, compute_pieces, compute_sweep
+from .computing import Work, compute, compute_windows
 from .console import BAD_INPUT, BAD_POINTS, all_is_imported, ended, input_errors, messages, say
 from .options import key_and_value, number_in, positive
 from .options import output as output_option
@@ -80,35 +79,23 @@ def run(
     output = output or Path(f"{scene_file.stem}.h5")
     work = Work(output, workers, scheduler, resume, overwrite, plot, quiet, ("run", str(scene_file)))
     work.announce()
-    from .scene import SceneError, is_continuation_file, load_continuation, load_scene
+    from .scene import SceneError, load_scene
 
     with input_errors(SceneError):
-        of_branches = is_continuation_file(scene_file)
-        scene = load_continuation(scene_file) if of_branches else load_scene(scene_file)
+        scene = load_scene(scene_file)
     work.check_places(scene.inputs)
-    bad = False
-    if of_branches:
-        compute_pieces(work, _follow(scene, output))
-    else:
-        bad = compute_sweep(work, scene)
+    bad = compute(work, scene)
     if plot:
         _draw(output, work.picture, None, overwrite, quiet)
     if bad:
         raise typer.Exit(BAD_POINTS)
 
 
-def _follow(scene, output: Path):
-    from .driver.branches import run_branches
-    from .driver.curves import run_curves
-
-    return partial(run_branches if len(scene.along) == 1 else run_curves, scene, output)
-
-
 @app.command("windows")
 def windows_command(
     file: DataFile,
     output: Annotated[Path | None, output_option("FILE.h5", "FILE.windows.h5 in the current folder")] = None,
-    along: Annotated[
+    parameter: Annotated[
         str | None, typer.Option(metavar="KEY", help="The swept number, of a plane; by default the first.")
     ] = None,
     workers: Annotated[
@@ -125,13 +112,11 @@ def windows_command(
     A window is an interval on which one periodic orbit is stable. The sweep's file stays as it is.
     """
     output = output or Path(f"{file.name.removesuffix('.h5')}.windows.h5")
-    command = ("windows", str(file), *(("--along", along) if along else ()))
+    command = ("windows", str(file), *(("--parameter", parameter) if parameter else ()))
     work = Work(output, workers, scheduler, resume, overwrite, plot, quiet, command)
     work.announce()
     work.check_places([file])
-    from .driver.windows import run_windows
-
-    compute_pieces(work, partial(run_windows, file, output, along))
+    compute_windows(work, file, parameter)
     if plot:
         _draw(file, work.picture, None, overwrite, quiet, windows=output)
 
@@ -219,23 +204,20 @@ def check(scene_file: SceneFile):
 
     Orbits are measured for that: kernels that are not there yet are compiled first.
     """
-    from .scene import SceneError, is_continuation_file, load_continuation, load_scene
+    from .scene import SceneError, load_scene
 
     with input_errors(SceneError):
-        if is_continuation_file(scene_file):
-            say(f"{scene_file}: {load_continuation(scene_file)}")
-            return
         scene = load_scene(scene_file)
 
     from .driver.compute import RunError
-    from .driver.cost import estimate
     from .summaries import cost_text
 
     say(f"{scene_file}: {scene}")
     all_is_imported()
     with input_errors(RunError), messages(quiet=False):
-        cost = estimate(scene)
-    say(cost_text(cost))
+        cost = scene.estimate()
+    if cost is not None:
+        say(cost_text(cost))
 
 
 @app.command()

@@ -1,7 +1,7 @@
 """What commands that compute a file have in common: where it may go, how to continue it, progress, what is printed."""
 
 import shlex
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -82,24 +82,34 @@ class Work:
                 raise InputError(f"{error}. Nothing that was computed is lost; {to_continue}") from None
 
 
-def compute_sweep(work: Work, scene) -> bool:
-    """Compute a sweep and print its summary. Returns whether some points have a bad status."""
-    from .driver import sweep
+def compute(work: Work, scene) -> bool:
+    """Compute a scene and print what its file holds. Returns whether some points have a bad status."""
+    from .driver import run
 
-    with work.under_way(scene.n_points) as (executor, progress):
-        report = sweep.run(scene, work.output, work.workers, executor, progress, work.mode)
-    if not work.quiet:
+    of_sweep = hasattr(scene, "sweep")
+    with work.under_way(scene.n_points if of_sweep else 0, ValueError) as (executor, progress):
+        report = run.run(scene, work.output, work.workers, executor, progress, work.mode)
+    if of_sweep and not work.quiet:
         from .summaries import summary
 
         say(summary(work.output, report))
-    return bool(report.bad)
+    elif not work.quiet:
+        say_tables(work.output)
+    return of_sweep and bool(report.bad)
 
 
-def compute_pieces(work: Work, compute: Callable) -> None:
-    """Compute a file of branches, curves or windows, and print its tables."""
-    from .store import tables
+def compute_windows(work: Work, file: Path, parameter: str | None) -> None:
+    """Compute the windows of a sweep's file and print their table."""
+    from .driver.windows import run_windows
 
     with work.under_way(0, ValueError) as (executor, progress):
-        compute(work.workers, executor, progress, work.mode)
+        run_windows(file, work.output, parameter, work.workers, executor, progress, work.mode)
     if not work.quiet:
-        say("\n".join([f"{work.output}", *tables(work.output)]))
+        say_tables(work.output)
+
+
+def say_tables(output: Path) -> None:
+    """Print what a file of branches, curves or windows holds."""
+    from .store import tables
+
+    say("\n".join([f"{output}", *tables(output)]))

@@ -15,21 +15,24 @@ from vibro_sweep.analysis.single.exponents import Exponents
 from vibro_sweep.analysis.single.orbit import Orbit, Status
 from vibro_sweep.analysis.windows.unseen import Unseen
 from vibro_sweep.analysis.windows.window import Window, Windows
+from vibro_sweep.driver.cost import Estimate
 from vibro_sweep.driver.sweep import RunReport
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.grazing import Grazing
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.modes import Modes
 from vibro_sweep.model.window_families import Family as WindowFamily
-from vibro_sweep.scene import Scene, Section, Start, Trajectory
+from vibro_sweep.scene import Continuation, Scene, Section, Start, Trajectory
 
 __all__ = [
     "AnyOscillator",
     "BifurcationCurve",
     "Born",
     "Branch",
+    "Continuation",
     "CurvePoint",
     "DiscontinuityMap",
+    "Estimate",
     "Exponents",
     "Family",
     "Followed",

@@ -18,6 +18,10 @@ PAIR = vs.Oscillator(
     np.eye(2), [[2, -1], [-1, 2]], rayleigh=[0.1, 0], force=[1, 0], along=[1, 0], omega=0.7, b=1, R=0.5
 )
 REST = (0.0, 0.0, 0.0, 0.0)
+BRANCHES = """
+system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 0.4}
+continue: {from: {itinerary: LLLRRR}, along: {b: {start: 0.39, stop: 0.41}}, depth: 0}
+"""
 TEXT = """
 system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}
 sweep: {b: {values: [6.5, 6.6]}}
@@ -69,6 +73,7 @@ def objects() -> dict[str, Any]:
         "Grazing": vs.grazing(SYSTEM),
         "DiscontinuityMap": vs.discontinuity_map(SYSTEM),
         "Scene": vs.load_scene("scene.yaml"),
+        "Continuation": vs.load_scene("branches.yaml"),
         "Dataset of a sweep": vs.open("sweep.h5").load(),
         "ParameterError": vs.ParameterError("b", 1, "2"),
         "Executor": ThreadPoolExecutor(1),
@@ -190,14 +195,33 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
             ),
         ),
         "Scene.to_yaml": Call(scene.to_yaml, {}),
-        "run": Call(vs.run, each("scene", scene) | how | each("executor", None, made["Executor"])),
+        "Scene.estimate": Call(scene.estimate, each("workers", None, 1, 2)),
+        "Continuation.to_yaml": Call(made["Continuation"].to_yaml, {}),
+        "Continuation.estimate": Call(made["Continuation"].estimate, each("workers", None, 1, 2)),
+        "Continuation.replace": Call(
+            made["Continuation"].replace,
+            any_of(
+                "changes", each("depth", 0, 1) | each("follow", (), ["flip"]) | each("along", {"b": (0.39, 0.41)})
+            ),
+        ),
+        "run": Call(
+            vs.run, each("scene", scene, made["Continuation"]) | how | each("executor", None, made["Executor"])
+        ),
         "open": Call(vs.open, each("path", "sweep.h5", Path("sweep.h5"))),
-        "windows": Call(vs.windows, each("path", "sweep.h5", Path("sweep.h5")) | each("key", None, "b")),
+        "windows": Call(
+            vs.windows,
+            each("data", "sweep.h5", Path("sweep.h5"), made["Dataset of a sweep"]) | each("parameter", None, "b") | how
+            | each("output", "w.h5", Path("w.h5")),
+        ),
         "plot": Call(
             vs.plot,
             each("data", "sweep.h5", Path("sweep.h5"), made["Dataset of a sweep"])
             | each("kind", None, "bifurcation", "iteration") | each("ax", None, made["Axes"])
-            | each("at", None, {}, {"b": np.float32(6.5)}) | each("variable", None, "v1", np.str_("x1")) | width,
+            | each("at", None, {}, {"b": np.float32(6.5)}) | each("variable", None, "v1", np.str_("x1")) | width
+            | each("xlim", None, (6.5, 6.6), np.array([6.5, 6.6])) | each("ylim", None, [0, 1]) | each("size", None)
+            | each("dpi", None, 100, np.float32(80)) | each("windows", None) | each("over", None)
+            | each("relative", False, np.bool_(False)) | each("output", None, "new.png", Path("new.svg"))
+            | each("overwrite", False, True),
         ),
     }  # fmt: skip
 

@@ -30,8 +30,8 @@ def run_branches(
     executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
     mode: str = "new",
-) -> None:
-    """Follow the branches of a scene and write their file; arguments as of `run`, `workers` are processes.
+) -> bool:
+    """Follow the branches of a scene and write their file; arguments as of `run`. False: it is complete already.
 
     progress : called as progress(done, total) in branches
     The file does not depend on workers, executor or interruptions. Raises StoreError as `run` does, ValueError where
@@ -42,7 +42,7 @@ def run_branches(
         subject = Subject(BRANCHES, scene.name, scene.text, attributes_of(scene, source_of(scene)))
         with pieces(subject, output, mode, scene.inputs) as file:
             if file.complete:
-                return
+                return False
             with workers_of(workers, executor) as pool:
                 try:
                     seeds = seeds_of(scene, file, pool)
@@ -53,6 +53,7 @@ def run_branches(
                 branching = Branches(tuple(scene.along), tuple(scene.along.values()), scene.follow)
                 found = branching.run(seeds, scene.depth, evaluate)
             file.finish(provenance(), *_contents(scene, found))
+            return True
 
 
 def _contents(scene: Continuation, found: list[Node]) -> tuple:

@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from numba.core import event
 
 from vibro_sweep import store
-from vibro_sweep.driver import measuring
+from vibro_sweep.driver import MOST_WORKERS, measuring
 from vibro_sweep.driver.blocks import Block
 from vibro_sweep.driver.compute import compute
 from vibro_sweep.driver.measuring import OrbitCost
 from vibro_sweep.driver.memory import available_cores, orbits_per_block
 from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.scene import Scene
 
 CROWDED = 0.1  # seconds for which all workers compute, to see how they get on
@@ -29,7 +30,7 @@ BLOCK_SECONDS = 1.0  # of a thread's block: long enough for its overhead not to 
 
 @dataclass
 class Estimate:
-    """What `sweep.run` would do; measured on a few points, for this machine's cores.
+    """What `run` would do; measured on a few points, for this machine's cores.
 
     seconds : of the run beside what else the machine does now. Part of them is what each run begins with, loading
         kernels and measuring orbits, and the writing of its file
@@ -47,7 +48,9 @@ class Estimate:
 
 
 def estimate(scene: Scene, workers: int | None = None) -> Estimate:
-    """What `sweep.run` would do with so many threads, by default one for each core."""
+    """What `run` would do with so many threads, by default one for each core. ValueError for such a number."""
+    if workers is not None:
+        workers = checked_count("workers", workers, 1, MOST_WORKERS)
     count, orbits, size = workers or available_cores(), scene.n_points, store.size(scene)
     compiling: list[float] = []
     began = time.perf_counter()

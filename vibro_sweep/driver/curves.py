@@ -37,8 +37,9 @@ def run_curves(
     executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
     mode: str = "new",
-) -> None:
-    """Follow the bifurcation curves of a scene and write their file; arguments as of `run`, `workers` are processes.
+) -> bool:
+    """Follow the bifurcation curves of a scene and write their file; arguments as of `run`. False: it is complete
+    already.
 
     progress : called as progress(done, total) in branches, then in curves
     The file does not depend on workers, executor or interruptions. Raises what `run_branches` raises.
@@ -48,8 +49,10 @@ def run_curves(
         of_plane = plane_of(scene)
         subject = Subject(CHART, scene.name, scene.text, attributes_of(scene, source_of(scene)))
         with pieces(subject, output, mode, scene.inputs) as file:
-            if not file.complete:
-                file.finish(provenance(), *_contents(scene, of_plane, workers, executor, file, progress))
+            if file.complete:
+                return False
+            file.finish(provenance(), *_contents(scene, of_plane, workers, executor, file, progress))
+            return True
 
 
 def _contents(scene: Continuation, of_plane, workers, executor, file, progress) -> tuple:

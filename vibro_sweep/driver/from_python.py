@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from vibro_sweep import store
-from vibro_sweep.driver.sweep import check_how, run
+from vibro_sweep.driver.sweep import check_how, run_sweep
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import accepts, check_type, checked_state
 from vibro_sweep.model.built import Built
@@ -110,7 +110,7 @@ def sweep(
     if output is None and mode != "new":
         raise ValueError(not_allowed("mode", mode, "'new' without a file, `output`"))
     if output is not None:
-        run(scene, output, workers, progress=progress, mode=mode)
+        run_sweep(scene, output, workers, progress=progress, mode=mode)
         return store.open(output)
     if store.size(scene) > MOST:
         size, most = store.size(scene) / 1e9, MOST / 1e9
@@ -119,7 +119,7 @@ def sweep(
         )
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "sweep.h5")
-        run(scene, file, workers, progress=progress)
+        run_sweep(scene, file, workers, progress=progress)
         with store.open(file) as data:
             del data.encoding["source"]  # it does not last
             return data.load()

@@ -8,7 +8,6 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Literal
 
 import h5py
 
@@ -16,7 +15,7 @@ from vibro_sweep import store
 from vibro_sweep.driver import MOST_WORKERS
 from vibro_sweep.driver.attractor_ids import number_attractors
 from vibro_sweep.driver.blocks import Block, blocks, next_part, whole_chains
-from vibro_sweep.driver.compute import CHAIN_ENDS, RunError
+from vibro_sweep.driver.compute import CHAIN_ENDS
 from vibro_sweep.driver.cost import (
     BLOCK_SECONDS,
     crowding,
@@ -31,16 +30,13 @@ from vibro_sweep.driver.memory import available_cores, blocks_under_way, orbits_
 from vibro_sweep.driver.pool import as_computed
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.engine.halting import heed, interruptible, new_halt
-from vibro_sweep.model.arguments import check_call, check_type
-from vibro_sweep.model.files import file_to_write
+from vibro_sweep.model.arguments import check_call
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.status import STANDING, meaning
 from vibro_sweep.progress import given_or_bar
 from vibro_sweep.scene import Scene
 from vibro_sweep.store.beginning import check_mode
 from vibro_sweep.store.datasets import write_following
-
-__all__ = ["RunError", "RunReport", "run"]
 
 _log = logging.getLogger("vibro_sweep")
 
@@ -50,10 +46,15 @@ SECONDS = 4.0  # of a block that an executor computes
 
 @dataclass
 class RunReport:
-    """What is in a file that `run` has made: orbits, how many have a bad status, how many have which, the wall time.
+    """What is in a file that `run` has made.
 
-    `not_settled` is a remark and no bad status: the numbers stand. `computed`: orbits that this call has computed, 0
-    where the file was complete already; reports of equal files are equal.
+    points : orbits; of branches and curves, so many of these
+    bad : how many of them have a bad status; `not_settled` is a remark and no bad status: the numbers stand
+    statuses : how many have which
+    seconds : wall time
+    computed : points that this call has computed, 0 where the file was complete already
+
+    Reports of equal files are equal.
     """
 
     points: int
@@ -63,36 +64,16 @@ class RunReport:
     computed: int = field(compare=False)
 
 
-def run(
+def run_sweep(
     scene: Scene,
-    output: str | Path,
+    output: Path,
     workers: int | None = None,
     executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
-    mode: Literal["new", "resume", "overwrite"] = "new",
+    mode: str = "new",
 ) -> RunReport:
-    """Compute a scene and write its file.
-
-    Parameters
-    ----------
-    output : the HDF5 file; while it is computed it is `output`.part, which `open`, `info` and `plot` read at any moment
-    workers : threads, by default one for each core; of an `executor` that does not say how many it has, its workers
-    executor : any `concurrent.futures.Executor` instead
-    progress : called as progress(done, total) in orbits, from this thread; left out: a bar on a terminal, unless the
-        level of the logger `vibro_sweep` is WARNING
-    mode : "new" (nothing that exists is replaced), "resume" (continue `output`.part where it stopped) or "overwrite"
-
-    An `output` that is complete, and made by the same scene and code, is left as it is: the report is that of its run.
-    Results do not depend on workers, executor, block size or interruptions, bit for bit. Memory is that of the blocks
-    under way, whatever the size of the sweep. Raises `store.StoreError` for a file that is in the way or does not fit
-    the scene, ValueError for a number of workers that cannot be, TypeError for arguments of other kinds, RunError where
-    workers fail, and lets KeyboardInterrupt
-    through once the file is safe.
-    """
+    """Compute a sweep and write its file; arguments and errors as of `run`."""
     began = time.perf_counter()
-    check_type("scene", scene, Scene, "a Scene, as `load_scene` returns it")
-    output = file_to_write("output", output)
-    check_how(workers, executor, progress, mode)
     with store.writer(scene, output, mode) as file:
         total, done = scene.n_points, file.done()
         missing = total - done

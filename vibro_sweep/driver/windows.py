@@ -1,101 +1,125 @@
 """From the file of a sweep to its windows: `vibro_sweep.windows`, and the file of windows."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Executor
 from pathlib import Path
 from types import NoneType
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from vibro_sweep import store
 from vibro_sweep.analysis.branches.flat import SHAPES, Flat
 from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.job import window_of
-from vibro_sweep.analysis.windows.rows import Row, check_data, chosen_key, rows_of
+from vibro_sweep.analysis.windows.rows import Contents, Row, check_data, chosen_key, rows_of
 from vibro_sweep.analysis.windows.unseen import unseen_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.provenance import provenance
-from vibro_sweep.driver.source_file import computed_from
+from vibro_sweep.driver.sweep import check_how
+from vibro_sweep.driver.swept import contents_of
 from vibro_sweep.driver.usable import is_window
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.branch_file import WINDOWS, columns_of
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.files import checked_path, file_to_write
+from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.state import state
 from vibro_sweep.model.window_columns import UNSEEN
 from vibro_sweep.progress import given_or_bar
 from vibro_sweep.scene import parse_scene
-from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.flat_files import Subject
 from vibro_sweep.store.joining import joined
 from vibro_sweep.store.pieces import Pieces, pieces
 
+if TYPE_CHECKING:
+    import xarray
 
-def windows(path: str | Path, key: str | None = None) -> Windows:
+
+def windows(
+    data: "str | Path | xarray.Dataset",
+    parameter: str | None = None,
+    output: str | Path | None = None,
+    workers: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    mode: Literal["new", "resume", "overwrite"] = "new",
+) -> Windows:
     """The windows of a sweep: where each of its periodic orbits is stable, and what ends it there.
 
     Parameters
     ----------
-    path : the HDF5 file of a sweep that observes `section`
-    key : the swept number along which windows are followed, by default the first that is one of the system's; of a
-        plane each row by itself
+    data : the HDF5 file of a sweep that observes `section`, or a Dataset of `open` or `sweep`
+    parameter : the swept number along which windows are followed, by default the first that is one of the system's; of
+        a plane each row by itself
+    output : the HDF5 file of the windows, if there is to be one; it does not depend on workers or interruptions
+    workers : processes, by default one
+    progress : called as progress(done, total) in orbits of the sweep; left out: a bar on a terminal
+    mode : of `output`, as of `run`
 
     Returns a list of windows with .lo, .hi, .lower, .upper (special points), .period, .itinerary, .symmetric and
     .orbit. Mirror images are one window, and so is an orbit that several points of the sweep found. Ends may lie
     beyond the sweep, by its length at most. `.reason` of the list says of orbits in no window why; `.unseen` lists the
     stretches of windows on which the sweep shows other attractors only, each with a start.
 
-    Raises StoreError for a file that cannot be read, ValueError for one that has no windows to look for.
+    Raises StoreError for a file that cannot be read or is in the way, ValueError for a sweep that has no windows to
+    look for, and what `run` raises.
     """
-    path = checked_path("path", path)
-    check_type("key", key, (str, NoneType), "the name of a swept number, or None")
-    with computed_from(path):
-        with store.contents(path) as data:
-            cover = Cover(rows_in(data, key))
-        with given_or_bar(None, cover.total) as tell:
-
-            def evaluate(_, jobs) -> Iterator[Flat]:
-                for job in jobs:
-                    yield window_of(job)
-                    if tell:
-                        tell(cover.done, cover.total)
-
-            cover.search(evaluate)
-        return windows_of(cover)
+    check_type("parameter", parameter, (str, NoneType), "the name of a swept number, or None")
+    check_how(workers, None, progress, mode)
+    if output is None and mode != "new":
+        raise ValueError(not_allowed("mode", mode, "'new' without a file, `output`"))
+    with given_or_bar(progress, 0) as tell:
+        if output is not None:
+            cover = run_windows(data, output, parameter, workers, None, tell, mode)
+            if cover is not None:
+                return windows_of(cover)
+        with contents_of(data) as found:
+            rows = rows_in(found, parameter)
+            with workers_of(workers, None) as pool:
+                return windows_of(cover_of(rows, NothingKept(), pool, tell))
 
 
 def run_windows(
-    path: str | Path,
+    data: "str | Path | xarray.Dataset",
     output: str | Path,
-    key: str | None = None,
+    parameter: str | None = None,
     workers: int | None = None,
     executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
     mode: str = "new",
-) -> None:
-    """Write the file of a sweep's windows; arguments as of `windows` and `run`.
-
-    progress : called as progress(done, total) in orbits of the sweep
-    The file does not depend on workers, executor or interruptions. Raises what `windows` and `run` raise.
-    """
-    path, output = checked_path("path", path), file_to_write("output", output)
-    with computed_from(path):
-        with store.contents(path) as data:
-            rows = rows_in(data, key)
-            subject = _subject(data, rows[0].parameter)
-        with pieces(subject, output, mode, [path]) as file:
+) -> Cover | None:
+    """Write the file of a sweep's windows; arguments and errors as of `windows` and `run`. None: it is complete
+    already."""
+    output = file_to_write("output", output)
+    inputs = [checked_path("data", data)] if isinstance(data, (str, Path)) else []
+    with contents_of(data) as found:
+        rows = rows_in(found, parameter)
+        with pieces(_subject(found, rows[0].parameter), output, mode, inputs) as file:
             if file.complete:
-                return
+                return None
             with workers_of(workers, executor) as pool:
                 cover = cover_of(rows, file, pool, progress)
             if progress:
                 progress(cover.total, cover.total)
             file.finish(provenance(), *_contents(cover))
+            return cover
+
+
+class NothingKept:
+    """Of a run without a file."""
+
+    def get(self, _key: str, _usable: Callable[[Flat], bool]) -> None:
+        """Nothing is known already."""
+
+    def write(self, _key: str, _arrays: Flat) -> None:
+        """Nothing is kept."""
 
 
 def cover_of(
-    rows: list[Row], file: Pieces, pool: Executor | None, progress: Callable[[int, int], None] | None = None
+    rows: list[Row],
+    file: Pieces | NothingKept,
+    pool: Executor | None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Cover:
     """The windows of rows; those that `file` has pieces of are not followed again."""
     cover = Cover(rows)
@@ -104,19 +128,22 @@ def cover_of(
     return cover
 
 
-def rows_in(data: Contents, key: str | None) -> list[Row]:
-    """The rows of a file along a swept number. Raises ValueError where there can be no windows."""
+def rows_in(data: Contents, parameter: str | None) -> list[Row]:
+    """The rows of a sweep along a swept number. Raises ValueError where there can be no windows."""
+    if "kind" in data.attrs:
+        raise ValueError(f"holds {data.attrs['kind']}, not a sweep")
     if data.attrs.get("type") == BUILD:
         raise ValueError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
     check_data(data)
     system = parse_scene(data.attrs["scene"]).system
-    return list(rows_of(data, system, chosen_key(data, system, key)))
+    system = system.replace(**{name: value for name, value in data.chosen.items() if name in system.described})
+    return list(rows_of(data, system, chosen_key(data, system, parameter)))
 
 
-def _subject(data: Contents, key: str) -> Subject:
+def _subject(data: Contents, parameter: str) -> Subject:
     title = str(data.attrs["title"]).removeprefix("vibro_sweep: ")
-    names = [key, *(str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"]) if name != key)]
-    attributes = {"sweep": data.attrs.get("identity", ""), "key": key, "parameters": names}
+    names = [parameter, *(str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"]) if name != parameter)]
+    attributes = {"sweep": data.attrs.get("identity", ""), "parameter": parameter, "parameters": names}
     return Subject(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)
 
 

@@ -106,7 +106,8 @@ def plot(path, output=None, kind: str | None = None, overwrite: bool = False, lo
     output = Path(default_name(path)) if output is None else Path(output)
     if output.suffix.lower() not in SUFFIXES:
         raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
-    inputs = [path, *(Path(one) for one in (look.windows, look.over) if one is not None)] if look else [path]
+    beside = (look.windows, look.over) if look else ()
+    inputs = [path, *(one for one in beside if isinstance(one, Path))]
     data, of = drawable(path)
     if of is not None:
         check_output(output, overwrite, inputs)

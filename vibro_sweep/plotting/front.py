@@ -1,43 +1,34 @@
-"""`vibro_sweep.plot`: a picture for a notebook."""
+"""`vibro_sweep.plot`: a picture for a notebook or a script."""
 
 import math
 from collections.abc import Mapping
 from pathlib import Path
 from types import NoneType
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibro_sweep.model.arguments import check_type
-from vibro_sweep.model.files import checked_path
-from vibro_sweep.model.real import number_of
+from vibro_sweep.model.arguments import check_type, checked_flag
+from vibro_sweep.model.files import checked_path, file_to_write
+from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.plotting import Look, PlotError, figure
+from vibro_sweep.plotting import SUFFIXES, Look, PlotError, figure
+from vibro_sweep.plotting.pictures import check_output, save
 
 if TYPE_CHECKING:
     import xarray
 
+A_FILE = "the path of a file, or a Dataset"
+
 
 @overload
-def plot(
-    data: "str | Path | xarray.Dataset",
-    kind: str | None = None,
-    ax: None = None,
-    at: dict[str, float] | None = None,
-    variable: str | None = None,
-    width: float | None = None,
-) -> Figure: ...
+def plot(data: "str | Path | xarray.Dataset", kind: str | None = None, ax: None = None, **options: Any) -> Figure: ...
 
 
 @overload
 def plot(
-    data: "str | Path | xarray.Dataset",
-    kind: str | None = None,
-    ax: Axes = ...,
-    at: dict[str, float] | None = None,
-    variable: str | None = None,
-    width: float | None = None,
+    data: "str | Path | xarray.Dataset", kind: str | None = None, ax: Axes = ..., **options: Any
 ) -> Figure | None: ...
 
 
@@ -45,29 +36,43 @@ def plot(
     data: "str | Path | xarray.Dataset",
     kind: str | None = None,
     ax: Axes | None = None,
-    at: dict[str, float] | None = None,
+    at: Mapping[str, float] | None = None,
     variable: str | None = None,
     width: float | None = None,
+    *,
+    xlim: tuple[float, float] | None = None,
+    ylim: tuple[float, float] | None = None,
+    size: tuple[float, float] | None = None,
+    dpi: float | None = None,
+    windows: "str | Path | xarray.Dataset | None" = None,
+    over: "str | Path | xarray.Dataset | None" = None,
+    relative: bool = False,
+    output: str | Path | None = None,
+    overwrite: bool = False,
 ) -> Figure | None:
     """A picture of a file, or of a Dataset of `vibro_sweep.open` or `vibro_sweep.sweep`; a matplotlib Figure.
 
     A notebook shows it as the value of a cell. In axes of pyplot, which shows them itself, it is not returned too.
+    Options have the names that they have on the command line.
 
-    kind : what the command line calls --kind, by default the first that the data can show
+    kind : by default the first that the data can show
     ax : axes to draw into, by default those of a new Figure. Of a bifurcation diagram or a plane they show the first
         panel; other kinds must have one, which `at` chooses where each orbit has its own
     at : where single orbits are drawn, as {"b": 6.6}: the nearest point; by default some, evenly spread
     variable : what is drawn, of what that kind can show, as "v1"
     width : mm, as 85 for one column of a journal, with type of 8 points; by default 178
+    xlim, ylim : ranges of the axes, of several panels those of the first
+    size : (width, height) in inches, in place of `width`
+    dpi : pixels an inch, by default 200
+    windows : windows of the sweep, to be shown with it
+    over : the sweep over which branches or curves are drawn
+    relative : of curves and planes: b in parts of the grazing clearance b*
+    output : FILE.png, .svg or .pdf, to which the picture is written as well
+    overwrite : replace an `output` that exists, also one that is not a picture of this program
 
     Raises `PlotError` where the data cannot be read or cannot show that kind; it says which can be shown.
     """
-    if isinstance(data, (str, Path)):
-        data = checked_path("data", data)
-    else:
-        from xarray import Dataset  # it is imported already where it is one
-
-        check_type("data", data, Dataset, "the path of a file, or a Dataset")
+    data = _data("data", data)
     check_type("kind", kind, (str, NoneType), "the name of a kind of picture, or None")
     check_type("variable", variable, (str, NoneType), "the name of a variable, or None")
     check_type("at", at, (Mapping, NoneType), "a mapping from names of swept numbers to values, or None")
@@ -77,5 +82,36 @@ def plot(
         chosen[name] = number_of(value)
         if chosen[name] is None or not math.isfinite(chosen[name]):
             raise PlotError(not_allowed(f"at.{name}", value, "a finite number"))
-    drawn = figure(data, kind, Look(chosen, variable, width=width), ax)
+    if ax is not None and not (size is None and dpi is None):
+        raise PlotError("size and dpi: are those of a new figure; leave them out where `ax` is given")
+    limits = [_pair(name, pair) for name, pair in (("xlim", xlim), ("ylim", ylim), ("size", size))]
+    if dpi is not None and number_of(dpi) is None:
+        raise PlotError(not_allowed("dpi", dpi, "a number of pixels an inch"))
+    beside = [None if given is None else _data(name, given) for name, given in (("windows", windows), ("over", over))]
+    look = Look(chosen, variable, *limits, number_of(dpi), *beside, checked_flag("relative", relative), width)
+    inputs = [Path(one) for one in (data, *beside) if isinstance(one, (str, Path))]
+    place = None if output is None else file_to_write("output", output)
+    if place is not None:
+        if place.suffix.lower() not in SUFFIXES:
+            raise PlotError(f"output {place}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
+        check_output(place, checked_flag("overwrite", overwrite), inputs)
+    drawn = figure(data, kind, look, ax)
+    if place is not None:
+        save(drawn, place, overwrite, inputs)
     return None if ax is not None and drawn.canvas.manager is not None else drawn
+
+
+def _data(name: str, given) -> "Path | xarray.Dataset":
+    if isinstance(given, (str, Path)):
+        return checked_path(name, given)
+    from xarray import Dataset  # it is imported already where it is one
+
+    check_type(name, given, Dataset, A_FILE)
+    return given
+
+
+def _pair(name: str, given) -> tuple[float, float] | None:
+    values = None if given is None else array_of(given, 1)
+    if given is not None and (values is None or values.shape != (2,)):
+        raise PlotError(not_allowed(name, given, "two numbers"))
+    return None if values is None else (float(values[0]), float(values[1]))

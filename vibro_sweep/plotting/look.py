@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +11,9 @@ from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.plotting.page import Picture, page, style_of
 from vibro_sweep.plotting.source import PlotError
+
+if TYPE_CHECKING:
+    import xarray
 
 SIZES = (2.0, 100.0)  # inches
 WIDTHS = (50.0, 2500.0)  # mm
@@ -24,8 +28,8 @@ class Look:
 
     at: swept key -> value, where single orbits are drawn; variable: what is drawn; xlim, ylim: ranges of the axes, of
     several panels those of the first and of all that show the same; size: inches; width: mm, the height follows; dpi:
-    pixels an inch; windows: a file of the sweep's windows, which are shown below it or on its plane; over: the file of
-    a sweep over which branches or curves are drawn; relative: whether charts and planes show b in parts of the grazing
+    pixels an inch; windows: the sweep's windows, which are shown below it or on its plane; over: a sweep over which
+    branches or curves are drawn; relative: whether charts and planes show b in parts of the grazing
     clearance b*.
     Raises `PlotError` for values that none of the kinds can use.
     """
@@ -36,8 +40,8 @@ class Look:
     ylim: tuple[float, float] | None = None
     size: tuple[float, float] | None = None
     dpi: float | None = None
-    windows: Path | None = None
-    over: Path | None = None
+    windows: "Path | xarray.Dataset | None" = None
+    over: "Path | xarray.Dataset | None" = None
     relative: bool = False
     width: float | None = None
 

@@ -2,13 +2,12 @@
 
 from vibro_sweep.scene.continuation import (
     Continuation,
-    is_continuation_file,
-    load_continuation,
     parse_continuation,
 )
 from vibro_sweep.scene.form import json_schema
+from vibro_sweep.scene.loading import load_scene
 from vibro_sweep.scene.problems import SceneError
-from vibro_sweep.scene.scene import Scene, Section, Trajectory, load_scene, parse_scene, scene_of
+from vibro_sweep.scene.scene import Scene, Section, Trajectory, parse_scene, scene_of
 from vibro_sweep.scene.starts import Start
 
 __all__ = [
@@ -18,9 +17,7 @@ __all__ = [
     "Section",
     "Start",
     "Trajectory",
-    "is_continuation_file",
     "json_schema",
-    "load_continuation",
     "load_scene",
     "parse_continuation",
     "parse_scene",

@@ -1,6 +1,6 @@
 """From a YAML text with `continue` to a `Continuation`: branches or curves to be followed."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -9,13 +9,14 @@ from pydantic import ValidationError
 from vibro_sweep.model import told
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.parameters import ParameterError
+from vibro_sweep.model.refusals import cut, not_allowed
 
 from .continue_form import ORIGINS
 from .fields import Form
 from .form import continuation_form
 from .problems import SceneError, form_problems, located, problem
-from .reading import text_of
 from .system import kind_of, system_of
+from .written import continuation_data, yaml_of
 from .yaml_text import YAMLTextError, lines_of, read_yaml
 
 _IN_FILES = ("sweep", "branches")  # orbits of a file, which has the first number of `along`
@@ -23,6 +24,7 @@ _AT_SYSTEM = ("state", "itinerary", "free")  # orbits of `system` itself
 BY_BRANCHES = (*_AT_SYSTEM, "grazing")  # origins of curves that are orbits; their branches have the special points
 # Keys of `from` that belong to others
 _WITH = {"periods": ("state", "itinerary"), "special": ("branches",), "largest": ("sweep",)}
+_ABOUT = ("name", "text", "source")  # fields that say nothing of what is followed
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +51,30 @@ class Continuation:
     follow: tuple[str, ...]
     depth: int
     source: Path | None = None  # the file that it was read from
+
+    def to_yaml(self) -> str:
+        """This scene as YAML, from its numbers; `text` is what it was read from."""
+        return yaml_of(continuation_data(self))
+
+    def replace(self, **changes) -> "Continuation":
+        """A copy with other values of `system`, `origin`, `begin`, `along` and the other attributes.
+
+        What belongs to another `origin`, as `periods`, `special` and `largest` may, is left out.
+
+        Raises SceneError for what is no scene.
+        """
+        known = [field.name for field in fields(self) if field.name not in _ABOUT]
+        for key in changes:
+            if key not in known:
+                raise SceneError(self.name, [f"{cut(key)}: unknown; allowed here: {', '.join(known)}"])
+        origin = changes.get("origin", self.origin)
+        if not (isinstance(origin, str) and origin in ORIGINS):
+            raise SceneError(self.name, [not_allowed("origin", origin, f"one of {', '.join(ORIGINS)}")])
+        result = _continuation_of(continuation_data(self, changes), self.name, "")
+        return replace(result, text=result.to_yaml(), source=self.source)
+
+    def estimate(self, workers: int | None = None) -> None:
+        """None: what branches and curves take is known when they are followed; of sweeps `Scene.estimate` says it."""
 
     @property
     def inputs(self) -> list[Path]:
@@ -93,7 +119,7 @@ def parse_continuation(text: str, name: str = "scene") -> Continuation:
 
 def _continuation_of(data: Any, name: str, text: str) -> Continuation:
     if not is_continuation(data):
-        raise SceneError(name, ["continue: missing; a scene of branches has it, `load_scene` reads one of a sweep"])
+        raise SceneError(name, ["continue: missing; a scene of branches or curves has it"])
     kind, masses = kind_of(data, name)
     scheme = continuation_form(kind, masses)
     try:
@@ -168,16 +194,3 @@ def _outside(system: AnyOscillator, key: str, value: float) -> list[str]:
     except ParameterError as error:
         return [problem(f"continue.along.{key}", value, f"must be {error.allowed}")]
     return []
-
-
-def load_continuation(path: str | Path) -> Continuation:
-    """Read a scene of branches from a YAML file. Raises SceneError, OSError where the file cannot be read."""
-    return replace(parse_continuation(*text_of(path)), source=Path(path).absolute())
-
-
-def is_continuation_file(path: str | Path) -> bool:
-    """Whether a YAML file asks for branches; what is wrong with it is said by whoever reads it as a scene."""
-    try:
-        return is_continuation(read_yaml(text_of(path)[0]))
-    except (SceneError, YAMLTextError):
-        return False

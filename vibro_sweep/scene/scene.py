@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from pydantic import ValidationError
@@ -20,12 +21,14 @@ from vibro_sweep.model.state import START, start
 from .combinations import combination_problems
 from .form import built_form, scene_form
 from .problems import SceneError, form_problems, located, problem
-from .reading import text_of
 from .size import size_problems
 from .starts import Start, start_of, start_problems, stops_of
 from .system import kind_of, sweep_of, system_of
 from .written import changed, data_of, yaml_of
 from .yaml_text import YAMLTextError, lines_of, read_yaml
+
+if TYPE_CHECKING:
+    from vibro_sweep.driver.cost import Estimate
 
 _ABOUT = ("name", "given", "source")  # fields that say nothing of what is computed
 
@@ -99,6 +102,13 @@ class Scene:
         if state is not None and len(state) != count:
             raise SceneError(self.name, [problem("start", state.tolist(), f"must be {count} numbers")])
         return replace(result, source=self.source)
+
+    def estimate(self, workers: int | None = None) -> "Estimate":
+        """Orbits, bytes and seconds of a run with so many threads, by default one for each core; some orbits are
+        measured for that."""
+        from vibro_sweep.driver.cost import estimate
+
+        return estimate(self, workers)
 
     @property
     def inputs(self) -> list[Path]:
@@ -182,15 +192,6 @@ def _default(scene: Scene, name: str):
     return 0.0 if name == "offset" else None
 
 
-def load_scene(path: str | Path) -> Scene:
-    """Read a scene from a YAML file.
-
-    Raises SceneError for what is wrong with it, and an OSError that is a ValueError too where the file cannot be read;
-    of a missing file it is a FileNotFoundError.
-    """
-    return replace(parse_scene(*text_of(path)), source=Path(path).absolute())
-
-
 def _equal(one: Scene, other: Scene) -> bool:
     """Whether two scenes say the same; their names and texts do not count."""
     names = [field.name for field in fields(one) if field.name not in (*_ABOUT, "sweep")]
@@ -217,7 +218,7 @@ def scene_of(data: object, name: str, given: str | None = None, built: Built | N
     built : an oscillator that a function makes, in place of `system`
     """
     if isinstance(data, dict) and "continue" in data:
-        raise SceneError(name, ["continue: this is a scene of branches; `vibro-sweep run` follows them"])
+        raise SceneError(name, ["continue: this is a scene of branches or curves; it sweeps nothing"])
     kind, masses = kind_of(data, name) if built is None else (BUILD, built.masses)
     numbers = MODELS[kind].flat(masses) if built is None else built.described
     scheme = scene_form(kind, masses) if built is None else built_form(built)

@@ -1,5 +1,6 @@
 """A scene as the data that its YAML holds, and as YAML: the way back from a `Scene`, and from arguments in Python."""
 
+import json
 from collections.abc import Iterator, Mapping, Set
 from dataclasses import fields, is_dataclass
 from itertools import islice
@@ -20,6 +21,7 @@ from .form import CountAxis
 from .starts import Start
 
 if TYPE_CHECKING:
+    from .continuation import Continuation
     from .scene import Scene
 
 _KEYS = {dimension: key for key, dimension in START.items()}  # start_x1 -> x1
@@ -48,6 +50,38 @@ def data_of(scene: "Scene") -> dict[str, Any]:
     if scene.picture:
         data["picture"] = scene.picture
     return {key: value for key, value in data.items() if value or key == "observe"}
+
+
+def continuation_data(scene: "Continuation", changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """What the YAML text of a scene of branches or curves holds, with other values as the scene has them."""
+    has = {field.name: getattr(scene, field.name) for field in fields(scene)}
+    has |= {key: _as_data(key, value) for key, value in (changes or {}).items()}
+    begin, origin, along = has["begin"], has["origin"], has["along"]
+    if origin == "state" and isinstance(begin, (list, tuple)):
+        begin = dict(zip(state(len(begin) // 2), begin, strict=False))
+    more = {"periods": has["periods"]} if origin in ("state", "itinerary") else {}
+    more |= {"special": has["special"]} if origin == "branches" else {}
+    more |= {"largest": has["largest"]} if origin == "sweep" and has["largest"] is not None else {}
+    if isinstance(along, dict):
+        along = {key: _range(limits) for key, limits in along.items()}
+    body = {"from": "free" if origin == "free" else {origin: begin, **more}, "along": along}
+    if isinstance(along, dict) and len(along) == 2:
+        body["of"] = _listed(has["of"])
+    system = _system(scene.system, ()) if has["system"] is scene.system else has["system"]
+    return {"system": system, "continue": body | {"follow": _listed(has["follow"]), "depth": has["depth"]}}
+
+
+def _listed(words: object) -> object:
+    return list(words) if isinstance(words, tuple) else words
+
+
+def _range(limits: object) -> object:
+    """(lo, hi) as YAML has it."""
+    return dict(zip(("start", "stop"), limits, strict=True)) if _is_pair(limits) else limits
+
+
+def _is_pair(value: object) -> bool:
+    return isinstance(value, (list, tuple)) and len(value) == 2
 
 
 def changed(data: dict[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -140,6 +174,8 @@ def _flow(value) -> str:
         return "{" + ", ".join(f"{key}: {_flow(item)}" for key, item in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(map(_flow, value)) + "]"
+    if isinstance(value, str) and not value.isidentifier():
+        return json.dumps(value, ensure_ascii=False)  # a path, say, may hold what YAML reads otherwise
     if not isinstance(value, float):
         return str(value)
     if value.is_integer() and abs(value) < 1e16:

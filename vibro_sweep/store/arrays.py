@@ -16,6 +16,7 @@ class Contents:
     def __init__(self, file: h5py.File):
         self._file = file
         self.attrs = attributes(file)
+        self.chosen: dict[str, float] = {}  # swept numbers of which one value is left: of a file none
 
     @cached_property
     def names(self) -> list[str]:

@@ -7,6 +7,7 @@ import contextlib
 import json
 import math
 import os
+import time
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import BinaryIO
@@ -34,6 +35,7 @@ class Pieces:
 
     def __init__(self, part: HeldPart, path: Path, subject: Subject, known: dict[str, Arrays]):
         self._part, self._path, self._subject, self._known = part, path, subject, known
+        self._began = time.perf_counter()
 
     def get(self, key: str, usable: Callable[[Arrays], bool]) -> Arrays | None:
         """A piece that is known already, if it is one of those that can be used."""
@@ -56,6 +58,7 @@ class Pieces:
     def finish(self, provenance: dict, columns: list[Column], arrays: Arrays) -> None:
         """Give the file its name, and remove the part."""
         head = self._part.head
+        provenance["wall_time_s"] = round(time.perf_counter() - self._began, 3)
         image = image_of(self._subject, head.identity, json.dumps(made_by() | provenance), columns, arrays)
         new = unfinished(self._path, head.identity)
         with said(self._part):

@@ -19,9 +19,10 @@ REASON_CODES = {name: code for code, name in enumerate(REASONS)}
 
 
 class Contents(Protocol):
-    """The file of a sweep (store/arrays.py)."""
+    """The results of a sweep (store/arrays.py, driver/swept.py)."""
 
     attrs: dict[str, Any]
+    chosen: dict[str, float]
     sizes: dict[str, int]
 
     def __contains__(self, name: str) -> bool: ...
@@ -76,13 +77,13 @@ def swept_in(data: Contents) -> list[str]:
     return [str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"])]
 
 
-def chosen_key(data: Contents, system, key: str | None) -> str:
+def chosen_key(data: Contents, system, parameter: str | None) -> str:
     """The swept number along which windows are followed, by default the first. Raises ValueError."""
     swept = swept_in(data)
     able = [name for name in swept if name in system.described and data.sizes[name] > 1]
     if not able:
         raise ValueError(f"sweep: {', '.join(swept) or 'nothing'} is swept; windows need a number of the system")
-    return checked_word("key", key, able, optional=True) or able[0]
+    return checked_word("parameter", parameter, able, optional=True) or able[0]
 
 
 def check_data(data: Contents) -> None:

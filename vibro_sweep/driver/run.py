@@ -1,0 +1,74 @@
+"""`vibro_sweep.run`: from a scene of either kind to its file."""
+
+import json
+from collections.abc import Callable
+from concurrent.futures import Executor
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from vibro_sweep.driver.branches import run_branches
+from vibro_sweep.driver.curves import run_curves
+from vibro_sweep.driver.sweep import RunReport, check_how, run_sweep
+from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, TYPES
+from vibro_sweep.model.branch_file import CHART
+from vibro_sweep.model.files import file_to_write
+from vibro_sweep.progress import given_or_bar
+from vibro_sweep.scene import Continuation, Scene
+from vibro_sweep.store.attributes import text
+from vibro_sweep.store.opening import opened
+
+__all__ = ["RunReport", "run"]
+
+
+def run(
+    scene: Scene | Continuation,
+    output: str | Path,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    mode: Literal["new", "resume", "overwrite"] = "new",
+) -> RunReport:
+    """Compute a scene and write its file.
+
+    Parameters
+    ----------
+    scene : of a sweep, of branches or of curves, as `load_scene` returns it
+    output : the HDF5 file; while it is computed it is `output`.part, which of a sweep `open`, `info` and `plot` read at
+        any moment
+    workers : of a sweep threads, by default one for each core; of branches and curves processes, by default one; of an
+        `executor` that does not say how many it has, its workers
+    executor : any `concurrent.futures.Executor` instead
+    progress : called as progress(done, total) in orbits, branches or curves, from this thread; left out: a bar on a
+        terminal, unless the level of the logger `vibro_sweep` is WARNING
+    mode : "new" (nothing that exists is replaced), "resume" (continue `output`.part where it stopped) or "overwrite"
+
+    An `output` that is complete, and made by the same scene and code, is left as it is: the report is that of its run.
+    Results do not depend on workers, executor, block size or interruptions, bit for bit. Memory is that of the blocks
+    under way, whatever the size of the sweep. Raises `StoreError` for a file that is in the way or does not fit the
+    scene, ValueError for a number of workers that cannot be and where a scene's first orbit does not exist, TypeError
+    for arguments of other kinds, RunError where workers fail, and lets KeyboardInterrupt through once the file is safe.
+    """
+    check_type("scene", scene, (Scene, Continuation), "a Scene or a Continuation, as `load_scene` returns it")
+    output = file_to_write("output", output)
+    check_how(workers, executor, progress, mode)
+    if isinstance(scene, Scene):
+        return run_sweep(scene, output, workers, executor, progress, mode)
+    follow = run_branches if len(scene.along) == 1 else run_curves
+    with given_or_bar(progress, 0) as tell:
+        computed = follow(scene, output, workers, executor, tell, mode)
+    return _report(output, computed)
+
+
+def _report(path: Path, computed: bool) -> RunReport:
+    """Of a file of branches or curves; `failed` are those that could not be followed to both ends."""
+    with opened(path, content=False) as (file, _):
+        types = CODIMENSION_TWO if text(file, "kind") == CHART else TYPES
+        names = np.array([one.name for one in types])[file["special_type"][()]]
+        branches, failed = len(file["branch_period"]), np.unique(file["special_branch"][()][names == "failed"])
+        seconds = json.loads(text(file, "provenance"))["wall_time_s"]
+    counts = {"ok": branches - len(failed), "failed": len(failed)}
+    statuses = {name: count for name, count in counts.items() if count}
+    return RunReport(branches, len(failed), statuses, seconds, branches if computed else 0)

@@ -1,0 +1,24 @@
+"""`load_scene`: from a YAML file to a scene of either kind."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from .continuation import Continuation, is_continuation, parse_continuation
+from .reading import text_of
+from .scene import Scene, parse_scene
+from .yaml_text import YAMLTextError, read_yaml
+
+
+def load_scene(path: str | Path) -> Scene | Continuation:
+    """Read a scene from a YAML file: a `Scene` of orbits, or with `continue` a `Continuation`, of branches or curves.
+
+    Raises SceneError for what is wrong with it, and an OSError that is a ValueError too where the file cannot be read;
+    of a missing file it is a FileNotFoundError.
+    """
+    text, name = text_of(path)
+    try:
+        follows = is_continuation(read_yaml(text))
+    except YAMLTextError:  # what is wrong is said below, with its line
+        follows = False
+    scene = parse_continuation(text, name) if follows else parse_scene(text, name)
+    return replace(scene, source=Path(path).absolute())
