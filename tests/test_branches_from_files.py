@@ -130,7 +130,7 @@ def test_the_numbers_of_the_oscillator_are_those_of_the_special_point(few, tmp_p
         (NUMBERS.replace("0.8", "0.7"), 5.2, 6.8, "b", r"R = 0\.7 in system, and 0\.8 in .*few\.h5"),
         (NUMBERS + ", stops: right", 5.2, 6.8, "b", "stops = 'right' in system, and 'both' in "),
         (NUMBERS + ", tau: 1", 5.2, 6.8, "b", r"tau = 1\.0 in system, and 'grazing' in "),
-        (NUMBERS, 0.6, 0.7, "omega", "key: 'omega' is not allowed; it must be b"),
+        (NUMBERS, 0.6, 0.7, "omega", "parameter: 'omega' is not allowed; it must be b"),
         (NUMBERS, 1.2, 1.8, "b", r"continue\.from\.sweep: no orbit of \S+ with b in 1\.2 \.\. 1\.8"),
     ],
 )
