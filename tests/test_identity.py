@@ -18,7 +18,14 @@ MODULES = {path.relative_to(PACKAGE).as_posix() for path in PACKAGE.rglob("*.py"
 COUNTED = {path.relative_to(PACKAGE).as_posix() for path in identity.sources()}
 
 # What is reached from the code that computes and makes no number: the store's reading and writing, and the version.
-NUMBERLESS = {"__init__.py", "identity.py", "driver/__init__.py", "driver/cost.py", "store/__init__.py", "store/layout.py"}
+NUMBERLESS = {
+    "__init__.py",
+    "identity.py",
+    "driver/__init__.py",
+    "driver/cost.py",
+    "store/__init__.py",
+    "store/layout.py",
+}
 
 
 @pytest.fixture
