@@ -24,6 +24,7 @@ TABLES = {
     "branch_file",
     "catalogue",
     "dimensions",
+    "errors",
     "exponents",
     "files",
     "observables",

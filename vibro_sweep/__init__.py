@@ -9,7 +9,7 @@ Periodic orbits
     load_orbit
     windows (of a sweep's file)
 Errors
-    ParameterError, SceneError, StoreError, PlotError (each is a ValueError), RunError
+    VibroSweepError, the base of all; ParameterError, SceneError, StoreError, PlotError (each is a ValueError), RunError
 For annotations
     vibro_sweep.types: Branch, PeriodicOrbit, SpecialPoint, Windows, Scene, ..., what functions take and return
 """
@@ -29,6 +29,7 @@ __all__ = [
     "SceneError",
     "StoreError",
     "System",
+    "VibroSweepError",
     "bifurcation_curve",
     "born_at_grazing",
     "continue_orbit",
@@ -64,6 +65,7 @@ if TYPE_CHECKING:
     from vibro_sweep.driver.from_python import sweep
     from vibro_sweep.driver.run import run
     from vibro_sweep.driver.windows import windows
+    from vibro_sweep.model.errors import VibroSweepError
     from vibro_sweep.model.general import Oscillator
     from vibro_sweep.model.grazing import grazing
     from vibro_sweep.model.oscillator import System
@@ -82,6 +84,7 @@ else:
         "SceneError": "scene",
         "StoreError": "store",
         "System": "model.oscillator",
+        "VibroSweepError": "model.errors",
         "bifurcation_curve": "analysis.curves.bifurcation_curve",
         "born_at_grazing": "analysis.periodic.lcp",
         "continue_orbit": "analysis.branches.continuation",

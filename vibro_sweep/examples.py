@@ -4,11 +4,13 @@ import difflib
 import re
 from pathlib import Path
 
+from vibro_sweep.model.errors import VibroSweepError
+
 SCHEMA = "scene.schema.json"
 HOME = Path(__file__).parent
 
 
-class ExampleError(ValueError):
+class ExampleError(VibroSweepError, ValueError):
     """An example that there is not, or whose copy would replace a file with another content."""
 
 

@@ -14,6 +14,7 @@ from distributed.comm import get_address_host_port
 
 from vibro_sweep.driver.blocks import version
 from vibro_sweep.driver.compute import RunError
+from vibro_sweep.model.errors import VibroSweepError
 
 _log = logging.getLogger("vibro_sweep")
 
@@ -24,7 +25,7 @@ CONNECT_SECONDS, JOIN_SECONDS = 5, 60
 GONE = (OSError, RuntimeError, getattr(client_module, "ClosedClientError", RuntimeError))
 
 
-class ClusterError(RuntimeError):
+class ClusterError(VibroSweepError, RuntimeError):
     """A scheduler that cannot be reached, or workers that cannot compute for this program."""
 
 

@@ -18,13 +18,14 @@ from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.records import Kind, new_results
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
+from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.grazing import expansion_point
 from vibro_sweep.model.grid import linears
 from vibro_sweep.model.observables import GAP
 from vibro_sweep.model.state import state
 
 
-class RunError(RuntimeError):
+class RunError(VibroSweepError, RuntimeError):
     """A run that cannot go on. What it has computed is in the file, and `resume` continues it."""
 
     internal = False

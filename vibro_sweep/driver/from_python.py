@@ -11,6 +11,7 @@ from vibro_sweep.driver.sweep import check_how, run_sweep
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import accepts, check_type, checked_state
 from vibro_sweep.model.built import Built
+from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.oscillator import checked_system
 from vibro_sweep.model.real import number_of
@@ -30,10 +31,10 @@ def _first(name: str, values: object) -> float:
     """The first value of an axis, as it is written. Raises ValueError."""
     data = axis_data(values)
     if not name.isidentifier() or name.startswith("_"):
-        raise ValueError(not_allowed("axes", name, "of names that begin with a letter"))
+        raise ArgumentError(not_allowed("axes", name, "of names that begin with a letter"))
     first = number_of(data.get("start", next(iter(data.get("values") or ()), None))) if isinstance(data, dict) else None
     if first is None:
-        raise ValueError(not_allowed(f"axes.{name}", values, "numbers, or an axis as in YAML"))
+        raise ArgumentError(not_allowed(f"axes.{name}", values, "numbers, or an axis as in YAML"))
     return first
 
 
@@ -80,7 +81,7 @@ def sweep(
     if callable(system) and not isinstance(system, AnyOscillator):
         first = {name: _first(name, values) for name, values in axes.items() if name not in START}
         if not accepts(system, **first):
-            raise TypeError(
+            raise ArgumentTypeError(
                 not_allowed("system", system, f"a System, an Oscillator, or a function of {', '.join(first)}")
             )
         built = Built(system, first)
@@ -106,15 +107,15 @@ def sweep(
     taken = {"status", *quantities, *(own for one in quantities.values() for own in one.dimensions)}
     taken |= {"start"} if scene.n_starts > 1 else set()
     for name in taken.intersection(scene.sweep):
-        raise ValueError(not_allowed("axes", name, f"of other names than {', '.join(sorted(taken))}"))
+        raise ArgumentError(not_allowed("axes", name, f"of other names than {', '.join(sorted(taken))}"))
     if output is None and mode != "new":
-        raise ValueError(not_allowed("mode", mode, "'new' without a file, `output`"))
+        raise ArgumentError(not_allowed("mode", mode, "'new' without a file, `output`"))
     if output is not None:
         run_sweep(scene, output, workers, progress=progress, mode=mode)
         return store.open(output)
     if store.size(scene) > MOST:
         size, most = store.size(scene) / 1e9, MOST / 1e9
-        raise ValueError(
+        raise ArgumentError(
             f"output: None is not allowed; it must be a file, the results take {size:.3g} GB > {most:g} GB"
         )
     with tempfile.TemporaryDirectory() as folder:

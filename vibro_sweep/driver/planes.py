@@ -9,7 +9,6 @@ from vibro_sweep.analysis.windows.edges import Plane, ends_of
 from vibro_sweep.analysis.windows.explained import Explained
 from vibro_sweep.analysis.windows.rows import check_data
 from vibro_sweep.driver.source_file import SourceError
-from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation, parse_scene
@@ -27,8 +26,6 @@ def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
         keys = [str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"])]
         if len(keys) != 2:
             return None
-        if data.attrs.get("type") == BUILD:
-            raise ValueError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
         check_data(data)
         if sorted(keys) != sorted(names):
             raise SourceError(

@@ -4,12 +4,13 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 
+from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.files import FileError
 from vibro_sweep.scene import Continuation
 from vibro_sweep.store import StoreError
 
 
-class SourceError(ValueError):
+class SourceError(VibroSweepError, ValueError):
     """Nothing can be computed from a file or a scene's `continue: from`; the message says from which."""
 
 

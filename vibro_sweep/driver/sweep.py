@@ -31,6 +31,7 @@ from vibro_sweep.driver.pool import as_computed
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.engine.halting import heed, interruptible, new_halt
 from vibro_sweep.model.arguments import check_call
+from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.status import STANDING, meaning
 from vibro_sweep.progress import given_or_bar
@@ -98,9 +99,9 @@ def run_sweep(
 def check_how(workers, executor, progress, mode) -> None:
     """Check the arguments of `run` that say how it computes."""
     if workers is not None and (type(workers) is not int or not 1 <= workers <= MOST_WORKERS):
-        raise ValueError(not_allowed("workers", workers, f"a whole number from 1 to {MOST_WORKERS}"))
+        raise ArgumentError(not_allowed("workers", workers, f"a whole number from 1 to {MOST_WORKERS}"))
     if executor is not None and not callable(getattr(type(executor), "submit", None)):
-        raise TypeError(not_allowed("executor", executor, "a concurrent.futures.Executor"))
+        raise ArgumentTypeError(not_allowed("executor", executor, "a concurrent.futures.Executor"))
     check_call("progress", progress, "progress(done, total)", 0, 0)
     check_mode(mode)
 

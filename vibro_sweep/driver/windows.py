@@ -21,7 +21,7 @@ from vibro_sweep.driver.swept import contents_of
 from vibro_sweep.driver.usable import is_window
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.branch_file import WINDOWS, columns_of
-from vibro_sweep.model.built import BUILD
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.state import state
@@ -67,7 +67,7 @@ def windows(
     check_type("parameter", parameter, (str, NoneType), "the name of a swept number, or None")
     check_how(workers, None, progress, mode)
     if output is None and mode != "new":
-        raise ValueError(not_allowed("mode", mode, "'new' without a file, `output`"))
+        raise ArgumentError(not_allowed("mode", mode, "'new' without a file, `output`"))
     with given_or_bar(progress, 0) as tell:
         if output is not None:
             cover = run_windows(data, output, parameter, workers, None, tell, mode)
@@ -130,10 +130,6 @@ def cover_of(
 
 def rows_in(data: Contents, parameter: str | None) -> list[Row]:
     """The rows of a sweep along a swept number. Raises ValueError where there can be no windows."""
-    if "kind" in data.attrs:
-        raise ValueError(f"holds {data.attrs['kind']}, not a sweep")
-    if data.attrs.get("type") == BUILD:
-        raise ValueError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
     check_data(data)
     system = parse_scene(data.attrs["scene"]).system
     system = system.replace(**{name: value for name, value in data.chosen.items() if name in system.described})

@@ -12,6 +12,7 @@ from vibro_sweep.engine.motion.free import find_contacts, find_extremes
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.variational.propagator import fly, new_scratch
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.oscillator import checked_system
 from vibro_sweep.model.sensitivity import motion
 
@@ -91,9 +92,9 @@ class FreeFlight:
         """The arguments as arrays of n rows."""
         states, count = np.array(states, float), self._engine.states
         if states.ndim != 2 or states.shape[1] != count:
-            raise ValueError(f"states: shape {states.shape} is not allowed; it must be (n, {count})")
+            raise ArgumentError(f"states: shape {states.shape} is not allowed; it must be (n, {count})")
         start_time, duration = (np.array(np.broadcast_to(x, len(states)), float) for x in (start_time, duration))
         for name, values in (("states", states), ("start_time", start_time), ("duration", duration)):
             if not np.isfinite(values).all():
-                raise ValueError(f"{name}: {values[~np.isfinite(values)][0]!r} is not allowed; it must be finite")
+                raise ArgumentError(f"{name}: {values[~np.isfinite(values)][0]!r} is not allowed; it must be finite")
         return states, start_time, duration

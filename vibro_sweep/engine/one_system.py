@@ -14,6 +14,7 @@ from vibro_sweep.engine.variational.spectrum import BATCHES
 from vibro_sweep.model import status
 from vibro_sweep.model.arguments import checked_state
 from vibro_sweep.model.contact import is_far
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.frame import ROUNDING, moved
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.oscillator import System
@@ -154,7 +155,7 @@ class Engine:
         if not self.stops.left <= values[0] <= self.stops.right:
             low, high, gap = (float(one + self.middle) for one in (self.stops.left, self.stops.right, values[0]))
             name = "the gap" if self.turned else "x1"
-            raise ValueError(f"state: {name} = {gap!r} is behind a stop; allowed: {low!r} .. {high!r}")
+            raise ArgumentError(f"state: {name} = {gap!r} is behind a stop; allowed: {low!r} .. {high!r}")
         return values
 
     @property

@@ -25,6 +25,7 @@ from vibro_sweep.engine.variational.sensitivity import Equations, differentiate
 from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import is_number
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Linear, steady_gain
 from vibro_sweep.model.oscillator import System, checked_system
 from vibro_sweep.model.parameters import NAMES
@@ -69,7 +70,7 @@ class PeriodMap:
     def __init__(self, system: AnyOscillator, order: int = 0, expand_at: float | None = None):
         checked_system(system)
         if order not in (0, 1, 2):
-            raise ValueError(not_allowed("order", order, "0 (the flow), 1 or 2"))
+            raise ArgumentError(not_allowed("order", order, "0 (the flow), 1 or 2"))
         self.system = system if order == 0 else system.replace(tau="grazing")
         self.order, self.expand_at = order, expand_at
         given = NAMES if isinstance(system, System) else tuple(self.system.numbers)
@@ -88,10 +89,10 @@ class PeriodMap:
         """
         halves = 2 * periods
         if not (math.isfinite(halves) and halves >= 0 and halves == int(halves)):
-            raise ValueError(not_allowed("periods", periods, "a multiple of 1/2, and not negative"))
+            raise ArgumentError(not_allowed("periods", periods, "a multiple of 1/2, and not negative"))
         start, count = np.array(states, float), self._engine.states
         if start.ndim != 2 or start.shape[1] != count:
-            raise ValueError(f"states: shape {start.shape} is not allowed; it must be (n, {count})")
+            raise ArgumentError(f"states: shape {start.shape} is not allowed; it must be (n, {count})")
         compute = self._flow if self.order == 0 else self._discontinuity_map
         equations = self._equations(parameters) if jacobian or parameters or self.order else None
         ends, codes, impacts, sticking, derivatives = compute(start, int(halves), equations)
@@ -233,6 +234,6 @@ def _check_symmetric(system: AnyOscillator) -> None:
     q = system.linear
     if getattr(system, "offset", 0.0) != 0 or q.R_low != q.R_high or np.any(q.constant):
         allowed = "one with equal stops about 0 and without a constant force, for the discontinuity mapping"
-        raise ValueError(not_allowed("system", system, allowed))
+        raise ArgumentError(not_allowed("system", system, allowed))
     if not steady_gain(q):
-        raise ValueError(not_allowed("system", system, "one whose gap has a steady motion, which grazes"))
+        raise ArgumentError(not_allowed("system", system, "one whose gap has a steady motion, which grazes"))

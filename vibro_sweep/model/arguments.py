@@ -6,6 +6,7 @@ from typing import Any, overload
 
 import numpy as np
 
+from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.state import state as names
@@ -20,7 +21,7 @@ def checked_state(state, masses: int = 2, name: str = "state") -> np.ndarray:
     values = array_of(state, 1)
     if values is None or values.shape != (2 * masses,) or not np.isfinite(values).all():
         count = _COUNTS.get(2 * masses, str(2 * masses))
-        raise ValueError(not_allowed(name, state, f"{count} finite numbers ({', '.join(names(masses))})"))
+        raise ArgumentError(not_allowed(name, state, f"{count} finite numbers ({', '.join(names(masses))})"))
     return values
 
 
@@ -35,10 +36,10 @@ def checked_times(times, first: float, last: float, allowed: str) -> np.ndarray:
     if values is None and is_number(times):
         values = np.array([number_of(times)])
     if values is None:
-        raise ValueError(not_allowed("times", times, "a number or a sequence of numbers"))
+        raise ArgumentError(not_allowed("times", times, "a number or a sequence of numbers"))
     outside = ~((values >= first) & (values <= last))
     if outside.any():
-        raise ValueError(not_allowed("times", float(values[outside][0]), allowed))
+        raise ArgumentError(not_allowed("times", float(values[outside][0]), allowed))
     return values
 
 
@@ -46,10 +47,10 @@ def checked_interval(name: str, bounds, value: float) -> tuple[float, float]:
     """(lo, hi) around a value. Raises ValueError."""
     ends = array_of(bounds, 1)
     if ends is None or ends.shape != (2,) or not (np.isfinite(ends).all() and ends[0] < ends[1]):
-        raise ValueError(not_allowed(name, bounds, f"(lo, hi), lo < hi, around {value!r}"))
+        raise ArgumentError(not_allowed(name, bounds, f"(lo, hi), lo < hi, around {value!r}"))
     lo, hi = ends.tolist()
     if not lo <= value <= hi:
-        raise ValueError(not_allowed(name, bounds, f"(lo, hi), lo < hi, around {value!r}"))
+        raise ArgumentError(not_allowed(name, bounds, f"(lo, hi), lo < hi, around {value!r}"))
     return lo, hi
 
 
@@ -57,7 +58,7 @@ def checked_count(name: str, value, least: int, most: int = MAX_COUNT) -> int:
     """A whole number of at least and at most so many. Raises ValueError."""
     number = number_of(value)
     if number is None or not (least <= number <= most and number == int(number)):
-        raise ValueError(not_allowed(name, value, f"a whole number >= {least} and <= {most}"))
+        raise ArgumentError(not_allowed(name, value, f"a whole number >= {least} and <= {most}"))
     return int(number)
 
 
@@ -74,14 +75,14 @@ def checked_word(name, value, words, optional=False):
     if value is None and optional:
         return None
     if not (isinstance(value, str) and value in words):
-        raise ValueError(not_allowed(name, value, f"{'one of ' if len(words) > 1 else ''}{', '.join(words)}"))
+        raise ArgumentError(not_allowed(name, value, f"{'one of ' if len(words) > 1 else ''}{', '.join(words)}"))
     return str(value)
 
 
 def checked_flag(name: str, value) -> bool:
     """Raises ValueError for what is neither True nor False."""
     if not isinstance(value, (bool, np.bool_)):
-        raise ValueError(not_allowed(name, value, "True or False"))
+        raise ArgumentError(not_allowed(name, value, "True or False"))
     return bool(value)
 
 
@@ -91,7 +92,7 @@ def check_call(name: str, value: object, example: str, *given: Any) -> None:
     Nor is it a class, of which each call would only make another object.
     """
     if value is not None and (isinstance(value, type) or not accepts(value, *given)):
-        raise TypeError(not_allowed(name, value, f"callable as {example}"))
+        raise ArgumentTypeError(not_allowed(name, value, f"callable as {example}"))
 
 
 def accepts(function: object, *given: Any, **named: Any) -> bool:
@@ -112,4 +113,4 @@ def accepts(function: object, *given: Any, **named: Any) -> bool:
 def check_type(name: str, value: object, kinds: type | tuple[type, ...], allowed: str) -> None:
     """Raise TypeError unless `value` is one of these kinds; `allowed` says so in words."""
     if not isinstance(value, kinds):
-        raise TypeError(not_allowed(name, value, allowed))
+        raise ArgumentTypeError(not_allowed(name, value, allowed))

@@ -8,6 +8,7 @@ import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models.declaration import Model
 from vibro_sweep.model.parameters import NUMBER, Parameter
@@ -42,7 +43,7 @@ class Built(AnyOscillator):
         if made.masses != self.base.masses:
             told = ", ".join(f"{name}={value!r}" for name, value in numbers.items())
             allowed = f"as many as at the first point, {self.base.masses}"
-            raise ValueError(f"{self.name}({told}): {made.masses} masses are not allowed; there must be {allowed}")
+            raise ArgumentError(f"{self.name}({told}): {made.masses} masses are not allowed; there must be {allowed}")
         return made.linear
 
     def _made(self, numbers: Mapping[str, float]) -> AnyOscillator:

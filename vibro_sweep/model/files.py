@@ -6,13 +6,14 @@ import stat
 from pathlib import Path
 
 from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.errors import ArgumentError, VibroSweepError
 from vibro_sweep.model.refusals import not_allowed
 
 SUFFIX = ".part"  # of the file of a run that is not complete
 WHAT = "the path of a file"
 
 
-class FileError(ValueError, OSError):
+class FileError(VibroSweepError, ValueError, OSError):
     """A file that cannot be read or written: its name, and why."""
 
     # of the two bases' the one that Python takes; tblib, which Dask has, asks for it
@@ -56,23 +57,23 @@ def file_to_write(name: str, value: str | Path) -> Path:
     """The path of a file, and ValueError for the name of a folder, too."""
     path = checked_path(name, value)
     if str(value).endswith(("/", os.sep)):
-        raise ValueError(not_allowed(name, str(value), f"{WHAT}, and of no folder"))
+        raise ArgumentError(not_allowed(name, str(value), f"{WHAT}, and of no folder"))
     _check_name(name, value, f"{value}{SUFFIX}")
     return path
 
 
 def _check_name(name: str, value: object, path: str) -> None:
     if not path:
-        raise ValueError(not_allowed(name, value, f"{WHAT}, and not empty"))
+        raise ArgumentError(not_allowed(name, value, f"{WHAT}, and not empty"))
     try:
         os.lstat(path)
     except UnicodeEncodeError:
-        raise ValueError(not_allowed(name, value, f"{WHAT}, of whole characters")) from None
+        raise ArgumentError(not_allowed(name, value, f"{WHAT}, of whole characters")) from None
     except ValueError:
-        raise ValueError(not_allowed(name, value, f"{WHAT}, without a NUL character")) from None
+        raise ArgumentError(not_allowed(name, value, f"{WHAT}, without a NUL character")) from None
     except OSError as error:
         if error.errno == errno.ENAMETOOLONG:
-            raise ValueError(not_allowed(name, value, f"{WHAT}, and shorter")) from None
+            raise ArgumentError(not_allowed(name, value, f"{WHAT}, and shorter")) from None
 
 
 def read_bytes(path: Path, most: int) -> bytes:

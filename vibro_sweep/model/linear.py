@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.model.errors import ArgumentTypeError
 from vibro_sweep.model.refusals import not_allowed
 
 DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
@@ -233,7 +234,7 @@ def family_of(system) -> Family:
     if isinstance(system, Family):
         return system
     if not isinstance(getattr(system, "family", None), Family):
-        raise TypeError(not_allowed("system", system, "a System or an Oscillator"))
+        raise ArgumentTypeError(not_allowed("system", system, "a System or an Oscillator"))
     return system.family
 
 

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed
 
@@ -176,7 +177,7 @@ FOLLOWING = ("tau", B_STAR.name, B_RIGHT.name, B_LEFT.name)  # where others are 
 BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
 
 
-class ParameterError(ValueError):
+class ParameterError(VibroSweepError, ValueError):
     """A parameter outside its range; carries `key`, `value` and `allowed`."""
 
     def __init__(self, key: str, value: object, allowed: str):

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibro_sweep.model.branch_file import CHART
+from vibro_sweep.model.errors import ArgumentTypeError
 from vibro_sweep.model.pictures import PICTURES
 from vibro_sweep.model.refusals import not_allowed, shown
 from vibro_sweep.plotting import basins, branches, charts, coexistence, convergence, energy, orbits, planes, sweeps
@@ -80,7 +81,7 @@ def figure(
     Raises `PlotError` where the data cannot be read or cannot show that kind.
     """
     if ax is not None and not isinstance(ax, Axes):
-        raise TypeError(not_allowed("ax", ax, "matplotlib axes"))
+        raise ArgumentTypeError(not_allowed("ax", ax, "matplotlib axes"))
     data, of = drawable(data)
     if of is not None:
         _check_flat(data, of, kind, look or Look())

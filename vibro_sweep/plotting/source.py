@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vibro_sweep.model.errors import ArgumentTypeError, VibroSweepError
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.store.attributes import text, texts
 from vibro_sweep.store.opening import ForeignError, StoreError, is_dataset, is_flat, open_file, opened, quantities_of
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-class PlotError(ValueError):
+class PlotError(VibroSweepError, ValueError):
     """What was asked for cannot be drawn; the message says what can."""
 
 
@@ -103,7 +104,7 @@ class DatasetSource:
 
     def __init__(self, data: "xarray.Dataset"):
         if not hasattr(data, "data_vars"):
-            raise TypeError(not_allowed("data", data, "the path of a file, or a Dataset"))
+            raise ArgumentTypeError(not_allowed("data", data, "the path of a file, or a Dataset"))
         if "status" not in data or "sweep_dimensions" not in data.attrs:
             raise PlotError("this dataset is none of `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
         self._data, self.name = data, name_of(data)

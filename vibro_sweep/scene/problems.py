@@ -7,6 +7,7 @@ from itertools import islice
 
 from pydantic import ValidationError
 
+from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.observables import WORDS
 from vibro_sweep.model.refusals import LONGEST, cut, shown
 
@@ -25,7 +26,7 @@ _AXIS_FORMS = "{start, stop, step}, {start, stop, num} or {values}"
 _YAML_WORDS = {"NaN": ".nan", "Infinity": ".inf", "-Infinity": "-.inf"}
 
 
-class SceneError(ValueError):
+class SceneError(VibroSweepError, ValueError):
     """A scene that cannot be computed; `problems` holds one line for each thing that is wrong with it."""
 
     def __init__(self, name: str, problems: list[str]):

@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 
 from vibro_sweep import __version__
+from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.files import MissingFileError
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.store import heap, parts
@@ -31,7 +32,7 @@ NETCDF = "_NCProperties"  # the attribute by which a netCDF library says that it
 TEXTS = ("title", "history", "scene", "provenance")
 
 
-class StoreError(ValueError):
+class StoreError(VibroSweepError, ValueError):
     """A file that is in the way, is none of ours, is damaged or does not fit the scene; or a disk that fails."""
 
 

@@ -9,7 +9,9 @@ import numpy as np
 
 from vibro_sweep.model.arguments import checked_word
 from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.parameters import range_of
+from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.state import state
 from vibro_sweep.model.status import NOT_COMPUTED, stands
 
@@ -87,7 +89,11 @@ def chosen_key(data: Contents, system, parameter: str | None) -> str:
 
 
 def check_data(data: Contents) -> None:
-    """Raise ValueError where a file has no section states at t = 0 mod T, or not of the oscillator itself."""
+    """Raise ValueError for what is not a sweep, or has no section states at t = 0 mod T of the oscillator itself."""
+    if "kind" in data.attrs:
+        raise ValueError(f"holds {cut(str(data.attrs['kind']))}, not a sweep")
+    if data.attrs.get("type") == BUILD:
+        raise ValueError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
     if data.attrs.get("model", "flow") != "flow":
         raise ValueError("model: 'map' is not allowed; windows are those of the oscillator itself, model: flow")
     if data.attrs.get("section", "phase") != "phase":

@@ -5,17 +5,18 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.impulses.tables import REACH
+from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.linear import Linear, forcing_period, remembered
 
 MOST_CELLS = 1 << 17
 MATRICES = ("M", "K", "C", "along", "omega")  # fields that move the free flight
 
 
-class TooStiffError(ValueError):
+class TooStiffError(VibroSweepError, ValueError):
     """The rates of the oscillator are too far apart for tables over its period."""
 
 
-class ResonanceError(ValueError):
+class ResonanceError(VibroSweepError, ValueError):
     """An undamped mode repeats itself after P: such orbits do not exist, or are not isolated."""
 
 
