@@ -36,7 +36,7 @@ def first_point(path: str) -> dict:
     """Times since the epoch at which the scene is read and its first point computed; `own`: the Clock's seconds."""
     clock = Clock()
     event.register("numba:compile", clock)
-    from vibro_sweep.console import all_is_imported
+    from vibro_sweep.cli.console import all_is_imported
     from vibro_sweep.driver import blocks, compute
     from vibro_sweep.scene import scene
 

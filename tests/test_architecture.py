@@ -14,6 +14,7 @@ ALLOWED = {
     "store": {"model", "scene"},
     "driver": {"model", "engine", "analysis", "scene", "store"},
     "plotting": {"store", "model"},
+    "cli": {"model", "engine", "scene", "store", "driver", "plotting"},
 }
 # of analysis/: in this order
 FLOORS = ["single", "attractors", "periodic", "continuation", "branches", "curves", "windows"]

@@ -10,7 +10,7 @@ import vibro_sweep as vs
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.curve_search import Curves, seed_at, trace
 from vibro_sweep.analysis.windows.edges import Plane, edges_of, passing
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.driver.curves import run_curves
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES, EDGES
 from vibro_sweep.scene import parse_continuation

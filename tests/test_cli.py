@@ -12,7 +12,7 @@ import pytest
 from support.cli import NUMBERS, assert_refused, contents, scene
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 
 
 def test_from_the_shell(scene_folder):

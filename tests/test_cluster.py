@@ -21,7 +21,7 @@ from support.clusters import LIMIT, Cluster
 from support.scenes import ALL, PAPER, arrays_of, assert_same_bits, done
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.driver.compute import RunError
 
 pytest.importorskip("distributed")

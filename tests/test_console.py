@@ -11,7 +11,7 @@ import h5py
 import pytest
 from support import slow_cases
 
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.driver.measuring import OrbitCost
 
 SCENE = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}\n"
@@ -100,7 +100,7 @@ def run_that_loses_it(*_):
     time.sleep(60)
 
 sys.meta_path.insert(0, AtTheImport())
-from vibro_sweep import interrupt as package
+from vibro_sweep.cli import interrupt as package
 from vibro_sweep.__main__ import program
 if " " in where:
     from vibro_sweep.driver import run
@@ -140,7 +140,7 @@ def test_after_ctrl_c_the_advice_leads_to_what_was_asked_for(folder, options, ad
 BEGINNING = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.SIG_IGN)
-from vibro_sweep import interrupt
+from vibro_sweep.cli import interrupt
 from vibro_sweep.__main__ import program
 signal.signal(signal.SIGINT, signal.default_int_handler)
 interrupt.install()

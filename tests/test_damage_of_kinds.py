@@ -12,7 +12,7 @@ from support.changed_files import LONG, bit_in_chunk, chunked
 from support.kinds_of_files import KINDS, PERIODIC
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.store import parts
 from vibro_sweep.store.pieces import Pieces
 

@@ -11,7 +11,7 @@ from support.files import EDITS, LINKS, SCENE, elsewhere, refused, seen
 from support.scenes import arrays_of
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.store import StoreError, describe, parts
 from vibro_sweep.store.attributes import set_text, set_texts
 

@@ -7,8 +7,8 @@ import pytest
 from support import ROOT
 
 import vibro_sweep as vs
-from vibro_sweep import examples
-from vibro_sweep.cli import main
+from vibro_sweep.cli import examples
+from vibro_sweep.cli.commands import main
 from vibro_sweep.types import Continuation
 
 

@@ -14,7 +14,7 @@ from support.fuzz_scenes import broken, scene, to_yaml
 from support.scenes import assert_same_bits, computed
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.model.status import STANDING
 from vibro_sweep.scene import SceneError, json_schema, parse_scene
 from vibro_sweep.scene.yaml_text import YAMLTextError, read_yaml

@@ -13,7 +13,7 @@ from support.scenes import arrays_of, assert_same_bits
 
 import vibro_sweep as vs
 from vibro_sweep import store
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.store import StoreError, describe
 
 # Readers write nothing

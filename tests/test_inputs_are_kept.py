@@ -8,7 +8,7 @@ import h5py
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.driver.branches import run_branches
 from vibro_sweep.driver.windows import run_windows
 

@@ -10,7 +10,7 @@ from support.files import refused
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.plotting import Look, PlotError, sweeps
 from vibro_sweep.scene import parse_scene
 

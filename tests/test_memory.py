@@ -157,7 +157,8 @@ def test_check_allocates_little(tmp_path):
         (tmp_path / f"{n}.yaml").write_text(text)
     # the peak of this process alone: `ru_maxrss` would also count the process that started it
     program = (
-        "import sys; from vibro_sweep.cli import main; status = max(main(['check', file]) for file in sys.argv[1:]);"
+        "import sys; from vibro_sweep.cli.commands import main;"
+        "status = max(main(['check', file]) for file in sys.argv[1:]);"
         "print(next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM')));"
         "sys.exit(status)"
     )

@@ -12,13 +12,13 @@ from support import ROOT
 from support.models import PAPER, oscillator
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
+from vibro_sweep.cli.summaries import model_text
 from vibro_sweep.model.catalogue import OF_A_SYSTEM
 from vibro_sweep.model.linear import held_state
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.scene import parse_scene
-from vibro_sweep.summaries import model_text
 
 
 def response(q):

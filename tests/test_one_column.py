@@ -8,7 +8,7 @@ from matplotlib.text import Text
 from support.kinds_of_files import KINDS
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.plotting import Look, figure
 from vibro_sweep.plotting import kinds as kinds_of
 

@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from support.kinds_of_files import FLAT, KINDS
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.store.attributes import SCALES
 from vibro_sweep.store.datasets import _NO_VARIABLE
 

@@ -13,7 +13,7 @@ from support import slow_cases
 from support.files import OBSTACLES, refused, seen
 
 from vibro_sweep import plotting
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.plotting import PlotError
 
 SUFFIXES = (".png", ".svg", ".pdf")

@@ -8,7 +8,7 @@ from support.pictures import image, write
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.model.exponents import sign_of
 from vibro_sweep.plotting import source
 from vibro_sweep.plotting.style import NEUTRAL

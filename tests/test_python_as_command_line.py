@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from support import ROOT
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.scene import SceneError
 from vibro_sweep.types import Continuation, Scene
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.scene import SceneError, parse_scene
 from vibro_sweep.scene.slips import meant, number_in_text
 

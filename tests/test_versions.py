@@ -8,7 +8,7 @@ import pytest
 import xarray
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.store import StoreError
 
 SCENE = """

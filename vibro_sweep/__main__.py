@@ -4,16 +4,16 @@ import gc
 import os
 import sys
 
-from . import interrupt
-from .console import INTERRUPTED, prepare_process
+from .cli import interrupt
+from .cli.console import INTERRUPTED, prepare_process
 
 
 def program() -> None:
     """The command line as a process, which it ends."""
     interrupt.install()
     prepare_process()
-    gc.disable()  # until console.all_is_imported
-    from .cli import main  # takes time, in which there may be a Ctrl-C
+    gc.disable()  # until cli.console.all_is_imported
+    from .cli.commands import main  # takes time, in which there may be a Ctrl-C
 
     status = main()
     if status == INTERRUPTED:  # threads may be in the middle of a block, which may be long: do not wait for them

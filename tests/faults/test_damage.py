@@ -11,7 +11,7 @@ from support.faults import TEXT, counted, failing_run
 from support.scenes import arrays_of, assert_same_bits
 
 import vibro_sweep as vs
-from vibro_sweep import cli
+from vibro_sweep.cli import commands as cli
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store import StoreError, describe
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.attributes import set_text, set_texts
 

@@ -20,7 +20,7 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.files import EDITS, LINKS, TEXT, elsewhere
-from vibro_sweep.cli import main
+from vibro_sweep.cli.commands import main
 from vibro_sweep.store import StoreError, parts
 
 OUTCOMES = ("same numbers", "refused", "told damaged", "fewer points")

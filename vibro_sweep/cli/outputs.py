@@ -9,9 +9,9 @@ from .console import InputError, input_errors
 
 def check_output(output: Path, inputs: Collection[Path], picture: Path | None, mode: str) -> None:
     """Raise InputError or StoreError, before anything is computed, where results could not be written in the end."""
-    from .model.files import file_to_write
-    from .store.beginning import check_places
-    from .store.opening import StoreError
+    from vibro_sweep.model.files import file_to_write
+    from vibro_sweep.store.beginning import check_places
+    from vibro_sweep.store.opening import StoreError
 
     try:
         file_to_write("--output", str(output))
@@ -20,14 +20,14 @@ def check_output(output: Path, inputs: Collection[Path], picture: Path | None, m
     try:
         check_places(output, mode, inputs)
     except StoreError as error:
-        from .plotting import SUFFIXES
+        from vibro_sweep.plotting import SUFFIXES
 
         if output.suffix.lower() in SUFFIXES:
             raise InputError(f"{error}; --plot draws a picture beside it") from None
         raise
     if picture:
-        from .plotting import PlotError
-        from .plotting import check_output as check_picture
+        from vibro_sweep.plotting import PlotError
+        from vibro_sweep.plotting import check_output as check_picture
 
         with input_errors(PlotError):
             check_picture(picture, mode == "overwrite", inputs)

@@ -34,7 +34,7 @@ class Work:
         """Drawn at the end, next to the file."""
         if not self.plot:
             return None
-        from .plotting import default_name
+        from vibro_sweep.plotting import default_name
 
         return self.output.with_name(default_name(self.output))
 
@@ -54,8 +54,9 @@ class Work:
 
     def check_places(self, inputs: Collection[Path]) -> None:
         """Raises InputError where something is in the way. inputs : files that are read, and must not be written."""
-        from .places import check_output
-        from .store import StoreError
+        from vibro_sweep.store import StoreError
+
+        from .outputs import check_output
 
         with input_errors(StoreError):
             check_output(self.output, inputs, self.picture, self.mode)
@@ -63,9 +64,9 @@ class Work:
     @contextmanager
     def under_way(self, total: int, *errors: type[Exception]) -> Iterator[tuple]:
         """Executor and progress, while the file is computed; what fails then has a message of its own."""
-        from .driver.compute import RunError
-        from .progress import progress_bar
-        from .store import StoreError
+        from vibro_sweep.driver.compute import RunError
+        from vibro_sweep.progress import progress_bar
+        from vibro_sweep.store import StoreError
 
         all_is_imported()
         workers_of_a_cluster = executor_of(self.scheduler)
@@ -84,7 +85,7 @@ class Work:
 
 def compute(work: Work, scene) -> bool:
     """Compute a scene and print what its file holds. Returns whether some points have a bad status."""
-    from .driver import run
+    from vibro_sweep.driver import run
 
     of_sweep = hasattr(scene, "sweep")
     with work.under_way(scene.n_points if of_sweep else 0, ValueError) as (executor, progress):
@@ -100,7 +101,7 @@ def compute(work: Work, scene) -> bool:
 
 def compute_windows(work: Work, file: Path, parameter: str | None) -> None:
     """Compute the windows of a sweep's file and print their table."""
-    from .driver.windows import run_windows
+    from vibro_sweep.driver.windows import run_windows
 
     with work.under_way(0, ValueError) as (executor, progress):
         run_windows(file, work.output, parameter, work.workers, executor, progress, work.mode)
@@ -110,6 +111,6 @@ def compute_windows(work: Work, file: Path, parameter: str | None) -> None:
 
 def say_tables(output: Path) -> None:
     """Print what a file of branches, curves or windows holds."""
-    from .store import tables
+    from vibro_sweep.store import tables
 
     say("\n".join([f"{output}", *tables(output)]))

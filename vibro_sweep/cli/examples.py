@@ -7,7 +7,7 @@ from pathlib import Path
 from vibro_sweep.model.errors import VibroSweepError
 
 SCHEMA = "scene.schema.json"
-HOME = Path(__file__).parent
+HOME = Path(__file__).parents[1]
 
 
 class ExampleError(VibroSweepError, ValueError):

@@ -46,7 +46,7 @@ def main(argv: list[str] | None = None) -> int:
 
 def _show_version(wanted: bool):
     if wanted:
-        from . import __version__
+        from vibro_sweep import __version__
 
         say(f"vibro-sweep {__version__}")
         raise typer.Exit
@@ -79,7 +79,7 @@ def run(
     output = output or Path(f"{scene_file.stem}.h5")
     work = Work(output, workers, scheduler, resume, overwrite, plot, quiet, ("run", str(scene_file)))
     work.announce()
-    from .scene import SceneError, load_scene
+    from vibro_sweep.scene import SceneError, load_scene
 
     with input_errors(SceneError):
         scene = load_scene(scene_file)
@@ -189,7 +189,7 @@ def info(file: DataFile):
 
     Also how accurate it says it is.
     """
-    from .store import StoreError, examine
+    from vibro_sweep.store import StoreError, examine
 
     with input_errors(StoreError):
         found = examine(file)
@@ -204,12 +204,13 @@ def check(scene_file: SceneFile):
 
     Orbits are measured for that: kernels that are not there yet are compiled first.
     """
-    from .scene import SceneError, load_scene
+    from vibro_sweep.scene import SceneError, load_scene
 
     with input_errors(SceneError):
         scene = load_scene(scene_file)
 
-    from .driver.compute import RunError
+    from vibro_sweep.driver.compute import RunError
+
     from .summaries import cost_text
 
     say(f"{scene_file}: {scene}")
@@ -226,7 +227,8 @@ def grazing(scene_file: SceneFile):
 
     There the non-impacting steady motion just touches its stops. If the scene sweeps what they depend on: the curve.
     """
-    from .scene import SceneError, load_scene
+    from vibro_sweep.scene import SceneError, load_scene
+
     from .summaries import grazing_of
 
     with input_errors(SceneError):
@@ -265,14 +267,14 @@ def schema():
     """Print the JSON Schema of a scene, for editors."""
     import json
 
-    from .scene import json_schema
+    from vibro_sweep.scene import json_schema
 
     say(json.dumps(json_schema(), indent=2))
 
 
 def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, *look, **beside):
-    from .plotting import Look, PlotError, plot
-    from .store import StoreError
+    from vibro_sweep.plotting import Look, PlotError, plot
+    from vibro_sweep.store import StoreError
 
     all_is_imported()
     with input_errors(PlotError, StoreError), interrupt.tidied_up(), messages(quiet):

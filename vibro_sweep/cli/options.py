@@ -11,7 +11,7 @@ from .console import InputError
 
 
 def positive(text: str) -> int:
-    from .driver import MOST_WORKERS
+    from vibro_sweep.driver import MOST_WORKERS
 
     if not text.isdecimal() or len(text) > 9 or not 1 <= int(text) <= MOST_WORKERS:
         raise typer.BadParameter(f"{text!r} is not a whole number >= 1 and <= {MOST_WORKERS}")
@@ -34,7 +34,7 @@ def executor_of(scheduler: str | None) -> contextlib.AbstractContextManager:
     if scheduler is None:
         return contextlib.nullcontext()
     try:
-        from .driver.cluster import ClusterError, cluster
+        from vibro_sweep.driver.cluster import ClusterError, cluster
     except ImportError:
         text = f"--scheduler {scheduler} needs the package dask.distributed: pip install distributed"
         raise InputError(text) from None

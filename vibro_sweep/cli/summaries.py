@@ -14,9 +14,9 @@ from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.model.state import state as names
 
 if TYPE_CHECKING:
-    from .driver.cost import Estimate
-    from .driver.sweep import RunReport
-    from .scene import Scene
+    from vibro_sweep.driver.cost import Estimate
+    from vibro_sweep.driver.sweep import RunReport
+    from vibro_sweep.scene import Scene
 
 
 BUSY = 1.3  # times longer than alone, from which on it is said what else runs
@@ -24,7 +24,7 @@ BUSY = 1.3  # times longer than alone, from which on it is said what else runs
 
 def grazing_of(scene: "Scene") -> str:
     """What `grazing` prints: of a sweep of one number on which the graze depends the curve."""
-    from .store.numbers import depends_on
+    from vibro_sweep.store.numbers import depends_on
 
     along, system = depends_on(scene), scene.system
     if len(along) == 1:
@@ -70,7 +70,7 @@ def grazing_text(touch: Grazing, system: AnyOscillator) -> str:
 
 def cost_text(cost: "Estimate") -> str:
     """What `check` prints of the work that a scene is."""
-    from .driver.cost import duration
+    from vibro_sweep.driver.cost import duration
 
     busy = f" beside what else runs now, {duration(cost.alone)} alone" if cost.seconds > BUSY * cost.alone else ""
     compiled = f"\n  compiled  in {duration(cost.compiling)} just now, once: no run needs it again" * bool(
@@ -122,7 +122,7 @@ def _default(one: Parameter | Option) -> str:
 
 def summary(output: Path, report: "RunReport") -> str:
     """What `run` prints at its end."""
-    from .driver.cost import duration
+    from vibro_sweep.driver.cost import duration
 
     unsettled = report.statuses.get("not_settled", 0)
     bad = {name: count for name, count in report.statuses.items() if name not in ("ok", "not_settled") and count}
