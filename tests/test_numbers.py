@@ -1,13 +1,10 @@
 """A file says with which numbers it was computed: nobody has to read the scene again."""
 
-import shutil
-
 import h5py
 import numpy as np
 import pytest
 import xarray
-from support import slow_cases
-from support.old_files import OLD
+from support import ROOT, slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
@@ -127,55 +124,11 @@ def test_a_text_of_the_scene_that_says_something_else_is_not_asked(tmp_path):
     assert r"\mu_m = 10" in plotting.figure(path).get_suptitle()
 
 
-# Files of version 0.1, computed by it: mu_m: 010, transient: 2e2, record: 0040
-
-
-def test_an_old_file_is_read_as_the_run_read_it():
-    ax = plotting.figure(OLD / "sweep.h5", "impacts").axes[0]
-    right = {line.get_label(): line.get_ydata() for line in ax.lines}["right"]
-    with h5py.File(OLD / "sweep.h5") as file:
-        assert "record: 0040" in file.attrs["scene"]
-        assert np.array_equal(right, file["impacts_right"][()] / 40) and right.max() > 0
-    assert r"\mu_m = 10" in ax.figure.get_suptitle()
-    (graze,) = (line for line in ax.lines if line.get_gid() == "grazing")
-    assert graze.get_xdata()[0] == pytest.approx(6.70571674097302, rel=1e-14)
-
-
-def test_old_files_have_the_kinds_that_they_had():
-    assert plotting.kinds(OLD / "sweep.h5") == ["lyapunov", "impacts"]
-    assert plotting.kinds(OLD / "basins.h5") == ["basins", "plane"]
-    assert plotting.kinds(OLD / "orbit.h5") == ["phase-portrait", "configuration", "history", "iteration", "poincare"]
-
-
-@pytest.mark.parametrize("name", ["sweep", "basins", *slow_cases("orbit")])
-def test_old_files_show_what_they_showed(tmp_path, name):
-    path = shutil.copy(OLD / f"{name}.h5", tmp_path)
-    assert all(picture.stat().st_size > 1000 for picture in plotting.plot(path, tmp_path / "a.png", kind="all"))
-    with vs.open(path) as data:
-        assert np.all(data.status == 0)
-
-
-def test_an_old_file_along_a_frequency(tmp_path):
-    """What depends on a swept number is found again, too."""
-    path = shutil.copy(OLD / "sweep.h5", tmp_path)
-    with h5py.File(path, "r+") as file:
-        file.move("b", "omega")
-        file.attrs["sweep_dimensions"] = ["omega"]
-        text = file.attrs["scene"].replace("R: 0.8}", "R: 0.8, b: 6.6}")
-        file.attrs["scene"] = text.replace("b: {start: 6.6, stop: 6.75", "omega: {start: 0.6, stop: 0.65")
-    with plotting.Result(path) as result:
-        scene = parse_scene(result._source.scene)
-        for place, omega in enumerate(scene.sweep["omega"]):
-            touch = vs.grazing(scene.system.replace(omega=omega))
-            assert result.number("b_star", (place,)) == pytest.approx(touch.b, rel=1e-14)
-            assert result.number("tau", (place,)) == pytest.approx(touch.tau, rel=1e-14)
-
-
 def test_every_example_has_its_numbers():
     """What a file would say of each scene that comes with the package."""
     from vibro_sweep.store import numbers
 
-    found = (OLD.parents[2] / "configs").rglob("*.yaml")
+    found = (ROOT / "configs").rglob("*.yaml")
     scenes = sorted(path for path in found if path.parent.name != "branches")
     assert len(scenes) > 10
     for path in scenes:

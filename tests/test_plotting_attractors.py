@@ -6,7 +6,6 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
-from support.old_files import OLD
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
@@ -155,14 +154,12 @@ def test_many_basins_share_a_colour(basins, tmp_path):
     assert len(names) == 12 and names[-1] == "others (37.5 %)" and names[0].endswith("(20.8 %)")
 
 
-@pytest.mark.parametrize("unnumbered", ["version 0.1", "not complete"])
-def test_basins_of_a_file_without_numbers_are_kinds(basins, tmp_path, unnumbered):
+def test_basins_of_a_file_without_numbers_are_kinds(basins, tmp_path):
     """And the picture says so."""
-    path = shutil.copy(OLD / "basins.h5" if unnumbered == "version 0.1" else basins, tmp_path)
-    if unnumbered == "not complete":
-        with h5py.File(path, "r+") as file:
-            file["attractor_id"][...] = -1
-            file["status"][0, 0] = file["attractor"][0, 0] = -1
+    path = shutil.copy(basins, tmp_path)
+    with h5py.File(path, "r+") as file:
+        file["attractor_id"][...] = -1
+        file["status"][0, 0] = file["attractor"][0, 0] = -1
     fig = plotting.figure(path)
     assert "this file does not number its attractors" in fig.get_suptitle()
     names = {text.get_text().split(" (")[0] for text in fig.legends[0].get_texts()}

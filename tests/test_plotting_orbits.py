@@ -1,13 +1,9 @@
 """Pictures of orbits: the figure holds the file's numbers."""
 
 import itertools
-import shutil
 
-import h5py
 import numpy as np
 import pytest
-from support import slow_cases
-from support.old_files import OLD
 from support.pictures import drawn, write
 
 from vibro_sweep import plotting
@@ -50,16 +46,6 @@ def test_a_history_reaches_the_stops_and_counts_forcing_periods(trajectory):
     assert len(lines["$x_2$"].get_xdata()) == 41 + 2 * 4
     assert lines["right stop, $x_1 = b$"].get_ydata()[0] == 2 and lines["left stop, $x_1 = -b$"].get_ydata()[0] == -2
     assert "forcing periods" in ax.get_xlabel()
-
-
-@pytest.mark.parametrize(
-    "scene", ["system: [", "system: {b: high, omega: 1e-1}", *slow_cases("", "[1, 2]", "system: 3")]
-)
-def test_an_illegible_scene_of_version_0_1_costs_only_its_numbers(tmp_path, scene):
-    path = shutil.copy(OLD / "orbit.h5", tmp_path)
-    with h5py.File(path, "a") as file:
-        file.attrs["scene"] = scene
-    assert len(plotting.plot(path, tmp_path / "old.png", kind="all")) == 5
 
 
 def test_a_sweep_shows_four_orbits_and_both_branches_side_by_side(tmp_path, sweep, branches):

@@ -146,13 +146,3 @@ trajectory: {{periods: 2, samples: 9}}"""
             assert data["trajectory_impacts"][i, n] == count
             np.testing.assert_allclose(data["trajectory_impact_v1"][i, n, :count], orbit.impacts["v1"], atol=1e-12)
             np.testing.assert_allclose(data["trajectory_section_v2"][i, n], orbit.section[:, 3], atol=1e-12)
-
-
-def test_old_files_show_no_guessed_impacts():
-    """Version 0.1 stored samples alone: they are points without a line, and nothing else is drawn."""
-    from support.old_files import OLD
-
-    ax = plotting.figure(OLD / "orbit.h5", "phase-portrait").axes[0]
-    labels = [line.get_label() for line in ax.lines if "stop" not in line.get_label()]
-    assert labels == ["samples; this file does not hold the impacts between them"]
-    assert ax.lines[0].get_linestyle() == "None" and len(ax.lines[0].get_xdata()) == 200

@@ -4,6 +4,8 @@ import h5py
 import numpy as np
 import pytest
 
+from vibro_sweep.store.parts import FORMAT
+
 SETTINGS = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63, R=0.8, b=6.6, tau=2.2293, stops="both")
 SETTINGS |= dict(b_star=6.70571674097302, model="flow", section="phase", transient=300, record=20)
 OWN = {"lyapunov": ("exponent",), "x1": ("sample",), "v1": ("sample",), "phase": ("sample",)}
@@ -24,6 +26,7 @@ def write(path, coordinates, quantities, done=None, settings=SETTINGS, time=(), 
         along = along or {}
         file.attrs.update({name: v for name, v in settings.items() if name not in coordinates and name not in along})
         file.attrs.update({"scene": "", "title": "", "history": "", "provenance": "{}"})
+        file.attrs.update({"format": FORMAT, "heap": np.zeros(0, np.uint64)})
         names = [name for name in quantities if name != "status"]
         file.attrs["sweep_dimensions"] = [name for name in coordinates if name != "start"] or h5py.Empty("S1")
         file.attrs["quantities"] = names or h5py.Empty("S1")

@@ -25,7 +25,7 @@ def shows(result: Result) -> bool:
 def basins(result: Result):
     """The plane of initial states, each in the colour of the attractor that its orbit reaches, as the file numbers it.
 
-    A file without these numbers (of version 0.1, or not complete) shows of which kind the attractors are.
+    A file without these numbers (not complete) shows of which kind the attractors are.
     """
     (x_key, x), (y_key, y) = result.sweep.items()
     columns, rows = np.argsort(x), np.argsort(y)  # a sweep may run downwards; an axis does not

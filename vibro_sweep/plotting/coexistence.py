@@ -56,7 +56,7 @@ def coexistence(result: Result):
 def _shares(result, order) -> list[Share]:
     """Every attractor at every value, in the order in which they are stacked."""
     label, share, period = (result.array(name)[order] for name in ("attractor", "share", "period"))
-    # where the file does not number the attractors (version 0.1, or not complete), by period and share
+    # where the file does not number the attractors (it is not complete), by period and share
     number = result.array("attractor_id")[order] if "attractor_id" in result else np.full(label.shape, np.nan)
     average = result.array("average")[order]
     rank = list(KINDS)

@@ -168,11 +168,7 @@ def _different(values) -> int:
 
 
 def _line(ax, x, y, way):
-    """The way as a line with arrows of time; as points where the file does not hold its impacts."""
-    if not way.complete:
-        label = "samples; this file does not hold the impacts between them"
-        ax.plot(x, y, ".", color=INK, markersize=2, markeredgewidth=0, label=label)
-        return
+    """The way as a line with arrows of time."""
     ax.plot(x, y, color=INK, lw=0.7)
     arrows(ax, way.t, x, y, ARROWS_AT)
 

@@ -15,13 +15,12 @@ class Path(NamedTuple):
     """A sampled motion: t in forcing periods (n,), with NaN in each jump.
 
     `states`: name -> (n,), NaN where not stored; `gap` and `gap_velocity` beside them where the gap is not x1. `jumps`:
-    rows (gap, gap velocity before, after), one an impact. `complete`: they are in the file. `stops`: the gap at each.
+    rows (gap, gap velocity before, after), one an impact. `stops`: the gap at each.
     """
 
     t: np.ndarray
     states: dict[str, np.ndarray]
     jumps: np.ndarray
-    complete: bool
     stops: tuple[float, ...] = ()
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -44,8 +43,6 @@ def path(result: Result, point: Point) -> Path:
     t, along = result.coordinate("time"), result.along
     names = state(result.masses)
     motion = {name: _stored(result, f"trajectory_{name}", point, len(t)) for name in names}
-    if "trajectory_impacts" not in result:  # of version 0.1
-        return Path(t, motion, np.empty((0, 3)), False)
     jumping = before(along is not None)
     when, side, speed, after = (
         result.one(f"trajectory_impact_{name}", point) for name in ("time", "side", jumping, f"{jumping}_after")
@@ -69,7 +66,7 @@ def path(result: Result, point: Point) -> Path:
         name: np.insert(values, at, np.stack(rows[name], axis=1).ravel())
         for name, values in (motion | {"t": t}).items()
     }
-    return Path(put.pop("t"), put, np.stack([stop, speed, after], axis=1), True, tuple(stops.values()))
+    return Path(put.pop("t"), put, np.stack([stop, speed, after], axis=1), tuple(stops.values()))
 
 
 def gap_of(motion: dict[str, np.ndarray], along: np.ndarray, letter: str) -> np.ndarray:

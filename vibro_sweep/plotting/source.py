@@ -71,10 +71,6 @@ class FileSource:
         return quantities_of(self._file)
 
     @property
-    def scene(self) -> str:
-        return text(self._file, "scene")
-
-    @property
     def attributes(self) -> dict[str, Any]:
         """Of the file, texts as `str`."""
         return {key: _told(value) for key, value in self._file.attrs.items()}
@@ -119,10 +115,6 @@ class DatasetSource:
     @property
     def quantities(self) -> list[str]:
         return [str(name) for name in self._data.data_vars]
-
-    @property
-    def scene(self) -> str:
-        return self._data.attrs["scene"]
 
     @property
     def attributes(self) -> dict[str, Any]:

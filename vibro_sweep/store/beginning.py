@@ -22,12 +22,11 @@ from vibro_sweep.store.opening import (
     blocks_lost,
     check_scene,
     check_version,
-    format_of,
     opened,
     quantities_of,
     skeleton,
 )
-from vibro_sweep.store.parts import FORMAT, Head, PartError
+from vibro_sweep.store.parts import Head, PartError
 from vibro_sweep.store.writing import Complete, Writer, said, unfinished
 
 MODES = ("new", "resume", "overwrite")
@@ -102,14 +101,7 @@ def _check_part(part: Path, path: Path, mode: str) -> None:
             if mode == "resume" and names.stamp(path) and not parts.is_begun(raw):
                 raise StoreError(f"{part} holds nothing yet, and {path} exists; `overwrite` replaces both")
             return
-    try:
-        with opened(part) as (file, _):  # of version 0.1
-            if mode == "resume":
-                check_version(file, part)
-    except StoreError as error:
-        if "was begun by" in str(error):
-            raise
-        raise StoreError(f"{part} is in the way: it is no interrupted run of vibro-sweep; move it away") from None
+    raise StoreError(f"{part} is in the way: it is not an interrupted run of vibro-sweep; move it away")
 
 
 def _finished(scene: Scene, path: Path) -> Complete:
@@ -142,7 +134,7 @@ def _of_complete(scene: Scene, path: Path, part: Path, stack: contextlib.ExitSta
     with opened(path) as (file, _):
         check_scene(file, path, scene)
         lacking = [name for name in layout.quantities(scene) if name not in quantities_of(file)]
-        if lacking and format_of(file) == FORMAT:
+        if lacking:
             raise StoreError(f"{path} is damaged: it has no {', '.join(lacking)}; overwrite it")
         found = checks.damaged(file)
         if not all(piece for _, piece in found):

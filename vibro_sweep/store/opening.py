@@ -134,10 +134,10 @@ def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO, content: bool = 
         if NETCDF in result.attrs:
             _walk(raw)
             raise ForeignError(path, text(result, NETCDF).removeprefix("version=2,"))
-        if not 1 <= format_of(result) <= FORMAT:
+        if format_of(result) != FORMAT:
             raise StoreError(
                 f"{path} has the format {format_of(result)} of another version of vibro_sweep; this one, "
-                f"{__version__}, reads up to {FORMAT}"
+                f"{__version__}, reads {FORMAT}"
             )
         _check_heap(result, raw)
         _check(result)
@@ -153,7 +153,7 @@ def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO, content: bool = 
 
 
 def format_of(file: h5py.File) -> int:
-    """1 for files of version 0.1, which do not say it. Raises ValueError."""
+    """1 for files of version 0.1, which did not say it. Raises ValueError."""
     found = np.asarray(file.attrs.get("format", 1))
     if found.ndim or found.dtype.kind not in "iu":
         raise ValueError("its attribute `format` is no whole number")
@@ -161,9 +161,6 @@ def format_of(file: h5py.File) -> int:
 
 
 def _check_heap(file: h5py.File, raw: BinaryIO) -> None:
-    if format_of(file) == 1:  # which has no checksum
-        _walk(raw)
-        return
     for at, last, checksum in np.reshape(file.attrs["heap"], (-1, 3)).tolist():
         heap.verify(raw, at, last, checksum)
 
@@ -267,14 +264,9 @@ def check_scene(file: h5py.File, path: Path, scene: "Scene") -> None:
 
 
 def check_version(file: h5py.File, path: Path) -> None:
-    """And by the same format and kernels."""
+    """And by the same code."""
     old, code = json.loads(text(file, "provenance")), made_by()["code"]
     begun = f"{path} was begun by vibro_sweep {cut(str(old.get('vibro_sweep')))}"
-    if format_of(file) != FORMAT:
-        raise StoreError(
-            f"{begun} with the format {format_of(file)}, and this is vibro_sweep {__version__} with the format "
-            f"{FORMAT}; go on with that version, or overwrite it"
-        )
     if old.get("code") != code:
         raise StoreError(
             f"{begun}, code {cut(str(old.get('code')))}, and this is vibro_sweep {__version__} with other code, "

@@ -25,7 +25,7 @@ from typing import BinaryIO, NamedTuple
 
 from vibro_sweep.store.names import Stamp
 
-FORMAT = 2  # of files and their parts; 1 is that of version 0.1, which has no attribute that says so
+FORMAT = 2  # of files and their parts
 MAGIC = b"\x89vibro_sweep\r\n\x1a\n"
 MOST_TEXT, MOST_DATA = 10**6, 2 * 10**9  # bytes of a record
 PIECE = 2**20  # bytes read at a time

@@ -168,8 +168,7 @@ def _ends(axis: h5py.Dataset) -> str:
 
 
 def _described(dataset: h5py.Dataset) -> str:
-    """What the dataset is; files of version 0.1 say it in `long_name`."""
-    return next((text(dataset, name) for name in ("description", "long_name") if name in dataset.attrs), "")
+    return text(dataset, "description") if "description" in dataset.attrs else ""
 
 
 def _progress(file: h5py.File) -> list[str]:

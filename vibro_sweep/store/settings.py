@@ -1,4 +1,4 @@
-"""The numbers of a run as its file holds them, or, of version 0.1, as they follow from the text of its scene."""
+"""The numbers of a run as its file holds them."""
 
 from typing import Any, NamedTuple, Protocol
 
@@ -14,7 +14,6 @@ class Source(Protocol):
     """A file, or a Dataset in memory: what it says of itself and of its variables."""
 
     sweep: list[str]
-    scene: str
     attributes: dict[str, Any]
 
     def attribute(self, name: str, key: str) -> Any: ...
@@ -38,19 +37,14 @@ class Settings(NamedTuple):
 
 
 def settings_of(source: Source) -> Settings:
-    """Of a version 0.1 whose scene is illegible there is neither constant nor number along an axis."""
-    constant = source.attributes
-    if "record" not in constant:
-        from vibro_sweep.store import version_0_1  # as slow to import as the parser of scenes
-
-        return Settings(*version_0_1.resolved(source.scene), version_0_1.SIGNIFICANT, _standing(source))
+    """What a file, or a Dataset of one, says of its run."""
     along = {
         name: (source.dimensions(name), source.read(name))
         for name in FOLLOWING
         if name in source and name not in source.sweep
     }
     significant = source.attribute("lyapunov_error", "significant") if "lyapunov_error" in source else None
-    return Settings(constant, along, np.nan if significant is None else float(significant), _standing(source))
+    return Settings(source.attributes, along, np.nan if significant is None else float(significant), _standing(source))
 
 
 def _standing(source: Source) -> list[int]:
