@@ -17,9 +17,9 @@ from support.branches import repeated
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.branch_way import LONGEST_STEP, SHORTEST_STEP, STRAIGHT
 from vibro_sweep.analysis.branches.track import Track
-from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.continuation.first_point import start_of_branch
+from vibro_sweep.analysis.continuation.tracer import LONGEST_STEP, branch_through
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -69,13 +69,12 @@ def additions(solution: Solution) -> dict[str, float]:
 
 def points(solution: Solution, name="b", bounds=(3.3, 4.3)) -> tuple[float, float]:
     """Points per second with all tests and the certificate, and corrections for each."""
-    walk = Walk(solution, name, bounds[1] - bounds[0])
-    first = walk.first(-1.0)
+    first = start_of_branch(branch_through(solution, name, bounds[1] - bounds[0], bounds)).backwards()
     length = LONGEST_STEP / 25  # so that a run has enough points to be timed
     counts = []
 
     def job():
-        track = Track(first, walk, bounds, 0, length, (LONGEST_STEP, SHORTEST_STEP, STRAIGHT))
+        track = Track(first, 0, length)
         counts.append(track.record_steps(1)[1:])
 
     seconds = least(job)

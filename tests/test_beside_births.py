@@ -12,7 +12,7 @@ from vibro_sweep.analysis.branches.branch_way import Way
 from vibro_sweep.analysis.branches.own_birth import halves_apart
 from vibro_sweep.analysis.branches.passed_births import passed
 from vibro_sweep.analysis.branches.track import Rows
-from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.continuation.tracer import branch_through
 from vibro_sweep.analysis.windows.stretch import stable_end
 
 TURNED = vs.Oscillator.named(
@@ -86,17 +86,16 @@ def test_a_step_that_lands_before_a_birth_by_less_than_rounding():
     )
     guess = [(t, -1, -D / (1 + system.R)) for t, D in zip(u[:8], u[8:], strict=True)]
     born, bounds = vs.periodic_orbit(system, guess=guess, periods=2), (-0.022696426666061177, -0.0008753827954189938)
-    walk = start_of_walk(born._solution, "offset", *bounds)
-    a = walk.first(1.0)
+    a = start_of_walk(born._solution, "offset", *bounds)
     here = halves_apart(a.solution, 1)
     low, high = 3e-4, 5e-4  # before and beyond the birth
-    apart = [here @ halves_apart(walk.step(a, length).solution, 1) for length in (low, high)]
+    apart = [here @ halves_apart(a.tracer.step(a, length).solution, 1) for length in (low, high)]
     assert apart[1] < 0 < apart[0]
     birth = np.interp(0, apart[::-1], [high, low])
     ended = 0
     for share in np.geomspace(1e-3, 0.8, 10):
-        way, length = Way(walk, 1.0, *bounds, system), (1 - share) * birth
-        if (b := walk.step(a, length)) is not None:
+        way, length = Way(a, system), (1 - share) * birth
+        if (b := a.tracer.step(a, length)) is not None:
             assert way._pass(a, b) == (len(way.special) == 1)
             assert [special.type for special in way.special] in ([], ["flip"])
             ended += len(way.special)
@@ -128,7 +127,7 @@ def test_where_halves_turn_round_is_counted():
     """Of points that pass a birth, and of those beside it on the parent's branch."""
     orbit = vs.periodic_orbit(mirrored_ball(7.0), itinerary="LR")
     s = orbit._solution.whole()
-    walk = Walk(s, "b", 1.0)
+    walk = branch_through(s, "b", 1.0)
     late = np.array([0.1, 0.02, -0.03, -0.1, 1e-14, -1e-14])
     t = np.tile(s.times, (6, 1)) + late[:, None] * [0, 1]
     nothing = np.zeros((6, 0))

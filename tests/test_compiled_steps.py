@@ -7,10 +7,10 @@ from support.branches import repeated
 from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.branch_way import FIRST_STEP, LONGEST_STEP, SHORTEST_STEP, STRAIGHT
+from vibro_sweep.analysis.branches.branch_way import FIRST_STEP
 from vibro_sweep.analysis.branches.track import Track
-from vibro_sweep.analysis.branches.walk import Walk
-from vibro_sweep.analysis.continuation.first_point import guess_of
+from vibro_sweep.analysis.continuation.first_point import guess_of, start_of_branch
+from vibro_sweep.analysis.continuation.tracer import branch_through
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -22,9 +22,8 @@ from vibro_sweep.model.linear import Family
 
 
 def track_of(solution, name, bounds, forwards=1.0):
-    walk = Walk(solution, name, bounds[1] - bounds[0])
-    first = walk.first(forwards)
-    return first, Track(first, walk, bounds, 0, FIRST_STEP, (LONGEST_STEP, SHORTEST_STEP, STRAIGHT))
+    first = start_of_branch(branch_through(solution, name, bounds[1] - bounds[0], bounds))
+    return first, Track(first if forwards > 0 else first.backwards(), 0, FIRST_STEP)
 
 
 CASES = [
@@ -66,7 +65,7 @@ def test_points_are_orbits(system, itinerary, name, bounds):
     _, rows = track.run(1)
     assert len(rows.p) >= 2 and rows.p[-1] != rows.p[0]
     for i in np.linspace(0, len(rows.p) - 1, 5).astype(int):
-        family = first.walk.family.replace(**{name: rows.p[i]})
+        family = first.solution.family.replace(**{name: rows.p[i]})
         s = orbit._solution
         u = np.concatenate([rows.t[i], rows.D[i]])
         start = Solution(family, s.sigma, s.halves, s.sides, u)
@@ -126,7 +125,7 @@ def test_orbit_written_out_several_times_has_the_same_branch(count):
         track.run(1)
     for track in (one, many):
         point = track.point(track.a)
-        same = vs.periodic_orbit(PAPER.replace(b=point.p), itinerary="R")._solution
+        same = vs.periodic_orbit(PAPER.replace(b=point.value), itinerary="R")._solution
         assert np.abs(point.solution.jumps - same.jumps).max() < 1e-11
         assert np.abs(point.solution.states[:, :4] - same.states[0, :4]).max() < 1e-11
 
@@ -144,7 +143,7 @@ def asked(planes, states, turns, low, high, nearest, answers):
 def test_cells_left_out_have_no_turning_point_of_interest(system, itinerary, name):
     """Against 400 samples of each cell, by matrix exponentials: 4000 random flights, both bounds have work to do."""
     rng, count, samples = np.random.default_rng(5), 4000, 400
-    tracer = Walk(orbit_of(system, itinerary)._solution, name, 0.1).tracer
+    tracer = branch_through(orbit_of(system, itinerary)._solution, name, 0.1)
     tracer.go_to(guess_of(tracer))
     plane = tracer.planes[0]
     A, width, omega, swing = plane["A"], float(plane["width"]), float(plane["numbers"][OMEGA]), plane["Z"][0]

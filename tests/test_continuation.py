@@ -11,7 +11,7 @@ from support.random_branches import random_oscillator, random_system
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import branch_way
-from vibro_sweep.analysis.branches.free_walk import walk_of
+from vibro_sweep.analysis.branches.beginning import start_of_walk
 
 B_STAR = 6.7057167409730219272  # |e_1.(K - omega^2 M + i omega C)^-1 P| in 40 digits
 
@@ -238,8 +238,7 @@ def test_bad_input_is_refused():
 def test_steps_to_masses_that_are_not_positive(recwarn):
     """A step along a branch may try one; it is made shorter, and nothing is said of square roots."""
     system = vs.System(mu_m=1, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=9)
-    walk = walk_of(vs.periodic_orbit(system, itinerary="")._solution, "mu_m", 40.0)
-    first = walk.first(-1.0)
-    assert walk.step(first, 0.05) is None  # 1 - 0.05 * 40 is negative
-    assert walk.step(first, 0.01).p == pytest.approx(0.6)
+    first = start_of_walk(vs.periodic_orbit(system, itinerary="")._solution, "mu_m", 1.0, 41.0).backwards()
+    assert first.ahead(0.05) is None  # 1 - 0.05 * 40 is negative
+    assert first.ahead(0.01).value == pytest.approx(0.6)
     assert not recwarn.list

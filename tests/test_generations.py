@@ -30,10 +30,10 @@ def test_generations_from_the_symmetric_orbit(tree):
     assert tree[0].parent is None and tree[0].special is None
     first = [item for item in tree if item.generation == 1]
     assert [item.special.type for item in first] == ["graze", "pitchfork", "graze"]
-    assert [item.branch._walk.start.whole().K for item in first] == [4, 2, 0]
+    assert [item.branch._start.whole().K for item in first] == [4, 2, 0]
     assert all(tree[item.parent].generation == item.generation - 1 for item in tree[1:])
     second = [item.branch for item in tree if item.generation == 2]
-    one_sided = [branch for branch in second if branch._walk.start.K == 1 and branch._walk.start.sigma == 1]
+    one_sided = [branch for branch in second if branch._start.K == 1 and branch._start.sigma == 1]
     assert len(one_sided) == 1  # its mirror image is the same, and it is met from b* and from the pair's graze
     assert ("neimark_sacker", pytest.approx(4.347417989446589, abs=1e-12)) in types(one_sided[0])
 
@@ -43,7 +43,7 @@ def test_no_branch_comes_twice(tree):
         for other in tree[i + 1 :]:
             a, b = item.branch, other.branch
             same = types(a) == [(kind, pytest.approx(value, abs=1e-9)) for kind, value in types(b)]
-            assert not (same and a._walk.start.K == b._walk.start.K), types(a)
+            assert not (same and a._start.K == b._start.K), types(a)
 
 
 def test_orbits_are_recognised_on_their_branch(tree):
@@ -67,7 +67,7 @@ def test_period_doubling_cascade():
     orbit = vs.periodic_orbit(ONE_MASS.replace(F=0.37), itinerary="R", periods=2)
     tree = vs.follow_branches(orbit, "F", (0.3, 0.6), follow=["flip"], depth=2)
     periods = [item.branch.begins.orbit.period for item in tree]
-    assert periods[0] == 2 and {item.branch._walk.start.halves // 2 for item in tree} >= {2, 4, 8}
+    assert periods[0] == 2 and {item.branch._start.halves // 2 for item in tree} >= {2, 4, 8}
     assert all(item.special.type == "flip" for item in tree[1:])
 
 

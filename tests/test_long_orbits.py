@@ -10,7 +10,7 @@ from support.oscillators import CHAIN, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.flat import orbit_at
-from vibro_sweep.analysis.branches.walk import Walk
+from vibro_sweep.analysis.continuation.first_point import followed_from
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.engine.continuation.workspace import TEST
@@ -65,12 +65,11 @@ def test_long_orbit_is_followed_like_the_short_one():
     """61 periods of the one-sided orbit written out: each of them is what the short orbit is."""
     short = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
     long = repeated(short, 61)
-    walk = Walk(long, "b", 1.0)
-    start = walk.first(1.0)
-    point = walk.step(start, 0.01)
-    found = vs.periodic_orbit(PAPER.replace(b=point.p), itinerary="R")
+    start = followed_from(long, "b", 1.0)
+    point = start.tracer.step(start, 0.01)
+    found = vs.periodic_orbit(PAPER.replace(b=point.value), itinerary="R")
     assert point.solution.jumps == pytest.approx(-1.8 * found.impacts["v1"][0], rel=1e-12)
-    assert np.sign(point.guess.tests[TEST.minus]) == np.sign(start.guess.tests[TEST.minus])
+    assert np.sign(point.tests[TEST.minus]) == np.sign(start.tests[TEST.minus])
 
 
 @pytest.mark.parametrize("system", [PAPER, *slow_cases(CHAIN)])

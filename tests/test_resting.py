@@ -9,8 +9,8 @@ from reference.resting import Resting
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.free_walk import walk_of
 from vibro_sweep.analysis.branches.switching import mirrored
+from vibro_sweep.analysis.continuation.first_point import followed_from
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.model.linear import family_of
@@ -90,7 +90,7 @@ def test_orbit_and_derivatives_are_those_of_matrix_exponentials(b):
             slope = s.family.derivative(name)
             sides = [Resting(q, s.sigma, s.halves, s.sides, rests, slope, d).residual(w) for d in (h, -h)]
             moved = np.array(lu_solve(J, (sides[1] - sides[0]) / (2 * h))[4:], float).ravel()
-            tangent = walk_of(s, name, 1.0).first(1.0).tangent
+            tangent = followed_from(s, name, 1.0).direction
             tangent /= tangent[-3]
             phases, lengths = tangent[: s.K], tangent[s.K : -1][rests]
             t = (phases - slope.tau - s.times * slope.omega) / q.omega

@@ -101,10 +101,10 @@ def test_the_tangent_is_that_of_the_points(symmetric_onset):
     names = ("mu_m", "omega")
     tracer, place = first_of(Tracer(start_at(symmetric_onset, names), names, ((9, 11), (0.6, 0.65))))
     h = 1e-3  # nearer, rounding of slow impacts is seen
-    beside = [tracer.along(place, sign * h) for sign in (-2, -1, 1, 2)]
+    beside = [tracer.step(place, sign * h) for sign in (-2, -1, 1, 2)]
     far, near = tracer.difference(beside[0], beside[3]), tracer.difference(beside[1], beside[2])
     slope = (8 * near - far) / (12 * h)
-    np.testing.assert_allclose(slope, tracer.direction(place), rtol=0, atol=3e-8)
+    np.testing.assert_allclose(slope, place.direction, rtol=0, atol=3e-8)
 
 
 def test_simulated_orbits_rest_on_one_side_of_the_curve(one_mass_onset):

@@ -6,8 +6,9 @@ from support.branches import types
 from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import beginning, births, walk
+from vibro_sweep.analysis.branches import beginning, births
 from vibro_sweep.analysis.branches.births import is_steady
+from vibro_sweep.analysis.continuation import first_point
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 
 
@@ -147,7 +148,7 @@ def test_a_branch_that_cannot_be_started_says_so(flat_flip, monkeypatch):
     orbit = orbit_of(FLAT.replace(f2=near.family.numbers["f2"]), near)
     assert orbit.ok and vs.continue_orbit(orbit, "f2", bounds).ok
     monkeypatch.setattr(beginning, "FARTHER", ())
-    monkeypatch.setattr(walk, "STILL", -1.0)  # as where Newton's method does not stand still
+    monkeypatch.setattr(first_point, "STILL", -1.0)  # as where Newton's method does not stand still
     branch = vs.continue_orbit(orbit, "f2", bounds)
     assert branch.status == "failed" and not branch.ok
     assert branch.points.sizes["point"] == 1 and float(branch.points.f2[0]) == orbit.system.f2

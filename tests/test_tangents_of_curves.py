@@ -7,7 +7,7 @@ import pytest
 from support import slow_cases
 from support.golden import curves, files
 
-from vibro_sweep.analysis.continuation.tracer import Tracer, copied
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.bifurcation_curve import first_of
 from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.engine.continuation import stepper
@@ -40,20 +40,20 @@ def curve(request):
     record = files.read("curves")[request.param]
     names = tuple(record["names"])
     tracer, place = first_of(Tracer(start_at(curves.start_of_curve(record), names), names, record["box"]))
-    return tracer, tracer.along(place, 10 * H)
+    return tracer, tracer.step(place, 10 * H)
 
 
 def test_tangents_are_those_of_the_points(curve):
     tracer, place = curve
-    beside = [tracer.along(place, sign * H) for sign in (-2, -1, 1, 2)]
+    beside = [tracer.step(place, sign * H) for sign in (-2, -1, 1, 2)]
     far, near = tracer.difference(beside[0], beside[3]), tracer.difference(beside[1], beside[2])
-    np.testing.assert_allclose((8 * near - far) / (12 * H), tracer.direction(place), rtol=0, atol=3e-8)
+    np.testing.assert_allclose((8 * near - far) / (12 * H), place.direction, rtol=0, atol=3e-8)
 
 
 def test_newtons_method_converges_quadratically(curve):
     """From a guess that satisfies no equation: states before impacts are off, too."""
     tracer, place = curve
-    guess, row = copied(place), tracer.direction(place)
+    guess, row = tracer.copied(place), place.direction
     guess.x[:] += 1e-4 * np.random.default_rng(1).normal(size=guess.x.shape)
     changes = []
     while not changes or changes[-1] > ROUNDED:

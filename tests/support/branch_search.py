@@ -90,7 +90,7 @@ def examine(report: Report, where: str, case, rng):
             wrong(f"raises {type(error).__name__} from another start", f"{words}: {error!r:.200}")
             continue
         report.counted["runs"] += 1
-        if factor < 1 and not again._walk.start.rests:
+        if factor < 1 and not again._start.rests:
             for kind, difference in conditions.unexplained(conditions.Pieces(again, case)):
                 wrong(kind, f"{words}: {difference}")
         if branch.closed != again.closed:
@@ -98,7 +98,7 @@ def examine(report: Report, where: str, case, rng):
             continue
         for kind, difference in dict(differences(expected, listed(again), size, branch.closed)).items():
             wrong(kind, f"{words}: {difference}")
-    if branch._walk.start.rests:
+    if branch._start.rests:
         report.counted["rests"] += 1
         return branch
     check(report, wrong, branch, case)

@@ -11,6 +11,7 @@ import vibro_sweep as vs
 from support.oscillators import PAPER
 from vibro_sweep.analysis.branches import branch_way
 from vibro_sweep.analysis.branches.track import Track
+from vibro_sweep.analysis.continuation import tracer
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 
@@ -30,17 +31,17 @@ def same_points(branch, expected, tolerance=1e-12):
 @contextmanager
 def other_steps(factor):
     """Branches are followed by steps `factor` times as long as they are otherwise. Compiled steps are seen to do so."""
-    longest, straight, first = branch_way.LONGEST_STEP, branch_way.STRAIGHT, branch_way.Way.first_step
+    longest, straight, first = tracer.LONGEST_STEP, tracer.STRAIGHT, branch_way.FIRST_STEP
     begin, seen = Track.__init__, set()
 
-    def watched(track, point, walk, bounds, origin, length, steps):
-        begin(track, point, walk, bounds, origin, length, steps)
-        seen.add((steps[0], steps[2], length))
+    def watched(track, point, origin, length):
+        begin(track, point, origin, length)
+        seen.add((track.path.longest, track.path.straight, length))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(branch_way, "LONGEST_STEP", factor * longest)
-        patch.setattr(branch_way, "STRAIGHT", factor * straight)
-        patch.setattr(branch_way.Way, "first_step", factor * first)
+        patch.setattr(tracer, "LONGEST_STEP", factor * longest)
+        patch.setattr(tracer, "STRAIGHT", factor * straight)
+        patch.setattr(branch_way, "FIRST_STEP", factor * first)
         patch.setattr(Track, "__init__", watched)
         yield
     assert seen == {(factor * longest, factor * straight, factor * first)}

@@ -21,14 +21,14 @@ class Pieces:
 
     def __init__(self, branch, case):
         self.branch, self.case, points = branch, case, branch.points
-        self.symmetric = branch._walk.start.sigma == -1
+        self.symmetric = branch._start.sigma == -1
         self.values = points[case.name].values
         system = case.orbit.system
         self.oscillators = [family_of(system.replace(**{case.name: float(value)})).linear for value in self.values]
         t, v = points.impact_t.values, points.impact_v.values
         sides = points.impact_side.values[0].astype(int)
-        periods = branch._walk.start.halves * np.pi / np.array([q.omega for q in self.oscillators])
-        self.sigma = branch._walk.start.sigma
+        periods = branch._start.halves * np.pi / np.array([q.omega for q in self.oscillators])
+        self.sigma = branch._start.sigma
         if self.symmetric:
             K = len(sides) // 2
             t, v, sides = t[:, :K], v[:, :K], sides[:K]
@@ -227,7 +227,7 @@ def passing(pieces: Pieces) -> list[tuple[str, str]]:
 
 def free_passes(branch, case) -> list[tuple[str, str]]:
     """Places between the ends of a branch without impacts where the free motion is beyond a stop."""
-    if branch._walk.start.K:
+    if branch._start.K:
         return []
     values = branch.points[case.name].values
     system = case.orbit.system

@@ -34,7 +34,7 @@ def chosen(curve, count):
 
 def solution_at(curve, k) -> Solution:
     """The orbit of a point, from what `points` says."""
-    points, start = curve.points, curve._tracer.start.solution
+    points, start = curve.points, curve._tracer.orbit
     family = start.family.replace(**{name: float(points[name][k]) for name in curve.parameters})
     sides = points.impact_side[k].values
     D = -(1 + family.linear.restitution(sides)) * points.impact_v[k].values

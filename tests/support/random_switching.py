@@ -207,7 +207,7 @@ def _simulated(report: Report, where: str, orbit) -> None:
 
 def _kind(branch) -> tuple:
     """Equal for branches of orbits that may be the same ones."""
-    whole = branch._walk.start.whole()
+    whole = branch._start.whole()
     sides = np.array(whole.sides, int)
     rotations = [np.roll(sign * sides, k).tolist() for sign in (1, -1) for k in range(max(len(sides), 1))]
     return min(rotations), whole.halves
@@ -230,7 +230,7 @@ def _same(one, other, name: str) -> bool:
         guess = list(zip(t, here.impact_side.values, v, strict=True))
         if not guess:
             return True
-        found = vs.periodic_orbit(system, guess=guess, periods=other._walk.start.whole().halves // 2)
+        found = vs.periodic_orbit(system, guess=guess, periods=other._start.whole().halves // 2)
         if not found.ok:
             continue
         T, n = system.period, found.period

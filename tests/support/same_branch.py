@@ -8,8 +8,8 @@ import numpy as np
 import vibro_sweep as vs
 from support.drawn_branches import Case
 from vibro_sweep.analysis.branches import branch_way
+from vibro_sweep.analysis.continuation import tracer
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
-from vibro_sweep.analysis.windows import stretch
 
 CLOSE = 1e-9  # relative to the parameter or its range: values of one special point differ by less
 MOST_POINTS = 4000
@@ -22,13 +22,9 @@ class TooLongError(Exception):
 
 @contextlib.contextmanager
 def steps(factor: float):
-    """First and longest steps, and the turn that a step may make, so many times as large.
-
-    The first step is bound to the class when it is made: there it is changed.
-    """
+    """First and longest steps, and the turn that a step may make, so many times as large."""
     places = (
-        (branch_way, "LONGEST_STEP"), (branch_way, "STRAIGHT"), (branch_way.Way, "first_step"),
-        (stretch.StableWay, "first_step"),
+        (tracer, "LONGEST_STEP"), (tracer, "STRAIGHT"), (branch_way, "FIRST_STEP"), (branch_way, "OF_STABLE"),
     )  # fmt: skip
     kept = [(place, name, getattr(place, name)) for place, name in places]
     for place, name, value in kept:

@@ -2,9 +2,11 @@
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.free_walk import walk_of
-from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.branches.free_way import FreeBranch, FreePoint
+from vibro_sweep.analysis.continuation.first_point import beside_start, followed_from, start_of_branch
+from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.start import keeps_symmetry
+from vibro_sweep.analysis.continuation.tracer import branch_through
 from vibro_sweep.analysis.periodic.solution import Solution
 
 BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # in units of a walk; near the onset of sticking branches are short
@@ -18,32 +20,42 @@ class NoStartError(ValueError):
     """Newton's method stands still neither at an orbit nor beside it."""
 
 
-def start_of_walk(solution: Solution, name: str, lo: float, hi: float, stable: bool = False) -> Walk:
-    """From this orbit, or from its neighbour within the bounds where it is a special point itself, or so nearly a fold
-    that Newton's method does not stand still there. stable : only from a stable one, so that a stable orbit and its
-    neighbour lie on the same side of the special point.
+def start_of_walk(solution: Solution, name: str, lo: float, hi: float, stable: bool = False) -> Point | FreePoint:
+    """This orbit as a point of its branch, towards larger parameters, or its neighbour within the bounds where it is a
+    special point itself, or so nearly a fold that Newton's method does not stand still there. stable : only a stable
+    one, so that a stable orbit and its neighbour lie on the same side of the special point.
 
     Raises NoStartError where it does not beside it either; ValueError where no orbit beside a special point is real and
     within the bounds.
     """
     if solution.sigma == -1 and not keeps_symmetry(solution.family, name):
         solution = solution.whole()
-    walk = walk_of(solution, name, max(hi - lo, NARROW * max(abs(lo), abs(hi))))
-    first = walk.first(1.0)
+    unit = max(hi - lo, NARROW * max(abs(lo), abs(hi)))
+    if solution.K:
+        walk = branch_through(solution, name, unit, (lo, hi))
+        first = start_of_branch(walk)
+    else:
+        walk = FreeBranch(solution, (name,), unit, ((lo, hi),))
+        first = walk.at(solution.family.numbers[name], 1.0)
     if first is not None and not is_special(first):
-        return walk
+        return first
     for length in BESIDE if first is not None else (*BESIDE, *FARTHER):
         for sign in (1, -1):
-            beside = walk.beside_start(sign * length)
-            if beside is not None and lo <= beside.p <= hi and is_real(beside) and (is_stable(beside) or not stable):
-                there = walk_of(beside.solution, name, walk.unit)
-                if there.first(1.0) is not None:
+            beside = beside_start(walk, sign * length) if solution.K else first and first.ahead(sign * length)
+            if (
+                beside is not None
+                and lo <= beside.value <= hi
+                and is_real(beside)
+                and (is_stable(beside) or not stable)
+            ):
+                there = followed_from(beside.solution, name, unit, (lo, hi)) if solution.K else beside
+                if there is not None:
                     return there
     if first is None:
         raise NoStartError("orbit: Newton's method does not stand still at it")
     if not is_real(first, TOUCHES):
         raise ValueError(f"orbit: it is a special point, and no orbit beside it in {name} is real and in bounds")
-    return walk
+    return first
 
 
 def changes_rests(solution: Solution, name: str) -> bool:
@@ -52,7 +64,7 @@ def changes_rests(solution: Solution, name: str) -> bool:
     return bool(solution.rests) and bool(np.any(solution.family.derivative(name).restitution(resting)))
 
 
-def is_special(point: Point) -> bool:
+def is_special(point: Point | FreePoint) -> bool:
     """Whether a test of this point is zero, to rounding or nearly so."""
     s = point.solution
     mu = s.multipliers
@@ -62,13 +74,13 @@ def is_special(point: Point) -> bool:
     return min(zeros) < NEAR or not is_real(point, TOUCHES)
 
 
-def is_real(point: Point, least: float = 0.0) -> bool:
+def is_real(point: Point | FreePoint, least: float = 0.0) -> bool:
     """Whether all impulses push and all flights stay inside, by more than the share `least`."""
     s = point.solution
     length = least * s.size_of_gap
-    rests = bool(np.all(point.releases > 0)) and point.stays > 0
+    rests = not s.K or (bool(np.all(point.releases > 0)) and point.stays > 0)
     return bool(np.all(s.pushes > s.family.linear.omega * length)) and s.margin > length and rests
 
 
-def is_stable(point: Point) -> bool:
+def is_stable(point: Point | FreePoint) -> bool:
     return bool(np.all(np.abs(point.solution.multipliers) < 1))

@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.free_walk import walk_of
 from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, slopes
+from vibro_sweep.analysis.continuation.first_point import followed_from, guess_of
+from vibro_sweep.analysis.continuation.tracer import branch_through
+from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE
@@ -31,8 +33,15 @@ def born(special: SpecialPoint, sign: int) -> Solution | None:
 
 
 def is_steady(solution: Solution, name: str) -> bool:
-    """Whether Newton's method stands still at the solution, so that its branch can be followed from there."""
-    return walk_of(solution, name, size_of(solution, name)).first(1.0) is not None
+    """Whether Newton's method stands still at the solution, so that its branch can be followed from there; without
+    impacts whether it is alone, and the parameter within its range."""
+    if solution.K:
+        return followed_from(solution, name, size_of(solution, name)) is not None
+    try:
+        EventEquations.of(solution)
+    except (np.linalg.LinAlgError, ValueError):
+        return False
+    return True
 
 
 def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | None]:
@@ -46,7 +55,7 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
     K, rests = parent.K, len(parent.rests)
     size = 2 * K + rests
     twice = parent.repeated(2)
-    walk, units = walk_of(twice, name, size_of(parent, name)), twice.units
+    walk, units = branch_through(twice, name, size_of(parent, name)), twice.units
     scale = np.concatenate([units[:K], units[2 * K : 3 * K], units[4 * K : 4 * K + rests]])
     critical = Linearised(parent).critical_direction(-1) / scale
     critical *= -np.copysign(1.0, critical[K : 2 * K].sum())  # a choice: which of two mirror images comes first
@@ -58,7 +67,7 @@ def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | Non
     for amplitude in amplitudes:
         moved = twice.u.copy()
         moved[: 2 * size] += amplitude * change * units[: 2 * size]
-        guess = walk.of(replace(twice, u=moved))
+        guess = guess_of(walk, replace(twice, u=moved))
         point = guess and walk.correct(guess, normal)
         yield point and point.solution
 

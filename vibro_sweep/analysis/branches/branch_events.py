@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from vibro_sweep.analysis.branches.locating import Event, Test, locate
-from vibro_sweep.analysis.branches.walk import Point, Walk, along
+from vibro_sweep.analysis.continuation.point import Point, along
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.continuation.branch_tests import PASSED
 from vibro_sweep.engine.continuation.workspace import NAMES
@@ -13,11 +14,11 @@ from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE
 from vibro_sweep.model.bifurcations import TYPES
 
 
-def ends_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
+def ends_between(walk: Tracer, bounds, a: Point, b: Point) -> list[Event]:
     """What may end the branch on the way from a, which is real, to b."""
     events = []
     for limit, side in zip(bounds, (-1, 1), strict=True):
-        if (b.p - limit) * side > 0:
+        if (b.value - limit) * side > 0:
             events.append(Event("limit", _beyond(limit, side, a), limit=limit))
     for i in range(walk.K):
         if b.solution.pushes[i] <= 0:
@@ -34,7 +35,7 @@ def ends_between(walk: Walk, bounds, a: Point, b: Point) -> list[Event]:
     return events
 
 
-def first_end(walk: Walk, events: list[Event], a: Point, b: Point):
+def first_end(walk: Tracer, events: list[Event], a: Point, b: Point):
     """The first of these events, as `locate` gives it; None where none is found.
 
     Behind an impact that vanishes, and often behind a limit, a flight passes its stop: where none does so at the first
@@ -62,7 +63,7 @@ def _passes(point: Point) -> bool:
     return bool(point.margin < -PASSED * point.solution.size_of_gap)
 
 
-def bifurcations(walk: Walk, a: Point, b: Point) -> list:
+def bifurcations(walk: Tracer, a: Point, b: Point) -> list:
     """What lies between a and b and ends no branch, as far as tests differ, as `locate` gives it, in order."""
     found = []
     for name, test in tests_between(walk, a, b):
@@ -71,14 +72,14 @@ def bifurcations(walk: Walk, a: Point, b: Point) -> list:
     return sorted(found, key=lambda place: place[1])
 
 
-def tests_between(walk: Walk, a: Point, b: Point, scaled: bool = False) -> list[tuple[str, Test]]:
+def tests_between(walk: Tracer, a: Point, b: Point, scaled: bool = False) -> list[tuple[str, Test]]:
     """The types of the table that orbits of this branch may have between a and b, with their tests.
 
     scaled : all of a size that poles of multipliers do not change, to tell where they are nearest to zero
     """
     found = []
-    for one in TYPES if walk.K else ():
-        if one.test and one.sigma in (0, walk.start.sigma):
+    for one in TYPES:
+        if one.test and one.sigma in (0, walk.orbit.sigma):
             test = test_of(one.test)
             if one.test == "pair":
                 test = torus_test(a, b) if scaled or np.all(b.solution.pushes > 0) else None
@@ -92,14 +93,14 @@ def tests_between(walk: Walk, a: Point, b: Point, scaled: bool = False) -> list[
 def test_of(name: str) -> Test:
     """As the engine computes it at each point (engine/continuation/branch_tests.py)."""
     index = NAMES.index(name)
-    return lambda point: float(point.guess.tests[index])
+    return lambda point: float(point.tests[index])
 
 
-def is_outside(walk: Walk, bounds, point: Point) -> bool:
+def is_outside(walk: Tracer, bounds, point: Point) -> bool:
     """Whether a point lies beyond an end of its branch by more than rounding."""
     s = point.solution
     slow = -NO_SPEED * s.family.linear.omega * s.size_of_gap
-    return not bounds[0] <= point.p <= bounds[1] or _passes(point) or bool(np.any(s.pushes < slow))
+    return not bounds[0] <= point.value <= bounds[1] or _passes(point) or bool(np.any(s.pushes < slow))
 
 
 def _positive_at(inside: Point, value):
@@ -111,7 +112,7 @@ def _beyond(limit: float, side: int, inside: Point):
     """How far a point is beyond a limit; `inside` counts as inside where rounding puts it beyond."""
 
     def test(point: Point) -> float:
-        distance = side * (point.p - limit)
+        distance = side * (point.value - limit)
         return min(distance, 0.0) if point is inside else distance
 
     return test

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.analysis.branches.track import Rows
-from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic.motion_between import multipliers_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import flow
@@ -16,32 +15,31 @@ if TYPE_CHECKING:
     import xarray
 
 
-def dataset(walk: Walk, frame: tuple[int, int], rows: Rows) -> "xarray.Dataset":
+def dataset(start: Solution, name: str, frame: tuple[int, int], rows: Rows) -> "xarray.Dataset":
     """`columns` as a Dataset."""
     import xarray
 
-    return xarray.Dataset(columns(walk, frame, rows))
+    return xarray.Dataset(columns(start, name, frame, rows))
 
 
-def columns(walk: Walk, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:
+def columns(start: Solution, name: str, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:
     """Dimensions and values over `point`, in order: the parameter; `multiplier_re`, `multiplier_im` (multiplier) of the
     whole period; `unstable`, the number of multipliers outside the unit circle; the state x1 v1 .. at t = 0; `margin`;
     `min_impact_speed`; `residual`, the largest jump of the gap between two flights, relative to its size; `impact_t`,
     `impact_side` and `impact_v` (impact) as `orbit.impacts` of the first point, from there on continuous: times are not
     wrapped.
     """
-    start = walk.start
-    oscillators = walk.oscillators(rows.p)
+    oscillators = _oscillators(start, name, rows)
     T = np.array([[forcing_period(q)] for q in oscillators])
-    multipliers = _multipliers(walk, oscillators, rows)
+    multipliers = _multipliers(start, name, oscillators, rows)
     states, (t, sides, v) = rows.state, _impacts(start, frame, rows, T)
     names = [f"{kind}{i + 1}" for i in range(states.shape[1] // 2) for kind in "xv"]
     return {
-        walk.name: ("point", rows.p),
+        name: ("point", rows.p),
         "multiplier_re": (("point", "multiplier"), multipliers.real),
         "multiplier_im": (("point", "multiplier"), multipliers.imag),
         "unstable": ("point", np.count_nonzero(np.abs(multipliers) > 1, axis=1)),
-        **{name: ("point", states[:, i]) for i, name in enumerate(names)},
+        **{word: ("point", states[:, i]) for i, word in enumerate(names)},
         "margin": ("point", rows.margin),
         "min_impact_speed": ("point", np.abs(v).min(axis=1, initial=np.inf)),
         "residual": ("point", rows.residual),
@@ -51,12 +49,14 @@ def columns(walk: Walk, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:
     }
 
 
-def impacts(walk: Walk, frame: tuple[int, int], rows: Rows) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def impacts(
+    start: Solution, name: str, frame: tuple[int, int], rows: Rows
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Times (points, K), sides (K,) and velocities (points, K) of the impacts, as `columns` has them."""
-    T = np.array([[forcing_period(walk.family.linear)]])
-    if walk.family.derivative(walk.name).omega:
-        T = np.array([[forcing_period(q)] for q in walk.oscillators(rows.p)])
-    return _impacts(walk.start, frame, rows, T)
+    T = np.array([[forcing_period(start.family.linear)]])
+    if start.family.derivative(name).omega:
+        T = np.array([[forcing_period(q)] for q in _oscillators(start, name, rows)])
+    return _impacts(start, frame, rows, T)
 
 
 def _impacts(start: Solution, frame: tuple[int, int], rows: Rows, T: np.ndarray):
@@ -70,13 +70,16 @@ def _impacts(start: Solution, frame: tuple[int, int], rows: Rows, T: np.ndarray)
     return t, np.roll(sides, -first), np.roll(v, -first, axis=1)
 
 
-def _multipliers(walk: Walk, oscillators: list[Linear], rows: Rows) -> np.ndarray:
+def _oscillators(start: Solution, name: str, rows: Rows) -> list[Linear]:
+    return [start.family.replace(**{name: p}).linear for p in rows.p.tolist()]
+
+
+def _multipliers(start: Solution, name: str, oscillators: list[Linear], rows: Rows) -> np.ndarray:
     """(points, 2N) of the whole period, by falling modulus, of a pair +im first."""
-    start = walk.start
     result, sides, contacts = [], np.array(start.sides), np.zeros((start.K, 2))  # where stops are does not matter
     for p, q, t, D, ends, motion in zip(rows.p, oscillators, rows.t, rows.D, rows.ends, rows.motion, strict=True):
         if start.rests:
-            family = walk.family.replace(**{walk.name: float(p)})
+            family = start.family.replace(**{name: float(p)})
             result.append(replace(start, family=family, u=np.concatenate([t, D, ends])).multipliers)
             continue
         contacts[:, 1] = 1 + q.restitution(sides)

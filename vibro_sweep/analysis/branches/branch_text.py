@@ -38,7 +38,7 @@ def of_branch(branch: "Branch") -> str:
 
 def _orbit_on(branch: "Branch") -> PeriodicOrbit:
     """One of its own orbits: at a birth it is that of the parent."""
-    return PeriodicOrbit(branch._walk.family, "ok", branch._walk.start)
+    return PeriodicOrbit(branch._start.family, "ok", branch._start)
 
 
 def way_of(begins: "SpecialPoint", special: "Sequence[SpecialPoint]", ends: "SpecialPoint", closed: bool) -> list[str]:

@@ -10,16 +10,14 @@ from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.births import criticality
 from vibro_sweep.analysis.branches.branch_events import bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.crossings import is_torus
-from vibro_sweep.analysis.branches.free_walk import FreePoint
 from vibro_sweep.analysis.branches.locating import Event
 from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
-from vibro_sweep.analysis.branches.pairs import coarse
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
-from vibro_sweep.analysis.branches.response import longest_step
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
 from vibro_sweep.analysis.branches.track import Rows, Track, join, row_of
-from vibro_sweep.analysis.branches.walk import Point, Walk, along
+from vibro_sweep.analysis.continuation.point import Point, along
+from vibro_sweep.analysis.continuation.tracer import SHORTEST_STEP
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
@@ -27,8 +25,8 @@ from vibro_sweep.model.bifurcations import BIRTHS
 
 # The first step is not AMPLITUDE of births.py: from an orbit that was just born it would end at the birth itself, where
 # the branch has no tangent, and pass it unseen.
-FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 6e-4, 0.05, 1e-11
-STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
+FIRST_STEP = 6e-4
+OF_STABLE = 4e-3  # the same of an orbit that was not just born
 MOST_POINTS = 20_000
 BEFORE = 1e-8  # share of the way to a graze
 DIVISIONS = 60  # of a step in which more happens than its tests tell, in all
@@ -37,18 +35,15 @@ DIVISIONS = 60  # of a step in which more happens than its tests tell, in all
 class Way:
     """One way along a branch."""
 
-    through = True  # bifurcations; else the way ends at the first
-    first_step = FIRST_STEP
-
-    def __init__(self, walk: Walk, forwards: float, lo: float, hi: float, system, progress=None):
-        """walk : of `start_of_walk`, or another one that has a first point."""
-        self.walk, self.system = walk, system
-        self.bounds, self.progress = (lo, hi), progress
+    def __init__(self, first: Point, system, progress=None, stable: bool = False):
+        """stable : only as far as the orbit is stable, that is to the first bifurcation."""
+        self.first, self.walk, self.system, self.progress, self.stable = first, first.tracer, system, progress, stable
+        (self.name,), self.bounds = self.walk.names, self.walk.box[0]
+        self.first_step = OF_STABLE if stable else FIRST_STEP
         self.special: list[SpecialPoint] = []
         self.closed = False
         self.rows: list[Rows] = []
         self._passed: tuple[Point, int, int] | None = None  # where the last step began; rows and special points then
-        self.first = walk.first(forwards)
 
     @cached_property
     def frame(self) -> tuple[int, int]:
@@ -60,15 +55,9 @@ class Way:
         return join(self.rows)
 
     def go(self) -> None:
-        """To the branch's end: by compiled steps where they can be, that is with impacts."""
+        """To the branch's end."""
         self._add(self.first)
-        if isinstance(self.walk, Walk):
-            steps = LONGEST_STEP, SHORTEST_STEP, STRAIGHT
-            self._run(Track(self.first, self.walk, self.bounds, self.frame[1], self.first_step, steps))
-        else:
-            self._step(self.first)
-
-    def _run(self, track: Track) -> None:
+        track = Track(self.first, self.frame[1], self.first_step)
         a, count, looked = self.first, 1, 0
         while count < MOST_POINTS:
             reason, rows = track.run(count)
@@ -98,24 +87,6 @@ class Way:
                 return
             track.accept(a, b)
         self.special.append(self._at("failed", a or self.first, math.nan))
-
-    def _step(self, a: FreePoint) -> None:
-        """The same in Python, for orbits without impacts."""
-        length, before, passed = self.first_step, None, 1
-        while passed < MOST_POINTS and length >= SHORTEST_STEP:
-            length = min(length, longest_step(a))
-            b = self.walk.step(a, length)
-            turn = math.acos(min(1.0, a.tangent @ b.tangent)) if b is not None else math.inf
-            if turn > STRAIGHT or (length > stepper.COARSE * LONGEST_STEP and coarse(before, a, b)):
-                length /= 2
-                continue
-            if self._pass(a, b, beside=(before, None)):
-                return
-            if turn < STRAIGHT / 3 and b.corrections <= 5:
-                length = min(1.5 * length, LONGEST_STEP)
-            before, a, passed = a, b, passed + 1
-            self._tell(passed, a.p)
-        self.special.append(self._at("failed", a, math.nan))
 
     def _point_before(self, track: Track) -> Point | None:
         """The last point of the branch before the place a."""
@@ -161,7 +132,7 @@ class Way:
         self.special.append(self._at("closed", self.first, math.nan))
 
     def _add(self, point: Point) -> None:
-        self._add_solution(point.p, point.solution)
+        self._add_solution(point.value, point.solution)
 
     def _add_solution(self, p: float, s: Solution) -> None:
         self.rows.append(row_of(p, s, self.frame))
@@ -191,10 +162,10 @@ class Way:
         if birth:
             before = before_birth(self.walk, a, birth[0], birth[2])
         elif end and end[0].vanishes is not None:
-            before = self.walk.step(a, (1 - BEFORE) * reach, last.guess)
+            before = self.walk.step(a, (1 - BEFORE) * reach, last)
         found = [] if birth else bifurcations(self.walk, a, last)
         if end and end[0].limit is not None:  # where rounding does not tell them from the end they may lie beyond it
-            found = [place for place in found if abs(place[2].p - last.p) > place[3]]
+            found = [place for place in found if abs(place[2].value - last.value) > place[3]]
         if before is not None:
             known = {place[0].type for place in found}
             found += [place for place in bifurcations(self.walk, a, before) if place[0].type not in known]
@@ -227,7 +198,7 @@ class Way:
             elif event.type == "neimark_sacker":
                 special = replace(special, criticality=torus.criticality(point.solution))
             self.special.append(special)
-            if not self.through:
+            if self.stable:
                 return True
         return False
 
@@ -235,13 +206,13 @@ class Way:
         """The branch begins at a flip or pitchfork of its parent."""
         special = self._at(event.type, parent, error)
         special = replace(special, criticality=criticality(special))
-        self._add_solution(parent.p, special.orbit._solution.repeated(2))
+        self._add_solution(parent.value, special.orbit._solution.repeated(2))
         self.special.append(special)
 
     def _at(self, of_type: str, point: Point, error: float, **more) -> SpecialPoint:
-        system = self.system.replace(**{self.walk.name: point.p})
+        system = self.system.replace(**{self.name: point.value})
         orbit = orbit_of(system, point.solution)
-        return SpecialPoint(of_type, {self.walk.name: point.p}, orbit, point.solution.multipliers, error, **more)
+        return SpecialPoint(of_type, {self.name: point.value}, orbit, point.solution.multipliers, error, **more)
 
     def _end(self, event: Event, point: Point, error: float) -> SpecialPoint:
         if event.type != "graze":
@@ -251,7 +222,7 @@ class Way:
             first = orbit_of(None, point.solution)._canonical_frame[0]
             index = min(vanishing(point.solution, index).tolist(), key=lambda i: (i - first) % point.solution.K)
         try:
-            graze = graze_at(point.solution, self.walk.name, index)
+            graze = graze_at(point.solution, self.name, index)
         except np.linalg.LinAlgError:  # a fold of the orbits without the impact as well: no slopes
             return self._at("failed", point, error)
         side = graze.touching.sides[graze.index]

@@ -12,15 +12,13 @@ from typing import TYPE_CHECKING
 from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.branches.beginning import NoStartError, changes_rests, start_of_walk
 from vibro_sweep.analysis.branches.branch_points import dataset
-from vibro_sweep.analysis.branches.branch_way import Way
-from vibro_sweep.analysis.branches.free_walk import walk_of
-from vibro_sweep.analysis.branches.sizes import size_of
+from vibro_sweep.analysis.branches.free_way import way_from
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.sticking import sticking_onset
 from vibro_sweep.analysis.branches.track import Rows, join, row_of
-from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_call, check_type, checked_interval, checked_word
 from vibro_sweep.model.linear import family_of
 from vibro_sweep.model.refusals import not_allowed
@@ -45,7 +43,7 @@ class Branch:
     begins: SpecialPoint
     ends: SpecialPoint
     closed: bool
-    _walk: Walk
+    _start: Solution
     _frame: tuple[int, int]
     _rows: Rows
 
@@ -63,7 +61,7 @@ class Branch:
     @cached_property
     def points(self) -> "xarray.Dataset":
         """Dataset over `point`: the parameter, state at t = 0, multipliers, margin, impacts (docs of `columns`)."""
-        return dataset(self._walk, self._frame, self._rows)
+        return dataset(self._start, self.parameter, self._frame, self._rows)
 
 
 @one_thread()
@@ -92,21 +90,21 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     lo, hi = checked_interval("bounds", bounds, family.numbers[parameter])
     lo, hi = (_allowed(orbit.system, parameter, bound) for bound in (lo, hi))
     try:
-        walk = start_of_walk(solution, parameter, lo, hi)
+        first = start_of_walk(solution, parameter, lo, hi)
     except NoStartError:
         return not_followed(orbit, parameter)
-    down = Way(walk, -1.0, lo, hi, orbit.system, progress)
+    start, down = first.tracer.orbit, way_from(first.backwards(), orbit.system, progress)
     down.go()
     if down.closed:
         closed = down.special
-        return Branch(parameter, closed, closed[-1], closed[-1], True, walk, down.frame, down.points)
-    up = Way(walk, 1.0, lo, hi, orbit.system, progress)
+        return Branch(parameter, closed, closed[-1], closed[-1], True, start, down.frame, down.points)
+    up = way_from(first, orbit.system, progress)
     up.go()
     (begins, before), (ends, after) = (_accumulation(way.special[-1], lo, hi) for way in (down, up))
     special = [*before, begins, *reversed(down.special[:-1]), *up.special[:-1], ends, *after]
     backwards = Rows(*(values[:0:-1] for values in down.points))
     rows = join([backwards, up.points])
-    return Branch(parameter, special, begins, ends, False, walk, down.frame, rows)
+    return Branch(parameter, special, begins, ends, False, start, down.frame, rows)
 
 
 def not_followed(orbit: PeriodicOrbit, parameter: str) -> Branch:
@@ -114,8 +112,7 @@ def not_followed(orbit: PeriodicOrbit, parameter: str) -> Branch:
     s, frame = orbit._solution, orbit._canonical_frame
     value = s.family.numbers[parameter]
     end = SpecialPoint("failed", {parameter: value}, orbit, s.multipliers)
-    walk = walk_of(s, parameter, size_of(s, parameter))
-    return Branch(parameter, [end], end, end, False, walk, frame, row_of(value, s, frame))
+    return Branch(parameter, [end], end, end, False, s, frame, row_of(value, s, frame))
 
 
 def _allowed(system, name: str, bound: float) -> float:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches.pairs import exchanged, keeps_side
-from vibro_sweep.analysis.branches.walk import Point
+from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.continuation.branch_tests import FAR_OUTSIDE
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE

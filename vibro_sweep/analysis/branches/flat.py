@@ -37,8 +37,8 @@ SHAPES = {
 
 def outline(branch: Branch) -> Flat:
     """Of the arrays of a branch those that say which orbits lie on it."""
-    start = branch._walk.start
-    t, sides, v = impacts(branch._walk, branch._frame, branch._rows)
+    start = branch._start
+    t, sides, v = impacts(start, branch.parameter, branch._frame, branch._rows)
     return {
         "branch_period": np.int32(start.whole().halves // 2),
         "branch_symmetric": np.int8(start.sigma == -1),
@@ -52,10 +52,11 @@ def outline(branch: Branch) -> Flat:
 
 def flatten(branch: Branch, origin: float) -> Flat:
     """The arrays of a branch; origin: the parameter of the orbit that it was followed from."""
-    data = {name: values for name, (_, values) in columns(branch._walk, branch._frame, branch._rows).items()}
-    p, special = data[branch.parameter], branch.special
+    start, parameter = branch._start, branch.parameter
+    data = {name: values for name, (_, values) in columns(start, parameter, branch._frame, branch._rows).items()}
+    p, special = data[parameter], branch.special
     words = state(data["multiplier_re"].shape[1] // 2)
-    result = outline(branch) | common(branch, branch._walk.start, (branch.parameter,), p, CODES)
+    result = outline(branch) | common(branch, start, (parameter,), p, CODES)
     result |= {
         "branch_status": np.int8(BRANCH_STATUSES.index(branch.status)),
         "branch_origin": np.int32(np.argmin(np.abs(p - origin))),
@@ -77,7 +78,7 @@ def flatten(branch: Branch, origin: float) -> Flat:
 
 def _rest_ends(branch: Branch, t: np.ndarray) -> np.ndarray:
     """(n, K) ends of rests beside the impacts `t` in their canonical order, from those of the branch's own frame."""
-    start, rows = branch._walk.start, branch._rows
+    start, rows = branch._start, branch._rows
     ends = np.full(t.shape, np.nan)
     K, (first, _) = start.K, branch._frame
     for j, k in enumerate(start.rests):

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.free_walk import FreePoint, FreeWalk
-from vibro_sweep.analysis.branches.walk import Point, Walk, along
 from vibro_sweep.analysis.continuation.chord import error_of, root
+from vibro_sweep.analysis.continuation.point import Point, along
+from vibro_sweep.analysis.continuation.tracer import Tracer
 
 ROUNDED = 1e-9  # of a step, by which rounding may put an event behind its end
-Test = Callable[[Point | FreePoint], float]
+Test = Callable[[Point], float]
 
 
 @dataclass
@@ -29,12 +29,12 @@ class Event:
     touches: bool = False
 
 
-def locate(walk: Walk | FreeWalk, event: Event, a: Point, b: Point):
+def locate(walk: Tracer, event: Event, a: Point, b: Point):
     """(event, distance from a, point, error): where the event lies between a and b; None if it cannot be found.
 
     The distance is that along the tangent at a.
     """
-    point = None if event.limit is None else walk.at_value(a, b, event.limit)
+    point = None if event.limit is None else walk.at_value(a, b, 0, event.limit)
     if point is not None and 0 <= along(a, point) <= (1 + ROUNDED) * along(a, b):
         point.hold(event.limit)
         return event, along(a, point), point, 0.0
@@ -53,7 +53,7 @@ def locate(walk: Walk | FreeWalk, event: Event, a: Point, b: Point):
         point.hold(event.limit)
     if event.vanishes is not None:  # one of the unknowns has a value: no test rounds
         point.touch(event.vanishes)
-        error = walk.rounding(point, np.eye(1, len(point.x), walk.K + event.vanishes)[0])
+        error = walk.rounding(point, np.eye(1, 2 * walk.K + 3, walk.K + event.vanishes)[0])
     else:
         error = error_of(walk, a, b, test, share, point)
     return None if error is None else (event, along(a, point), point, error)

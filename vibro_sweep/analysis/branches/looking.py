@@ -8,8 +8,8 @@ import numpy as np
 from vibro_sweep.analysis.branches.branch_events import is_outside, tests_between
 from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_torus, stands_alone
 from vibro_sweep.analysis.branches.locating import Test
-from vibro_sweep.analysis.branches.response import touching
-from vibro_sweep.analysis.branches.walk import Point, Walk, along
+from vibro_sweep.analysis.continuation.point import Point, along
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.engine.continuation.branch_tests import FARTHER
 from vibro_sweep.model.bifurcations import BY_NAME
 
@@ -19,14 +19,12 @@ CLOSE = 1e-6  # share of a step: so near to an end of the branch
 MOST_LOOKS = 8  # for one extremum
 
 
-def hidden_between(walk: Walk, bounds, a: Point, b: Point, found: list, beside: tuple) -> Point | None:
+def hidden_between(walk: Tracer, bounds, a: Point, b: Point, found: list, beside: tuple) -> Point | None:
     """A point between a and b that divides what their tests do not tell apart; None if nothing is hidden.
 
     found : bifurcations between a and b, as `locate` gives them, in order
     beside : the points before a and behind b, None where they are not known
     """
-    if walk.K == 0:
-        return touching(walk, a, b)
     length = along(a, b)
     for _, at, point, _ in found:
         if at < (1 - CLOSE) * length and is_outside(walk, bounds, point):
@@ -34,19 +32,23 @@ def hidden_between(walk: Walk, bounds, a: Point, b: Point, found: list, beside: 
     cuts = [a]
     for one, other in pairwise(found):
         if other[1] - one[1] > APART * length:
-            cuts.append(walk.step(a, (one[1] + other[1]) / 2, one[2].guess))
+            cuts.append(walk.step(a, (one[1] + other[1]) / 2, one[2]))
             if cuts[-1] is None:
                 return None
     cuts.append(b)
     for x, y in pairwise(cuts):
-        inside = [place for place in found if 0 < (place[2].x - x.x) @ a.tangent < (y.x - x.x) @ a.tangent]
+        inside = [
+            place
+            for place in found
+            if 0 < walk.difference(x, place[2]) @ a.direction < walk.difference(x, y) @ a.direction
+        ]
         if not _are_all(walk, x, y, inside):
             return y if y is not b else x if x is not a else _middle(walk, a, b, found)
     places = [a, *(place[2] for place in found), b]
     return _divided(walk, places, found) or _touched(walk, beside, places, found)
 
 
-def _are_all(walk: Walk, a: Point, b: Point, found: list) -> bool:
+def _are_all(walk: Tracer, a: Point, b: Point, found: list) -> bool:
     """Whether nothing but these bifurcations, at one place, lies between a and b, as far as a and b tell."""
     at = [(event.type, point) for event, _, point, _ in found if any(BY_NAME[event.type].crosses)]
     crossed = [(kind, point) for kind, point in at if not BY_NAME[kind].crosses[2] or is_torus(point)]
@@ -58,7 +60,7 @@ def _are_all(walk: Walk, a: Point, b: Point, found: list) -> bool:
     return all((test(a) * test(b) < 0) == (kind in types) for kind, test in tests_between(walk, a, b, scaled=True))
 
 
-def _middle(walk: Walk, a: Point, b: Point, found: list) -> Point | None:
+def _middle(walk: Tracer, a: Point, b: Point, found: list) -> Point | None:
     """A point on the longer side of what was found, with no multiplier on the circle by chance."""
     length = along(a, b)
     at = found[0][1] if found else 0.0
@@ -70,7 +72,7 @@ def _middle(walk: Walk, a: Point, b: Point, found: list) -> Point | None:
     return None
 
 
-def _divided(walk: Walk, places: list[Point], found: list) -> Point | None:
+def _divided(walk: Tracer, places: list[Point], found: list) -> Point | None:
     """A point beside a bifurcation at which another test has the other sign than before and behind it."""
     for (event, _, _, _), a, c, b in zip(found, places, places[1:], places[2:], strict=False):
         for kind, test in tests_between(walk, a, b, scaled=True):
@@ -79,7 +81,7 @@ def _divided(walk: Walk, places: list[Point], found: list) -> Point | None:
     return None
 
 
-def _with_sign(walk: Walk, test: Test, c: Point, b: Point) -> Point | None:
+def _with_sign(walk: Tracer, test: Test, c: Point, b: Point) -> Point | None:
     """A point between c and b at which the test has the sign that it has at c."""
     length = along(c, b)
     for k in range(1, 40):
@@ -89,11 +91,10 @@ def _with_sign(walk: Walk, test: Test, c: Point, b: Point) -> Point | None:
     return None
 
 
-def _touched(walk: Walk, beside: tuple, places: list[Point], found: list) -> Point | None:
+def _touched(walk: Tracer, beside: tuple, places: list[Point], found: list) -> Point | None:
     """A point between the first and the last of `places` at which a test has changed its sign, to change it again."""
     a, b = places[0], places[-1]
-    K, pushing = walk.start.K, a.solution.pushes > 0
-    pushing[list(walk.start.rests)] = False
+    K, pushing = walk.K, (a.solution.pushes > 0) & ~walk.problem.rests
     tests = [
         test for kind, test in tests_between(walk, a, b, scaled=True) if kind not in {place[0].type for place in found}
     ]
@@ -104,8 +105,8 @@ def _touched(walk: Walk, beside: tuple, places: list[Point], found: list) -> Poi
             point = _beyond_extremum(walk, test, a, b, triple)
             if point is not None:
                 return point
-    sides, length = np.array(walk.start.sides), along(a, b)
-    slopes = [-sides * point.tangent[K : 2 * K] for point in (a, b)]
+    length = along(a, b)
+    slopes = [-walk.problem.sides * point.direction[K : 2 * K] for point in (a, b)]
     for i in np.flatnonzero(pushing & (slopes[0] < 0) & (slopes[1] > 0) & (b.solution.pushes > 0)):
         middle = walk.step(a, length * _least(a, b, K + i))
         if middle is not None:
@@ -117,15 +118,16 @@ def _touched(walk: Walk, beside: tuple, places: list[Point], found: list) -> Poi
 
 def _least(a: Point, b: Point, i: int) -> float:
     """Where between two points, as a share, the cubic of one unknown has its extremum; its slopes differ in sign."""
-    length = float(np.linalg.norm(b.x - a.x))
-    p, q, rise = a.tangent[i] * length, b.tangent[i] * length, b.x[i] - a.x[i]
+    change = a.tracer.difference(a, b)
+    length, rise = float(np.linalg.norm(change)), change[i]
+    p, q = a.direction[i] * length, b.direction[i] * length
     # slope of the cubic: p + 2 (3 rise - 2 p - q) s + 3 (p + q - 2 rise) s^2
     roots = np.roots([3 * (p + q - 2 * rise), 2 * (3 * rise - 2 * p - q), p])
     inside = [root.real for root in roots if abs(root.imag) < 1e-12 and 0 < root.real < 1]
     return min(inside, default=0.5, key=lambda root: abs(root - 0.5))
 
 
-def _beyond_extremum(walk: Walk, test: Test, a: Point, b: Point, triple) -> Point | None:
+def _beyond_extremum(walk: Tracer, test: Test, a: Point, b: Point, triple) -> Point | None:
     """The extremum of a test near the middle one of three points, if it lies between a and b with another sign."""
     seen = [(along(a, point), test(point)) for point in triple]
     middle, length = triple[1], along(a, b)
@@ -135,7 +137,7 @@ def _beyond_extremum(walk: Walk, test: Test, a: Point, b: Point, triple) -> Poin
         if at is None:
             return None
         at = _apart(s + at, (r, s, t))
-        point = walk.step(a, at, middle.guess)
+        point = walk.step(a, at, middle)
         if point is None:
             return None
         value = test(point)

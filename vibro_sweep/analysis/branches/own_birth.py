@@ -8,9 +8,10 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.branch_events import test_of
 from vibro_sweep.analysis.branches.crossings import counts_of
-from vibro_sweep.analysis.branches.free_walk import walk_of
 from vibro_sweep.analysis.branches.locating import Event, locate
-from vibro_sweep.analysis.branches.walk import Point, Walk, along
+from vibro_sweep.analysis.continuation.first_point import followed_from
+from vibro_sweep.analysis.continuation.point import Point, along
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.pairs import ON_SQUARE
 from vibro_sweep.model.bifurcations import name_of
@@ -21,7 +22,7 @@ LANDS = 0.3  # of what tells the halves apart before a step, at its end
 APART = 4.0  # times its rounding: so far a point lies from a birth at least, to be told from it
 
 
-def own_birth(walk: Walk, a: Point, b: Point):
+def own_birth(walk: Tracer, a: Point, b: Point):
     """(distance from a, event, point of the parent's branch, error) of the birth between a and b; None without one."""
     for sigma in (1, -1):
         parts = [halves_apart(point.solution, sigma) for point in (a, b)]
@@ -31,13 +32,13 @@ def own_birth(walk: Walk, a: Point, b: Point):
         if not parts[0] @ parts[1] < -0.5 * sizes[0] * sizes[1]:
             continue
         fraction = sizes[0] / sum(sizes)
-        found = _on_parent(walk, walk.solution(walk.tracer.between(a.guess, b.guess, fraction)), sigma)
+        found = _on_parent(walk, walk.between(a, b, fraction).solution, sigma)
         if found is not None:
             return fraction * along(a, b), *found
     return None
 
 
-def before_birth(walk: Walk, a: Point, distance: float, parent: Point) -> Point | None:
+def before_birth(walk: Tracer, a: Point, distance: float, parent: Point) -> Point | None:
     """A point on the way to a birth at which fewer multipliers are 1; None where a is too near to the birth.
 
     Beside the birth rounding moves a point along its branch. The tangent turns with the multipliers above 1: where it
@@ -46,7 +47,7 @@ def before_birth(walk: Walk, a: Point, distance: float, parent: Point) -> Point 
     most = _ones(parent.solution.multipliers**2) - 1
     for share in BEFORE:
         point = walk.step(a, (1 - share) * distance)
-        if point is None or abs(point.p - parent.p) < APART * point.rounding:
+        if point is None or abs(point.value - parent.value) < APART * point.rounding:
             continue
         if _ones(point.solution.multipliers) <= most:
             turned = (counts_of(point).above - counts_of(a).above) % 2 == 1
@@ -55,11 +56,12 @@ def before_birth(walk: Walk, a: Point, distance: float, parent: Point) -> Point 
     return None
 
 
-def over_birth(walk: Walk, a: Point) -> tuple[Point, Point] | None:
+def over_birth(walk: Tracer, a: Point) -> tuple[Point, Point] | None:
     """The point beyond the birth to which a leads, and the parent; None where it leads to none within `NEAR`."""
-    ahead = walk.ahead(a)
+    ahead = walk.moved(a, 1.0)  # at the distance 1, with the parameter of the point
+    ahead.hold(a.value)
     for sigma in (1, -1):
-        here, there = (halves_apart(solution, sigma) for solution in (a.solution, ahead))
+        here, there = (halves_apart(solution, sigma) for solution in (a.solution, ahead.solution))
         if here is None or not here @ (there - here) < 0:
             continue
         distance = float(here @ here / (here @ (here - there)))
@@ -70,13 +72,13 @@ def over_birth(walk: Walk, a: Point) -> tuple[Point, Point] | None:
     return None
 
 
-def lands_on_birth(walk: Walk, a: Point, b: Point) -> Point | None:
+def lands_on_birth(walk: Tracer, a: Point, b: Point) -> Point | None:
     """The point beyond the birth to which a leads, where rounding does not tell b from the birth."""
     for sigma in (1, -1):
         parts = [halves_apart(point.solution, sigma) for point in (a, b)]
         if all(part is not None for part in parts) and np.linalg.norm(parts[1]) < LANDS * np.linalg.norm(parts[0]):
             over = over_birth(walk, a)
-            if over is not None and abs(b.p - over[1].p) < APART * b.rounding:
+            if over is not None and abs(b.value - over[1].value) < APART * b.rounding:
                 return over[0]
     return None
 
@@ -85,17 +87,16 @@ def _ones(multipliers: np.ndarray) -> int:
     return int(np.sum(np.abs(multipliers - 1) < ON_SQUARE))
 
 
-def _on_parent(walk: Walk, whole: Solution, sigma: int):
+def _on_parent(walk: Tracer, whole: Solution, sigma: int):
     parent = whole.part(2, sigma, alike=0.1)
     if parent is None:
         return None
-    beside = walk_of(parent, walk.name, walk.unit)
-    first = beside.first(1.0)
+    first = followed_from(parent, walk.names[0], walk.unit[0])
     kind, reach = name_of("flip", sigma), 1e-6
     while kind and first is not None and reach < 0.05:
-        event, ends = Event(kind, test_of("minus")), [beside.step(first, sign * reach) for sign in (-1, 1)]
+        event, ends = Event(kind, test_of("minus")), [first.tracer.step(first, sign * reach) for sign in (-1, 1)]
         if None not in ends and event.test(ends[0]) * event.test(ends[1]) < 0:
-            found = locate(beside, event, *ends)
+            found = locate(first.tracer, event, *ends)
             return None if found is None else (found[0], *found[2:])
         reach *= 4
     return None

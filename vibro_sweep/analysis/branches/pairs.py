@@ -1,18 +1,9 @@
 """Pairs of multipliers from point to point, as the compiled steps see them (engine/impulses/pairs.py)."""
 
-from itertools import pairwise
-
 import numpy as np
 
-from vibro_sweep.analysis.branches.walk import Point, along
+from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.engine.impulses import pairs
-
-
-def coarse(before: Point | None, a: Point, b: Point) -> bool:
-    """Whether a step is too long to tell if a pair of multipliers crosses the unit circle twice from a to b."""
-    known = [point for point in (before, a, b) if point is not None]
-    lengths = [along(x, y) for x, y in pairwise(known)]
-    return pairs.coarse(_parts(before or a), _parts(a), _parts(b), lengths[0] if before else 0.0, lengths[-1])
 
 
 def exchanged(a: Point, b: Point) -> bool:

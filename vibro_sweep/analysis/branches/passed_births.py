@@ -12,29 +12,30 @@ import numpy as np
 from vibro_sweep.analysis.branches.own_birth import may_be_born, over_birth
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.track import Rows, Track
-from vibro_sweep.analysis.branches.walk import Point, Walk
+from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.start import keeps_symmetry
+from vibro_sweep.analysis.continuation.tracer import Tracer
 
 BACK = 16  # points, at most, to one that lies before what rounding does beside a birth
 
 
-def passed(walk: Walk, rows: list[Rows], behind: Point | None) -> list[int]:
+def passed(walk: Tracer, rows: list[Rows], behind: Point | None) -> list[int]:
     """How many of these points lie before each place where what tells the halves apart turns round.
 
     behind : the point to which steps have led; None where there is none
     """
-    start, found = walk.start, []
+    start, family, (name,), found = walk.orbit, walk.orbit.family, walk.names, []
     signs = [sigma for sigma in (1, -1) if may_be_born(start, sigma)]
-    if -1 in signs and not keeps_symmetry(walk.family, walk.name):
+    if -1 in signs and not keeps_symmetry(family, name):
         signs.remove(-1)
     if not signs:
         return found
     last = [] if behind is None else [behind]
-    p = np.concatenate([*(part.p for part in rows), [point.p for point in last]])
+    p = np.concatenate([*(part.p for part in rows), [point.value for point in last]])
     t = np.concatenate([*(part.t for part in rows), *(point.solution.times[None] for point in last)])
     D = np.concatenate([*(part.D for part in rows), *(point.solution.jumps[None] for point in last)])
-    omega = start.family.linear.omega + walk.family.derivative(walk.name).omega * (p - walk.family.numbers[walk.name])
-    half, speed = start.K // 2, start.family.linear.omega * start.size_of_gap
+    omega = family.linear.omega + walk.oscillators.slopes[0].omega * (p - family.numbers[name])
+    half, speed = start.K // 2, family.linear.omega * start.size_of_gap
     delay = omega[:, None] * (t[:, half:] - t[:, :half]) - start.halves * np.pi / 2
     for sigma in signs:
         apart = np.hstack([delay, (D[:, half:] - sigma * D[:, :half]) / speed])
@@ -42,7 +43,7 @@ def passed(walk: Walk, rows: list[Rows], behind: Point | None) -> list[int]:
     return sorted(found)
 
 
-def before_passed(walk: Walk, track: Track, rows: Rows, counts: Iterable[int], first: Point):
+def before_passed(walk: Tracer, track: Track, rows: Rows, counts: Iterable[int], first: Point):
     """(points before a birth, the last of them, a point behind it); None where no birth is found.
 
     counts : of points that lie before one perhaps, as `passed` gives them

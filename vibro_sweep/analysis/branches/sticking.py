@@ -42,7 +42,7 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
     if not found:
         return None
     tracer, place = min(found, key=lambda one: abs(one[1].p[FIRST] - special.parameters[name]))
-    onset, error = float(place.p[FIRST]), rounding_error(tracer, place, tracer.direction(place))
+    onset, error = float(place.p[FIRST]), rounding_error(tracer, place, place.direction)
     orbit = PeriodicOrbit(special.orbit.system.replace(**{name: onset}), "sticking")
     none, chatter = np.empty(0, complex), chatter_at(tracer, place, False)
     return SpecialPoint("sticking", {name: onset}, orbit, none, error, special.stop, _chatter=chatter)

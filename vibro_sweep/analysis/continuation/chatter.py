@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibro_sweep.analysis.continuation.tracer import Tracer, copied
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.chatter_sum import NEXT, REACH
 from vibro_sweep.engine.continuation.curve_tests import LATEST
@@ -56,7 +56,7 @@ def with_impacts(tracer: Tracer, place: Place, K: int) -> tuple[Tracer, Place]:
         tracer.do(FOLLOW, place)
         gain = 1 + tracer.family(place).linear.restitution(tracer.problem.sides[-1:])[0]
         place.jumps[-1] = -gain * tracer.motion(place)[-1, 0] / tracer.units.speed
-    return (tracer, copied(place)) if tracer.K == K else _resized(tracer, place, K)
+    return (tracer, tracer.copied(place)) if tracer.K == K else _resized(tracer, place, K)
 
 
 def _resized(tracer: Tracer, place: Place, K: int) -> tuple[Tracer, Place]:

@@ -1,13 +1,13 @@
-"""Where a test vanishes between two points of a branch or a curve: on planes across the chord between them.
-
-A `Line` is what the points lie on: a `Tracer` and its places, or a branch (`Walk`, `FreeWalk`) and its points.
-"""
+"""Where a test vanishes between two points of a branch or a curve: on planes across the chord between them."""
 
 from collections.abc import Callable
-from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 from scipy.optimize import brentq
+
+from vibro_sweep.analysis.continuation.point import Point
+from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.engine.continuation.workspace import Place
 
 MANY = 60  # impacts of a long orbit
 ROUNDING = 1e-15  # of tests, in their units
@@ -21,30 +21,9 @@ TIMES = 5.0  # the largest difference between locations
 OF_TESTS = 3.0  # times what rounding of the equations does, where rounding of a test comes to it
 
 
-P = TypeVar("P")  # a point
-
-
-class Line(Protocol[P]):
-    """A solution set."""
-
-    K: int
-
-    def difference(self, a: P, b: P) -> np.ndarray:
-        """From a to b, over what distances are measured by."""
-
-    def on_chord(self, near: P, a: P, b: P, share: float, row: np.ndarray, exact: bool) -> P | None:
-        """The point on the plane across `row` that lies this share of the chord from a to b beside a known one."""
-
-    def parameters(self, point: P) -> np.ndarray:
-        """The free numbers."""
-
-    def rounding(self, point: P, row: np.ndarray) -> float:
-        """What rounding of the equations does to them on that plane."""
-
-
-def root(line: Line[P], a: P, b: P, test: Callable[[P], float]) -> tuple[float, P] | None:
+def root(tracer: Tracer, a: Place, b: Place, test: Callable[[Point], float]) -> tuple[float, Point] | None:
     """(share of the chord from a to b, point) where the test, of size 1, vanishes."""
-    chord = Chord(line, a, b, test)
+    chord = Chord(tracer, a, b, test)
     try:
         if chord.value(0.0) * chord.value(1.0) > 0:
             return None
@@ -57,14 +36,14 @@ def root(line: Line[P], a: P, b: P, test: Callable[[P], float]) -> tuple[float, 
     return share, chord.seen[share]
 
 
-class Chord(Generic[P]):
+class Chord:
     """A test along the line between a and b, over shares of the chord. ArithmeticError where there is no point."""
 
-    def __init__(self, line: Line[P], a: P, b: P, test: Callable[[P], float]):
-        self.line, self.a, self.b, self.test = line, a, b, test
-        change = line.difference(a, b)
+    def __init__(self, tracer: Tracer, a: Place, b: Place, test: Callable[[Point], float]):
+        self.tracer, self.a, self.b, self.test = tracer, a, b, test
+        change = tracer.difference(a, b)
         self.row = change / np.linalg.norm(change)
-        self.coarse = COARSE if line.K >= MANY else 1.0
+        self.coarse = COARSE if tracer.K >= MANY else 1.0
         self.seen = {0.0: a, 1.0: b}
 
     def value(self, share: float) -> float:
@@ -107,38 +86,41 @@ class Chord(Generic[P]):
             zero = moved
         return zero if abs(self.value(zero)) <= self.coarse * NOISE * abs(slope) else None
 
-    def at(self, share: float, exact: bool = True) -> P:
+    def at(self, share: float, exact: bool = True) -> Point:
         """The point at a share of the chord, without keeping it."""
         return self._point(share, self.seen, exact)
 
-    def _point(self, share: float, seen: dict[float, P], exact: bool) -> P:
+    def _point(self, share: float, seen: dict[float, Point], exact: bool) -> Point:
         near = min(seen, key=lambda other: abs(other - share))
-        point = self.line.on_chord(seen[near], self.a, self.b, share - near, self.row, exact)
+        guess = self.tracer.shifted(seen[near], self.a, self.b, share - near)
+        point = self.tracer.correct(guess, self.row, exact)
         if point is None:
             raise ArithmeticError
         return point
 
 
-def error_of(line: Line[P], a: P, b: P, test: Callable[[P], float], share: float, point: P) -> float | None:
+def error_of(
+    tracer: Tracer, a: Place, b: Place, test: Callable[[Point], float], share: float, point: Point
+) -> float | None:
     """Of the parameters of a zero at a share of the chord from a to b; None: there are no points beside it.
 
     Rounding of the equations moves the line, and rounding of the test moves its zero along the line. The second is seen
     in what points beside it say, which round differently: p - test dp/dtest, without the straight line that a wrong
     slope makes of these. It is not added, so that most errors are the same from whichever start.
     """
-    chord = Chord(line, a, b, test)
+    chord = Chord(tracer, a, b, test)
     chord.seen[share] = point
     try:
         points = [chord.at(share + step) if step else point for step in BESIDE]
         far = chord.at(share + (ASIDE if share < 0.5 else -ASIDE), exact=False)
     except ArithmeticError:
         return None
-    tests, p = (np.array([of(one) for one in points]) for of in (test, line.parameters))
+    tests, p = (np.array([of(one) for one in points]) for of in (test, tracer.parameters))
     middle, scatter = BESIDE.index(0.0), 0.0
     with np.errstate(all="ignore"):
-        rate = (line.parameters(far) - p[middle]) / np.float64(test(far) - tests[middle])
+        rate = (tracer.parameters(far) - p[middle]) / np.float64(test(far) - tests[middle])
     if np.isfinite(rate).all():
         said = p - p[middle] - np.outer(tests, rate)
         slope, mean = np.polyfit(BESIDE, said, 1)
         scatter = np.abs(said - np.outer(BESIDE, slope) - mean).max()
-    return float(max(TIMES * scatter, OF_TESTS * line.rounding(point, chord.row)))
+    return float(max(TIMES * scatter, OF_TESTS * tracer.rounding(point, chord.row)))

@@ -2,30 +2,64 @@
 
 import numpy as np
 
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.point import Point
+from vibro_sweep.analysis.continuation.tracer import Tracer, branch_through
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.problem import conditions, is_critical, unknowns
 from vibro_sweep.engine.continuation.workspace import THETA, Place, new_place
 
+SLOW = 1e-5  # impulse, relative to the largest, of an impact that is next to a graze
+STILL = 1e-5  # in units of a branch: an orbit that Newton's method takes farther off is another one
 
-def first_place(tracer: Tracer, row: np.ndarray | None = None) -> Place | None:
+
+def first_place(tracer: Tracer, row: np.ndarray | None = None) -> Point | None:
     """The point of the curve at `start`, or near it on the plane across `row`; None where it is not isolated."""
     place = guess_of(tracer)
     return place and settle(tracer, place, row)
 
 
-def guess_of(tracer: Tracer, solution: Solution | None = None, tau: float | None = None) -> Place | None:
-    """`start`, or another orbit with the same impacts, as it is; None where the oscillator has no forced motion.
+def start_of_branch(tracer: Tracer) -> Point | None:
+    """The orbit itself as a point of its branch, towards larger parameters.
 
-    tau : as of `solution`
+    None where Newton's method fails, or leads to another orbit, as at a fold to that from which it was born.
     """
-    s, place = solution or tracer.start.solution, new_place(tracer.K, tracer.n)
+    guess = guess_of(tracer)
+    point = guess and (tracer.correct(guess, tracer.axis(0)) or _across(tracer, guess))
+    if point is None or np.abs(tracer.difference(guess, point)).max() > STILL:
+        return None
+    point.hold(guess.value)
+    return point
+
+
+def _across(tracer: Tracer, guess: Point) -> Point | None:
+    """The start on the plane across its tangent, where impacts are so slow that the parameter hardly tells them."""
+    speeds = np.abs(tracer.orbit.jumps)
+    row = first_direction(tracer, guess) if speeds.min() < SLOW * speeds.max() else None
+    return None if row is None else tracer.correct(guess, np.copysign(1.0, row[-3]) * row)
+
+
+def followed_from(solution: Solution, name: str, unit: float, bounds=(-np.inf, np.inf)) -> Point | None:
+    """`start_of_branch` of an orbit in this parameter; None also where the oscillator does not allow steps."""
+    try:
+        return start_of_branch(branch_through(solution, name, unit, bounds))
+    except ValueError:
+        return None
+
+
+def beside_start(tracer: Tracer, length: float) -> Point | None:
+    """The point of a branch at a distance from the orbit that it goes through, also where that is a fold."""
+    guess = guess_of(tracer)
+    row = guess and first_direction(tracer, guess)
+    return None if row is None else tracer.correct(tracer.moved(guess, length), row)
+
+
+def guess_of(tracer: Tracer, solution: Solution | None = None) -> Point | None:
+    """The start, or another orbit of its branch, as it is; None where the oscillator has no forced motion."""
+    s, place = solution or tracer.orbit, Point(tracer, new_place(tracer.K, tracer.n))
     q = s.family.linear
-    place.phases[:], place.jumps[:] = (
-        q.omega * s.times + (q.tau if tau is None else tau),
-        s.jumps / tracer.units.speed,
-    )
+    tau = tracer.tau if solution is None else tracer.tau_at(s.family.numbers[tracer.names[0]])
+    place.phases[:], place.jumps[:] = q.omega * s.times + tau, s.jumps / tracer.units.speed
     rests = list(s.rests)
     place.jumps[rests] = q.omega * (s.ends - s.times[rests])
     place.p[: len(tracer.names)] = [s.family.numbers[name] for name in tracer.names]
@@ -40,7 +74,7 @@ def guess_of(tracer: Tracer, solution: Solution | None = None, tau: float | None
     return place
 
 
-def settle(tracer: Tracer, place: Place, row: np.ndarray | None = None) -> Place | None:
+def settle(tracer: Tracer, place: Place, row: np.ndarray | None = None) -> Point | None:
     """The point of the curve near a guess without a tangent."""
     if not tracer.go_to(place):
         return None
@@ -48,7 +82,7 @@ def settle(tracer: Tracer, place: Place, row: np.ndarray | None = None) -> Place
         _take_null_vectors(tracer, place)
     if row is None:
         is_single = conditions(tracer.problem) == unknowns(tracer.problem)
-        row = tracer.direction(place) if is_single else first_direction(tracer, place)
+        row = place.direction if is_single else first_direction(tracer, place)
     return None if row is None else tracer.correct(place, row)
 
 

@@ -56,7 +56,8 @@ class Oscillators:
     def __init__(self, family: Family, names: tuple[str, ...], halves: int, units: Units):
         checked_cells(family.linear, halves)
         self.family, self.names, self.halves, self.units = family, names, halves, units
-        still = not any(np.any(getattr(family.derivative(name), field)) for name in names for field in TABLES)
+        self.slopes = [family.derivative(name) for name in names]
+        still = not any(np.any(getattr(slope, field)) for slope in self.slopes for field in TABLES)
         self._still = sampled(family.linear, units) if still else None
         self._known: dict[tuple[float, ...], Family] = {}  # the last ones
 

@@ -1,21 +1,24 @@
 """Points of a branch or a curve with the exact oscillator: corrections, and what is read there."""
 
+from bisect import bisect_left, insort
 from copy import copy as copy_object
 
 import numpy as np
 
 from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.oscillators import Oscillators, Units
+from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.start import Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import path, stepper
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
+from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, unknowns
 from vibro_sweep.engine.continuation.workspace import TEST, Place, new_bench
-from vibro_sweep.model.linear import Family, forcing_period
+from vibro_sweep.model.linear import Family
 
 MOST_CORRECTIONS = 20
-LONGEST_STEP, SHORTEST_STEP = 0.05, 1e-10
+LONGEST_STEP, SHORTEST_STEP = 0.05, 1e-11
 STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
 BESIDE = 2e-3
 AT_ONCE = 1024  # points of one call
@@ -30,13 +33,14 @@ class Tracer:
 
     def __init__(self, start: Start, names: tuple[str, ...], box, unit=None):
         """box : ends of each parameter; unit: of distances in each, by default the length of its side"""
-        self.start, self.names = start, names
+        self.start, self.orbit, self.names = start, start.solution, names
         self.box = np.array([*box, *[(-np.inf, np.inf)] * (2 - len(names))], float)
         self.unit = np.append(np.ptp(box, axis=1) if unit is None else unit, [1.0] * (2 - len(names)))
-        s = start.solution
+        s = self.orbit
         q = s.family.linear
         self.units = Units(float(s.size_of_gap), float(q.omega))
         self.tau = float(q.tau)  # by which phases become times: those of the curve do not move with it
+        self._taus = [(s.family.numbers[names[0]], self.tau)]
         self.oscillators = Oscillators(s.family, names, s.halves, self.units)
         self.n = 2 * len(q.along)
         self._take_sides(s.sides)
@@ -45,7 +49,7 @@ class Tracer:
 
     def _take_sides(self, which: tuple[int, ...]) -> None:
         """Of the impacts."""
-        start, s = self.start, self.start.solution
+        start, s = self.start, self.orbit
         q, K, kind = s.family.linear, len(which), self.start.kind
         self.K = K
         struck = which[: start.index] + which[start.index + 1 :] if kind == GRAZE and K % 2 else which
@@ -82,8 +86,8 @@ class Tracer:
 
     def do(self, task: int, place: Place, row: np.ndarray | None = None) -> float:
         """One task of `stepper.at`; what it leaves is in `bench`."""
-        row = self.direction(place) if row is None else row
-        return stepper.at(task, self.planes, self.problem, self.path, place, row, self.bench)
+        row = place.direction if row is None else row
+        return stepper.at(task, self.planes, self.problem, self.path, Place._make(place), row, self.bench)
 
     def take(self, place: Place) -> bool:
         """Take the oscillator's numbers at the parameters of `place`. False where there is none."""
@@ -133,19 +137,21 @@ class Tracer:
         return (place.phases - self.tau) / self.omega(place)
 
     def period(self, place: Place) -> float:
-        return float(np.pi * self.start.solution.halves / self.omega(place))
+        return float(np.pi * self.orbit.halves / self.omega(place))
 
-    def beside(self, place: Place) -> list[Place]:
+    def beside(self, place: Place) -> list[Point]:
         """Points of the curve within the box, a little beside `place`."""
-        found = [self.along(place, length) for length in (BESIDE, -BESIDE)]
+        found = [self.step(place, length) for length in (BESIDE, -BESIDE)]
         lo, hi = self.box.T
         return [one for one in found if one is not None and np.all((lo <= one.p[:2]) & (one.p[:2] <= hi))]
 
-    def along(self, place: Place, length: float) -> Place | None:
-        """The point of the curve whose projection on the tangent at `place` is `length`."""
-        return self.correct(self.moved(place, length), self.direction(place))
+    def step(self, place: Place, length: float, near: Place | None = None) -> Point | None:
+        """The point whose projection on the tangent at `place` is `length`; near: a guess."""
+        if near is not None:
+            length -= float(place.direction @ self.difference(place, near))
+        return self.correct(self.moved(near or place, length, place), place.direction)
 
-    def level(self, place: Place, axis: int, value: float) -> Place | None:
+    def level(self, place: Place, axis: int, value: float) -> Point | None:
         """The point of the curve near `place` where the parameter `axis` (0, 1) has this value."""
         slope = self.problem.unit[axis] * place.tangent_p[axis]
         if abs(value - place.p[axis]) > 2 * LONGEST_STEP * abs(slope):  # it turns back before
@@ -154,7 +160,7 @@ class Tracer:
         guess.p[axis] = value
         return self.correct(guess, self.axis(axis))
 
-    def at_value(self, a: Place, b: Place, axis: int, value: float) -> Place | None:
+    def at_value(self, a: Place, b: Place, axis: int, value: float) -> Point | None:
         """The point between a and b where the parameter `axis` has this value, which lies between theirs."""
         change = b.p[axis] - a.p[axis]
         guess = self.between(a, b, (value - a.p[axis]) / change)
@@ -165,9 +171,13 @@ class Tracer:
         """The plane on which a parameter (or theta) is held."""
         return np.eye(1, 2 * self.K + 3, 2 * self.K + parameter)[0]
 
-    def moved(self, place: Place, length: float, along: Place | None = None) -> Place:
+    def copied(self, place: Place) -> Point:
+        """The same point, with arrays of its own."""
+        return Point(self, Place(*(values.copy() for values in place)))
+
+    def moved(self, place: Place, length: float, along: Place | None = None) -> Point:
         """A guess on the tangent, or on one parallel to that at another place."""
-        guess, along = copied(place), along or place
+        guess, along = self.copied(place), along or place
         guess.x[:] += length * along.tangent
         guess.p[:] += length * along.tangent_p * [*self.problem.unit, 1.0]
         return guess
@@ -181,25 +191,20 @@ class Tracer:
         changes = self.bench.events["changes"][:, 1]
         return np.concatenate([changes[:, self.n], changes[:, self.n + 1], null[self.n :]])
 
-    def direction(self, place: Place) -> np.ndarray:
-        """(2 K + 3,) the tangent over what distances are measured by: phases, jumps, parameters in their units, theta;
-        of length 1."""
-        return np.concatenate([place.tangent[:, -2], place.tangent[:, -1], place.tangent_p])
-
     def unit_row(self, change: np.ndarray) -> np.ndarray:
         """The plane across a change."""
         return change / np.linalg.norm(change)
 
-    def correct(self, guess: Place, row: np.ndarray, exact: bool = True) -> Place | None:
+    def correct(self, guess: Place, row: np.ndarray, exact: bool = True) -> Point | None:
         """The point of the curve on the plane through `guess` across `row`, examined; None: none was found.
 
         exact : of the oscillator itself, or of its polynomials, which is ten times as fast and nearly the same
         """
-        place = copied(guess)
+        place = self.copied(guess)
         near = self.do(stepper.NEAR, place, row)
         if not exact:
             return place if near else None
-        place = place if near else copied(guess)
+        place = place if near else self.copied(guess)
         before = np.inf
         for _ in range(MOST_CORRECTIONS):
             if not self.take(place):
@@ -209,16 +214,12 @@ class Tracer:
                 return None
             if change <= 1e-15 or (change < 1e-8 and change >= 0.3 * before):
                 place.tests[TEST.residual] = change
-                length = np.linalg.norm(self.direction(place)) or 1.0  # a single point has no tangent
+                length = np.linalg.norm(place.direction) or 1.0  # a single point has no tangent
                 place.tangent[:] /= length
                 place.tangent_p[:] /= length
                 return place if self.take(place) and self.do(stepper.EXAMINE, place) else None
             before = change
         return None
-
-    def on_chord(self, near: Place, a: Place, b: Place, share: float, row: np.ndarray, exact: bool) -> Place | None:
-        """The point on the plane across `row` at this share of the chord from a to b beside a known point."""
-        return self.correct(self.shifted(near, a, b, share), row, exact)
 
     def parameters(self, place: Place) -> np.ndarray:
         """(1,) or (2,)."""
@@ -228,13 +229,13 @@ class Tracer:
         """What rounding of the equations does to the parameters of a point on the plane across `row`."""
         return rounding_error(self, place, row)
 
-    def between(self, a: Place, b: Place, share: float) -> Place:
+    def between(self, a: Place, b: Place, share: float) -> Point:
         """On the chord."""
         return self.shifted(a, a, b, share)
 
-    def shifted(self, place: Place, a: Place, b: Place, share: float) -> Place:
+    def shifted(self, place: Place, a: Place, b: Place, share: float) -> Point:
         """`place` moved by a share of the chord from a to b."""
-        result = copied(place)
+        result = self.copied(place)
         result.x[:] += share * (b.x - a.x)
         result.p[:] += share * (b.p - a.p)
         return result
@@ -255,21 +256,37 @@ class Tracer:
     def family(self, place: Place) -> Family:
         return self.oscillators.at(place.p)
 
-    def solution(self, place: Place, tau: float | None = None) -> Solution:
-        """The orbit of a point; its times are those of the oscillator with its own phase.
-
-        tau : that phase, of those that differ by whole turns; by default times are as near to the start's as they can
-        """
-        s, family = self.start.solution, self.family(place)
-        q = family.linear
-        t = (place.phases - (q.tau if tau is None else tau)) / q.omega
-        if tau is None and self.K:
-            t -= forcing_period(q) * np.round((t[0] - s.times[0]) / forcing_period(q))
+    def solution(self, place: Place) -> Solution:
+        """The orbit of a point."""
+        s, family = self.orbit, self.family(place)
+        t = (place.phases - self._tau_of(place)) / family.linear.omega
         sides, rests = tuple(map(int, self.problem.sides)), self.problem.rests
-        ends = (t + place.jumps / q.omega)[rests]
+        ends = (t + place.jumps / family.linear.omega)[rests]
         jumps = np.where(rests, -self.speeds(place), place.jumps) if len(ends) else place.jumps
         u = np.concatenate([t, jumps * self.units.speed, ends])
         return Solution(family, s.sigma, s.halves, sides, u, float(place.tests[TEST.residual]), s.rests)
+
+    def _tau_of(self, place: Place) -> float:
+        """The phase of the force, by which phases become times; on a curve they are as near to the start's as they can
+        without a change of the motion."""
+        if len(self.names) == 1:
+            return self.tau_at(place.p[0])
+        q = self.family(place).linear
+        turns = (place.phases[0] - q.tau - q.omega * self.orbit.times[0]) / (2 * np.pi)
+        return q.tau + 2 * np.pi * round(turns)
+
+    def tau_at(self, p: float) -> float:
+        """The phase of the force, a continuous function of the parameter of a branch: times do not jump."""
+        if not self.oscillators.slopes[0].tau:
+            return self.tau
+        i = bisect_left(self._taus, p, key=lambda known: known[0])
+        near = min(self._taus[max(i - 1, 0) : i + 1], key=lambda known: abs(known[0] - p))
+        if near[0] == p:
+            return near[1]
+        tau = float(self.oscillators.at([p]).linear.tau)
+        tau += 2 * np.pi * round((near[1] - tau) / (2 * np.pi))
+        insort(self._taus, (p, tau))
+        return tau
 
     def speeds(self, place: Place) -> np.ndarray:
         """(K,) velocities of the gap before the impacts, in units of the curve."""
@@ -277,9 +294,21 @@ class Tracer:
         N = self.n // 2
         return place.x[:, N] + (self.planes[0]["Z"][N] * np.exp(1j * place.phases)).real
 
+    def releases(self, place: Place) -> np.ndarray:
+        """(K,) acceleration away from the stop just after an impact with R = 0; infinite for other impacts."""
+        sides, rests = self.problem.sides, self.problem.rests
+        R = self.family(place).linear.restitution(sides)
+        if np.all(R > 0):
+            return np.full(len(sides), np.inf)
+        self.assemble(place)
+        N, events = self.n // 2, self.bench.events
+        after = events["motion"][:, 1] + self.planes[0]["numbers"][OMEGA] * events["bend"][:, N]
+        return np.where((R == 0) & ~rests, -sides * after, np.inf)
 
-def copied(place: Place) -> Place:
-    return Place(*(values.copy() for values in place))
+
+def branch_through(solution: Solution, name: str, unit: float, bounds=(-np.inf, np.inf)) -> Tracer:
+    """The branch of an orbit in one parameter. Raises NoPlaneError, TooStiffError."""
+    return Tracer(Start("orbit", solution), (name,), [bounds], [unit])
 
 
 def copy(source: Place, target: Place) -> None:

@@ -27,10 +27,9 @@ import numpy as np
 from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.branches.torus import cubic_terms
-from vibro_sweep.analysis.branches.walk import Walk
 from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
 from vibro_sweep.analysis.continuation.start import Start
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.tracer import Tracer, branch_through
 from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.curves.pair import in_time, rates_of_pair, second_order
 from vibro_sweep.analysis.curves.start import as_special
@@ -124,10 +123,10 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
 
 def _with_amplitude(guess: Solution, change: np.ndarray, name: str) -> Solution | None:
     """The orbit near a guess with its amplitude in the direction `change`; the parameter is found with it."""
-    walk = Walk(guess, name, size_of(guess, name))
+    walk = branch_through(guess, name, size_of(guess, name))
     row = np.append(change / guess.units[: len(change)], [0.0, 0.0, 0.0])
     row /= np.linalg.norm(row)
-    place = walk.of(guess)
+    place = guess_of(walk)
     point = place and walk.correct(place, row)
     return point and point.solution
 
@@ -183,7 +182,7 @@ def repeated(parent: Solution, count: int, w: np.ndarray, mu: complex) -> tuple[
 def _bent(child: Solution, tracer: Tracer, place: Place, z: complex, moved) -> Solution:
     """To second order in z: the multipliers of the child, near 1, differ from 1 by as much as this changes them."""
     bend, mean = second_order(tracer, place)
-    K, s, count = tracer.K, float(tracer.start.solution.sigma), child.K // tracer.K
+    K, s, count = tracer.K, float(tracer.orbit.sigma), child.K // tracer.K
     turns, signs = (-1.0) ** np.arange(count)[:, None], s ** np.arange(count)[:, None]
     _, along = rates_of_pair(tracer, place)
     each = 2 * turns * (z * z * bend).real + abs(z) ** 2 * mean + along @ moved  # (count, 2K)

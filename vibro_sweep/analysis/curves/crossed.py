@@ -9,7 +9,7 @@ import numpy as np
 
 from vibro_sweep.analysis.continuation.chord import Chord
 from vibro_sweep.analysis.continuation.errors import DIGITS, ROWS, sensitivity
-from vibro_sweep.analysis.continuation.tracer import Tracer, copied
+from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.engine.continuation.stepper import EXAMINE
 from vibro_sweep.engine.continuation.workspace import TEST, Place
 
@@ -24,7 +24,7 @@ SMOOTH = 1e-8  # of the box: what all points and those without the outermost may
 def is_on_other(tracer: Tracer, a: Place, b: Place, place: Place, impact: int) -> bool:
     """Whether a place where this impulse vanishes, located between a and b, lies on the curve of orbits without it."""
     change, j = tracer.difference(a, b), tracer.K + impact
-    return bool(abs(tracer.direction(place)[j]) < FLAT * abs(change[j]) / np.linalg.norm(change))
+    return bool(abs(place.direction[j]) < FLAT * abs(change[j]) / np.linalg.norm(change))
 
 
 def is_lost(tracer: Tracer, a: Place, b: Place, place: Place) -> bool:
@@ -37,7 +37,7 @@ def aside(tracer: Tracer, a: Place, b: Place, place: Place, share: float, gone: 
     vanish between a and b; None where there is but one of the orbits without them."""
     change = tracer.difference(a, b)
     row = tracer.unit_row(change)
-    length = share * (row @ change) / (row @ tracer.direction(place))
+    length = share * (row @ change) / (row @ place.direction)
     point = tracer.correct(tracer.moved(place, length), row)
     return None if point is None or any(is_on_other(tracer, a, b, point, i) for i in gone) else point
 
@@ -62,7 +62,7 @@ def crossed(tracer: Tracer, a: Place, b: Place, impact: int) -> tuple[float, Pla
     apart = np.abs((weights - fewer) @ p)
     if not (0.0 <= zero <= 1.0 and np.all(apart <= SMOOTH * np.ptp(tracer.box, axis=1))):
         return None
-    place = copied(places[0])
+    place = tracer.copied(places[0])
     for name in ("x", "p", "tangent", "tangent_p", "v", "w"):
         getattr(place, name)[:] = np.tensordot(weights, [getattr(one, name) for one in places], 1)
     place.jumps[impact], place.tests[TEST.residual] = 0.0, 0.0

@@ -216,7 +216,7 @@ def is_sharp(tracer: Tracer, event: Event, place: Place) -> bool:
 def event_near(tracer: Tracer, place: Place, length: float, types) -> Found | None:
     """The first event of these types on the curve on either side of `place`, a few times `length` away at most."""
     for factor in REACH:
-        ends = [tracer.along(place, sign * factor * length) for sign in (-1, 1)]
+        ends = [tracer.step(place, sign * factor * length) for sign in (-1, 1)]
         if ends[0] is None or ends[1] is None:
             continue
         for event in events_between(tracer, ends[0], ends[1]):

@@ -34,7 +34,7 @@ SHAPES = {
 
 def flatten(curve: BifurcationCurve) -> Flat:
     """The arrays of a curve."""
-    data, tracer, start = curve.points, curve._tracer, curve._tracer.start.solution
+    data, tracer, start = curve.points, curve._tracer, curve._tracer.orbit
     grazing = tracer.problem.index if tracer.problem.kind == GRAZE else -1
     value = np.column_stack([data[name].values for name in curve.parameters])
     t, v, sides = (data[name].values for name in ("impact_t", "impact_v", "impact_side"))

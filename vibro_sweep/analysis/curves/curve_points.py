@@ -33,7 +33,7 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     At an onset of sticking there are no multipliers and no states (NaN). The impacts are the end of the chatter, with
     no speed, and those before the next end that are written out (NaN: fewer than elsewhere on the curve).
     """
-    s, kind, names, K = tracer.start.solution, tracer.problem.kind, tracer.names, rows.t.shape[1]
+    s, kind, names, K = tracer.orbit, tracer.problem.kind, tracer.names, rows.t.shape[1]
     sides = tracer.resized(K).problem.sides.astype(int)
     others = np.delete(np.arange(K), tracer.problem.index) if kind >= GRAZE else np.arange(K)
     multipliers, shifts, states = [], [], []

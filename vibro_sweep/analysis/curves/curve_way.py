@@ -9,7 +9,7 @@ from vibro_sweep.analysis.branches.branch_way import stop_and_impact
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.continuation.chord import root
-from vibro_sweep.analysis.continuation.tracer import Tracer, copied, copy
+from vibro_sweep.analysis.continuation.tracer import Tracer, copy
 from vibro_sweep.analysis.curves.curve_events import Event, beside, found_between, found_to_edge, without_echoes
 from vibro_sweep.analysis.curves.curve_rows import Rows, join
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
@@ -48,7 +48,7 @@ class Way:
 
     def __init__(self, tracer: Tracer, first: Place, sign: int, system, progress=None, virtual: bool = True):
         self.tracer, self.system, self.progress, self.virtual = tracer, system, progress, virtual
-        self.first = copied(first)
+        self.first = tracer.copied(first)
         self.first.tangent[:] *= sign
         self.first.tangent_p[:] *= sign
         self.special: list[CurvePoint] = []
@@ -112,7 +112,7 @@ class Way:
         if found is None:
             return False
         w, place = found
-        place = w.correct(place, w.direction(place))
+        place = w.correct(place, place.direction)
         if place is None:
             return False
         copy(with_impacts(self.tracer, self.tracer.path.first, w.K)[1], w.path.first)
@@ -227,7 +227,7 @@ class Way:
         solution = w.solution(place)
         parameters = dict(zip(w.names, map(float, place.p[:2]), strict=True))
         if w.problem.kind == STICK:
-            orbit, stop = PeriodicOrbit(self.system.replace(**parameters), "sticking"), w.start.solution.sides[-1]
+            orbit, stop = PeriodicOrbit(self.system.replace(**parameters), "sticking"), w.orbit.sides[-1]
             return CurvePoint(
                 of_type, parameters, orbit, np.empty(0, complex), error, stop=stop, curve=w.start.type,
                 _chatter=chatter_at(w, place, event is not None and event.touches),
@@ -274,9 +274,9 @@ def is_near_strong(tracer: Tracer, place: Place) -> bool:
 
 def closes(tracer: Tracer, a: Place, b: Place, first: Place) -> bool:
     """Whether the curve passes through its first point between a and b; other curves may come as near as a step."""
-    first = copied(first)
+    first = tracer.copied(first)
     first.phases[:] += 2 * np.pi * np.round(np.mean(a.phases - first.phases) / (2 * np.pi))
-    row = tracer.direction(first)
+    row = first.direction
     ends = [row @ tracer.difference(first, place) for place in (a, b)]
     if ends[0] * ends[1] > 0:
         return False

@@ -1,8 +1,8 @@
 """The stretch of a branch on which its orbit is stable: to the first special point either way."""
 
 from vibro_sweep.analysis.branches.beginning import start_of_walk
-from vibro_sweep.analysis.branches.branch_way import Way
 from vibro_sweep.analysis.branches.continuation import Branch
+from vibro_sweep.analysis.branches.free_way import way_from
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import mirrored
 from vibro_sweep.analysis.branches.track import Rows, join
@@ -10,26 +10,18 @@ from vibro_sweep.analysis.continuation.start import keeps_symmetry
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 
 
-class StableWay(Way):
-    """One way along a branch, as far as the orbit is stable."""
-
-    through = False
-    first_step = 4e-3  # the orbit was not just born
-
-
 def stable_stretch(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float]) -> Branch:
     """From a stable orbit both ways in `parameter`, to the first bifurcation or end of the branch, or to a bound.
 
     Raises ValueError for an orbit that cannot be corrected.
     """
-    lo, hi = bounds
-    walk = start_of_walk(orbit._solution, parameter, lo, hi, stable=True)
-    down, up = (StableWay(walk, forwards, lo, hi, orbit.system) for forwards in (-1.0, 1.0))
+    first = start_of_walk(orbit._solution, parameter, *bounds, stable=True)
+    down, up = (way_from(point, orbit.system, stable=True) for point in (first.backwards(), first))
     down.go()
     up.go()
     rows = join([Rows(*(values[:0:-1] for values in down.points)), up.points])
     special = [down.special[0], up.special[0]]
-    return Branch(parameter, special, *special, down.closed, walk, down.frame, rows)
+    return Branch(parameter, special, *special, down.closed, first.tracer.orbit, down.frame, rows)
 
 
 def stable_end(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], forwards: float) -> SpecialPoint:
@@ -37,8 +29,8 @@ def stable_end(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float]
 
     Raises ValueError for an orbit that cannot be corrected.
     """
-    walk = start_of_walk(orbit._solution, parameter, *bounds, stable=True)
-    way = StableWay(walk, forwards, *bounds, orbit.system)
+    first = start_of_walk(orbit._solution, parameter, *bounds, stable=True)
+    way = way_from(first if forwards > 0 else first.backwards(), orbit.system, stable=True)
     way.go()
     return way.special[0]
 

@@ -68,6 +68,12 @@ class Place(NamedTuple):
         """(K,) velocity jumps."""
         return self.x[:, -1]
 
+    @property
+    def direction(self) -> np.ndarray:
+        """(2 K + 3,) the tangent over what distances are measured by: phases, jumps, parameters in their units, theta;
+        of length 1."""
+        return np.concatenate([self.tangent[:, -2], self.tangent[:, -1], self.tangent_p])
+
 
 def new_place(K: int, n: int) -> Place:
     real, vectors = [(K, n + 2), 3, (K, n + 2), 3], [np.zeros((count, n + 2), complex) for count in (K, K + 1)]

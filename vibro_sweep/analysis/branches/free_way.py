@@ -1,0 +1,150 @@
+"""One way along a branch without impacts: each of its points is known from the parameter alone.
+
+The gap's amplitude |n.X| with Z X = f, Z = K - omega^2 M + i omega C, has peaks as narrow as the losses are small.
+Where Z^-1 Z' times the step is small, X follows its tangent within the step, and so no peak is passed unseen.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import brentq
+
+from vibro_sweep.analysis.branches.births import is_steady
+from vibro_sweep.analysis.branches.branch_way import MOST_POINTS, Way
+from vibro_sweep.analysis.branches.locating import Event
+from vibro_sweep.analysis.continuation.point import Point
+from vibro_sweep.analysis.continuation.tracer import LONGEST_STEP, SHORTEST_STEP
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.analysis.periodic.steady_gap import steady_gap, steady_gap_slopes
+from vibro_sweep.engine.continuation.branch_tests import PASSED
+from vibro_sweep.model.linear import dynamic_stiffness
+
+SHARE = 0.25  # by which Z may change in a step, relative to itself
+SHORTEST = 1e-7  # step: an undamped mode that is not driven in its resonance does not stop the way
+ROUNDED = 48 * float(np.finfo(float).eps)  # of the parameter
+
+
+@dataclass(frozen=True)
+class FreeBranch:
+    """The motion `orbit` without impacts along a parameter; unit: of lengths of steps; box: ends of the parameter."""
+
+    orbit: Solution
+    names: tuple[str]
+    unit: float
+    box: tuple[tuple[float, float]]
+
+    def at(self, value: float, rate: float) -> "FreePoint | None":
+        """The point with this parameter; None where there is no such motion."""
+        family = self.orbit.family.replace(**{self.names[0]: value})
+        point = FreePoint(self, value, rate, replace(self.orbit, family=family))
+        return point if is_steady(point.solution, self.names[0]) else None
+
+
+@dataclass(frozen=True, eq=False)
+class FreePoint:
+    """A point of such a branch; rate: 1 or -1, the direction in which it is followed."""
+
+    tracer: FreeBranch
+    value: float
+    rate: float
+    solution: Solution
+
+    def backwards(self) -> "FreePoint":
+        """The same point in the other direction."""
+        return replace(self, rate=-self.rate)
+
+    @cached_property
+    def margin(self) -> float:
+        """Least distance from the stops."""
+        return self.solution.margin
+
+    def ahead(self, length: float) -> "FreePoint | None":
+        return self.tracer.at(self.value + self.rate * length * self.tracer.unit, self.rate)
+
+
+class FreeWay(Way):
+    """One way along a branch without impacts."""
+
+    def go(self) -> None:
+        """To the branch's end."""
+        a, count, length = self.first, 1, self.first_step
+        self._add(a)
+        while count < MOST_POINTS and length >= SHORTEST_STEP:
+            length = min(length, longest_step(a))
+            b = a.ahead(length)
+            if b is None:
+                length /= 2
+                continue
+            limit = max(self.bounds[0], min(b.value, self.bounds[1]))
+            if limit != b.value:
+                b = self.walk.at(limit, b.rate)
+            graze = grazes(a, b)
+            if graze is not None:
+                self._add(graze)
+                self.special.append(self._end(Event("graze", None), graze, ROUNDED * abs(graze.value)))
+                return
+            self._add(b)
+            if b.value in self.bounds:
+                self.special.append(self._at("limit", b, 0.0))
+                return
+            a, count, length = b, count + 1, min(1.5 * length, LONGEST_STEP)
+            self._tell(count, a.value)
+        self.special.append(self._at("failed", a, math.nan))
+
+
+def way_from(first: Point | FreePoint, system, progress=None, stable: bool = False) -> Way:
+    """One way along a branch from a point of it, as `Way`."""
+    return (FreeWay if isinstance(first, FreePoint) else Way)(first, system, progress, stable)
+
+
+def longest_step(point: FreePoint) -> float:
+    """In which Z changes by `SHARE`, in the units of the branch."""
+    name, unit, q = point.tracer.names[0], point.tracer.unit, point.solution.family.linear
+    slope = point.solution.family.derivative(name, q)
+    turned = slope.omega * (1j * q.C - 2 * q.omega * q.M)
+    change = slope.K - q.omega**2 * slope.M + 1j * q.omega * slope.C + turned
+    if not np.any(change):
+        return np.inf
+    root = np.linalg.cholesky(q.M)  # in the norm of the kinetic energy, which units do not change
+    Z, change = (np.linalg.solve(root, np.linalg.solve(root, of_z).T).T for of_z in (dynamic_stiffness(q), change))
+    share = np.linalg.norm(np.linalg.lstsq(Z, change)[0], 2) * unit
+    return max(SHARE / share, SHORTEST) if share > 0 else np.inf
+
+
+def grazes(a: FreePoint, b: FreePoint) -> FreePoint | None:
+    """The first point from a to b at which the motion touches a stop, if it passes it there."""
+    inside = max(a.margin, np.finfo(float).tiny)  # at the start rounding may say otherwise
+    beyond = b if b.margin <= 0 < a.margin or b.margin < -PASSED * b.solution.size_of_gap else _highest(a, b)
+    if beyond is None:
+        return None
+    most = 2 * abs(a.margin) if math.isfinite(a.margin) else 1.0
+
+    def test(value: float) -> float:
+        return inside if value == a.value else min(a.tracer.at(value, a.rate).margin, most)
+
+    return a.tracer.at(brentq(test, a.value, beyond.value, xtol=1e-300, rtol=4 * np.finfo(float).eps), a.rate)
+
+
+def _highest(a: FreePoint, b: FreePoint) -> FreePoint | None:
+    """The point between a and b, which stay inside, at which the motion is farthest beyond a stop."""
+    if a.solution.is_free or min(a.margin, b.margin) <= 0:
+        return None
+    for side in (1, -1):
+        if _rise(a, side) * a.rate < 0 < _rise(b, side) * a.rate:
+            value = brentq(lambda value, side=side: _rise(a.tracer.at(value, a.rate), side), a.value, b.value)
+            found = a.tracer.at(value, a.rate)
+            if found.margin < 0:
+                return found
+    return None
+
+
+def _rise(point: FreePoint, side: int) -> float:
+    """Of the distance of the steady motion from its stop: the derivative by the parameter."""
+    family = point.solution.family
+    q, slope = family.linear, family.derivative(point.tracer.names[0])
+    now, moved = steady_gap(q), steady_gap_slopes(q, slope)
+    size = abs(now.swing)
+    growth = (now.swing.conjugate() * moved.swing).real / size if size > 0 else 0.0
+    return side * (float(slope.stop(side)) - moved.mean) - growth

@@ -1,0 +1,79 @@
+"""A point of a branch or a curve."""
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.continuation.workspace import TEST, Place
+
+if TYPE_CHECKING:
+    from vibro_sweep.analysis.continuation.tracer import Tracer
+
+
+class Point(Place):
+    """A `Place` with the solution set on which it lies: a point that was corrected and examined, or a guess of one."""
+
+    tracer: "Tracer"
+
+    def __new__(cls, tracer: "Tracer", place: Place) -> "Point":
+        point = super().__new__(cls, *place)
+        point.tracer = tracer
+        return point
+
+    @property
+    def value(self) -> float:
+        """The parameter of a branch; of a curve, the first."""
+        return float(self.p[0])
+
+    def hold(self, value: float) -> None:
+        """The parameter is `value`, to the last bit: rounding may put it beyond what is allowed."""
+        self.p[0] = value
+        self.__dict__.pop("solution", None)
+
+    def touch(self, index: int) -> None:
+        """The impact `index` vanishes, to the last bit."""
+        self.jumps[index] = 0.0
+        self.__dict__.pop("solution", None)
+
+    def backwards(self) -> "Point":
+        """The same point in the other direction."""
+        other = self.tracer.copied(self)
+        for values in (other.tangent, other.tangent_p, other.tests[TEST.rate : TEST.rate + 1]):
+            values *= -1
+        return other
+
+    @property
+    def rate(self) -> float:
+        """Of the parameter, in its unit."""
+        return float(self.tangent_p[0])
+
+    @cached_property
+    def solution(self) -> Solution:
+        return self.tracer.solution(self)
+
+    @property
+    def rounding(self) -> float:
+        """What rounding of the equations does to the parameters, on the plane across the tangent."""
+        return self.tracer.rounding(self, self.direction)
+
+    @property
+    def margin(self) -> float:
+        """Least distance of the flights from the stops."""
+        return float(self.tests[TEST.margin] * self.tracer.units.length)
+
+    @cached_property
+    def releases(self) -> np.ndarray:
+        """(K,) acceleration away from the stop just after an impact with R = 0; infinite for other impacts."""
+        return self.tracer.releases(self)
+
+    @property
+    def stays(self) -> float:
+        """The least of what makes a rest: its length, the acceleration into the stop and the speed before it."""
+        return float(min(self.jumps[self.tracer.problem.rests].min(initial=np.inf), self.tests[TEST.hold]))
+
+
+def along(a: Point, b: Point) -> float:
+    """How far b lies ahead of a, along the tangent there."""
+    return float(a.tracer.difference(a, b) @ a.direction)
