@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from vibro_sweep.analysis.branches.births import is_steady
 from vibro_sweep.analysis.branches.branch_way import MOST_POINTS, Way
@@ -17,12 +17,13 @@ from vibro_sweep.analysis.branches.locating import Event
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.tracer import LONGEST_STEP, SHORTEST_STEP
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.analysis.periodic.steady_gap import steady_gap, steady_gap_slopes
+from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.continuation.branch_tests import PASSED
 from vibro_sweep.model.linear import dynamic_stiffness
 
 SHARE = 0.25  # by which Z may change in a step, relative to itself
 SHORTEST = 1e-7  # step: an undamped mode that is not driven in its resonance does not stop the way
+ASIDE = 1e-7  # of a step, over which a slope is seen
 ROUNDED = 48 * float(np.finfo(float).eps)  # of the parameter
 
 
@@ -122,7 +123,10 @@ def grazes(a: FreePoint, b: FreePoint) -> FreePoint | None:
     most = 2 * abs(a.margin) if math.isfinite(a.margin) else 1.0
 
     def test(value: float) -> float:
-        return inside if value == a.value else min(a.tracer.at(value, a.rate).margin, most)
+        if value == a.value:
+            return inside
+        point = a.tracer.at(value, a.rate)
+        return -most if point is None else min(point.margin, most)  # in a resonance it is beyond all stops
 
     return a.tracer.at(brentq(test, a.value, beyond.value, xtol=1e-300, rtol=4 * np.finfo(float).eps), a.rate)
 
@@ -131,20 +135,17 @@ def _highest(a: FreePoint, b: FreePoint) -> FreePoint | None:
     """The point between a and b, which stay inside, at which the motion is farthest beyond a stop."""
     if a.solution.is_free or min(a.margin, b.margin) <= 0:
         return None
+    ends, aside = sorted((a.value, b.value)), ASIDE * abs(b.value - a.value)
     for side in (1, -1):
-        if _rise(a, side) * a.rate < 0 < _rise(b, side) * a.rate:
-            value = brentq(lambda value, side=side: _rise(a.tracer.at(value, a.rate), side), a.value, b.value)
-            found = a.tracer.at(value, a.rate)
-            if found.margin < 0:
+
+        def distance(value: float, side: int = side) -> float:
+            q = a.solution.family.replace(**{a.tracer.names[0]: value}).linear
+            mean, swing = steady_gap(q)
+            return side * (float(q.stop(side)) - mean) - abs(swing)
+
+        if all(distance(end + step) < distance(end) for end, step in zip(ends, (aside, -aside), strict=True)):
+            least = minimize_scalar(distance, bounds=ends, method="bounded", options={"xatol": aside})
+            found = a.tracer.at(float(least.x), a.rate)
+            if found is not None and found.margin < 0:
                 return found
     return None
-
-
-def _rise(point: FreePoint, side: int) -> float:
-    """Of the distance of the steady motion from its stop: the derivative by the parameter."""
-    family = point.solution.family
-    q, slope = family.linear, family.derivative(point.tracer.names[0])
-    now, moved = steady_gap(q), steady_gap_slopes(q, slope)
-    size = abs(now.swing)
-    growth = (now.swing.conjugate() * moved.swing).real / size if size > 0 else 0.0
-    return side * (float(slope.stop(side)) - moved.mean) - growth

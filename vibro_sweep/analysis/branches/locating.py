@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibro_sweep.analysis.continuation.chord import error_of, root
+from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.tracer import Tracer
 
@@ -53,7 +54,7 @@ def locate(walk: Tracer, event: Event, a: Point, b: Point):
         point.hold(event.limit)
     if event.vanishes is not None:  # one of the unknowns has a value: no test rounds
         point.touch(event.vanishes)
-        error = walk.rounding(point, np.eye(1, 2 * walk.K + 3, walk.K + event.vanishes)[0])
+        error = rounding_error(walk, point, np.eye(1, 2 * walk.K + 3, walk.K + event.vanishes)[0])
     else:
         error = error_of(walk, a, b, test, share, point)
     return None if error is None else (event, along(a, point), point, error)

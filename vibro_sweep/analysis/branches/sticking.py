@@ -10,7 +10,6 @@ import numpy as np
 from vibro_sweep.analysis.branches.sizes import LEAST, least_size
 from vibro_sweep.analysis.branches.special import SpecialPoint, inserted
 from vibro_sweep.analysis.continuation.chatter import Chatter, chatter_at, written_out
-from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.first_point import guess_of, settle
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import NoPlaneError, Tracer
@@ -42,7 +41,7 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
     if not found:
         return None
     tracer, place = min(found, key=lambda one: abs(one[1].p[FIRST] - special.parameters[name]))
-    onset, error = float(place.p[FIRST]), rounding_error(tracer, place, place.direction)
+    onset, error = float(place.p[FIRST]), place.rounding
     orbit = PeriodicOrbit(special.orbit.system.replace(**{name: onset}), "sticking")
     none, chatter = np.empty(0, complex), chatter_at(tracer, place, False)
     return SpecialPoint("sticking", {name: onset}, orbit, none, error, special.stop, _chatter=chatter)

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq
 
+from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.engine.continuation.workspace import Place
@@ -123,4 +124,4 @@ def error_of(
         said = p - p[middle] - np.outer(tests, rate)
         slope, mean = np.polyfit(BESIDE, said, 1)
         scatter = np.abs(said - np.outer(BESIDE, slope) - mean).max()
-    return float(max(TIMES * scatter, OF_TESTS * tracer.rounding(point, chord.row)))
+    return float(max(TIMES * scatter, OF_TESTS * rounding_error(tracer, point, chord.row)))

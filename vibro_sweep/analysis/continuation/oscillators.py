@@ -1,19 +1,19 @@
 """The oscillator as polynomials of its free numbers, two at most (engine/continuation/moving_flow.py)."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from vibro_sweep.analysis.periodic.event_equations import put_tables
 from vibro_sweep.engine.continuation import moving_flow
 from vibro_sweep.engine.continuation.moving_flow import NUMBERS
-from vibro_sweep.engine.impulses.extended import extended, identity
-from vibro_sweep.engine.impulses.extremes import middle_weights
-from vibro_sweep.engine.impulses.flow import TABLES, flow, rates
+from vibro_sweep.engine.impulses.flow import TABLES, rates
 from vibro_sweep.engine.impulses.state_space import checked_cells
-from vibro_sweep.engine.impulses.tables import exponential, taylor_rows
 from vibro_sweep.model.linear import Family, Linear
 
+FEW = 4  # degree that is tried first
 DECAYED = 4e-15  # relative size of the last coefficients
 NARROWEST = 1e-7  # of what is asked for
 BEYOND = 1.2  # times the reach, up to where the polynomials hold
@@ -105,20 +105,21 @@ class Oscillators:
 
     def _degree(self, centre, reach, j: int) -> int | None:
         """The least degree in parameter j; None where the highest allowed is not enough."""
-        most = moving_flow.DEGREE
-        nodes = _nodes(most)
         start = centre + ASIDE * np.where(np.isfinite(reach), reach, 0.0)
-        values = []
-        for x in nodes:
-            start[j] = centre[j] + BEYOND * reach[j] * x
-            values.append(self._sample(start))
-        values = np.array(values)
-        if not np.all(np.isfinite(values)):
-            return None
-        c, size = chebyshev.chebfit(nodes, values, most), _sizes(values, 2 * len(self.family.linear.along))
-        seen = np.flatnonzero((np.abs(c) > DECAYED * size).any(axis=1))
-        degree = int(seen[-1]) if len(seen) else 0
-        return degree if degree <= most - 2 else None
+        for most in (FEW, moving_flow.DEGREE):
+            values = []
+            for x in _nodes(most):
+                start[j] = centre[j] + BEYOND * reach[j] * x
+                values.append(self._sample(start))
+            values = np.array(values)
+            if not np.all(np.isfinite(values)):
+                return None
+            size = _sizes(values, 2 * len(self.family.linear.along))
+            seen = np.flatnonzero((np.abs(_to_chebyshev(most) @ values) > DECAYED * size).any(axis=1))
+            degree = int(seen[-1]) if len(seen) else 0
+            if degree <= most - 2:
+                return degree
+        return None
 
     def _fitted(self, centre, reach, degrees):
         nodes, span = [_nodes(degree) for degree in degrees], np.where(np.isfinite(reach), reach, 0.0)
@@ -128,60 +129,53 @@ class Oscillators:
         if not np.all(np.isfinite(values)):
             return None
         c = values
-        for axis, degree in enumerate(degrees):
-            c = np.moveaxis(c, axis, 0)
-            shape = c.shape
-            c = chebyshev.chebfit(nodes[axis], c.reshape(shape[0], -1), degree).reshape(shape)
-            powers = np.zeros_like(c)
-            for k in range(degree + 1):
-                unit = chebyshev.cheb2poly(np.eye(degree + 1)[k])
-                powers[: len(unit)] += np.multiply.outer(unit, c[k])
-            scale = BEYOND ** -np.arange(degree + 1.0)
-            c = np.moveaxis(powers * scale.reshape(-1, *[1] * (powers.ndim - 1)), 0, axis)
+        for to in (_to_chebyshev, _to_powers):  # one after the other: in powers rounding would not stay small
+            first, second = map(to, degrees)
+            c = np.einsum("ix,xyk->iyk", first, np.einsum("jy,xyk->xjk", second, c))
         return c, values
 
     def _built(self, centre, reach, degrees, c, values) -> np.ndarray:
         q = self.at(centre).linear
-        f = flow(q)
-        n = f.B.shape[0] - 3
+        n = 2 * len(q.along)
         result = np.zeros(1, moving_flow.plane_of(n // 2))
-        r = result[0]
+        r, at_centre = result[0], sampled(q, self.units)
         flat, size = values[..., : n * (n + 1)], _sizes(values.reshape(-1, values.shape[-1]), n)[: n * (n + 1)]
         for j in range(2):
             r["moves"][j] = bool(np.any(np.ptp(flat, axis=j) > 1e-15 * size))
         swaying = np.delete(values.reshape(-1, values.shape[-1]), np.s_[-NUMBERS:-1], axis=1)
         r["is_still"] = bool(np.all(swaying == swaying[0]))
         if not r["moves"].any():
-            exact = sampled(q, self.units)
             c[..., : n * (n + 1)] = 0.0
-            c[0, 0, : n * (n + 1)] = exact[: n * (n + 1)]
+            c[0, 0, : n * (n + 1)] = at_centre[: n * (n + 1)]
         r["parameters"] = len(self.names)
         r["centre"], r["reach"], r["degree"] = centre, reach, degrees
-        r["width"] = f.width * self.units.rate
         r["fit"][: c.shape[0], : c.shape[1]] = c
-        at_centre = sampled(q, self.units)
         r["fit"][0, 0][np.isinf(at_centre)] = at_centre[np.isinf(at_centre)]
         r["half_turns"] = self.halves
-        r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))
+        put_tables(r, q, *self.units)
         longest = np.pi * self.halves / values[..., -1].min()
         r["bits"] = min(max(int(np.ceil(np.log2(2 * longest / r["width"]))), 1), moving_flow.BITS)
-        exact_tables(r, at_centre[: n * (n + 1)].reshape(n, n + 1))
         return result
-
-
-def exact_tables(r, A) -> None:
-    """The flight's tables of A (n, n + 1), in extended precision."""
-    n = len(A)
-    B = extended(np.vstack([A, np.zeros(n + 1)]))
-    power = exponential(B, extended(r["width"]))
-    r["series"][:, :, : n + 1] = taylor_rows(B, identity(n + 1))[:, :n].astype(float)
-    for bit in range(int(r["bits"])):
-        r["powers"][bit, :, : n + 1] = power[:n].astype(float)
-        power = power @ power
 
 
 def _nodes(degree: int) -> np.ndarray:
     return np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
+
+
+@cache
+def _to_chebyshev(degree: int) -> np.ndarray:
+    """Coefficients of Chebyshev polynomials, from values at the nodes."""
+    waves = np.cos(np.outer(np.arange(degree + 1), np.arccos(_nodes(degree))))
+    return waves * np.append(1.0, np.full(degree, 2.0))[:, None] / (degree + 1)
+
+
+@cache
+def _to_powers(degree: int) -> np.ndarray:
+    """Coefficients of the powers of x, from those of Chebyshev polynomials of x / BEYOND."""
+    powers = np.zeros((degree + 1, degree + 1))
+    for k in range(degree + 1):
+        powers[: k + 1, k] = chebyshev.cheb2poly(np.eye(degree + 1)[k, : k + 1])
+    return powers * BEYOND ** -np.arange(degree + 1.0)[:, None]
 
 
 def _sizes(values: np.ndarray, n: int) -> np.ndarray:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import TEST, Place
 
@@ -56,7 +57,7 @@ class Point(Place):
     @property
     def rounding(self) -> float:
         """What rounding of the equations does to the parameters, on the plane across the tangent."""
-        return self.tracer.rounding(self, self.direction)
+        return rounding_error(self.tracer, self, self.direction)
 
     @property
     def margin(self) -> float:

@@ -5,7 +5,6 @@ from copy import copy as copy_object
 
 import numpy as np
 
-from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.oscillators import Oscillators, Units
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.start import Start, keeps_symmetry
@@ -56,8 +55,8 @@ class Tracer:
         half, whole = len(struck) // 2, s.sigma == 1 and len(struck) > 0 and len(struck) % 2 == 0
         whole = whole and kind != STICK
         repeats = whole and s.halves % 4 == 0 and struck[:half] == struck[half:]
-        symmetric = q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
-        mirrors = whole and symmetric and s.halves % 4 == 2 and struck[:half] == tuple(-side for side in struck[half:])
+        mirrors = whole and s.halves % 4 == 2 and struck[:half] == tuple(-side for side in struck[half:])
+        mirrors = mirrors and q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
         sides, rests, count = np.array(which, float), np.isin(np.arange(K), s.rests), len(self.names)
         self.problem = Problem(kind, start.index, sides, rests, float(s.sigma), count, self.unit, repeats, mirrors)
         self.bench = new_bench(K, self.n)
@@ -224,10 +223,6 @@ class Tracer:
     def parameters(self, place: Place) -> np.ndarray:
         """(1,) or (2,)."""
         return place.p[: len(self.names)]
-
-    def rounding(self, place: Place, row: np.ndarray) -> float:
-        """What rounding of the equations does to the parameters of a point on the plane across `row`."""
-        return rounding_error(self, place, row)
 
     def between(self, a: Place, b: Place, share: float) -> Point:
         """On the chord."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.engine.impulses.state_space import ResonanceError, free_modes, has_free_gap
-from vibro_sweep.model.linear import Linear, amplitude_slopes, amplitudes
+from vibro_sweep.model.linear import Linear, amplitudes
 
 
 class SteadyGap(NamedTuple):
@@ -23,13 +23,6 @@ def steady_gap(q: Linear) -> SteadyGap:
     if not np.isfinite(swing):
         raise ResonanceError("the force drives an undamped mode at its own frequency")
     return SteadyGap(0.0 if has_free_gap(q) else float(q.along @ _static(q, q.constant)), swing)
-
-
-def steady_gap_slopes(q: Linear, slope: Linear) -> SteadyGap:
-    """Derivatives where q, whose contact sees no free mode, changes by `slope`."""
-    rest = _static(q, q.constant)
-    mean = slope.along @ rest + q.along @ _static(q, slope.constant - slope.K @ rest)
-    return SteadyGap(float(mean), complex(slope.along @ amplitudes(q) + q.along @ amplitude_slopes(q, slope)))
 
 
 def _static(q: Linear, force: np.ndarray) -> np.ndarray:

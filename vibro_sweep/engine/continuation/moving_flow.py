@@ -8,6 +8,7 @@ to any of their values. Where A changes there, the tables of the flight are buil
 """
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -30,6 +31,7 @@ def count_of(masses: int) -> int:
     return n * (n + 1) + n + NUMBERS
 
 
+@cache
 def plane_of(masses: int) -> np.dtype:
     """N masses, n = 2N. Slopes: derivatives by the first and the second parameter."""
     n, count = 2 * masses, count_of(masses)
