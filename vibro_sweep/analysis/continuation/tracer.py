@@ -16,7 +16,6 @@ from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, unkno
 from vibro_sweep.engine.continuation.workspace import TEST, Place, new_bench
 from vibro_sweep.model.linear import Family
 
-MOST_CORRECTIONS = 20
 LONGEST_STEP, SHORTEST_STEP = 0.05, 1e-11
 STRAIGHT = 0.1  # radians between the tangents of neighbouring points, at most
 BESIDE = 2e-3
@@ -204,21 +203,7 @@ class Tracer:
         if not exact:
             return place if near else None
         place = place if near else self.copied(guess)
-        before = np.inf
-        for _ in range(MOST_CORRECTIONS):
-            if not self.take(place):
-                return None
-            change = self.do(stepper.CORRECT, place, row)
-            if not change <= 1.0:
-                return None
-            if change <= 1e-15 or (change < 1e-8 and change >= 0.3 * before):
-                place.tests[TEST.residual] = change
-                length = np.linalg.norm(place.direction) or 1.0  # a single point has no tangent
-                place.tangent[:] /= length
-                place.tangent_p[:] /= length
-                return place if self.take(place) and self.do(stepper.EXAMINE, place) else None
-            before = change
-        return None
+        return place if self.take(place) and self.do(stepper.SOLVE, place, row) else None
 
     def parameters(self, place: Place) -> np.ndarray:
         """(1,) or (2,)."""

@@ -50,6 +50,7 @@ def plane_of(masses: int) -> np.dtype:
         ("held", float, (n, n)),  # of these the momenta times the places, which the closure keeps by this
         ("fit", float, (DEGREE + 1, DEGREE + 1, count)),  # coefficients of the powers of (p - centre)/reach
         ("exact", float, count),  # what `values` are at a point, of the oscillator itself
+        ("shift", float, count),  # of the polynomials, so that they pass through `exact`
         ("values", float, count),
         ("slopes", float, (2, count)),
         ("A", float, (n, n + 1)),
@@ -94,7 +95,20 @@ def fit_at(f, p, q):
             by_s = by_s * s + value
             value = value * s + row
             by_u = by_u * s + slope
-        f.values[i], f.slopes[0, i], f.slopes[1, i] = value, by_s / f.reach[0], by_u / f.reach[1]
+        f.values[i] = value + f.shift[i]
+        f.slopes[0, i], f.slopes[1, i] = by_s / f.reach[0], by_u / f.reach[1]
+
+
+@jit
+def take_shift(f, p, q, exact):
+    """Let the polynomials pass through the values `exact` at (p, q), or as they are."""
+    for i in range(len(f.shift)):
+        f.shift[i] = 0.0
+    if exact:
+        fit_at(f, p, q)
+        for i in range(len(f.shift)):
+            if math.isfinite(f.exact[i]):
+                f.shift[i] = f.exact[i] - f.values[i]
 
 
 @jit

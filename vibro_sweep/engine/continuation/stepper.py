@@ -12,7 +12,7 @@ import numpy as np
 from vibro_sweep.engine.continuation.corrector import assemble, in_order, move, newton_step, put_plane
 from vibro_sweep.engine.continuation.curve_tests import overflows
 from vibro_sweep.engine.continuation.looking_at import examine, happens, refresh, touches
-from vibro_sweep.engine.continuation.moving_flow import OMEGA, move_exactly, move_to
+from vibro_sweep.engine.continuation.moving_flow import OMEGA, move_exactly, move_to, take_shift
 from vibro_sweep.engine.continuation.path import (
     bulges,
     comes_back,
@@ -35,6 +35,8 @@ FULL, EVENT, CLOSED, FAILED, FAR, LEFT, CHATTER, TOUCH = range(8)
 # chatter sequence are to be written out, TOUCH: something may vanish twice
 MOST_CORRECTIONS = 6
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding
+MOST_EXACTLY = 20  # corrections of a point that is read
+EXACTLY = 1e-15  # its last change, unless the changes stop falling
 SHIFTED = 0.8  # of a step, where its end lies on a bifurcation by chance
 MOST_SHIFTS = 5  # of one step
 BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
@@ -71,10 +73,11 @@ def cosine(c, a, b):
 
 
 @jit
-def correct(f, c, place, row, b):
-    """Newton's method from `place` on the plane through it across `row`. Corrections made; 0: none found."""
+def correct(f, c, place, row, b, most, enough):
+    """Newton's method from `place` on the plane through it across `row`, so many corrections at most, until a change is
+    small enough. Corrections made; 0: none found."""
     before = np.inf
-    for count in range(1, MOST_CORRECTIONS + 1):
+    for count in range(1, most + 1):
         for j in range(2):
             if not abs(place.p[j] - f.centre[j]) <= BEYOND * f.reach[j]:
                 return 0
@@ -83,7 +86,7 @@ def correct(f, c, place, row, b):
         change = newton_step(f, c, place, row, b)
         if not change <= 1.0 or not in_order(f, c, place):
             return 0
-        if change < CONVERGED or (change < 1e-7 and change > 0.3 * before):
+        if change < enough or (change < 1e-7 and change > 0.3 * before):
             place.tests[TEST.residual] = change
             normalise(c, place)
             return count
@@ -118,7 +121,7 @@ def walk(f, c, path, place, row, b):
         copy_place(a, place)
         take_row(c, a, row)
         move(c, place, a.tangent, a.tangent_p, length)
-        made = correct(f, c, place, row, b)
+        made = correct(f, c, place, row, b, MOST_CORRECTIONS, CONVERGED)
         turn = np.inf
         if made > 0:
             turn = math.acos(min(1.0, max(-1.0, cosine(c, a, place))))
@@ -170,7 +173,8 @@ def take_states(f, c, path, b):
     return 1.0
 
 
-MOVE, ASSEMBLE, CORRECT, EXAMINE, NEAR, WALK, STATES, FOLLOW, TAKE_APART, TAKE_UP = range(10)  # what `at` is to do
+# what `at` is to do
+MOVE, ASSEMBLE, CORRECT, EXAMINE, NEAR, SOLVE, WALK, STATES, FOLLOW, TAKE_APART, TAKE_UP = range(11)
 
 
 @entry
@@ -179,12 +183,14 @@ def at(task, planes, c, path, place, row, b):
 
     MOVE: to the parameters of `place`, with the values `exact` of the plane; CORRECT, one step of Newton's method (its
     size is returned), and EXAMINE, tests, do that first. ASSEMBLE: equations, and null vectors. NEAR: all steps of
-    Newton's method, with the polynomials of the plane, and tests. WALK: why it ends. STATES:
+    Newton's method, with the polynomials of the plane, and tests. SOLVE: the same as far as rounding allows, with the
+    polynomials shifted so that they pass through `exact` at `place`. WALK: why it ends. STATES:
     of the recorded points, at `record.phase`. FOLLOW: states before all events
     from that before the first. TAKE_APART: the change of all events, `events.changes[1]`, for xi_1 and parameters in
     `work.null`. TAKE_UP: the left vector, in `trial`, for those of the last and of the eliminated equations.
     """
     f = planes[0]
+    take_shift(f, place.p[FIRST], place.p[SECOND], task == SOLVE)
     if task == MOVE or task == CORRECT or task == EXAMINE:
         moved = move_exactly(f, place.p[FIRST], place.p[SECOND])
         if task == MOVE or not moved:
@@ -207,11 +213,13 @@ def at(task, planes, c, path, place, row, b):
     if task == TAKE_UP:
         take_up(b, f.A.shape[0], b.work[0].left, b.trial)
         return 1.0
-    if task == NEAR and not (correct(f, c, place, row, b) > 0 and move_to(f, place.p[FIRST], place.p[SECOND])):
-        return 0.0
+    if task == NEAR or task == SOLVE:
+        most, enough = (MOST_EXACTLY, EXACTLY) if task == SOLVE else (MOST_CORRECTIONS, CONVERGED)
+        if not (correct(f, c, place, row, b, most, enough) > 0 and move_to(f, place.p[FIRST], place.p[SECOND])):
+            return 0.0
     if not assemble(f, c, place, b):
         return 0.0
-    if task == EXAMINE or task == NEAR:
+    if task == EXAMINE or task == NEAR or task == SOLVE:
         return 1.0 if examine(f, c, place, b) else 0.0
     put_plane(f, c, b, row)
     return 1.0
