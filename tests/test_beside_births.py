@@ -11,7 +11,7 @@ from vibro_sweep.analysis.branches.beginning import start_of_walk
 from vibro_sweep.analysis.branches.branch_way import Way
 from vibro_sweep.analysis.branches.own_birth import halves_apart
 from vibro_sweep.analysis.branches.passed_births import passed
-from vibro_sweep.analysis.branches.track import Rows
+from vibro_sweep.analysis.continuation.recorded import Rows
 from vibro_sweep.analysis.continuation.tracer import branch_through
 from vibro_sweep.analysis.windows.stretch import stable_end
 
@@ -133,4 +133,4 @@ def test_where_halves_turn_round_is_counted():
     nothing = np.zeros((6, 0))
     rows = Rows(np.full(6, 7.0), t, np.tile(s.jumps, (6, 1)), nothing, nothing, nothing, nothing, nothing)
     assert passed(walk, [rows], None) == [2, 4, 5]
-    assert passed(walk, [Rows(*(values[:2] for values in rows)), Rows(*(values[2:3] for values in rows))], None) == [2]
+    assert passed(walk, [rows.taken(np.s_[:2]), rows.taken(np.s_[2:3])], None) == [2]

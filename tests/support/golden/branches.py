@@ -42,9 +42,13 @@ def result_of(branch, rng, points: int = POINTS) -> dict:
 def own_orbit(branch):
     """An orbit of this branch: special points may have the orbit from which it is born."""
     periods = {one.orbit.period for one in branch.special if one.orbit.period}
-    last = branch.points.sizes["point"] - 1
+    last, values = branch.points.sizes["point"] - 1, branch.points[branch.parameter].values
+    special = {one.parameters[branch.parameter] for one in branch.special[1:-1]}
     for share in (0.5, 0.3, 0.7, 0.1, 0.9):  # at a fold it may not be found
-        found = _orbit_at(branch, round(share * last), sorted(periods | {2 * n for n in periods}))
+        k = round(share * last)
+        if values[k] in special:  # two orbits meet there
+            continue
+        found = _orbit_at(branch, k, sorted(periods | {2 * n for n in periods}))
         if found is not None:
             return found
     raise LookupError("no orbit of the branch is found from its points")

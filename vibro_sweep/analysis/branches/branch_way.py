@@ -15,8 +15,9 @@ from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
-from vibro_sweep.analysis.branches.track import Rows, Track, join, row_of
+from vibro_sweep.analysis.branches.track import Track, row_of
 from vibro_sweep.analysis.continuation.point import Point, along
+from vibro_sweep.analysis.continuation.recorded import Rows, join
 from vibro_sweep.analysis.continuation.tracer import SHORTEST_STEP
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -112,7 +113,7 @@ class Way:
         return sum(len(rows.p) for rows in self.rows[:parts])
 
     def _without_last(self) -> list[Rows]:
-        return [*self.rows[:-1], Rows(*(values[:-1] for values in self.rows[-1]))]
+        return [*self.rows[:-1], self.rows[-1].taken(np.s_[:-1])]
 
     def _again(self, before: Point, a: Point, b: Point | None) -> bool:
         """Pass the step from `before` to a once more, knowing b behind it. True where the branch ends there."""

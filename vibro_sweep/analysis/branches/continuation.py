@@ -15,7 +15,8 @@ from vibro_sweep.analysis.branches.branch_points import dataset
 from vibro_sweep.analysis.branches.free_way import way_from
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.sticking import sticking_onset
-from vibro_sweep.analysis.branches.track import Rows, join, row_of
+from vibro_sweep.analysis.branches.track import row_of
+from vibro_sweep.analysis.continuation.recorded import Rows, both_ways
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -102,8 +103,7 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     up.go()
     (begins, before), (ends, after) = (_accumulation(way.special[-1], lo, hi) for way in (down, up))
     special = [*before, begins, *reversed(down.special[:-1]), *up.special[:-1], ends, *after]
-    backwards = Rows(*(values[:0:-1] for values in down.points))
-    rows = join([backwards, up.points])
+    rows = both_ways(down.points, up.points)
     return Branch(parameter, special, begins, ends, False, start, down.frame, rows)
 
 

@@ -4,11 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.pairs import exchanged, keeps_side
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.continuation.branch_tests import FAR_OUTSIDE
-from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE
+from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE, exchanged, keeps_side
 from vibro_sweep.model.bifurcations import BY_NAME
 
 PRODUCT_ONE = 1e-6  # of a product of two multipliers: within it, it is 1
@@ -50,7 +49,7 @@ def explained(a: Point, b: Point, types: list[str]) -> bool:
     crossed = tuple(sum(BY_NAME[kind].crosses[i] for kind in types) for i in range(3))
     if x.on_circle != y.on_circle or a.solution.torus == 1.0:
         return all((one - other) % 2 == 0 for one, other in zip(change[:2], crossed[:2], strict=True))
-    if exchanged(a, b):
+    if exchanged(_parts(a), _parts(b)):  # a pair goes out and another one comes in: counts do not tell
         return False
     if change == crossed:
         return True
@@ -68,7 +67,7 @@ def stands_alone(a: Point, b: Point, point: Point, kind: str) -> bool:
     crossing = BY_NAME[kind].crosses
     if x.on_circle or y.on_circle or at.on_circle != np.dot(crossing, (1, 1, 2)) or a.solution.torus == 1.0:
         return True
-    if crossing[2] and keeps_side(point, a, b):
+    if crossing[2] and keeps_side(*map(_parts, (point, a, b))):
         return False
     for side in (x, y):
         more = np.subtract(side[:3], at[:3])
@@ -76,6 +75,12 @@ def stands_alone(a: Point, b: Point, point: Point, kind: str) -> bool:
         if not any(change in ((0, 0, 0), *MEET) for change in changes):
             return False
     return True
+
+
+def _parts(point: Point) -> np.ndarray:
+    """(n, 2) real and imaginary parts of multipliers, as the compiled steps see them."""
+    mu = point.solution.multipliers
+    return np.stack([mu.real, mu.imag], axis=1)
 
 
 def _far_outside(before: np.ndarray, behind: np.ndarray) -> bool:

@@ -11,8 +11,9 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.own_birth import may_be_born, over_birth
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.branches.track import Rows, Track
+from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.continuation.point import Point
+from vibro_sweep.analysis.continuation.recorded import Rows
 from vibro_sweep.analysis.continuation.start import keeps_symmetry
 from vibro_sweep.analysis.continuation.tracer import Tracer
 
@@ -51,7 +52,7 @@ def before_passed(walk: Tracer, track: Track, rows: Rows, counts: Iterable[int],
     """
     for last in counts:
         for count in range(last, max(0, last - BACK), -1):
-            kept = Rows(*(values[:count] for values in rows))
+            kept = rows.taken(np.s_[:count])
             a = track.point_behind(kept) if count > 1 else first
             over = None if a is None else over_birth(walk, a)
             if over is not None:

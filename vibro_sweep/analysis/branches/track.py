@@ -1,35 +1,18 @@
 """Compiled steps along a branch (engine/continuation/stepper.py), from one event to the next."""
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from vibro_sweep.analysis.continuation.first_point import guess_of
 from vibro_sweep.analysis.continuation.point import Point
+from vibro_sweep.analysis.continuation.recorded import Rows, rows_of
 from vibro_sweep.analysis.continuation.tracer import NoPlaneError, copy
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST, Place, new_place
 from vibro_sweep.engine.impulses.flow import contact_coordinates
-
-
-class Rows(NamedTuple):
-    """Points of a branch."""
-
-    p: np.ndarray  # (points,)
-    t: np.ndarray  # (points, K)
-    D: np.ndarray  # (points, K)
-    ends: np.ndarray  # (points, rests)
-    motion: np.ndarray  # (points, K, 2): gap velocity and acceleration before each impact
-    margin: np.ndarray  # (points,)
-    residual: np.ndarray  # (points,)
-    state: np.ndarray  # (points, 2N): x1 v1 .. xN vN at t = 0
-
-
-def join(parts: list[Rows]) -> Rows:
-    return Rows(*(np.concatenate(values) for values in zip(*parts, strict=True)))
 
 
 def row_of(p: float, s: Solution, frame: tuple[int, int]) -> Rows:
@@ -66,26 +49,17 @@ class Track:
         """Steps until something happens, or as many points as one call records: the reason and the points before the
         step. FAILED too where around the last point the oscillator is not to be had as polynomials of the parameter."""
         reason, count, _ = self.record_steps(passed)
-        r, w = self.path.record, self.walk
-        p, x, units = r.p[:count, 0].copy(), r.x[:count], w.units
-        tau = np.array([w.tau_at(value) for value in p.tolist()])
-        r.phase[:count] = 2 * np.pi * self.origin + tau
+        r, w = type(self.path.record)(*(values[:count] for values in self.path.record)), self.walk
+        tau = np.array([w.tau_at(value) for value in r.p[:, 0].tolist()])
+        r.phase[:] = 2 * np.pi * self.origin + tau
         w.do(stepper.STATES, self.b)
         if reason == stepper.FAR:
             try:
                 w.recentre(self.a)
             except NoPlaneError:
                 reason = stepper.FAILED
-        omega = r.omega[:count] * units.rate
-        t = (x[..., -2] - tau[:, None]) / omega[:, None]
-        motion = r.motion[:count] * units.speed * [1.0, units.rate]
-        state = self._masses(p, r.state[:count] * w.state_units)
-        margin, residual = r.tests[:count, TEST.margin] * units.length, r.tests[:count, TEST.residual].copy()
-        rests = w.problem.rests
-        D = np.where(rests, -motion[..., 0], x[..., -1] * units.speed)
-        ends = (t + x[..., -1] / omega[:, None])[:, rests]
-        rows = Rows(p, t, D, ends, motion, margin, residual, state)
-        return reason, rows
+        state = self._masses(r.p[:, 0], r.state * w.state_units)
+        return reason, rows_of(w, r.x, r.motion, r.p[:, 0], r.tests, r.omega, tau, state)
 
     def _masses(self, p: np.ndarray, states: np.ndarray) -> np.ndarray:
         """x1 v1 .. xN vN from contact coordinates."""

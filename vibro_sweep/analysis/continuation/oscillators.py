@@ -1,16 +1,18 @@
 """The oscillator as polynomials of its free numbers, two at most (engine/continuation/moving_flow.py)."""
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from vibro_sweep.analysis.periodic.event_equations import put_tables
 from vibro_sweep.engine.continuation import moving_flow
 from vibro_sweep.engine.continuation.moving_flow import NUMBERS
-from vibro_sweep.engine.impulses.flow import TABLES, rates
+from vibro_sweep.engine.impulses.extended import extended, identity
+from vibro_sweep.engine.impulses.extremes import middle_weights
+from vibro_sweep.engine.impulses.flow import TABLES, flow, rates
 from vibro_sweep.engine.impulses.state_space import checked_cells
+from vibro_sweep.engine.impulses.tables import exponential, taylor_rows
 from vibro_sweep.model.linear import Family, Linear
 
 FEW = 4  # degree that is tried first
@@ -152,10 +154,26 @@ class Oscillators:
         r["fit"][: c.shape[0], : c.shape[1]] = c
         r["fit"][0, 0][np.isinf(at_centre)] = at_centre[np.isinf(at_centre)]
         r["half_turns"] = self.halves
-        put_tables(r, q, *self.units)
+        r["width"] = flow(q).width * self.units.rate
+        r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))
         longest = np.pi * self.halves / values[..., -1].min()
         r["bits"] = min(max(int(np.ceil(np.log2(2 * longest / r["width"]))), 1), moving_flow.BITS)
+        A = at_centre[: n * (n + 1)]
+        r["series"][:, :, : n + 1], r["powers"][: r["bits"], :, : n + 1] = tables_of(
+            A.tobytes(), n, float(r["width"]), int(r["bits"])
+        )
         return result
+
+
+@lru_cache(64)
+def tables_of(A: bytes, n: int, width: float, bits: int) -> tuple[np.ndarray, np.ndarray]:
+    """B^k/k! and exp(B width 2^j), first n rows, for B = (A; 0) with A (n, n + 1), in extended precision."""
+    B = extended(np.vstack([np.frombuffer(A).reshape(n, n + 1), np.zeros(n + 1)]))
+    step, powers = exponential(B, extended(width)), []
+    for _ in range(bits):
+        powers.append(step[:n].astype(float))
+        step = step @ step
+    return taylor_rows(B, identity(n + 1))[:, :n].astype(float), np.array(powers)
 
 
 def _nodes(degree: int) -> np.ndarray:

@@ -13,10 +13,10 @@ import numpy as np
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.chatter import written_out
 from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
+from vibro_sweep.analysis.continuation.recorded import Rows, both_ways
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves import curve_text
 from vibro_sweep.analysis.curves.curve_points import dataset
-from vibro_sweep.analysis.curves.curve_rows import Rows, join
 from vibro_sweep.analysis.curves.curve_way import CurvePoint, Way
 from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.periodic.one_thread import one_thread
@@ -131,8 +131,7 @@ def bifurcation_curve(
     up = Way(tracer, first, -sign, special.orbit.system, progress, virtual)
     up.go()
     ends = [*reversed(down.special), *up.special]
-    backwards = Rows(*(values[:0:-1] for values in down.points))
-    rows = join([backwards, up.points])
+    rows = both_ways(down.points, up.points)
     return BifurcationCurve(start.type, names, ends, down.special[-1], up.special[-1], False, tracer, rows)
 
 

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.analysis.continuation.recorded import Rows
 from vibro_sweep.analysis.continuation.tracer import Tracer
-from vibro_sweep.analysis.curves.curve_rows import Rows
 from vibro_sweep.analysis.periodic.motion_between import multipliers_of
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS
@@ -39,7 +39,7 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     multipliers, shifts, states = [], [], []
     oscillators = [tracer.oscillators.at(p).linear for p in rows.p]
     flows = _flows(oscillators) if kind != STICK else oscillators
-    for q, f, t, D, motion, h in zip(oscillators, flows, rows.t, rows.D, rows.motion, rows.h, strict=True):
+    for q, f, t, D, motion, h in zip(oscillators, flows, rows.t, rows.D, rows.motion, rows.state, strict=True):
         contacts = np.column_stack([q.stop(sides), 1 + q.restitution(sides)])[others]
         P, u = forcing_period(q) / 2 * s.halves, np.concatenate([t[others], D[others]])
         shifts.append((tracer.tau - q.tau) / q.omega)

@@ -9,13 +9,14 @@ from vibro_sweep.analysis.branches.branch_way import stop_and_impact
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.continuation.chord import root
+from vibro_sweep.analysis.continuation.recorded import Rows, join, rows_of
 from vibro_sweep.analysis.continuation.tracer import Tracer, copy
 from vibro_sweep.analysis.curves.curve_events import Event, beside, found_between, found_to_edge, without_echoes
-from vibro_sweep.analysis.curves.curve_rows import Rows, join
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.curve_tests import NEAR_STRONG
+from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.path import Record
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK, TORUS
 from vibro_sweep.engine.continuation.workspace import TEST, THETA, Place, new_place
@@ -123,13 +124,18 @@ class Way:
     def _keep(self, record: Record, count: int) -> None:
         if count:
             r = Record(*(values[:count] for values in record))
-            self.rows.append(rows_of(self.tracer, r.x, r.motion, r.p, r.tests, r.omega * self.tracer.units.rate))
+            self._record(r.x, r.motion, r.p, r.tests, r.omega)
 
     def _add(self, place: Place) -> None:
         w = self.tracer
         w.assemble(place)
-        motion, omega = w.bench.events["motion"][None], np.array([w.omega(place)])
-        self.rows.append(rows_of(w, place.x[None], motion, place.p[None], place.tests[None], omega))
+        motion, omega = w.bench.events["motion"][None], w.planes[0]["numbers"][OMEGA, None]
+        self._record(place.x[None], motion, place.p[None], place.tests[None], omega)
+
+    def _record(self, x, motion, p, tests, omega) -> None:
+        w = self.tracer
+        state = x[:, 0, : w.n] * w.state_units
+        self.rows.append(rows_of(w, x, motion, p, tests, omega, w.tau, state))
 
     def _pass(self, a: Place, b: Place) -> bool:
         """Record what lies between a and b where the orbit is real, then b. Whether the curve goes on from there.
@@ -219,7 +225,7 @@ class Way:
         t = solution.times + (q.tau - w.tau) / q.omega
         motion = solution.motion[:, :2]
         h = solution.states[0, : w.n] - steady_motion(q, solution.times[0])
-        values = p, t, solution.jumps, motion, np.array(solution.margin), np.array(solution.change), h
+        values = p, t, solution.jumps, solution.ends, motion, np.array(solution.margin), np.array(solution.change), h
         self.rows.append(Rows(*(value[None].copy() for value in values)))
 
     def _at(self, of_type, place: Place, error: float, event: Event | None = None, tracer=None) -> CurvePoint:
@@ -241,15 +247,6 @@ class Way:
             of_type, parameters, orbit, multipliers, error, impact=impact, stop=stop, curve=w.start.type,
             touches=event is not None and event.touches,
         )  # fmt: skip
-
-
-def rows_of(tracer: Tracer, x, motion, p, tested, omega) -> Rows:
-    """Points, of what kernels have of them; omega: (points,) of the force."""
-    units, n = tracer.units, tracer.n
-    times, speeds = (x[..., n] - tracer.tau) / omega[:, None], motion * units.speed * [1.0, units.rate]
-    margin, residual = tested[:, TEST.margin] * units.length, tested[:, TEST.residual].copy()
-    jumps, states = x[..., n + 1] * units.speed, x[:, 0, :n] * tracer.state_units
-    return Rows(p.copy(), times, jumps, speeds, margin, residual, states)
 
 
 def outside_between(tracer: Tracer, a: Place, b: Place) -> Place | None:

@@ -82,36 +82,27 @@ def _tables(q: Linear, sigma: int, halves: int, rests: bool) -> tuple[np.ndarray
     steady_gap(q)  # where it does not exist there is no such orbit; nor where this does not, but rests hold the gap
     if not rests:
         push_of_free_mode(q)
-    n = 2 * len(q.along)
+    f = flow(q)
+    m = len(f.B)
+    n = m - 3
     units = np.repeat([1.0, q.omega], n // 2)
+    scale = np.append(units, 1.0) / units[:, None]
     result = np.zeros(1, moving_flow.plane_of(n // 2))
-    r = result[0]
-    B = put_tables(r, q, 1.0, q.omega)
-    r["A"] = B[:, [*range(n), n + 2]]
+    r, columns = result[0], [*range(n), m - 1]
+    r["A"] = f.B[:n, columns] * scale / q.omega
     to, X = contact_coordinates(q), amplitudes(q)
     r["Z"] = np.concatenate([to.P @ X, 1j * (to.U @ X)])
-    r["bits"], r["is_still"], r["is_known"] = moving_flow.BITS, 1, 1
+    rates = q.omega ** -np.arange(ORDER + 1.0)
+    r["series"][:, :, : n + 1] = f.series.reshape(-1, m, m)[:, :n, columns] * scale * rates[:, None, None]
+    r["powers"][:, :, : n + 1] = f.powers[:, :n, columns] * scale
+    r["width"], r["bits"], r["is_still"], r["is_known"] = f.width * q.omega, moving_flow.BITS, 1, 1
     r["half_turns"], r["reach"] = halves, 1.0
     r["exact"][: n * (n + 1)] = r["A"].ravel()
-    r["exact"][n * (n + 1) : n * (n + 2)] = B[n // 2 :, n : n + 2].T.ravel()
+    r["exact"][n * (n + 1) : n * (n + 2)] = f.B[n // 2 : n, n : n + 2].T.ravel() / q.omega**2
+    r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))
     if rests:
         return result, None
     if sigma == 1:
         r["held"] = unseen_modes(q) / np.outer(units, units)
         r["is_held"] = bool(np.any(r["held"]))
     return result, closing(q, sigma, halves) * np.append(units, 1.0) / units[:, None]
-
-
-def put_tables(r, q: Linear, length: float, rate: float) -> np.ndarray:
-    """The tables of a flight in a `plane_of`, in units of a length and of a rate; B (n, n + 3) of flow.py in these."""
-    f = flow(q)
-    m = len(f.B)
-    n = m - 3
-    units = np.repeat([length, length * rate], n // 2)
-    scale, columns = np.append(units, [1.0, 1.0, 1.0]) / units[:, None], [*range(n), m - 1]
-    orders = rate ** -np.arange(ORDER + 1.0)[:, None, None]
-    r["series"][:, :, : n + 1] = f.series.reshape(-1, m, m)[:, :n, columns] * scale[:, columns] * orders
-    r["powers"][:, :, : n + 1] = f.powers[:, :n, columns] * scale[:, columns]
-    r["width"] = f.width * rate
-    r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))
-    return f.B[:n] * scale / rate

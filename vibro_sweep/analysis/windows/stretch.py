@@ -5,7 +5,7 @@ from vibro_sweep.analysis.branches.continuation import Branch
 from vibro_sweep.analysis.branches.free_way import way_from
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.switching import mirrored
-from vibro_sweep.analysis.branches.track import Rows, join
+from vibro_sweep.analysis.continuation.recorded import both_ways
 from vibro_sweep.analysis.continuation.start import keeps_symmetry
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 
@@ -19,7 +19,7 @@ def stable_stretch(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     down, up = (way_from(point, orbit.system, stable=True) for point in (first.backwards(), first))
     down.go()
     up.go()
-    rows = join([Rows(*(values[:0:-1] for values in down.points)), up.points])
+    rows = both_ways(down.points, up.points)
     special = [down.special[0], up.special[0]]
     return Branch(parameter, special, *special, down.closed, first.tracer.orbit, down.frame, rows)
 
