@@ -41,8 +41,9 @@ def criticality(solution: Solution) -> str | None:
 
 def cubic_terms(bench: Bench, problem: Problem, place: Place) -> tuple[np.ndarray, np.ndarray]:
     """c and d, and the sum of the sizes of the terms of each, of an examined point; z is in units of `place.v`."""
-    n, angle = len(bench.closing), place.p[THETA]
-    left = [place.w[:-1, :2, None] * bench.left, place.w[-2, 2:, None] * bench.closing]
+    closing, angle = bench.work[0]["closing"], place.p[THETA]
+    n = len(closing)
+    left = [place.w[:-1, :2, None] * bench.events["left"], place.w[-2, 2:, None] * closing]
     terms = np.concatenate([one[..., [RESONANT, OPPOSITE]].reshape(-1, 2) for one in left])
     terms /= -problem.sigma * np.exp(1j * angle) * (place.w[-2, 2:] @ place.v[0, :n])
     return terms.sum(0), np.abs(terms).sum(0)

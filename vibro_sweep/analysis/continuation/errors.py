@@ -36,7 +36,7 @@ def sensitivity(tracer: "Tracer", place: Place, row: np.ndarray) -> float:
         events["sides"][:] = -np.einsum("ikr,k->ir", events["factors"][:, :free], by_rows)
         tracer.do(stepper.TAKE_UP, place)
         if c.kind == STICK:
-            tracer.bench.trial[0, 0] -= tracer.bench.trial[-2, 2:] @ tracer.bench.tail.by_end
+            tracer.bench.trial[0, 0] -= tracer.bench.trial[-2, 2:] @ tracer.bench.tail[0]["by_end"]
         rows = np.abs(tracer.bench.trial)
         total = rows[:-1, :2].sum() + rows[-2, 2:].sum() + np.abs(by_rows[: conditions(c)]).sum()
         found.append(total * c.unit[j])

@@ -117,7 +117,7 @@ class Tracer:
     def tail(self, place: Place) -> np.ndarray:
         """`numbers` of what follows the last impact written out, of an onset of sticking: times."""
         self.assemble(place)
-        return self.bench.tail.numbers / self.units.rate
+        return self.bench.tail[0]["numbers"] / self.units.rate
 
     def nearest(self, place: Place) -> tuple[float, int]:
         """Time and side of the turning point nearest to its stop."""

@@ -12,7 +12,9 @@ def second_order(tracer: Tracer, place: Place) -> tuple[np.ndarray, np.ndarray]:
     """Of the times and impulses (2K,) on the plane z w + conj(z w): coefficients of z^2 and |z|^2."""
     tracer.take(place)
     tracer.do(stepper.EXAMINE, place)
-    series = tracer.bench.series.transpose(1, 0, 2).reshape(2 * tracer.K, -1) * in_time(tracer, place)[:, None]
+    series = (
+        tracer.bench.events["series"].transpose(1, 0, 2).reshape(2 * tracer.K, -1) * in_time(tracer, place)[:, None]
+    )
     return series[:, SQUARE].copy(), series[:, MIXED].real.copy()
 
 

@@ -81,7 +81,7 @@ def look(f, c, place, b):
                 shift(f, work.other[0], y, other)
                 begin, length = begin + omega * aside, length - aside
             if (i + 1) % K == c.index:
-                length -= b.tail.numbers[NEXT] if c.kind == STICK else aside
+                length -= b.tail[0].numbers[NEXT] if c.kind == STICK else aside
         if c.rests[i]:
             b.events[i].hold = press(f, c.sides[i], place.x[i], b.events[i], work)
             begin += place.x[i, n + 1]

@@ -20,12 +20,13 @@ are for Newton's method, which needs fewer orders of them.
 """
 
 import math
-from typing import NamedTuple
+from functools import cache
 
 import numpy as np
 
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW
 from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.memory import record
 
 ORDERS = 16  # of the series
 SLOPES = 8  # orders of its derivatives: what is left out is at most 3e-8 of them
@@ -35,33 +36,30 @@ GAP = np.array(_CHOOSE) / FACTORIAL[: ORDERS + 2, None]  # of (s_k - s)^m/m!, po
 SPEED = np.vstack([np.zeros(ORDERS + 2), GAP[:-1]])  # of its derivative
 
 
-class Tail(NamedTuple):
+@cache
+def tail_of(masses: int) -> np.dtype:
     """W = n + 3 derivatives: by h (n), by the time and by both parameters; they stand behind their numbers."""
-
-    rows: np.ndarray  # (3, ORDERS + 3, n): e_gap A^m, and its derivatives by the parameters
-    columns: np.ndarray  # (3, ORDERS + 1, n): A^m e_v
-    y: np.ndarray  # (ORDERS + 3,)
-    y_slopes: np.ndarray  # (ORDERS + 3, W)
-    gamma: np.ndarray  # (ORDERS + 2,)
-    gamma_slopes: np.ndarray  # (ORDERS + 2, W)
-    power: np.ndarray  # (ORDERS, ORDERS + 3): [l, k] is coefficient l of pi^k
-    power_slopes: np.ndarray  # (SLOPES, ORDERS + 3, W)
-    nu: np.ndarray  # (ORDERS, ORDERS + 1): [l, m] is coefficient l of nu_m
-    nu_slopes: np.ndarray  # (SLOPES, ORDERS + 1, W)
-    d: np.ndarray  # (ORDERS,)
-    d_slopes: np.ndarray  # (SLOPES, W)
-    kept_slopes: np.ndarray  # (W,): of R/(1 + R)
-    sides: np.ndarray  # (3, W): right sides
-    Q: np.ndarray  # (n, W + 2): the number, its derivatives, and that by s
-    numbers: np.ndarray  # (2,): see chatter_sum.py
-    by_end: np.ndarray  # (n,): see chatter_tail.py
-
-
-def new_tail(n: int) -> Tail:
-    W, L = n + 3, ORDERS
-    shapes = (3, L + 3, n), (3, L + 1, n), L + 3, (L + 3, W), L + 2, (L + 2, W), (L, L + 3), (SLOPES, L + 3, W)
-    more = (L, L + 1), (SLOPES, L + 1, W), L, (SLOPES, W), W, (3, W), (n, W + 2), 2, n
-    return Tail(*map(np.zeros, [*shapes, *more]))
+    n = 2 * masses
+    W = n + 3
+    return record([
+        ("rows", float, (3, ORDERS + 3, n)),  # e_gap A^m, and its derivatives by the parameters
+        ("columns", float, (3, ORDERS + 1, n)),  # A^m e_v
+        ("y", float, ORDERS + 3),
+        ("y_slopes", float, (ORDERS + 3, W)),
+        ("gamma", float, ORDERS + 2),
+        ("gamma_slopes", float, (ORDERS + 2, W)),
+        ("power", float, (ORDERS, ORDERS + 3)),  # [l, k] is coefficient l of pi^k
+        ("power_slopes", float, (SLOPES, ORDERS + 3, W)),
+        ("nu", float, (ORDERS, ORDERS + 1)),  # [l, m] is coefficient l of nu_m
+        ("nu_slopes", float, (SLOPES, ORDERS + 1, W)),
+        ("d", float, ORDERS),
+        ("d_slopes", float, (SLOPES, W)),
+        ("kept_slopes", float, W),  # of R/(1 + R)
+        ("sides", float, (3, W)),  # right sides
+        ("Q", float, (n, W + 2)),  # the number, its derivatives, and that by s
+        ("numbers", float, 2),  # see chatter_sum.py
+        ("by_end", float, n),  # see chatter_tail.py
+    ])  # fmt: skip
 
 
 @jit

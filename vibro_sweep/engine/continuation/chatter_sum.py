@@ -15,7 +15,7 @@ from vibro_sweep.engine.continuation.chatter_series import FACTORIAL, ORDERS, SL
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, OMEGA
 from vibro_sweep.engine.simd.jit import jit
 
-REACH, NEXT = range(2)  # of `Tail.numbers`: the largest s of the series; s of the impact that follows
+REACH, NEXT = range(2)  # of `numbers`: the largest s of the series; s of the impact that follows
 DECAYED = 1e-15  # relative size of the first term left out, at the largest s
 
 

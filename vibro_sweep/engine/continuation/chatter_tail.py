@@ -33,7 +33,7 @@ def sum_tail(f, c, place, b):
     first, rate, last = b.events[0], b.work[0].rate, b.events[len(b.events) - 1]
     for r in range(len(rate)):
         rate[r] = f.numbers[OMEGA] * first.rate[r]
-    sum_chatter(f, c.sides[0], 0.0, rate, place.x[0], first.turn, last.length, b.tail)
+    sum_chatter(f, c.sides[0], 0.0, rate, place.x[0], first.turn, last.length, b.tail[0])
 
 
 @jit
@@ -44,7 +44,7 @@ def put_tail(f, c, place, b, panel):
     row of acceleration = 0: alpha xi_1 + beta dphi_1 + gamma dp + a = 0. `tail.by_end`: how much of that row the others
     have taken.
     """
-    n, first, tail, omega = f.A.shape[0], b.events[0], b.tail, f.numbers[OMEGA]
+    n, first, tail, omega = f.A.shape[0], b.events[0], b.tail[0], f.numbers[OMEGA]
     X, p, F, V = 2 * n + 2, 3 * n + 2, 3 * n + 2 + f.parameters, n + 4  # V: of Q by the length
     line, length = b.work[0].line, b.events[len(b.events) - 1].length
     for j in range(F + 1):

@@ -86,7 +86,7 @@ def examine_curve(f, c, place, b):
         place.multipliers[r, 0] = place.multipliers[r, 1] = np.nan
     tests[TEST.margin] = certify(f, c, place, b)
     if c.kind == STICK:
-        K, reach = len(place.x), b.tail.numbers[REACH] * f.numbers[OMEGA]
+        K, reach = len(place.x), b.tail[0].numbers[REACH] * f.numbers[OMEGA]
         end = place.x[0, n] + math.pi * f.half_turns
         tests[TEST.last], tests[TEST.before] = (end - place.x[K - 1, n]) / reach, (end - place.x[K - 2, n]) / reach
         return True

@@ -121,28 +121,29 @@ def fly_series(f, e, delay, y, landing, turned, power, other):
 
 @jit
 def residuals(f, c, place, b, mu):
-    """b.left, b.closing: coefficients of all equations, for those of X in b.series, b.first."""
+    """`left` of the events and `closing`: coefficients of all equations, for those of X in `series` and `first`."""
     K, n = len(place.x), f.A.shape[0]
     N = n // 2
-    y, landing, turned = b.states[0], b.states[1], b.states[2]
-    power, other, delay = b.jets[0], b.jets[1], b.jets[2]
+    work = b.work[0]
+    y, landing, turned = work.states[0], work.states[1], work.states[2]
+    power, other, delay = work.jets[0], work.jets[1], work.jets[2]
     for r in range(n):
         for m in range(TERMS):
-            y[r, m] = b.first[r, m]
+            y[r, m] = work.first[r, m]
         y[r, 0] = place.x[0, r]
     for i in range(K):
-        e, following = b.events[i], i + 1 if i + 1 < K else 0
+        e, following = b.events[i], b.events[i + 1 if i + 1 < K else 0]
         gain, D = GAIN_HIGH if c.sides[i] > 0 else GAIN_LOW, place.x[i, n + 1]
-        meet(f, gain, e, D, b.series[i], y, power, other, b.left[i])
+        meet(f, gain, e, D, e.series, y, power, other, e.left)
         for m in range(TERMS):
-            delay[m] = b.series[following, 0, m] * (1.0 if i + 1 < K else factor_of(mu, m)) - b.series[i, 0, m]
-            y[N, m] += b.series[i, 1, m]
+            delay[m] = following.series[0, m] * (1.0 if i + 1 < K else factor_of(mu, m)) - e.series[0, m]
+            y[N, m] += e.series[1, m]
         y[N, 0] += D
         delay[0] = 0.0
         fly_series(f, e, delay, y, landing, turned, power, other)
     for r in range(n):
         for m in range(1, TERMS):
-            b.closing[r, m] = c.sigma * factor_of(mu, m) * b.first[r, m] - y[r, m]
+            work.closing[r, m] = c.sigma * factor_of(mu, m) * work.first[r, m] - y[r, m]
 
 
 @jit
@@ -157,9 +158,9 @@ def solve_order(f, c, place, b, mu, m):
         for r in range(n + 2):
             rows[i, r] = 0.0
         if i < K:
-            rows[i, 0], rows[i, 1] = -b.left[i, 0, m], -b.left[i, 1, m]
+            rows[i, 0], rows[i, 1] = -b.events[i].left[0, m], -b.events[i].left[1, m]
     for r in range(n):
-        rows[K - 1, 2 + r] = -b.closing[r, m]
+        rows[K - 1, 2 + r] = -work.closing[r, m]
     take_down(b, n, rows, True, work.right)
     substitute(work.border, n, work.order, work.right)
     expand(c, b, n, factor, work.right)
@@ -170,28 +171,29 @@ def solve_order(f, c, place, b, mu, m):
 @jit
 def set_order(f, b, m):
     """X_m from (xi, dphi, dD) in `events.v`, and its mirror: dy_1 = xi_1 + y' dphi_1."""
-    n = f.A.shape[0]
+    n, first = f.A.shape[0], b.work[0].first
     for i in range(len(b.events)):
+        series = b.events[i].series
         for k in range(2):
             value = b.events[i].v[n + k]
-            b.series[i, k, m] = value
+            series[k, m] = value
             if MIRROR[m] != m:
-                b.series[i, k, MIRROR[m]] = value.conjugate()
+                series[k, MIRROR[m]] = value.conjugate()
     e = b.events[0]
     for r in range(n):
         value = e.v[r] + e.rate[r] * e.v[n]
-        b.first[r, m] = value
+        first[r, m] = value
         if MIRROR[m] != m:
-            b.first[r, MIRROR[m]] = value.conjugate()
+            first[r, MIRROR[m]] = value.conjugate()
 
 
 @jit
-def clear_mirror(b, m):
+def clear_mirror(f, b, m):
     """Of a flip, power series are of z alone."""
-    for i in range(len(b.series)):
-        b.series[i, 0, MIRROR[m]] = b.series[i, 1, MIRROR[m]] = 0.0
-    for r in range(len(b.first)):
-        b.first[r, MIRROR[m]] = 0.0
+    for i in range(len(b.events)):
+        b.events[i].series[0, MIRROR[m]] = b.events[i].series[1, MIRROR[m]] = 0.0
+    for r in range(f.A.shape[0]):
+        b.work[0].first[r, MIRROR[m]] = 0.0
 
 
 @jit
@@ -206,27 +208,27 @@ def coefficient(f, c, place, b):
             b.events[i].v[r] = place.v[i, r]
         for k in range(2):
             for m in range(TERMS):
-                b.series[i, k, m] = 0.0
+                b.events[i].series[k, m] = 0.0
     for r in range(n):
         for m in range(TERMS):
-            b.first[r, m] = 0.0
+            b.work[0].first[r, m] = 0.0
     set_order(f, b, LINEAR)
     if c.kind == FLIP:
-        clear_mirror(b, LINEAR)
+        clear_mirror(f, b, LINEAR)
     residuals(f, c, place, b, mu)
     if not solve_order(f, c, place, b, mu, SQUARE):
         return np.nan
     if c.kind == FLIP:
-        clear_mirror(b, SQUARE)
+        clear_mirror(f, b, SQUARE)
     elif not solve_order(f, c, place, b, mu, MIXED):
         return np.nan
     residuals(f, c, place, b, mu)
     order = CUBE if c.kind == FLIP else RESONANT
     total, double = 0j, 0j
     for i in range(K):
-        total += place.w[i, 0] * b.left[i, 0, order] + place.w[i, 1] * b.left[i, 1, order]
+        total += place.w[i, 0] * b.events[i].left[0, order] + place.w[i, 1] * b.events[i].left[1, order]
     for r in range(n):
-        total += place.w[K - 1, 2 + r] * b.closing[r, order]
+        total += place.w[K - 1, 2 + r] * b.work[0].closing[r, order]
         double += place.w[K - 1, 2 + r] * place.v[0, r]
     if c.kind == FLIP:
         return -c.sigma * total.real

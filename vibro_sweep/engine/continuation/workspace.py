@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.continuation.chatter_series import Tail, new_tail
+from vibro_sweep.engine.continuation.chatter_series import tail_of
 from vibro_sweep.engine.continuation.flight_tables import columns_of
 from vibro_sweep.engine.continuation.problem import width_of
 from vibro_sweep.engine.impulses.extremes import PIECES
@@ -111,6 +111,8 @@ def event_of(masses: int) -> np.dtype:
         ("v", complex, n + 2),  # as of `Place`, at this point
         ("w", complex, n + 2),
         ("sides", complex, n + 2),  # right sides of a system with the eliminated matrix
+        ("series", complex, (2, TERMS)),  # of dphi and dD, see normal_form.py
+        ("left", complex, (2, TERMS)),  # of rows 1 and 2
     ])  # fmt: skip
 
 
@@ -153,25 +155,23 @@ def work_of(masses: int) -> np.dtype:
         ("along", complex, (4, n)),  # of a flight: v at its begin, at its end, w A, w A E (second_derivative.py)
         ("slopes_p", complex, ROWS),  # of a condition by the parameters
         ("missed", complex),  # see second_derivative.py
+        ("first", complex, (n, TERMS)),  # power series of y_1, see normal_form.py
+        ("closing", complex, (n, TERMS)),  # and of the last rows
+        ("states", complex, (3, n, TERMS)),
+        ("jets", complex, (3, TERMS)),
     ])  # fmt: skip
 
 
 class Bench(NamedTuple):
-    """Room to work in."""
+    """Room to work in: few arrays, since each is unpacked at every call from Python."""
 
     work: np.ndarray  # (1,) `work_of`
     events: np.ndarray  # (K,) `event_of`
-    tail: Tail
+    tail: np.ndarray  # (1,) `tail_of`
     trial: np.ndarray  # (K + 1, n + 2) complex: a vector over all rows, as `Place.w`, that is not kept yet
-    series: np.ndarray  # (K, 2, TERMS) complex: of dphi_i and dD_i, see normal_form.py
-    first: np.ndarray  # (n, TERMS) complex: of y_1
-    left: np.ndarray  # (K, 2, TERMS) complex: of rows 1 and 2
-    closing: np.ndarray  # (n, TERMS) complex
-    states: np.ndarray  # (3, n, TERMS) complex
-    jets: np.ndarray  # (3, TERMS) complex
 
 
 def new_bench(K: int, n: int) -> Bench:
-    shapes = (K + 1, n + 2), (K, 2, TERMS), (n, TERMS), (K, 2, TERMS), (n, TERMS), (3, n, TERMS), (3, TERMS)
-    room = new_lines(1, work_of(n // 2)), new_lines(K, event_of(n // 2)), new_tail(n)
-    return Bench(*room, *(np.zeros(shape, complex) for shape in shapes))
+    N = n // 2
+    room = new_lines(1, work_of(N)), new_lines(K, event_of(N)), new_lines(1, tail_of(N))
+    return Bench(*room, np.zeros((K + 1, n + 2), complex))
