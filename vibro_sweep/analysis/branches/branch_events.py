@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.locating import Event, Test, locate
+from vibro_sweep.analysis.continuation.chord import error_of, root
+from vibro_sweep.analysis.continuation.errors import rounding_error
+from vibro_sweep.analysis.continuation.events import Event, Found, Test
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
@@ -12,6 +14,8 @@ from vibro_sweep.engine.continuation.branch_tests import PASSED
 from vibro_sweep.engine.continuation.workspace import NAMES
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE
 from vibro_sweep.model.bifurcations import TYPES
+
+ROUNDED = 1e-9  # of a step, by which rounding may put an event behind its end
 
 
 def ends_between(walk: Tracer, bounds, a: Point, b: Point) -> list[Event]:
@@ -23,7 +27,7 @@ def ends_between(walk: Tracer, bounds, a: Point, b: Point) -> list[Event]:
     for i in range(walk.K):
         if b.solution.pushes[i] <= 0:
             test = _positive_at(a, lambda point, i=i: point.solution.pushes[i])
-            events.append(Event("graze", test, i))
+            events.append(Event("graze", test, impact=i))
         if a.releases[i] > 0 >= b.releases[i]:
             events.append(Event("sticking", lambda point, i=i: point.releases[i]))
     if a.stays > 0 >= b.stays:
@@ -35,27 +39,27 @@ def ends_between(walk: Tracer, bounds, a: Point, b: Point) -> list[Event]:
     return events
 
 
-def first_end(walk: Tracer, events: list[Event], a: Point, b: Point):
-    """The first of these events, as `locate` gives it; None where none is found.
+def first_end(walk: Tracer, events: list[Event], a: Point, b: Point) -> Found | None:
+    """The first of these events; None where none is found.
 
     Behind an impact that vanishes, and often behind a limit, a flight passes its stop: where none does so at the first
     end that is found, that is not looked for.
     """
     located = []
     for event in sorted(events, key=lambda event: event.touches):
-        if event.touches and located and not _passes(earliest(located, along(a, b))[2]):
+        if event.touches and located and not _passes(earliest(located).place):
             break
         found = locate(walk, event, a, b)
         if found is not None:
             located.append(found)
-    return earliest(located, along(a, b)) if located else None
+    return earliest(located) if located else None
 
 
-def earliest(located: list, length: float):
+def earliest(located: list[Found]) -> Found:
     """Of ends at the same place the impact that vanishes: behind it the motion passes the stop, which looks alike."""
-    first = min(found[1] for found in located)
-    same = [found for found in located if found[1] <= first + 1e-7 * length]
-    return min(same, key=lambda found: (found[0].vanishes is None, found[1]))
+    first = min(found.share for found in located)
+    same = [found for found in located if found.share <= first + 1e-7]
+    return min(same, key=lambda found: (found.event.impact is None, found.share))
 
 
 def _passes(point: Point) -> bool:
@@ -63,13 +67,40 @@ def _passes(point: Point) -> bool:
     return bool(point.margin < -PASSED * point.solution.size_of_gap)
 
 
-def bifurcations(walk: Tracer, a: Point, b: Point) -> list:
-    """What lies between a and b and ends no branch, as far as tests differ, as `locate` gives it, in order."""
+def bifurcations(walk: Tracer, a: Point, b: Point) -> list[Found]:
+    """What lies between a and b and ends no branch, as far as tests differ, in order."""
     found = []
     for name, test in tests_between(walk, a, b):
         if np.sign(test(a)) * np.sign(test(b)) < 0 and (place := locate(walk, Event(name, test), a, b)) is not None:
             found.append(place)
-    return sorted(found, key=lambda place: place[1])
+    return sorted(found, key=lambda one: one.share)
+
+
+def locate(walk: Tracer, event: Event, a: Point, b: Point) -> Found | None:
+    """Where the event lies between a and b; None if it cannot be found."""
+    point = None if event.limit is None else walk.at_value(a, b, 0, event.limit)
+    if point is not None and 0 <= along(a, point) <= (1 + ROUNDED) * along(a, b):
+        point.hold(event.limit)
+        return Found(event, along(a, point) / along(a, b), point, 0.0)
+    size = max(abs(event.test(a)), abs(event.test(b)))
+    if size == 0:
+        return None
+
+    def test(point: Point) -> float:
+        return event.test(point) / size
+
+    found = root(walk, a, b, test)
+    if found is None:
+        return None
+    share, point = found
+    if event.limit is not None:
+        point.hold(event.limit)
+    if event.impact is not None:  # one of the unknowns has a value: no test rounds
+        point.touch(event.impact)
+        error = rounding_error(walk, point, np.eye(1, 2 * walk.K + 3, walk.K + event.impact)[0])
+    else:
+        error = error_of(walk, a, b, test, share, point)
+    return None if error is None else Found(event, along(a, point) / along(a, b), point, error)
 
 
 def tests_between(walk: Tracer, a: Point, b: Point, scaled: bool = False) -> list[tuple[str, Test]]:

@@ -10,12 +10,12 @@ from vibro_sweep.analysis.branches import torus
 from vibro_sweep.analysis.branches.births import criticality
 from vibro_sweep.analysis.branches.branch_events import bifurcations, ends_between, first_end
 from vibro_sweep.analysis.branches.crossings import is_torus
-from vibro_sweep.analysis.branches.locating import Event
 from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
 from vibro_sweep.analysis.branches.track import Track, row_of
+from vibro_sweep.analysis.continuation.events import Event, Found
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.recorded import Rows, join
 from vibro_sweep.analysis.continuation.tracer import SHORTEST_STEP
@@ -157,20 +157,20 @@ class Way:
         if ends and end is None:  # what follows is no motion
             self.special.append(self._at("failed", a, math.nan))
             return True
-        last, reach = (end[2], end[1]) if end else (b, along(a, b))
+        last = end.place if end else b
         birth = own_birth(self.walk, a, last)
         before = None
         if birth:
-            before = before_birth(self.walk, a, birth[0], birth[2])
-        elif end and end[0].vanishes is not None:
-            before = self.walk.step(a, (1 - BEFORE) * reach, last)
+            before = before_birth(self.walk, a, birth.share * along(a, last), birth.place)
+        elif end and end.event.impact is not None:
+            before = self.walk.step(a, (1 - BEFORE) * along(a, last), last)
         found = [] if birth else bifurcations(self.walk, a, last)
-        if end and end[0].limit is not None:  # where rounding does not tell them from the end they may lie beyond it
-            found = [place for place in found if abs(place[2].value - last.value) > place[3]]
+        if end and end.event.limit is not None:  # where rounding does not tell them from the end they may lie beyond it
+            found = [one for one in found if abs(one.place.value - last.value) > one.error]
         if before is not None:
-            known = {place[0].type for place in found}
-            found += [place for place in bifurcations(self.walk, a, before) if place[0].type not in known]
-            found.sort(key=lambda place: place[1])
+            known = {one.event.type for one in found}
+            found += [one for one in bifurcations(self.walk, a, before) if one.event.type not in known]
+            found.sort(key=lambda one: along(a, one.place))
         if self._divisions and along(a, b) > SHORTEST_STEP and (before or not birth):
             behind = None if end or birth else beside[1]
             c = hidden_between(self.walk, self.bounds, a, before or last, found, (beside[0], behind))
@@ -180,14 +180,14 @@ class Way:
         if self._bifurcate(found):
             return True
         if birth:
-            self._birth(*birth[1:])
+            self._birth(birth)
             return True
         self._add(last)
         if end:
-            self.special.append(self._end(end[0], last, end[3]))
+            self.special.append(self._end(end.event, last, end.error))
         return end is not None
 
-    def _bifurcate(self, found: list) -> bool:
+    def _bifurcate(self, found: list[Found]) -> bool:
         """Record bifurcations. True where the way ends at the first."""
         for event, _, point, error in found:
             self._add(point)
@@ -203,11 +203,11 @@ class Way:
                 return True
         return False
 
-    def _birth(self, event: Event, parent: Point, error: float) -> None:
+    def _birth(self, found: Found) -> None:
         """The branch begins at a flip or pitchfork of its parent."""
-        special = self._at(event.type, parent, error)
+        special = self._at(found.event.type, found.place, found.error)
         special = replace(special, criticality=criticality(special))
-        self._add_solution(parent.value, special.orbit._solution.repeated(2))
+        self._add_solution(found.place.value, special.orbit._solution.repeated(2))
         self.special.append(special)
 
     def _at(self, of_type: str, point: Point, error: float, **more) -> SpecialPoint:
@@ -218,7 +218,7 @@ class Way:
     def _end(self, event: Event, point: Point, error: float) -> SpecialPoint:
         if event.type != "graze":
             return self._at(event.type, point, error)
-        index = event.vanishes
+        index = event.impact
         if index is not None:  # of those that vanish at once the first
             first = orbit_of(None, point.solution)._canonical_frame[0]
             index = min(vanishing(point.solution, index).tolist(), key=lambda i: (i - first) % point.solution.K)

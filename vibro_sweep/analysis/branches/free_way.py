@@ -13,7 +13,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from vibro_sweep.analysis.branches.births import is_steady
 from vibro_sweep.analysis.branches.branch_way import MOST_POINTS, Way
-from vibro_sweep.analysis.branches.locating import Event
+from vibro_sweep.analysis.continuation.events import Event
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.tracer import LONGEST_STEP, SHORTEST_STEP
 from vibro_sweep.analysis.periodic.solution import Solution

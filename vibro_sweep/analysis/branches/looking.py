@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.branch_events import is_outside, tests_between
 from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_torus, stands_alone
-from vibro_sweep.analysis.branches.locating import Test
+from vibro_sweep.analysis.continuation.events import Found, Test
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.engine.continuation.branch_tests import FARTHER
@@ -19,51 +19,52 @@ CLOSE = 1e-6  # share of a step: so near to an end of the branch
 MOST_LOOKS = 8  # for one extremum
 
 
-def hidden_between(walk: Tracer, bounds, a: Point, b: Point, found: list, beside: tuple) -> Point | None:
+def hidden_between(walk: Tracer, bounds, a: Point, b: Point, found: list[Found], beside: tuple) -> Point | None:
     """A point between a and b that divides what their tests do not tell apart; None if nothing is hidden.
 
-    found : bifurcations between a and b, as `locate` gives them, in order
+    found : bifurcations between a and b, in order
     beside : the points before a and behind b, None where they are not known
     """
     length = along(a, b)
-    for _, at, point, _ in found:
-        if at < (1 - CLOSE) * length and is_outside(walk, bounds, point):
-            return point
+    for one in found:
+        if along(a, one.place) < (1 - CLOSE) * length and is_outside(walk, bounds, one.place):
+            return one.place
     cuts = [a]
     for one, other in pairwise(found):
-        if other[1] - one[1] > APART * length:
-            cuts.append(walk.step(a, (one[1] + other[1]) / 2, one[2]))
+        at, next_at = along(a, one.place), along(a, other.place)
+        if next_at - at > APART * length:
+            cuts.append(walk.step(a, (at + next_at) / 2, one.place))
             if cuts[-1] is None:
                 return None
     cuts.append(b)
     for x, y in pairwise(cuts):
         inside = [
-            place
-            for place in found
-            if 0 < walk.difference(x, place[2]) @ a.direction < walk.difference(x, y) @ a.direction
+            one
+            for one in found
+            if 0 < walk.difference(x, one.place) @ a.direction < walk.difference(x, y) @ a.direction
         ]
         if not _are_all(walk, x, y, inside):
             return y if y is not b else x if x is not a else _middle(walk, a, b, found)
-    places = [a, *(place[2] for place in found), b]
+    places = [a, *(one.place for one in found), b]
     return _divided(walk, places, found) or _touched(walk, beside, places, found)
 
 
-def _are_all(walk: Tracer, a: Point, b: Point, found: list) -> bool:
+def _are_all(walk: Tracer, a: Point, b: Point, found: list[Found]) -> bool:
     """Whether nothing but these bifurcations, at one place, lies between a and b, as far as a and b tell."""
-    at = [(event.type, point) for event, _, point, _ in found if any(BY_NAME[event.type].crosses)]
+    at = [(one.event.type, one.place) for one in found if any(BY_NAME[one.event.type].crosses)]
     crossed = [(kind, point) for kind, point in at if not BY_NAME[kind].crosses[2] or is_torus(point)]
     if not explained(a, b, [kind for kind, _ in crossed]):
         return False
     if len(crossed) == 1 and not stands_alone(a, b, crossed[0][1], crossed[0][0]):
         return False
-    types = {place[0].type for place in found}
+    types = {one.event.type for one in found}
     return all((test(a) * test(b) < 0) == (kind in types) for kind, test in tests_between(walk, a, b, scaled=True))
 
 
-def _middle(walk: Tracer, a: Point, b: Point, found: list) -> Point | None:
+def _middle(walk: Tracer, a: Point, b: Point, found: list[Found]) -> Point | None:
     """A point on the longer side of what was found, with no multiplier on the circle by chance."""
     length = along(a, b)
-    at = found[0][1] if found else 0.0
+    at = along(a, found[0].place) if found else 0.0
     low, high = (at, length) if at < length / 2 else (0.0, at)
     for share in SHARES:
         point = walk.step(a, low + share * (high - low))
@@ -72,11 +73,11 @@ def _middle(walk: Tracer, a: Point, b: Point, found: list) -> Point | None:
     return None
 
 
-def _divided(walk: Tracer, places: list[Point], found: list) -> Point | None:
+def _divided(walk: Tracer, places: list[Point], found: list[Found]) -> Point | None:
     """A point beside a bifurcation at which another test has the other sign than before and behind it."""
-    for (event, _, _, _), a, c, b in zip(found, places, places[1:], places[2:], strict=False):
+    for one, a, c, b in zip(found, places, places[1:], places[2:], strict=False):
         for kind, test in tests_between(walk, a, b, scaled=True):
-            if kind != event.type and test(a) * test(c) < 0 and test(c) * test(b) < 0:
+            if kind != one.event.type and test(a) * test(c) < 0 and test(c) * test(b) < 0:
                 return _with_sign(walk, test, c, b)
     return None
 
@@ -91,13 +92,12 @@ def _with_sign(walk: Tracer, test: Test, c: Point, b: Point) -> Point | None:
     return None
 
 
-def _touched(walk: Tracer, beside: tuple, places: list[Point], found: list) -> Point | None:
+def _touched(walk: Tracer, beside: tuple, places: list[Point], found: list[Found]) -> Point | None:
     """A point between the first and the last of `places` at which a test has changed its sign, to change it again."""
     a, b = places[0], places[-1]
     K, pushing = walk.K, (a.solution.pushes > 0) & ~walk.problem.rests
-    tests = [
-        test for kind, test in tests_between(walk, a, b, scaled=True) if kind not in {place[0].type for place in found}
-    ]
+    types = {one.event.type for one in found}
+    tests = [test for kind, test in tests_between(walk, a, b, scaled=True) if kind not in types]
     tests += [lambda point: point.margin]
     seen = [point for point in (beside[0], *places, beside[1]) if point is not None]
     for test in tests:

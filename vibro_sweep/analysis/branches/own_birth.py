@@ -4,13 +4,15 @@ What tells the two halves of its orbits apart changes its sign as a whole, and t
 pitchfork. On the branch itself that point is singular, so it is located on the parent's.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_events import test_of
+from vibro_sweep.analysis.branches.branch_events import locate, test_of
 from vibro_sweep.analysis.branches.crossings import counts_of
-from vibro_sweep.analysis.branches.locating import Event, locate
+from vibro_sweep.analysis.continuation.events import Event, Found
 from vibro_sweep.analysis.continuation.first_point import followed_from
-from vibro_sweep.analysis.continuation.point import Point, along
+from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.pairs import ON_SQUARE
@@ -22,20 +24,24 @@ LANDS = 0.3  # of what tells the halves apart before a step, at its end
 APART = 4.0  # times its rounding: so far a point lies from a birth at least, to be told from it
 
 
-def own_birth(walk: Tracer, a: Point, b: Point):
-    """(distance from a, event, point of the parent's branch, error) of the birth between a and b; None without one."""
+def own_birth(walk: Tracer, a: Point, b: Point) -> Found | None:
+    """The birth between a and b, located on the parent's branch; None without one."""
+    for sigma, share in turns(a.solution, b.solution):
+        found = _on_parent(walk, walk.between(a, b, share).solution, sigma)
+        if found is not None:
+            return found._replace(share=share)
+    return None
+
+
+def turns(one: Solution, other: Solution) -> Iterator[tuple[int, float]]:
+    """Where between two solutions what tells the halves apart turns round: sigma of the parent, share of the way."""
     for sigma in (1, -1):
-        parts = [halves_apart(point.solution, sigma) for point in (a, b)]
+        parts = [halves_apart(solution, sigma) for solution in (one, other)]
         if any(part is None for part in parts):
             continue
-        sizes = [np.linalg.norm(part) for part in parts]
-        if not parts[0] @ parts[1] < -0.5 * sizes[0] * sizes[1]:
-            continue
-        fraction = sizes[0] / sum(sizes)
-        found = _on_parent(walk, walk.between(a, b, fraction).solution, sigma)
-        if found is not None:
-            return fraction * along(a, b), *found
-    return None
+        sizes = [float(np.linalg.norm(part)) for part in parts]
+        if parts[0] @ parts[1] < -0.5 * sizes[0] * sizes[1]:
+            yield sigma, sizes[0] / sum(sizes)
 
 
 def before_birth(walk: Tracer, a: Point, distance: float, parent: Point) -> Point | None:
@@ -68,7 +74,7 @@ def over_birth(walk: Tracer, a: Point) -> tuple[Point, Point] | None:
         b = walk.step(a, 2 * distance) if distance < NEAR else None
         birth = None if b is None else own_birth(walk, a, b)
         if birth is not None:
-            return b, birth[2]
+            return b, birth.place
     return None
 
 
@@ -87,7 +93,7 @@ def _ones(multipliers: np.ndarray) -> int:
     return int(np.sum(np.abs(multipliers - 1) < ON_SQUARE))
 
 
-def _on_parent(walk: Tracer, whole: Solution, sigma: int):
+def _on_parent(walk: Tracer, whole: Solution, sigma: int) -> Found | None:
     parent = whole.part(2, sigma, alike=0.1)
     if parent is None:
         return None
@@ -96,8 +102,7 @@ def _on_parent(walk: Tracer, whole: Solution, sigma: int):
     while kind and first is not None and reach < 0.05:
         event, ends = Event(kind, test_of("minus")), [first.tracer.step(first, sign * reach) for sign in (-1, 1)]
         if None not in ends and event.test(ends[0]) * event.test(ends[1]) < 0:
-            found = locate(first.tracer, event, *ends)
-            return None if found is None else (found[0], *found[2:])
+            return locate(first.tracer, event, *ends)
         reach *= 4
     return None
 

@@ -1,13 +1,11 @@
 """Points of codimension two between two points of a bifurcation curve: their names, and where they are."""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from vibro_sweep.analysis.continuation.chord import error_of, root
+from vibro_sweep.analysis.continuation.events import Event, Found
 from vibro_sweep.analysis.continuation.start import CONDITIONS
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
@@ -40,29 +38,13 @@ REACH = (0.25, 0.5, 1.0, 2.0, 4.0)
 SAME = 1e-3  # of a step: a margin that vanishes with an impact does so like the square of its speed
 
 
-@dataclass(frozen=True)
-class Event:
-    """A type of codimension two, and a test that changes its sign there.
-
-    test : index of the test where it is one of these, else None
-    impact : index of the impact that vanishes, else None
-    touches : whether a flight touches a stop
-    """
-
-    type: str
-    value: Callable[[Place], float]
-    test: int | None = None
-    impact: int | None = None
-    touches: bool = False
-
-
 def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
     """What changes its sign from a to b."""
     kind, events = tracer.problem.kind, []
     for i in CURVE_TESTS:
         if np.sign(a.tests[i]) * np.sign(b.tests[i]) < 0:
             size = max(abs(a.tests[i]), abs(b.tests[i]))
-            events.append(Event(type_at(tracer, i), lambda place, i=i, size=size: place.tests[i] / size, test=i))
+            events.append(Event(type_at(tracer, i), lambda place, i=i, size=size: place.tests[i] / size, i))
     for i in range(tracer.K):
         if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == tracer.problem.index):
             events.append(Event(type_at(tracer, VANISHES), lambda place, i=i: place.jumps[i], impact=i))
@@ -75,15 +57,6 @@ def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
             if (a.p[THETA] - angle) * (b.p[THETA] - angle) < 0:
                 events.append(Event(name, lambda place, angle=angle: place.p[THETA] - angle))
     return [event for event in events if event.type]
-
-
-class Found(NamedTuple):
-    """An event, located."""
-
-    event: Event
-    share: float  # of the step
-    place: Place
-    error: float  # of the parameters
 
 
 def found_between(tracer: Tracer, a: Place, b: Place) -> list[Found]:
@@ -151,7 +124,7 @@ def without_echoes(tracer: Tracer, found: list[Found]) -> list[Found]:
 
 
 def echoes(tracer: Tracer, one: Found, other: Found) -> bool:
-    return same(tracer, one, other) or (one.event.test is None and abs(one.share - other.share) < SAME)
+    return same(tracer, one, other) or (one.event.index is None and abs(one.share - other.share) < SAME)
 
 
 def same(tracer: Tracer, one: Found, other: Found) -> bool:
@@ -163,7 +136,7 @@ def same(tracer: Tracer, one: Found, other: Found) -> bool:
 def beside(tracer: Tracer, a: Place, b: Place, one: Found, found: list[Found]) -> list[Place]:
     """A point on either side of one of those found from a to b, with no other place between at which the orbit may
     begin or cease to be real."""
-    edges = [other.share for other in found if other.event.test is None and abs(other.share - one.share) > SAME]
+    edges = [other.share for other in found if other.event.index is None and abs(other.share - one.share) > SAME]
     near = max((share for share in edges if share < one.share), default=None)
     far = min((share for share in edges if share > one.share), default=None)
     row, places = tracer.unit_row(tracer.difference(a, b)), []
@@ -186,7 +159,7 @@ def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
 
     The error (`error_of`) is an estimate from several locations and from what rounding of the equations does.
     """
-    found = root(tracer, a, b, event.value)
+    found = root(tracer, a, b, event.test)
     settled = found is not None and found[1].tests[TEST.residual] <= SETTLED
     if event.impact is not None:
         settled = settled and not is_on_other(tracer, a, b, found[1], event.impact)
@@ -197,11 +170,11 @@ def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
     if not settled:
         return None
     share, place = found
-    if event.test is not None:
-        at, *ends = (abs(float(one.tests[event.test])) for one in (place, a, b))
+    if event.index is not None:
+        at, *ends = (abs(float(one.tests[event.index])) for one in (place, a, b))
         if at > max(0.5 * min(ends), VANISHED) or not is_sharp(tracer, event, place):
             return None
-    error = error_of(tracer, a, b, event.value, share, place)
+    error = error_of(tracer, a, b, event.test, share, place)
     return None if error is None else Found(event, share, place, error)
 
 
@@ -210,7 +183,7 @@ def is_sharp(tracer: Tracer, event: Event, place: Place) -> bool:
     impulses = np.abs(place.jumps)
     if tracer.problem.kind == GRAZE:
         impulses = np.delete(impulses, tracer.problem.index)
-    return event.test != TEST.pair or not np.any(impulses < SLOW)
+    return event.index != TEST.pair or not np.any(impulses < SLOW)
 
 
 def event_near(tracer: Tracer, place: Place, length: float, types) -> Found | None:

@@ -9,9 +9,10 @@ from vibro_sweep.analysis.branches.branch_way import stop_and_impact
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, written_out
 from vibro_sweep.analysis.continuation.chord import root
+from vibro_sweep.analysis.continuation.events import Event
 from vibro_sweep.analysis.continuation.recorded import Rows, join, rows_of
 from vibro_sweep.analysis.continuation.tracer import Tracer, copy
-from vibro_sweep.analysis.curves.curve_events import Event, beside, found_between, found_to_edge, without_echoes
+from vibro_sweep.analysis.curves.curve_events import beside, found_between, found_to_edge, without_echoes
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.continuation import stepper
@@ -160,11 +161,11 @@ class Way:
     def _holds(self, event: Event, place: Place, a: Place, b: Place) -> bool:
         """Whether this is a bifurcation of a motion, real there or at the edge of what is real; no neutral saddle."""
         w = self.tracer
-        if event.test is None and not event.type.startswith("resonance"):
+        if event.index is None and not event.type.startswith("resonance"):
             return w.is_real(a) or w.is_real(b)
         if not w.is_real(place):
             return False
-        if event.test == TEST.pair:
+        if event.index == TEST.pair:
             solution = w.solution(place)
             mu = (bare(solution, w.problem.index) if w.problem.kind == GRAZE else solution).multipliers
             i, j = np.triu_indices(len(mu), 1)

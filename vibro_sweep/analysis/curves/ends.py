@@ -12,12 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.own_birth import halves_apart
+from vibro_sweep.analysis.branches.own_birth import halves_apart, turns
 from vibro_sweep.analysis.branches.special import bare, inserted
+from vibro_sweep.analysis.continuation.events import Found
 from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.start import CONDITIONS, Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
-from vibro_sweep.analysis.curves.curve_events import Found, event_near
+from vibro_sweep.analysis.curves.curve_events import event_near
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import FOLD, GRAZE, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA, Place
@@ -132,14 +133,7 @@ def _is_repeated(end: End) -> bool:
 
 def birth(tracer: Tracer, a: Place, b: Place) -> End | None:
     """Where the orbit of the curve is born between a and b, on the curve of its parent."""
-    for sigma in (1, -1):
-        parts = [halves_apart(struck(tracer, tracer.solution(place)), sigma) for place in (a, b)]
-        if parts[0] is None or parts[1] is None:
-            continue
-        sizes = [np.linalg.norm(part) for part in parts]
-        if not parts[0] @ parts[1] < -0.5 * sizes[0] * sizes[1]:
-            continue
-        share = float(sizes[0] / (sizes[0] + sizes[1]))
+    for sigma, share in turns(*(struck(tracer, tracer.solution(place)) for place in (a, b))):
         aim = tracer.between(a, b, share)
         end = _first_found(tracer, aim, sigma, (np.linalg.norm(tracer.difference(a, b)),))
         return end and end._replace(share=share)
