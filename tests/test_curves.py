@@ -9,9 +9,8 @@ from support.curves import chosen, error_at, exact_codimension_two, exact_resona
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import births, torus
-from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.branches.criticality import criticality
+from vibro_sweep.analysis.continuation.start import KINDS, Start
 from vibro_sweep.analysis.curves import born
 from vibro_sweep.analysis.curves.curve_points import others_outside
 from vibro_sweep.analysis.periodic.orbit import orbit_of
@@ -109,7 +108,7 @@ def test_windows_in_30_digits(b, periods, count):
 
 @pytest.mark.slow
 def test_criticality_changes_at_the_degenerate_points(symmetric_branch, one_sided_branch):
-    """By amplitudes of the born branch (branches/births.py), or the coefficient at neighbouring orbits (torus.py)."""
+    """By the coefficient at neighbouring orbits."""
     for branch, kind, most in ((symmetric_branch, "pitchfork", 2), (one_sided_branch, "neimark_sacker", 3)):
         special = first(branch, kind)
         curve = vs.bifurcation_curve(special, ("b", "omega"), BOXES["b", "omega"])
@@ -124,13 +123,7 @@ def test_criticality_changes_at_the_degenerate_points(symmetric_branch, one_side
 
 
 def criticality_at(curve, k):
-    solution = solution_at(curve, k)
-    if curve.type == "neimark_sacker":
-        return torus.criticality(solution)
-    system = PAPER.replace(**{name: float(curve.points[name][k]) for name in curve.parameters})
-    value = system.b
-    special = SpecialPoint("pitchfork", {"b": value}, orbit_of(system, solution), solution.multipliers)
-    return births.criticality(special)
+    return criticality(solution_at(curve, k), KINDS[curve.type], "b")
 
 
 REGULAR = ("fold_flip", "resonance_1_1", "resonance_1_2", "resonance_1_3", "resonance_1_4", "fold_neimark_sacker")

@@ -144,7 +144,9 @@ def test_a_branch_that_cannot_be_started_says_so(flat_flip, monkeypatch):
     """It is started a little farther off; where nothing is found there either, its orbit is all that is left of it."""
     value = flat_flip.parameters["f2"]
     bounds = (value - 1e-3, value + 1e-3)
-    (near,) = births._at_amplitudes(flat_flip, [births.AMPLITUDE])
+    with monkeypatch.context() as patch:
+        patch.setattr(births, "is_steady", lambda *_: True)  # at the usual amplitude
+        near = births.born(flat_flip.orbit._solution, "f2", 1)
     orbit = orbit_of(FLAT.replace(f2=near.family.numbers["f2"]), near)
     assert orbit.ok and vs.continue_orbit(orbit, "f2", bounds).ok
     monkeypatch.setattr(beginning, "FARTHER", ())

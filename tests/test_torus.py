@@ -10,7 +10,7 @@ from support.branches import NUMBERS
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import torus
+from vibro_sweep.analysis.branches.criticality import critical_angle, cubic_terms
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.problem import TORUS
@@ -23,11 +23,11 @@ def test_coefficient_agrees_with_differences_of_the_map_in_50_digits(omega):
     orbit = vs.periodic_orbit(PAPER.replace(b=4.2, omega=omega), itinerary="R")
     special = next(s for s in vs.continue_orbit(orbit, "b", (4.2, 4.7)).special if s.type == "neimark_sacker")
     s = special.orbit._solution
-    linearised, theta = Linearised(s), torus.critical_angle(s)
+    linearised, theta = Linearised(s), critical_angle(s)
     linearised.take_null_vectors(TORUS, theta)
     e = linearised.equations
     e.do(stepper.EXAMINE)
-    (found, _), _ = torus.cubic_terms(e.bench, e.problem, e.place)
+    (found, _), _ = cubic_terms(e.bench, e.problem, e.place)
     back = expm(-flow(s.family.linear).B * s.P / 2)[:4, :4]
     size = np.linalg.norm(back @ (e.place.v[0, :4] * [1, 1, s.family.linear.omega, s.family.linear.omega]))
     with mp.workdps(50):

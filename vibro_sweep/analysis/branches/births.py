@@ -1,34 +1,47 @@
-"""The branch that is born at a pitchfork or flip: its orbits at a small amplitude, and on which side they exist."""
+"""The branch that is born at a pitchfork or flip: its orbits at a small amplitude."""
 
-import math
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from vibro_sweep.analysis.branches.sizes import size_of
-from vibro_sweep.analysis.branches.special import SpecialPoint, slopes
 from vibro_sweep.analysis.continuation.first_point import followed_from, guess_of
 from vibro_sweep.analysis.continuation.tracer import branch_through
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE
 
 AMPLITUDE = 1e-3  # of a branch that is born, in the units of a walk
 LARGER = (4.0, 16.0, 64.0)  # times as large: where the branch leaves nearly along the born orbits
 
 
-def born(special: SpecialPoint, sign: int) -> Solution | None:
-    """A solution on the branch that is born at a pitchfork or flip, on one side of its parent.
+def born(parent: Solution, name: str, sign: int) -> Solution | None:
+    """A solution on the branch that is born at a pitchfork or flip of its parent, on one side of it.
 
-    The parameter moves like the square of the amplitude. Where it hardly moves, the born orbit is next to a fold, and
-    rounding does not tell it from its neighbours: the amplitude is then larger. None where no orbit can be told.
+    The critical direction (dt, dD) has J(-1) (dt, dD) = 0; in the second half of the born orbit it has the sign -1
+    for the times, and -sigma for the impulses. The parameter is found with the solution: it moves like the square of
+    the amplitude. Where it hardly moves, the born orbit is next to a fold, and rounding does not tell it from its
+    neighbours: the amplitude is then larger. None where no orbit can be told.
     """
-    name = next(iter(special.parameters))
-    for solution in _at_amplitudes(special, [sign * AMPLITUDE * factor for factor in (1.0, *LARGER)]):
-        if solution is not None and is_steady(solution, name):
-            return solution
+    K, rests = parent.K, len(parent.rests)
+    size = 2 * K + rests
+    twice = parent.repeated(2)
+    walk, units = branch_through(twice, name, size_of(parent, name)), twice.units
+    scale = np.concatenate([units[:K], units[2 * K : 3 * K], units[4 * K : 4 * K + rests]])
+    critical = Linearised(parent).critical_direction(-1) / scale
+    critical *= -np.copysign(1.0, critical[K : 2 * K].sum())  # a choice: which of two mirror images comes first
+    dt, dD, de = critical[:K], critical[K : 2 * K], critical[2 * K :]
+    change = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])
+    change /= np.linalg.norm(change)
+    normal, rests = np.append(change[: 4 * K], [0.0, 0.0, 0.0]), np.array(twice.rests, int)
+    normal[2 * K + rests] = change[4 * K :] - change[rests]  # walks measure lengths of rests
+    for factor in (1.0, *LARGER):
+        moved = twice.u.copy()
+        moved[: 2 * size] += sign * AMPLITUDE * factor * change * units[: 2 * size]
+        guess = guess_of(walk, replace(twice, u=moved))
+        point = guess and walk.correct(guess, normal)
+        if point is not None and is_steady(point.solution, name):
+            return point.solution
     return None
 
 
@@ -42,57 +55,3 @@ def is_steady(solution: Solution, name: str) -> bool:
     except (np.linalg.LinAlgError, ValueError):
         return False
     return True
-
-
-def _at_amplitudes(special: SpecialPoint, amplitudes) -> Iterator[Solution | None]:
-    """`born` at each of these.
-
-    The critical direction (dt, dD) has J(-1) (dt, dD) = 0; in the second half of the born orbit it has the sign -1
-    for the times, and -sigma for the impulses. The parameter is found with the solution.
-    """
-    parent = special.orbit._solution
-    name = next(iter(special.parameters))
-    K, rests = parent.K, len(parent.rests)
-    size = 2 * K + rests
-    twice = parent.repeated(2)
-    walk, units = branch_through(twice, name, size_of(parent, name)), twice.units
-    scale = np.concatenate([units[:K], units[2 * K : 3 * K], units[4 * K : 4 * K + rests]])
-    critical = Linearised(parent).critical_direction(-1) / scale
-    critical *= -np.copysign(1.0, critical[K : 2 * K].sum())  # a choice: which of two mirror images comes first
-    dt, dD, de = critical[:K], critical[K : 2 * K], critical[2 * K :]
-    change = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])
-    change /= np.linalg.norm(change)
-    normal, rests = np.append(change[: 4 * K], [0.0, 0.0, 0.0]), np.array(twice.rests, int)
-    normal[2 * K + rests] = change[4 * K :] - change[rests]  # walks measure lengths of rests
-    for amplitude in amplitudes:
-        moved = twice.u.copy()
-        moved[: 2 * size] += amplitude * change * units[: 2 * size]
-        guess = guess_of(walk, replace(twice, u=moved))
-        point = guess and walk.correct(guess, normal)
-        yield point and point.solution
-
-
-def criticality(special: SpecialPoint) -> str | None:
-    """ "super" or "sub" of a flip or pitchfork, from the side on which its branch leaves, at two amplitudes.
-
-    The parameter moves by the square of the amplitude; where it does not, the point is (nearly) degenerate: None.
-    """
-    name, value = next(iter(special.parameters.items()))
-    found = list(_at_amplitudes(special, [AMPLITUDE, AMPLITUDE / 2]))
-    if None in found:
-        return None
-    moved = [solution.family.numbers[name] - value for solution in found]
-    if not moved[0] * moved[1] > 0 or not 3 < moved[0] / moved[1] < 5:
-        return None
-    step = math.copysign(max(abs(moved[0]), 1e-6 * abs(value)), moved[0])
-    parent = special.orbit._solution
-    du = slopes(parent, name)
-    family = parent.family.replace(**{name: value + step})
-    beside = replace(parent, family=family, u=parent.u + step * du).corrected()
-    if beside is None:
-        return None
-    mu = beside.multipliers
-    near = mu[np.argmin(np.abs(mu + 1))]
-    both = [near, *mu[np.abs(mu * near - 1) < ON_SQUARE]]  # without losses there are two: one is outside, or none
-    critical = np.abs(both).max()
-    return "super" if critical > 1 + ON_PAIR else "sub"

@@ -1,14 +1,12 @@
 """One way along a branch: steps that adapt, what they pass, and where the branch ends."""
 
 import math
-from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.branches import torus
-from vibro_sweep.analysis.branches.births import criticality
 from vibro_sweep.analysis.branches.branch_events import bifurcations, ends_between, first_end
+from vibro_sweep.analysis.branches.criticality import criticality
 from vibro_sweep.analysis.branches.crossings import is_torus
 from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
@@ -18,11 +16,12 @@ from vibro_sweep.analysis.branches.track import Track, row_of
 from vibro_sweep.analysis.continuation.events import Event, Found
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.recorded import Rows, join
+from vibro_sweep.analysis.continuation.start import KINDS
 from vibro_sweep.analysis.continuation.tracer import SHORTEST_STEP
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
-from vibro_sweep.model.bifurcations import BIRTHS
+from vibro_sweep.engine.continuation.problem import FLIP, TORUS
 
 # The first step is not AMPLITUDE of births.py: from an orbit that was just born it would end at the birth itself, where
 # the branch has no tangent, and pass it unseen.
@@ -193,12 +192,7 @@ class Way:
             self._add(point)
             if event.type == "neimark_sacker" and not is_torus(point):
                 continue
-            special = self._at(event.type, point, error)
-            if event.type in BIRTHS:
-                special = replace(special, criticality=criticality(special))
-            elif event.type == "neimark_sacker":
-                special = replace(special, criticality=torus.criticality(point.solution))
-            self.special.append(special)
+            self.special.append(self._at(event.type, point, error))
             if self.stable:
                 return True
         return False
@@ -206,13 +200,14 @@ class Way:
     def _birth(self, found: Found) -> None:
         """The branch begins at a flip or pitchfork of its parent."""
         special = self._at(found.event.type, found.place, found.error)
-        special = replace(special, criticality=criticality(special))
         self._add_solution(found.place.value, special.orbit._solution.repeated(2))
         self.special.append(special)
 
     def _at(self, of_type: str, point: Point, error: float, **more) -> SpecialPoint:
         system = self.system.replace(**{self.name: point.value})
-        orbit = orbit_of(system, point.solution)
+        orbit, kind = orbit_of(system, point.solution), KINDS.get(of_type)
+        if kind in (FLIP, TORUS):
+            more["criticality"] = criticality(point.solution, kind, self.name)
         return SpecialPoint(of_type, {self.name: point.value}, orbit, point.solution.multipliers, error, **more)
 
     def _end(self, event: Event, point: Point, error: float) -> SpecialPoint:

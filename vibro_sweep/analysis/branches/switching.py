@@ -54,8 +54,10 @@ def _beyond_graze(special: SpecialPoint) -> list[Solution | None]:
 
 
 BEYOND = {  # what branches off a type of special point
-    "doubled": lambda special: [born(special, 1)],
-    "mirror images": lambda special: [born(special, sign) for sign in (1, -1)],
+    "doubled": lambda special: [born(special.orbit._solution, next(iter(special.parameters)), 1)],
+    "mirror images": lambda special: [
+        born(special.orbit._solution, next(iter(special.parameters)), sign) for sign in (1, -1)
+    ],
     "graze": _beyond_graze,
 }
 

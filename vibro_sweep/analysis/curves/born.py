@@ -24,9 +24,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.criticality import cubic_terms
 from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
-from vibro_sweep.analysis.branches.torus import cubic_terms
 from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer, branch_through

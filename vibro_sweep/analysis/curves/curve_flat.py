@@ -5,8 +5,8 @@ The arrays, `SHAPES`, have the names that they have in files. Words are codes of
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.criticality import critical_angle
 from vibro_sweep.analysis.branches.flat import Flat, common, solution_of
-from vibro_sweep.analysis.branches.torus import critical_angle
 from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 from vibro_sweep.analysis.curves.curve_way import CurvePoint
