@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.continuation.first_point import followed_from, guess_of
-from vibro_sweep.analysis.continuation.tracer import branch_through
+from vibro_sweep.analysis.continuation.tracer import Tracer, branch_through
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -18,30 +18,20 @@ LARGER = (4.0, 16.0, 64.0)  # times as large: where the branch leaves nearly alo
 def born(parent: Solution, name: str, sign: int) -> Solution | None:
     """A solution on the branch that is born at a pitchfork or flip of its parent, on one side of it.
 
-    The critical direction (dt, dD) has J(-1) (dt, dD) = 0; in the second half of the born orbit it has the sign -1
-    for the times, and -sigma for the impulses. The parameter is found with the solution: it moves like the square of
-    the amplitude. Where it hardly moves, the born orbit is next to a fold, and rounding does not tell it from its
+    The critical direction w has J(-1) w = 0. The parameter is found with the solution: it moves like the square of the
+    amplitude. Where it hardly moves, the born orbit is next to a fold, and rounding does not tell it from its
     neighbours: the amplitude is then larger. None where no orbit can be told.
     """
-    K, rests = parent.K, len(parent.rests)
-    size = 2 * K + rests
     twice = parent.repeated(2)
-    walk, units = branch_through(twice, name, size_of(parent, name)), twice.units
-    scale = np.concatenate([units[:K], units[2 * K : 3 * K], units[4 * K : 4 * K + rests]])
-    critical = Linearised(parent).critical_direction(-1) / scale
-    critical *= -np.copysign(1.0, critical[K : 2 * K].sum())  # a choice: which of two mirror images comes first
-    dt, dD, de = critical[:K], critical[K : 2 * K], critical[2 * K :]
-    change = np.concatenate([dt, -dt, dD, -parent.sigma * dD, de, -de])
-    change /= np.linalg.norm(change)
-    normal, rests = np.append(change[: 4 * K], [0.0, 0.0, 0.0]), np.array(twice.rests, int)
-    normal[2 * K + rests] = change[4 * K :] - change[rests]  # walks measure lengths of rests
+    walk = branch_through(twice, name, size_of(parent, name))
+    w = Linearised(parent).critical_direction(-1)
+    change = repeated(parent, 2, w, -1.0)[1]
+    size = np.linalg.norm(change / twice.units[: len(change)])
+    w *= -np.copysign(1 / size, w[parent.K : 2 * parent.K].sum())  # a choice: which of two mirror images comes first
     for factor in (1.0, *LARGER):
-        moved = twice.u.copy()
-        moved[: 2 * size] += sign * AMPLITUDE * factor * change * units[: 2 * size]
-        guess = guess_of(walk, replace(twice, u=moved))
-        point = guess and walk.correct(guess, normal)
-        if point is not None and is_steady(point.solution, name):
-            return point.solution
+        solution = with_amplitude(walk, *repeated(parent, 2, sign * AMPLITUDE * factor * w, -1.0))
+        if solution is not None and is_steady(solution, name):
+            return solution
     return None
 
 
@@ -55,3 +45,25 @@ def is_steady(solution: Solution, name: str) -> bool:
     except (np.linalg.LinAlgError, ValueError):
         return False
     return True
+
+
+def repeated(parent: Solution, count: int, w: np.ndarray, mu: complex) -> tuple[Solution, np.ndarray]:
+    """The orbit taken `count` times, moved by mu^k w and its conjugate in period k; and the change itself.
+
+    w : of times, impulses and ends of rests (2K + rests,); impulses of a symmetric orbit change their sign in each half
+    """
+    dt, dD, de = np.split(w, [parent.K, 2 * parent.K])
+    turns, signs = mu ** np.arange(count)[:, None], float(parent.sigma) ** np.arange(count)[:, None]
+    change = np.concatenate([2 * part.real.ravel() for part in (turns * dt, signs * turns * dD, turns * de)])
+    child = parent.repeated(count)
+    return replace(child, u=child.u + change), change
+
+
+def with_amplitude(walk: Tracer, guess: Solution, change: np.ndarray) -> Solution | None:
+    """The orbit near a guess with its amplitude in the direction `change`; the parameter is found with it."""
+    change, K, rests = change / guess.units[: len(change)], guess.K, np.array(guess.rests, int)
+    row = np.append(change[: 2 * K], [0.0, 0.0, 0.0])
+    row[K + rests] = change[2 * K :] - change[rests]  # tracers measure lengths of rests
+    place = guess_of(walk, guess)
+    point = place and walk.correct(place, row / np.linalg.norm(row))
+    return point and point.solution

@@ -24,6 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.births import repeated, with_amplitude
 from vibro_sweep.analysis.branches.criticality import cubic_terms
 from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
@@ -116,19 +117,10 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
         pair = mu[np.argmin(np.where(mu.imag > 1e-6, np.abs(np.abs(mu) - 1), np.inf))]
         return Entry(Start(name, child, theta=abs(float(np.angle(pair**2)))), change, None)
     across = int(np.argmin(np.abs(place.tangent_p[:2])))
-    found = _with_amplitude(child, change, names[across])
+    walk = branch_through(child, names[across], size_of(child, names[across]))
+    found = with_amplitude(walk, child, change)
     theta = found and _angle_near_one(found)
     return Entry(Start(name, found, theta=theta), change, None) if theta else None
-
-
-def _with_amplitude(guess: Solution, change: np.ndarray, name: str) -> Solution | None:
-    """The orbit near a guess with its amplitude in the direction `change`; the parameter is found with it."""
-    walk = branch_through(guess, name, size_of(guess, name))
-    row = np.append(change / guess.units[: len(change)], [0.0, 0.0, 0.0])
-    row /= np.linalg.norm(row)
-    place = guess_of(walk)
-    point = place and walk.correct(place, row)
-    return point and point.solution
 
 
 def _angle_near_one(solution: Solution) -> float | None:
@@ -168,15 +160,6 @@ def box_around(special: CurvePoint) -> np.ndarray:
     values = np.array(list(special.parameters.values()))
     reach = REACH * sizes_of(special.orbit._solution, special.parameters)
     return np.column_stack([values - reach, values + reach])
-
-
-def repeated(parent: Solution, count: int, w: np.ndarray, mu: complex) -> tuple[Solution, np.ndarray]:
-    """The orbit taken `count` times, moved by mu^k w (2K,) and its conjugate in period k; and the change itself."""
-    dt, dD = w.reshape(2, -1)
-    turns, signs = mu ** np.arange(count)[:, None], float(parent.sigma) ** np.arange(count)[:, None]
-    change = np.concatenate([2 * (turns * dt).real.ravel(), 2 * (signs * turns * dD).real.ravel()])
-    child = parent.repeated(count)
-    return replace(child, u=child.u + change), change
 
 
 def _bent(child: Solution, tracer: Tracer, place: Place, z: complex, moved) -> Solution:
