@@ -106,7 +106,7 @@ def check(error: Exception, argument: str, what: str) -> None:
     """The package's own error, or one that names argument, value and what is allowed; a message of one size."""
     text = str(error)
     assert all(len(line) < LONGEST for line in text.splitlines()), (what, text)
-    if type(error).__module__.startswith("vibro_sweep."):
+    assert isinstance(error, vs.VibroSweepError), (what, repr(error))
+    if type(error).__name__ not in ("ArgumentError", "ArgumentTypeError"):
         return
-    assert type(error) in (TypeError, ValueError), (what, repr(error))
     assert argument in text and "must be" in text, (what, repr(error))

@@ -8,6 +8,7 @@ from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.start import keeps_symmetry
 from vibro_sweep.analysis.continuation.tracer import branch_through
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.model.errors import ArgumentError, VibroSweepError
 
 BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # in units of a walk; near the onset of sticking branches are short
 FARTHER = (1e-3, 1e-2)  # beside a fold so flat that Newton's method stands still only there
@@ -16,7 +17,7 @@ TOUCHES = 1e-12  # distance from a stop, relative to the gap, and the like of a 
 NARROW = 1e-6  # of the parameter's size: the least range that is a unit of a walk
 
 
-class NoStartError(ValueError):
+class NoStartError(VibroSweepError, ValueError):
     """Newton's method stands still neither at an orbit nor beside it."""
 
 
@@ -54,7 +55,7 @@ def start_of_walk(solution: Solution, name: str, lo: float, hi: float, stable: b
     if first is None:
         raise NoStartError("orbit: Newton's method does not stand still at it")
     if not is_real(first, TOUCHES):
-        raise ValueError(f"orbit: it is a special point, and no orbit beside it in {name} is real and in bounds")
+        raise ArgumentError(f"orbit: it is a special point, and no orbit beside it in {name} is real and in bounds")
     return first
 
 

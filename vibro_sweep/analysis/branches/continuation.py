@@ -21,6 +21,7 @@ from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_call, check_type, checked_interval, checked_word
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import family_of
 from vibro_sweep.model.refusals import not_allowed
 
@@ -80,14 +81,14 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     check_type("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit, as `periodic_orbit` returns it")
     check_call("progress", progress, "progress(points, value)", 0, 0.0)
     if not orbit.ok:
-        raise ValueError(f"orbit: its status is {orbit.status!r}; it must be ok to be followed")
+        raise ArgumentError(f"orbit: its status is {orbit.status!r}; it must be ok to be followed")
     family = family_of(orbit.system)
     names = [name for name, value in family.numbers.items() if isinstance(value, (int, float))]
     parameter = checked_word("parameter", parameter, names)
     solution = orbit._solution
     if changes_rests(solution, parameter):
         allowed = "another number: an orbit that rests after one impact does so at R = 0"
-        raise ValueError(not_allowed("parameter", parameter, allowed))
+        raise ArgumentError(not_allowed("parameter", parameter, allowed))
     lo, hi = checked_interval("bounds", bounds, family.numbers[parameter])
     lo, hi = (_allowed(orbit.system, parameter, bound) for bound in (lo, hi))
     try:

@@ -13,6 +13,7 @@ from vibro_sweep.analysis.continuation.start import Start
 from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.model.arguments import check_call, check_type, checked_count
 from vibro_sweep.model.bifurcations import WAYS
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.refusals import not_allowed
 
 
@@ -50,7 +51,7 @@ def follow_branches(
     check_type("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit, as `periodic_orbit` returns it")
     check_call("progress", progress, "progress(branches, points, value)", 0, 0, 0.0)
     if not isinstance(follow, (tuple, list)) or any(not isinstance(one, str) or one not in WAYS for one in follow):
-        raise ValueError(not_allowed("follow", follow, f"a list of {', '.join(WAYS)}"))
+        raise ArgumentError(not_allowed("follow", follow, f"a list of {', '.join(WAYS)}"))
     depth = checked_count("depth", depth, 0)
     branches: dict[str, Branch] = {}
 

@@ -12,6 +12,7 @@ from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import BY_NAME, WAYS
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.refusals import not_allowed
 
 BESIDE = 1e-4  # relative distance of the parameter from a graze
@@ -27,7 +28,7 @@ def switch(special: SpecialPoint) -> list[PeriodicOrbit]:
     """
     check_type("special", special, SpecialPoint, "a special point of a branch")
     if special.type not in WAYS:
-        raise ValueError(not_allowed("type", special.type, f"one of {', '.join(WAYS)}"))
+        raise ArgumentError(not_allowed("type", special.type, f"one of {', '.join(WAYS)}"))
     found = BEYOND[BY_NAME[special.type].beyond](special)
     system = special.orbit.system
     name = next(iter(special.parameters))

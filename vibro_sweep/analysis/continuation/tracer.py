@@ -14,6 +14,7 @@ from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, unknowns
 from vibro_sweep.engine.continuation.workspace import TEST, Place, new_bench
+from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.linear import Family
 
 LONGEST_STEP, SHORTEST_STEP = 0.05, 1e-11
@@ -22,7 +23,7 @@ BESIDE = 2e-3
 AT_ONCE = 1024  # points of one call
 
 
-class NoPlaneError(ValueError):
+class NoPlaneError(VibroSweepError, ValueError):
     """The oscillator has no polynomials around a point of the plane."""
 
 

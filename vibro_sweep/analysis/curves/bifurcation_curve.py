@@ -22,6 +22,7 @@ from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.engine.continuation.workspace import Place
 from vibro_sweep.model.arguments import check_call, check_type, checked_flag, checked_interval
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import family_of
 from vibro_sweep.model.real import array_of
 from vibro_sweep.model.refusals import not_allowed
@@ -73,7 +74,7 @@ class BifurcationCurve:
         names, drawn = self.parameters, []
         for curve in (self, *others):
             if curve.parameters != names:
-                raise ValueError(not_allowed("others", curve.parameters, f"curves in {', '.join(names)}"))
+                raise ArgumentError(not_allowed("others", curve.parameters, f"curves in {', '.join(names)}"))
             special = [(one.type, *(one.parameters[name] for name in names)) for one in curve.special]
             values = (curve.points[name].values for name in (*names, "virtual"))
             drawn.append(Drawn(curve.type, *values, special))
@@ -101,10 +102,10 @@ def bifurcation_curve(
     allowed = [name for name, value in family.numbers.items() if isinstance(value, (int, float))]
     names = tuple(parameters) if isinstance(parameters, (tuple, list)) else ()
     if not (all(isinstance(name, str) and name in allowed for name in names) and len({*names}) == len(names) == 2):
-        raise ValueError(not_allowed("parameters", parameters, f"two of {', '.join(allowed)}"))
+        raise ArgumentError(not_allowed("parameters", parameters, f"two of {', '.join(allowed)}"))
     values = array_of(box, 2)
     if values is None or values.shape != (2, 2):
-        raise ValueError(not_allowed("box", box, f"((lo, hi), (lo, hi)) of {names[0]} and {names[1]}"))
+        raise ArgumentError(not_allowed("box", box, f"((lo, hi), (lo, hi)) of {names[0]} and {names[1]}"))
     limits = [
         checked_interval(f"box.{name}", ends, family.numbers[name])
         for name, ends in zip(names, values.tolist(), strict=True)
@@ -115,12 +116,12 @@ def bifurcation_curve(
     tracer = Tracer(start, names, limits)
     tracer, first = first_of(tracer)
     if first is None:
-        raise ValueError(f"special: this {special.type} cannot be followed; it may belong to several curves at once")
+        raise ArgumentError(f"special: this {special.type} cannot be followed; it may belong to several curves at once")
     if len(special.parameters) > 1 or special.type != start.type:  # perhaps of codimension two: begin beside it
         places = tracer.beside(first)
         first = next((place for place in places if tracer.is_real(place)), (places or [first])[0])
     if not (virtual or tracer.is_real(first)):
-        raise ValueError(f"special: beside this {special.type} there is no motion")
+        raise ArgumentError(f"special: beside this {special.type} there is no motion")
     rates = first.tangent_p[:2]
     sign = -1 if rates[np.argmax(np.abs(rates) > LEVEL)] > 0 else 1  # down in the first parameter that changes
     down = Way(tracer, first, sign, special.orbit.system, progress, virtual)

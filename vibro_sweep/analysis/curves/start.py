@@ -10,6 +10,7 @@ from vibro_sweep.analysis.continuation.start import KINDS, Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.bifurcations import BIRTHS
+from vibro_sweep.model.errors import ArgumentError
 
 SLOW = 1e-9  # impulse, in parts of the gap's size times omega, below which an impact is a graze
 
@@ -26,7 +27,7 @@ def start_at(special: SpecialPoint, names: tuple[str, ...] = ()) -> Start:
     if start.solution.sigma == 1 or symmetric:
         return start
     if start.type == "sticking":
-        raise ValueError(
+        raise ArgumentError(
             f"parameters: {names!r} is not allowed: where the symmetry is broken, both chatter sequences of this "
             "orbit have an onset of their own"
         )
@@ -60,14 +61,14 @@ def slow_impacts(solution: Solution) -> list[int]:
 def _solution(special: SpecialPoint) -> Solution:
     if special.type not in KINDS:
         allowed = ", ".join(KINDS)
-        raise ValueError(f"special.type: {special.type!r} is not allowed; it must be one of {allowed}")
+        raise ArgumentError(f"special.type: {special.type!r} is not allowed; it must be one of {allowed}")
     if special.type == "sticking":
         if special._chatter is None:
-            raise ValueError("special: this sticking is not the onset at which impacts accumulate; it has no curve")
+            raise ArgumentError("special: this sticking is not the onset at which impacts accumulate; it has no curve")
         return special._chatter.solution
     solution = special.orbit._solution
     if solution.rests:
-        raise ValueError("special: the mass rests on a stop; curves of such orbits cannot be followed")
+        raise ArgumentError("special: the mass rests on a stop; curves of such orbits cannot be followed")
     return solution
 
 

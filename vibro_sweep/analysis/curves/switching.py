@@ -21,6 +21,7 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, name_of
+from vibro_sweep.model.errors import ArgumentError
 
 SINGULAR = 1e-8  # least singular value of G(mu), of its largest, below which mu is a multiplier
 ON_CIRCLE = 1e-8  # | |mu| - 1 | of a Neimark-Sacker pair
@@ -52,7 +53,7 @@ def switch(special):
     if not isinstance(special, CurvePoint):
         return switch_branches(special)
     if special.type in ENDS:
-        raise ValueError(f"type: {special.type!r} is not allowed; it must be a point of codimension two")
+        raise ArgumentError(f"type: {special.type!r} is not allowed; it must be a point of codimension two")
     found = [_special(special, start) for start in _starts(special)]
     if special.type in STRONG:
         beside = _beside_strong(special)

@@ -12,6 +12,7 @@ from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.state_space import ResonanceError, TooStiffError
 from vibro_sweep.model.arguments import check_type, checked_count
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import ExistingFileError, FileError, checked_path, file_to_write, read_bytes
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import family_of
@@ -29,14 +30,14 @@ def save_orbit(orbit: PeriodicOrbit, path) -> Path:
     orbit without a motion or of a Family."""
     path, s = file_to_write("path", path), orbit._solution
     if s is None:
-        raise ValueError(f"this orbit has no motion to save: its status is {orbit.status!r}")
+        raise ArgumentError(f"this orbit has no motion to save: its status is {orbit.status!r}")
     system = orbit.system
     if isinstance(system, System):
         numbers = {field.name: getattr(system, field.name) for field in fields(system)}
     elif isinstance(system, Oscillator):
         numbers = {"type": system.model.name, **system.given}
     else:
-        raise ValueError("an orbit of a Family cannot be saved: its function is no text")
+        raise ArgumentError("an orbit of a Family cannot be saved: its function is no text")
     record = {
         "format": FORMAT,
         "system": numbers,
@@ -73,7 +74,7 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
     except (ValueError, RecursionError):  # no UTF-8, no JSON, thousands of digits; nested thousands of times
         record = None
     if not isinstance(record, dict) or record.get("format") not in (FORMAT, WITHOUT_CHECKSUM):
-        raise ValueError(f"{path}: not a file of the format {FORMAT!r}")
+        raise FileError(path, f"not a file of the format {FORMAT!r}")
     try:
         check_type("system", record["system"], dict, "an object of numbers")
         numbers = dict(record["system"])
@@ -97,9 +98,9 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
         if (record["format"] == FORMAT or "checksum" in record) and record["checksum"] != checksum_of(record):
             raise ValueError("its checksum is wrong")
     except KeyError as missing:
-        raise ValueError(f"{path}: damaged: {missing} is missing") from None
+        raise FileError(path, f"damaged: {missing} is missing") from None
     except (TypeError, ValueError) as problem:
-        raise ValueError(f"{path}: damaged: {problem}") from None
+        raise FileError(path, f"damaged: {problem}") from None
     try:
         return orbit_of(system, Solution(family, sigma, halves, sides, u, change, rests))
     except ResonanceError:
@@ -116,5 +117,5 @@ def checksum_of(record: dict) -> str:
 
 def _whole(name: str, values: object) -> tuple[int, ...]:
     if not isinstance(values, list):
-        raise ValueError(not_allowed(name, values, "a list of whole numbers"))
+        raise ArgumentError(not_allowed(name, values, "a list of whole numbers"))
     return tuple(checked_count(f"{name}[{i}]", value, -1) for i, value in enumerate(values))

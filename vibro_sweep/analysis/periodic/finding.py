@@ -18,6 +18,7 @@ from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.engine.impulses.state_space import ResonanceError, TooStiffError
 from vibro_sweep.model.arguments import checked_count, checked_state
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Family, family_of, forcing_period
 from vibro_sweep.model.real import array_of
 from vibro_sweep.model.refusals import not_allowed
@@ -51,11 +52,11 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
     if state is not None:
         state = checked_state(state, len(family.linear.along))
         if not (sides is None and rows is None):
-            raise ValueError(not_allowed("state", state, "left out where an itinerary or a guess is given"))
+            raise ArgumentError(not_allowed("state", state, "left out where an itinerary or a guess is given"))
     elif sides is None and rows is None:
-        raise ValueError(not_allowed("state", state, "given, or an itinerary or a guess"))
+        raise ArgumentError(not_allowed("state", state, "given, or an itinerary or a guess"))
     elif rows is None and len(sides) > MOST_IMPACTS:
-        raise ValueError(not_allowed("itinerary", itinerary, f"of at most {MOST_IMPACTS} impacts without a guess"))
+        raise ArgumentError(not_allowed("itinerary", itinerary, f"of at most {MOST_IMPACTS} impacts without a guess"))
     try:
         if state is not None:
             return _from_state(system, family, state, periods)
@@ -70,10 +71,10 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
 
 def _checked_sides(q, itinerary) -> tuple[int, ...]:
     if not isinstance(itinerary, str) or set(itinerary) - set(SIDES):
-        raise ValueError(not_allowed("itinerary", itinerary, "a word of R and L"))
+        raise ArgumentError(not_allowed("itinerary", itinerary, "a word of R and L"))
     sides = tuple(SIDES[letter] for letter in itinerary)
     if not np.all(np.isfinite(q.stop(sides))):
-        raise ValueError(not_allowed("itinerary", itinerary, "a word of stops that the system has"))
+        raise ArgumentError(not_allowed("itinerary", itinerary, "a word of stops that the system has"))
     return sides
 
 
@@ -81,21 +82,21 @@ def _checked_guess(q, guess, itinerary):
     rows = array_of(guess, 2)
     none = rows is not None and rows.size == 0
     if rows is None or not (none or (rows.shape[1] == 3 and np.isfinite(rows).all() and {*rows[:, 1]} <= {1, -1})):
-        raise ValueError(not_allowed("guess", guess, "(t, side, v) for each impact, finite, with side 1 or -1"))
+        raise ArgumentError(not_allowed("guess", guess, "(t, side, v) for each impact, finite, with side 1 or -1"))
     rows = [] if none else [tuple(row) for row in rows.tolist()]
     if any(b[0] <= a[0] for a, b in pairwise(rows)):
-        raise ValueError(not_allowed("guess", guess, "(t, side, v) for each impact, in the order of their times"))
+        raise ArgumentError(not_allowed("guess", guess, "(t, side, v) for each impact, in the order of their times"))
     sides = word([side for _, side, _ in rows])
     if not np.all(np.isfinite(q.stop([int(side) for _, side, _ in rows]))):
-        raise ValueError(not_allowed("guess", guess, "(t, side, v) for each impact on a stop that the system has"))
+        raise ArgumentError(not_allowed("guess", guess, "(t, side, v) for each impact on a stop that the system has"))
     if itinerary is not None and (len(itinerary) != len(sides) or itinerary not in 2 * sides):  # any rotation of it
-        raise ValueError(not_allowed("itinerary", itinerary, f"that of the guess, {sides!r}"))
+        raise ArgumentError(not_allowed("itinerary", itinerary, f"that of the guess, {sides!r}"))
     return rows
 
 
 def _from_state(system, family, state, periods) -> PeriodicOrbit:
     if isinstance(system, Family):
-        raise ValueError(not_allowed("state", state, "left out of a Family, which cannot be simulated"))
+        raise ArgumentError(not_allowed("state", state, "left out of a Family, which cannot be simulated"))
     simulated = simulate(system, state, periods)
     if str(simulated.status) != "ok":
         return PeriodicOrbit(system, "not_converged")
@@ -131,7 +132,7 @@ def _from_guess(system, family, rows, periods) -> PeriodicOrbit:
     u = np.concatenate([t, -(1 + R) * v])
     start = Solution(family, 1, 2 * periods, sides, u)
     if sides and t[-1] >= t[0] + start.P:
-        raise ValueError(not_allowed("guess", rows, "(t, side, v) for each impact within one period"))
+        raise ArgumentError(not_allowed("guess", rows, "(t, side, v) for each impact within one period"))
     found = start.corrected()
     if (found is None or not found.real) and np.any(R == 0):
         found = with_rests(found or start) or found

@@ -23,6 +23,7 @@ from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import closing, flow
 from vibro_sweep.engine.impulses.state_space import has_free_gap
 from vibro_sweep.model.arguments import checked_count
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Linear, family_of, forcing_period
 from vibro_sweep.model.refusals import not_allowed
 
@@ -82,15 +83,15 @@ def born_at_grazing(system, periods: int = 6) -> list[Born]:
     family = family_of(system)
     periods = checked_count("periods", periods, 1)
     if "b" not in family.numbers:
-        raise ValueError(not_allowed("system", system, "one with a clearance b"))
+        raise ArgumentError(not_allowed("system", system, "one with a clearance b"))
     if has_free_gap(family.linear):
-        raise ValueError(not_allowed("system", system, "one without a free mode, which has no steady motion"))
+        raise ArgumentError(not_allowed("system", system, "one without a free mode, which has no steady motion"))
     graze = _graze(family.linear, family.numbers["b"])
     if graze.amplitude == 0:
-        raise ValueError(not_allowed("system", system, "one whose gap a force moves, so that it grazes"))
+        raise ArgumentError(not_allowed("system", system, "one whose gap a force moves, so that it grazes"))
     most = MOST_PLACES // graze.per_period
     if periods > most:
-        raise ValueError(not_allowed("periods", periods, f"at most {most}"))
+        raise ArgumentError(not_allowed("periods", periods, f"at most {most}"))
     result = []
     for n in range(1, periods + 1):
         result += _of_period(system, family, graze, n)

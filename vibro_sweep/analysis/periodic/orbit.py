@@ -16,6 +16,7 @@ from vibro_sweep.engine.impulses.flow import contact_coordinates, flow, held_flo
 from vibro_sweep.engine.impulses.state_space import ResonanceError
 from vibro_sweep.engine.one_system import IMPACT, STICKING, impact_of
 from vibro_sweep.model.arguments import LATEST, checked_times
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import Family, forcing_period
 from vibro_sweep.model.oscillator import System
@@ -170,7 +171,7 @@ class PeriodicOrbit:
         Raises ValueError for no times, or for times beyond 10^9 forcing periods.
         """
         if self._solution is None:
-            raise ValueError(f"this orbit has no motion: {STATUS[self.status]}")
+            raise ArgumentError(f"this orbit has no motion: {STATUS[self.status]}")
         q = self._solution.family.linear
         length, latest = self.period * forcing_period(q), LATEST * forcing_period(q)
         allowed = f"within {LATEST} forcing periods of 0: beyond, times resolve no motion"
@@ -219,7 +220,7 @@ class PeriodicOrbit:
 
         q = self._solution.family.linear if self._solution is not None else None
         if q is None:
-            raise ValueError(f"this orbit has no motion: {STATUS[self.status]}")
+            raise ArgumentError(f"this orbit has no motion: {STATUS[self.status]}")
         length = self.period * forcing_period(q)
         times = np.unique(np.concatenate([np.linspace(0, length, 400 * self.period + 1), self._whole[0] % length]))
         states = self.sample(times)

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.models.declaration import UNITS
 from vibro_sweep.model.state import state
 from vibro_sweep.model.units import unit_in
@@ -54,7 +55,9 @@ def figure_of(orbit: "Orbit", periods: int, width: float | None) -> "Figure":
 
     reached = orbit.section_times[np.isfinite(orbit.section[:, 0])]
     if not len(reached) or reached[-1] <= orbit.start_time:
-        raise ValueError(f"this orbit has no motion to draw: its status is {orbit.status!r}, its periods are too few")
+        raise ArgumentError(
+            f"this orbit has no motion to draw: its status is {orbit.status!r}, its periods are too few"
+        )
     end, system, q = reached[-1], orbit.system, orbit.system.linear
     begin = max(orbit.start_time, end - periods * system.period)
     impacts = orbit.impacts[(orbit.impacts["t"] >= begin) & (orbit.impacts["t"] <= end)]

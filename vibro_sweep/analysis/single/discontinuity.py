@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike
 from vibro_sweep.engine.period_map import PeriodMap
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import checked_state
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.oscillator import checked_system
 from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed
@@ -19,10 +20,10 @@ class DiscontinuityMap:
     def __init__(self, system: AnyOscillator, order: int = 1, expand_at: float | None = None):
         checked_system(system)
         if number_of(order) not in ORDERS:
-            raise ValueError(not_allowed("order", order, " or ".join(map(str, ORDERS))))
+            raise ArgumentError(not_allowed("order", order, " or ".join(map(str, ORDERS))))
         at = None if expand_at is None else number_of(expand_at)
         if expand_at is not None and (at is None or not 0 < at < np.inf):
-            raise ValueError(not_allowed("expand_at", expand_at, "a finite number > 0"))
+            raise ArgumentError(not_allowed("expand_at", expand_at, "a finite number > 0"))
         self._map = PeriodMap(system, int(order), at)
         self.graze, self._masses = self._map.graze, len(system.linear.along)
         self._at = float(system.linear.along @ self.graze[0::2])

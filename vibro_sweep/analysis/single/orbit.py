@@ -18,6 +18,7 @@ from vibro_sweep.engine.records import new_results
 from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import LATEST, checked_count, checked_state, checked_times
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.oscillator import checked_system
 from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed
@@ -145,7 +146,7 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
     begins = number_of(start_time)
     if begins is None or not abs(begins) <= LATEST * system.period:
         allowed = f"a number of at most {LATEST} forcing periods: beyond, times resolve no motion"
-        raise ValueError(not_allowed("start_time", start_time, allowed))
+        raise ArgumentError(not_allowed("start_time", start_time, allowed))
     start_time = begins
     engine = Engine(system)
     begin = engine.checked(state)

@@ -10,6 +10,7 @@ import numpy as np
 from vibro_sweep.model.arguments import checked_word
 from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.built import BUILD
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.parameters import range_of
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.state import state
@@ -84,22 +85,22 @@ def chosen_key(data: Contents, system, parameter: str | None) -> str:
     swept = swept_in(data)
     able = [name for name in swept if name in system.described and data.sizes[name] > 1]
     if not able:
-        raise ValueError(f"sweep: {', '.join(swept) or 'nothing'} is swept; windows need a number of the system")
+        raise ArgumentError(f"sweep: {', '.join(swept) or 'nothing'} is swept; windows need a number of the system")
     return checked_word("parameter", parameter, able, optional=True) or able[0]
 
 
 def check_data(data: Contents) -> None:
     """Raise ValueError for what is not a sweep, or has no section states at t = 0 mod T of the oscillator itself."""
     if "kind" in data.attrs:
-        raise ValueError(f"holds {cut(str(data.attrs['kind']))}, not a sweep")
+        raise ArgumentError(f"holds {cut(str(data.attrs['kind']))}, not a sweep")
     if data.attrs.get("type") == BUILD:
-        raise ValueError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
+        raise ArgumentError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
     if data.attrs.get("model", "flow") != "flow":
-        raise ValueError("model: 'map' is not allowed; windows are those of the oscillator itself, model: flow")
+        raise ArgumentError("model: 'map' is not allowed; windows are those of the oscillator itself, model: flow")
     if data.attrs.get("section", "phase") != "phase":
-        raise ValueError("section: 'impact' is not allowed; windows start from states at t = 0 mod T, kind: phase")
+        raise ArgumentError("section: 'impact' is not allowed; windows start from states at t = 0 mod T, kind: phase")
     if "period" not in data or "x1" not in data:
-        raise ValueError("observe: has no 'section'; windows start from the section states of a sweep")
+        raise ArgumentError("observe: has no 'section'; windows start from the section states of a sweep")
 
 
 def rows_of(data: Contents, system, key: str) -> Iterator[Row]:
