@@ -21,7 +21,7 @@ from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.continuation.first_point import start_of_branch
 from vibro_sweep.analysis.continuation.tracer import LONGEST_STEP, branch_through
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 
 GUESSES = 1000

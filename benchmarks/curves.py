@@ -16,10 +16,10 @@ from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.continuation.tracer import LONGEST_STEP, Tracer, copy
 from vibro_sweep.analysis.curves.bifurcation_curve import first_of
-from vibro_sweep.analysis.curves.start import start_at
+from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import TEST, new_place
 

@@ -7,7 +7,7 @@ from support.drawn_branches import Case
 from support.same_branch import follow
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.beginning import start_of_walk
+from vibro_sweep.analysis.branches.branch_start import start_of_walk
 from vibro_sweep.analysis.branches.branch_way import Way
 from vibro_sweep.analysis.branches.own_birth import halves_apart
 from vibro_sweep.analysis.branches.passed_births import passed

@@ -12,7 +12,7 @@ from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.continuation.first_point import guess_of, start_of_branch
 from vibro_sweep.analysis.continuation.tracer import branch_through
 from vibro_sweep.analysis.periodic.linearised import Linearised
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.certificate import may_turn
 from vibro_sweep.engine.continuation.moving_flow import OMEGA

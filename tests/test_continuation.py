@@ -11,7 +11,7 @@ from support.random_branches import random_oscillator, random_system
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import branch_way
-from vibro_sweep.analysis.branches.beginning import start_of_walk
+from vibro_sweep.analysis.branches.branch_start import start_of_walk
 
 B_STAR = 6.7057167409730219272  # |e_1.(K - omega^2 M + i omega C)^-1 P| in 40 digits
 

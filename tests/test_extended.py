@@ -6,14 +6,14 @@ from mpmath import mp, mpf
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.periodic import motion_between
-from vibro_sweep.engine.impulses import extended, flow, state_space
-from vibro_sweep.engine.impulses.tables import exponential, power
+from vibro_sweep.engine.impulses import extended, flow, free_modes
+from vibro_sweep.engine.impulses.taylor_orders import exponential, power
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=3.0, tau=0.1)
 
 
 def forget():
-    for module in (state_space, flow, motion_between):
+    for module in (free_modes, flow, motion_between):
         for thing in vars(module).values():
             getattr(thing, "cache_clear", lambda: None)()
 

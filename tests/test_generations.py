@@ -7,10 +7,10 @@ from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import branch_search
-from vibro_sweep.analysis.branches.flat import flatten, outline, special_point
+from vibro_sweep.analysis.branches.branch_arrays import flatten, outline, special_point
+from vibro_sweep.analysis.branches.branch_switching import mirrored
 from vibro_sweep.analysis.branches.recognising import passes
-from vibro_sweep.analysis.branches.switching import mirrored
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 
 BOUNDS = (0.3, 6.8)
 

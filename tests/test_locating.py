@@ -5,9 +5,9 @@ from support.oscillators import BALL, CAVITY, ONE_MASS, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.continuation.first_point import first_place
-from vibro_sweep.analysis.continuation.start import KINDS
+from vibro_sweep.analysis.continuation.starting_orbit import KINDS
 from vibro_sweep.analysis.continuation.tracer import Tracer
-from vibro_sweep.analysis.curves.start import start_at
+from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.model.linear import Family, family_of
 
 ORBITS = [

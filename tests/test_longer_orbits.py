@@ -7,7 +7,7 @@ from support.oscillators import PAPER
 from support.random_curves import Report, simulate_beside
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.engine.period_map import PeriodMap
 
 NAMES, BOX = ("b", "omega"), ((0.3, 9), (0.5, 0.8))

@@ -5,8 +5,8 @@ import pytest
 from support.windows import SYSTEM, few  # noqa: F401
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.flat import section_states
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.branches.branch_arrays import section_states
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.windows.members import members, solution_in
 
 

@@ -9,7 +9,7 @@ from support.windows import SYSTEM, few  # noqa: F401
 
 import vibro_sweep as vs
 from vibro_sweep import store
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.windows import members
 from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.job import Job, window_of

@@ -9,9 +9,9 @@ from reference.resting import Resting
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.switching import mirrored
+from vibro_sweep.analysis.branches.branch_switching import mirrored
 from vibro_sweep.analysis.continuation.first_point import followed_from
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 from vibro_sweep.model.linear import family_of
 

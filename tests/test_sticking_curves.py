@@ -12,7 +12,7 @@ from support.oscillators import PAPER
 import vibro_sweep as vs
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.bifurcation_curve import first_of
-from vibro_sweep.analysis.curves.start import start_at
+from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 

@@ -6,10 +6,10 @@ from support.branches import types
 from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import beginning, births
+from vibro_sweep.analysis.branches import births, branch_start
 from vibro_sweep.analysis.branches.births import is_steady
 from vibro_sweep.analysis.continuation import first_point
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 
 
 def test_asymmetric_branch_is_born_at_the_pitchfork(symmetric_branch):
@@ -149,7 +149,7 @@ def test_a_branch_that_cannot_be_started_says_so(flat_flip, monkeypatch):
         near = births.born(flat_flip.orbit._solution, "f2", 1)
     orbit = orbit_of(FLAT.replace(f2=near.family.numbers["f2"]), near)
     assert orbit.ok and vs.continue_orbit(orbit, "f2", bounds).ok
-    monkeypatch.setattr(beginning, "FARTHER", ())
+    monkeypatch.setattr(branch_start, "FARTHER", ())
     monkeypatch.setattr(first_point, "STILL", -1.0)  # as where Newton's method does not stand still
     branch = vs.continue_orbit(orbit, "f2", bounds)
     assert branch.status == "failed" and not branch.ok

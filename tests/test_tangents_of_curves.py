@@ -9,7 +9,7 @@ from support.golden import curves, files
 
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.bifurcation_curve import first_of
-from vibro_sweep.analysis.curves.start import start_at
+from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.engine.continuation import stepper
 
 NAMES = (  # of each kind, of one to eight masses, in numbers that move the flight and that do not

@@ -51,14 +51,14 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from vibro_sweep.analysis.branches.continuation import continue_orbit
+    from vibro_sweep.analysis.branches.branch import continue_orbit
     from vibro_sweep.analysis.branches.generations import follow_branches
     from vibro_sweep.analysis.branches.sticking import sticking_onset
     from vibro_sweep.analysis.curves.bifurcation_curve import bifurcation_curve
-    from vibro_sweep.analysis.curves.switching import switch
-    from vibro_sweep.analysis.periodic.file import load_orbit
+    from vibro_sweep.analysis.curves.curve_switching import switch
     from vibro_sweep.analysis.periodic.finding import periodic_orbit
     from vibro_sweep.analysis.periodic.lcp import born_at_grazing
+    from vibro_sweep.analysis.periodic.orbit_file import load_orbit
     from vibro_sweep.analysis.single.discontinuity import discontinuity_map
     from vibro_sweep.analysis.single.orbit import lyapunov, simulate
     from vibro_sweep.driver.compute import RunError
@@ -87,11 +87,11 @@ else:
         "VibroSweepError": "model.errors",
         "bifurcation_curve": "analysis.curves.bifurcation_curve",
         "born_at_grazing": "analysis.periodic.lcp",
-        "continue_orbit": "analysis.branches.continuation",
+        "continue_orbit": "analysis.branches.branch",
         "discontinuity_map": "analysis.single.discontinuity",
         "follow_branches": "analysis.branches.generations",
         "grazing": "model.grazing",
-        "load_orbit": "analysis.periodic.file",
+        "load_orbit": "analysis.periodic.orbit_file",
         "load_scene": "scene",
         "lyapunov": "analysis.single.orbit",
         "open": "store",
@@ -101,7 +101,7 @@ else:
         "simulate": "analysis.single.orbit",
         "sticking_onset": "analysis.branches.sticking",
         "sweep": "driver.from_python",
-        "switch": "analysis.curves.switching",
+        "switch": "analysis.curves.curve_switching",
         "windows": "driver.windows",
     }
 

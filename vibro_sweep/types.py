@@ -3,13 +3,13 @@
 `System` and `Oscillator` are in `vibro_sweep` itself; both are an `AnyOscillator`.
 """
 
-from vibro_sweep.analysis.branches.continuation import Branch
+from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.branches.generations import Followed
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.periodic.lcp import Born
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.single.discontinuity import DiscontinuityMap
 from vibro_sweep.analysis.single.exponents import Exponents
 from vibro_sweep.analysis.single.orbit import Orbit, Status

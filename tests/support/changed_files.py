@@ -9,7 +9,7 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
-from vibro_sweep.analysis.periodic.file import checksum_of
+from vibro_sweep.analysis.periodic.orbit_file import checksum_of
 
 Change = Callable[[Path, np.random.Generator], None]
 LONG = "a long text " * 500

@@ -3,7 +3,7 @@
 import numpy as np
 from reference.saltation import expm, field, monodromy
 
-from vibro_sweep.analysis.continuation.start import keeps_symmetry
+from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.model.linear import family_of
 
 NEAR = 1e-6  # distance of a multiplier from the unit circle within which it counts as on neither side
@@ -175,7 +175,8 @@ def flown(found, q, t, sides, v, period, k, lengths):
 def _nearest(found, q, t, sides, v, period) -> float:
     """The least distance of the gap's turning points from a stop."""
     N, best = len(q.along), np.inf
-    ends = np.append(t, t[0] + period) if len(t) else np.array([0.0, period])
+    # of the free motion a little more than a period: with the phase `grazing` a turning point lies at its ends
+    ends = np.append(t, t[0] + period) if len(t) else np.array([0.0, 1.01 * period])
     for k in range(len(ends) - 1):
         s = np.linspace(0, ends[k + 1] - ends[k], 400)
         z = flown(found, q, t, sides, v, period, k, s)

@@ -16,7 +16,7 @@ from support.random_branches import attractors, random_system
 from vibro_sweep.analysis.branches.branch_way import stop_and_impact
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation import tracer
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 
 TYPES = ("fold", "flip", "pitchfork", "neimark_sacker", "graze")
 CLOSE = 1e-9  # of the state after a period of simulation, relative, times the largest multiplier

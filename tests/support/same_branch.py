@@ -9,7 +9,7 @@ import vibro_sweep as vs
 from support.drawn_branches import Case
 from vibro_sweep.analysis.branches import branch_way
 from vibro_sweep.analysis.continuation import tracer
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 
 CLOSE = 1e-9  # relative to the parameter or its range: values of one special point differ by less
 MOST_POINTS = 4000

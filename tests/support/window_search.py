@@ -17,7 +17,7 @@ from support.branch_search import Report, summary
 from support.drawn_branches import MODELS, drawn_number, drawn_oscillator
 from support.windows import check_end
 from vibro_sweep import store
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.windows.job import Job, lies_on, window_of
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.driver.windows import rows_in

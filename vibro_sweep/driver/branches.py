@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch_arrays import SHAPES
 from vibro_sweep.analysis.branches.branch_search import Branches, grow
-from vibro_sweep.analysis.branches.flat import SHAPES
 from vibro_sweep.analysis.branches.search import Node
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch_arrays import special_point
 from vibro_sweep.analysis.branches.branch_search import Branches, grow
-from vibro_sweep.analysis.branches.flat import special_point
 from vibro_sweep.analysis.branches.seeds import Seed
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.curves.curve_flat import SHAPES
+from vibro_sweep.analysis.curves.curve_arrays import SHAPES
 from vibro_sweep.analysis.curves.curve_search import Curves, seed_at, trace
 from vibro_sweep.analysis.windows.explained import explain, probe
 from vibro_sweep.driver.branches import where_met

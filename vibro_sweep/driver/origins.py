@@ -7,19 +7,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibro_sweep import store
-from vibro_sweep.analysis.branches import flat as branches
-from vibro_sweep.analysis.branches.flat import special_point
+from vibro_sweep.analysis.branches import branch_arrays as branches
+from vibro_sweep.analysis.branches.branch_arrays import special_point
+from vibro_sweep.analysis.branches.branch_switching import switch
 from vibro_sweep.analysis.branches.seeds import Seed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.branches.switching import switch
-from vibro_sweep.analysis.continuation.start import Start
-from vibro_sweep.analysis.curves import curve_flat as curves
-from vibro_sweep.analysis.curves.curve_flat import point_of_codimension_two
+from vibro_sweep.analysis.continuation.starting_orbit import Start
+from vibro_sweep.analysis.curves import curve_arrays as curves
+from vibro_sweep.analysis.curves.curve_arrays import point_of_codimension_two
+from vibro_sweep.analysis.curves.curve_switching import switch as curves_through
 from vibro_sweep.analysis.curves.curve_way import CurvePoint
-from vibro_sweep.analysis.curves.switching import switch as curves_through
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.lcp import born_at_grazing
-from vibro_sweep.analysis.periodic.orbit import STATUS, PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import STATUS, PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.windows.cover import Cover, Found
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.rows import Row

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from vibro_sweep.analysis.branches import flat as branches
+from vibro_sweep.analysis.branches import branch_arrays as branches
 from vibro_sweep.analysis.branches import seeds
-from vibro_sweep.analysis.curves import curve_flat as curves
+from vibro_sweep.analysis.curves import curve_arrays as curves
 from vibro_sweep.model.bifurcations import EDGES, REASONS
 from vibro_sweep.model.branch_file import CHART, WINDOWS, columns
 from vibro_sweep.model.column import Column

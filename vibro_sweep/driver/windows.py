@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.flat import SHAPES, Flat
+from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Flat
 from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.job import window_of
 from vibro_sweep.analysis.windows.rows import Contents, Row, check_data, chosen_key, rows_of

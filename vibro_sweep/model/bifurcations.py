@@ -11,7 +11,7 @@ class Bifurcation(NamedTuple):
     condition : the equation that holds along its curve in two parameters; "": it has no curve
     sigma : of the orbits that have it; 0: all
     crosses : how many multipliers cross the circle there: one above 1, one below -1, a pair; all 0: the test is another
-    beyond : what branches off, a key of `BEYOND` in analysis/branches/switching.py; "": nothing
+    beyond : what branches off, a key of `BEYOND` in analysis/branches/branch_switching.py; "": nothing
     """
 
     name: str

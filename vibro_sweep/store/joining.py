@@ -1,7 +1,7 @@
 """Branches or curves as the arrays of a file: one after another, ragged ones by their lengths (CF, contiguous ragged).
 
-`shapes` : dimensions -> names of the arrays of one, as `SHAPES` of analysis/branches/flat.py and of
-analysis/curves/curve_flat.py has them, with n points, K impacts, s special points. In a file `value` and `state` are
+`shapes` : dimensions -> names of the arrays of one, as `SHAPES` of analysis/branches/branch_arrays.py and of
+analysis/curves/curve_arrays.py has them, with n points, K impacts, s special points. In a file `value` and `state` are
 columns with names.
 """
 

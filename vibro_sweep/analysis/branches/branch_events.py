@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from vibro_sweep.analysis.continuation.chord import error_of, root
-from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.events import Event, Found, Test
 from vibro_sweep.analysis.continuation.point import Point, along
+from vibro_sweep.analysis.continuation.rounding import rounding_error
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.continuation.branch_tests import PASSED

@@ -6,14 +6,14 @@ same generation that an earlier one has passed.
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.continuation import Branch, continue_orbit, not_followed
-from vibro_sweep.analysis.branches.flat import Flat, flatten, orbit_at, section_states
+from vibro_sweep.analysis.branches.branch import Branch, continue_orbit, not_followed
+from vibro_sweep.analysis.branches.branch_arrays import Flat, flatten, orbit_at, section_states
+from vibro_sweep.analysis.branches.branch_switching import switch
 from vibro_sweep.analysis.branches.recognising import clearest, passes, point_of
 from vibro_sweep.analysis.branches.search import Node, Search, Task
 from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.branches.switching import switch
-from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 
 LEAST = 1e-4  # distance of a graze from the onset of sticking, as a part of the range, to which branches are followed

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.orbit_text import itinerary_of, motion, multipliers_text, span, system_text, told
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 
 if TYPE_CHECKING:
-    from vibro_sweep.analysis.branches.continuation import Branch
+    from vibro_sweep.analysis.branches.branch import Branch
     from vibro_sweep.analysis.branches.generations import Followed
     from vibro_sweep.analysis.branches.special import SpecialPoint
 

@@ -16,9 +16,9 @@ from vibro_sweep.analysis.branches.track import Track, row_of
 from vibro_sweep.analysis.continuation.events import Event, Found
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.recorded import Rows, join
-from vibro_sweep.analysis.continuation.start import KINDS
+from vibro_sweep.analysis.continuation.starting_orbit import KINDS
 from vibro_sweep.analysis.continuation.tracer import SHORTEST_STEP
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.problem import FLIP, TORUS

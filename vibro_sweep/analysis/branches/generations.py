@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 
 from vibro_sweep.analysis.branches import branch_text
+from vibro_sweep.analysis.branches.branch import Branch, continue_orbit
+from vibro_sweep.analysis.branches.branch_arrays import Flat, outline
 from vibro_sweep.analysis.branches.branch_search import Branches, beyond, followed
-from vibro_sweep.analysis.branches.continuation import Branch, continue_orbit
-from vibro_sweep.analysis.branches.flat import Flat, outline
 from vibro_sweep.analysis.branches.search import Task
 from vibro_sweep.analysis.branches.seeds import packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.continuation.start import Start
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.continuation.starting_orbit import Start
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.model.arguments import check_call, check_type, checked_count
 from vibro_sweep.model.bifurcations import WAYS
 from vibro_sweep.model.errors import ArgumentError

@@ -14,7 +14,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.recorded import Rows
-from vibro_sweep.analysis.continuation.start import keeps_symmetry
+from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.analysis.continuation.tracer import Tracer
 
 BACK = 16  # points, at most, to one that lies before what rounding does beside a birth

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from vibro_sweep.analysis.branches.flat import Flat
+from vibro_sweep.analysis.branches.branch_arrays import Flat
 from vibro_sweep.analysis.branches.seeds import Seed, unpacked
 
 Evaluate = Callable[[list[str], list[Any]], list[Flat]]  # the arrays of tasks by their names; none: nothing was found

@@ -4,9 +4,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.flat import Flat
-from vibro_sweep.analysis.continuation.start import KINDS, Start
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.branches.branch_arrays import Flat
+from vibro_sweep.analysis.continuation.starting_orbit import KINDS, Start
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import family_of
 

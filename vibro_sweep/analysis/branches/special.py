@@ -7,7 +7,7 @@ import numpy as np
 from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.continuation.chatter import Chatter
 from vibro_sweep.analysis.periodic.linearised import Linearised
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import flow

@@ -11,9 +11,9 @@ from vibro_sweep.analysis.branches.sizes import LEAST, least_size
 from vibro_sweep.analysis.branches.special import SpecialPoint, inserted
 from vibro_sweep.analysis.continuation.chatter import Chatter, chatter_at, written_out
 from vibro_sweep.analysis.continuation.first_point import guess_of, settle
-from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.continuation.tracer import NoPlaneError, Tracer
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import FIRST, Place
 from vibro_sweep.model.arguments import check_type

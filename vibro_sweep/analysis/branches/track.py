@@ -8,7 +8,7 @@ from vibro_sweep.analysis.continuation.first_point import guess_of
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.recorded import Rows, rows_of
 from vibro_sweep.analysis.continuation.tracer import NoPlaneError, copy
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST, Place, new_place

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq
 
-from vibro_sweep.analysis.continuation.errors import rounding_error
 from vibro_sweep.analysis.continuation.point import Point
+from vibro_sweep.analysis.continuation.rounding import rounding_error
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.engine.continuation.workspace import Place
 

@@ -11,8 +11,8 @@ from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import TABLES, flow, rates
-from vibro_sweep.engine.impulses.state_space import checked_cells
-from vibro_sweep.engine.impulses.tables import exponential, taylor_rows
+from vibro_sweep.engine.impulses.free_modes import checked_cells
+from vibro_sweep.engine.impulses.taylor_orders import exponential, taylor_rows
 from vibro_sweep.model.linear import Family, Linear
 
 FEW = 4  # degree that is tried first

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.analysis.continuation.errors import rounding_error
+from vibro_sweep.analysis.continuation.rounding import rounding_error
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import TEST, Place
 

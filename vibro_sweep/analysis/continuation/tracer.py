@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.analysis.continuation.oscillators import Oscillators, Units
 from vibro_sweep.analysis.continuation.point import Point
-from vibro_sweep.analysis.continuation.start import Start, keeps_symmetry
+from vibro_sweep.analysis.continuation.starting_orbit import Start, keeps_symmetry
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import path, stepper
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING

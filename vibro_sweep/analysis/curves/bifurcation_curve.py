@@ -17,8 +17,8 @@ from vibro_sweep.analysis.continuation.recorded import Rows, both_ways
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves import curve_text
 from vibro_sweep.analysis.curves.curve_points import dataset
+from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.analysis.curves.curve_way import CurvePoint, Way
-from vibro_sweep.analysis.curves.start import start_at
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.engine.continuation.workspace import Place
 from vibro_sweep.model.arguments import check_call, check_type, checked_flag, checked_interval

@@ -29,11 +29,11 @@ from vibro_sweep.analysis.branches.criticality import cubic_terms
 from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
-from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer, branch_through
+from vibro_sweep.analysis.curves.curve_start import as_special
 from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.curves.pair import in_time, rates_of_pair, second_order
-from vibro_sweep.analysis.curves.start import as_special
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING

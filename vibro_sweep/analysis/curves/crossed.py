@@ -8,7 +8,7 @@ Farther off points are exact, and the polynomials through them give what lies be
 import numpy as np
 
 from vibro_sweep.analysis.continuation.chord import Chord
-from vibro_sweep.analysis.continuation.errors import DIGITS, ROWS, sensitivity
+from vibro_sweep.analysis.continuation.rounding import DIGITS, ROWS, sensitivity
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.engine.continuation.stepper import EXAMINE
 from vibro_sweep.engine.continuation.workspace import TEST, Place

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.analysis.continuation.chord import error_of, root
 from vibro_sweep.analysis.continuation.events import Event, Found
-from vibro_sweep.analysis.continuation.start import CONDITIONS
+from vibro_sweep.analysis.continuation.starting_orbit import CONDITIONS
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING

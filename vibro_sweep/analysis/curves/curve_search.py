@@ -8,18 +8,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.flat import Flat
+from vibro_sweep.analysis.branches.branch_arrays import Flat
 from vibro_sweep.analysis.branches.recognising import apart, rotates
 from vibro_sweep.analysis.branches.search import Box, Search, Task
 from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.first_point import first_place
-from vibro_sweep.analysis.continuation.start import keeps_symmetry
+from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.bifurcation_curve import bifurcation_curve
-from vibro_sweep.analysis.curves.curve_flat import flatten, solution_at, start_from, type_of
-from vibro_sweep.analysis.curves.start import as_special, start_at
-from vibro_sweep.analysis.curves.switching import ENDS, switch
+from vibro_sweep.analysis.curves.curve_arrays import flatten, solution_at, start_from, type_of
+from vibro_sweep.analysis.curves.curve_start import as_special, start_at
+from vibro_sweep.analysis.curves.curve_switching import ENDS, switch
 from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.solution import Solution

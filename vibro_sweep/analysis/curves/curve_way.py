@@ -14,7 +14,7 @@ from vibro_sweep.analysis.continuation.recorded import Rows, join, rows_of
 from vibro_sweep.analysis.continuation.tracer import Tracer, copy
 from vibro_sweep.analysis.curves.curve_events import beside, found_between, found_to_edge, without_echoes
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.curve_tests import NEAR_STRONG
 from vibro_sweep.engine.continuation.moving_flow import OMEGA

@@ -16,7 +16,7 @@ from vibro_sweep.analysis.branches.own_birth import halves_apart, turns
 from vibro_sweep.analysis.branches.special import bare, inserted
 from vibro_sweep.analysis.continuation.events import Found
 from vibro_sweep.analysis.continuation.first_point import first_place
-from vibro_sweep.analysis.continuation.start import CONDITIONS, Start
+from vibro_sweep.analysis.continuation.starting_orbit import CONDITIONS, Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.curve_events import event_near
 from vibro_sweep.analysis.periodic.solution import Solution

@@ -13,8 +13,8 @@ from vibro_sweep.engine.continuation.problem import ORBIT, Problem
 from vibro_sweep.engine.continuation.workspace import new_bench, new_place
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import TABLES, closing, contact_coordinates, flow, unseen_modes
-from vibro_sweep.engine.impulses.state_space import checked_cells
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.free_modes import checked_cells
+from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.model.linear import Linear, amplitudes, remembered
 
 
@@ -22,7 +22,7 @@ class EventEquations:
     """Orbits of `q` with impacts on `sides`, z(t + P) = sigma z(t), P = halves T/2.
 
     sigma = +1 and an even number of halves, or sigma = -1 and an odd one (symmetric orbits).
-    Raises ResonanceError, TooStiffError (state_space.py).
+    Raises ResonanceError, TooStiffError (free_modes.py).
     """
 
     def __init__(self, q: Linear, sigma: int, halves: int, sides, rests=()):

@@ -9,14 +9,14 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import SIDES, is_mirrored, repetitions, word
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit, leans, orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit, leans, orbit_of
 from vibro_sweep.analysis.periodic.seeds_of_rests import evenly, with_rests
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
 from vibro_sweep.analysis.single.orbit import simulate
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import flow
-from vibro_sweep.engine.impulses.state_space import ResonanceError, TooStiffError
+from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError
 from vibro_sweep.model.arguments import checked_count, checked_state
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Family, family_of, forcing_period

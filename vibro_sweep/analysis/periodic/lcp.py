@@ -16,12 +16,12 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import canonical_start
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import closing, flow
-from vibro_sweep.engine.impulses.state_space import has_free_gap
+from vibro_sweep.engine.impulses.free_modes import has_free_gap
 from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import Linear, family_of, forcing_period

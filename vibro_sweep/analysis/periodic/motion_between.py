@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.engine.impulses import flights, multipliers
+from vibro_sweep.engine.impulses import flights, graded_product
 from vibro_sweep.engine.impulses.flow import Flow, closing, flow
 from vibro_sweep.model.linear import Linear, forcing_period
 
@@ -35,11 +35,11 @@ def multipliers_of(f: Flow, sigma: int, P: float, contacts: np.ndarray, u, motio
         return np.full(n, np.nan, complex)
     product, columns, couplings = np.empty((n, n)), np.empty((n, n)), np.zeros(n)
     order, work, room = np.empty(n, np.int64), np.empty((3, n, n)), flights.new_room(n + 3)
-    pieces = int((1 + len(t) * UNORDERED) * P * f.spread / multipliers.STRETCH)
+    pieces = int((1 + len(t) * UNORDERED) * P * f.spread / graded_product.STRETCH)
     factors = np.empty((len(t) + pieces + 1, n, n))  # a piece more than the flights need but for rounding
     motion = np.ascontiguousarray(motion)
-    multipliers.multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work, room)
-    values = sigma * multipliers.eigenvalues(product, columns, couplings)
+    graded_product.multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work, room)
+    values = sigma * graded_product.eigenvalues(product, columns, couplings)
     return values[np.lexsort((-values.imag, -np.abs(values)))]
 
 

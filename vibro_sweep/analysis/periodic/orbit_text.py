@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+    from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 
 LINES = 10
 LONGEST_WORD = 24  # impacts of an itinerary that is told in full

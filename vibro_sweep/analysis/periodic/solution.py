@@ -9,10 +9,10 @@ import numpy as np
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
 from vibro_sweep.analysis.periodic.motion_between import contacts_of, fly, multipliers_of
-from vibro_sweep.analysis.periodic.resting import RestingOrbit
+from vibro_sweep.analysis.periodic.resting_orbit import RestingOrbit
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.impulses.flow import flow
-from vibro_sweep.engine.impulses.state_space import has_free_gap
+from vibro_sweep.engine.impulses.free_modes import has_free_gap
 from vibro_sweep.model.linear import Family, forcing_period
 
 # Relative difference below which two halves (periods) of an orbit are the same. An orbit that is born at a pitchfork or

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.impulses.flow import contact_coordinates
-from vibro_sweep.engine.impulses.state_space import ResonanceError, free_modes, has_free_gap
+from vibro_sweep.engine.impulses.free_modes import ResonanceError, free_modes, has_free_gap
 from vibro_sweep.model.linear import Linear, amplitudes
 
 

@@ -8,7 +8,7 @@ from vibro_sweep.analysis.single.tables import table_of
 from vibro_sweep.analysis.windows.rows import REASON_CODES, Row, first_reason
 from vibro_sweep.engine import points
 from vibro_sweep.engine.halting import interruptible
-from vibro_sweep.engine.impulses.state_space import has_free_gap
+from vibro_sweep.engine.impulses.free_modes import has_free_gap
 from vibro_sweep.engine.one_system import plan_of
 from vibro_sweep.engine.records import new_results
 from vibro_sweep.engine.simd.lanes import LANES

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.flat import Flat
+from vibro_sweep.analysis.branches.branch_arrays import Flat
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.windows.continued import continued
 from vibro_sweep.analysis.windows.job import Job

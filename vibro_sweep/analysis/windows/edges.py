@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.flat import Flat
+from vibro_sweep.analysis.branches.branch_arrays import Flat
 from vibro_sweep.model.bifurcations import BY_NAME, CURVES
 
 SLACK = 0.25  # of a cell: curves are drawn by chords

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from vibro_sweep.analysis.branches.flat import Flat
+from vibro_sweep.analysis.branches.branch_arrays import Flat
 from vibro_sweep.analysis.branches.search import Evaluate, Node
 from vibro_sweep.analysis.branches.seeds import Seed, packed, unpacked
 from vibro_sweep.analysis.curves.curve_search import Curves, seed_at

@@ -4,12 +4,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.beginning import changes_rests
-from vibro_sweep.analysis.branches.continuation import Branch
-from vibro_sweep.analysis.branches.flat import Flat, flatten, section_states
+from vibro_sweep.analysis.branches.branch import Branch
+from vibro_sweep.analysis.branches.branch_arrays import Flat, flatten, section_states
+from vibro_sweep.analysis.branches.branch_start import changes_rests
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.one_thread import one_thread
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows.rows import REASON_CODES
 from vibro_sweep.analysis.windows.stretch import representative, stable_stretch
 

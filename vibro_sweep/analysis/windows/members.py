@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.flat import Flat, section_states, solution_of
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.branches.branch_arrays import Flat, section_states, solution_of
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import ALIKE, Solution
 from vibro_sweep.analysis.windows.job import are_near
 from vibro_sweep.model.bifurcations import BIRTHS, BY_NAME, TYPES

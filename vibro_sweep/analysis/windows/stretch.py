@@ -1,13 +1,13 @@
 """The stretch of a branch on which its orbit is stable: to the first special point either way."""
 
-from vibro_sweep.analysis.branches.beginning import start_of_walk
-from vibro_sweep.analysis.branches.continuation import Branch
+from vibro_sweep.analysis.branches.branch import Branch
+from vibro_sweep.analysis.branches.branch_start import start_of_walk
+from vibro_sweep.analysis.branches.branch_switching import mirrored
 from vibro_sweep.analysis.branches.free_way import way_from
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.branches.switching import mirrored
 from vibro_sweep.analysis.continuation.recorded import both_ways
-from vibro_sweep.analysis.continuation.start import keeps_symmetry
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 
 
 def stable_stretch(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float]) -> Branch:

@@ -5,10 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.flat import Flat, orbit_at, special_point
+from vibro_sweep.analysis.branches.branch_arrays import Flat, orbit_at, special_point
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.itinerary import word
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows import window_text
 from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.unseen import Unseen, unseen_in

@@ -10,7 +10,7 @@ from vibro_sweep.engine.continuation.held_gap import press
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
 
 FARTHER = 0.05  # relative: where the nearest turning point is looked for first, beyond that of the last point

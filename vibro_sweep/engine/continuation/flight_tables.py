@@ -4,7 +4,7 @@ Affine maps are (n, n + 1): the last column is the shift by the constant force. 
 kept as whole vectors, which hold zeros beyond.
 """
 
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import eight, put_eight

@@ -19,7 +19,7 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from vibro_sweep.engine.continuation.factors import factorise, square, substitute
 from vibro_sweep.engine.continuation.flight_tables import build_powers, build_series, columns_of
 from vibro_sweep.engine.impulses.extremes import MIDDLE
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.memory import record
 

@@ -26,7 +26,7 @@ from vibro_sweep.engine.continuation.held_gap import put_rest, rest
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
 
 SHORT = 1 / 16  # of a cell: a flight of which only what changes is summed up

@@ -14,7 +14,7 @@ from vibro_sweep.engine.continuation.chatter_series import tail_of
 from vibro_sweep.engine.continuation.flight_tables import columns_of
 from vibro_sweep.engine.continuation.problem import width_of
 from vibro_sweep.engine.impulses.extremes import PIECES
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.memory import new_lines, record
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, TYPES
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
 
 OVERLAP = 1.0 + 1e-9  # of cells, or a turning point between two of them could be lost to both

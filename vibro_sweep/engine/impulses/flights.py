@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.impulses.extremes import OVERLAP, PIECES, extremes_of_cell, turns_near
-from vibro_sweep.engine.impulses.tables import ORDER
+from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import entry, jit
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.extremes import middle_weights
-from vibro_sweep.engine.impulses.state_space import (
+from vibro_sweep.engine.impulses.free_modes import (
     MATRICES,
     MOST_CELLS,
     ResonanceError,
@@ -21,7 +21,7 @@ from vibro_sweep.engine.impulses.state_space import (
     free_modes,
     has_free_gap,
 )
-from vibro_sweep.engine.impulses.tables import ORDER, exponential, power, taylor_rows
+from vibro_sweep.engine.impulses.taylor_orders import ORDER, exponential, power, taylor_rows
 from vibro_sweep.model.contact import coordinates, push_of
 from vibro_sweep.model.linear import STEP, Linear, amplitudes, forcing_period, remembered
 

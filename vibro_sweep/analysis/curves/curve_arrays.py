@@ -5,12 +5,12 @@ The arrays, `SHAPES`, have the names that they have in files. Words are codes of
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch_arrays import Flat, common, solution_of
 from vibro_sweep.analysis.branches.criticality import critical_angle
-from vibro_sweep.analysis.branches.flat import Flat, common, solution_of
-from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 from vibro_sweep.analysis.curves.curve_way import CurvePoint
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.model.bifurcations import CODES_OF_CURVES, CODIMENSION_TWO, CURVES

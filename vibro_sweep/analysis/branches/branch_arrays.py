@@ -8,12 +8,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.branches.branch_points import columns, impacts
-from vibro_sweep.analysis.branches.continuation import Branch
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.state_space import checked_cells
+from vibro_sweep.engine.impulses.free_modes import checked_cells
 from vibro_sweep.model.bifurcations import BIRTHS, BRANCH_STATUSES, CODES, CRITICALITIES, KINDS, TYPES
 from vibro_sweep.model.linear import family_of, forcing_period
 from vibro_sweep.model.state import state

@@ -6,17 +6,17 @@ from typing import overload
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch_switching import switch as switch_branches
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
-from vibro_sweep.analysis.branches.switching import switch as switch_branches
 from vibro_sweep.analysis.continuation.chatter import Chatter
 from vibro_sweep.analysis.continuation.first_point import first_place
-from vibro_sweep.analysis.continuation.start import Start
+from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.born import born, box_around
+from vibro_sweep.analysis.curves.curve_start import as_special, slow_impacts
 from vibro_sweep.analysis.curves.curve_way import CurvePoint
-from vibro_sweep.analysis.curves.start import as_special, slow_impacts
 from vibro_sweep.analysis.periodic.linearised import Linearised
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.model.arguments import check_type

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.engine.impulses.state_space import ResonanceError, TooStiffError
+from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError
 from vibro_sweep.model.arguments import check_type, checked_count
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import ExistingFileError, FileError, checked_path, file_to_write, read_bytes

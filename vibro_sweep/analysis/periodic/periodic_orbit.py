@@ -13,7 +13,7 @@ from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import contact_coordinates, flow, held_flow
-from vibro_sweep.engine.impulses.state_space import ResonanceError
+from vibro_sweep.engine.impulses.free_modes import ResonanceError
 from vibro_sweep.engine.one_system import IMPACT, STICKING, impact_of
 from vibro_sweep.model.arguments import LATEST, checked_times
 from vibro_sweep.model.errors import ArgumentError
@@ -233,7 +233,7 @@ class PeriodicOrbit:
 
     def save(self, path) -> Path:
         """Write the orbit as JSON, for `load_orbit`; nothing is overwritten."""
-        from vibro_sweep.analysis.periodic.file import save_orbit
+        from vibro_sweep.analysis.periodic.orbit_file import save_orbit
 
         return save_orbit(self, path)
 

@@ -5,7 +5,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.free_way import FreeBranch, FreePoint
 from vibro_sweep.analysis.continuation.first_point import beside_start, followed_from, start_of_branch
 from vibro_sweep.analysis.continuation.point import Point
-from vibro_sweep.analysis.continuation.start import keeps_symmetry
+from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.analysis.continuation.tracer import branch_through
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.errors import ArgumentError, VibroSweepError

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.impulses.tables import REACH
+from vibro_sweep.engine.impulses.taylor_orders import REACH
 from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.linear import Linear, forcing_period, remembered
 

@@ -10,15 +10,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from vibro_sweep.analysis.branches import branch_text
-from vibro_sweep.analysis.branches.beginning import NoStartError, changes_rests, start_of_walk
 from vibro_sweep.analysis.branches.branch_points import dataset
+from vibro_sweep.analysis.branches.branch_start import NoStartError, changes_rests, start_of_walk
 from vibro_sweep.analysis.branches.free_way import way_from
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.sticking import sticking_onset
 from vibro_sweep.analysis.branches.track import row_of
 from vibro_sweep.analysis.continuation.recorded import Rows, both_ways
 from vibro_sweep.analysis.periodic.one_thread import one_thread
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_call, check_type, checked_interval, checked_word
 from vibro_sweep.model.errors import ArgumentError

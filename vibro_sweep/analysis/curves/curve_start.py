@@ -2,12 +2,12 @@
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch_switching import index_in
 from vibro_sweep.analysis.branches.branch_way import stop_and_impact
 from vibro_sweep.analysis.branches.criticality import critical_angle
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted, vanishing
-from vibro_sweep.analysis.branches.switching import index_in
-from vibro_sweep.analysis.continuation.start import KINDS, Start, keeps_symmetry
-from vibro_sweep.analysis.periodic.orbit import orbit_of
+from vibro_sweep.analysis.continuation.starting_orbit import KINDS, Start, keeps_symmetry
+from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.bifurcations import BIRTHS
 from vibro_sweep.model.errors import ArgumentError

@@ -8,7 +8,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.births import born, is_steady
 from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, slopes
-from vibro_sweep.analysis.periodic.orbit import PeriodicOrbit, found_orbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import BY_NAME, WAYS
