@@ -50,7 +50,9 @@ report = vs.run(scene, "sweep.h5", workers=1, mode=mode)
 bad: int = report.bad
 with vs.open("sweep.h5") as data:
     figure = vs.plot(data, "bifurcation")
-figure.savefig("figure.png")
+    figure.savefig("figure.png")
+    vs.plot(data, xlim=(6.5, 6.9), size=(5, 3), dpi=80, output="zoom.png", overwrite=True)
+    print(len(vs.windows(data, "b", output="windows.h5", workers=1, mode="overwrite")))
 for window in vs.windows("sweep.h5"):
     print(window.lo, window.lower.type, window.hi, window.upper.error, window.period, window.orbit.stable)
 found = vs.sweep(system, {"b": np.linspace(6.5, 6.6, 3)}, transient=10, record=4)
@@ -72,7 +74,7 @@ try:
     vs.System(mu_m=-1, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 except vs.ParameterError as error:
     print(error.key, error.value, error.allowed)
-errors = (vs.SceneError, vs.StoreError, vs.PlotError, vs.RunError)
+errors = (vs.VibroSweepError, vs.SceneError, vs.StoreError, vs.PlotError, vs.RunError)
 '''
 
 
