@@ -130,6 +130,9 @@ def test_other_beginnings(begin, along, number, tmp_path):
         (dict(more="of: [fold]"), "continue.of: belongs to two keys of `along`"),
         (dict(more="follow: [fold]"), 'continue.follow[0] = "fold": allowed: graze, pitchfork, flip'),
         (dict(more="deep: 1"), "continue.deep = 1: unknown key; did you mean `depth`?"),
+        (dict(more="follow: 3"), "continue.follow = 3: must be a list of words"),
+        (dict(begin="{itinerary: 3}"), "continue.from.itinerary = 3: must be a text"),
+        (dict(begin="{free: 3}"), "continue.from.free"),
     ],
 )
 def test_what_is_wrong_is_said(changes, words):

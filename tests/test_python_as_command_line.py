@@ -77,7 +77,12 @@ def test_a_scene_of_branches_is_changed_as_one_of_a_sweep_is(folder):
     assert (begins.origin, begins.begin, begins.special) == ("branches", "a: file, #1.h5", 3)
     free = scene.replace(origin="free", begin=None)
     assert free.origin == "free" and free.replace(origin="state", begin=(0, 1, 0, 2)).begin == (0, 1, 0, 2)
-    for wrong, words in (({"depth": -1}, "continue.depth"), ({"dept": 1}, "dept: unknown"), ({"text": ""}, "unknown")):
+    for wrong, words in (
+        ({"depth": -1}, "continue.depth"),
+        ({"dept": 1}, "dept: unknown"),
+        ({"text": ""}, "unknown"),
+        ({"follow": [0] * 10**6}, "follow"),
+    ):
         with pytest.raises(SceneError, match=words):
             scene.replace(**wrong)
 

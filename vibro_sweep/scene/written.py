@@ -28,6 +28,7 @@ _KEYS = {dimension: key for key, dimension in START.items()}  # start_x1 -> x1
 _ORBIT = ("transient", "record")
 SHORTEST_PROGRESSION = 3
 MANY = 10_000  # values, of which each wrong one is named
+LONGEST = 100  # entries of what a scene of branches or curves holds
 
 
 def data_of(scene: "Scene") -> dict[str, Any]:
@@ -55,7 +56,10 @@ def data_of(scene: "Scene") -> dict[str, Any]:
 def continuation_data(scene: "Continuation", changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """What the YAML text of a scene of branches or curves holds, with other values as the scene has them."""
     has = {field.name: getattr(scene, field.name) for field in fields(scene)}
-    has |= {key: _as_data(key, value) for key, value in (changes or {}).items()}
+    for key, value in (changes or {}).items():
+        data = _as_data(key, value)
+        # nothing here is long: what is, is refused as a whole
+        has[key] = Foreign(value) if isinstance(data, (list, dict)) and len(data) > LONGEST else data
     begin, origin, along = has["begin"], has["origin"], has["along"]
     if origin == "state" and isinstance(begin, (list, tuple)):
         begin = dict(zip(state(len(begin) // 2), begin, strict=False))
