@@ -86,8 +86,9 @@ class Work:
 def compute(work: Work, scene) -> bool:
     """Compute a scene and print what its file holds. Returns whether some points have a bad status."""
     from vibro_sweep.driver import run
+    from vibro_sweep.scene import Scene
 
-    of_sweep = hasattr(scene, "sweep")
+    of_sweep = isinstance(scene, Scene)
     with work.under_way(scene.n_points if of_sweep else 0, ValueError) as (executor, progress):
         report = run.run(scene, work.output, work.workers, executor, progress, work.mode)
     if of_sweep and not work.quiet:

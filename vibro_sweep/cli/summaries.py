@@ -16,17 +16,18 @@ from vibro_sweep.model.state import state as names
 if TYPE_CHECKING:
     from vibro_sweep.driver.cost import Estimate
     from vibro_sweep.driver.sweep import RunReport
-    from vibro_sweep.scene import Scene
+    from vibro_sweep.scene import Continuation, Scene
 
 
 BUSY = 1.3  # times longer than alone, from which on it is said what else runs
 
 
-def grazing_of(scene: "Scene") -> str:
+def grazing_of(scene: "Scene | Continuation") -> str:
     """What `grazing` prints: of a sweep of one number on which the graze depends the curve."""
+    from vibro_sweep.scene import Scene
     from vibro_sweep.store.numbers import depends_on
 
-    along, system = depends_on(scene), scene.system
+    along, system = depends_on(scene) if isinstance(scene, Scene) else (), scene.system
     if len(along) == 1:
         return _grazing_curve(system, along[0], scene.sweep[along[0]].tolist())
     lines = [grazing_text(grazing(system), system)]

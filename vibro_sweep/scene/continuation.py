@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from vibro_sweep.model import told
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.model.parameters import ParameterError
 from vibro_sweep.model.refusals import cut, not_allowed
 
@@ -75,6 +76,8 @@ class Continuation:
 
     def estimate(self, workers: int | None = None) -> None:
         """None: what branches and curves take is known when they are followed; of sweeps `Scene.estimate` says it."""
+        if workers is not None:
+            checked_count("workers", workers, 1)
 
     @property
     def inputs(self) -> list[Path]:
