@@ -12,6 +12,7 @@ from vibro_sweep.cli.commands import main
 from vibro_sweep.scene import SceneError
 from vibro_sweep.types import Continuation, Scene
 
+PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 NUMBERS = "{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}"
 SWEEP = f"""
 system: {NUMBERS}
@@ -45,12 +46,18 @@ def numbers(path) -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "configs").rglob("*.yaml")), ids=lambda path: path.stem)
-def test_every_scene_is_read_and_written_again(path):
+def test_a_scene_that_is_written_and_read_again_says_the_same(path, tmp_path):
     scene = vs.load_scene(path)
     assert isinstance(scene, (Scene, Continuation)) and scene.source == path
-    again = path.parent / "again.yaml"
-    text = scene.to_yaml()
-    assert scene.replace().to_yaml() == text and not again.exists()
+    (tmp_path / path.name).write_text(scene.to_yaml())
+    again = vs.load_scene(tmp_path / path.name)
+    assert str(again) == str(scene) and type(again) is type(scene) and again.system == scene.system
+    assert again.to_yaml() == scene.replace().to_yaml() == scene.to_yaml()
+
+
+def test_the_graze_of_a_scene_of_branches_is_that_of_its_oscillator(folder, capsys):
+    assert main(["grazing", str(folder / "lr.yaml")]) == 0
+    assert "b*    = 6.7057167409730" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("of, command", [("sweep", "run"), ("lr", "run"), ("sweep", "windows")])
@@ -90,7 +97,11 @@ def test_a_scene_of_branches_is_changed_as_one_of_a_sweep_is(folder):
 def test_what_a_sweep_will_take_is_known_before(folder):
     estimate = vs.load_scene(folder / "sweep.yaml").estimate()
     assert estimate.orbits == 21 and estimate.seconds > 0
-    assert vs.load_scene(folder / "lr.yaml").estimate() is None
+    branches = vs.load_scene(folder / "lr.yaml")
+    assert branches.estimate() is None
+    for scene in (branches, vs.load_scene(folder / "sweep.yaml")):
+        with pytest.raises(vs.VibroSweepError, match="workers: 0 is not allowed"):
+            scene.estimate(workers=0)
 
 
 def ends(windows) -> list:
@@ -110,8 +121,19 @@ def test_windows_of_a_dataset_are_those_of_its_file(folder, tmp_path):
     assert numbers(tmp_path / "w.h5") == numbers(folder / "sweep.windows.h5")
 
 
+def test_windows_of_a_part_are_not_taken_for_those_of_the_whole(folder, tmp_path):
+    with vs.open(folder / "sweep.h5") as data:
+        left, right = data.isel(b=slice(0, 11)), data.isel(b=slice(10, 21))
+        vs.windows(left, output=tmp_path / "left.h5")
+        for other in (data, right):
+            with pytest.raises(vs.StoreError, match="made from something else"):
+                vs.windows(other, output=tmp_path / "left.h5")
+        with pytest.raises(vs.PlotError, match="windows of another sweep"):
+            vs.plot(data, windows=tmp_path / "left.h5")
+
+
 def test_a_row_of_a_plane_is_the_sweep_at_its_value():
-    system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
+    system = vs.System(**PAPER)
     axes = {"b": np.linspace(6.6, 6.7, 5), "R": [0.7, 0.8]}
     plane = vs.sweep(system, axes, observe=["section"], transient=500, record=60)
     row = vs.sweep(system.replace(R=0.7), {"b": axes["b"]}, observe=["section"], transient=500, record=60)
@@ -121,6 +143,9 @@ def test_a_row_of_a_plane_is_the_sweep_at_its_value():
 def test_what_is_not_a_sweep_has_no_windows(folder):
     with vs.open(folder / "lr.h5") as data, pytest.raises(ValueError, match="holds branches, not a sweep"):
         vs.windows(data)
+    built = vs.sweep(lambda b: vs.System(**PAPER | {"b": b}), {"b": [6.5, 6.6]}, observe=["section"], record=2)
+    with pytest.raises(ValueError, match="type: 'build' is not allowed"):
+        vs.windows(built)
     with pytest.raises(TypeError, match="data: 3 is not allowed"):
         vs.windows(3)
     with pytest.raises(ValueError, match="mode: 'resume' is not allowed"):

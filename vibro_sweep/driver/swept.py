@@ -1,5 +1,6 @@
 """The results of a sweep from which something is computed: its file, or a Dataset that is in memory."""
 
+import hashlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +12,9 @@ from vibro_sweep import store
 from vibro_sweep.analysis.windows.rows import Contents
 from vibro_sweep.driver.source_file import SourceError, computed_from
 from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.files import checked_path
+from vibro_sweep.scene import parse_scene
 
 if TYPE_CHECKING:
     import xarray
@@ -40,7 +43,7 @@ def contents_of(data: "str | Path | xarray.Dataset") -> Iterator[Contents]:
 
 class DatasetContents:
     """As `Contents` of a file (store/arrays.py), of a Dataset or of a part of one that `sel` and the like have cut
-    out."""
+    out. A part has an identity of its own: windows of another part, or of the whole, are not taken for its windows."""
 
     def __init__(self, data: "xarray.Dataset"):
         self._data = data
@@ -48,6 +51,23 @@ class DatasetContents:
         self.attrs: dict[str, Any] = data.attrs | {"sweep_dimensions": [name for name in swept if name in data.dims]}
         self.chosen = {name: float(data[name]) for name in swept if name not in data.dims and name in data.coords}
         self.sizes = {str(name): size for name, size in data.sizes.items()}
+        if (part := self._part(swept)) is not None:
+            self.attrs["identity"] = part
+
+    def _part(self, swept: list[str]) -> str | None:
+        """The identity of a part: of its run, and of the values that it has; None of the whole, and of what has no
+        windows (`check_data`)."""
+        if "kind" in self.attrs or self.attrs.get("type") == BUILD:
+            return None
+        scene = parse_scene(self.attrs["scene"])
+        axes = {**scene.sweep, **({"start": range(scene.n_starts)} if scene.n_starts > 1 else {})}
+        values = {
+            name: np.atleast_1d(self._data[name].values) for name in [*swept, "start"] if name in self._data.coords
+        }
+        if all(name in values and len(values[name]) == len(axis) for name, axis in axes.items()):
+            return None
+        told = repr([self.attrs.get("identity", ""), *((name, one.tolist()) for name, one in values.items())])
+        return hashlib.sha256(told.encode()).hexdigest()[:32]
 
     def __contains__(self, name: str) -> bool:
         return name in self._data.data_vars
