@@ -128,10 +128,8 @@ def _modes(root: np.ndarray, stiffness: _Matrix, damping: _Matrix) -> _Planes | 
 
 def moved(eta: np.ndarray, square: np.ndarray, of_eta: np.ndarray, of_product: np.ndarray) -> np.ndarray:
     """How far rounding of eta and of eta^2 + square moves the roots -eta +- sqrt(-square) along the real axis."""
-    more = np.maximum(2 * eta * of_eta + of_product - np.maximum(square, 0.0), 0.0)  # of apart^2
-    if not more.any():  # of each block that is computed: pairs that no rounding makes real
-        return of_eta
     apart = np.sqrt(np.maximum(-square, 0.0))
+    more = np.maximum(2 * eta * of_eta + of_product - np.maximum(square, 0.0), 0.0)  # of apart^2
     return of_eta + np.divide(more, apart + np.sqrt(apart**2 + more), where=more > 0, out=np.zeros(more.shape))
 
 
