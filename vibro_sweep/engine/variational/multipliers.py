@@ -39,12 +39,15 @@ OFF = 16.0  # by how many of them rounding at one impact moves the orbit; that a
 
 @jit
 def begin_period(e, w, results, which):
-    """Set periodic orbits out for exactly one more period of each; beside the orbit all but those at rest on a stop."""
+    """Set periodic orbits out for exactly one more period of each; beside the orbit those that strike a stop and do not
+    rest: motion that strikes none has the same multipliers there."""
     t = e.tangent[0]
     t.collected = True
     for i in range(len(results)):
         o, result = e.orbits[i], results[i]
-        goes = o.status == status.OK and result.period > 0 and not (which == BESIDE and o.resting != 0.0)
+        goes = o.status == status.OK and result.period > 0
+        if which == BESIDE:
+            goes = goes and o.resting == 0.0 and o.impacts_left + o.impacts_right > 0
         o.periods = result.period if goes else 0
         if goes:
             for _ in range(2):  # where rounding alone was left of a vector, it is not at right angles to the others yet
