@@ -9,6 +9,7 @@ import numpy as np
 
 from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
 from vibro_sweep.engine.continuation import guesses, moving_flow, path, stepper
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, NUMBERS
 from vibro_sweep.engine.continuation.problem import ORBIT, Problem
 from vibro_sweep.engine.continuation.workspace import new_bench, new_place
 from vibro_sweep.engine.impulses.extremes import middle_weights
@@ -30,8 +31,7 @@ class EventEquations:
         self.q, self.K, self.n = q, len(sides), 2 * len(q.along)
         planes, self.closing = _tables(q, sigma, halves, bool(rests))
         self.planes = planes.copy()  # kernels write the contact's numbers into it
-        numbers = [q.low, q.high, 1 + q.R_low, 1 + q.R_high, 1.0]
-        self.planes[0]["numbers"] = self.planes[0]["exact"][-moving_flow.NUMBERS :] = numbers
+        self.planes[0]["numbers"] = self.planes[0]["exact"][-NUMBERS:] = _contact_of(q)
         resting = np.isin(np.arange(self.K), rests)
         self.problem = Problem(ORBIT, 0, np.array(sides, float), resting, float(sigma), 0, np.ones(2), False, False)
         self.place, self.bench = new_place(self.K, self.n), new_bench(self.K, self.n)
@@ -61,18 +61,26 @@ class EventEquations:
         row = np.zeros(2 * self.K + 3)
         return stepper.at(task, self.planes, self.problem, self._path, self.place, row, self.bench)
 
-    def newton(self, starts) -> tuple[np.ndarray, np.ndarray]:
+    def newton(self, starts, oscillators=()) -> tuple[np.ndarray, np.ndarray]:
         """Newton's method from guesses (m, 2K) of times and jumps, without rests: solutions, and the last change, NaN:
-        none found."""
+        none found. oscillators : of each guess, where their contacts differ."""
         q, K = self.q, self.K
         if not K:
             return starts, np.zeros(len(starts))
+        contacts = np.array([_contact_of(one) for one in oscillators or [q] * len(starts)])
         phases = q.omega * starts[:, :K] + q.tau
-        gap = q.stop(self.problem.sides[0]) - (self.planes[0]["Z"][0] * np.exp(1j * phases[:, 0])).real
+        steady = (self.planes[0]["Z"][0] * np.exp(1j * phases[:, 0])).real
+        gap = contacts[:, HIGH if self.problem.sides[0] > 0 else LOW] - steady
         guess = np.column_stack([phases, starts[:, K:] / q.omega, gap])
         ends, changes = np.empty_like(guess), np.empty(len(guess))
-        guesses.settle_all(self.planes, self.problem, self.place, self.closing, self.bench, guess, ends, changes)
+        room = self.place, self.closing, self.bench
+        guesses.settle_all(self.planes, self.problem, *room, contacts, guess, ends, changes)
         return np.hstack([(ends[:, :K] - q.tau) / q.omega, ends[:, K : 2 * K] * q.omega]), changes
+
+
+def _contact_of(q: Linear) -> list[float]:
+    """`numbers` of a plane, omega in radians of the force."""
+    return [q.low, q.high, 1 + q.R_low, 1 + q.R_high, 1.0]
 
 
 @remembered(*TABLES)

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, groupby
+from operator import attrgetter
 
 import numpy as np
 
@@ -11,13 +12,14 @@ from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
 from vibro_sweep.analysis.periodic.motion_between import contacts_of, fly, multipliers_of
 from vibro_sweep.analysis.periodic.resting_orbit import RestingOrbit
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
-from vibro_sweep.engine.impulses.flow import flow
+from vibro_sweep.engine.impulses.flow import TABLES, flow
 from vibro_sweep.engine.impulses.free_modes import has_free_gap
-from vibro_sweep.model.linear import Family, forcing_period
+from vibro_sweep.model.linear import Family, Keyed, forcing_period
 
 # Relative difference below which two halves (periods) of an orbit are the same. An orbit that is born at a pitchfork or
 # flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not tell the two orbits apart.
 ALIKE = 1e-6
+tables = attrgetter(*TABLES)  # of an oscillator
 NO_SPEED = 1e-9  # impulse, relative to omega times the gap, of an impact that is none
 
 
@@ -163,9 +165,8 @@ class Solution:
                 u, change = replace(self).resting.newton()
             except np.linalg.LinAlgError:
                 return None
-        else:
-            (u,), (change,) = EventEquations.of(self).newton(self.u[None])
-        return replace(self, u=u, change=float(change)) if np.isfinite(change) else None
+            return replace(self, u=u, change=float(change)) if np.isfinite(change) else None
+        return corrected([self])[0]
 
     def with_touch(self, index: int, time: float, side: int) -> "Solution":
         """The same motion with one impact more, which has no speed."""
@@ -227,3 +228,18 @@ class Solution:
             if half is not None:
                 return half
         return whole
+
+
+def corrected(solutions: list[Solution]) -> list[Solution | None]:
+    """`Solution.corrected` of orbits with the same impacts, together where only their contacts differ."""
+    result: list[Solution | None] = []
+    for _, group in groupby(solutions, lambda one: Keyed(one.family.linear, tables(one.family.linear))):
+        some = list(group)
+        if not some[0].K or some[0].rests:
+            result += [one.corrected() for one in some]
+            continue
+        guesses, oscillators = np.array([one.u for one in some]), [one.family.linear for one in some]
+        found = EventEquations.of(some[0]).newton(guesses, oscillators)
+        for one, u, change in zip(some, *found, strict=True):
+            result.append(replace(one, u=u, change=float(change)) if np.isfinite(change) else None)
+    return result

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.branch_arrays import Flat, section_states, solution_of
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
-from vibro_sweep.analysis.periodic.solution import ALIKE, Solution
+from vibro_sweep.analysis.periodic.solution import ALIKE, Solution, corrected
 from vibro_sweep.analysis.windows.job import are_near
 from vibro_sweep.model.bifurcations import BIRTHS, BY_NAME, TYPES
 from vibro_sweep.model.linear import family_of
@@ -15,8 +15,8 @@ from vibro_sweep.model.linear import family_of
 def members(flat: Flat, system, parameter: str, values: np.ndarray, states: np.ndarray) -> np.ndarray:
     """(m, starts) whether section states (m, starts, 2N) at m values within a window lie on its orbit."""
     family, result = family_of(system), np.zeros(states.shape[:2], bool)
-    for i, value in enumerate(values.tolist()):
-        found = solution_in(flat, value, family.replace(**{parameter: value}))
+    guesses = [solution_of(flat, family.replace(**{parameter: p}), *guess_at(flat, p)) for p in values.tolist()]
+    for i, found in enumerate(corrected(guesses)):
         if found is not None:
             result[i] = are_near(section_states(PeriodicOrbit(found.family, "ok", found, (0, 0))), states[i])
     return result

@@ -19,7 +19,7 @@ import numpy as np
 from vibro_sweep.engine.continuation.corrector import in_order
 from vibro_sweep.engine.continuation.factors import factorise, substitute
 from vibro_sweep.engine.continuation.flight_tables import flight
-from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA
+from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, NUMBERS, OMEGA
 from vibro_sweep.engine.continuation.reflections import put_last, take_apart
 from vibro_sweep.engine.continuation.residual import approach, eliminate, grown, is_short, land, leave
 from vibro_sweep.engine.simd.jit import entry, jit
@@ -158,13 +158,16 @@ def settle(f, c, place, closing, b):
 
 
 @entry
-def settle_all(planes, c, place, closing, b, starts, ends, changes):
-    """`settle` from many guesses.
+def settle_all(planes, c, place, closing, b, contacts, starts, ends, changes):
+    """`settle` from many guesses, of oscillators that differ in their contact alone.
 
-    starts, ends : (m, 2 K + 1): phases, jumps, the gap at the first impact less the steady motion; changes : (m,)
+    contacts : (m, NUMBERS); starts, ends : (m, 2 K + 1): phases, jumps, the gap at the first impact less the steady
+    motion; changes : (m,)
     """
     f, K, n = planes[0], len(place.x), planes[0].A.shape[0]
     for m in range(len(starts)):
+        for i in range(NUMBERS):
+            f.numbers[i] = contacts[m, i]
         for i in range(K):
             place.x[i, n], place.x[i, n + 1] = starts[m, i], starts[m, K + i]
         place.x[0, 0] = starts[m, 2 * K]
