@@ -28,9 +28,9 @@ PIECES = 40  # a step is so much shorter than usual
 BOX = ((0.01, 9), (0.58, 0.68))  # b, omega
 
 
-def speed(start: Start, names, box) -> tuple[float, float, int]:
+def speed(start: Start, names, bounds) -> tuple[float, float, int]:
     """Points per second, corrections for each, and how many impacts there are in the equations."""
-    tracer, first = first_of(Tracer(start, names, box))
+    tracer, first = first_of(Tracer(start, names, bounds))
     tracer.path = tracer.path._replace(longest=LONGEST_STEP / PIECES)
     place, best, corrections = new_place(tracer.K, tracer.n), 0.0, 0.0
     for _ in range(ROUNDS):
@@ -84,7 +84,7 @@ def chart(path: str) -> tuple[float, int, int]:
     """
     windows = [window for window in vs.windows(path) if window.itinerary]
     largest = sorted(windows, key=lambda window: window.lo - window.hi)[:10]
-    ends = [end for window in largest for end in (window.lower, window.upper) if end.type != "limit"]
+    ends = [end for window in largest for end in (window.lower, window.upper) if end.type != "boundary"]
     times = []
     for _ in range(2):  # the first one loads kernels
         began = time.process_time()
@@ -102,8 +102,8 @@ def main() -> None:
         numbers = s.family.numbers
         print(f"{start.type}, P = {s.halves / 2:g} T:")
         for names in (("b", "omega"), ("b", "R"), ("mu_m", "zeta")):
-            box = [(0.97 * numbers[name], 1.03 * numbers[name]) for name in names]
-            rate, made, K = speed(start, names, box)
+            bounds = [(0.97 * numbers[name], 1.03 * numbers[name]) for name in names]
+            rate, made, K = speed(start, names, bounds)
             print(f"    in {', '.join(names)}: {rate:7.0f} points per second, {K} impacts, {made:.1f} corrections each")
 
 

@@ -46,7 +46,7 @@ WRITTEN = {
     "orbit: {transient: 1000, record: 200}\nobserve: [attractors, lyapunov]\n",
     "up and down": PAPER + "sweep: {omega: {start: 0.5, stop: 0.8, num: 800}}\nstart: {follow: both}\n"
     "orbit: {transient: 2000, record: 200}\nobserve: [section]\n",
-    "the map": PAPER + "model: map\nsweep: {b: {start: 6.6, stop: 6.7, num: 500}}\n"
+    "the map": PAPER + "dynamics: map\nsweep: {b: {start: 6.6, stop: 6.7, num: 500}}\n"
     "orbit: {transient: 2000, record: 500}\nobserve: [section, lyapunov]\n",
     "three masses": CHAIN + "sweep: {R: {start: 0.3, stop: 0.95, num: 100}, omega: {start: 0.6, stop: 2, num: 40}}\n"
     "orbit: {transient: 500, record: 200}\nobserve: [section, lyapunov]\n",

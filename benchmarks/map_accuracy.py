@@ -74,7 +74,7 @@ def one_period():
 
 CLEARANCES = np.round(np.arange(5.6, 6.9, 0.002), 6)
 WINDOWS = (5.6, 6.0, 6.3, 6.5, "b*", "end", 6.9)  # of b; "end": of the flow's impacting attractors
-MODELS = {"map, order 1": "model: map", "map, order 2": "model: map\norder: 2", "flow": "model: flow"}
+MODELS = {"map, order 1": "dynamics: map", "map, order 2": "dynamics: map\norder: 2", "flow": "dynamics: flow"}
 STARTS, RECORD = 8, 1000
 ORBIT = f"{{transient: 3000, record: {RECORD}}}"
 WITHIN = {"impacts per period, to 2 %": 0.02, "lambda_1, to 0.001": 1e-3, "section points, K-S < 0.1": 0.1}
@@ -98,7 +98,7 @@ def attractors(run):
     for name, model in MODELS.items():
         start = f"{{random: {STARTS}, seed: 1}}"
         data = run(model, ORBIT, start, CLEARANCES, tau=None if "map" in model else tau - np.pi / 2)
-        x1 = data.x1.values if model == "model: flow" else quarter_back(data)
+        x1 = data.x1.values if model == "dynamics: flow" else quarter_back(data)
         x1[~paper.bounded(data).values] = np.nan
         impacts = (data.impacts_right + data.impacts_left).mean("start").values / RECORD
         found[name] = impacts, data.lyapunov.values[..., 0].mean(axis=1), x1
@@ -207,7 +207,7 @@ def main() -> None:
     print(f"Error of one period, b = b*, fitted below psi = 1e{FITTED}\n\n{table_of_orders(periods)}\n")
     run = paper.Runner(options.workers)
     found = attractors(run)
-    print(table_of_agreement(found, paper.end_from_elsewhere(run, "model: flow").last))
+    print(table_of_agreement(found, paper.end_from_elsewhere(run, "dynamics: flow").last))
     with matplotlib.rc_context(STYLE):
         figure(periods, found).savefig(options.output)
 

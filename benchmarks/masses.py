@@ -51,12 +51,14 @@ def embedded() -> vs.Oscillator:
 
 def _driven(K: np.ndarray) -> vs.Oscillator:
     first = np.eye(len(K))[0]
-    return vs.Oscillator(np.eye(len(K)), K, 0.1 * K, along=first, force=first, omega=0.63, tau=0.0, b=1.0, R=0.8)
+    return vs.Oscillator(
+        np.eye(len(K)), K, 0.1 * K, contact_normal=first, force=first, omega=0.63, tau=0.0, b=1.0, R=0.8
+    )
 
 
 def swing(system: vs.Oscillator) -> float:
     """Amplitude of the gap in the steady motion."""
-    return abs(system.linear.along @ amplitudes(system.linear))
+    return abs(system.linear.normal @ amplitudes(system.linear))
 
 
 def starts_of(system: vs.Oscillator) -> np.ndarray:

@@ -27,7 +27,11 @@ def draw(run, output) -> None:
             plotting.plot(output / f"{name}.h5", output / f"{name}{f'_{kind}' if n else ''}.png", kind)
     sweep = f"sweep: {{b: {{start: 6.5, stop: 6.9, step: {paper.STEP}}}}}\n"
     follow = f"{sweep}start: {{follow: both}}\norbit: {paper.HASTY}\n"
-    for name, model in (("map", "model: map"), ("map_order_2", "model: map\norder: 2"), ("flow", "model: flow")):
+    for name, model in (
+        ("map", "dynamics: map"),
+        ("map_order_2", "dynamics: map\norder: 2"),
+        ("flow", "dynamics: flow"),
+    ):
         text = f"system: {{{paper.SYSTEM}}}\n{model}\n{follow}{paper.OBSERVE}"
         path = output / f"figure_06_follow_{name}.h5"
         vs.run(parse_scene(text, path.stem), path, workers=run.workers, mode="overwrite")
@@ -68,7 +72,7 @@ def main() -> None:
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
     run = paper.Runner(options.workers)
-    run("model: flow", "{transient: 1, record: 1}", "{x1: 0}", 6.7)
+    run("dynamics: flow", "{transient: 1, record: 1}", "{x1: 0}", 6.7)
     began = time.perf_counter()  # after compiling
     draw(run, options.output)
     show(paper.table(run))

@@ -18,7 +18,7 @@ def variables(masses):
 
 def equations(q):
     """[(variable, derivative), ...] of a `Linear` whose mass matrix is 1; no constant force."""
-    n = len(q.along)
+    n = len(q.normal)
     z = variables(n)
     phase, rows = q.omega * hy.time + q.tau, []
     for i in range(n):
@@ -31,7 +31,7 @@ def equations(q):
 
 def solver(q, states, exponents: bool, tol: float) -> Solver:
     """Eight orbits from `states` (8, 2 N)."""
-    n, hits = 2 * len(q.along), []
+    n, hits = 2 * len(q.normal), []
     T = 2 * np.pi / q.omega
     acceleration = np.concatenate([-np.stack([q.K[0], q.C[0]], -1).reshape(-1), [q.sine[0]]])
     numbers = acceleration, np.array(-q.C[:, 0]), q.omega, q.tau, q.R_high

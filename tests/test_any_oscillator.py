@@ -151,7 +151,7 @@ def test_growth_of_tangent_vectors(masses):
         turned = np.kron(point["P"], np.eye(2))
         frame = point["to_frame"] @ turned
         lengths = np.abs(np.diag(np.linalg.qr(frame @ jacobian @ np.linalg.inv(frame))[1]))
-        exponents = vs.lyapunov(system, state, transient=0, periods=periods)
+        exponents = vs.lyapunov(system, state, transient=0, record=periods)
         assert abs(exponents.residual) < 1e-12
         np.testing.assert_allclose(exponents, np.sort(np.log(lengths) / (periods * system.period))[::-1], atol=1e-9)
 
@@ -160,14 +160,14 @@ def test_growth_of_tangent_vectors(masses):
 def test_sum_rule(masses):
     for seed in (8, 9, 10):
         system, state = drawn(seed, masses)
-        exponents = vs.lyapunov(system, state, transient=50, periods=500)
+        exponents = vs.lyapunov(system, state, transient=50, record=500)
         hits = len(vs.simulate(system, state, 100).impacts)
         assert hits > 50 and (abs(exponents.residual) < 1e-12 or exponents[-1] == -np.inf)
 
 
 def test_unequal_restitution_in_the_sum_rule():
     system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0.25, omega=0.63, b=2.0, offset=0.3, R=0.8, R_left=0.6)
-    exponents = vs.lyapunov(system, [0.1, 0.2, 0.3, -0.1], transient=100, periods=1000)
+    exponents = vs.lyapunov(system, [0.1, 0.2, 0.3, -0.1], transient=100, record=1000)
     sides = vs.simulate(system, [0.1, 0.2, 0.3, -0.1], 200).impacts["side"]
     assert set(sides) == {-1, 1} and abs(exponents.residual) < 1e-13
 
@@ -189,11 +189,20 @@ def test_kinds_of_damping_and_of_modes():
     }
     for name, (K, C) in kinds.items():
         system = vs.Oscillator(
-            eye, K, C, along=[1, 0, 0], force=[1e-3, 0, 0], constant=[0, 1e-6, 0], omega=0.7, tau=0.0, b=1e6, R=0.8
+            eye,
+            K,
+            C,
+            contact_normal=[1, 0, 0],
+            force=[1e-3, 0, 0],
+            constant=[0, 1e-6, 0],
+            omega=0.7,
+            tau=0.0,
+            b=1e6,
+            R=0.8,
         )
         A = np.block([[0 * eye, eye], [-K, -C]])
         exact = np.sort(np.linalg.eigvals(A).real)[::-1]
-        found = vs.lyapunov(system, np.zeros(6), transient=200, periods=50)
+        found = vs.lyapunov(system, np.zeros(6), transient=200, record=50)
         np.testing.assert_allclose(found, exact, atol=1e-6 if "critical" in name else 1e-7, err_msg=name)
         assert abs(found.residual) < 1e-12, name
 
@@ -204,13 +213,23 @@ def test_kinds_of_damping_and_of_modes():
 def test_masses_that_the_contact_does_not_see(R, K1, K2, C2):
     """They keep their exponents, whatever a rest or an impact without restitution takes from the other."""
     system = vs.Oscillator(
-        np.eye(3), np.diag([K1, K2, 2]), np.diag([0.02, C2, 0.06]), along=[1, 0, 0], force=[1, 0, 0],
+        np.eye(3), np.diag([K1, K2, 2]), np.diag([0.02, C2, 0.06]), contact_normal=[1, 0, 0], force=[1, 0, 0],
         constant=[-1, 0, 0], omega=0.8, tau=0.0, b=0.0, R=R, stops="left",
     )  # fmt: skip
     state = np.array([0.2, 0.0, 0.1, 0.0, 0.1, 0.2])
     found, orbit = vs.lyapunov(system, state, 20, 200), vs.simulate(system, state, 200)
     alone = vs.Oscillator(
-        [[1.0]], [[K1]], [[0.02]], along=[1], force=[1], constant=[-1], omega=0.8, tau=0.0, b=0.0, R=R, stops="left"
+        [[1.0]],
+        [[K1]],
+        [[0.02]],
+        contact_normal=[1],
+        force=[1],
+        constant=[-1],
+        omega=0.8,
+        tau=0.0,
+        b=0.0,
+        R=R,
+        stops="left",
     )
     other = vs.lyapunov(alone, state[:2], 20, 200)
     assert len(orbit.impacts) > 10
@@ -256,7 +275,16 @@ def test_units_change_nothing(stops):
     units = [2.0**k for k in (0, -300, -140, -110, 90, 120, 126, 128, 400)]
     systems = [
         vs.Oscillator(
-            np.eye(2), K, 0.05 * K, force=[unit, 0], along=[1, 0], omega=0.9, b=0.8 * unit, R=0.8, tau=0.0, stops=stops
+            np.eye(2),
+            K,
+            0.05 * K,
+            force=[unit, 0],
+            contact_normal=[1, 0],
+            omega=0.9,
+            b=0.8 * unit,
+            R=0.8,
+            tau=0.0,
+            stops=stops,
         )
         for unit in units
     ]

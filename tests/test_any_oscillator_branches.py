@@ -10,7 +10,9 @@ K = np.array([[2, -1, 0], [-1, 2.5, -1], [0, -1, 1.2]])
 C = np.array([[0.2, -0.1, 0], [-0.1, 0.15, 0], [0, 0, 0.1]])
 named = vs.Oscillator.named
 # Of one mass all have a constant force, here and in other tests: others are computed by kernels of their own.
-THREE = vs.Oscillator(M, K, C, force=[1, 0, 0.5], along=[1, -1, 0], omega=0.8, b=0.6, offset=0.05, R=0.7, R_left=0.5)
+THREE = vs.Oscillator(
+    M, K, C, force=[1, 0, 0.5], contact_normal=[1, -1, 0], omega=0.8, b=0.6, offset=0.05, R=0.7, R_left=0.5
+)
 ONE = named("one_mass", zeta=0.05, F=1.0, constant=0.1, omega=0.7, R=0.8, b=1.0, offset=0.1, stops="right")
 CAVITY = named("ball_in_cavity", mass_ratio=0.1, zeta=0.05, F=1.0, omega=1.0, R=0.6, b=1.0, tau=0.0)
 LINKS = {"m": [1, 1, 2, 1], "k": [1, 2, 1, 1, 0.5], "c": [0.1] * 5, "force": [0, 0, 0, 1], "stop_at": 3}

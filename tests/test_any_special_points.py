@@ -41,7 +41,7 @@ def attractor(seed):
 def test_special_points_in_30_digits(seed, name, types):
     orbit = attractor(seed)
     branch = vs.continue_orbit(orbit, name, bounds_of(orbit.system, name))
-    special = [s for s in branch.special if s.type != "limit"]
+    special = [s for s in branch.special if s.type != "boundary"]
     assert [s.type for s in special] == types.split()
     for s in special:
         with mp.workdps(30):

@@ -134,7 +134,7 @@ def test_any_exponents(count):
         outcomes["examples"] += 1
         system = vs.System(**values)
         try:
-            exponents = vs.lyapunov(system, scaled(start, system.b), transient=1, periods=2)
+            exponents = vs.lyapunov(system, scaled(start, system.b), transient=1, record=2)
         except ParameterError as error:
             assert error.key == "omega"
             return

@@ -32,7 +32,7 @@ STATES = [
     "call",
     [
         lambda state: vs.simulate(SYSTEM, state, periods=1),
-        lambda state: vs.lyapunov(SYSTEM, state, transient=0, periods=1),
+        lambda state: vs.lyapunov(SYSTEM, state, transient=0, record=1),
         lambda state: vs.discontinuity_map(SYSTEM)(state),
         lambda state: vs.discontinuity_map(SYSTEM).jacobian(state),
     ],
@@ -47,10 +47,12 @@ def test_states(call, state):
 def test_counts(value):
     for call in (
         lambda: vs.simulate(SYSTEM, REST, periods=value),
-        lambda: vs.lyapunov(SYSTEM, REST, transient=value, periods=1),
-        lambda: vs.lyapunov(SYSTEM, REST, transient=0, periods=value),
+        lambda: vs.lyapunov(SYSTEM, REST, transient=value, record=1),
+        lambda: vs.lyapunov(SYSTEM, REST, transient=0, record=value),
     ):
-        with pytest.raises(ValueError, match=r"(periods|transient): .* is not allowed; it must be a whole number"):
+        with pytest.raises(
+            ValueError, match=r"(periods|transient|record): .* is not allowed; it must be a whole number"
+        ):
             call()
 
 
@@ -66,8 +68,8 @@ def test_start_times(value):
 
 
 def test_more_exponents_than_memory_is_to_be_taken_for():
-    with pytest.raises(ValueError, match=r"periods: 1000000000 is not allowed; .* <= 12500000"):
-        vs.lyapunov(SYSTEM, REST, transient=0, periods=10**9)
+    with pytest.raises(ValueError, match=r"record: 1000000000 is not allowed; .* <= 12500000"):
+        vs.lyapunov(SYSTEM, REST, transient=0, record=10**9)
 
 
 @pytest.mark.parametrize(
@@ -143,10 +145,13 @@ PATH = r"is not allowed; it must be the path of a file"
         (lambda: SYSTEM.replace(stops=np.array(["both", "right"])), r"stops: array\(.* it must be both, right or left"),
         (lambda: vs.Oscillator.named([]), r"model: \[\] is not allowed; it must be one of two_mass"),
         (lambda: vs.Oscillator.named("two_mass", colour=1), r"colour: 1 is not allowed; it must be left out"),
-        (lambda: vs.Oscillator([[1], [2, 3]], 1, along=1, omega=1, b=1, R=1), r"M: \[\[1\], \[2, 3\]\] is not allowed"),
-        (lambda: vs.Oscillator(IN_ITSELF, 1, along=1, omega=1, b=1, R=1), r"M: \[\[.* is not allowed"),
         (
-            lambda: vs.Oscillator(1, 1, force=IN_ITSELF, along=1, omega=1, b=1, R=1),
+            lambda: vs.Oscillator([[1], [2, 3]], 1, contact_normal=1, omega=1, b=1, R=1),
+            r"M: \[\[1\], \[2, 3\]\] is not allowed",
+        ),
+        (lambda: vs.Oscillator(IN_ITSELF, 1, contact_normal=1, omega=1, b=1, R=1), r"M: \[\[.* is not allowed"),
+        (
+            lambda: vs.Oscillator(1, 1, force=IN_ITSELF, contact_normal=1, omega=1, b=1, R=1),
             r"force\[0\]: \[\[.* is not allowed",
         ),
         (lambda: vs.discontinuity_map(SYSTEM, order=np.array([1, 2])), r"order: array.* it must be 1 or 2"),

@@ -233,7 +233,7 @@ def test_bad_scenes(text, problem):
 def test_no_stop_no_bound():
     text = "sweep: {x1: {values: [-9, 6.7]}}\norbit: {transient: 1, record: 1}"
     assert scene_of(text, f"{OSCILLATOR}, b: 6.7, stops: right").shape == (2,)
-    assert scene_of(f"model: map\n{text}".replace("6.7", "7"), f"{OSCILLATOR}, b: 6.7").shape == (2,)
+    assert scene_of(f"dynamics: map\n{text}".replace("6.7", "7"), f"{OSCILLATOR}, b: 6.7").shape == (2,)
 
 
 @pytest.mark.parametrize("stops", ["left", "right", "both"])
@@ -244,13 +244,19 @@ def test_random_starts_of_any_oscillator_are_between_its_stops(stops):
         rng = np.random.default_rng(seed)
         n = int(rng.integers(1, 4))
         numbers = {"M": np.eye(n), "K": 2 * np.eye(n), "C": 0.1 * np.eye(n), "force": np.ones(n)}
-        numbers |= {"along": rng.normal(size=n), "offset": 10 * rng.normal(), "omega": 0.7, "R": 0.8, "stops": stops}
+        numbers |= {
+            "contact_normal": rng.normal(size=n),
+            "offset": 10 * rng.normal(),
+            "omega": 0.7,
+            "R": 0.8,
+            "stops": stops,
+        }
         system = vs.Oscillator.named("linear", b=float(rng.uniform(0.01, 1)), **numbers)
         given = {"sweep": {"b": [system.b]}, "start": {"random": 3, "seed": 1}, "transient": 0, "record": 1}
         scene = scene_from(changed({}, {"system": system, **given}), "sweep")
         (block,) = blocks.blocks(scene, points_per_block=1)
         states, q = starts_of(block)[0], system.linear
-        gaps = states[:, 0::2] @ q.along
+        gaps = states[:, 0::2] @ q.normal
         slack = 1e-12 * np.abs(states).max()
         assert np.all(np.isfinite(states)) and np.all((q.low - slack < gaps) & (gaps < q.high + slack)), seed
         moved += np.abs(states[:, 0::2] - system.offset).max() > system.b

@@ -9,7 +9,7 @@ import vibro_sweep as vs
 from vibro_sweep.model.parameters import ParameterError
 from vibro_sweep.scene import SceneError, parse_scene
 
-GOOD = dict(M=[[1, 0], [0, 2]], K=[[2, -1], [-1, 3]], force=[1, 0], along=[1, 0], omega=0.7, b=1, R=0.8)
+GOOD = dict(M=[[1, 0], [0, 2]], K=[[2, -1], [-1, 3]], force=[1, 0], contact_normal=[1, 0], omega=0.7, b=1, R=0.8)
 
 # what is changed -> the key that the message names, and words that it has
 BAD_OSCILLATORS = {
@@ -24,7 +24,7 @@ BAD_OSCILLATORS = {
     "M not symmetric": (dict(M=[[1, 0.5], [0, 1]]), "M", "entries 1, 2 and 2, 1 differ: 0.5 and 0"),
     "M singular": (dict(M=[[1, 0], [0, 0]]), "M", "positive definite"),
     "M negative": (dict(M=[[1, 0], [0, -1]]), "M", "positive definite"),
-    "M too large": (dict(M=np.eye(17), K=np.eye(17), along=[1] + 16 * [0], force=0), "M", "1 to 16 masses"),
+    "M too large": (dict(M=np.eye(17), K=np.eye(17), contact_normal=[1] + 16 * [0], force=0), "M", "1 to 16 masses"),
     "K of another size": (dict(K=np.eye(3)), "K", "as there are 2 masses in M"),
     "K not symmetric": (dict(K=[[1, -1], [-1.1, 2]]), "K", "symmetric"),
     "K negative": (dict(K=[[1, -2], [-2, 1]]), "K", "positive semidefinite"),
@@ -51,11 +51,11 @@ BAD_OSCILLATORS = {
     "force_cos too short": (dict(force_cos=[1]), "force_cos", "a list of 2 numbers"),
     "constant too short": (dict(constant=[1]), "constant", "a list of 2 numbers"),
     "power of text": (dict(force_power="2"), "force_power", "a number"),
-    "along zero": (dict(along=[0, 0]), "along", "other than zero"),
-    "along next to zero": (dict(along=[1e-200, 0]), "along", "from 1e-100 to 1e+100"),
-    "along too long": (dict(along=[1, 0, 0]), "along", "a list of 2 numbers"),
-    "along a matrix": (dict(along=[[1, 0]]), "along", "a list of finite numbers"),
-    "along not finite": (dict(along=[math.nan, 1]), "along", "a list of finite numbers"),
+    "contact_normal zero": (dict(contact_normal=[0, 0]), "contact_normal", "other than zero"),
+    "contact_normal next to zero": (dict(contact_normal=[1e-200, 0]), "contact_normal", "from 1e-100 to 1e+100"),
+    "contact_normal too long": (dict(contact_normal=[1, 0, 0]), "contact_normal", "a list of 2 numbers"),
+    "contact_normal a matrix": (dict(contact_normal=[[1, 0]]), "contact_normal", "a list of finite numbers"),
+    "contact_normal not finite": (dict(contact_normal=[math.nan, 1]), "contact_normal", "a list of finite numbers"),
     "omega zero": (dict(omega=0), "omega", "> 0"),
     "omega not finite": (dict(omega=math.inf), "omega", "finite number > 0"),
     "b zero of two stops": (dict(b=0), "b", "> 0"),
@@ -95,9 +95,9 @@ BAD_SCENES = {
     "no such mass": (f"{CHAIN}, stop_at: 3", ["system.stop_at = 3", "from 1 to 2"]),
     "base no flag": (f"{ONE}, base: 2", ["system.base"]),
     "matrix not square": (
-        "type: linear, M: [[1, 0]], K: [[1]], along: [1], omega: 1, b: 1, R: 1", ["system.M", "square matrix"],
+        "type: linear, M: [[1, 0]], K: [[1]], contact_normal: [1], omega: 1, b: 1, R: 1", ["system.M", "square matrix"],
     ),
-    "matrix missing": ("type: linear, M: [[1]], along: [1], omega: 1, b: 1, R: 1", ["system.K: missing"]),
+    "matrix missing": ("type: linear, M: [[1]], contact_normal: [1], omega: 1, b: 1, R: 1", ["system.K: missing"]),
     "two stops without a clearance": (ONE.replace("b: 1", "b: 0"), ["system.b = 0", "> 0"]),
 }  # fmt: skip
 
@@ -128,7 +128,7 @@ def test_bad_sweeps(sweep, words):
 
 
 def test_a_sweep_of_a_list_that_is_not_given():
-    text = "{type: linear, M: [[1]], K: [[1]], along: [1], omega: 1, b: 1, R: 1}"
+    text = "{type: linear, M: [[1]], K: [[1]], contact_normal: [1], omega: 1, b: 1, R: 1}"
     with pytest.raises(
         SceneError, match=r"sweep\.modal_damping1: is one of modal_damping, which is not given"
     ) as error:

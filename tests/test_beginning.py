@@ -36,7 +36,7 @@ def test_a_graze_with_all_real_orbits_out_of_bounds_is_refused(symmetric_branch)
 @pytest.mark.parametrize("width", [1e-9, 1e-15])
 def test_tiny_ranges_have_two_limits(width):
     branch = vs.continue_orbit(vs.periodic_orbit(PAPER, itinerary="LR"), "b", (2 - width, 2 + width))
-    assert [special.type for special in branch.special] == ["limit", "limit"] and not branch.closed
+    assert [special.type for special in branch.special] == ["boundary", "boundary"] and not branch.closed
     assert [special.parameters["b"] for special in branch.special] == [2 - width, 2 + width]
 
 
@@ -47,7 +47,7 @@ def test_a_number_that_breaks_the_symmetry(name, bounds):
     assert orbit.symmetric
     branch = vs.continue_orbit(orbit, name, bounds)
     points = branch.points
-    assert [special.type for special in branch.special] == ["limit", "limit"]
+    assert [special.type for special in branch.special] == ["boundary", "boundary"]
     for i in np.linspace(0, points.sizes["point"] - 1, 5).astype(int):
         point = points.isel(point=i)
         state = [float(point[x]) for x in ("x1", "v1", "x2", "v2")]
@@ -64,7 +64,7 @@ def test_a_branch_ends_where_a_number_is_not_allowed_any_more(name, bounds, limi
     system = PAPER.replace(b=50.0 if name == "mu_k" else 3.0)
     orbit = vs.periodic_orbit(system, itinerary="" if name == "mu_k" else "LR")
     branch = vs.continue_orbit(orbit, name, bounds)
-    assert [branch.begins.type, branch.ends.type] == ["limit", "limit"]
+    assert [branch.begins.type, branch.ends.type] == ["boundary", "boundary"]
     assert (branch.begins.parameters[name], branch.ends.parameters[name]) == limits
 
 

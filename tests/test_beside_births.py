@@ -52,14 +52,15 @@ def test_narrow_bounds_around_a_birth(width):
     assert len(orbits) == 2
     for orbit in orbits:
         found = types(vs.continue_orbit(orbit, "R", (value - width, value + width)))
-        assert [kind for kind, _ in found] == ["limit", "pitchfork"]
+        assert [kind for kind, _ in found] == ["boundary", "pitchfork"]
         assert abs(found[1][1] - value) < 1e-14
 
 
 def test_a_step_that_lands_before_a_birth_by_less_than_rounding():
     """There the sign of its tangent is rounding: no fold lies before it."""
     system = vs.Oscillator(
-        M=[[1.1683289858099053]], K=[[2.026691054297847]], C=[[0.17115631105586904]], along=[0.4984838782225783],
+        M=[[1.1683289858099053]], K=[[2.026691054297847]], C=[[0.17115631105586904]],
+        contact_normal=[0.4984838782225783],
         stops="left", force=[0.1005212186126239], force_cos=[0.4048093676312892], constant=[-0.0479180746421895],
         omega=0.5913598511646851, R=0.8636966901455452, b=0.03636840645107031, offset=-0.011280250179775082,
         tau=0.7223421946205266,

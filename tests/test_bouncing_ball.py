@@ -31,7 +31,7 @@ def test_flip_of_the_bouncing_ball(R, n, flip):
         x = R * speed - 0.5 + gamma * (math.sin(phi) + math.cos(phi) - math.sin(later))
         v = R * speed - 1 + gamma * (math.cos(phi) - math.cos(later))
         ball = one_mass(force=[gamma], constant=[-1.0], omega=1.0, tau=later, b=0.0, R=R, stops="left")
-        signs.append(np.sign(vs.lyapunov(ball, [x, v], transient=0, periods=20)[0]))
+        signs.append(np.sign(vs.lyapunov(ball, [x, v], transient=0, record=20)[0]))
     assert signs == [-1, 1]
 
 

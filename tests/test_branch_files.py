@@ -17,11 +17,11 @@ from vibro_sweep.scene.yaml_text import read_yaml
 
 NUMBERS = "{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 2}"
 LR = "{itinerary: LR, periods: 1}"
-RANGE = "{b: {start: 0.3, stop: 6.8}}"
+RANGE = "{b: [0.3, 6.8]}"
 
 
-def text(begin=LR, along=RANGE, more="depth: 1", numbers=NUMBERS):
-    return f"system: {numbers}\ncontinue:\n  from: {begin}\n  along: {along}\n  {more}\n"
+def text(begin=LR, parameter=RANGE, more="depth: 1", numbers=NUMBERS):
+    return f"system: {numbers}\ncontinue:\n  from: {begin}\n  parameter: {parameter}\n  {more}\n"
 
 
 @pytest.fixture(scope="module")
@@ -47,10 +47,10 @@ def test_it_holds_what_follow_branches_finds(file):
         begin = 0
         for i, item in enumerate(found):
             points, size = item.branch.points, int(data["branch_row_size"][i])
-            along = slice(begin, begin + size)
-            np.testing.assert_array_equal(data["b"][along], points["b"])
-            np.testing.assert_array_equal(data["x2"][along], points["x2"])
-            np.testing.assert_array_equal(data["unstable"][along], points["unstable"])
+            rows = slice(begin, begin + size)
+            np.testing.assert_array_equal(data["b"][rows], points["b"])
+            np.testing.assert_array_equal(data["x2"][rows], points["x2"])
+            np.testing.assert_array_equal(data["unstable"][rows], points["unstable"])
             special = data["special_type"].values[data["special_branch"].values == i]
             assert [TYPES[code].name for code in special] == [one.type for one in item.branch.special]
             begin += size
@@ -70,8 +70,10 @@ def test_a_point_of_the_file_is_where_a_scene_goes_on(file, tmp_path):
     with vs.open(tmp_path / "beyond.h5") as data:
         assert data["branch_symmetric"].values.tolist() == [0]  # the two mirror images are one branch
         assert float(data["b"].max()) == pytest.approx(value, abs=1e-9)
-    along = "{omega: {start: 0.62, stop: 0.64}}"
-    run_branches(parse_continuation(text(f"{{branches: {file}, special: {at}}}", along, "depth: 0")), tmp_path / "o.h5")
+    parameter = "{omega: [0.62, 0.64]}"
+    run_branches(
+        parse_continuation(text(f"{{branches: {file}, special: {at}}}", parameter, "depth: 0")), tmp_path / "o.h5"
+    )
     with vs.open(tmp_path / "o.h5") as data:
         assert data["branch_symmetric"].values[0] == 1 and data["omega"].values[0] == 0.62
         assert data.attrs["b"] == value and "tau" not in data.attrs  # of that point; grazing changes with omega
@@ -96,19 +98,19 @@ def test_two_workers_make_the_same_file(file, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "begin, along, number",
+    "begin, parameter, number",
     [
         ("free", RANGE.replace("0.3", "1.5"), 1),
-        ("{grazing: 1}", "{b: {start: 6, stop: 7}}", 2),  # RL, and of the mirror images R and L one
-        ("{state: {x1: 3.0, v1: 0.3, x2: 1, v2: 0}, periods: 1}", "{b: {start: 1.5, stop: 2.5}}", 1),
+        ("{grazing: 1}", "{b: [6, 7]}", 2),  # RL, and of the mirror images R and L one
+        ("{state: {x1: 3.0, v1: 0.3, x2: 1, v2: 0}, periods: 1}", "{b: [1.5, 2.5]}", 1),
     ],
 )
-def test_other_beginnings(begin, along, number, tmp_path):
+def test_other_beginnings(begin, parameter, number, tmp_path):
     numbers = NUMBERS.replace("b: 2", "b: 6.75") if begin == "free" or "grazing" in begin else NUMBERS
     if "state" in begin:
         orbit = vs.periodic_orbit(SYSTEM.replace(b=2), itinerary="LR")
         begin = "{state: {" + ", ".join(f"{k}: {v}" for k, v in zip(("x1", "v1", "x2", "v2"), orbit.state)) + "}}"  # noqa: B905
-    run_branches(parse_continuation(text(begin, along, "depth: 0", numbers)), tmp_path / "x.h5")
+    run_branches(parse_continuation(text(begin, parameter, "depth: 0", numbers)), tmp_path / "x.h5")
     with vs.open(tmp_path / "x.h5") as data:
         assert data.sizes["branch"] == number
 
@@ -121,13 +123,13 @@ def test_other_beginnings(begin, along, number, tmp_path):
         (dict(begin="{itinerary: LX}"), 'continue.from.itinerary = "LX": must be a word of R and L'),
         (dict(begin="{branches: a.h5}"), "continue.from.special: missing"),
         (dict(begin="{itinerary: LR, special: 1}"), "continue.from.special: belongs to branches"),
-        (dict(along="{b: {start: 3, stop: 1}}"), "continue.along.b.stop = 1: must be a number > 3"),
-        (dict(along="{b: {start: -3, stop: 3}}"), "continue.along.b = -3: must be a"),
-        (dict(along="{b: {start: 3, stop: 4}}"), "system.b = 2: must be in continue.along: 3 .. 4"),
-        (dict(along="{b: {start: 1, stop: 4}, omega: {start: 0.7, stop: 0.5}}"), "continue.along.omega.stop = 0.5"),
-        (dict(along="{b: {start: 1, stop: 4}, omega: {start: 0.7, stop: 0.8}}"), "system.omega = 0.63: must be in"),
-        (dict(along="{}"), "continue.along = []: must have one key, or two for curves"),
-        (dict(more="of: [fold]"), "continue.of: belongs to two keys of `along`"),
+        (dict(parameter="{b: [3, 1]}"), "continue.parameter.b = [3, 1]: must be two numbers, the lower end"),
+        (dict(parameter="{b: [-3, 3]}"), "continue.parameter.b = -3: must be a"),
+        (dict(parameter="{b: [3, 4]}"), "system.b = 2: must be in continue.parameter: 3 .. 4"),
+        (dict(parameter="{b: [1, 4], omega: [0.7, 0.5]}"), "continue.parameter.omega = [0.7, 0.5]: must be two"),
+        (dict(parameter="{b: [1, 4], omega: [0.7, 0.8]}"), "system.omega = 0.63: must be in"),
+        (dict(parameter="{}"), "continue.parameter = []: must have one key, or two for curves"),
+        (dict(more="of: [fold]"), "continue.of: belongs to two keys of `parameter`"),
         (dict(more="follow: [fold]"), 'continue.follow[0] = "fold": allowed: graze, pitchfork, flip'),
         (dict(more="deep: 1"), "continue.deep = 1: unknown key; did you mean `depth`?"),
         (dict(more="follow: 3"), "continue.follow = 3: must be a list of words"),

@@ -15,8 +15,8 @@ NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
 
 
 def scene(begin, start, stop, key="b", numbers=NUMBERS):
-    along = f"along: {{{key}: {{start: {start!r}, stop: {stop!r}}}}}"
-    return parse_continuation(f"system: {{{numbers}}}\ncontinue:\n  from: {begin}\n  {along}\n  depth: 0\n")
+    parameter = f"parameter: {{{key}: [{start!r}, {stop!r}]}}"
+    return parse_continuation(f"system: {{{numbers}}}\ncontinue:\n  from: {begin}\n  {parameter}\n  depth: 0\n")
 
 
 def special_points(path) -> set[tuple[str, int, float]]:
@@ -36,7 +36,7 @@ def test_branches_of_a_sweep_pass_its_windows(few, tmp_path):  # noqa: F811
     assert len(windows) == 9
     for window in windows:
         for end in (window.lower, window.upper):
-            if end.type != "limit":
+            if end.type != "boundary":
                 assert (end.type, window.period, round(end.parameters["b"], 11)) in found, window
     with vs.open(few) as sweep, vs.open(tmp_path / "b.h5") as data:
         assert data.attrs["source"] == sweep.attrs["identity"] and data.attrs["omega"] == 0.63
@@ -114,7 +114,7 @@ def test_the_numbers_of_the_oscillator_are_those_of_the_special_point(few, tmp_p
         assert data.attrs["b"] == value != 6.6
         types = [TYPES[code].name for code in data["special_type"].values]
         omega = data["special_value"].values[:, 0]
-        end = int(np.argmin(np.where(np.array(types) == "limit", np.inf, np.abs(omega - 0.63))))
+        end = int(np.argmin(np.where(np.array(types) == "boundary", np.inf, np.abs(omega - 0.63))))
         held = float(omega[end])
     begin = f"{{branches: {tmp_path / 'omega.h5'}, special: {end}}}"
     run_branches(scene(begin, 6.5, 6.7), tmp_path / "again.h5")

@@ -1,4 +1,4 @@
-"""Scenes with two numbers in `along`: curves in files, charts, and the edges of a plane."""
+"""Scenes with two numbers in `parameter`: curves in files, charts, and the edges of a plane."""
 
 import h5py
 import numpy as np
@@ -17,14 +17,14 @@ from vibro_sweep.scene import parse_continuation
 
 NAMES, BOX = ("b", "omega"), ((2.5, 6), (0.58, 0.68))
 NUMBERS = "{mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 4}"
-ALONG = "{b: {start: 2.5, stop: 6}, omega: {start: 0.58, stop: 0.68}}"
+ALONG = "{b: [2.5, 6], omega: [0.58, 0.68]}"
 
 
 pytestmark = pytest.mark.slow  # curves compile a kernel of their own, which takes half a minute
 
 
-def text(begin="{itinerary: LR}", along=ALONG, more="depth: 0", numbers=NUMBERS):
-    return f"system: {numbers}\ncontinue:\n  from: {begin}\n  along: {along}\n  {more}\n"
+def text(begin="{itinerary: LR}", parameter=ALONG, more="depth: 0", numbers=NUMBERS):
+    return f"system: {numbers}\ncontinue:\n  from: {begin}\n  parameter: {parameter}\n  {more}\n"
 
 
 def pitchfork(omega=0.63) -> SpecialPoint:
@@ -96,17 +96,19 @@ def test_edges_between_which_a_line_passes():
 
 def test_a_point_of_codimension_two_of_a_file_is_where_a_scene_goes_on(tmp_path):
     """From the degenerate pitchfork to curves through it; along one number from its orbit."""
-    along = "{b: {start: 3, stop: 3.9}, omega: {start: 0.6, stop: 0.62}}"
+    parameter = "{b: [3, 3.9], omega: [0.6, 0.62]}"
     first = tmp_path / "first.h5"
     numbers = NUMBERS.replace("b: 4", "b: 3.8").replace("0.63", "0.615")
-    run_curves(parse_continuation(text(along=along, more="of: [pitchfork]\n  depth: 0", numbers=numbers)), first)
+    run_curves(
+        parse_continuation(text(parameter=parameter, more="of: [pitchfork]\n  depth: 0", numbers=numbers)), first
+    )
     with vs.open(first) as data:
         types = [CODIMENSION_TWO[code].name for code in data["special_type"].values]
         at = types.index("degenerate_flip")
         place = data["special_value"].values[at].tolist()
     begin = f"{{branches: {first}, special: {at}}}"
     second = tmp_path / "second.h5"
-    run_curves(parse_continuation(text(begin, along, "depth: 0", numbers)), second)
+    run_curves(parse_continuation(text(begin, parameter, "depth: 0", numbers)), second)
     with vs.open(second) as data:
         assert "pitchfork" in [CURVES[code] for code in data["branch_type"].values]
         assert np.abs(data["special_value"].values - place).max(axis=1).min() < 1e-10
@@ -214,8 +216,8 @@ def test_edges_of_a_plane(tmp_path):
     with vs.sweep(SYSTEM, keys, transient=1500, record=64, output=plane, workers=1) as data:
         period = data["period"].values
         states = np.stack([data[name].isel(sample=-1).values for name in ("x1", "v1", "x2", "v2")], -1)
-    along = "{omega: {start: 0.63, stop: 0.67}, b: {start: 4, stop: 8}}"
-    run_curves(parse_continuation(text(f"{{sweep: {plane}}}", along, "depth: 0")), tmp_path / "edges.h5")
+    parameter = "{omega: [0.63, 0.67], b: [4, 8]}"
+    run_curves(parse_continuation(text(f"{{sweep: {plane}}}", parameter, "depth: 0")), tmp_path / "edges.h5")
     with vs.open(tmp_path / "edges.h5") as data:
         one, other, reason = (data[name].values for name in ("edge_from", "edge_to", "edge_reason"))
         assert (data["edge_curve"].values[reason == 0] >= 0).all() and data.sizes["edge"] > 25

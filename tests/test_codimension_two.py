@@ -51,10 +51,10 @@ def test_flip_and_resonance_on_a_graze_curve(one_sided_branch):
 
 
 def test_fold_and_double_graze_of_a_window():
-    box, found = ((6, 7.5), (0.61, 0.65)), {}
+    bounds, found = ((6, 7.5), (0.61, 0.65)), {}
     for special in branch_of(6.6, 13).special:
         if special.type in ("fold", "graze"):
-            curve = vs.bifurcation_curve(special, NAMES, box)
+            curve = vs.bifurcation_curve(special, NAMES, bounds)
             found |= {one.type: one for one in curve.special if one.type in ("fold_graze", "double_graze")}
     assert set(found) == {"fold_graze", "double_graze"}
     for special in found.values():

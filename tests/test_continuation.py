@@ -54,7 +54,7 @@ def test_folds_that_end_hysteresis():
 
 def test_free_motion_ends_at_the_double_graze():
     branch = vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=6.8), itinerary=""), "b", (6.3, 6.9))
-    same_points(branch, [("graze", B_STAR), ("limit", 6.9)])
+    same_points(branch, [("graze", B_STAR), ("boundary", 6.9)])
     assert branch.ends.parameters["b"] == 6.9
     born = vs.switch(branch.begins)
     assert sorted(orbit.itinerary for orbit in born) == ["L", "LR", "R"]
@@ -230,8 +230,8 @@ def test_bad_input_is_refused():
     with pytest.raises(ValueError, match="not_real"):
         vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=6.0), itinerary=""), "b", (1, 7))
     branch = vs.continue_orbit(orbit, "b", (1.9, 2.1))
-    assert [special.type for special in branch.special] == ["limit", "limit"]
-    with pytest.raises(ValueError, match="limit"):
+    assert [special.type for special in branch.special] == ["boundary", "boundary"]
+    with pytest.raises(ValueError, match="boundary"):
         vs.switch(branch.ends)
 
 

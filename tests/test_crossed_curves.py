@@ -21,10 +21,10 @@ def test_the_point_where_the_orbit_becomes_the_free_motion(graze, factor, monkey
     for name in ("LONGEST_STEP", "STRAIGHT"):
         monkeypatch.setattr(tracer, name, factor * getattr(tracer, name))
     curve = vs.bifurcation_curve(graze, ("b", "omega"), ((2.45, 9.0), (0.5, 0.8)))
-    found = [special for special in curve.special if special.type not in ("limit", "resonant_graze", "flip_graze")]
+    found = [special for special in curve.special if special.type not in ("boundary", "resonant_graze", "flip_graze")]
     assert [special.type for special in found] == ["double_graze"]
     b, omega = (found[0].parameters[name] for name in ("b", "omega"))
     assert omega == pytest.approx(0.540141118989, abs=1e-11)
     q = PAPER.replace(b=b, omega=omega).linear
-    assert abs(abs(q.along @ amplitudes(q)) - b) < 1e-12
+    assert abs(abs(q.normal @ amplitudes(q)) - b) < 1e-12
     assert 0 < found[0].error < 1e-10

@@ -45,33 +45,35 @@ def test_impacts_that_vanish_together_are_one_graze():
     branch = vs.continue_orbit(vs.periodic_orbit(system, state=state, periods=4), "b", (0.2, 0.4))
     graze = first(branch, "graze")
     assert graze.orbit.itinerary == "LLL" and not graze.orbit.impacts["v1"].round(12).any()
-    box = ((0.28, 0.32), (0.0103, 0.0206))
-    curve = vs.bifurcation_curve(graze, ("b", "zeta"), box)
-    assert types(curve) == ["limit", "limit"] and curve.points.sizes["impact"] == 1
+    bounds = ((0.28, 0.32), (0.0103, 0.0206))
+    curve = vs.bifurcation_curve(graze, ("b", "zeta"), bounds)
+    assert types(curve) == ["boundary", "boundary"] and curve.points.sizes["impact"] == 1
     free = vs.continue_orbit(vs.periodic_orbit(system.replace(b=0.35), itinerary=""), "b", (0.2, 0.4))
-    other = vs.bifurcation_curve(first(free, "graze"), ("b", "zeta"), box)
+    other = vs.bifurcation_curve(first(free, "graze"), ("b", "zeta"), bounds)
     for one, same in zip(curve.special, other.special, strict=True):
         assert one.parameters == pytest.approx(same.parameters, abs=1e-13)
 
 
 def test_refusals(symmetric_branch):
     pitchfork, limit = symmetric_branch.special[1], first(
-        vs.continue_orbit(symmetric_branch.special[1].orbit, "b", (3, 4)), "limit"
+        vs.continue_orbit(symmetric_branch.special[1].orbit, "b", (3, 4)), "boundary"
     )  # fmt: skip
-    box = BOXES["b", "omega"]
-    with pytest.raises(ValueError, match=r"special\.type: 'limit' is not allowed; it must be one of fold, flip"):
-        vs.bifurcation_curve(limit, ("b", "omega"), box)
+    bounds = BOXES["b", "omega"]
+    with pytest.raises(ValueError, match=r"special\.type: 'boundary' is not allowed; it must be one of fold, flip"):
+        vs.bifurcation_curve(limit, ("b", "omega"), bounds)
     with pytest.raises(ValueError, match=r"parameters: \('b', 'b'\) is not allowed; it must be two of mu_m"):
-        vs.bifurcation_curve(pitchfork, ("b", "b"), box)
-    with pytest.raises(ValueError, match=r"box\.b: \[5.0, 9.0\] is not allowed; it must be \(lo, hi\), lo < hi"):
+        vs.bifurcation_curve(pitchfork, ("b", "b"), bounds)
+    with pytest.raises(ValueError, match=r"bounds\.b: \[5.0, 9.0\] is not allowed; it must be \(lo, hi\), lo < hi"):
         vs.bifurcation_curve(pitchfork, ("b", "omega"), ((5, 9), (0.5, 0.8)))
     for wrong in (None, (1, 9), ((1, 9),), ((1, 2, 3), (4, 5))):
-        with pytest.raises(ValueError, match=r"box: .* is not allowed; it must be \(\(lo, hi\), \(lo, hi\)\) of b and"):
+        with pytest.raises(
+            ValueError, match=r"bounds: .* is not allowed; it must be \(\(lo, hi\), \(lo, hi\)\) of b and"
+        ):
             vs.bifurcation_curve(pitchfork, ("b", "omega"), wrong)
     with pytest.raises(ValueError, match="parameters: None is not allowed"):
-        vs.bifurcation_curve(pitchfork, None, box)
+        vs.bifurcation_curve(pitchfork, None, bounds)
     with pytest.raises(TypeError, match="special"):
-        vs.bifurcation_curve(pitchfork.orbit, ("b", "omega"), box)
+        vs.bifurcation_curve(pitchfork.orbit, ("b", "omega"), bounds)
 
 
 @pytest.mark.slow
@@ -88,8 +90,11 @@ def test_curves_in_30_digits(names, kind, symmetric_branch, one_sided_branch):
 def test_margin_where_cells_are_passed_over(symmetric_branch):
     """What is farther from the stops than at the point before is not looked at; that of a single orbit is."""
     fold = first(branch_of(6.6, 13), "fold")
-    for special, box in ((first(symmetric_branch, "pitchfork"), BOXES["b", "omega"]), (fold, ((6, 7.5), (0.61, 0.65)))):
-        curve = vs.bifurcation_curve(special, ("b", "omega"), box)
+    for special, bounds in (
+        (first(symmetric_branch, "pitchfork"), BOXES["b", "omega"]),
+        (fold, ((6, 7.5), (0.61, 0.65))),
+    ):
+        curve = vs.bifurcation_curve(special, ("b", "omega"), bounds)
         margins = curve.points.margin.values  # inf: there is no turning point
         for k in range(0, len(margins), 5):
             assert margins[k] == pytest.approx(solution_at(curve, k).margin, rel=1e-8, abs=1e-10)
@@ -168,14 +173,14 @@ def test_resonances_of_the_free_motion_in_40_digits(symmetric_branch, one_sided_
 @pytest.mark.slow
 def test_every_way_into_the_net_of_curves_gives_the_same_points(symmetric_branch):
     """From each point of codimension two on a curve, its curves are followed anew."""
-    box = BOXES["b", "omega"]
-    curve = vs.bifurcation_curve(first(symmetric_branch, "pitchfork"), ("b", "omega"), box)
+    bounds = BOXES["b", "omega"]
+    curve = vs.bifurcation_curve(first(symmetric_branch, "pitchfork"), ("b", "omega"), bounds)
     expected = places(curve)
     folds, followed = [], 0
     for special in curve.special[1:-1]:
         for start in vs.switch(special):
             if start.type in ("pitchfork", "fold") and start.orbit.symmetric:
-                other = vs.bifurcation_curve(start, ("b", "omega"), box)
+                other = vs.bifurcation_curve(start, ("b", "omega"), bounds)
                 if start.type == "pitchfork":
                     assert places(other) == [(kind, pytest.approx(where, abs=1e-12)) for kind, where in expected]
                     followed += 1
@@ -237,12 +242,12 @@ def test_the_fold_of_asymmetric_orbits_begins_where_the_pitchfork_turns_from_sup
     symmetric_branch, one_sided_branch
 ):
     """Its curve, found over a resonant graze of other orbits, ends at the zero of the normal form's coefficient."""
-    box = BOXES["b", "omega"]
-    pitchfork = vs.bifurcation_curve(first(symmetric_branch, "pitchfork"), ("b", "omega"), box)
-    graze = vs.bifurcation_curve(one_sided_branch.begins, ("b", "omega"), box)
+    bounds = BOXES["b", "omega"]
+    pitchfork = vs.bifurcation_curve(first(symmetric_branch, "pitchfork"), ("b", "omega"), bounds)
+    graze = vs.bifurcation_curve(one_sided_branch.begins, ("b", "omega"), bounds)
     starts = [start for one in graze.special if one.type == "resonant_graze" for start in vs.switch(one)]
-    fold = vs.bifurcation_curve(next(start for start in starts if start.type == "fold"), ("b", "omega"), box)
-    end = next(end for end in (fold.begins, fold.ends) if end.type != "limit")
+    fold = vs.bifurcation_curve(next(start for start in starts if start.type == "fold"), ("b", "omega"), bounds)
+    end = next(end for end in (fold.begins, fold.ends) if end.type != "boundary")
     assert end.type == "degenerate_flip" and end.orbit.symmetric
     nearest = min(
         (one for one in pitchfork.special if one.type == "degenerate_flip"),
@@ -258,8 +263,8 @@ def test_states_of_points_are_those_of_the_orbits(names, symmetric_branch, one_s
     specials = [first(symmetric_branch, "pitchfork"), one_sided_branch.ends, first(one_sided_branch, "neimark_sacker")]
     for special in specials:
         here = special.parameters | {"omega": 0.63, "mu_m": 10.0, "R": 0.8}
-        box = tuple((here[name] - 0.05 * abs(here[name]), here[name] + 0.05 * abs(here[name])) for name in names)
-        curve = vs.bifurcation_curve(special, names, box)
+        bounds = tuple((here[name] - 0.05 * abs(here[name]), here[name] + 0.05 * abs(here[name])) for name in names)
+        curve = vs.bifurcation_curve(special, names, bounds)
         states = np.stack([curve.points[name].values for name in ("x1", "v1", "x2", "v2")], axis=-1)
         assert len(states) > 8
         for k in range(0, len(states), 3):

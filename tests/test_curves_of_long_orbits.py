@@ -26,7 +26,7 @@ def graze():
 
 def test_searches_end_where_rounding_of_the_tests_begins(graze, monkeypatch):
     b, omega = graze.parameters["b"], graze.orbit.system.omega
-    box, counts, found = ((0.9 * b, 1.1 * b), (0.95 * omega, 1.05 * omega)), [], []
+    bounds, counts, found = ((0.9 * b, 1.1 * b), (0.95 * omega, 1.05 * omega)), [], []
     correct = Tracer.correct
 
     def counted(tracer, guess, row, exact=True):
@@ -37,7 +37,7 @@ def test_searches_end_where_rounding_of_the_tests_begins(graze, monkeypatch):
     for coarse in (chord.COARSE, 1.0):
         monkeypatch.setattr(chord, "COARSE", coarse)
         counts.append(0)
-        found.append(vs.bifurcation_curve(graze, ("b", "omega"), box).special)
+        found.append(vs.bifurcation_curve(graze, ("b", "omega"), bounds).special)
     assert len(found[0]) > 8 and counts[0] < 0.6 * counts[1]
     assert [one.type for one in found[0]] == [other.type for other in found[1]]
     for one, other in zip(*found, strict=True):

@@ -27,18 +27,18 @@ def test_bouncing_ball():
         expected = least if kind == "fold" else np.hypot(least, 2 * (1 + R**2) / (1 + R) ** 2)
         np.testing.assert_allclose(curve.points.F.values, expected, rtol=1e-13)
         assert curve.type == kind and not curve.points.virtual.any() and np.ptp(R) == pytest.approx(0.75)
-        assert curve.begins.parameters["F"] < curve.ends.parameters["F"] and types(curve) == ["limit", "limit"]
+        assert curve.begins.parameters["F"] < curve.ends.parameters["F"] and types(curve) == ["boundary", "boundary"]
 
 
 @pytest.mark.slow
 def test_a_box_is_left_by_the_side_that_is_met_first():
-    """Near a corner one step passes two sides of the box, and the fold above ends on the nearer of them."""
+    """Near a corner one step passes two sides of the bounds, and the fold above ends on the nearer of them."""
     fold, corner = first(ball(), "fold"), math.pi * 0.7 / 1.3  # F of the fold at R = 0.3
     for highest in (corner * (1 + 1e-4), corner * (1 - 1e-4)):
         curve = vs.bifurcation_curve(fold, ("F", "R"), ((0.05, highest), (0.3, 0.95)))
         end = max(curve.special, key=lambda one: one.parameters["F"]).parameters
         F, R = (corner, 0.3) if highest > corner else (highest, (math.pi - highest) / (math.pi + highest))
-        assert types(curve) == ["limit", "limit"] and end == pytest.approx({"F": F, "R": R}, rel=1e-13)
+        assert types(curve) == ["boundary", "boundary"] and end == pytest.approx({"F": F, "R": R}, rel=1e-13)
         assert curve.points.F.values.max() == end["F"] and curve.points.R.values.min() == end["R"]
 
 
@@ -59,19 +59,19 @@ def test_one_impact_in_two_periods(kind, begin, ranges, omega, F):
     branch = vs.continue_orbit(vs.periodic_orbit(wall(*begin), itinerary="R", periods=2), "F", (0.01, 0.5))
     curve = vs.bifurcation_curve(first(branch, kind), ("F", "omega"), ranges)
     (end,) = [one for one in curve.special if one.parameters["omega"] == omega]
-    assert end.type == "limit" and end.parameters["F"] == pytest.approx(F, abs=6e-10)
+    assert end.type == "boundary" and end.parameters["F"] == pytest.approx(F, abs=6e-10)
 
 
 @pytest.mark.slow
 def test_fold_and_flip_begin_at_the_resonant_graze():
     """arXiv 2510.16218: from (0.36, 0.8) the fold goes down to omega = 0.788, the flip up to 0.9998; both are tangent
     to the graze curve there, with a distance that grows like the square."""
-    box = ((0.01, 0.5), (0.78, 1.05))
+    bounds = ((0.01, 0.5), (0.78, 1.05))
     branch = vs.continue_orbit(vs.periodic_orbit(wall(0.81, 0.4), itinerary="R", periods=2), "F", (0.01, 0.6))
-    flip = vs.bifurcation_curve(first(branch, "flip"), ("F", "omega"), box)
-    graze = vs.bifurcation_curve(branch.begins, ("F", "omega"), box)
+    flip = vs.bifurcation_curve(first(branch, "flip"), ("F", "omega"), bounds)
+    graze = vs.bifurcation_curve(branch.begins, ("F", "omega"), bounds)
     branch = vs.continue_orbit(vs.periodic_orbit(wall(0.799, 0.364), itinerary="R", periods=2), "F", (0.01, 0.6))
-    fold = vs.bifurcation_curve(first(branch, "fold"), ("F", "omega"), box)
+    fold = vs.bifurcation_curve(first(branch, "fold"), ("F", "omega"), bounds)
     places = {}
     for curve in (flip, fold, graze):
         for special in curve.special:

@@ -81,10 +81,10 @@ def test_a_list_of_numbers_that_is_a_text(kinds, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(kinds("linear"), "x.h5")
     with h5py.File("x.h5", "a") as file:
-        file.attrs.create("along", "no such thing")
+        file.attrs.create("contact_normal", "no such thing")
     for words in (["info", "x.h5"], ["plot", "x.h5"]):
         told = damage.said(words)
-        assert told.outcome == damage.REFUSED and "x.h5 is damaged (its attribute `along`" in told.message
+        assert told.outcome == damage.REFUSED and "x.h5 is damaged (its attribute `contact_normal`" in told.message
 
 
 ALL_COMPUTING = (*damage.COMPUTING, "vs.windows")
@@ -94,7 +94,7 @@ REFUSED_LATE = {  # kind of the file, its dataset or attribute, the value in it,
     "a period of a million": ("windows", "branch_period", 10**6, "windows.h5: tables over 2000000 half periods"),
     "a period of a million in branches": ("branches", "branch_period", 10**6, "branches.h5: tables over 2000000 half"),
     "a plane of no scene": ("plane", "scene", "no such thing", "plane.h5: scene: scene = "),
-    "a type without a curve": ("windows", "special_type", 7, "'limit' in windows.h5; it must be one of fold"),
+    "a type without a curve": ("windows", "special_type", 7, "'boundary' in windows.h5; it must be one of fold"),
 }
 
 

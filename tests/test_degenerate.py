@@ -171,7 +171,7 @@ def test_millions_of_periods(R, b, periods, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("omega", "along", "force", "size"),
+    ("omega", "contact_normal", "force", "size"),
     [
         (1.0, (1, -1), (1, -1), 1.0),  # the mode in resonance is neither driven nor seen by the contact,
         (1.0, (1, 0), (1, -1), 0.5),  # not driven
@@ -179,9 +179,11 @@ def test_millions_of_periods(R, b, periods, tmp_path):
         (1.0, (1, 0), (1, 0), np.nan),  # driven
     ],
 )
-def test_an_undamped_mode_in_resonance_that_is_not_driven(omega, along, force, size):
+def test_an_undamped_mode_in_resonance_that_is_not_driven(omega, contact_normal, force, size):
     """Masses 1 with modes (1, 1), (1, -1) of omega^2 = 1, 3: the other one alone answers, with 1/(3 - 1)."""
-    system = vs.Oscillator(np.eye(2), [[2, -1], [-1, 2]], along=along, force=force, omega=omega, b=0.5, R=0.7)
+    system = vs.Oscillator(
+        np.eye(2), [[2, -1], [-1, 2]], contact_normal=contact_normal, force=force, omega=omega, b=0.5, R=0.7
+    )
     touch = vs.grazing(system)
     assert touch.b == pytest.approx(size, rel=1e-14, nan_ok=True) and not touch.satisfied
     paper = vs.grazing(vs.System(mu_m=1, mu_k=0, zeta=0, f2=0.5, omega=np.sqrt(2.0), R=0.8, b=0.3))

@@ -13,7 +13,7 @@ from vibro_sweep.scene import SceneError, parse_scene
 PAPER = vs.System(**naive.PAPER, b=6.6)
 CASES = [(right, left) for right in (False, True) for left in (False, True)]  # of (48): which stops are hit
 ORDERS = (1, 2)
-SCENE = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}\nmodel: map\n"
+SCENE = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6}\ndynamics: map\n"
 ORBIT = "orbit: {transient: 500, record: 400}\n"
 
 
@@ -206,8 +206,8 @@ def test_order_of_the_error_for_displacements_like_its_root(case, orders):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (SCENE.replace("map", "flow") + "order: 2\n", r"order = 2: belongs to `model: map`"),
-        (SCENE.replace("map", "flow") + "expand_at: 6.7\n", r"expand_at = 6.7: belongs to `model: map`"),
+        (SCENE.replace("map", "flow") + "order: 2\n", r"order = 2: belongs to `dynamics: map`"),
+        (SCENE.replace("map", "flow") + "expand_at: 6.7\n", r"expand_at = 6.7: belongs to `dynamics: map`"),
         (SCENE + "order: 3\n", r"order = 3"),
         (SCENE + "expand_at: -1\n", r"expand_at = -1: .*> 0"),
         (SCENE.replace("b: 6.6", "b: 6.6, tau: 2.2"), r"system.tau = 2.2: .*the phase of the graze"),

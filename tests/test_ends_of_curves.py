@@ -47,20 +47,20 @@ def test_longer_steps_pass_no_strong_resonance(symmetric_branch, one_sided_branc
                 assert same(places(vs.bifurcation_curve(start, NAMES, BOX)), expected), factor
 
 
-def same_whatever_the_step(special, names, box, monkeypatch):
+def same_whatever_the_step(special, names, bounds, monkeypatch):
     """Its points of codimension two."""
-    expected = places(vs.bifurcation_curve(special, names, box))
+    expected = places(vs.bifurcation_curve(special, names, bounds))
     for factor in (0.5, 2):
         with monkeypatch.context() as patch:
             patch.setattr(tracer, "LONGEST_STEP", factor * tracer.LONGEST_STEP)
             patch.setattr(tracer, "STRAIGHT", factor * tracer.STRAIGHT)
-            assert same(places(vs.bifurcation_curve(special, names, box)), expected), factor
+            assert same(places(vs.bifurcation_curve(special, names, bounds)), expected), factor
     return [kind for kind, *_ in expected]
 
 
 @pytest.mark.slow
 def test_an_orbit_that_is_born_next_to_the_side_of_the_box(monkeypatch):
-    """The step from the graze of a doubled orbit to its birth also leaves the box."""
+    """The step from the graze of a doubled orbit to its birth also leaves the bounds."""
     system = vs.System(
         mu_m=7.246127476057355, mu_k=2.287345399823902, zeta=0.01518081597191766, f2=0, omega=1.5505364507815478,
         R=0.5496994433217061, b=0.603379592936371, offset=-0.2335030344355092, R_left=0.8465644910234273,
@@ -69,8 +69,8 @@ def test_an_orbit_that_is_born_next_to_the_side_of_the_box(monkeypatch):
     orbit = vs.periodic_orbit(system, state=vs.simulate(system, state, 500).section[-1], periods=10)
     graze = first(vs.continue_orbit(orbit, "b", (0.3, 0.9)).special, "graze")
     reach, b, offset = 0.1 * graze.parameters["b"], graze.parameters["b"], system.offset
-    box = ((b - reach, b + reach), (offset - reach, offset + reach))
-    assert same_whatever_the_step(graze, ("b", "offset"), box, monkeypatch).count("flip_graze") == 2
+    bounds = ((b - reach, b + reach), (offset - reach, offset + reach))
+    assert same_whatever_the_step(graze, ("b", "offset"), bounds, monkeypatch).count("flip_graze") == 2
 
 
 @pytest.mark.slow
@@ -88,8 +88,8 @@ def test_nothing_is_invented_where_another_impact_vanishes(masses, seed, name, m
         if special.type == "graze":
             at = special.parameters["b"]
             reach = 0.1 * at if name == "offset" else 0.05 * value
-            box = ((0.9 * at, 1.1 * at), (value - reach, value + reach))
-            found += same_whatever_the_step(special, ("b", name), box, monkeypatch)
+            bounds = ((0.9 * at, 1.1 * at), (value - reach, value + reach))
+            found += same_whatever_the_step(special, ("b", name), bounds, monkeypatch)
     assert "double_graze" in found and "neimark_sacker_graze" not in found
 
 
@@ -105,26 +105,26 @@ def test_curves_in_a_corner_of_a_wide_box(symmetric_branch):
         begin = next(end for end in (curve.begins, curve.ends) if end.type == "resonance_1_2")
         assert begin.parameters == pytest.approx(special.parameters, abs=1e-11)
         ends |= {curve.begins.type, curve.ends.type}
-    assert ends == {"resonance_1_2", "resonance_1_1", "limit"}
+    assert ends == {"resonance_1_2", "resonance_1_1", "boundary"}
 
 
 @pytest.mark.slow
 def test_a_curve_that_passes_near_its_first_point_is_not_closed():
     """Both folds of a resonance 1:4 with |A| = 1.0086 are one curve, from there and back."""
-    box = ((6.2, 6.8), (3.9, 4.2))
+    bounds = ((6.2, 6.8), (3.9, 4.2))
     branch = vs.continue_orbit(vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R"), "b", (3, 6))
     curve = vs.bifurcation_curve(first(branch.special, "neimark_sacker"), MASSES, WIDE)
     special = first(curve.special, "resonance_1_4")
     for start in vs.switch(special):
         if start.type == "fold":
-            for limits in (box, WIDE):
+            for limits in (bounds, WIDE):
                 fold = vs.bifurcation_curve(start, MASSES, limits)
                 assert not fold.closed and fold.begins.type == fold.ends.type == "resonance_1_4"
 
 
 @pytest.mark.slow
 def test_a_curve_that_leaves_the_box_within_a_step_ends_there(symmetric_branch):
-    """b has a maximum on the pitchfork curve; the points of the wide box tell where, by interpolation."""
+    """b has a maximum on the pitchfork curve; the points of the wide bounds tell where, by interpolation."""
     pitchfork = first(symmetric_branch.special, "pitchfork")
     points = vs.bifurcation_curve(pitchfork, NAMES, BOX).points
     k = int(points.b.values.argmax())
@@ -135,14 +135,14 @@ def test_a_curve_that_leaves_the_box_within_a_step_ends_there(symmetric_branch):
     assert top > b.max()
     for below in (1e-3, 0.5 * (top - b.max()), 1e-6, 1e-8):
         curve = vs.bifurcation_curve(pitchfork, NAMES, ((0.3, top - below), BOX[1]))
-        assert curve.ends.type == "limit" and curve.ends.parameters["b"] == top - below
+        assert curve.ends.type == "boundary" and curve.ends.parameters["b"] == top - below
         assert curve.ends.parameters["omega"] < at and curve.points.b.max() == top - below
     curve = vs.bifurcation_curve(pitchfork, NAMES, ((0.3, top + 1e-8), BOX[1]))
     assert curve.points.b.max() < top + 1e-8 and curve.ends.parameters["b"] < 1
 
 
 def test_polynomials_stop_before_a_frequency_of_zero():
-    """There is no forcing period; a curve in a wide box ended with an error where they were fitted anew."""
+    """There is no forcing period; a curve in a wide bounds ended with an error where they were fitted anew."""
     (plane,) = Oscillators(family_of(PAPER), NAMES, 2, Units(1.0, 1.0)).around((3.0, 0.55), (30.0, 1.0))
     assert 0 < BEYOND * plane["reach"][1] < 0.55
 
@@ -155,5 +155,5 @@ def test_an_impact_that_vanishes_on_a_virtual_stretch_is_left_out(monkeypatch):
     monkeypatch.setattr(tracer, "LONGEST_STEP", 2 * tracer.LONGEST_STEP)
     monkeypatch.setattr(tracer, "STRAIGHT", 2 * tracer.STRAIGHT)
     monkeypatch.setattr(curve_way, "FIRST_STEP", 2 * curve_way.FIRST_STEP)
-    curve = vs.bifurcation_curve(special, tuple(record["names"]), record["box"])
-    assert [one.type for one in curve.special] == ["limit", "resonant_graze", "resonance_1_4"]
+    curve = vs.bifurcation_curve(special, tuple(record["names"]), record["bounds"])
+    assert [one.type for one in curve.special] == ["boundary", "resonant_graze", "resonance_1_4"]

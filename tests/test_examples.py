@@ -33,7 +33,7 @@ def test_every_example_is_a_scene_that_finds_its_schema(folder, name):
     text = Path(f"{name}.yaml").read_text()
     assert text.startswith("# yaml-language-server: $schema=./scene.schema.json\n") and "configs/" not in text
     scene = vs.load_scene(f"{name}.yaml")
-    assert scene.along if isinstance(scene, Continuation) else scene.n_points > 0
+    assert scene.parameter if isinstance(scene, Continuation) else scene.n_points > 0
 
 
 def test_an_unchanged_copy_is_no_obstacle(folder, capsys):

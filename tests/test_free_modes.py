@@ -67,7 +67,7 @@ def test_frames_of_random_chains(count):
 def test_exponents_are_those_of_the_jacobians(k, c, stop_at):
     """Of the period map, whose flights know no frame."""
     chain, periods = chain_of(k, c, stop_at), 200
-    exponents = vs.lyapunov(chain, np.zeros(6), transient=20, periods=periods)
+    exponents = vs.lyapunov(chain, np.zeros(6), transient=20, record=periods)
     assert abs(exponents.residual) < 1e-11
     step, state = PeriodMap(chain), vs.simulate(chain, np.zeros(6), 20).section[-1:]
     Q, growth = np.eye(6), np.zeros(6)

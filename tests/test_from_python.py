@@ -49,7 +49,7 @@ def test_yaml_and_back(path):
         "sweep: {b: {values: [6, 7]}, tau: {start: 1, stop: 0, num: 7}}\nsection: {kind: impact, stop: left}",
         "sweep: {b: {values: [6, 7]}}\nstart: {follow: both, x1: 0.5, v2: -1e-7}",
         "sweep: {b: {values: [6]}}\nstart: {random: 7, seed: 3}\nobserve: [attractors, impacts]",
-        "sweep: {b: {values: [6]}}\nmodel: map\norder: 2\nexpand_at: 6.71",
+        "sweep: {b: {values: [6]}}\ndynamics: map\norder: 2\nexpand_at: 6.71",
     ],
 )
 def test_all_kinds_of_scenes_and_back(text):
@@ -93,7 +93,7 @@ def test_file_of_a_changed_scene_says_what_was_computed(tmp_path):
         (dict(section=Section("impact", "left")), "section: {kind: impact, stop: left}"),
         (dict(observe=("impacts",)), "observe: [impacts]"),
         (dict(trajectory=Trajectory(3, 40)), "trajectory: {periods: 3, samples: 40}"),
-        (dict(model="map", order=2), "order: 2"),
+        (dict(dynamics="map", order=2), "order: 2"),
         (dict(transient=7.0), "orbit: {transient: 7, record: 10}"),
     ],
     ids=str,
@@ -105,7 +105,7 @@ def test_replace(changes, expected):
 @pytest.mark.parametrize(
     "changes, message",
     [
-        (dict(rekord=5), "rekord: unknown; allowed here: system, model"),
+        (dict(rekord=5), "rekord: unknown; allowed here: system, dynamics"),
         (dict(record=0), "orbit.record = 0: must be a whole number >= 1"),
         (dict(record="ten"), 'orbit.record = "ten"'),
         (dict(sweep={"beta": [1, 2]}), "sweep.beta"),
@@ -203,11 +203,11 @@ def test_orbit_as_dataset():
 
 
 def test_exponents_with_their_error():
-    found = vs.lyapunov(SYSTEM, (0, 0, 0, 0), transient=200, periods=2000)
+    found = vs.lyapunov(SYSTEM, (0, 0, 0, 0), transient=200, record=2000)
     assert isinstance(found, np.ndarray) and found.shape == (4,) and (np.diff(found) <= 0).all()
     assert found.error.shape == (4,) and (found.error >= 0).all()
     assert abs(found.residual) < 1e-9
-    longer = vs.lyapunov(SYSTEM, (0, 0, 0, 0), transient=200, periods=200_000)
+    longer = vs.lyapunov(SYSTEM, (0, 0, 0, 0), transient=200, record=200_000)
     assert (abs(longer - found) < 6 * found.error + 1e-9).all()
     again = pickle.loads(pickle.dumps(found))
     assert np.array_equal(again, found) and np.array_equal(again.error, found.error)

@@ -153,7 +153,7 @@ def _hold(one, arrays, n):
             missing = np.isnan(arrays[name][ok])
             assert one.section.kind == "impact" or not missing.any(), (n, name)
             assert (np.diff(missing.astype(int), axis=-1) >= 0).all(), (n, name)  # and nothing after the last impact
-        if one.model == "flow":
+        if one.dynamics == "flow":
             inside = _inside(arrays["x1"][ok], b[ok][:, None], one.system.stops)
             assert inside.all(), n
         if one.section.kind == "impact":
@@ -169,7 +169,7 @@ def _hold(one, arrays, n):
     if "impacts_right" in arrays:
         hits = arrays["impacts_right"] + arrays["impacts_left"]
         assert (hits[ok] >= 0).all() and (arrays["sticking_time"][ok] >= 0).all(), n
-        if one.model == "flow":
+        if one.dynamics == "flow":
             assert (arrays["min_impact_speed"][ok & (hits > 0)] > 0).all(), n
     if "lyapunov" in arrays:
         spectrum, residual = arrays["lyapunov"][ok], arrays["lyapunov_residual"][ok]

@@ -52,12 +52,12 @@ def test_without_damping():
     orbit = vs.periodic_orbit(system, itinerary="LR")
     assert np.prod(orbit.multipliers) == pytest.approx(PAPER.R**4, rel=1e-12)
     branch = vs.continue_orbit(orbit, "b", (0.3, 6.5))
-    assert [special.type for special in branch.special] == ["graze", "pitchfork", "limit"]
+    assert [special.type for special in branch.special] == ["graze", "pitchfork", "boundary"]
     with mp.workdps(40):
         for special in branch.special[:2]:
             assert abs(mpf(special.parameters["b"]) - exact(special, "b")) < 1e-13
     into_damping = vs.continue_orbit(orbit, "zeta", (0.0, 0.1))
-    assert into_damping.begins.type == "limit" and into_damping.begins.parameters["zeta"] == 0.0
+    assert into_damping.begins.type == "boundary" and into_damping.begins.parameters["zeta"] == 0.0
 
 
 def test_without_damping_and_without_losses():

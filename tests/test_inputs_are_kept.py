@@ -21,7 +21,7 @@ orbit: {transient: 300, record: 20}
 observe: [section]
 """
 )
-ALONG = "  along: {b: {start: 0.38, stop: 0.415}}\n  depth: 0\n"
+ALONG = "  parameter: {b: [0.38, 0.415]}\n  depth: 0\n"
 FROM_SWEEP = f"{SYSTEM}continue:\n  from: {{sweep: s.h5}}\n{ALONG}"
 FROM_BRANCHES = f"{SYSTEM}continue:\n  from: {{branches: br.h5, special: 0}}\n{ALONG}"
 

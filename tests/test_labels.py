@@ -177,7 +177,7 @@ def circle(kind, radius, period=1, special=()):
 
 
 def test_a_chart_says_what_its_names_mean():
-    special = [("resonant_graze", 5), ("degenerate_flip", 20)], [("flip_neimark_sacker", 9), ("limit", 0)]
+    special = [("resonant_graze", 5), ("degenerate_flip", 20)], [("flip_neimark_sacker", 9), ("boundary", 0)]
     fig = plot_curves([circle("graze", 1, special=special[0]), circle("flip", 2, special=special[1])], ("b", "omega"))
     names = {text.get_text() for text in fig.axes[0].texts}
     assert names == {"RG", "GPD", "PDNS"}

@@ -54,7 +54,7 @@ def test_critical_direction_of_a_pitchfork():
 @pytest.mark.parametrize("count", [1, 40])
 def test_closure_has_the_multipliers(count):
     solution = repeated(vs.periodic_orbit(CHAIN.replace(b=0.2), itinerary="LR"), count)
-    linearised, n = Linearised(solution), 2 * len(solution.family.linear.along)
+    linearised, n = Linearised(solution), 2 * len(solution.family.linear.normal)
     one, other = linearised.closure(1), linearised.closure(-1)
     values = eigvals(one + other, other - one)
     largest = max(solution.multipliers, key=abs)
@@ -69,8 +69,8 @@ def test_multipliers_at_a_small_restitution(R):
     q, v, a = s.family.linear, *s.motion[0, :2]
     inverse, zero = np.linalg.inv(q.M), np.zeros(2)
     A = np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ q.K, -inverse @ q.C]])
-    e_g, e_s = np.append(q.along, zero), np.append(zero, q.along)
-    e_v = np.append(zero, inverse @ q.along / (q.along @ inverse @ q.along))
+    e_g, e_s = np.append(q.normal, zero), np.append(zero, q.normal)
+    e_v = np.append(zero, inverse @ q.normal / (q.normal @ inverse @ q.normal))
     S = np.eye(4) - (1 + R) * (np.outer(e_v, e_s) + np.outer(A @ e_v, e_g) - a / v * np.outer(e_v, e_g))
     expected = np.linalg.eigvals(s.sigma * expm(A * s.P) @ S)
     expected = expected[np.lexsort((-expected.imag, -np.abs(expected)))]

@@ -84,7 +84,7 @@ def test_newton_finds_a_long_orbit(system):
         q, states = far.family.linear, far.states
         assert np.abs(states[:, 0] - q.stop(far.sides)).max() < 1e-9
         gains = 1 + q.restitution(far.sides)
-        assert np.abs(far.jumps + gains * states[:, len(q.along)]).max() < 1e-9
+        assert np.abs(far.jumps + gains * states[:, len(q.normal)]).max() < 1e-9
 
 
 # from random sweeps of chains of three: system, its swept number, period, bounds, a state of the recorded orbit
@@ -129,7 +129,7 @@ def test_windows_of_long_orbits(case):
         if TYPES[int(kind)].name == "graze":
             slowest = solution.pushes.min() / np.abs(solution.jumps).max()
             assert min(abs(orbit.margin) / solution.size_of_gap, abs(slowest)) < 1e-8
-        elif TYPES[int(kind)].name != "limit":
+        elif TYPES[int(kind)].name != "boundary":
             assert np.abs(np.abs(orbit.multipliers) - 1).min() < 1e-4
 
 

@@ -13,8 +13,8 @@ from vibro_sweep.engine.period_map import PeriodMap
 NAMES, BOX = ("b", "omega"), ((0.3, 9), (0.5, 0.8))
 
 
-def points(special, kind, names=NAMES, box=BOX):
-    curve = vs.bifurcation_curve(special, names, box)
+def points(special, kind, names=NAMES, bounds=BOX):
+    curve = vs.bifurcation_curve(special, names, bounds)
     return [one for one in curve.special if one.type == kind]
 
 
@@ -35,9 +35,9 @@ def pair_of(system, state, period):
     return mu[np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf))]
 
 
-def check(special, start, names=NAMES, box=BOX):
+def check(special, start, names=NAMES, bounds=BOX):
     """The curve ends at the point, and a pair passes the unit circle where simulated orbits cross it."""
-    curve = vs.bifurcation_curve(start, names, box, virtual=False)
+    curve = vs.bifurcation_curve(start, names, bounds, virtual=False)
     (end,) = (one for one in (curve.begins, curve.ends) if one.type == special.type)
     assert end.parameters == pytest.approx(special.parameters, abs=1e-11)
     theta = curve._rows.p[:, 2]
@@ -83,10 +83,10 @@ def test_no_curve_begins_at_a_resonance_1_2_of_the_other_case(symmetric_branch):
 @pytest.mark.slow
 def test_orbits_of_four_times_the_period():
     """Where |A| > 1 and the determinant of the normal form is positive: both folds and one Neimark-Sacker curve."""
-    names, box = ("mu_m", "mu_k"), ((5.5, 10.5), (3.5, 5.2))
+    names, bounds = ("mu_m", "mu_k"), ((5.5, 10.5), (3.5, 5.2))
     orbit = vs.periodic_orbit(PAPER.replace(b=4.0, R=0.6), itinerary="R")
     branch = vs.continue_orbit(orbit, "b", (3, 6))
-    (special,) = points(first(branch.special, "neimark_sacker"), "resonance_1_4", names, box)
+    (special,) = points(first(branch.special, "neimark_sacker"), "resonance_1_4", names, bounds)
     assert len(longer(special, "fold")) == 2
     (start,) = longer(special)
     check(special, start, names, ((5.9715, 5.98), (3.754, 3.77)))
@@ -94,7 +94,7 @@ def test_orbits_of_four_times_the_period():
 
 @pytest.fixture(scope="module")
 def asymmetric_graze():
-    """The branch of the symmetric orbit of a system whose pitchfork curve meets its graze curve, and a box."""
+    """The branch of the symmetric orbit of a system whose pitchfork curve meets its graze curve, and a bounds."""
     system = vs.System(mu_m=1.5, mu_k=2.65, zeta=0.08, f2=0, omega=1.58, R=0.45, b=1.0)
     star = vs.grazing(system).b
     orbit = vs.periodic_orbit(system.replace(b=0.5 * star), itinerary="LR")
@@ -106,14 +106,16 @@ def asymmetric_graze():
 @pytest.mark.parametrize("kind", ["flip_graze", "pitchfork_graze"])
 def test_grazes_of_the_orbits_that_are_born(kind, one_sided_branch, asymmetric_graze):
     """Of one half of them: they begin where the flip (pitchfork) meets the graze, and simulated orbits are there."""
-    branch, box = (one_sided_branch, BOX) if kind == "flip_graze" else asymmetric_graze
-    special = first(vs.bifurcation_curve(first(branch.special, "graze"), NAMES, box).special, kind)
+    branch, bounds = (one_sided_branch, BOX) if kind == "flip_graze" else asymmetric_graze
+    special = first(vs.bifurcation_curve(first(branch.special, "graze"), NAMES, bounds).special, kind)
     smooth = next(start for start in vs.switch(special) if start.type == kind.removesuffix("_graze"))
-    (again,) = points(smooth, kind, box=box)  # from the other curve the motion has no impact there, it touches the stop
+    (again,) = points(
+        smooth, kind, bounds=bounds
+    )  # from the other curve the motion has no impact there, it touches the stop
     assert again.touches and not special.touches
     for one in (special, again):
         (start,) = (start for start in vs.switch(one) if start.type == "graze" and start.orbit._solution.K == 3)
-        curve = vs.bifurcation_curve(start, NAMES, box, virtual=False)
+        curve = vs.bifurcation_curve(start, NAMES, bounds, virtual=False)
         (end,) = (end for end in (curve.begins, curve.ends) if end.type == kind)
         assert end.parameters == pytest.approx(special.parameters, abs=1e-11)
         report = Report(0)

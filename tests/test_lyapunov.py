@@ -70,7 +70,7 @@ def test_overdamped_without_impacts(changes):
     """-eta +- sqrt(eta^2 - omega_j^2): one mode overdamped, or both."""
     system = PAPER.replace(b=100, **changes)
     assert np.any(system.eta**2 > system.modes.omega_squared)
-    np.testing.assert_allclose(vs.lyapunov(system, REST, periods=100), free_exponents(system), rtol=1e-9)
+    np.testing.assert_allclose(vs.lyapunov(system, REST, record=100), free_exponents(system), rtol=1e-9)
 
 
 FAR_APART = {
@@ -98,11 +98,11 @@ def test_a_mode_that_no_impact_reaches(b, omega):
     """With impacts and without: the exponents of the two masses, each alone. The unseen one, whose exponents lie e^1000
     apart in a period, is the first mode."""
     told = dict(omega=omega, b=b, R=0.5, tau=0.0)
-    both = vs.Oscillator(np.eye(2), np.diag([1, 3]), np.diag([200, 0.2]), force=[2, 2], along=[0, 1], **told)
-    seen = vs.Oscillator([[1]], [[3]], [[0.2]], force=[2], along=[1], **told)
+    both = vs.Oscillator(np.eye(2), np.diag([1, 3]), np.diag([200, 0.2]), force=[2, 2], contact_normal=[0, 1], **told)
+    seen = vs.Oscillator([[1]], [[3]], [[0.2]], force=[2], contact_normal=[1], **told)
     assert (len(vs.simulate(seen, (0, 0), 100).impacts) > 0) == (b < 1)
-    exponents = vs.lyapunov(both, REST, transient=2000, periods=200)
-    alone = np.concatenate([vs.lyapunov(seen, (0, 0), transient=2000, periods=200), np.roots([1, 200, 1])])
+    exponents = vs.lyapunov(both, REST, transient=2000, record=200)
+    alone = np.concatenate([vs.lyapunov(seen, (0, 0), transient=2000, record=200), np.roots([1, 200, 1])])
     np.testing.assert_allclose(exponents, np.sort(alone)[::-1], rtol=1e-11)
     assert abs(exponents.residual) < 1e-12
 
@@ -231,7 +231,7 @@ def test_tangent_vectors_across_one_impact(changes, X):
 
     W = metric(system)
     growth = np.log(abs(np.diag(np.linalg.qr(W @ exact @ np.linalg.inv(W)).R)))
-    exponents = vs.lyapunov(system, X, transient=0, periods=1)
+    exponents = vs.lyapunov(system, X, transient=0, record=1)
     np.testing.assert_allclose(exponents * system.period, np.sort(growth)[::-1], rtol=0, atol=1e-9)
 
 
@@ -241,7 +241,7 @@ def test_failure_has_no_exponents():
         vs.lyapunov(system, REST)
 
 
-@pytest.mark.parametrize("arguments", [dict(transient=-1), dict(periods=0), dict(periods=1.5)])
+@pytest.mark.parametrize("arguments", [dict(transient=-1), dict(record=0), dict(record=1.5)])
 def test_bad_lengths(arguments):
     ((name, value),) = arguments.items()
     with pytest.raises(ValueError, match=f"{name}: {value}"):

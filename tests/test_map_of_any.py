@@ -1,4 +1,4 @@
-"""`model: map` for any symmetric oscillator, against PeriodMap, which has the same map in other formulas."""
+"""`dynamics: map` for any symmetric oscillator, against PeriodMap, which has the same map in other formulas."""
 
 import numpy as np
 import pytest
@@ -11,14 +11,14 @@ SYSTEMS = {
     "one mass": "{type: one_mass, k: 1, zeta: 0.05, F: 1, omega: 0.8, R: 0.7, b: %s}",
     "two masses by matrices": (
         "{type: linear, M: [[1, 0], [0, 2]], K: [[2, -1], [-1, 3]], C: [[0.3, -0.1], [-0.1, 0.05]], force: [1, 0.2], "
-        "along: [1, -1], omega: 0.7, R: 0.6, b: %s}"
+        "contact_normal: [1, -1], omega: 0.7, R: 0.6, b: %s}"
     ),
     "a chain of three": (
         "{type: chain, m: [1, 2, 1], k: [1, 1, 1, 1], c: [0.3, 0.05, 0.1, 0.3], force: [1, 0, 0], stop_at: 1, "
         "omega: 0.6, R: 0.6, b: %s}"
     ),
 }
-REST = "model: map\norder: %d\norbit: {transient: %d, record: %d}\nobserve: [section, lyapunov]\n"
+REST = "dynamics: map\norder: %d\norbit: {transient: %d, record: %d}\nobserve: [section, lyapunov]\n"
 
 
 def dataset(system, order, transient, record, tmp_path):

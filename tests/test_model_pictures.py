@@ -45,7 +45,7 @@ def cavity(tmp_path_factory):
 def test_the_file_has_the_gap(cavity):
     with vs.open(cavity) as data:
         np.testing.assert_array_equal(data.gap, data.x2 - data.x1)
-        assert data.attrs["along"].tolist() == [-1, 1] and data.attrs["type"] == "ball_in_cavity"
+        assert data.attrs["contact_normal"].tolist() == [-1, 1] and data.attrs["type"] == "ball_in_cavity"
         assert np.abs(data.gap).max() <= 1.8
         at_impact = data.trajectory_impact_x2 - data.trajectory_impact_x1
         wanted = data.trajectory_impact_side * data.b

@@ -52,11 +52,11 @@ class TestEveryModel:
         q, touch = one.linear, vs.grazing(one)
         with mp.workdps(40):
             X = response(q)
-            gain = sum(mpf(n) * x for n, x in zip(q.along, X, strict=True))
+            gain = sum(mpf(n) * x for n, x in zip(q.normal, X, strict=True))
             middle = mpf(0)
             if np.any(q.constant):
                 rest = mp.lu_solve(mp.matrix(q.K), mp.matrix(q.constant))
-                middle = sum(mpf(n) * x for n, x in zip(q.along, rest, strict=True))
+                middle = sum(mpf(n) * x for n, x in zip(q.normal, rest, strict=True))
             offset = mpf(getattr(one, "offset", 0.0))
             expected = abs(gain) + middle - offset, abs(gain) - middle + offset
         assert touch.b_right == pytest.approx(float(expected[0]), rel=1e-13)
@@ -64,8 +64,8 @@ class TestEveryModel:
         assert (touch.b == touch.b_right) if expected[0] == expected[1] else math.isnan(touch.b)
         assert abs(math.remainder(touch.tau + float(mp.arg(gain)), 2 * math.pi)) < 1e-13
         state = np.array(touch.state)
-        assert q.along @ state[0::2] == pytest.approx(float(abs(gain) + middle), rel=1e-13)
-        assert abs(q.along @ state[1::2]) < 1e-13 * np.abs(state).max()
+        assert q.normal @ state[0::2] == pytest.approx(float(abs(gain) + middle), rel=1e-13)
+        assert abs(q.normal @ state[1::2]) < 1e-13 * np.abs(state).max()
         assert one.phase == pytest.approx(touch.tau, abs=1e-14)
 
     def test_copies_are_equal(self, name):
@@ -124,7 +124,7 @@ def test_the_paper_as_a_chain_and_by_its_matrices():
         "chain", m=[1, 10], k=[0, 1, 5], c=[0, 0.1, 0.5], force=[0.75, 0.25], omega=0.63, R=0.8, b=6.6
     ).linear
     plain = vs.Oscillator(
-        paper.M, paper.K, rayleigh=[0, 0.1], force=[0.75, 0.25], along=[1, 0], omega=0.63, R=0.8, b=6.6
+        paper.M, paper.K, rayleigh=[0, 0.1], force=[0.75, 0.25], contact_normal=[1, 0], omega=0.63, R=0.8, b=6.6
     ).linear
     for field in paper._fields:
         for other in (chain, plain):
@@ -144,7 +144,7 @@ def test_damping_that_is_not_proportional():
 def test_ratios_of_the_modes():
     """Each mode decays with its own: x = psi_j e^(lambda t), lambda^2 + 2 zeta_j omega_j lambda + omega_j^2 = 0."""
     M, K = np.array([[2, 0.3], [0.3, 1]]), np.array([[3, -1], [-1, 2.0]])
-    q = vs.Oscillator(M, K, modal_damping=[0.1, 0.3], along=[1, 0], omega=1, R=1, b=1).linear
+    q = vs.Oscillator(M, K, modal_damping=[0.1, 0.3], contact_normal=[1, 0], omega=1, R=1, b=1).linear
     squares, psi = np.linalg.eig(np.linalg.solve(M, K))
     for j, ratio in zip(np.argsort(squares), (0.1, 0.3), strict=True):
         root = np.sqrt(squares[j])
@@ -179,7 +179,7 @@ def test_stops_about_the_static_equilibrium():
     """Both stops are grazed at the same clearance, whatever the rounding of the static state."""
     K = np.array([[3, -1.1, 0.3], [-1.1, 2.3, -0.7], [0.3, -0.7, 1.9]])
     rest, along = np.array([0.3, 0.1, -0.2]), np.array([1.0, 0, 0])
-    given = dict(M=np.eye(3), K=K, C=K / 30, force=[1, 0, 0.2], along=along, omega=1.1, b=1, R=0.8)
+    given = dict(M=np.eye(3), K=K, C=K / 30, force=[1, 0, 0.2], contact_normal=along, omega=1.1, b=1, R=0.8)
     touch = vs.grazing(vs.Oscillator(**given, constant=K @ rest, offset=along @ rest))
     amplitude = abs(np.linalg.solve(K - 1.1**2 * np.eye(3) + 1.1j * K / 30, [1, 0, 0.2])[0])
     assert touch.satisfied and touch.b == touch.b_right == touch.b_left
@@ -193,7 +193,7 @@ def test_condition_of_motions_that_are_not_the_only_ones():
     free = vs.System(**(PAPER | dict(mu_k=0)))
     chain = oscillator("chain", k=[0, 1, 1, 0], c=[0, 0.1, 0.1, 0])
     resonant = vs.Oscillator(
-        np.eye(2), [[2, -1], [-1, 2]], 0, force=[1, 1], along=[1, 0], omega=math.sqrt(3), b=1, R=0.8
+        np.eye(2), [[2, -1], [-1, 2]], 0, force=[1, 1], contact_normal=[1, 0], omega=math.sqrt(3), b=1, R=0.8
     )
     for system in (free, chain, resonant):
         touch = vs.grazing(system)
@@ -203,7 +203,7 @@ def test_condition_of_motions_that_are_not_the_only_ones():
 
 def test_numbers_of_a_list_that_is_not_given():
     """They are none of the oscillator's; a damping matrix of 0 is none."""
-    given = dict(M=np.eye(2), K=np.eye(2), along=[1, 0], omega=0.7, b=1, R=0.8)
+    given = dict(M=np.eye(2), K=np.eye(2), contact_normal=[1, 0], omega=0.7, b=1, R=0.8)
     plain, damped = vs.Oscillator(**given, C=0), vs.Oscillator(**given, C=0, rayleigh=[0.1, 0])
     assert not plain.linear.C.any() and not hasattr(plain, "rayleigh1")
     assert damped.rayleigh1 == 0.1 and np.array_equal(damped.linear.C, 0.1 * np.eye(2))
@@ -215,10 +215,10 @@ def test_rest_held_by_a_stop():
     preloaded = oscillator("chain", offset=5.0, constant=[0.3, 0, -0.2])
     q = preloaded.linear
     x = held_state(q)
-    assert q.along @ x == pytest.approx(q.low, rel=1e-14)
+    assert q.normal @ x == pytest.approx(q.low, rel=1e-14)
     left_over = q.K @ x - q.constant
-    assert np.abs(left_over - q.along * (left_over @ q.along)).max() < 1e-13
-    assert left_over @ q.along > 0  # the left stop pushes to the right
+    assert np.abs(left_over - q.normal * (left_over @ q.normal)).max() < 1e-13
+    assert left_over @ q.normal > 0  # the left stop pushes to the right
     ball = oscillator("one_mass", k=0.0, offset=2.0, stops="left", b=-1)
     assert held_state(ball.linear).tolist() == [3.0]
 

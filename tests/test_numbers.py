@@ -71,15 +71,15 @@ def test_every_number_of_every_point_is_in_the_file(tmp_path, kind, tau):
 
 
 def test_words_of_maps_and_impact_sections(tmp_path):
-    text = "model: map\norder: 2\nexpand_at: 6.7107356\norbit: {transient: 3, record: 4}"
+    text = "dynamics: map\norder: 2\nexpand_at: 6.7107356\norbit: {transient: 3, record: 4}"
     _, path = run(tmp_path, text, orbit="")
     with h5py.File(path) as file:
-        assert (file.attrs["model"], file.attrs["order"], file.attrs["expand_at"]) == ("map", 2, 6.7107356)
+        assert (file.attrs["dynamics"], file.attrs["order"], file.attrs["expand_at"]) == ("map", 2, 6.7107356)
         assert file.attrs["section"] == "phase" and "section_stop" not in file.attrs
     path.unlink()
     _, path = run(tmp_path, "section: {kind: impact, stop: left}\norbit: {transient: 3, record: 4}", orbit="")
     with h5py.File(path) as file:
-        assert (file.attrs["section"], file.attrs["section_stop"], file.attrs["model"]) == ("impact", "left", "flow")
+        assert (file.attrs["section"], file.attrs["section_stop"], file.attrs["dynamics"]) == ("impact", "left", "flow")
         assert "order" not in file.attrs
 
 

@@ -38,7 +38,7 @@ section: np.ndarray = orbit.section
 times = orbit.impacts["t"]
 orbit.plot(periods=2).savefig("orbit.png")
 print(orbit.to_xarray().attrs, orbit.sample([1.0]), orbit.status.note, orbit.sticking)
-spectrum = vs.lyapunov(system, (0, 0, 0, 0), transient=10, periods=100)
+spectrum = vs.lyapunov(system, (0, 0, 0, 0), transient=10, record=100)
 residual: float = spectrum.residual
 print(spectrum.error.max(), spectrum[0])
 mapping = vs.discontinuity_map(system, order=2)
@@ -68,7 +68,8 @@ for special in branch.special:
         print(curve.points.b, curve.closed, curve.begins.type, [one.parameters["omega"] for one in curve.special])
 print([one.itinerary for one in vs.born_at_grazing(system, periods=1)])
 print(len(vs.follow_branches(again, "b", (6.6, 7.0), depth=1)))
-pair = vs.Oscillator([[1, 0], [0, 2]], np.eye(2), rayleigh=(0.1, 0), force=[1, 0], along=[1, -1], omega=0.8, b=1, R=0.7)
+given = dict(rayleigh=(0.1, 0), force=[1, 0], contact_normal=[1, -1], omega=0.8, b=1, R=0.7)
+pair = vs.Oscillator([[1, 0], [0, 2]], np.eye(2), **given)
 print(vs.grazing(pair).b_right, vs.simulate(pair.replace(b=0.5), (0, 0, 0, 0), periods=2).impacts["xdot"])
 try:
     vs.System(mu_m=-1, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)

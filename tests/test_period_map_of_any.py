@@ -137,7 +137,7 @@ def test_flights_without_stops():
     X = state + 4 * np.random.default_rng(1).normal(size=(40, 6))
     contacts = flights.first_contact(X, 0.7, 2 * system.period)
     assert (contacts.status == status.OK).all() and np.isfinite(contacts.elapsed).sum() > 20
-    inside = (X[:, 0::2] @ q.along > q.low) & (X[:, 0::2] @ q.along < q.high)
+    inside = (X[:, 0::2] @ q.normal > q.low) & (X[:, 0::2] @ q.normal < q.high)
     assert 5 < inside.sum() < 40
     for i in np.flatnonzero(inside & np.isfinite(contacts.elapsed))[:5]:
         first = vs.simulate(system, X[i], 3, start_time=0.7).impacts[0]
@@ -145,7 +145,7 @@ def test_flights_without_stops():
         there = flights.sample(X[i : i + 1], 0.7, [contacts.elapsed[i]])[0, 0]
         np.testing.assert_allclose(there[0::2], first["x"], rtol=0, atol=1e-12)
     found = flights.extremes(X, 0.7, 2 * system.period)
-    gap = flights.sample(X, 0.7, np.linspace(0, 2 * system.period, 2001))[..., 0::2] @ q.along
+    gap = flights.sample(X, 0.7, np.linspace(0, 2 * system.period, 2001))[..., 0::2] @ q.normal
     peaks = (gap[:, 1:-1] > gap[:, :-2]) & (gap[:, 1:-1] > gap[:, 2:])
     seen = np.where(peaks, gap[:, 1:-1], -np.inf).max(1)
     assert (seen <= found.highest[:, 1] + 1e-12).all() and (found.highest[:, 1] - seen < 1e-3)[seen > -np.inf].all()
@@ -190,7 +190,9 @@ def test_discontinuity_mapping_of_the_paper_by_its_matrices():
     numbers = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.1, omega=0.63, R=0.8, b=6.25)
     system = vs.System(**numbers)
     q = system.linear
-    same = vs.Oscillator(q.M, q.K, q.C, along=q.along, force=q.sine, force_cos=q.cosine, omega=0.63, R=0.8, b=6.25)
+    same = vs.Oscillator(
+        q.M, q.K, q.C, contact_normal=q.normal, force=q.sine, force_cos=q.cosine, omega=0.63, R=0.8, b=6.25
+    )
     one, other = vs.discontinuity_map(system, 2), vs.discontinuity_map(same, 2)
     X = one.graze + np.array([0.2, 0.3, -0.1, 0.1])
     np.testing.assert_allclose(other.graze, one.graze, rtol=0, atol=1e-13)
@@ -218,7 +220,9 @@ def test_discontinuity_mapping_of_a_ball_in_a_cavity():
 
 @pytest.mark.parametrize("changes", [dict(offset=0.1), dict(R_left=0.5), dict(constant=[0.1, 0, 0])])
 def test_no_discontinuity_mapping_without_symmetry(changes):
-    given = dict(M=np.eye(3), K=np.eye(3), C=0.1 * np.eye(3), along=[1, 0, 0], force=1.0, omega=0.7, R=0.8, b=1.0)
+    given = dict(
+        M=np.eye(3), K=np.eye(3), C=0.1 * np.eye(3), contact_normal=[1, 0, 0], force=1.0, omega=0.7, R=0.8, b=1.0
+    )
     given["force"] = [1, 0, 0]
     with pytest.raises(ValueError, match="must be one with equal stops about 0"):
         vs.discontinuity_map(vs.Oscillator(**given | changes))

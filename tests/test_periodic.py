@@ -168,8 +168,8 @@ def test_motion_obeys_the_equation_of_motion(family):
     for impact in orbit.impacts:
         t = impact["t"]
         jump = orbit.sample([t + 1e-9])[0, 1::2] - orbit.sample([t])[0, 1::2]
-        assert q.along @ jump == pytest.approx(-(1 + q.restitution(impact["side"])) * impact["v1"], abs=1e-7)
-        assert np.linalg.matrix_rank(np.array([q.M @ jump, q.along]), tol=1e-6) == 1
+        assert q.normal @ jump == pytest.approx(-(1 + q.restitution(impact["side"])) * impact["v1"], abs=1e-7)
+        assert np.linalg.matrix_rank(np.array([q.M @ jump, q.normal]), tol=1e-6) == 1
     length = orbit.period * 2 * math.pi / q.omega
     assert orbit.sample(times + length) == pytest.approx(orbit.sample(times), abs=1e-12)
 
@@ -217,7 +217,7 @@ def test_thousand_guesses_give_the_orbit_or_an_honest_failure():
     for end in ends[found]:
         one = replace(solution, u=end)
         assert np.abs(one.states[:, 0] - q.stop(one.sides)).max() < 1e-12
-        assert np.abs(one.jumps + 1.8 * one.states[:, len(q.along)]).max() < 1e-12
+        assert np.abs(one.jumps + 1.8 * one.states[:, len(q.normal)]).max() < 1e-12
 
 
 def test_shooting_of_the_reference_finds_the_same_orbit():
@@ -235,10 +235,10 @@ def test_shooting_of_the_reference_finds_the_same_orbit():
 @pytest.mark.parametrize("itinerary", ["LR", "LRR"])
 def test_a_free_mass_that_the_contact_does_not_see(itinerary):
     """It may be anywhere: Newton's method leaves its place alone, and finds the impacts of the other mass."""
-    numbers = dict(force=[0.5, 0.2], along=[1.0, 0.0], omega=0.7, R=0.8, b=0.3)
+    numbers = dict(force=[0.5, 0.2], contact_normal=[1.0, 0.0], omega=0.7, R=0.8, b=0.3)
     both = vs.periodic_orbit(vs.Oscillator(np.eye(2), np.zeros((2, 2)), **numbers), itinerary=itinerary)
     one = vs.periodic_orbit(
-        vs.Oscillator([[1.0]], [[0.0]], **numbers | dict(force=[0.5], along=[1.0])), itinerary=itinerary
+        vs.Oscillator([[1.0]], [[0.0]], **numbers | dict(force=[0.5], contact_normal=[1.0])), itinerary=itinerary
     )
     s = both._solution.whole()
     beside = replace(s, u=s.u * (1 + 1e-6 * np.random.default_rng(0).normal(size=len(s.u)))).corrected()

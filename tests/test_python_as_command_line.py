@@ -24,7 +24,7 @@ BRANCHES = f"""
 system: {NUMBERS.replace("6.6", "2")}
 continue:
   from: {{itinerary: LR}}
-  along: {{b: {{start: 0.3, stop: 6.8}}}}
+  parameter: {{b: [0.3, 6.8]}}
   depth: 1
 """
 
@@ -77,8 +77,8 @@ def test_a_report_says_what_became_of_branches(folder):
 
 def test_a_scene_of_branches_is_changed_as_one_of_a_sweep_is(folder):
     scene = vs.load_scene(folder / "lr.yaml")
-    changed = scene.replace(depth=0, along={"omega": (0.6, 0.7)}, system=scene.system.replace(R=0.7))
-    assert changed.depth == 0 and changed.along == {"omega": (0.6, 0.7)} and changed.system.R == 0.7
+    changed = scene.replace(depth=0, parameter={"omega": (0.6, 0.7)}, system=scene.system.replace(R=0.7))
+    assert changed.depth == 0 and changed.parameter == {"omega": (0.6, 0.7)} and changed.system.R == 0.7
     assert changed.source == scene.source and scene.depth == 1
     begins = scene.replace(origin="branches", begin="a: file, #1.h5", special=3)
     assert (begins.origin, begins.begin, begins.special) == ("branches", "a: file, #1.h5", 3)

@@ -31,13 +31,13 @@ def test_a_closed_curve():
     branch = vs.continue_orbit(orbit, "b", (0.3 * system.b, 2 * system.b))
     fold = next(special for special in branch.special if special.type == "fold")
     b = fold.parameters["b"]
-    box = ((0.1 * b, 10 * b), (0.05, 1.0))
-    curve = vs.bifurcation_curve(fold, ("b", "R"), box)
+    bounds = ((0.1 * b, 10 * b), (0.05, 1.0))
+    curve = vs.bifurcation_curve(fold, ("b", "R"), bounds)
     assert curve.closed and curve.begins is curve.ends and curve.ends.type == "closed"
     points = np.column_stack([curve.points.b, curve.points.R])
     steps = np.linalg.norm(np.diff(points / np.ptp(points, axis=0), axis=0), axis=1)
     assert np.linalg.norm((points[-1] - points[0]) / np.ptp(points, axis=0)) < 2 * steps.max()
-    other = vs.bifurcation_curve(special_at(curve, 40, fold), ("b", "R"), box)
+    other = vs.bifurcation_curve(special_at(curve, 40, fold), ("b", "R"), bounds)
     assert other.closed
     keys = [sorted(key(one) for one in found.special if one.type != "closed") for found in (curve, other)]
     assert [kind for kind, *_ in keys[0]] == [kind for kind, *_ in keys[1]]

@@ -102,7 +102,7 @@ BAD_SCENES = {
     "one sample": (scene("trajectory: {periods: 1, samples: 1}"), ["trajectory.samples", "1", ">= 2"]),
     "empty file": ("", ["null", "must be a mapping"]),
     "not YAML": ("system: {mu_m: 10", ["line 1"]),
-    "key twice": (scene("model: flow\nmodel: map"), ["'model'", "twice"]),
+    "key twice": (scene("dynamics: flow\ndynamics: map"), ["'dynamics'", "twice"]),
     "alias bomb": ("a: &a [x]\nb: &b [*a, *a]\nc: [*b, *b]", ["anchors are not allowed", "&a"]),
     "deep nesting": ("[" * 10_000, ["nested"]),
     "escape of no character": (scene('model: "\\UFFFFFFFF"'), ["line 3", "an escape of no character"]),

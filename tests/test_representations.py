@@ -13,7 +13,7 @@ CHAIN = vs.Oscillator.named("chain", m=[1] * 6, k=[1] * 7, c=[0.1] * 7, force=[1
 SIXTEEN = np.random.default_rng(16).normal(size=(16, 16))
 LARGE = vs.Oscillator(
     np.eye(16) + SIXTEEN @ SIXTEEN.T, SIXTEEN.T @ SIXTEEN, modal_damping=[0.01] * 16, force=SIXTEEN[0],
-    along=SIXTEEN[1], omega=1, R=0.5, b=0.3, units="SI",
+    contact_normal=SIXTEEN[1], omega=1, R=0.5, b=0.3, units="SI",
 )  # fmt: skip
 LINES, LETTERS = 10, 900
 
@@ -71,8 +71,8 @@ TOLD = {
         "multipliers -1",
         "LLLRRR, period 1, symmetric",
     ],
-    "curve": ["pitchfork", "omega 0.629 .. 0.631", "points", "begins with limit", "ends with limit"],
-    "curve point": ["CurvePoint limit at b = ", "omega = "],
+    "curve": ["pitchfork", "omega 0.629 .. 0.631", "points", "begins with boundary", "ends with boundary"],
+    "curve point": ["CurvePoint boundary at b = ", "omega = "],
     "windows": ["Windows in b: 3", "RRRR, period 8", "5.454438024 .. 5.809346285"],
     "window": ["RRRR, period 8", "2 orbits of the sweep", "begins with graze (nonsmooth fold, right)", "+-"],
 }
@@ -94,9 +94,9 @@ def test_a_long_list_of_windows(objects):
 
 def test_of_many_masses_the_sizes():
     text = repr(LARGE)
-    assert text.startswith("<linear: M=(16 x 16), K=(16 x 16), along=[") and "units='SI'" in text
+    assert text.startswith("<linear: M=(16 x 16), K=(16 x 16), contact_normal=[") and "units='SI'" in text
     assert "modal_damping=[0.01] * 16, " in text and ", ... of 16], force_cos=[0.0] * 16, " in text
-    few = vs.Oscillator(M=np.eye(2), K=np.eye(2), force=[1, 0], along=[1, 0], omega=1, R=0.5, b=0.3)
+    few = vs.Oscillator(M=np.eye(2), K=np.eye(2), force=[1, 0], contact_normal=[1, 0], omega=1, R=0.5, b=0.3)
     assert eval(repr(few), {"Oscillator": vs.Oscillator}) == few
 
 

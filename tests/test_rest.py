@@ -216,7 +216,7 @@ def test_sticking_time_and_exponents_in_a_file(tmp_path):
 
 @pytest.mark.parametrize("R", [0.0, 0.3])
 def test_exponents_lost_by_resting(R):
-    exponents = vs.lyapunov(vs.System(**PAPER, R=R, b=0.5), ORIGIN, transient=200, periods=400)
+    exponents = vs.lyapunov(vs.System(**PAPER, R=R, b=0.5), ORIGIN, transient=200, record=400)
     assert np.isfinite(exponents[:2]).all()
     assert np.isneginf(exponents[2:]).all()
     assert exponents[0] >= exponents[1]
@@ -259,7 +259,7 @@ def test_a_restitution_next_to_none(R):
 def test_exponents_of_a_rest_that_outlasts_the_record():
     """Resting from before the record on, M2 is a damped oscillator alone: eta = zeta (1 + mu_k)/mu_m, twice."""
     system = vs.System(mu_m=1000, mu_k=0.01, zeta=0.05, f2=0, omega=1, R=0.8, b=1)
-    exponents = vs.lyapunov(system, (0.0, 0.0, 5.0, 0.0), transient=3, periods=3)
+    exponents = vs.lyapunov(system, (0.0, 0.0, 5.0, 0.0), transient=3, record=3)
     np.testing.assert_allclose(exponents[:2], -0.05 * 1.01 / 1000, rtol=1e-9)
     assert np.isneginf(exponents[2:]).all()
 

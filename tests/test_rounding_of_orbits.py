@@ -16,7 +16,9 @@ def test_an_orbit_of_period_eleven():
     """Rounding of its state by 1e-16 moves the logarithm of its largest multiplier by 1e-10."""
     g = 2.4260713206414097e-09
     numbers = dict(omega=1.6577062622064886, R=0.6939439053540507, b=0.10154257757748547, tau=0.3)
-    system = vs.Oscillator(M=np.eye(2), K=np.eye(2), C=[[0.3, -g], [-g, 0.3]], along=[1, -1], force=[1, 0.5], **numbers)
+    system = vs.Oscillator(
+        M=np.eye(2), K=np.eye(2), C=[[0.3, -g], [-g, 0.3]], contact_normal=[1, -1], force=[1, 0.5], **numbers
+    )
     data = vs.sweep(system, {"b": [system.b]}, observe=WANTED, transient=1300, record=200).isel(b=0)
     assert data.period == 11
     far = abs(float(data.lyapunov[0]) + 0.03375634201447768)
@@ -33,7 +35,7 @@ def drawn(rng):
         K, C = K + rng.choice([0, 1]) * between, C + 10 ** rng.uniform(-2, 0) * between
         along = [[1.0, 0.0], [1.0, -1.0]][rng.integers(2)]
     numbers = dict(omega=10 ** rng.uniform(-0.3, 0.5), R=rng.uniform(0.3, 0.95), b=10 ** rng.uniform(-2, 0), tau=0.3)
-    return vs.Oscillator(M=M, K=K, C=C, along=along, force=rng.uniform(0.3, 1, len(M)), **numbers)
+    return vs.Oscillator(M=M, K=K, C=C, contact_normal=along, force=rng.uniform(0.3, 1, len(M)), **numbers)
 
 
 def exact(system, data):

@@ -20,7 +20,7 @@ def test_other_coordinates(masses):
     q = system.linear
     S = np.linalg.inv(np.random.default_rng(5).normal(size=(masses, masses)) + 2 * np.eye(masses))  # x = S y
     same = vs.Oscillator(
-        *(S.T @ matrix @ S for matrix in (q.M, q.K, q.C)), along=S.T @ q.along,
+        *(S.T @ matrix @ S for matrix in (q.M, q.K, q.C)), contact_normal=S.T @ q.normal,
         force=S.T @ q.sine, force_cos=S.T @ q.cosine, constant=S.T @ q.constant,
         omega=system.omega, tau=system.tau, b=system.b, offset=system.offset, R=system.R, R_left=system.R_left,
     )  # fmt: skip
@@ -67,14 +67,14 @@ def test_stiffly_joined_masses():
     """
     two = vs.Oscillator(
         [[1, 0], [0, 3]], [[1, -1], [-1, 3]], 0.1 * np.array([[1, -1], [-1, 3]]),
-        along=[1, 0], force=[1, 0], omega=0.7, tau=0.2, b=0.3, offset=-0.15, R=0.8,
+        contact_normal=[1, 0], force=[1, 0], omega=0.7, tau=0.2, b=0.3, offset=-0.15, R=0.8,
     )  # fmt: skip
     hits, apart = vs.simulate(two, [-0.15, 0, -0.05, 0], 20).impacts[:5], []
     for k in (1e4, 1e6, 1e8):
         K = np.array([[3 + k, -1, -k], [-1, 1, 0], [-k, 0, k]])
         C = 0.1 * np.array([[3, -1, 0], [-1, 1, 0], [0, 0, 0]])
         three = vs.Oscillator(
-            np.diag([1.0, 1, 2]), K, C, along=[0, 1, 0], force=[0, 1, 0], constant=[0, 0.1, 0],
+            np.diag([1.0, 1, 2]), K, C, contact_normal=[0, 1, 0], force=[0, 1, 0], constant=[0, 0.1, 0],
             omega=0.7, tau=0.2, b=0.3, R=0.8,
         )  # fmt: skip
         apart.append(np.abs(vs.simulate(three, np.zeros(6), 20).impacts[:5]["t"] - hits["t"]).max())
@@ -88,13 +88,13 @@ def test_impacts_at_the_sections():
     orbit = vs.simulate(ball, [0.0, -speed], 50)
     assert orbit.status == "ok" and len(orbit.impacts) in (50, 51)
     np.testing.assert_allclose(orbit.impacts["v1"], -speed, rtol=1e-12)
-    assert np.isfinite(vs.lyapunov(ball, [0.0, -speed], transient=0, periods=20)).all()
+    assert np.isfinite(vs.lyapunov(ball, [0.0, -speed], transient=0, record=20)).all()
 
 
 def test_a_free_mode_of_the_paper():
     """Without a spring to the ground: two exponents are zero."""
     system = vs.System(mu_m=10, mu_k=0, zeta=0.05, f2=0.2, omega=0.63, R=0.8, b=1e3, tau=0.3)
-    exponents = vs.lyapunov(system, [0.1, 0.2, 0.3, 0.1], transient=0, periods=20)
+    exponents = vs.lyapunov(system, [0.1, 0.2, 0.3, 0.1], transient=0, record=20)
     np.testing.assert_allclose(exponents, [0, 0, -0.055, -0.055], rtol=0, atol=1e-13)  # eta_2 = zeta (1 + 1/mu_m)
 
 

@@ -118,7 +118,7 @@ class TestScene:
         scene = parse_scene(BASE, "folder/least.yaml")
         assert scene.name == "least" and scene.text == BASE
         assert scene.system == System(**NUMBERS)
-        assert scene.model == "flow" and scene.sweep == {} and scene.shape == () and scene.n_points == 1
+        assert scene.dynamics == "flow" and scene.sweep == {} and scene.shape == () and scene.n_points == 1
         assert scene.start.kind == "state" and scene.start.state == (0, 0, 0, 0) and scene.n_starts == 1
         assert (scene.transient, scene.record) == (10, 4)
         assert scene.section.kind == "phase" and scene.observe == {"section"} and scene.trajectory is None
@@ -127,7 +127,7 @@ class TestScene:
         scene = parse_scene(
             """
             system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, R: 0.8, tau: 0.5, stops: right}
-            model: flow
+            dynamics: flow
             sweep: {omega: {values: [0.6, 0.7]}, b: {start: 5, stop: 6, num: 3}}
             start: {random: 16, seed: 1}
             orbit: {transient: 1e3, record: 200}

@@ -123,7 +123,7 @@ SCENES = {
     "section as a word": (scene("section: impact"), ["write section: {kind: impact}"]),
     "side of a section": (scene("section: {kind: impact, side: right}"), ["did you mean `stop`?"]),
     "trajectory yes": (scene("trajectory: true"), ["write trajectory: {periods: 4, samples: 400}"]),
-    "model: mapping": (scene("model: mapping"), ["did you mean `map`?"]),
+    "dynamics: mapping": (scene("dynamics: mapping"), ["did you mean `map`?"]),
     "System": (scene().replace("system", "System"), ["did you mean `system`?", "(line 1)"]),
     "parameters": (scene().replace("system", "parameters"), ["did you mean `system`?"]),
 }

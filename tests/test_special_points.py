@@ -73,7 +73,7 @@ def test_special_points_in_40_digits(name, symmetric_branch, one_sided_branch):
     checked = 0
     for branch in branches:
         for special in branch.special:
-            if special.type != "limit":
+            if special.type != "boundary":
                 with mp.workdps(40):
                     difference = abs(mpf(special.parameters[name]) - exact(special, name))
                 assert difference < max(special.error, 1e-15) and difference < 1e-13

@@ -76,15 +76,15 @@ def test_the_nearer_of_two_onsets():
 
 
 @pytest.mark.parametrize(
-    ("names", "box"),
+    ("names", "bounds"),
     [(("b", "omega"), ((0.01, 0.3), (0.4, 0.63))), (("b", "R"), ((0.03, 0.3), (0.3, 0.95)))],
 )
-def test_symmetric_orbit_of_the_paper(names, box, symmetric_onset):
-    curve = vs.bifurcation_curve(symmetric_onset, names, box)
-    assert curve.type == "sticking" and [one.type for one in curve.special] == ["limit", "limit"]
+def test_symmetric_orbit_of_the_paper(names, bounds, symmetric_onset):
+    curve = vs.bifurcation_curve(symmetric_onset, names, bounds)
+    assert curve.type == "sticking" and [one.type for one in curve.special] == ["boundary", "boundary"]
     assert not curve.points.virtual.any() and np.isnan(curve.points.multiplier_re).all()
     assert max(error_at(end) for end in (curve.begins, curve.ends)) < 1e-13
-    if names[1] == "omega":  # the box ends at the paper's omega, where 60 impacts written out give the onset
+    if names[1] == "omega":  # the bounds ends at the paper's omega, where 60 impacts written out give the onset
         assert curve.begins.parameters["b"] == pytest.approx(0.0646391433585, rel=1e-12)
         assert curve.begins.parameters["omega"] == 0.63
 
@@ -92,7 +92,7 @@ def test_symmetric_orbit_of_the_paper(names, box, symmetric_onset):
 @pytest.mark.parametrize("names", [("b", "omega"), ("b", "R")])
 def test_one_mass(names, one_mass_onset):
     curve = vs.bifurcation_curve(one_mass_onset, names, ((0.05, 0.99), (0.2, 0.9)))
-    assert [one.type for one in curve.special] == ["limit", "limit"]
+    assert [one.type for one in curve.special] == ["boundary", "boundary"]
     assert max(error_at(end) for end in (curve.begins, curve.ends)) < 1e-13
 
 
@@ -125,8 +125,8 @@ def test_where_the_orbit_touches_the_other_stop(one_mass_onset):
     right = one_mass_onset.parameters["b"]
     special = onset(wall(b=5.0, offset=0.53 - 5.0, stops="both"), (0, 0), 200, (4.99, 5.01))
     assert special.parameters["b"] == pytest.approx(right + 5 - 0.53, abs=1e-12)
-    box = ((0.1, 6.0), (-5.0, 1.0))
-    curve = vs.bifurcation_curve(special, ("b", "offset"), box)
+    bounds = ((0.1, 6.0), (-5.0, 1.0))
+    curve = vs.bifurcation_curve(special, ("b", "offset"), bounds)
     np.testing.assert_allclose(curve.points.b + curve.points.offset, right, atol=1e-12)
     (graze,) = (one for one in curve.special if one.type == "sticking_graze")
     _, _, state, end = numbers_at(one_mass_onset)
@@ -137,10 +137,10 @@ def test_where_the_orbit_touches_the_other_stop(one_mass_onset):
     assert curve.points.virtual.any()
     starts = vs.switch(graze)
     assert [start.type for start in starts] == ["sticking", "sticking"]
-    without = vs.bifurcation_curve(starts[1], ("b", "offset"), box)
+    without = vs.bifurcation_curve(starts[1], ("b", "offset"), bounds)
     (again,) = (one for one in without.special if one.type == "sticking_graze")
     assert again.parameters == pytest.approx(graze.parameters, abs=1e-12)
-    struck = vs.bifurcation_curve(starts[0], ("b", "offset"), box)
+    struck = vs.bifurcation_curve(starts[0], ("b", "offset"), bounds)
     real = struck.points.isel(point=~struck.points.virtual.values)
     assert real.sizes["point"] > 3 and (np.abs(real.impact_v[:, real.impact_side[0].values < 0]) > 0).all()
 

@@ -44,8 +44,8 @@ def hold(reports):
 def test_between_a_stiffly_and_a_softly_held_mass(k, c, omega, time):
     """Times by 40 digits."""
     system = vs.Oscillator(
-        [[1, 0], [0, 2]], [[k, -1], [-1, 3]], [[c, 0], [0, 0.01]], force=[0, 1], along=[1, -1], omega=omega, R=0.8,
-        b=0.1, tau=0.0,
+        [[1, 0], [0, 2]], [[k, -1], [-1, 3]], [[c, 0], [0, 0.01]], force=[0, 1], contact_normal=[1, -1],
+        omega=omega, R=0.8, b=0.1, tau=0.0,
     )  # fmt: skip
     assert abs(vs.simulate(system, [0] * 4, 1).impacts["t"][0] - time) <= 2 * np.spacing(time)
 
@@ -54,7 +54,7 @@ def test_between_a_stiffly_and_a_softly_held_mass(k, c, omega, time):
 def test_thousands_of_series_in_a_cell(k, damper, omega, R):
     """Slow impacts, one soon after another: each flight begins and ends within a cell."""
     system = vs.Oscillator(
-        [[1, 0], [0, 2]], [[k, -1], [-1, 3]], [[damper * k**0.5, 0], [0, 0.01]], force=[0, 1], along=[1, -1],
+        [[1, 0], [0, 2]], [[k, -1], [-1, 3]], [[damper * k**0.5, 0], [0, 0.01]], force=[0, 1], contact_normal=[1, -1],
         omega=omega, R=R, b=0.1, tau=0.0,
     )  # fmt: skip
     assert max(errors_of_first(system, [0] * 4, 6).values()) < 2
@@ -65,15 +65,15 @@ def test_thousands_of_series_in_a_flight_without_stops():
     """Off a node, and no closed form helps before the next."""
     system, state, _ = drawn(255)
     q, hit = system.linear, vs.simulate(system, state, 4).impacts[2]
-    push = np.linalg.solve(q.M, q.along)
-    push *= (1 + (q.R_high if hit["side"] > 0 else q.R_low)) * hit["v1"] / (q.along @ push)
+    push = np.linalg.solve(q.M, q.normal)
+    push *= (1 + (q.R_high if hit["side"] > 0 else q.R_low)) * hit["v1"] / (q.normal @ push)
     after = np.stack([hit["x"], hit["xdot"] - push], -1).ravel()
     found = FreeFlight(system).first_contact(after[None], hit["t"], system.period)
     elapsed, side = found.elapsed[0], found.side[0]
 
     def zero(q, x, shift):
         wall = (q.high if side > 0 else q.low) + shift
-        return first_zero(Flight(q), list(q.along), wall, [*x[0::2], *x[1::2]], hit["t"], elapsed)
+        return first_zero(Flight(q), list(q.normal), wall, [*x[0::2], *x[1::2]], hit["t"], elapsed)
 
     assert elapsed < 0.01
     assert time_in_units(system, after, hit["t"], elapsed, zero) < 1.5
@@ -86,7 +86,7 @@ def test_thousands_of_series_in_a_rest(seed):
     rng, k = np.random.default_rng(seed), 1e11
     M, K = np.diag(rng.uniform(0.5, 2, 3)), positive(rng, 3) + np.diag([k, 0, 0])
     system = vs.Oscillator(
-        M, K, np.diag([2 * np.sqrt(k * M[0, 0]), 0, 0]), along=[1, -1, 0], force=[0, -4, 1], tau=np.pi / 2,
+        M, K, np.diag([2 * np.sqrt(k * M[0, 0]), 0, 0]), contact_normal=[1, -1, 0], force=[0, -4, 1], tau=np.pi / 2,
         omega=rng.uniform(0.5, 1.5), R=0.5, b=0.3,
     )  # fmt: skip
     state = [0, 0, -0.3, 0, 0.1 * rng.normal(), 0.2 * rng.normal()]
@@ -105,7 +105,9 @@ def test_thousands_of_series_in_a_rest(seed):
 def test_far_stops_are_like_near_ones(offset):
     """Shifted with all that holds it, an oscillator strikes when it did, to the rounding of a gap of the size of b."""
     K = np.array([[1, -0.5], [-0.5, 2.0]])
-    numbers = dict(M=np.diag([1.0, 4.0]), K=K, C=0.0625 * K, along=[1, 0], force=[1, 0.5], omega=0.63, R=0.8, tau=0.1)
+    numbers = dict(
+        M=np.diag([1.0, 4.0]), K=K, C=0.0625 * K, contact_normal=[1, 0], force=[1, 0.5], omega=0.63, R=0.8, tau=0.1
+    )
     place = np.array([offset, offset / 2])
     near = vs.Oscillator(b=1.0, **numbers, constant=[1e-300, 0])
     far = vs.Oscillator(b=1.0, offset=offset, constant=K @ place, **numbers)
@@ -153,8 +155,8 @@ def test_the_comparison_counts_a_graze_only_where_the_data_decide_it(share, coun
 
     def oscillator(b):
         return vs.Oscillator(
-            [[1, 0], [0, 1]], [[k, -k], [-k, k + 2]], [[0.05, 0], [0, 0.05]], force=[0, 1], along=[1, 0], omega=0.6,
-            tau=0.0, R=0.8, b=b, stops="right",
+            [[1, 0], [0, 1]], [[k, -k], [-k, k + 2]], [[0.05, 0], [0, 0.05]], force=[0, 1], contact_normal=[1, 0],
+            omega=0.6, tau=0.0, R=0.8, b=b, stops="right",
         )  # fmt: skip
 
     struck, passed = (oscillator(turning_point * (1 + sign * share)) for sign in (-1, 1))

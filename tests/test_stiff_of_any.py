@@ -37,7 +37,7 @@ def stiff(seed, masses, damping):
         C = C + 10.0 ** rng.uniform(3, 4) / (link @ link) * np.outer(link, link)
     along = np.eye(masses)[0] if rng.random() < 0.5 else rng.normal(size=masses)
     system = vs.Oscillator(
-        positive(rng, masses, 1.0), K, C, along=along, force=rng.normal(size=masses),
+        positive(rng, masses, 1.0), K, C, contact_normal=along, force=rng.normal(size=masses),
         constant=0.1 * rng.normal(size=masses), omega=0.8, tau=float(rng.uniform(-3, 3)),
         b=10.0 ** rng.uniform(-1.5, 0), R=0.8, R_left=0.6,
     )  # fmt: skip
@@ -90,7 +90,7 @@ def test_the_paper_by_its_matrices():
     """As the test by modes has it, with the bounds of the energies."""
     q = PAPER.linear
     same = vs.Oscillator(
-        q.M, q.K, q.C, along=q.along, force=q.sine, force_cos=q.cosine, omega=0.63, R=0.8, b=1.0, tau=0.3
+        q.M, q.K, q.C, contact_normal=q.normal, force=q.sine, force_cos=q.cosine, omega=0.63, R=0.8, b=1.0, tau=0.3
     )
     one, other = (vs.simulate(system, np.zeros(4), 10).impacts for system in (PAPER, same))
     assert len(one) == len(other) > 10
@@ -102,7 +102,7 @@ def test_where_eigenvectors_coincide(K, C, monkeypatch):
     """A free mode, and critical damping: the sum of exponentials loses digits, and the bounds say so."""
     turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
     system = vs.Oscillator(
-        np.eye(3), turn @ np.diag(K) @ turn.T, turn @ np.diag(C) @ turn.T, along=[1, 0, 0], force=[1, 0, 0.5],
+        np.eye(3), turn @ np.diag(K) @ turn.T, turn @ np.diag(C) @ turn.T, contact_normal=[1, 0, 0], force=[1, 0, 0.5],
         constant=[0, 0, 0.01], omega=0.8, tau=0.1, b=0.02, R=0.8,
     )  # fmt: skip
     found = vs.simulate(system, np.zeros(6), 3)

@@ -12,9 +12,9 @@ import vibro_sweep as vs
 def test_double_graze_unfolds_where_the_stops_are_unequal():
     """In (b, offset) four graze curves cross at b*: of orbits that hit one stop, where they touch it, b = b* +- offset,
     and of the orbit that hits both, where it loses one impact."""
-    box, star = ((3, 9), (-1, 1)), vs.grazing(PAPER).b
+    bounds, star = ((3, 9), (-1, 1)), vs.grazing(PAPER).b
     orbit = vs.periodic_orbit(PAPER.replace(offset=0.05, b=4.0), itinerary="R")
-    curve = vs.bifurcation_curve(vs.continue_orbit(orbit, "b", (0.3, 6.9)).ends, ("b", "offset"), box)
+    curve = vs.bifurcation_curve(vs.continue_orbit(orbit, "b", (0.3, 6.9)).ends, ("b", "offset"), bounds)
     (double,) = (special for special in curve.special if special.type == "double_graze")
     assert double.parameters == {"b": pytest.approx(star, abs=1e-12), "offset": pytest.approx(0, abs=1e-12)}
     starts = vs.switch(double)
@@ -23,7 +23,7 @@ def test_double_graze_unfolds_where_the_stops_are_unequal():
     ]  # fmt: skip
     both = []
     for start in starts:
-        other = vs.bifurcation_curve(start, ("b", "offset"), box)
+        other = vs.bifurcation_curve(start, ("b", "offset"), bounds)
         assert types(other).count("double_graze") == 1
         if start.orbit.itinerary != "LR":
             np.testing.assert_allclose(other.points.b, star - start.stop * other.points.offset, rtol=1e-13)
@@ -39,7 +39,7 @@ def test_pitchfork_is_a_cusp_of_folds_where_the_symmetry_is_broken(symmetric_bra
     pitchfork = first(symmetric_branch, "pitchfork")
     curve = vs.bifurcation_curve(pitchfork, ("b", "offset"), ((3, 5), (-0.2, 0.2)))
     points = curve.points
-    assert curve.type == "fold" and types(curve) == ["limit", "cusp", "limit"]
+    assert curve.type == "fold" and types(curve) == ["boundary", "cusp", "boundary"]
     cusp = curve.special[1].parameters
     assert cusp == {"b": pytest.approx(pitchfork.parameters["b"], abs=1e-12), "offset": pytest.approx(0, abs=1e-12)}
     b, offset = points.b.values, points.offset.values

@@ -74,7 +74,7 @@ def test_what_is_none(units):
 
 
 def test_of_numbers_that_others_decide():
-    common = {"M": [[2]], "K": [[3]], "force": [1], "along": [1], "omega": 1, "b": 1, "R": 0.7, "units": "SI"}
+    common = {"M": [[2]], "K": [[3]], "force": [1], "contact_normal": [1], "omega": 1, "b": 1, "R": 0.7, "units": "SI"}
     powers = {0: "N", 1: "kg m s-1", 2: "kg m", 0.5: "1"}
     for power, unit in powers.items():
         assert vs.Oscillator(**common, force_power=power).described["force1"].units == unit
@@ -165,15 +165,15 @@ def test_orbits_branches_and_curves():
 NUMBERS = "m: [2, 8], k: [0, 2000, 10000], c: [0, 5, 25], force: [10, 0], omega: 28.27, R: 0.7, b: 0.012"
 SCENE = f"""
 system: {{type: chain, {NUMBERS}, units: SI}}
-continue: {{from: {{itinerary: LR, periods: 1}}, along: ALONG, of: [pitchfork], depth: 0}}
+continue: {{from: {{itinerary: LR, periods: 1}}, parameter: ALONG, of: [pitchfork], depth: 0}}
 """
 
 
 @pytest.mark.slow
 def test_files_of_branches_and_curves(tmp_path):
     for along, values in (
-        ("{b: {start: 0.01, stop: 0.018}}", "m"),
-        ("{b: {start: 0.0075, stop: 0.018}, omega: {start: 25.3, stop: 30}}", "1"),
+        ("{b: [0.01, 0.018]}", "m"),
+        ("{b: [0.0075, 0.018], omega: [25.3, 30]}", "1"),
     ):
         scene = tmp_path / f"{values}.yaml"
         text = SCENE.replace("ALONG", along)

@@ -46,7 +46,7 @@ def test_each_end_is_what_it_says(windows):
         assert window.lower.parameters["b"] == window.lo and window.upper.parameters["b"] == window.hi
         for special, outwards in ((window.lower, -1), (window.upper, 1)):
             assert check_end(window, special, outwards) is None, (window, special)
-            assert special.error < 1e-11 or special.type == "limit"
+            assert special.error < 1e-11 or special.type == "boundary"
 
 
 def test_errors_of_ends_do_not_depend_on_the_last_digits_of_a_start():
@@ -74,7 +74,7 @@ def test_a_window_is_that_of_a_stable_orbit_which_the_state_lies_on():
 def test_free_motion(windows):
     """Its window begins where it touches the stops (Theorem 1)."""
     free = windows[-1]
-    assert (free.itinerary, free.period, free.symmetric, free.upper.type) == ("", 1, True, "limit")
+    assert (free.itinerary, free.period, free.symmetric, free.upper.type) == ("", 1, True, "boundary")
     assert free.lower.type == "graze" and free.lo == pytest.approx(vs.grazing(SYSTEM).b, rel=1e-15)
 
 
@@ -165,7 +165,7 @@ def test_the_quickstart(tmp_path):
     for window in windows:
         for special, outwards in ((window.lower, -1), (window.upper, 1)):
             assert check_end(window, special, outwards) is None, (window, special)
-            assert special.error < 1e-12 or special.type == "limit", (window, special)
+            assert special.error < 1e-12 or special.type == "boundary", (window, special)
     known = {(family.itinerary, family.step): family for family in windows.families}
     one_sided, symmetric = known["RRRR", 1], known["LLLLRRRR", 2]
     assert {11, 12, 13, 14, 15} <= {windows[w].period for w in one_sided.windows}

@@ -35,7 +35,7 @@ def soak(*values):
     ids=["no damper", "held by a damper alone", "ball in a cavity"],
 )
 def test_what_nothing_holds_has_the_exponent_zero(numbers):
-    system = vs.Oscillator(**numbers, along=[-1, 1], R=0.6, b=1e4, tau=0.0)
+    system = vs.Oscillator(**numbers, contact_normal=[-1, 1], R=0.6, b=1e4, tau=0.0)
     for start in (np.zeros(4), np.array([0, 0, 0, 0.01])):
         assert vs.lyapunov(system, start, 300, 100)[0] == 0.0
 

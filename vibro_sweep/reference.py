@@ -1,6 +1,7 @@
 """The reference page, made from the declarations:  python -m vibro_sweep.reference > docs/reference.md"""
 
 import inspect
+import re
 from collections.abc import Iterable, Iterator
 
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES, EDGES, REASONS, TYPES, WAYS
@@ -102,7 +103,9 @@ def _value(schema: dict) -> str:
     if "enum" in schema:
         return " or ".join(f"`{word}`" for word in schema["enum"])
     if schema["type"] == "array":
-        return f"list of {_value(schema['items'])}".replace(" or ", ", ").replace("of number", "of numbers")
+        items = re.sub(r"^(number|list)\b", r"\1s", _value(schema["items"]).replace(" or ", ", "))
+        exact = schema.get("minItems") == schema.get("maxItems")
+        return " ".join(filter(None, ["list of", str(schema.get("minItems", "")) if exact else "", items]))
     bounds = " and ".join(text.format(schema[key]) for key, text in _BOUNDS.items() if key in schema)
     return " ".join(filter(None, [{"integer": "whole number"}.get(schema["type"], schema["type"]), bounds]))
 

@@ -25,7 +25,7 @@ class Oscillator:
     """The two flows, the stops, and what happens on them. q: a `Linear` of floats, which count as exact."""
 
     def __init__(self, q, digits):
-        n, number = len(q.along), lambda a: to_gmp(mpf(a))
+        n, number = len(q.normal), lambda a: to_gmp(mpf(a))
         self.N, self.omega = n, number(q.omega)
         self.low, self.high = (None if abs(x) == float("inf") else number(x) for x in (q.low, q.high))
         self.R = {-1: number(q.R_low), 1: number(q.R_high)}
@@ -37,10 +37,10 @@ class Oscillator:
         solve = lambda a: inverse * mp.matrix([[mpf(x) for x in row] for row in a])  # noqa: E731
         K, C = solve(q.K), solve(q.C)
         f = solve([[s, c, one] for s, c, one in zip(q.sine, q.cosine, q.constant, strict=True)])
-        along = mp.matrix([mpf(a) for a in q.along])
+        along = mp.matrix([mpf(a) for a in q.normal])
         push = inverse * along
         push = push / (along.T * push)[0]
-        self.along, self.push = [to_gmp(a) for a in along], [to_gmp(a) for a in push]
+        self.normal, self.push = [to_gmp(a) for a in along], [to_gmp(a) for a in push]
         size = 2 * n + 3
         free = [[ZERO] * size for _ in range(size)]
         for i in range(n):
@@ -50,17 +50,17 @@ class Oscillator:
             for j in range(3):
                 free[2 * i + 1][2 * n + j] = to_gmp(f[i, j])
         free[2 * n][2 * n + 1], free[2 * n + 1][2 * n] = self.omega, -self.omega
-        self.acceleration = [dot(self.along, [free[2 * i + 1][j] for i in range(n)]) for j in range(size)]
+        self.acceleration = [dot(self.normal, [free[2 * i + 1][j] for i in range(n)]) for j in range(size)]
         held = [list(row) for row in free]
         for i in range(n):
             held[2 * i + 1] = [a - self.push[i] * g for a, g in zip(free[2 * i + 1], self.acceleration, strict=True)]
         self.free, self.held = LinearFlow(free), LinearFlow(held)
 
     def position(self, y):
-        return dot(self.along, y[0 : 2 * self.N : 2])
+        return dot(self.normal, y[0 : 2 * self.N : 2])
 
     def speed(self, y):
-        return dot(self.along, y[1 : 2 * self.N : 2])
+        return dot(self.normal, y[1 : 2 * self.N : 2])
 
     def wall(self, side):
         return self.high if side > 0 else self.low

@@ -17,7 +17,7 @@ class AnyShooting:
         self.numbers = {name: mpf(getattr(oscillator, name)) for name in ("omega", "b", "offset", "R")}
         self.numbers["R_left"] = self.numbers["R"] if oscillator.R_left is None else mpf(oscillator.R_left)
         self.follows = oscillator.R_left is None
-        self.N = len(self.q.along)
+        self.N = len(self.q.normal)
 
     def system(self, name=None, value=None):
         """A of z' = A z, and the numbers, with one of them replaced."""
@@ -41,8 +41,8 @@ class AnyShooting:
         for i in range(N):
             A[i, N + i] = 1
         A[2 * N, 2 * N + 1], A[2 * N + 1, 2 * N] = n["omega"], -n["omega"]
-        push = inverse * mp.matrix(q.along.tolist())
-        n["push"] = [value / sum(mpf(a) * p for a, p in zip(q.along.tolist(), push, strict=True)) for value in push]
+        push = inverse * mp.matrix(q.normal.tolist())
+        n["push"] = [value / sum(mpf(a) * p for a, p in zip(q.normal.tolist(), push, strict=True)) for value in push]
         return A, n
 
     def stop(self, n, side):
@@ -59,7 +59,7 @@ class AnyShooting:
         return list((A * self.full(n, t, z))[: 2 * self.N])
 
     def gap(self, z):
-        return sum(mpf(a) * x for a, x in zip(self.q.along.tolist(), z[: self.N], strict=True))
+        return sum(mpf(a) * x for a, x in zip(self.q.normal.tolist(), z[: self.N], strict=True))
 
     def speed(self, z):
         return self.gap(z[self.N :])
@@ -95,12 +95,12 @@ class AnyShooting:
             gain = 1 + n["R" if side > 0 else "R_left"]
             for i in range(N):
                 for j in range(N):
-                    S[N + i, N + j] -= gain * n["push"][i] * mpf(float(self.q.along[j]))
+                    S[N + i, N + j] -= gain * n["push"][i] * mpf(float(self.q.normal[j]))
             ahead, behind = self.rate(A, n, t, z), self.rate(A, n, t, self.struck(n, z, side))
             kept = S * mp.matrix(ahead)
             for i in range(2 * N):
                 for j in range(N):
-                    S[i, j] += (behind[i] - kept[i]) * mpf(float(self.q.along[j])) / self.speed(z)
+                    S[i, j] += (behind[i] - kept[i]) * mpf(float(self.q.normal[j])) / self.speed(z)
             following = u[k + 1] if k + 1 < K else u[0] + pi / n["omega"] * self.halves
             product = expm(A * (following - t))[: 2 * N, : 2 * N] * S * product
         return self.sigma * product

@@ -224,5 +224,5 @@ def of_masses(q, digits=40):
     with mp.workdps(digits), context():
         A = mp.matrix([[from_gmp(a) for a in row] for row in Oscillator(q, digits).free.A])
         along = [mpf(0)] * A.rows
-        along[0 : 2 * len(q.along) : 2] = map(mpf, q.along)
+        along[0 : 2 * len(q.normal) : 2] = map(mpf, q.normal)
         return Reference(A, along, mpf(q.omega), mpf(q.tau), digits)

@@ -39,7 +39,7 @@ class Chatter(AnyShooting):
         return total
 
     def gap(self, z):
-        return sum(a * x for a, x in zip(map(float, self.q.along), z[: self.N], strict=True))
+        return sum(a * x for a, x in zip(map(float, self.q.normal), z[: self.N], strict=True))
 
     def back(self, A, n, t, z, side, aim):
         """(time, state after) of the impact on `side` before the flight that ends in z at t; aim: its time, roughly."""
@@ -118,7 +118,7 @@ class Chatter(AnyShooting):
                 later = -self.gap(series[2]) / self.gap(series[3]) / 3
                 z = [from_gmp(value) for value in self.at(series, later)]
                 T += from_gmp(later)
-            gap, speed = (mp.fdot(map(mpf, map(float, self.q.along)), half) for half in (z[: self.N], z[self.N :]))
+            gap, speed = (mp.fdot(map(mpf, map(float, self.q.normal)), half) for half in (z[: self.N], z[self.N :]))
             for i, p in enumerate(n["push"]):
                 z[i] += (self.stop(n, side) - gap) * p
                 z[self.N + i] -= speed * p

@@ -11,7 +11,7 @@ import numpy as np
 from mpmath import eig, expm, eye, lu_solve, matrix, mp, mpf
 
 STEP = mpf(10) ** -18  # of differences; the callers work with 50 digits
-FIELDS = ("M", "K", "C", "along", "constant", "sine", "cosine", "omega", "tau", "low", "high")
+FIELDS = ("M", "K", "C", "normal", "constant", "sine", "cosine", "omega", "tau", "low", "high")
 
 
 class Resting:

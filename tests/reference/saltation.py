@@ -32,7 +32,7 @@ def expm(A):
 
 def field(q):
     """A (2N + 3, 2N + 3) of z' = A z."""
-    N = len(q.along)
+    N = len(q.normal)
     A = np.zeros((2 * N + 3, 2 * N + 3))
     inverse = np.linalg.inv(q.M)
     A[:N, N : 2 * N] = np.eye(N)
@@ -62,10 +62,10 @@ def monodromy(oscillators, sigma, periods, t, sides, v):
     oscillators : m with the fields of the equations above, R_low, R_high; tau a number
     periods : (m,) P, after which the motion is sigma times itself
     """
-    N, K, m = len(oscillators[0].along), len(sides), len(oscillators)
+    N, K, m = len(oscillators[0].normal), len(sides), len(oscillators)
     A = np.array([field(q) for q in oscillators])
-    along = np.array([q.along for q in oscillators])
-    push = np.array([np.linalg.solve(q.M, q.along) for q in oscillators])
+    along = np.array([q.normal for q in oscillators])
+    push = np.array([np.linalg.solve(q.M, q.normal) for q in oscillators])
     push /= np.sum(push * along, axis=1)[:, None]
     gain = np.array([[1 + (q.R_high if side > 0 else q.R_low) for side in sides] for q in oscillators]).reshape(m, K)
     stop = np.array([[q.high if side > 0 else q.low for side in sides] for q in oscillators]).reshape(m, K)

@@ -15,12 +15,12 @@ import vibro_sweep as vs
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6)
 PAIR = vs.Oscillator(
-    np.eye(2), [[2, -1], [-1, 2]], rayleigh=[0.1, 0], force=[1, 0], along=[1, 0], omega=0.7, b=1, R=0.5
+    np.eye(2), [[2, -1], [-1, 2]], rayleigh=[0.1, 0], force=[1, 0], contact_normal=[1, 0], omega=0.7, b=1, R=0.5
 )
 REST = (0.0, 0.0, 0.0, 0.0)
 BRANCHES = """
 system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 0.4}
-continue: {from: {itinerary: LLLRRR}, along: {b: {start: 0.39, stop: 0.41}}, depth: 0}
+continue: {from: {itinerary: LLLRRR}, parameter: {b: [0.39, 0.41]}, depth: 0}
 """
 TEXT = """
 system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}
@@ -107,7 +107,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
     pair = each("M", M, M.tolist(), xr.DataArray(M), np.ma.array(M)) | each("K", K, np.array(K))
     pair |= each("C", None, np.eye(2), 0) | each("modal_damping", None, [0.1, 0.1], np.ones(2))
     pair |= each("rayleigh", None, (0.1, 0.0)) | each("force", [1, 0], np.ones(2), 0) | each("force_cos", 0, [0, 1])
-    pair |= each("constant", 0, [0, 1]) | each("force_power", 0, 2) | each("along", [1, 0], np.ones(2))
+    pair |= each("constant", 0, [0, 1]) | each("force_power", 0, 2) | each("contact_normal", [1, 0], np.ones(2))
     pair |= each("omega", 1, 1.5) | each("b", 1, np.float32(1)) | each("offset", 0.0, 1) | each("R", 0.5, 1)
     pair |= each("R_left", None, 0.5) | each("tau", "grazing", 0.0) | each("stops", "both", "right") | units
     of_pair = {name: values for name, values in pair.items() if name not in ("C", "modal_damping")}
@@ -148,7 +148,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
         "Orbit.sample": Call(simulated.sample, times),
         "Orbit.plot": Call(simulated.plot, each("periods", 1, 4.0) | width),
         "Orbit.to_xarray": Call(simulated.to_xarray, {}),
-        "lyapunov": Call(vs.lyapunov, system | state | each("transient", 1, 2.0) | each("periods", 2, np.int8(3))),
+        "lyapunov": Call(vs.lyapunov, system | state | each("transient", 1, 2.0) | each("record", 2, np.int8(3))),
         "discontinuity_map": Call(
             vs.discontinuity_map,
             system | each("order", 1, 2, np.int8(1)) | each("expand_at", None, 6.7, np.float32(1)),
@@ -179,7 +179,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
         "bifurcation_curve": Call(
             vs.bifurcation_curve,
             each("special", special) | each("parameters", ("b", "R"), ["b", "R"])
-            | each("box", around(special), np.array(around(special)), [list(one) for one in around(special)])
+            | each("bounds", around(special), np.array(around(special)), [list(one) for one in around(special)])
             | progress | each("virtual", True, False, np.bool_(True)),
         ),
         "BifurcationCurve.plot": Call(made["BifurcationCurve"].plot, each("others", made["BifurcationCurve"]) | width),
@@ -190,7 +190,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
             any_of(
                 "changes",
                 each("system", SYSTEM) | {"sweep": [{"sweep": one["axes"]} for one in axes["axes"]]} | observe | start
-                | short | section | trajectory | each("model", "flow") | each("order", None)
+                | short | section | trajectory | each("dynamics", "flow") | each("order", None)
                 | each("expand_at", None) | each("picture", None, "bifurcation"),
             ),
         ),
@@ -201,7 +201,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
         "Continuation.replace": Call(
             made["Continuation"].replace,
             any_of(
-                "changes", each("depth", 0, 1) | each("follow", (), ["flip"]) | each("along", {"b": (0.39, 0.41)})
+                "changes", each("depth", 0, 1) | each("follow", (), ["flip"]) | each("parameter", {"b": (0.39, 0.41)})
             ),
         ),
         "run": Call(
@@ -232,10 +232,9 @@ def inside(argument: str, one: Any) -> list[Any]:
         "state": [(0.0, one, 0.0, 0.0)],
         "times": [[0.0, one]],
         "guess": [[one], [(one, 1, 1.0)], [(0.0, one, 1.0)]],
-        "bounds": [(one, 0.41)],
+        "bounds": [(one, 0.41), ((one, 0.5), (0.7, 0.9)), (one, (0.7, 0.9))],
         "follow": [["graze", one]],
         "parameters": [("b", one)],
-        "box": [((one, 0.5), (0.7, 0.9)), (one, (0.7, 0.9))],
         "axes": [{"b": one}, {"b": [6.5, one]}, {"b": {"start": one, "stop": 6.6, "num": 2}}, {"b": {"values": one}}],
         "start": [{"x1": one}, (0.0, one, 0.0, 0.0), {"random": one}, {"follow": one}],
         "observe": [["section", one]],
@@ -244,7 +243,7 @@ def inside(argument: str, one: Any) -> list[Any]:
         "at": [{"b": one}],
         "M": [[[one, 0], [0, 1]], [[1, 0], one]],
         "force": [[one, 1]],
-        "along": [(1, one)],
+        "contact_normal": [(1, one)],
         "units": [(1, one, 2.0)],
     }
     return found.get(argument, [])

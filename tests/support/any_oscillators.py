@@ -12,7 +12,7 @@ def positive(rng, n, least):
     return A @ A.T / n + least * np.eye(n)
 
 
-def drawn(seed, n, constant=True, along=None, **changes):
+def drawn(seed, n, constant=True, contact_normal=None, **changes):
     """An oscillator whose free motion would pass both stops, and a state at rest between them.
 
     Two masses meet each other (n = e1 - e2); of others the gap is any combination.
@@ -20,22 +20,22 @@ def drawn(seed, n, constant=True, along=None, **changes):
     rng = np.random.default_rng([n, seed])
     numbers = dict(
         M=positive(rng, n, 1.0), K=positive(rng, n, 0.2), C=0.05 * positive(rng, n, 0.1),
-        along=np.array([1.0, -1.0]) if n == 2 else rng.normal(size=n),
+        contact_normal=np.array([1.0, -1.0]) if n == 2 else rng.normal(size=n),
         force=3 * rng.normal(size=n), force_cos=2 * rng.normal(size=n), omega=0.8, tau=0.3,
         R=0.85, R_left=0.7, b=1.0,
     )  # fmt: skip
     numbers["constant"] = 0.2 * rng.normal(size=n) if constant else np.zeros(n)
-    if along is not None:
-        numbers["along"] = np.array(along, float)
+    if contact_normal is not None:
+        numbers["contact_normal"] = np.array(contact_normal, float)
     free = vs.Oscillator(**numbers).linear
-    size, middle = abs(free.along @ amplitudes(free)), free.along @ static_state(free)
+    size, middle = abs(free.normal @ amplitudes(free)), free.normal @ static_state(free)
     numbers |= {"b": 0.45 * size, "offset": middle - 0.05 * size} | changes
     system = vs.Oscillator(**numbers)
     state = np.zeros(2 * n)
-    state[0::2] = np.linalg.lstsq(free.along[None], [system.offset], rcond=None)[0]
+    state[0::2] = np.linalg.lstsq(free.normal[None], [system.offset], rcond=None)[0]
     return system, state
 
 
 def one_mass(**numbers):
     """A free mass, unless the numbers say otherwise."""
-    return vs.Oscillator(**(dict(M=[[1.0]], K=[[0.0]], along=[1.0]) | numbers))
+    return vs.Oscillator(**(dict(M=[[1.0]], K=[[0.0]], contact_normal=[1.0]) | numbers))

@@ -109,7 +109,7 @@ def exact(special, name):
 def shooting_of(orbit):
     """(reference in many digits, its unknowns) of an orbit of an `Oscillator`."""
     solution, q = orbit._solution, orbit.system.linear
-    N = len(q.along)
+    N = len(q.normal)
     state = contact_coordinates(q).to_masses(solution.states[0]).reshape(N, 2).T.ravel()
     shooting = AnyShooting(orbit.system, solution.sigma, solution.halves, solution.sides)
     return shooting, shooting.unknowns(solution.times, state)

@@ -135,7 +135,7 @@ def at_point(orbit):
 def distance(special) -> tuple[float, str]:
     """How far a special point is from its condition, and words; nan where nothing is checked."""
     orbit = special.orbit
-    if special.type in ("limit", "closed", "failed", "sticking"):
+    if special.type in ("boundary", "closed", "failed", "sticking"):
         return np.nan, ""
     found, q, t, sides, v, period = at_point(orbit)
     size = max(np.abs(found.states).max(), 1e-300)
@@ -158,10 +158,10 @@ def distance(special) -> tuple[float, str]:
 
 def flown(found, q, t, sides, v, period, k, lengths):
     """(len(lengths), 2N + 3) states at these times after impact k."""
-    N = len(q.along)
+    N = len(q.normal)
     if len(t):
-        push = np.linalg.solve(q.M, q.along)
-        push /= push @ q.along
+        push = np.linalg.solve(q.M, q.normal)
+        push /= push @ q.normal
         gain = 1 + (q.R_high if sides[k] > 0 else q.R_low)
         x, at = found.states[0, k].copy(), t[k]
         x[N:] -= gain * v[k] * push
@@ -174,13 +174,13 @@ def flown(found, q, t, sides, v, period, k, lengths):
 
 def _nearest(found, q, t, sides, v, period) -> float:
     """The least distance of the gap's turning points from a stop."""
-    N, best = len(q.along), np.inf
+    N, best = len(q.normal), np.inf
     # of the free motion a little more than a period: with the phase `grazing` a turning point lies at its ends
     ends = np.append(t, t[0] + period) if len(t) else np.array([0.0, 1.01 * period])
     for k in range(len(ends) - 1):
         s = np.linspace(0, ends[k + 1] - ends[k], 400)
         z = flown(found, q, t, sides, v, period, k, s)
-        rate = z[:, N : 2 * N] @ q.along
+        rate = z[:, N : 2 * N] @ q.normal
         turns = np.flatnonzero(rate[:-1] * rate[1:] <= 0)
         for i in turns.tolist():
             low, high = s[i], s[i + 1]
@@ -189,8 +189,8 @@ def _nearest(found, q, t, sides, v, period) -> float:
             for _ in range(60):  # by halves
                 middle = (low + high) / 2
                 there = flown(found, q, t, sides, v, period, k, [middle])[0]
-                low, high = (middle, high) if (there[N : 2 * N] @ q.along) * rate[i] > 0 else (low, middle)
-            g = there[:N] @ q.along
+                low, high = (middle, high) if (there[N : 2 * N] @ q.normal) * rate[i] > 0 else (low, middle)
+            g = there[:N] @ q.normal
             best = min(best, abs(q.high - g), abs(g - q.low), key=abs)
     return best
 
@@ -198,10 +198,10 @@ def _nearest(found, q, t, sides, v, period) -> float:
 def passing(pieces: Pieces) -> list[tuple[str, str]]:
     """Points of a branch at which a flight is beyond a stop."""
     q0, K = pieces.oscillators[0], len(pieces.sides)
-    N, m = len(q0.along), len(pieces.values)
-    along = np.array([q.along for q in pieces.oscillators])
+    N, m = len(q0.normal), len(pieces.values)
+    along = np.array([q.normal for q in pieces.oscillators])
     A = np.array([field(q) for q in pieces.oscillators])
-    push = np.array([np.linalg.solve(q.M, q.along) for q in pieces.oscillators])
+    push = np.array([np.linalg.solve(q.M, q.normal) for q in pieces.oscillators])
     push /= np.sum(push * along, axis=1)[:, None]
     omega, tau, low, high = (
         np.array([getattr(q, name) for q in pieces.oscillators], float) for name in ("omega", "tau", "low", "high")
@@ -235,8 +235,8 @@ def free_passes(branch, case) -> list[tuple[str, str]]:
     for value in np.linspace(values[0], values[-1], 2001)[1:-1].tolist():
         q = system.replace(**{case.name: value}).linear
         Z = q.K - q.omega**2 * q.M + 1j * q.omega * q.C
-        size = abs(q.along @ np.linalg.solve(Z, q.cosine - 1j * q.sine))
-        middle = q.along @ np.linalg.lstsq(q.K, q.constant)[0]
+        size = abs(q.normal @ np.linalg.solve(Z, q.cosine - 1j * q.sine))
+        middle = q.normal @ np.linalg.lstsq(q.K, q.constant)[0]
         over = max(middle + size - q.high, q.low - middle + size)
         if over > 1e-9 * size:
             return [

@@ -73,8 +73,8 @@ COMPUTING = {
     "run of curves of a plane": ("plane", ["run", "of_plane.yaml"]),
 }
 SLOW = (*COMPUTING, "vs.windows", "--overwrite")  # they compute
-BOX = "along: {b: {start: 5.85, stop: 6.2}, omega: {start: 0.6295, stop: 0.6305}}"
-OF_PLANE = "along: {b: {start: 6.5, stop: 6.7}, omega: {start: 0.62, stop: 0.65}}"
+BOX = "parameter: {b: [5.85, 6.2], omega: [0.6295, 0.6305]}"
+OF_PLANE = "parameter: {b: [6.5, 6.7], omega: [0.62, 0.65]}"
 SCENES = {
     "from_windows": f"{SYSTEM}continue: {{from: {{branches: windows.h5, special: 1}}, {BOX}}}",
     "of_plane": f"{SYSTEM}continue: {{from: {{sweep: plane.h5}}, {OF_PLANE}}}",

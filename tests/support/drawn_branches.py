@@ -61,10 +61,10 @@ def drawn_oscillator(model: str, rng):
     else:
         n = int(rng.integers(1, 5))
         numbers |= {"M": positive(rng, n, 1.0), "K": positive(rng, n, 0.3), "C": 0.1 * positive(rng, n, 0.1)}
-        numbers |= {"along": rng.normal(size=n), "force": force[:n], "force_cos": rng.normal(size=n)}
+        numbers |= {"contact_normal": rng.normal(size=n), "force": force[:n], "force_cos": rng.normal(size=n)}
         numbers["constant"] = constant[:n]
     q = vs.Oscillator.named(model, **numbers).linear
-    size, middle = abs(q.along @ amplitudes(q)), q.along @ static_state(q)
+    size, middle = abs(q.normal @ amplitudes(q)), q.normal @ static_state(q)
     numbers["b"] = size * rng.uniform(0.1, 1.05)
     if not symmetric and model != "ball_in_cavity":
         numbers["offset"] = middle + (0.0 if stops != "both" else 0.1) * size * rng.normal()
@@ -78,9 +78,9 @@ def recorded(system, rng):
         edge if np.isfinite(edge) else other + sign * 2 * system.b
         for edge, other, sign in ((q.low, q.high, -1), (q.high, q.low, 1))
     )
-    state = rng.normal(size=2 * len(q.along)) * system.b * np.tile([1.0, q.omega], len(q.along))
-    state[::2] += q.along * (rng.uniform(low, high) - q.along @ state[::2]) / (q.along @ q.along)
-    if not q.low < q.along @ state[::2] < q.high:
+    state = rng.normal(size=2 * len(q.normal)) * system.b * np.tile([1.0, q.omega], len(q.normal))
+    state[::2] += q.normal * (rng.uniform(low, high) - q.normal @ state[::2]) / (q.normal @ q.normal)
+    if not q.low < q.normal @ state[::2] < q.high:
         return None
     section = vs.simulate(system, state, 1500).section
     for n in range(1, 25):
@@ -113,7 +113,7 @@ def drawn_number(system, rng) -> tuple[str, tuple[float, float]]:
     name = str(rng.choice(often if rng.random() < 0.6 else names))
     value, q = float(numbers[name]), system.linear
     if name == "b":
-        graze = abs(q.along @ amplitudes(q))
+        graze = abs(q.normal @ amplitudes(q))
         return name, (min(0.1 * graze, 0.9 * value), max(1.1 * graze, 1.1 * value))
     reach = {"offset": 0.3 * system.b, "tau": 1.0}.get(name, 0.3 * abs(value) or 0.2)
     lo, hi = value - reach, value + reach

@@ -32,14 +32,14 @@ def drawn(seed):
     force = np.where(stiff & (rng.random(n) < 0.5), 0.0, rng.normal(size=n))
     soft = np.linalg.eigvalsh(np.linalg.solve(np.diag(np.sqrt(np.diag(M))), K) / np.sqrt(np.diag(M)))[0]
     omega = float(np.sqrt(max(soft, 0.1)) * 10.0 ** rng.uniform(-0.3, 0.3))
-    numbers = dict(M=M, K=K, C=C, along=along, force=force, omega=omega, tau=float(rng.uniform(-3, 3)),
+    numbers = dict(M=M, K=K, C=C, contact_normal=along, force=force, omega=omega, tau=float(rng.uniform(-3, 3)),
                    R=float(rng.uniform(0.5, 0.95)), b=1.0)  # fmt: skip
     if rng.random() < 0.3:
         numbers["R_left"] = float(rng.uniform(0.5, 0.95))
     if rng.random() < 0.2:
         numbers["stops"] = "right"
     q = vs.Oscillator(**numbers).linear
-    size = abs(q.along @ amplitudes(q))
+    size = abs(q.normal @ amplitudes(q))
     b = float(size * 10.0 ** rng.uniform(-1.5, -0.3))
     offset = far * b
     x = along * 0.0

@@ -34,8 +34,8 @@ def points(seed: int, most_curves=3, most_points=8):
         branch = vs.continue_orbit(orbit, "b", (0.5 * system.b, 1.5 * system.b))
         for special in [one for one in branch.special if one.type in BIFURCATIONS][:most_curves]:
             b = special.parameters["b"]
-            box = ((0.5 * b, 1.8 * b), (0.7 * value, min(1.4 * value, 1.0) if name == "R" else 1.4 * value))
-            yield from vs.bifurcation_curve(special, ("b", name), box).special[:most_points]
+            bounds = ((0.5 * b, 1.8 * b), (0.7 * value, min(1.4 * value, 1.0) if name == "R" else 1.4 * value))
+            yield from vs.bifurcation_curve(special, ("b", name), bounds).special[:most_points]
 
 
 def ratios(seed: int) -> list[float]:

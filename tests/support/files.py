@@ -137,7 +137,7 @@ EDITS = {
     "mu_m of several numbers": lambda file: file.attrs.create("mu_m", [1.0, 2.0, 3.0]),
     "omega a text": edit_text("omega", "0.63"),
     "stops a number": lambda file: file.attrs.create("stops", 2.0),
-    "a map without its order": edit_text("model", "map"),
+    "a map without its order": edit_text("dynamics", "map"),
     "no heap": lambda file: file.attrs.pop("heap"),
     "a heap of nonsense": lambda file: file.attrs.modify("heap", np.array([5, 5, 5], np.uint64)),
 }

@@ -47,7 +47,7 @@ def scene(n: int) -> dict:
         "orbit": {"transient": choose.choice([0, 3, 50]), "record": choose.choice([1, 2, 7, 40])},
     }
     if is_map:
-        result["model"] = "map"
+        result["dynamics"] = "map"
         result["system"].pop("tau", None)
         numbers["zeta"] = result["system"]["zeta"] = numbers["zeta"] or 0.05  # an undamped steady motion may not exist
         if choose.random() < 0.5:
@@ -140,7 +140,7 @@ def _break_value(choose: random.Random, data: dict) -> None:
             "tau",
             "x1",
             "order",
-            "model",
+            "dynamics",
             "sweep",
             "start",
             "section",

@@ -14,7 +14,7 @@ from vibro_sweep.cli.commands import main
 
 SYSTEM = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6}\n"
 LINEAR = """
-system: {type: linear, M: [[1, 0], [0, 2]], K: [[3, -1], [-1, 2]], C: [[0.1, 0], [0, 0.1]], along: [1, 0],
+system: {type: linear, M: [[1, 0], [0, 2]], K: [[3, -1], [-1, 2]], C: [[0.1, 0], [0, 0.1]], contact_normal: [1, 0],
   force: [1, 0], omega: 1.1, R: 0.8, b: 0.5}
 sweep: {omega: {start: 1.3, stop: 1.9, num: 3}}
 orbit: {transient: 5, record: 6}
@@ -28,11 +28,8 @@ FOLLOW = "sweep: {b: {start: 6.5, stop: 6.7, num: 3}}\nstart: {follow: both}\n"
 ORBIT = "trajectory: {periods: 2, samples: 20}\n"
 SHORT = "orbit: {transient: 5, record: 6}\nobserve: [section, lyapunov, impacts, energy]\n"
 LONG = (("transient: 5, record: 6", "transient: 6000, record: 100"),)
-BRANCHES = "continue: {from: {sweep: sweep.h5}, along: {b: {start: 5.85, stop: 6.2}}, depth: 0}\n"
-CURVES = (
-    "continue: {from: {branches: branches.h5, special: 1}, "
-    "along: {b: {start: 5.85, stop: 6.2}, omega: {start: 0.6295, stop: 0.6305}}}\n"
-)
+BRANCHES = "continue: {from: {sweep: sweep.h5}, parameter: {b: [5.85, 6.2]}, depth: 0}\n"
+CURVES = "continue: {from: {branches: branches.h5, special: 1}, parameter: {b: [5.85, 6.2], omega: [0.6295, 0.6305]}}\n"
 
 
 class Kind(NamedTuple):

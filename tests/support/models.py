@@ -12,7 +12,7 @@ GIVEN = {
     ),
     "linear": dict(
         M=[[2, 0.3], [0.3, 1]], K=[[3, -1], [-1, 2]], rayleigh=[0.02, 0.03], force=[1, 0.5], force_cos=[0, 0.2],
-        constant=[0.3, 0], force_power=2, along=[1, -1], omega=0.9, b=1, offset=0.2, R=0.8,
+        constant=[0.3, 0], force_power=2, contact_normal=[1, -1], omega=0.9, b=1, offset=0.2, R=0.8,
     ),
 }  # fmt: skip
 

@@ -37,10 +37,10 @@ PAPER = {
 }
 SYSTEM = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
 MODELS = {
-    "map, order 1": "model: map",
-    "  expanded at the printed b": f"model: map\nexpand_at: {PAPER['b*']}",
-    "map, order 2": "model: map\norder: 2",
-    "exact flow": "model: flow",
+    "map, order 1": "dynamics: map",
+    "  expanded at the printed b": f"dynamics: map\nexpand_at: {PAPER['b*']}",
+    "map, order 2": "dynamics: map\norder: 2",
+    "exact flow": "dynamics: flow",
 }
 STEP = 0.0002  # of figure 6
 WIDTH = 1e-9  # to which an edge is bisected where it is one

@@ -44,13 +44,13 @@ def random_oscillator(rng, masses=None) -> vs.Oscillator:
     n = masses or int(rng.choice([1, 3]))
     numbers = {
         "M": positive(rng, n, 1.0), "K": positive(rng, n, 0.3), "C": 0.1 * positive(rng, n, 0.1),
-        "along": rng.normal(size=n), "force": rng.normal(size=n), "force_cos": rng.normal(size=n),
+        "contact_normal": rng.normal(size=n), "force": rng.normal(size=n), "force_cos": rng.normal(size=n),
         "constant": 0.2 * rng.normal(size=n), "omega": rng.uniform(0.3, 1.5), "tau": 0.3,
         "R": rng.uniform(0.3, 0.9), "R_left": rng.uniform(0.3, 0.9),
         "stops": str(rng.choice(["both", "right", "left"])),
     }  # fmt: skip
     q = vs.Oscillator(**numbers, b=1.0).linear
-    size, middle = abs(q.along @ amplitudes(q)), q.along @ static_state(q)
+    size, middle = abs(q.normal @ amplitudes(q)), q.normal @ static_state(q)
     return vs.Oscillator(**numbers, b=size * rng.uniform(0.1, 1.05), offset=middle + 0.1 * size * rng.normal())
 
 
@@ -61,8 +61,8 @@ def attractors(system, rng, most=3, tries=12):
     high = system.offset + (1 if system.stops != "left" else 2) * system.b
     for _ in range(tries):
         gap = rng.uniform(low, high)
-        state = rng.normal(size=2 * len(q.along)) * system.b * np.tile([1.0, system.omega], len(q.along))
-        state[::2] += q.along * (gap - q.along @ state[::2]) / (q.along @ q.along)
+        state = rng.normal(size=2 * len(q.normal)) * system.b * np.tile([1.0, system.omega], len(q.normal))
+        state[::2] += q.normal * (gap - q.normal @ state[::2]) / (q.normal @ q.normal)
         section = vs.simulate(system, state, 2000).section
         periods = [n for n in range(1, 25) if np.abs(section[-1] - section[-1 - n]).max() < 1e-10 * system.b]
         if not periods:
@@ -78,10 +78,10 @@ def attractors(system, rng, most=3, tries=12):
 def within(system, state):
     """A state with the gap between the stops: moved along the gap if need be."""
     q, state = system.linear, np.array(state, float)
-    gap = q.along @ state[::2]
-    state[::2] += q.along * (np.clip(gap, q.low, q.high) - gap) / (q.along @ q.along)
-    if len(q.along) == 1:  # to the last digit
-        state[0] = np.clip(state[0], *sorted((q.low / q.along[0], q.high / q.along[0])))
+    gap = q.normal @ state[::2]
+    state[::2] += q.normal * (np.clip(gap, q.low, q.high) - gap) / (q.normal @ q.normal)
+    if len(q.normal) == 1:  # to the last digit
+        state[0] = np.clip(state[0], *sorted((q.low / q.normal[0], q.high / q.normal[0])))
     return state
 
 
@@ -195,7 +195,7 @@ def hold_end(report, where, system, name, branch, points, end, inner, n, kind):
     """Just inside an end the orbit attracts; just outside there is no such orbit, or it repels."""
     p = points[name].values
     special = min(branch.special, key=lambda s: abs(s.parameters[name] - p[end]))
-    if special.type in ("limit", "closed", "failed"):
+    if special.type in ("boundary", "closed", "failed"):
         return
     for share in INSIDE:  # near a birth Newton's method may find the parent
         orbit = orbit_at(system, name, points, end, inner, share, n)

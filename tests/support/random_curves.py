@@ -49,8 +49,8 @@ def compare(seed: int, most_curves=4) -> Report:
 
 def _follow(report: Report, special, rng) -> None:
     b, omega = special.parameters["b"], special.orbit.system.omega
-    box = ((0.9 * b, 1.1 * b), (0.95 * omega, 1.05 * omega))
-    curve = vs.bifurcation_curve(special, ("b", "omega"), box)
+    bounds = ((0.9 * b, 1.1 * b), (0.95 * omega, 1.05 * omega))
+    curve = vs.bifurcation_curve(special, ("b", "omega"), bounds)
     report.curves += 1
     report.codimension_two += len(curve.special) - 2 * (not curve.closed)
     where = f"seed {report.seed}, {special.type} at b = {b!r}"
@@ -59,10 +59,10 @@ def _follow(report: Report, special, rng) -> None:
     for k in chosen(curve, 3):
         simulate_beside(report, curve, k, where)
     k = int(rng.choice(chosen(curve, 9)))
-    ways = {f"from point {k}": vs.bifurcation_curve(special_at(curve, k, special), ("b", "omega"), box)}
+    ways = {f"from point {k}": vs.bifurcation_curve(special_at(curve, k, special), ("b", "omega"), bounds)}
     for factor in (0.5, 2.0):
         with steps_of(factor):
-            ways[f"with steps of {factor} times the length"] = vs.bifurcation_curve(special, ("b", "omega"), box)
+            ways[f"with steps of {factor} times the length"] = vs.bifurcation_curve(special, ("b", "omega"), bounds)
     report.again += len(ways)
     for way, other in ways.items():
         pairs = [sorted(map(key, one.special)) for one in (curve, other)]

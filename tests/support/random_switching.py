@@ -80,8 +80,9 @@ def resting(rng) -> vs.System:
 def symmetric(rng) -> vs.Oscillator:
     """Two masses with full matrices between equal stops, without a constant force."""
     numbers = dict(
-        M=positive(rng, 2, 1.0), K=positive(rng, 2, 0.3), C=0.1 * positive(rng, 2, 0.1), along=rng.normal(size=2),
-        force=rng.normal(size=2), omega=rng.uniform(0.3, 1.5), tau=0.3, R=rng.uniform(0.3, 0.95),
+        M=positive(rng, 2, 1.0), K=positive(rng, 2, 0.3), C=0.1 * positive(rng, 2, 0.1),
+        contact_normal=rng.normal(size=2), force=rng.normal(size=2), omega=rng.uniform(0.3, 1.5), tau=0.3,
+        R=rng.uniform(0.3, 0.95),
     )  # fmt: skip
     star = vs.grazing(vs.Oscillator(**numbers, b=1.0)).b
     return vs.Oscillator(**numbers, b=star * rng.uniform(0.1, 1.0))
@@ -122,8 +123,8 @@ def attractor(system, rng, tries=4):
     low = q.low if np.isfinite(q.low) else q.high - 2
     high = q.high if np.isfinite(q.high) else q.low + 2
     for _ in range(tries):
-        gap, state = rng.uniform(low, high), 0.5 * (high - low) * rng.normal(size=2 * len(q.along))
-        state[::2] += q.along * (gap - q.along @ state[::2]) / (q.along @ q.along)
+        gap, state = rng.uniform(low, high), 0.5 * (high - low) * rng.normal(size=2 * len(q.normal))
+        state[::2] += q.normal * (gap - q.normal @ state[::2]) / (q.normal @ q.normal)
         section = vs.simulate(system, within(system, state), 2000).section
         size = np.abs(section[-1]).max()
         periods = [n for n in range(1, 25) if np.abs(section[-1] - section[-1 - n]).max() < 1e-10 * size]
@@ -188,7 +189,7 @@ def _simulated(report: Report, where: str, orbit) -> None:
     run = vs.simulate(system, orbit.state, n)
     states, q = run.section, system.linear
     size = max(np.abs(states).max(), 1e-300)
-    gap = max(np.abs(states[:, ::2] @ q.along).max(), *(abs(x) for x in (q.low, q.high) if np.isfinite(x)), 1e-300)
+    gap = max(np.abs(states[:, ::2] @ q.normal).max(), *(abs(x) for x in (q.low, q.high) if np.isfinite(x)), 1e-300)
     report.simulated += 1
     error = np.abs(states[-1] - orbit.state).max() / size
     if not error < CLOSE * largest:

@@ -117,7 +117,7 @@ def _differences(one, other, size) -> list[tuple[str, str]]:
             continue
         if not apart <= CLOSE * max(size, abs(a.value)):
             found.append((f"value of {a.type}", f"{a.value!r} and {b.value!r}"))
-        elif not apart <= 10 * (a.error + b.error) and a.type != "limit":
+        elif not apart <= 10 * (a.error + b.error) and a.type != "boundary":
             found.append((f"error of {a.type}", f"{apart:.1e} apart, errors {a.error:.1e} and {b.error:.1e}"))
         for name, x, y in zip(ATTRIBUTES, a.attributes, b.attributes, strict=True):
             if x != y and not (name == "stop" or None in (x, y)):

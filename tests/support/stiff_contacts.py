@@ -29,13 +29,13 @@ class Flight:
     """All flights of one oscillator, of mpf: sums of exponentials. held: while a stop holds the gap."""
 
     def __init__(self, q, held=False):
-        n = len(q.along)
-        self.n, self.along = n, [mpf(a) for a in q.along]
+        n = len(q.normal)
+        self.n, self.normal = n, [mpf(a) for a in q.normal]
         M, rows = mp.matrix(q.M.tolist()), np.hstack([-q.K, -q.C, np.stack([q.sine, q.cosine, q.constant], -1)])
-        push = mp.lu_solve(M, mp.matrix(self.along))
-        self.push = push / mp.fdot(self.along, push)
+        push = mp.lu_solve(M, mp.matrix(self.normal))
+        self.push = push / mp.fdot(self.normal, push)
         rows = mp.inverse(M) * mp.matrix(rows.tolist())
-        self.pull = [mp.fdot(self.along, rows.column(j)) for j in range(2 * n + 3)]  # acceleration of the gap
+        self.pull = [mp.fdot(self.normal, rows.column(j)) for j in range(2 * n + 3)]  # acceleration of the gap
         if held:
             rows -= self.push * mp.matrix([self.pull])
         A = mp.zeros(2 * n + 3)
@@ -64,11 +64,11 @@ class Flight:
         return z[: self.n] + [a - (1 + R) * v * p for a, p in zip(z[self.n :], self.push, strict=True)]
 
     def gap(self, z):
-        return mp.fdot(self.along, z[: self.n]), mp.fdot(self.along, z[self.n :])
+        return mp.fdot(self.normal, z[: self.n]), mp.fdot(self.normal, z[self.n :])
 
     def gaps(self, parts, times):
         """The gap at these times, rounded."""
-        row = [mp.fdot(self.along, [self.V[i, k] for i in range(self.n)]) for k in range(len(self.roots))]
+        row = [mp.fdot(self.normal, [self.V[i, k] for i in range(self.n)]) for k in range(len(self.roots))]
         factors = np.array([complex(a * c) for a, c in zip(row, parts, strict=True)])
         return (factors @ np.exp(np.outer([complex(root) for root in self.roots], times))).real
 
@@ -243,7 +243,7 @@ def errors_of(system, state, hits, true, seed, moves):
     for _ in range(moves):
         walls = [int(sign) * step for sign in rng.choice([-1, 1], len(hits))]
         others.append(impacts_of(*moved(system.linear, state, rng), hits["t"], hits["side"], walls))
-    errors, n = {"t": 0.0, "v": 0.0, "x": 0.0, "xdot": 0.0}, len(system.linear.along)
+    errors, n = {"t": 0.0, "v": 0.0, "x": 0.0, "xdot": 0.0}, len(system.linear.normal)
     hits = hits[: min(map(len, [true, *others]))]  # up to a graze that rounding takes away
     for i, (hit, (t, v, z)) in enumerate(zip(hits, true[: len(hits)], strict=True)):
         effects = {"t": _largest([other[i][0] - t for other in others])}

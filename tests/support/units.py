@@ -21,7 +21,7 @@ MODELS = ("one_mass", "ball_in_cavity", "chain", "linear")
 EXPONENTS = (-40, 40)
 CURVES = ("fold", "flip", "pitchfork", "neimark_sacker", "graze", "sticking")
 SWITCHED = ("flip", "pitchfork", "graze")
-ENDS = ("closed", "limit", "failed")
+ENDS = ("closed", "boundary", "failed")
 CLOSE = 1e-13  # relative difference of special points, beyond their errors
 BORN = 1e-6  # the same, of what begins at them, at a small amplitude or beside a graze
 
@@ -126,14 +126,14 @@ class Pair:
         found = [vs.switch(special) for special in pair]
         return list(zip(*found, strict=True)) if self.alike(f"switch from {pair[0].type}", *found) else []
 
-    def curve(self, pair, names, box):
+    def curve(self, pair, names, bounds):
         """`bifurcation_curve`, and `switch` from its points of codimension two."""
         self.report.types[f"curve of {pair[0].type}"] += 1
         units = np.array([unit_of(name, self.k) for name in names])
         found = []
         for special, factors in zip(pair, (np.ones(2), units), strict=True):
             try:
-                found.append(vs.bifurcation_curve(special, names, (np.array(box).T * factors).T.tolist()).special)
+                found.append(vs.bifurcation_curve(special, names, (np.array(bounds).T * factors).T.tolist()).special)
             except ValueError as error:
                 found.append(str(error).split(";")[0])
         if str in map(type, found):

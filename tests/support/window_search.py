@@ -170,7 +170,7 @@ def covered(report, wrong, data, windows, name) -> None:
         data[key].isel({d: -1 for d in data[key].dims if d not in (name, "start")}).transpose(name, ...).values
         for key in [
             f"{kind}{i + 1}"
-            for i in range(len(windows[0]._system.linear.along) if len(windows) else 0)
+            for i in range(len(windows[0]._system.linear.normal) if len(windows) else 0)
             for kind in "xv"
         ]
     ]
@@ -212,7 +212,7 @@ def same_window(report, wrong, a, b, size) -> None:
         p, q = x.parameters[a.parameter], y.parameters[a.parameter]
         if x.type != y.type or not abs(p - q) <= CLOSE * size:
             wrong("ends differ", f"{a.itinerary or 'free'} of period {a.period}: {x.type} {p!r} and {y.type} {q!r}")
-        elif not abs(p - q) <= 10 * (x.error + y.error) and x.type != "limit":
+        elif not abs(p - q) <= 10 * (x.error + y.error) and x.type != "boundary":
             wrong("errors of ends", f"{x.type} {p!r} and {q!r}: {x.error:.1e}, {y.error:.1e}")
 
 

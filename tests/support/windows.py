@@ -29,7 +29,7 @@ def check_end(window, special, outwards: int) -> str | None:
     Orbits are found anew, by Newton's method from the impacts at the end, and flown by the engine. Where the orbit is
     born, Newton's method is singular: there it is the simpler orbit that is stable outside, and is not inside.
     """
-    if special.type == "limit":
+    if special.type == "boundary":
         return None
     end = special.parameters[window.parameter]
     step = BESIDE * max(1.0, abs(end))

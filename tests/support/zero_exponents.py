@@ -31,7 +31,7 @@ def free(seed, most=4):
     if n > 1 and rng.random() < 0.5:
         along = np.eye(n)[0] - np.eye(n)[1]
     numbers = {"force": rng.normal(size=n), "omega": 10 ** rng.uniform(-1, 1), "R": 0.6, "b": 1e12, "tau": 0.0}
-    return vs.Oscillator(M=np.diag(10 ** rng.uniform(-2, 2, n)), K=K, C=C, along=along, **numbers)
+    return vs.Oscillator(M=np.diag(10 ** rng.uniform(-2, 2, n)), K=K, C=C, contact_normal=along, **numbers)
 
 
 def real_parts(system):

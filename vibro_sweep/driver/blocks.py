@@ -91,7 +91,7 @@ def plan_of(scene: Scene) -> points.Plan:
         section_side=side if scene.section.kind == "impact" and "section" in scene.observe else 0.0,
         periods=scene.trajectory.periods if scene.trajectory else 0,
         parts=min(scene.record, RUNNING if "convergence" in scene.observe else BATCHES) if lyapunov else 0,
-        order=scene.order if scene.model == "map" else 0,
+        order=scene.order if scene.dynamics == "map" else 0,
     )
 
 

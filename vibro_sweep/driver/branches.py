@@ -50,7 +50,7 @@ def run_branches(
                     file.drop()
                     raise
                 evaluate = computed(grow, is_branch, pool, file, progress)
-                branching = Branches(tuple(scene.along), tuple(scene.along.values()), scene.follow)
+                branching = Branches(tuple(scene.parameter), tuple(scene.parameter.values()), scene.follow)
                 found = branching.run(seeds, scene.depth, evaluate)
             file.finish(provenance(), *_contents(scene, found))
             return True
@@ -58,7 +58,7 @@ def run_branches(
 
 def _contents(scene: Continuation, found: list[Node]) -> tuple:
     """Columns and arrays of the file."""
-    names, masses = list(scene.along), scene.system.masses
+    names, masses = list(scene.parameter), scene.system.masses
     arrays = joined([node.flat for node in found], SHAPES, names, masses)
     sections = [node.flat["section"].reshape(-1, 2 * masses) for node in found]
     together = np.concatenate(sections) if sections else np.zeros((0, 2 * masses))

@@ -57,37 +57,37 @@ def run_curves(
 
 def _contents(scene: Continuation, of_plane, workers, executor, file, progress) -> tuple:
     """Columns and arrays of the file."""
-    names, box, more = tuple(scene.along), tuple(scene.along.values()), {}
+    names, bounds, more = tuple(scene.parameter), tuple(scene.parameter.values()), {}
     with workers_of(workers, executor) as pool:
         evaluate = computed(trace, is_curve, pool, file, progress)
         if of_plane is not None:
             probed = computed(probe, is_probe, pool, file, progress)
-            found = explain(*of_plane, names, box, scene.of, scene.depth, probed, evaluate)
+            found = explain(*of_plane, names, bounds, scene.of, scene.depth, probed, evaluate)
             curves, more = found.curves, edges_in_file(of_plane[0], found)
         else:
             try:
-                starts = _starts(scene, names, box, pool, file, progress)
+                starts = _starts(scene, names, bounds, pool, file, progress)
             except NoOrbitError:
                 file.drop()
                 raise
-            curves = Curves(names, box, scene.of).run(starts, scene.depth, evaluate)
+            curves = Curves(names, bounds, scene.of).run(starts, scene.depth, evaluate)
     arrays = joined([one.flat for one in curves], SHAPES, list(names), scene.system.masses)
     held = columns_of(CHART, list(names), scene.system, OF_EDGES if more else ())
     return held, arrays | where_met(curves, arrays["branch_special"]) | more
 
 
-def _starts(scene: Continuation, names, box, pool, file, progress) -> list[Seed]:
-    """Where curves begin, within the box."""
+def _starts(scene: Continuation, names, bounds, pool, file, progress) -> list[Seed]:
+    """Where curves begin, within the bounds."""
     on_branches = scene.origin in BY_BRANCHES
     specials = _on_branches(scene, pool, file, progress) if on_branches else specials_of(scene, file, pool)
     found = [seed_at(special, names) for special in specials if special.type in scene.of]
-    lo, hi = np.transpose(box)
+    lo, hi = np.transpose(bounds)
     return [one for one in found if one is not None and np.all((lo <= (at := one.place(names))) & (at <= hi))]
 
 
 def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint]:
     """All special points of the branches of the scene's orbits along its first number."""
-    key, bounds = next(iter(scene.along.items()))
+    key, bounds = next(iter(scene.parameter.items()))
     keep = computed(grow, is_branch, pool, file, progress)
 
     def evaluate(names, jobs):

@@ -84,7 +84,7 @@ def _fastest(flat: np.ndarray) -> np.ndarray:
 def _contact_masses(block: Block, shape: tuple[int, int]) -> np.ndarray:
     """1/(n^T M^-1 n) of each point, of the shape of the steps."""
     each = linears(block.system, block.axes)
-    masses = np.array([1 / (q.along @ np.linalg.solve(q.M, q.along)) for q in each.flat])
+    masses = np.array([1 / (q.normal @ np.linalg.solve(q.M, q.normal)) for q in each.flat])
     if block.follow:
         return masses.reshape(len(each), -1)[:: -1 if block.reverse else 1]
     return np.repeat(masses.reshape(1, -1), shape[1] // masses.size, axis=1)

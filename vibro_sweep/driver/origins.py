@@ -48,7 +48,7 @@ class Source(NamedTuple):
 
 def source_of(scene: Continuation) -> Source:
     """Raises ValueError where the file that a scene begins from is of another oscillator than the scene."""
-    free = {name: lo for name, (lo, _) in scene.along.items()}
+    free = {name: lo for name, (lo, _) in scene.parameter.items()}
     if scene.origin == "sweep":
         with store.contents(Path(scene.begin)) as data:
             if "kind" in data.attrs:
@@ -71,10 +71,10 @@ def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
 
     A phase `grazing` that changes with what is followed is none of them.
     """
-    found = {name: value for name, value in source.system.parameters().items() if name not in scene.along}
-    ends = [source.system.replace(**{name: end}) for name, limits in scene.along.items() for end in limits]
+    found = {name: value for name, value in source.system.parameters().items() if name not in scene.parameter}
+    ends = [source.system.replace(**{name: end}) for name, limits in scene.parameter.items() for end in limits]
     held = {k: v for k, v in found.items() if k != "tau" or all(end.parameters()["tau"] == v for end in ends)}
-    return {"parameters": list(scene.along)} | held | ({"source": source.identity} if source.identity else {})
+    return {"parameters": list(scene.parameter)} | held | ({"source": source.identity} if source.identity else {})
 
 
 def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[Seed]:
@@ -82,7 +82,7 @@ def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[S
 
     Raises NoOrbitError where there is none.
     """
-    key, (lo, hi) = next(iter(scene.along.items()))
+    key, (lo, hi) = next(iter(scene.parameter.items()))
     if scene.origin == "sweep":
         orbits = _from_sweep(scene, key, file, pool)
     else:
@@ -121,8 +121,8 @@ def _rows(scene: Continuation, data: Contents) -> list[Row]:
 
     All rows of a plane whose keys are both followed. Raises ValueError.
     """
-    rows = rows_in(data, next(iter(scene.along)))
-    numbers = {name: value for name, value in scene.system.parameters().items() if name not in scene.along}
+    rows = rows_in(data, next(iter(scene.parameter)))
+    numbers = {name: value for name, value in scene.system.parameters().items() if name not in scene.parameter}
     found = [row for row in rows if all(numbers.get(name, value) == value for name, value in row.held.items())]
     if not found:
         held = ", ".join(f"{name} = {numbers[name]!r}" for name in rows[0].held)
@@ -136,7 +136,7 @@ def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | No
         rows = _rows(scene, data)
     orbits = []
     for found in _chosen(scene, cover_of(rows, file, pool)):
-        lo, hi = np.clip(found.ends, *scene.along[key])
+        lo, hi = np.clip(found.ends, *scene.parameter[key])
         value = float(np.clip(found.flat["value"][found.flat["branch_origin"]], lo, hi))
         system = found.system.replace(**{key: value})
         orbit = orbit_of(system, solution_in(found.flat, value, system))
@@ -147,7 +147,7 @@ def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | No
 
 def _chosen(scene: Continuation, cover: Cover) -> list[Found]:
     """The windows from which a scene begins, in the order of the sweep: all, or the largest within its range."""
-    found, (lo, hi) = cover.found, next(iter(scene.along.values()))
+    found, (lo, hi) = cover.found, next(iter(scene.parameter.values()))
     if scene.largest is None:
         return found
     widths = np.array([np.ptp(np.clip(one.ends, lo, hi)) for one in found])
@@ -184,7 +184,7 @@ def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> lis
         return [special]
     with store.contents(Path(scene.begin)) as data:
         rows = _rows(scene, data)
-    key = next(iter(scene.along))
+    key = next(iter(scene.parameter))
     chosen = _chosen(scene, cover_of(rows, file, pool))
     return [special_point(one.flat, end, key, one.system) for one in chosen for end in (0, 1)]
 

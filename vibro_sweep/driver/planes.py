@@ -21,7 +21,7 @@ def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
     """
     if scene.origin != "sweep":
         return None
-    names = list(scene.along)
+    names = list(scene.parameter)
     with store.contents(scene.begin) as data:
         keys = [str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"])]
         if len(keys) != 2:
@@ -29,7 +29,8 @@ def plane_of(scene: Continuation) -> tuple[Plane, np.ndarray, Any] | None:
         check_data(data)
         if sorted(keys) != sorted(names):
             raise SourceError(
-                f"continue.along: {', '.join(names)} is not allowed; {scene.begin} is a plane of {cut(', '.join(keys))}"
+                f"continue.parameter: {', '.join(names)} is not allowed; "
+                f"{scene.begin} is a plane of {cut(', '.join(keys))}"
             )
         if scene.largest is not None:
             raise SourceError(

@@ -56,7 +56,7 @@ def run(
     check_how(workers, executor, progress, mode)
     if isinstance(scene, Scene):
         return run_sweep(scene, output, workers, executor, progress, mode)
-    follow = run_branches if len(scene.along) == 1 else run_curves
+    follow = run_branches if len(scene.parameter) == 1 else run_curves
     with given_or_bar(progress, 0) as tell:
         computed = follow(scene, output, workers, executor, tell, mode)
     return _report(output, computed)

@@ -33,7 +33,7 @@ def _random(block: Block, count: int, masses: int) -> np.ndarray:
     Of one stop alone with b < 0 these x_i are all behind it, and are drawn as far away on its free side.
     """
     each, seed = block.starts
-    along, stops = block.system.linear.along, block.system.options.get("stops", "both")
+    along, stops = block.system.linear.normal, block.system.options.get("stops", "both")
     numbers = {"offset": np.zeros(block.indices.shape)} | block.parameters
     result = np.empty((count, block.part.stop - block.part.start, 2 * masses))
     for n, place in enumerate(np.ndindex(block.indices.shape)):

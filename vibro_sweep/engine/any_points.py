@@ -31,7 +31,7 @@ def kind_of(linears: Iterable[Linear]) -> Kind:
     """What kernels must be compiled for: oscillators with the same number of masses."""
     linears = list(linears)
     constant = any(np.any(q.constant) or np.any(origin_of(q)) for q in linears)
-    return Kind(len(linears[0].along), constant, False, all(is_own(q) for q in linears))
+    return Kind(len(linears[0].normal), constant, False, all(is_own(q) for q in linears))
 
 
 def any_points(linears: np.ndarray, kind: Kind, frames: bool = True) -> np.ndarray:
@@ -39,7 +39,7 @@ def any_points(linears: np.ndarray, kind: Kind, frames: bool = True) -> np.ndarr
     known, result = {}, np.zeros(linears.shape, point_of(kind))
     for place in np.ndindex(linears.shape):
         q = linears[place]
-        motion = (q.M, q.K, q.C, q.along, q.sine, q.cosine, q.constant, q.omega, q.tau, q.middle)
+        motion = (q.M, q.K, q.C, q.normal, q.sine, q.cosine, q.constant, q.omega, q.tau, q.middle)
         key = b"".join(np.asarray(value, float).tobytes() for value in motion)
         if key not in known:
             known[key] = _point(q, kind, frames)
@@ -54,11 +54,11 @@ def grazing_points(linears: np.ndarray, expand_at: float | None) -> np.ndarray:
 
     expand_at : the gap there, in place of the exact one
     """
-    result = np.full((*linears.shape, 2 * len(linears.flat[0].along)), np.nan)
+    result = np.full((*linears.shape, 2 * len(linears.flat[0].normal)), np.nan)
     for place in np.ndindex(linears.shape):
         q = linears[place]
         if steady_gain(q):
-            state = np.kron(coordinates(q.along, held_least(q))[0], np.eye(2)) @ grazing_state(q)
+            state = np.kron(coordinates(q.normal, held_least(q))[0], np.eye(2)) @ grazing_state(q)
             state[0] = state[0] if expand_at is None else expand_at
             result[place] = state
     return result

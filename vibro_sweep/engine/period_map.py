@@ -124,7 +124,7 @@ class PeriodMap:
         return Equations(
             here.A, np.array([moved[p].A for p in moving]).reshape(-1, size, size),
             here.held, np.array([moved[p].held for p in moving]).reshape(-1, size, size), states + moving,
-            float(rate), q.omega, np.array(q.along, float), here.push, across - here.push * (q.along @ across),
+            float(rate), q.omega, np.array(q.normal, float), here.push, across - here.push * (q.normal @ across),
             stops, restitution,
             in_columns([here.push, *(one.push for one in moved)]),
             in_columns([stops, *(np.array([slope.low, slope.high], float) for slope in slopes)]),
@@ -180,23 +180,23 @@ class PeriodMap:
 
     def _discontinuity_map(self, start: np.ndarray, halves: int, equations: Equations):
         engine, (n, states) = self._engine, start.shape
-        columns, masses = len(equations.omega_slopes), len(equations.along)
+        columns, masses = len(equations.omega_slopes), len(equations.normal)
         slopes = self._slopes(columns > states)
         d_graze, d_pull = np.zeros((2, states, columns))
         parameter = np.full(columns, -1)
         parameter[equations.columns] = np.arange(len(equations.columns))
         rows = slice(1, states, 2)
-        pull = equations.omega * (equations.along @ equations.A[rows, :states])
+        pull = equations.omega * (equations.normal @ equations.A[rows, :states])
         for j, slope in enumerate(slopes, states):
             d_graze[:, j] = grazing_state_slopes(self._linear, slope)
             if self.expand_at is not None:
-                d_graze[:, j] -= self._up_to(d_graze[0::2, j] @ equations.along, equations.push)
-                change = self.expand_at - grazing_state(self._linear)[0::2] @ equations.along
+                d_graze[:, j] -= self._up_to(d_graze[0::2, j] @ equations.normal, equations.push)
+                change = self.expand_at - grazing_state(self._linear)[0::2] @ equations.normal
                 d_graze[:, j] += self._up_to(change, equations.push_slopes[:, j])
             d_pull[:, j] = slope.omega * pull / equations.omega
             if parameter[j] >= 0:
                 moved = equations.A_p[parameter[j]]
-                d_pull[:, j] += equations.omega * (equations.along @ moved[rows, :states])
+                d_pull[:, j] += equations.omega * (equations.normal @ moved[rows, :states])
         stops = self.system.options.get("stops", "both")  # of a model that always has both
         expansion = Expansion(
             self.order, stops != "left", stops != "right", self.graze, d_graze, pull, d_pull, parameter
@@ -214,7 +214,7 @@ class PeriodMap:
         """X* (2 N,), the point at which the discontinuity mapping is expanded."""
         state = grazing_state(self._linear)
         if self.expand_at is not None:
-            state += self._up_to(self.expand_at - self._linear.along @ state[0::2], motion(self._linear).push)
+            state += self._up_to(self.expand_at - self._linear.normal @ state[0::2], motion(self._linear).push)
         return state
 
     @staticmethod
@@ -225,7 +225,7 @@ class PeriodMap:
 
 def _scratch(e: Equations, columns: int) -> tuple:
     """z, dz, bend and w of `differentiate`."""
-    size, masses = len(e.A), len(e.along)
+    size, masses = len(e.A), len(e.normal)
     return np.empty(size), np.empty((size, columns)), np.empty((2, masses)), new_scratch(size, len(e.columns))
 
 

@@ -30,12 +30,12 @@ class AnyOscillator:
     @property
     def masses(self) -> int:
         """N."""
-        return len(self.linear.along)
+        return len(self.linear.normal)
 
     @property
     def gap_is_x1(self) -> bool:
         """Whether the contact is that of mass 1 with a wall."""
-        along = self.linear.along
+        along = self.linear.normal
         return bool(along[0] == 1 and not along[1:].any())
 
     @property

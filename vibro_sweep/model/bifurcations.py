@@ -43,7 +43,7 @@ TYPES = (
     Bifurcation("sticking", "a rest on a stop begins, ends or is interrupted",
                 "ST", "sticking", "X", "#446644", "#9600fa", condition="stick"),
     Bifurcation("closed", "the branch comes back to itself"),
-    Bifurcation("limit", "end of the range that was looked at"),
+    Bifurcation("boundary", "end of the bounds within which it was followed"),
     Bifurcation("failed", "the branch could not be followed any further"),
 )  # fmt: skip
 BY_NAME = {one.name: one for one in TYPES}
@@ -110,7 +110,7 @@ CODIMENSION_TWO = (
     Point("sticking_graze", "STGR", "another impact grazes at the onset of sticking",
           (("stick", "vanishes"), ("stick", "touches"))),
     Point("closed", "", "the curve comes back to itself"),
-    Point("limit", "", "edge of the box that was looked at"),
+    Point("boundary", "", "boundary of the region that was looked at"),
     Point("failed", "", "the curve could not be followed any further"),
 )  # fmt: skip
 CODES_OF_CURVES = {one.name: code for code, one in enumerate(CODIMENSION_TWO)}

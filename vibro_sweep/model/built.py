@@ -16,7 +16,7 @@ from vibro_sweep.model.units import Units
 
 BUILD = "build"  # the `type` of files of such sweeps
 STORED = {  # of a Linear, with the symbol that it has in files
-    "M": "M", "K": "K", "C": "C", "along": "n", "constant": "f_0", "sine": "f_s", "cosine": "f_c",
+    "M": "M", "K": "K", "C": "C", "normal": "n", "constant": "f_0", "sine": "f_s", "cosine": "f_c",
 }  # fmt: skip
 
 
@@ -115,7 +115,7 @@ def stored_names(masses: int) -> dict[str, Parameter]:
     """These, as files describe them."""
     square = [f"{i}{j}" for i in range(1, masses + 1) for j in range(i, masses + 1)]
     places = {field: square if field in ("M", "K", "C") else [f"{i}" for i in range(1, masses + 1)] for field in STORED}
-    units = {"M": "kg", "K": "N m-1", "C": "N s m-1", "along": "1"}
+    units = {"M": "kg", "K": "N m-1", "C": "N s m-1", "normal": "1"}
     texts = {"low": "left stop", "high": "right stop", "R_low": "restitution, left", "R_high": "restitution, right"}
     texts |= {"omega": "forcing frequency", "tau": "forcing phase"}
     named = {

@@ -30,12 +30,12 @@ def confinement_of(q: Linear, contact: Contact) -> Confinement:
         turning = amplitudes(q) * np.exp(1j * q.tau)
     except np.linalg.LinAlgError:
         return nothing
-    swing = abs(q.along @ turning)
+    swing = abs(q.normal @ turning)
     if not np.isfinite(swing):
         return nothing
     steady, form = np.empty(2 * n), np.zeros((2 * n, 2 * n))
     steady[0::2], steady[1::2] = contact.P @ (turning.real + rest), contact.P @ (1j * q.omega * turning).real
-    compliance = q.along @ np.linalg.solve(q.K, q.along)
+    compliance = q.normal @ np.linalg.solve(q.K, q.normal)
     form[0::2, 0::2] = compliance * contact.back.T @ q.K @ contact.back
     form[1::2, 1::2] = compliance * contact.back.T @ q.M @ contact.back
-    return Confinement(steady, float(q.along @ rest), float(swing), form)
+    return Confinement(steady, float(q.normal @ rest), float(swing), form)

@@ -27,7 +27,7 @@ class Natural(NamedTuple):
     masses: np.ndarray  # (N,): diagonal of the mass matrix
     stiffness: np.ndarray  # (N, N)
     damping: np.ndarray  # (N, N)
-    along: np.ndarray  # (N,): the gap is along . w
+    normal: np.ndarray  # (N,): the gap is normal . w
     to_contact: np.ndarray | None  # (N, N): q of w; None if they are the same
     of_masses: np.ndarray | None  # (N, N): L^-1 of M = L L^T; None where M is diagonal and w = x
 
@@ -52,7 +52,7 @@ class Contact(NamedTuple):
 
 def contact_coordinates(q: Linear) -> Contact:
     """The oscillator in contact coordinates."""
-    n, origin = len(q.along), origin_of(q)
+    n, origin = len(q.normal), origin_of(q)
     if _same(q):
         eye, masses = np.eye(n), q.M.diagonal()[:, None]
         stiffness, damping = q.K / masses, q.C / masses
@@ -60,7 +60,7 @@ def contact_coordinates(q: Linear) -> Contact:
         held = np.concatenate([-stiffness, -damping, force], -1)
         held[0] = 0.0
         return Contact(eye, eye, origin, eye[0], stiffness, damping, force, held)
-    P, back = coordinates(q.along, held_least(q))
+    P, back = coordinates(q.normal, held_least(q))
     push = push_of(q, P)
     stiffness, damping = (P @ by_mass(q.M, matrix @ back) for matrix in (q.K, q.C))
     forces = np.stack([q.sine, q.cosine, rest_force(q, origin)], -1)
@@ -76,7 +76,7 @@ def is_own(q: Linear) -> bool:
 
 
 def _same(q: Linear) -> bool:
-    return bool(q.along[0] == 1) and np.count_nonzero(q.along) == 1 and is_diagonal(q.M)
+    return bool(q.normal[0] == 1) and np.count_nonzero(q.normal) == 1 and is_diagonal(q.M)
 
 
 def by_mass(M: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -92,7 +92,7 @@ def held_least(q: Linear) -> int:
     """The mass that the gap moves with the least force, by its own spring, damper and mass alone."""
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         size = np.abs(np.diag(q.K)) + q.omega * np.abs(np.diag(q.C)) + q.omega * q.omega * np.abs(np.diag(q.M))
-        return int(np.nanargmin(np.where(q.along != 0, size / q.along / q.along, np.inf)))
+        return int(np.nanargmin(np.where(q.normal != 0, size / q.normal / q.normal, np.inf)))
 
 
 def coordinates(along: np.ndarray, spare: int) -> tuple[np.ndarray, np.ndarray]:
@@ -110,20 +110,20 @@ def coordinates(along: np.ndarray, spare: int) -> tuple[np.ndarray, np.ndarray]:
 
 def push_of(q: Linear, P: np.ndarray) -> np.ndarray:
     """p (N,): what an impulse that changes the velocity of the gap by 1 does to q'."""
-    push = by_mass(q.M, q.along[:, None])[:, 0]
-    push = P @ push / (q.along @ push)
+    push = by_mass(q.M, q.normal[:, None])[:, 0]
+    push = P @ push / (q.normal @ push)
     push[0] = 1.0
     return push
 
 
 def origin_of(q: Linear) -> np.ndarray:
     """x0: at rest with the gap in the middle of the stops, as nearly as rounding lets it be; 0 if that lies between."""
-    n, b = len(q.along), min(abs(q.middle - q.low), abs(q.high - q.middle))
+    n, b = len(q.normal), min(abs(q.middle - q.low), abs(q.high - q.middle))
     if not is_far(q.middle, b):
         return np.zeros(n)
-    bordered = np.block([[q.K, q.along[:, None]], [q.along[None], np.zeros((1, 1))]])
+    bordered = np.block([[q.K, q.normal[:, None]], [q.normal[None], np.zeros((1, 1))]])
     scale = 1 / np.sqrt(np.append(np.maximum(np.abs(np.diag(q.K)), q.omega * q.omega * np.diag(q.M)), 1.0))
-    scale[-1] = 1 / max(np.abs(q.along * scale[:-1]).max(), 1e-300)
+    scale[-1] = 1 / max(np.abs(q.normal * scale[:-1]).max(), 1e-300)
     found = np.linalg.lstsq(bordered * np.outer(scale, scale), np.append(q.constant, q.middle) * scale, rcond=None)[0]
     return (found * scale)[:n]
 
@@ -144,7 +144,7 @@ def distance(q: Linear, origin: np.ndarray, gap: float) -> float:
     """`gap` as seen from x0, rounded once."""
     if not (origin.any() and np.isfinite(gap)):
         return gap
-    return exact_sum([gap, *(-q.along)], [1.0, *origin])
+    return exact_sum([gap, *(-q.normal)], [1.0, *origin])
 
 
 def exact_sum(a, b) -> float:
@@ -157,10 +157,10 @@ def natural_coordinates(q: Linear, contact: Contact) -> Natural:
     if is_diagonal(q.M):
         masses = np.diag(q.M).astype(float)
         to_contact = None if np.array_equal(contact.P, np.eye(len(masses))) else contact.P
-        return Natural(masses, by_mass(q.M, q.K), by_mass(q.M, q.C), q.along.astype(float), to_contact, None)
+        return Natural(masses, by_mass(q.M, q.K), by_mass(q.M, q.C), q.normal.astype(float), to_contact, None)
     inverse = np.linalg.inv(np.linalg.cholesky(q.M))
     stiffness, damping = (inverse @ matrix @ inverse.T for matrix in (q.K, q.C))
-    return Natural(np.ones(len(inverse)), stiffness, damping, inverse @ q.along, contact.P @ inverse.T, inverse)
+    return Natural(np.ones(len(inverse)), stiffness, damping, inverse @ q.normal, contact.P @ inverse.T, inverse)
 
 
 def flight_matrix(stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:

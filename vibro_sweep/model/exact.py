@@ -15,8 +15,8 @@ from vibro_sweep.model.linear import Linear
 
 def exact_motion(q: Linear, contact: Contact) -> tuple[np.ndarray, np.ndarray]:
     """(N, 2 N + 3) q'' as a function of (q, q', sin, cos, 1): rounded, and what that leaves."""
-    n, spare = len(q.along), held_least(q)
-    M, K, C, along, origin = (_fractions(one) for one in (q.M, q.K, q.C, q.along, contact.origin))
+    n, spare = len(q.normal), held_least(q)
+    M, K, C, along, origin = (_fractions(one) for one in (q.M, q.K, q.C, q.normal, contact.origin))
     others = [i for i in range(n) if i != spare]
 
     def by_coordinates(matrix):

@@ -57,10 +57,10 @@ def frame_of(natural: Natural, omega: float) -> Frame:
     K, C = (_in_the_metric(natural, matrix) for matrix in (natural.stiffness, natural.damping))
     planes = _modes(root, K, C)
     if planes is None:
-        planes = _planes(A, root, K, C, natural.along)
+        planes = _planes(A, root, K, C, natural.normal)
     eta, square, seconds, rounding = planes
-    effective = 1 / (natural.along @ (natural.along / natural.masses))
-    order = np.argsort(np.abs(natural.along @ seconds[1::2]) * np.sqrt(effective) > UNSEEN, kind="stable")
+    effective = 1 / (natural.normal @ (natural.normal / natural.masses))
+    order = np.argsort(np.abs(natural.normal @ seconds[1::2]) * np.sqrt(effective) > UNSEEN, kind="stable")
     eta, square, seconds = eta[order], square[order], seconds[:, order]
     product = square + eta**2
     scale = np.maximum(np.sqrt(np.abs(square)), LEAST_SCALE * np.sqrt(np.maximum(product, 0)))
@@ -70,7 +70,7 @@ def frame_of(natural: Natural, omega: float) -> Frame:
     back[:, 0::2] = (A @ seconds + eta * seconds) / scale
     parted = np.linalg.cond(back) < NO_PLANES
     if natural.to_contact is not None:
-        unseen = np.abs(natural.along @ seconds[0::2]) <= NO_PART * (np.abs(natural.along) @ np.abs(seconds[0::2]))
+        unseen = np.abs(natural.normal @ seconds[0::2]) <= NO_PART * (np.abs(natural.normal) @ np.abs(seconds[0::2]))
         back = np.kron(natural.to_contact, np.eye(2)) @ back
         back[0, 1::2][unseen] = 0.0
     return Frame(eta, square, scale, rounding, np.linalg.inv(back) if parted else np.full(back.shape, np.nan), back)

@@ -23,13 +23,13 @@ from vibro_sweep.model.units import ALLOWED, Units, units_from
 class Oscillator(AnyOscillator):
     """M x'' + C x' + K x = constant + omega^force_power (force sin(omega t + tau) + force_cos cos(omega t + tau)).
 
-    The stops keep the gap g = along . x from offset - b to offset + b; an impact there takes g' to -R g'.
+    The stops keep the gap g = n . x, n the contact normal, from offset - b to offset + b; an impact takes g' to -R g'.
 
     Parameters
     ----------
     M, K : (N, N), symmetric; M positive definite, K positive semidefinite
     C, modal_damping, rayleigh : at most one; a matrix as K, a ratio for each mode, alpha and beta of alpha M + beta K
-    force, force_cos, constant, along : (N,); a force of 0 acts on no mass
+    force, force_cos, constant, contact_normal : (N,); a force of 0 acts on no mass
     R_left : of the left stop; left out: R
     tau : phase in radians, or "grazing": where the gap of the free motion is largest at t = 0
     stops : both, right, left; b may be <= 0 where there is one
@@ -42,7 +42,7 @@ class Oscillator(AnyOscillator):
     def __init__(
         self, M: ArrayLike, K: ArrayLike, C: ArrayLike | None = None, *, modal_damping: ArrayLike | None = None,
         rayleigh: ArrayLike | None = None, force: ArrayLike = 0, force_cos: ArrayLike = 0, constant: ArrayLike = 0,
-        force_power: float = 0, along: ArrayLike, omega: float, b: float, offset: float = 0.0, R: float,
+        force_power: float = 0, contact_normal: ArrayLike, omega: float, b: float, offset: float = 0.0, R: float,
         R_left: float | None = None, tau: float | Literal["grazing"] = "grazing",
         stops: Literal["both", "right", "left"] = "both",
         units: Literal["SI"] | ArrayLike | None = None,

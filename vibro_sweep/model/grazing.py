@@ -137,7 +137,9 @@ def grazing(system: AnyOscillator) -> Grazing:
     q = system.linear
     offset = getattr(system, "offset", 0.0)
     rest = static_state(q)
-    middle, size = (float(q.along @ rest), float(np.abs(q.along * rest).sum())) if rest is not None else (math.nan,) * 2
+    middle, size = (
+        (float(q.normal @ rest), float(np.abs(q.normal * rest).sum())) if rest is not None else (math.nan,) * 2
+    )
     if abs(middle - offset) <= ROUNDING * size:  # the same, but for the rounding of the static state
         middle = offset
     right, left = touch.b + (middle - offset), touch.b - (middle - offset)
@@ -173,7 +175,7 @@ def _of_any(system: AnyOscillator) -> Grazing:
     determinant = float(left_over.prod().real) if unique else 0.0
     gain = steady_gain(q)
     if gain is None:
-        nowhere = (math.nan,) * 2 * len(q.along)
+        nowhere = (math.nan,) * 2 * len(q.normal)
         return Grazing(math.nan, 0.0, nowhere, determinant, False, math.nan, math.nan)
     tau = grazing_phase(q)
     turned = amplitudes(q) * np.exp(1j * tau)
@@ -189,6 +191,6 @@ def _free(q: Linear) -> bool:
 
 def rates(q: Linear) -> np.ndarray:
     """The 2N roots lambda of det(lambda^2 M + lambda C + K) = 0."""
-    n = len(q.along)
+    n = len(q.normal)
     inverse = np.linalg.inv(q.M)
     return np.linalg.eigvals(np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ q.K, -inverse @ q.C]]))

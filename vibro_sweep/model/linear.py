@@ -18,7 +18,7 @@ from vibro_sweep.model.errors import ArgumentTypeError
 from vibro_sweep.model.refusals import not_allowed
 
 DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
-FORCED = ("M", "K", "C", "along", "constant", "sine", "cosine", "omega")  # fields that move the steady motion
+FORCED = ("M", "K", "C", "normal", "constant", "sine", "cosine", "omega")  # fields that move the steady motion
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 
 
@@ -28,7 +28,7 @@ class Linear(NamedTuple):
     M: np.ndarray  # (N, N)
     K: np.ndarray  # (N, N)
     C: np.ndarray  # (N, N)
-    along: np.ndarray  # (N,): n of the gap n.x
+    normal: np.ndarray  # (N,): n of the gap n.x
     constant: np.ndarray  # (N,)
     sine: np.ndarray  # (N,)
     cosine: np.ndarray  # (N,)
@@ -178,7 +178,7 @@ def grazing_phase(q: Linear) -> float:
 def steady_gain(q: Linear) -> complex | None:
     """G of the steady gap g_s + Re(G e^{i(omega t + tau)}); None where there is no steady motion."""
     try:
-        gain = complex(q.along @ amplitudes(q))
+        gain = complex(q.normal @ amplitudes(q))
     except np.linalg.LinAlgError:
         return None
     return gain if np.isfinite(gain) and static_state(q) is not None else None
@@ -190,7 +190,7 @@ def grazing_phase_slope(q: Linear, slope: Linear) -> float:
     gain = steady_gain(q)
     if gain is None:
         return 0.0
-    return -float(np.imag((slope.along @ amplitudes(q) + q.along @ amplitude_slopes(q, slope)) / gain))
+    return -float(np.imag((slope.normal @ amplitudes(q) + q.normal @ amplitude_slopes(q, slope)) / gain))
 
 
 def static_state(q: Linear) -> np.ndarray | None:
@@ -211,10 +211,10 @@ def held_state(q: Linear) -> np.ndarray:
     Held: the gap is zero's where that is between the stops; else that of the stop, and no other force acts along n.
     """
     gap = min(max(0.0, q.low), q.high)
-    n = len(q.along)
+    n = len(q.normal)
     if gap == 0.0:
         return np.zeros(n)
-    bordered = np.block([[q.K, q.along[:, None]], [q.along[None], np.zeros((1, 1))]])
+    bordered = np.block([[q.K, q.normal[:, None]], [q.normal[None], np.zeros((1, 1))]])
     return np.linalg.lstsq(bordered, np.append(q.constant, gap), rcond=None)[0][:n]
 
 

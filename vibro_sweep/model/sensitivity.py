@@ -23,7 +23,9 @@ def motion(q: Linear) -> Motion:
     """M x'' = ..., between the stops and on one: x'' less p n.x'' there, with p = M^-1 n/(n.M^-1 n)."""
     acceleration = np.linalg.solve(q.M, _forces(q))
     push = _push(q)
-    return Motion(_by_phase(q, acceleration), _by_phase(q, acceleration - np.outer(push, q.along @ acceleration)), push)
+    return Motion(
+        _by_phase(q, acceleration), _by_phase(q, acceleration - np.outer(push, q.normal @ acceleration)), push
+    )
 
 
 def motion_slopes(q: Linear, slope: Linear) -> Motion:
@@ -31,15 +33,15 @@ def motion_slopes(q: Linear, slope: Linear) -> Motion:
     acceleration, push = np.linalg.solve(q.M, _forces(q)), _push(q)
     moved = np.linalg.solve(q.M, _forces(slope) - slope.M @ acceleration)
     across = np.linalg.solve(q.M, slope.M @ push)
-    d_push = push * (q.along @ across) - across
-    held = acceleration - np.outer(push, q.along @ acceleration)
-    d_held = moved - np.outer(push, q.along @ moved) - np.outer(d_push, q.along @ acceleration)
+    d_push = push * (q.normal @ across) - across
+    held = acceleration - np.outer(push, q.normal @ acceleration)
+    d_held = moved - np.outer(push, q.normal @ moved) - np.outer(d_push, q.normal @ acceleration)
     return Motion(_by_phase_slope(q, slope, acceleration, moved), _by_phase_slope(q, slope, held, d_held), d_push)
 
 
 def _forces(q: Linear) -> np.ndarray:
     """M x'' as a function of z, (N, 2 N + 3)."""
-    n = len(q.along)
+    n = len(q.normal)
     result = np.empty((n, 2 * n + 3))
     result[:, 0 : 2 * n : 2], result[:, 1 : 2 * n : 2] = -q.K, -q.C
     result[:, 2 * n :] = np.stack([q.sine, q.cosine, q.constant], -1)
@@ -47,12 +49,12 @@ def _forces(q: Linear) -> np.ndarray:
 
 
 def _push(q: Linear) -> np.ndarray:
-    push = np.linalg.solve(q.M, q.along)
-    return push / (q.along @ push)
+    push = np.linalg.solve(q.M, q.normal)
+    return push / (q.normal @ push)
 
 
 def _by_phase(q: Linear, acceleration: np.ndarray) -> np.ndarray:
-    n = len(q.along)
+    n = len(q.normal)
     A = np.zeros((2 * n + 3, 2 * n + 3))
     A[np.arange(0, 2 * n, 2), np.arange(1, 2 * n, 2)] = 1 / q.omega
     A[1 : 2 * n : 2] = acceleration / q.omega
@@ -61,7 +63,7 @@ def _by_phase(q: Linear, acceleration: np.ndarray) -> np.ndarray:
 
 
 def _by_phase_slope(q: Linear, slope: Linear, acceleration: np.ndarray, moved: np.ndarray) -> np.ndarray:
-    n = len(q.along)
+    n = len(q.normal)
     A = -slope.omega / q.omega * _by_phase(q, acceleration)
     A[2 * n :] = 0
     A[1 : 2 * n : 2] += moved / q.omega
@@ -73,7 +75,7 @@ def grazing_state(q: Linear) -> np.ndarray:
 
     Infinite or NaN where there is no steady motion.
     """
-    x, n = amplitudes(q), q.along
+    x, n = amplitudes(q), q.normal
     x = x * np.exp(-1j * np.angle(n @ x))
     state = np.stack([x.real, -q.omega * x.imag], -1)
     state[:, 1] -= _push(q) * (n @ state[:, 1])  # but for rounding it is zero
@@ -83,7 +85,7 @@ def grazing_state(q: Linear) -> np.ndarray:
 def grazing_state_slopes(q: Linear, slope: Linear) -> np.ndarray:
     """Derivatives (2 N,) of `grazing_state` where q changes by `slope`."""
     x, dx = amplitudes(q), amplitude_slopes(q, slope)
-    gain = q.along @ x
+    gain = q.normal @ x
     turn = np.exp(-1j * np.angle(gain))
-    dy = (dx - 1j * x * ((q.along @ dx) / gain).imag) * turn
+    dy = (dx - 1j * x * ((q.normal @ dx) / gain).imag) * turn
     return np.stack([dy.real, -slope.omega * (x * turn).imag - q.omega * dy.imag], -1).reshape(-1)

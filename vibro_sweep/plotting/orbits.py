@@ -57,7 +57,7 @@ def _portraits(result, what):
 
 def displacements(result: Result) -> tuple[str, ...]:
     """The displacements that a trajectory of the file has; first the gap where that is not x1."""
-    gap = ("gap",) if result.along is not None else ()
+    gap = ("gap",) if result.contact_normal is not None else ()
     names = (f"x{n}" for n in range(1, MOST_MASSES + 1))
     return (*gap, *(name for name in names if f"trajectory_{name}" in result and f"trajectory_v{name[1:]}" in result))
 
@@ -80,7 +80,7 @@ def phase_portrait(result: Result):
     for ax, point in panels:
         way = path(result, point)
         first = x_name == displacements(result)[0]
-        way = way if first or result.along is not None else way.joined()
+        way = way if first or result.contact_normal is not None else way.joined()
         _line(ax, way[x_name], way[v_name], way)
         rests.along(ax, way, x_name, v_name)
         if first:
@@ -104,9 +104,9 @@ def configuration(result: Result):
         way = path(result, point).joined()
         _line(ax, way["x1"], way["x2"], way)
         rests.along(ax, way, "x1", "x2")
-        if result.along is None:
+        if result.contact_normal is None:
             _walls(ax, result, point)
-        elif not result.along[2:].any():
+        elif not result.contact_normal[2:].any():
             _slanted_walls(ax, result, point)
         _mark_sections(ax, result, point, "x1", "x2")
         ax.set(title=point.label, xlabel=symbol("x1") + result.unit("x1"), ylabel=symbol("x2") + result.unit("x2"))
@@ -117,7 +117,7 @@ def configuration(result: Result):
 def _slanted_walls(ax, result, point):
     """The stops of a contact between masses 1 and 2: n1 x1 + n2 x2 = gap."""
     frame = ax.get_xlim(), ax.get_ylim()
-    n1, n2 = result.along[:2]
+    n1, n2 = result.contact_normal[:2]
     for side, stop in result.stops(point.place).items():
         style = {"color": FAINT, "lw": 0.8, "ls": "-" if side > 0 else DASHES, "zorder": 1}
         if n2:
@@ -151,7 +151,7 @@ def poincare(result: Result):
         if np.isfinite(x).any():
             least = 0.01 * abs(result.number("b", point.place) or 0.0)
             ax.set(xlim=limits(x, least), ylim=limits(v, least))
-        if x_name == "x1" and result.along is None:
+        if x_name == "x1" and result.contact_normal is None:
             _walls(ax, result, point)
         name = before_impact if "phase" in result else at_section
         phase = r"$\omega t$ mod $2\pi$" if x_name == "phase" else None
@@ -188,8 +188,8 @@ def _mark_sections(ax, result, point, x_name, y_name):
     if "trajectory_section_x1" in result:
         names = state(result.masses)
         here = {name: result.one(f"trajectory_section_{name}", point) for name in names if _at_section(name) in result}
-        if result.along is not None:
-            here |= {name: gap_of(here, result.along, letter) for name, letter in GAP.items()}
+        if result.contact_normal is not None:
+            here |= {name: gap_of(here, result.contact_normal, letter) for name, letter in GAP.items()}
         x, y = here[x_name], here[y_name]
         ax.plot(x, y, "o", color=SECTION, markersize=3.5, label=r"$t = 0$ mod $T$", zorder=3)
 
@@ -209,13 +209,13 @@ def history(result: Result):
     fig = result.page(1.5 * len(points) + 0.9 if len(points) > 1 else 3.2, result.title("Time history"))
     grid = fig.subplots(len(points), squeeze=False, sharex=True)[:, 0]
     chosen = result.look.variable
-    gap = [] if result.along is None else ["gap"]
+    gap = [] if result.contact_normal is None else ["gap"]
     names = [chosen] if chosen else [*gap, *(name for name in coordinates(result) if name.startswith("x"))]
     styles = [{"color": INK}, {"color": RIGHT, "ls": (0, (4, 1))}, {"color": LEFT, "ls": (0, (1, 1))}, {"color": FAINT}]
     for ax, point in zip(grid, points, strict=True):
         way, stops = path(result, point), result.stops(point.place)
         for i, name in enumerate(names):
-            jumps = name.startswith("v") and (name == "v1" or result.along is not None)
+            jumps = name.startswith("v") and (name == "v1" or result.contact_normal is not None)
             shown = way if jumps else way.joined()
             ax.plot(shown.t, shown[name], label=_symbol(name), **styles[min(i, len(styles) - 1)])
             if name == displacements(result)[0]:

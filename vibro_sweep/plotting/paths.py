@@ -40,7 +40,7 @@ class Path(NamedTuple):
 
 def path(result: Result, point: Point) -> Path:
     """The trajectory of an orbit, as the file holds it."""
-    t, along = result.coordinate("time"), result.along
+    t, along = result.coordinate("time"), result.contact_normal
     names = state(result.masses)
     motion = {name: _stored(result, f"trajectory_{name}", point, len(t)) for name in names}
     jumping = before(along is not None)

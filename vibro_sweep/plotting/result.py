@@ -172,9 +172,9 @@ class Result:
         return max((int(name.partition("x")[2]) for name in names if name in self), default=2)
 
     @property
-    def along(self) -> np.ndarray | None:
+    def contact_normal(self) -> np.ndarray | None:
         """n of the gap n.x, (N,); None where that is x1."""
-        found = self.settings.get("along")
+        found = self.settings.get("contact_normal")
         return None if found is None else np.asarray(found, float)
 
     def grazing(self, key) -> dict[str, np.ndarray]:
@@ -209,7 +209,7 @@ class Result:
 
     def model(self) -> str:
         """What was iterated, for a title: nothing where it is the oscillator itself."""
-        if self.settings.get("model") != "map":
+        if self.settings.get("dynamics") != "map":
             return ""
         at = self.settings.get("expand_at")
         where = "" if at is None else f", expanded at $b = {at:.8g}$"

@@ -119,7 +119,7 @@ def grazing_of(name) -> str:
 def stop_name(result, side) -> str:
     """A stop as a line in a picture, with where it stands."""
     shifted = "offset" in result.sweep or result.settings.get("offset")
-    coordinate = symbol("x1") if result.along is None else symbol("gap")
+    coordinate = symbol("x1") if result.contact_normal is None else symbol("gap")
     where = f"{symbol('offset')[1:-1] if shifted else ''}{('+' if shifted else '') if side > 0 else '-'}b"
     return f"{'right' if side > 0 else 'left'} stop, ${coordinate[1:-1]} = {where}$"
 

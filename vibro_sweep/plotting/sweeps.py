@@ -205,7 +205,7 @@ def section(ax, result, values, order):
             _dots(ax, values, points[:, i], count, scale, color=BRANCHES[start])
     else:
         _dots(ax, values, points, count, color=INK)
-    if name == ("x1" if result.along is None else "gap") and not at_impact:
+    if name == ("x1" if result.contact_normal is None else "gap") and not at_impact:
         _stop_lines(ax, result, values, order)
 
 

@@ -27,8 +27,8 @@ def combination_problems(form: Form, data: dict) -> list[str]:
 
 
 def _map_problems(form: Form) -> list[str]:
-    if form.model == "flow":
-        text = "belongs to `model: map`; leave it out"
+    if form.dynamics == "flow":
+        text = "belongs to `dynamics: map`; leave it out"
         return [
             problem(key, getattr(form, key), text) for key in ("order", "expand_at") if key in form.model_fields_set
         ]

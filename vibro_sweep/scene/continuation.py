@@ -20,7 +20,7 @@ from .system import kind_of, system_of
 from .written import continuation_data, yaml_of
 from .yaml_text import YAMLTextError, lines_of, read_yaml
 
-_IN_FILES = ("sweep", "branches")  # orbits of a file, which has the first number of `along`
+_IN_FILES = ("sweep", "branches")  # orbits of a file, which has the first number of `parameter`
 _AT_SYSTEM = ("state", "itinerary", "free")  # orbits of `system` itself
 BY_BRANCHES = (*_AT_SYSTEM, "grazing")  # origins of curves that are orbits; their branches have the special points
 # Keys of `from` that belong to others
@@ -34,7 +34,7 @@ class Continuation:
 
     origin : one of `ORIGINS`, and `begin` what is given with it: a state (2N,), an itinerary, a path, a period, None
     periods, special, largest : what belongs to it
-    along : name -> (lo, hi) of the number that changes, or of two in the order of the text
+    parameter : name -> (lo, hi) of the number that changes, or of two in the order of the text
     of : types of the curves in two numbers
     follow, depth : special points from which other branches are followed, and how far
     """
@@ -47,7 +47,7 @@ class Continuation:
     periods: int
     special: int | None
     largest: int | None
-    along: dict[str, tuple[float, float]]
+    parameter: dict[str, tuple[float, float]]
     of: tuple[str, ...]
     follow: tuple[str, ...]
     depth: int
@@ -58,7 +58,7 @@ class Continuation:
         return yaml_of(continuation_data(self))
 
     def replace(self, **changes) -> "Continuation":
-        """A copy with other values of `system`, `origin`, `begin`, `along` and the other attributes.
+        """A copy with other values of `system`, `origin`, `begin`, `parameter` and the other attributes.
 
         What belongs to another `origin`, as `periods`, `special` and `largest` may, is left out.
 
@@ -88,19 +88,19 @@ class Continuation:
     def __str__(self) -> str:
         """What is followed, in a few lines."""
         numbers = {name: value for name, value in self.system.numbers.items() if value is not None}
-        system = told.numbers({name: value for name, value in numbers.items() if name not in self.along})
-        ranges = ", ".join(f"{key} = {lo:g} .. {hi:g}" for key, (lo, hi) in self.along.items())
+        system = told.numbers({name: value for name, value in numbers.items() if name not in self.parameter})
+        ranges = ", ".join(f"{key} = {lo:g} .. {hi:g}" for key, (lo, hi) in self.parameter.items())
         begin = "the free motion" if self.origin == "free" else f"{self.origin} {self.begin}"
         begin += f", special point {self.special}" if self.special is not None else ""
         begin += f", its {self.largest} largest windows" if self.largest is not None else ""
-        if len(self.along) == 1:
+        if len(self.parameter) == 1:
             others = f"over {', '.join(self.follow)}, {self.depth} away at most" if self.depth else "no others"
             return f"branches in {ranges}\n  system    {system}\n  from      {begin}\n  follow    {others}"
         lines = [f"curves in {ranges}", f"  system    {system}", f"  from      {begin}"]
         lines.append(f"  of        {', '.join(self.of)}")
         if self.origin in BY_BRANCHES:
             over = f", over {', '.join(self.follow)}, {self.depth} away at most" if self.depth and self.follow else ""
-            lines.append(f"  branches  in {next(iter(self.along))}{over}, on which curves start")
+            lines.append(f"  branches  in {next(iter(self.parameter))}{over}, on which curves start")
         away = f"at points of codimension two, {self.depth} away at most" if self.depth else "none"
         return "\n".join([*lines, f"  others    {away}"])
 
@@ -131,20 +131,20 @@ def _continuation_of(data: Any, name: str, text: str) -> Continuation:
         raise SceneError(name, form_problems(error, scheme, data)) from None
     body = getattr(form, "continue")
     given, problems = _origin(getattr(body, "from"))
-    along, more = _along(body.along, list(data["continue"]["along"]))
+    ranges, more = _ranges(body.parameter, list(data["continue"]["parameter"]))
     problems += more
-    if len(along) == 1 and "of" in body.model_fields_set:
-        problems.append("continue.of: belongs to two keys of `along`; leave it out")
-    first = next(iter(along), "")
+    if len(ranges) == 1 and "of" in body.model_fields_set:
+        problems.append("continue.of: belongs to two keys of `parameter`; leave it out")
+    first = next(iter(ranges), "")
     missing = first and given[0] in _IN_FILES and getattr(form.system, first, None) is None
-    system, more = system_of(form, {first: along[first]} if missing else {}, kind, masses)
+    system, more = system_of(form, {first: ranges[first]} if missing else {}, kind, masses)
     problems += more
-    for key, limits in along.items() if system is not None else ():
+    for key, limits in ranges.items() if system is not None else ():
         problems += [line for value in limits for line in _outside(system, key, value)]
         value = system.numbers[key]
         if given[0] in _AT_SYSTEM and not limits[0] <= value <= limits[1]:
             problems.append(
-                problem(f"system.{key}", value, f"must be in continue.along: {limits[0]:g} .. {limits[1]:g}")
+                problem(f"system.{key}", value, f"must be in continue.parameter: {limits[0]:g} .. {limits[1]:g}")
             )
     if problems:
         raise SceneError(name, problems)
@@ -154,7 +154,7 @@ def _continuation_of(data: Any, name: str, text: str) -> Continuation:
     origin = getattr(body, "from")
     return Continuation(
         Path(name).stem, text, system, given[0], begin, origin.periods, origin.special, origin.largest,
-        along, body.of, body.follow, body.depth,
+        ranges, body.of, body.follow, body.depth,
     )  # fmt: skip
 
 
@@ -178,22 +178,22 @@ def _origin(origin: Form) -> tuple[tuple[str, Any], list[str]]:
     return (found[0], getattr(origin, found[0])), problems
 
 
-def _along(along: Form, keys: list[str]) -> tuple[dict[str, tuple[float, float]], list[str]]:
+def _ranges(parameter: Form, keys: list[str]) -> tuple[dict[str, tuple[float, float]], list[str]]:
     """The ranges in the order of the text, and what is wrong."""
     if not 1 <= len(keys) <= 2:
-        return {}, [problem("continue.along", keys, "must have one key, or two for curves")]
-    ranges = {key: getattr(along, key) for key in keys}
+        return {}, [problem("continue.parameter", keys, "must have one key, or two for curves")]
+    ranges = {key: tuple(getattr(parameter, key)) for key in keys}
     wrong = [
-        problem(f"continue.along.{key}.stop", limits.stop, f"must be a number > {limits.start:g}")
-        for key, limits in ranges.items()
-        if not limits.start < limits.stop
+        problem(f"continue.parameter.{key}", list(bounds), "must be two numbers, the lower end and a greater one")
+        for key, bounds in ranges.items()
+        if not (len(bounds) == 2 and bounds[0] < bounds[1])
     ]
-    return {} if wrong else {key: (limits.start, limits.stop) for key, limits in ranges.items()}, wrong
+    return {} if wrong else ranges, wrong
 
 
 def _outside(system: AnyOscillator, key: str, value: float) -> list[str]:
     try:
         system.replace(**{key: value})
     except ParameterError as error:
-        return [problem(f"continue.along.{key}", value, f"must be {error.allowed}")]
+        return [problem(f"continue.parameter.{key}", value, f"must be {error.allowed}")]
     return []

@@ -1,7 +1,7 @@
 """The form of a scene with `continue`: which branches or curves are followed, from where, along which numbers."""
 
 from collections.abc import Iterable
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, Strict, create_model
 
@@ -9,16 +9,10 @@ from vibro_sweep.model.bifurcations import CURVES, WAYS
 from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.model.state import coordinates
 
-from .fields import Form, Whole, given
+from .fields import Form, Whole
 
 ORIGINS = ("state", "itinerary", "sweep", "grazing", "free", "branches")  # keys of `from`, one of which is given
-
-
-class RangeForm(Form):
-    """From start to stop."""
-
-    start: float = given("lower end of the range")
-    stop: float = given("upper end of the range")
+PAIR: Any = {"json_schema_extra": {"minItems": 2, "maxItems": 2}}
 
 
 def _free(value):
@@ -51,11 +45,11 @@ def continue_form(numbers: Iterable[Parameter], masses: int) -> type[Form]:
         branches=(str, Field(default=None, description="a special point of a file of branches, curves or windows")),
         special=(Whole, Field(default=None, ge=0, description="of `branches`: the point's number in `info`")),
     )
-    along = create_model(
-        "AlongForm",
+    parameter = create_model(
+        "ParameterForm",
         __base__=Form,
-        __doc__="The number along which branches lead, and its range; of two, curves, and branches along the first.",
-        **{one.name: (RangeForm, Field(default=None, description=one.text)) for one in numbers},
+        __doc__="The number that changes along branches, and its bounds; of two, curves, and branches in the first.",
+        **{one.name: (list[float], Field(default=None, description=one.text, **PAIR)) for one in numbers},
     )
     return create_model(
         "ContinueForm",
@@ -63,7 +57,7 @@ def continue_form(numbers: Iterable[Parameter], masses: int) -> type[Form]:
         __doc__="Branches of periodic orbits, or curves on which they bifurcate, in place of a sweep.",
         **{
             "from": (Annotated[origin, BeforeValidator(_free)], Field(description="the orbits to begin with")),
-            "along": (along, Field(description="the number that changes; two: bifurcation curves")),
+            "parameter": (parameter, Field(description="the number that changes; two: bifurcation curves")),
             "of": (CurveWords, Field(default=CURVES, description="of two numbers: the bifurcations that are followed")),
             "follow": (Words, Field(default=WAYS, description="special points from which other branches are followed")),
             "depth": (Whole, Field(default=1, ge=0, le=100, description="how many special points away from the first")),

@@ -162,7 +162,7 @@ def _scene_form(system, numbers: Iterable[Parameter], masses: int) -> type[Form]
         __base__=Form,
         __doc__="A scene of vibro-sweep: what to compute.",
         system=(system, Field(description="the oscillator")),
-        model=(
+        dynamics=(
             Literal["flow", "map"],
             Field(
                 default="flow",
@@ -171,14 +171,14 @@ def _scene_form(system, numbers: Iterable[Parameter], masses: int) -> type[Form]
         ),
         order=(
             Whole,
-            Field(default=1, ge=1, le=2, description="with `model: map`: 1 is the paper's, 2 has the next term"),
+            Field(default=1, ge=1, le=2, description="with `dynamics: map`: 1 is the paper's, 2 has the next term"),
         ),
         expand_at=(
             float,
             Field(
                 default=None,
                 json_schema_extra={"exclusiveMinimum": 0},
-                description="with `model: map`: the clearance at which it is expanded, by default the exact b*",
+                description="with `dynamics: map`: the clearance at which it is expanded, by default the exact b*",
             ),
         ),
         sweep=(

@@ -56,7 +56,7 @@ class Scene:
     name: str
     given: str | None  # the YAML text that it was read from
     system: AnyOscillator
-    model: str
+    dynamics: str
     order: int  # of the map
     expand_at: float | None  # clearance at which the map is expanded; None: b*
     sweep: dict[str, np.ndarray]  # 0, 1 or 2 in the order of the file's dimensions; of the start: start_x1, ...
@@ -237,7 +237,7 @@ def scene_of(data: object, name: str, given: str | None = None, built: Built | N
         name=Path(name).stem,
         given=given,
         system=system,
-        model=form.model,
+        dynamics=form.dynamics,
         order=form.order,
         expand_at=form.expand_at,
         sweep=sweep,

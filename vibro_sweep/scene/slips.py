@@ -50,6 +50,9 @@ SYNONYMS = {
     "attractors": ("basins", "basin", "coexistence"),
     "map": ("mapping", "discontinuity"),
     "flow": ("oscillator", "ode", "exact"),
+    "dynamics": ("model",),
+    "contact_normal": ("along", "normal", "n"),
+    "parameter": ("along",),
     "both": ("two", "2", "left and right", "right and left", "all"),
     "up": ("yes", "true", "forward", "increasing"),
     "down": ("backward", "decreasing"),
@@ -124,6 +127,9 @@ def other_form(path: str, given: object, words: Iterable[str] = ()) -> str | Non
         return f"write values: [{given}]" if isinstance(given, (int, float)) else "write values: [6.5, 6.6, 6.7]"
     if path.startswith("sweep."):
         return _axis(key, given)
+    if path.startswith("continue.parameter."):
+        ends = list(given.values()) if isinstance(given, Mapping) else []
+        return f"write {key}: [{', '.join(map(str, ends)) if len(ends) == 2 else '3.0, 4.5'}]"
     if path == "section":
         return f"write section: {{kind: {given if given in ('phase', 'impact') else 'phase'}}}"
     if path == "orbit":

@@ -52,7 +52,7 @@ def start_problems(form: Form, sweep, system: AnyOscillator | None, masses: int)
         if name in form.start.model_fields_set:
             text = "is swept, and would have no effect here; leave it out"
             return [problem(f"start.{name}", getattr(form.start, name), text)]
-    if system is None or form.model == "map":  # points of the map may lie beyond the stops
+    if system is None or form.dynamics == "map":  # points of the map may lie beyond the stops
         return []
     if isinstance(form.start, RandomStart):
         nowhere = system.numbers.get("b", 1.0) == 0 or 0 in sweep.get("b", [])
@@ -66,7 +66,7 @@ def start_problems(form: Form, sweep, system: AnyOscillator | None, masses: int)
 
 def _behind(form: Form, sweep, system: AnyOscillator, names, swept) -> list[str]:
     """States with the gap behind a stop, at the corners of the sweep: both are linear in what is swept."""
-    along = system.linear.along
+    along = system.linear.normal
     used = [name for i, name in enumerate(names[::2]) if along[i]]
     path = next((f"sweep.{name}" for name in used if name in swept), f"start.{used[0]}")
     gaps = np.zeros(1)

@@ -41,8 +41,8 @@ def data_of(scene: "Scene") -> dict[str, Any]:
         "section": {"kind": scene.section.kind},
         "observe": sorted(scene.observe),
     }
-    if scene.model == "map":
-        data |= {"model": "map", "order": scene.order}
+    if scene.dynamics == "map":
+        data |= {"dynamics": "map", "order": scene.order}
         data |= {} if scene.expand_at is None else {"expand_at": scene.expand_at}
     if scene.section.kind == "impact":
         data["section"]["stop"] = scene.section.stop
@@ -60,16 +60,16 @@ def continuation_data(scene: "Continuation", changes: Mapping[str, Any] | None =
         data = _as_data(key, value)
         # nothing here is long: what is, is refused as a whole
         has[key] = Foreign(value) if isinstance(data, (list, dict)) and len(data) > LONGEST else data
-    begin, origin, along = has["begin"], has["origin"], has["along"]
+    begin, origin, parameter = has["begin"], has["origin"], has["parameter"]
     if origin == "state" and isinstance(begin, (list, tuple)):
         begin = dict(zip(state(len(begin) // 2), begin, strict=False))
     more = {"periods": has["periods"]} if origin in ("state", "itinerary") else {}
     more |= {"special": has["special"]} if origin == "branches" else {}
     more |= {"largest": has["largest"]} if origin == "sweep" and has["largest"] is not None else {}
-    if isinstance(along, dict):
-        along = {key: _range(limits) for key, limits in along.items()}
-    body = {"from": "free" if origin == "free" else {origin: begin, **more}, "along": along}
-    if isinstance(along, dict) and len(along) == 2:
+    if isinstance(parameter, dict):
+        parameter = {key: _listed(bounds) for key, bounds in parameter.items()}
+    body = {"from": "free" if origin == "free" else {origin: begin, **more}, "parameter": parameter}
+    if isinstance(parameter, dict) and len(parameter) == 2:
         body["of"] = _listed(has["of"])
     system = _system(scene.system, ()) if has["system"] is scene.system else has["system"]
     return {"system": system, "continue": body | {"follow": _listed(has["follow"]), "depth": has["depth"]}}
@@ -77,15 +77,6 @@ def continuation_data(scene: "Continuation", changes: Mapping[str, Any] | None =
 
 def _listed(words: object) -> object:
     return list(words) if isinstance(words, tuple) else words
-
-
-def _range(limits: object) -> object:
-    """(lo, hi) as YAML has it."""
-    return dict(zip(("start", "stop"), limits, strict=True)) if _is_pair(limits) else limits
-
-
-def _is_pair(value: object) -> bool:
-    return isinstance(value, (list, tuple)) and len(value) == 2
 
 
 def changed(data: dict[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from vibro_sweep.model.variable import Variable
 
 # the attributes of a file that hold a number, or a word, for all points (`numbers.attributes`)
 NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "record")
-WORDS = ("stops", "model", "type", "section", "section_stop")
+WORDS = ("stops", "dynamics", "type", "section", "section_stop")
 MATRIX = ("row", "column")  # the dimensions of a matrix
 # how HDF5 joins datasets and their dimensions, and how CF names coordinates
 SCALES = ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "coordinates")
@@ -67,11 +67,11 @@ def check_numbers(file: h5py.File) -> None:
         value = np.asarray(file.attrs.get(name, 0))
         if value.ndim or value.dtype.kind not in "if":
             raise ValueError(f"its attribute `{name}` is no number")
-    along = np.asarray(file.attrs.get("along", [1.0]))
+    along = np.asarray(file.attrs.get("contact_normal", [1.0]))
     if along.ndim != 1 or along.dtype.kind not in "if" or not np.isfinite(along).all():
-        raise ValueError("its attribute `along` is no list of numbers")
+        raise ValueError("its attribute `contact_normal` is no list of numbers")
     found = {name: text(file, name) for name in WORDS if name in file.attrs}
-    if found.get("model") == "map":
+    if found.get("dynamics") == "map":
         file.attrs["order"]  # without which nobody can tell what was iterated
 
 

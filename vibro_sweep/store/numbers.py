@@ -29,7 +29,7 @@ def attributes(scene: Scene) -> dict[str, Any]:
 
     The system's numbers, `tau` in radians, `b_star` (`b_right` and `b_left` where these may differ), its options but
     for matrices, and for units, which the variables have; the `type` of a model and `along` where they are not the
-    paper's; `model` with its `order` and `expand_at`, the initial state (`start_x1`, ...; of a `follow` that of its
+    paper's; `dynamics` with its `order` and `expand_at`, the initial state (`start_x1`, ...; of a `follow` that of its
     first point) unless it is random or held by a stop, `transient` and `record` in forcing periods, `section`: `phase`,
     or `impact` with `section_stop`;
     `picture` where there is one.
@@ -46,9 +46,9 @@ def attributes(scene: Scene) -> dict[str, Any]:
     if isinstance(system, Built):
         result = {name: value for name, value in result.items() if name != "tau"}
     result |= {} if system.model.name == DEFAULT else {"type": system.model.name}
-    result |= {} if system.gap_is_x1 else {"along": system.linear.along}
-    result |= {"model": scene.model}
-    if scene.model == "map":
+    result |= {} if system.gap_is_x1 else {"contact_normal": system.linear.normal}
+    result |= {"dynamics": scene.dynamics}
+    if scene.dynamics == "map":
         result |= {"order": scene.order} | ({} if scene.expand_at is None else {"expand_at": scene.expand_at})
     if scene.start.kind != "random" and not scene.held:
         state = dict(zip(start(system.masses), scene.start.state, strict=True))
@@ -128,7 +128,7 @@ def _size(q) -> float:
 
 def _middle(q) -> float:
     rest = static_state(q)
-    return math.nan if rest is None else float(q.along @ rest)
+    return math.nan if rest is None else float(q.normal @ rest)
 
 
 def slabs(scene: Scene) -> Iterator[tuple[slice, ...]]:

@@ -50,7 +50,7 @@ def result_of(curves) -> dict:
 
 def switched(curve) -> list[list[list]]:
     """Of each point of codimension two the curves that pass it, or begin there."""
-    ends = ("closed", "limit", "failed")
+    ends = ("closed", "boundary", "failed")
     return [
         [] if one.type in ends else [[start.type, labels(start.orbit)] for start in vs.switch(one)]
         for one in curve.special

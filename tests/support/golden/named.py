@@ -158,7 +158,7 @@ def curves() -> list[dict]:
 def _from_codimension_two(name: str, case: dict, one, special: dict) -> list[dict]:
     cases = []
     for j, two in enumerate(vs.bifurcation_curve(one, PLANE, BOX).special):
-        if two.type in ("closed", "limit", "failed"):
+        if two.type in ("closed", "boundary", "failed"):
             continue
         at = {"type": two.type, "parameters": dict(two.parameters)}
         boxes = [_around(two.parameters.values(), share) for share in (0.1, 0.05)]

@@ -49,7 +49,7 @@ def _differs(one: dict, other: dict, sizes) -> list[str]:
     if one["type"] not in NO_PLACE:
         for name, value in one["parameters"].items():
             apart, allowed = abs(other["parameters"][name] - value), one["error"] + other["error"]
-            if one["type"] == "limit":
+            if one["type"] == "boundary":
                 allowed = max(allowed, EDGE * sizes[name])
             if not apart <= allowed:
                 lines.append(f"{one['type']}: {name} = {value!r} moved by {apart:.1e}, errors {allowed:.1e}")

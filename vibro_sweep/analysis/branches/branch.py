@@ -72,7 +72,7 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
 
     `progress(points, value)` is called now and then with the points so far, of this way, and where they are.
 
-    A branch that comes to where the number is not allowed any more ends there, with the type "limit". What fails is
+    A branch that comes to where the number is not allowed any more ends there, with the type "boundary". What fails is
     told by `.status`.
 
     Raises ValueError for an orbit that is not ok, a name that is no number of the system, bounds that do not hold its

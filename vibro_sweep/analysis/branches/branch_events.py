@@ -21,9 +21,9 @@ ROUNDED = 1e-9  # of a step, by which rounding may put an event behind its end
 def ends_between(walk: Tracer, bounds, a: Point, b: Point) -> list[Event]:
     """What may end the branch on the way from a, which is real, to b."""
     events = []
-    for limit, side in zip(bounds, (-1, 1), strict=True):
-        if (b.value - limit) * side > 0:
-            events.append(Event("limit", _beyond(limit, side, a), limit=limit))
+    for boundary, side in zip(bounds, (-1, 1), strict=True):
+        if (b.value - boundary) * side > 0:
+            events.append(Event("boundary", _beyond(boundary, side, a), boundary=boundary))
     for i in range(walk.K):
         if b.solution.pushes[i] <= 0:
             test = _positive_at(a, lambda point, i=i: point.solution.pushes[i])
@@ -42,8 +42,8 @@ def ends_between(walk: Tracer, bounds, a: Point, b: Point) -> list[Event]:
 def first_end(walk: Tracer, events: list[Event], a: Point, b: Point) -> Found | None:
     """The first of these events; None where none is found.
 
-    Behind an impact that vanishes, and often behind a limit, a flight passes its stop: where none does so at the first
-    end that is found, that is not looked for.
+    Behind an impact that vanishes, and often behind a boundary, a flight passes its stop: where none does so at the
+    first end that is found, that is not looked for.
     """
     located = []
     for event in sorted(events, key=lambda event: event.touches):
@@ -78,9 +78,9 @@ def bifurcations(walk: Tracer, a: Point, b: Point) -> list[Found]:
 
 def locate(walk: Tracer, event: Event, a: Point, b: Point) -> Found | None:
     """Where the event lies between a and b; None if it cannot be found."""
-    point = None if event.limit is None else walk.at_value(a, b, 0, event.limit)
+    point = None if event.boundary is None else walk.at_value(a, b, 0, event.boundary)
     if point is not None and 0 <= along(a, point) <= (1 + ROUNDED) * along(a, b):
-        point.hold(event.limit)
+        point.hold(event.boundary)
         return Found(event, along(a, point) / along(a, b), point, 0.0)
     size = max(abs(event.test(a)), abs(event.test(b)))
     if size == 0:
@@ -93,8 +93,8 @@ def locate(walk: Tracer, event: Event, a: Point, b: Point) -> Found | None:
     if found is None:
         return None
     share, point = found
-    if event.limit is not None:
-        point.hold(event.limit)
+    if event.boundary is not None:
+        point.hold(event.boundary)
     if event.impact is not None:  # one of the unknowns has a value: no test rounds
         point.touch(event.impact)
         error = rounding_error(walk, point, np.eye(1, 2 * walk.K + 3, walk.K + event.impact)[0])
@@ -139,11 +139,11 @@ def _positive_at(inside: Point, value):
     return lambda point: max(value(point), 1e-300) if point is inside else value(point)
 
 
-def _beyond(limit: float, side: int, inside: Point):
-    """How far a point is beyond a limit; `inside` counts as inside where rounding puts it beyond."""
+def _beyond(boundary: float, side: int, inside: Point):
+    """How far a point is beyond a boundary; `inside` counts as inside where rounding puts it beyond."""
 
     def test(point: Point) -> float:
-        distance = side * (point.value - limit)
+        distance = side * (point.value - boundary)
         return min(distance, 0.0) if point is inside else distance
 
     return test

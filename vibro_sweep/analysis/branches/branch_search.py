@@ -31,7 +31,7 @@ def grow(task: Task) -> Flat:
 
 def followed(task: Task, progress=None) -> Branch:
     """The branch of a task; with the status failed where it cannot be followed, so that the others are not lost."""
-    orbit, (parameter,), (bounds,) = task.seed.orbit(), task.names, task.box
+    orbit, (parameter,), (bounds,) = task.seed.orbit(), task.names, task.bounds
     try:
         return continue_orbit(orbit, parameter, bounds, progress)
     except ValueError:  # no orbit beside a special point is within the bounds
@@ -44,7 +44,7 @@ def beyond(branch: Branch, task: Task) -> list[Seed]:
     Towards an onset of sticking branches without end follow each other, with one impact more on each: beyond grazes
     that are nearer to it than a small part of the range nothing is looked for.
     """
-    (lo, hi), found = task.box[0], []
+    (lo, hi), found = task.bounds[0], []
     for index, special in enumerate(branch.special):
         if special.type in task.of and not accumulates(branch, special, LEAST * (hi - lo)):
             seeds = [seed_of(orbit.system, Start("orbit", orbit._solution), (), index) for orbit in switch(special)]

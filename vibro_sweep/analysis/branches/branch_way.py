@@ -38,7 +38,7 @@ class Way:
     def __init__(self, first: Point, system, progress=None, stable: bool = False):
         """stable : only as far as the orbit is stable, that is to the first bifurcation."""
         self.first, self.walk, self.system, self.progress, self.stable = first, first.tracer, system, progress, stable
-        (self.name,), self.bounds = self.walk.names, self.walk.box[0]
+        (self.name,), self.bounds = self.walk.names, self.walk.bounds[0]
         self.first_step = OF_STABLE if stable else FIRST_STEP
         self.special: list[SpecialPoint] = []
         self.closed = False
@@ -164,7 +164,9 @@ class Way:
         elif end and end.event.impact is not None:
             before = self.walk.step(a, (1 - BEFORE) * along(a, last), last)
         found = [] if birth else bifurcations(self.walk, a, last)
-        if end and end.event.limit is not None:  # where rounding does not tell them from the end they may lie beyond it
+        if (
+            end and end.event.boundary is not None
+        ):  # where rounding does not tell them from the end they may lie beyond it
             found = [one for one in found if abs(one.place.value - last.value) > one.error]
         if before is not None:
             known = {one.event.type for one in found}

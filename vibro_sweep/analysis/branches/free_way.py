@@ -29,12 +29,12 @@ ROUNDED = 48 * float(np.finfo(float).eps)  # of the parameter
 
 @dataclass(frozen=True)
 class FreeBranch:
-    """The motion `orbit` without impacts along a parameter; unit: of lengths of steps; box: ends of the parameter."""
+    """The motion `orbit` without impacts along a parameter; unit: of steps; bounds: of the parameter."""
 
     orbit: Solution
     names: tuple[str]
     unit: float
-    box: tuple[tuple[float, float]]
+    bounds: tuple[tuple[float, float]]
 
     def at(self, value: float, rate: float) -> "FreePoint | None":
         """The point with this parameter; None where there is no such motion."""
@@ -78,9 +78,9 @@ class FreeWay(Way):
             if b is None:
                 length /= 2
                 continue
-            limit = max(self.bounds[0], min(b.value, self.bounds[1]))
-            if limit != b.value:
-                b = self.walk.at(limit, b.rate)
+            boundary = max(self.bounds[0], min(b.value, self.bounds[1]))
+            if boundary != b.value:
+                b = self.walk.at(boundary, b.rate)
             graze = grazes(a, b)
             if graze is not None:
                 self._add(graze)
@@ -88,7 +88,7 @@ class FreeWay(Way):
                 return
             self._add(b)
             if b.value in self.bounds:
-                self.special.append(self._at("limit", b, 0.0))
+                self.special.append(self._at("boundary", b, 0.0))
                 return
             a, count, length = b, count + 1, min(1.5 * length, LONGEST_STEP)
             self._tell(count, a.value)

@@ -11,7 +11,7 @@ from vibro_sweep.analysis.branches.branch_arrays import Flat
 from vibro_sweep.analysis.branches.seeds import Seed, unpacked
 
 Evaluate = Callable[[list[str], list[Any]], list[Flat]]  # the arrays of tasks by their names; none: nothing was found
-Box = tuple[tuple[float, float], ...]
+Bounds = tuple[tuple[float, float], ...]
 
 
 class Node(NamedTuple):
@@ -25,11 +25,11 @@ class Node(NamedTuple):
 
 
 class Task(NamedTuple):
-    """A seed to be followed along `names` within `box`, and the types for which to look at the special points."""
+    """A seed to be followed along `names` within `bounds`, and the types for which to look at the special points."""
 
     seed: Seed
     names: tuple[str, ...]
-    box: Box
+    bounds: Bounds
     of: tuple[str, ...]
 
 
@@ -37,14 +37,14 @@ class Task(NamedTuple):
 class Search:
     """A search for branches (`Branches`) or curves (`Curves`).
 
-    names, box : the numbers along which they lead, and their limits
+    names, bounds : the numbers along which they lead, and their limits
     of : of branches the types of special points beyond which others are looked for, of curves the types that are
     at_once : tasks that are evaluated before it is asked again which seeds lie on what is known; None: all of a
         generation
     """
 
     names: tuple[str, ...]
-    box: Box
+    bounds: Bounds
     of: tuple[str, ...]
     at_once: int | None = None
 
@@ -70,7 +70,7 @@ class Search:
             for begin in range(0, len(seeds), size):
                 batch = enumerate(seeds[begin : begin + size], begin)
                 todo = {f"{generation}:{i}": seed for i, seed in batch if not self.lies_on(found[first:], seed)}
-                tasks = [Task(seed, self.names, self.box, of) for seed in todo.values()]
+                tasks = [Task(seed, self.names, self.bounds, of) for seed in todo.values()]
                 before = len(found)
                 for (name, seed), flat in zip(todo.items(), evaluate(list(todo), tasks), strict=True):
                     if flat and not self.lies_on(found[before:], seed) and not self.is_known(found, flat, seed):

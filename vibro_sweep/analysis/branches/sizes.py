@@ -18,13 +18,13 @@ def least_size(solution: Solution, name: str) -> float:
     """A thousandth of what changes the oscillator as a whole: M, K + omega^2 M, C + omega M, n, a force by what moves
     the gap by its size, omega, tau by 1, R by 1, or a stop by the size of the gap."""
     q, slope, gap = solution.family.linear, solution.family.derivative(name), solution.size_of_gap
-    M, along, omega = (np.abs(x).max() for x in (q.M, q.along, q.omega))
+    M, along, omega = (np.abs(x).max() for x in (q.M, q.normal, q.omega))
     inertia = omega**2 * M
     parts = {
         "M": M,
         "K": np.abs(q.K).max() + inertia,
         "C": np.abs(q.C).max() + omega * M,
-        "along": along,
+        "normal": along,
         **dict.fromkeys(("constant", "sine", "cosine"), inertia * gap / along),
         "omega": omega,
         **dict.fromkeys(("low", "high"), gap),

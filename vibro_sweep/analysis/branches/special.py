@@ -17,7 +17,7 @@ from vibro_sweep.engine.impulses.flow import flow
 class SpecialPoint:
     """A bifurcation on a branch, or the branch's end.
 
-    type : fold, flip, pitchfork, neimark_sacker, graze, sticking, closed, limit or failed
+    type : fold, flip, pitchfork, neimark_sacker, graze, sticking, closed, boundary or failed
     parameters : the number that was followed, by its name
     multipliers : of the map that the type belongs to: the half map with the mirror where the orbit is symmetric
     error : own estimate of the parameter's error: two locations from the two sides differ by less
@@ -112,7 +112,7 @@ def _nearest_aside(solution: Solution, slow) -> tuple[float, float, int]:
     q, K = solution.family.linear, solution.K
     f, nearest = flow(q), np.array([np.inf, 0.0, 0.0])
     starts, begins = solution.states.copy(), solution.times
-    starts[:, len(q.along)] += solution.jumps
+    starts[:, len(q.normal)] += solution.jumps
     ends = np.append(begins[1:], begins[0] + solution.P)
     aside = np.isin(np.arange(K), slow) * ASIDE / q.omega
     first, last = begins + aside, ends - np.roll(aside, -1)

@@ -53,7 +53,7 @@ def _guesses(touching: Solution, index: int) -> list[Chatter]:
     At the end of the sequence the acceleration vanishes. The last impacts are unlike those of the onset: the second
     half of the sequence is left out.
     """
-    K, P, sigma, N = touching.K, touching.P, touching.sigma, len(touching.family.linear.along)
+    K, P, sigma, N = touching.K, touching.P, touching.sigma, len(touching.family.linear.normal)
     t = np.append(touching.times[index:], touching.times[:index] + P)
     D = np.append(touching.jumps[index:], sigma * touching.jumps[:index])
     sides = [*touching.sides[index:], *(sigma * side for side in touching.sides[:index])]

@@ -16,7 +16,7 @@ class Event:
     index : of the test where it is one of the engine's (`TEST`) along a curve, else None
     impact : index of the impact that vanishes there, else None
     touches : whether a flight touches a stop there
-    limit : of the parameter, where it is that
+    boundary : of the parameter, where it is that
     """
 
     type: str
@@ -24,7 +24,7 @@ class Event:
     index: int | None = None
     impact: int | None = None
     touches: bool = False
-    limit: float | None = None
+    boundary: float | None = None
 
 
 class Found(NamedTuple):

@@ -88,7 +88,7 @@ class Oscillators:
                     return np.full_like(values, np.nan)
                 return np.where(np.isinf(values), 0.0, values)  # a stop that is not there
         except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
-            return np.full(moving_flow.count_of(len(self.family.linear.along)), np.nan)
+            return np.full(moving_flow.count_of(len(self.family.linear.normal)), np.nan)
 
     def around(self, around, within) -> np.ndarray | None:
         """(1,) `plane_of` around these values, as far as `within`, or as polynomials hold; None: nowhere."""
@@ -116,7 +116,7 @@ class Oscillators:
             values = np.array(values)
             if not np.all(np.isfinite(values)):
                 return None
-            size = _sizes(values, 2 * len(self.family.linear.along))
+            size = _sizes(values, 2 * len(self.family.linear.normal))
             seen = np.flatnonzero((np.abs(_to_chebyshev(most) @ values) > DECAYED * size).any(axis=1))
             degree = int(seen[-1]) if len(seen) else 0
             if degree <= most - 2:
@@ -138,7 +138,7 @@ class Oscillators:
 
     def _built(self, centre, reach, degrees, c, values) -> np.ndarray:
         q = self.at(centre).linear
-        n = 2 * len(q.along)
+        n = 2 * len(q.normal)
         result = np.zeros(1, moving_flow.plane_of(n // 2))
         r, at_centre = result[0], sampled(q, self.units)
         flat, size = values[..., : n * (n + 1)], _sizes(values.reshape(-1, values.shape[-1]), n)[: n * (n + 1)]

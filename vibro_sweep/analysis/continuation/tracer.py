@@ -30,20 +30,20 @@ class NoPlaneError(VibroSweepError, ValueError):
 class Tracer:
     """A branch in one parameter, a curve of one kind in two, or a single point, through `start`."""
 
-    def __init__(self, start: Start, names: tuple[str, ...], box, unit=None):
-        """box : ends of each parameter; unit: of distances in each, by default the length of its side"""
+    def __init__(self, start: Start, names: tuple[str, ...], bounds, unit=None):
+        """bounds : ends of each parameter; unit: of distances in each, by default the length of its side"""
         self.start, self.orbit, self.names = start, start.solution, names
-        self.box = np.array([*box, *[(-np.inf, np.inf)] * (2 - len(names))], float)
-        self.unit = np.append(np.ptp(box, axis=1) if unit is None else unit, [1.0] * (2 - len(names)))
+        self.bounds = np.array([*bounds, *[(-np.inf, np.inf)] * (2 - len(names))], float)
+        self.unit = np.append(np.ptp(bounds, axis=1) if unit is None else unit, [1.0] * (2 - len(names)))
         s = self.orbit
         q = s.family.linear
         self.units = Units(float(s.size_of_gap), float(q.omega))
         self.tau = float(q.tau)  # by which phases become times: those of the curve do not move with it
         self._taus = [(s.family.numbers[names[0]], self.tau)]
         self.oscillators = Oscillators(s.family, names, s.halves, self.units)
-        self.n = 2 * len(q.along)
+        self.n = 2 * len(q.normal)
         self._take_sides(s.sides)
-        planes = self.oscillators.around(self.box.mean(axis=1), self.unit / 2) if len(names) > 1 else None
+        planes = self.oscillators.around(self.bounds.mean(axis=1), self.unit / 2) if len(names) > 1 else None
         self.planes = self._around([s.family.numbers[name] for name in names]) if planes is None else planes
 
     def _take_sides(self, which: tuple[int, ...]) -> None:
@@ -60,7 +60,7 @@ class Tracer:
         sides, rests, count = np.array(which, float), np.isin(np.arange(K), s.rests), len(self.names)
         self.problem = Problem(kind, start.index, sides, rests, float(s.sigma), count, self.unit, repeats, mirrors)
         self.bench = new_bench(K, self.n)
-        self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.box)
+        self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.bounds)
 
     def resized(self, K: int) -> "Tracer":
         """For the same curve with K impacts: without the last, or with more on the same stop."""
@@ -76,7 +76,7 @@ class Tracer:
     def _around(self, centre) -> np.ndarray:
         found = self.oscillators.around(centre, self.unit / len(self.names))
         if found is None:
-            raise NoPlaneError(f"box: around {tuple(map(float, centre))} the oscillator is no smooth function of it")
+            raise NoPlaneError(f"bounds: around {tuple(map(float, centre))} the oscillator is no smooth function of it")
         return found
 
     def recentre(self, place: Place) -> None:
@@ -139,9 +139,9 @@ class Tracer:
         return float(np.pi * self.orbit.halves / self.omega(place))
 
     def beside(self, place: Place) -> list[Point]:
-        """Points of the curve within the box, a little beside `place`."""
+        """Points of the curve within the bounds, a little beside `place`."""
         found = [self.step(place, length) for length in (BESIDE, -BESIDE)]
-        lo, hi = self.box.T
+        lo, hi = self.bounds.T
         return [one for one in found if one is not None and np.all((lo <= one.p[:2]) & (one.p[:2] <= hi))]
 
     def step(self, place: Place, length: float, near: Place | None = None) -> Point | None:

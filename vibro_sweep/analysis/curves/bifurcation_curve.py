@@ -83,17 +83,17 @@ class BifurcationCurve:
 
 @one_thread()
 def bifurcation_curve(
-    special: SpecialPoint, parameters: tuple[str, str], box, progress=None, virtual: bool = True
+    special: SpecialPoint, parameters: tuple[str, str], bounds, progress=None, virtual: bool = True
 ) -> BifurcationCurve:
     """Follow a bifurcation both ways in two parameters, numbers of its system.
 
     special : a fold, flip, pitchfork, neimark_sacker, graze or sticking onset of a branch or of another curve
-    box : ((lo, hi), (lo, hi)) of both parameters, around the point
+    bounds : ((lo, hi), (lo, hi)) of both parameters, around the point
     progress(points, (p, q)) is called now and then.
     virtual : whether the curve goes on where its orbit is no motion any more; otherwise it ends there, at a point of
         codimension two
 
-    Raises ValueError for a special point of another type, names that are no numbers of the system, a box that does not
+    Raises ValueError for a special point of another type, names that are no numbers of the system, bounds that do not
     hold the point, where the point does not belong to a single curve, and without virtual points where there is no
     motion beside it.
     """
@@ -103,11 +103,11 @@ def bifurcation_curve(
     names = tuple(parameters) if isinstance(parameters, (tuple, list)) else ()
     if not (all(isinstance(name, str) and name in allowed for name in names) and len({*names}) == len(names) == 2):
         raise ArgumentError(not_allowed("parameters", parameters, f"two of {', '.join(allowed)}"))
-    values = array_of(box, 2)
+    values = array_of(bounds, 2)
     if values is None or values.shape != (2, 2):
-        raise ArgumentError(not_allowed("box", box, f"((lo, hi), (lo, hi)) of {names[0]} and {names[1]}"))
+        raise ArgumentError(not_allowed("bounds", bounds, f"((lo, hi), (lo, hi)) of {names[0]} and {names[1]}"))
     limits = [
-        checked_interval(f"box.{name}", ends, family.numbers[name])
+        checked_interval(f"bounds.{name}", ends, family.numbers[name])
         for name, ends in zip(names, values.tolist(), strict=True)
     ]
     check_call("progress", progress, "progress(points, (p, q))", 0, (0.0, 0.0))

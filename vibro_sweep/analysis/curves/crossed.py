@@ -18,7 +18,7 @@ NODES = np.array([-1.0, -2 / 3, -1 / 3, 1 / 3, 2 / 3, 1.0])
 ROUNDS = 3  # of points, each about the zero of the last ones
 FLAT = 1e-3  # of the mean slope of an impulse: a lesser one is zero
 LOST = 1e-10  # of the parameters, by rounding of the equations
-SMOOTH = 1e-8  # of the box: what all points and those without the outermost may say apart
+SMOOTH = 1e-8  # of the bounds: what all points and those without the outermost may say apart
 
 
 def is_on_other(tracer: Tracer, a: Place, b: Place, place: Place, impact: int) -> bool:
@@ -60,7 +60,7 @@ def crossed(tracer: Tracer, a: Place, b: Place, impact: int) -> tuple[float, Pla
         return None
     p = np.array([place.p[:2] for place in places])
     apart = np.abs((weights - fewer) @ p)
-    if not (0.0 <= zero <= 1.0 and np.all(apart <= SMOOTH * np.ptp(tracer.box, axis=1))):
+    if not (0.0 <= zero <= 1.0 and np.all(apart <= SMOOTH * np.ptp(tracer.bounds, axis=1))):
         return None
     place = tracer.copied(places[0])
     for name in ("x", "p", "tangent", "tangent_p", "v", "w"):

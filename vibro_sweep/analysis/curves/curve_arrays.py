@@ -92,7 +92,7 @@ def point_of_codimension_two(flat: Flat, index: int, names: list[str], system) -
     if index in (flat["branch_begins"], flat["branch_ends"]):  # perhaps the birth of a doubled or asymmetric orbit
         solution = solution.reduced()
     kind = CODIMENSION_TWO[int(flat["special_type"][index])].name
-    none = np.full(2 * len(solution.family.linear.along), np.nan, complex)
+    none = np.full(2 * len(solution.family.linear.normal), np.nan, complex)
     return CurvePoint(
         kind, parameters, orbit_of(there, solution), none, float(flat["special_error"][index]),
         curve=type_of(flat), touches=bool(flat["special_touches"][index]),

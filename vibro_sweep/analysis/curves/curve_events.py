@@ -29,7 +29,7 @@ def _types() -> dict[tuple, dict[int, str]]:
 
 TYPES = _types()
 ANGLES = {one.name: 2 * math.pi * one.turn for one in CODIMENSION_TWO if one.turn}
-ROUNDING = 1e-10  # of the box: points nearer to each other are one
+ROUNDING = 1e-10  # of the bounds: points nearer to each other are one
 PIECE = 0.02  # of the distance between two events
 VANISHED = 1e-12  # of a test: more than rounding leaves of it at a zero
 SLOW = 1e-6  # in units of the curve: an impulse next to which rounding of the multipliers is too large
@@ -130,7 +130,7 @@ def echoes(tracer: Tracer, one: Found, other: Found) -> bool:
 def same(tracer: Tracer, one: Found, other: Found) -> bool:
     """Whether two points are one, to rounding."""
     apart = np.abs(one.place.p - other.place.p)[:2] - one.error - other.error
-    return bool(np.all(apart <= ROUNDING * np.ptp(tracer.box, axis=1)))
+    return bool(np.all(apart <= ROUNDING * np.ptp(tracer.bounds, axis=1)))
 
 
 def beside(tracer: Tracer, a: Place, b: Place, one: Found, found: list[Found]) -> list[Place]:

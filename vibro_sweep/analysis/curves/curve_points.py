@@ -19,7 +19,7 @@ from vibro_sweep.model.state import state
 if TYPE_CHECKING:
     import xarray
 
-FREE = ("M", "K", "C", "along", "constant")  # fields of an oscillator on which its free flight depends
+FREE = ("M", "K", "C", "normal", "constant")  # fields of an oscillator on which its free flight depends
 
 
 def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
@@ -44,8 +44,8 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
         P, u = forcing_period(q) / 2 * s.halves, np.concatenate([t[others], D[others]])
         shifts.append((tracer.tau - q.tau) / q.omega)
         if kind == STICK:
-            multipliers.append(np.full(2 * len(q.along), np.nan, complex))
-            states.append(np.full(2 * len(q.along), np.nan))
+            multipliers.append(np.full(2 * len(q.normal), np.nan, complex))
+            states.append(np.full(2 * len(q.normal), np.nan))
             continue
         multipliers.append(multipliers_of(f, s.sigma, P, contacts, u, motion[others]))
         states.append(_state(q, f, s.sigma, P, t + shifts[-1], D, h))
@@ -59,7 +59,7 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     variables = {
         names[0]: ("point", rows.p[:, 0]),
         names[1]: ("point", rows.p[:, 1]),
-        **{name: ("point", values) for name, values in zip(state(len(q.along)), np.transpose(states), strict=True)},
+        **{name: ("point", values) for name, values in zip(state(len(q.normal)), np.transpose(states), strict=True)},
         "multiplier_re": (("point", "multiplier"), values.real),
         "multiplier_im": (("point", "multiplier"), values.imag),
         "unstable": ("point", unstable),
@@ -78,7 +78,7 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
 def _state(q: Linear, f: Flow, sigma: int, P: float, t: np.ndarray, D: np.ndarray, h: np.ndarray) -> np.ndarray:
     """(2N,) at t = 0, before an impact there: that at a multiple of P after the first impact."""
     later = math.ceil(t[0] / P) if len(t) else 0
-    room, N = new_room(len(f.B)), len(q.along)
+    room, N = new_room(len(f.B)), len(q.normal)
     free_part(f, h, t, D, P, later * P, room)
     y = (room.state[: 2 * N] + steady_motion(q, later * P)) * (1 if sigma == 1 or later % 2 == 0 else -1)
     return contact_coordinates(q).to_masses(y)

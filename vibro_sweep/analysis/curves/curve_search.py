@@ -10,7 +10,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.branch_arrays import Flat
 from vibro_sweep.analysis.branches.recognising import apart, rotates
-from vibro_sweep.analysis.branches.search import Box, Search, Task
+from vibro_sweep.analysis.branches.search import Bounds, Search, Task
 from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.first_point import first_place
@@ -24,8 +24,8 @@ from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.solution import Solution
 
-NEAR = 0.003  # of the box: farther than that from the chord of two neighbouring points their curve does not lead
-SAME = 1e-8  # of the box; of impulses a hundred times as much
+NEAR = 0.003  # of the bounds: farther than that from the chord of two neighbouring points their curve does not lead
+SAME = 1e-8  # of the bounds; of impulses a hundred times as much
 
 
 def seed_at(special: SpecialPoint, names: tuple[str, str], index: int = -1) -> Seed | None:
@@ -42,7 +42,7 @@ def trace(task: Task) -> Flat:
     seed, names = task.seed, task.names
     special = as_special(seed.start, seed.parameters, seed.system)
     try:
-        curve = bifurcation_curve(special, names, task.box, virtual=False)
+        curve = bifurcation_curve(special, names, task.bounds, virtual=False)
     except ValueError:  # it belongs to several curves at once, or there is no motion beside it
         return {}
     beyond = []
@@ -64,16 +64,16 @@ class Curves(Search):
         """By Newton's method from the points beside it, on a curve of orbits like its own."""
         if seed.type != type_of(flat) or not _may_pass(flat, seed, self.names):
             return False
-        solution, place, size = seed.solution, seed.place(self.names), np.ptp(self.box, axis=1)
+        solution, place, size = seed.solution, seed.place(self.names), np.ptp(self.bounds, axis=1)
         least = 100 * SAME * solution.family.linear.omega * solution.size_of_gap
         for s in np.flatnonzero(np.all(np.abs(flat["special_value"] - place) <= SAME * size, axis=1)):
             if apart(_solution(flat, int(flat["special_point"][s]), seed, self.names), solution) <= least:
                 return True
-        crossings = _crossings(flat, seed, self.names, self.box, place, size)
+        crossings = _crossings(flat, seed, self.names, self.bounds, place, size)
         return any(apart(found, solution) <= least for found in crossings)
 
 
-def _crossings(flat: Flat, seed: Seed, names, box: Box, place, size):
+def _crossings(flat: Flat, seed: Seed, names, bounds: Bounds, place, size):
     """The orbits of a curve where it passes the place, if it does."""
     at = flat["value"] / size
     chord, away = np.diff(at, axis=0), place / size - at[:-1]
@@ -82,7 +82,7 @@ def _crossings(flat: Flat, seed: Seed, names, box: Box, place, size):
         row = int(i + (share[i] > 0.5))
         row = min(max(row, 1), len(at) - 2) if len(at) > 2 else row  # at its ends a curve may be singular
         system = seed.system.replace(**dict(zip(names, map(float, flat["value"][row]), strict=True)))
-        tracer = Tracer(start_from(flat, row, system), names, box)
+        tracer = Tracer(start_from(flat, row, system), names, bounds)
         first, axis = first_place(tracer), int(abs(chord[i, 1]) > abs(chord[i, 0]))
         found = None if first is None else tracer.level(first, axis, float(place[axis]))
         if found is not None and np.all(np.abs(found.p[:2] - place) <= SAME * size):

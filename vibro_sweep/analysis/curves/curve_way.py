@@ -32,7 +32,7 @@ MOST_POINTS = 50_000
 class CurvePoint(SpecialPoint):
     """A point of codimension two on a bifurcation curve, or the end of one.
 
-    type : two bifurcations at once: cusp, fold_flip, ... (docs/curves.md); closed, limit or failed
+    type : two bifurcations at once: cusp, fold_flip, ... (docs/curves.md); closed, boundary or failed
     parameters : both, by their names
     multipliers : of the half map where the orbit is symmetric; of a graze, of the orbit without the grazing impact
     impact : index in `orbit.impacts` of one that has no speed there, or None
@@ -174,33 +174,33 @@ class Way:
         return True
 
     def _leave(self, a: Place, b: Place) -> None:
-        """The point where the curve leaves the box; near a corner the step to b passes two sides."""
+        """The point where the curve leaves the bounds; near a corner the step to b passes two sides."""
         w = self.tracer
-        sides = [(j, limit, side) for j in range(2) for limit, side in zip(w.box[j], (-1, 1), strict=True)]
-        passed = [(j, limit) for j, limit, side in sides if (b.p[j] - limit) * side > 0]
-        found = [place for j, limit in passed if (place := self._at_limit(a, b, j, limit)) is not None]
+        sides = [(j, boundary, side) for j in range(2) for boundary, side in zip(w.bounds[j], (-1, 1), strict=True)]
+        passed = [(j, boundary) for j, boundary, side in sides if (b.p[j] - boundary) * side > 0]
+        found = [place for j, boundary in passed if (place := self._at_boundary(a, b, j, boundary)) is not None]
         if not found:
             self.special.append(self._at("failed", a, np.nan))
             return
-        place = min(found, key=lambda one: max((one.p[j] - limit) * side for j, limit, side in sides))
+        place = min(found, key=lambda one: max((one.p[j] - boundary) * side for j, boundary, side in sides))
         if not self._ends(a, place, False) and self._pass(a, place):
-            self.special.append(self._at("limit", place, 0.0))
+            self.special.append(self._at("boundary", place, 0.0))
 
-    def _at_limit(self, a: Place, b: Place, j: int, limit: float) -> Place | None:
-        """Where a parameter is at its limit; the curve may be nearly parallel to that side of the box."""
+    def _at_boundary(self, a: Place, b: Place, j: int, boundary: float) -> Place | None:
+        """Where a parameter is at its boundary; the curve may be nearly parallel to that side of the bounds."""
         w = self.tracer
-        place = w.at_value(a, b, j, limit)
+        place = w.at_value(a, b, j, boundary)
         if place is None:
-            found = root(w, a, b, lambda place: (place.p[j] - limit) / np.ptp(w.box[j]))
+            found = root(w, a, b, lambda place: (place.p[j] - boundary) / np.ptp(w.bounds[j]))
             place = found and found[1]
         if place is not None:
-            place.p[j] = limit
+            place.p[j] = boundary
         return place
 
     def _ends(self, a: Place, b: Place, inside: bool) -> bool:
         """Whether the curve ends: its pair meets at 1 or -1 ahead of b, or its orbit is born between a and b.
 
-        inside : whether the curve goes on from b within its box
+        inside : whether the curve goes on from b within its bounds
         """
         w = self.tracer
         end = strong_resonance(w, a, b) if inside and is_near_strong(w, b) else None
@@ -251,11 +251,11 @@ class Way:
 
 
 def outside_between(tracer: Tracer, a: Place, b: Place) -> Place | None:
-    """b, or the point between a and b where a parameter has its extremum, if it lies out of the box."""
+    """b, or the point between a and b where a parameter has its extremum, if it lies out of the bounds."""
     extrema = [j for j in range(2) if a.tangent_p[j] * b.tangent_p[j] < 0]
     found = [root(tracer, a, b, lambda place, j=j: place.tangent_p[j]) for j in extrema]
     for place in (b, *(one[1] for one in found if one is not None)):
-        if np.any((place.p[:2] < tracer.box[:, 0]) | (place.p[:2] > tracer.box[:, 1])):
+        if np.any((place.p[:2] < tracer.bounds[:, 0]) | (place.p[:2] > tracer.bounds[:, 1])):
             return place
     return None
 

@@ -69,7 +69,7 @@ def strong_resonance(tracer: Tracer, a: Place, b: Place) -> End | None:
     end = _on_other(tracer, Start(of_type, tracer.solution(aim)), aim, lengths, (name,))
     if end is None or _is_repeated(end):
         return None
-    size = np.ptp(tracer.box, axis=1)
+    size = np.ptp(tracer.bounds, axis=1)
     missed, ahead = (np.linalg.norm((place.p - aim.p)[:2] / size) for place in (end.found.place, a))
     return end._replace(share=share) if missed < AIMED * ahead else None
 
@@ -169,9 +169,9 @@ def _first_found(tracer: Tracer, aim: Place, sigma: int, lengths) -> End | None:
 
 def _on_other(tracer: Tracer, start: Start, aim: Place, lengths, types) -> End | None:
     """The event on the curve from `start` that is nearest to its first point, which is near `aim`."""
-    other = Tracer(start, tracer.names, tracer.box)
+    other = Tracer(start, tracer.names, tracer.bounds)
     first = first_place(other)
-    if first is None or np.abs((first.p - aim.p)[:2] / np.ptp(tracer.box, axis=1)).max() > NEAR:
+    if first is None or np.abs((first.p - aim.p)[:2] / np.ptp(tracer.bounds, axis=1)).max() > NEAR:
         return None
     for length in lengths:
         found = event_near(other, first, max(float(length), SHORTEST), types)

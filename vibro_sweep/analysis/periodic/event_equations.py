@@ -28,7 +28,7 @@ class EventEquations:
 
     def __init__(self, q: Linear, sigma: int, halves: int, sides, rests=()):
         """rests : indices of impacts after which the mass rests"""
-        self.q, self.K, self.n = q, len(sides), 2 * len(q.along)
+        self.q, self.K, self.n = q, len(sides), 2 * len(q.normal)
         planes, self.closing = _tables(q, sigma, halves, bool(rests))
         self.planes = planes.copy()  # kernels write the contact's numbers into it
         self.planes[0]["numbers"] = self.planes[0]["exact"][-NUMBERS:] = _contact_of(q)

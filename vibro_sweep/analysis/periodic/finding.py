@@ -50,7 +50,7 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
     sides = None if itinerary is None else _checked_sides(family.linear, itinerary)
     rows = None if guess is None else _checked_guess(family.linear, guess, itinerary)
     if state is not None:
-        state = checked_state(state, len(family.linear.along))
+        state = checked_state(state, len(family.linear.normal))
         if not (sides is None and rows is None):
             raise ArgumentError(not_allowed("state", state, "left out where an itinerary or a guess is given"))
     elif sides is None and rows is None:
@@ -174,7 +174,7 @@ def _passes_a_stop(s: Solution) -> bool:
     if lengths[k] < 2 * T:
         return False
     start, begin, f = s.states[k : k + 1].copy(), s.times[k : k + 1], flow(q)
-    start[0, len(q.along)] += s.jumps[k]
+    start[0, len(q.normal)] += s.jumps[k]
     moments, out = begin + lengths[k] / 2 + T * np.arange(MOMENTS) / MOMENTS, np.empty((MOMENTS, start.shape[1]))
     flights.sample_flights(f, start, begin, np.zeros(MOMENTS, int), moments, out, flights.new_room(start.shape[1]))
     size = abs(steady_gap(q).swing) + np.abs(q.stop(s.sides)).max() + np.abs(s.jumps).max() / q.omega

@@ -126,7 +126,7 @@ def _of_period(system, family, graze: _Graze, n: int) -> list[Born]:
 
 def _gamma(q: Linear, n: int, count: int) -> np.ndarray:
     """(count,) the gap's response at 0, P/count, 2 P/count, ... to a unit impulse repeated every P = n T."""
-    states, f, P = 2 * len(q.along), flow(q), n * forcing_period(q)
+    states, f, P = 2 * len(q.normal), flow(q), n * forcing_period(q)
     E = np.empty((count, states, states))
     flights.flight_matrices(f, P / count * np.arange(1, count + 1), E, flights.new_room(states + 3))
     before = closing(q, 1, 2 * n)[:, :states] @ E[-1, :, states // 2]

@@ -116,7 +116,7 @@ class PeriodicOrbit:
     @cached_property
     def impacts(self) -> np.ndarray:
         """Structured, fields t, side, v1 (before), x2, v2; x and xdot (N,) of all masses where there is no System."""
-        N = 2 if self._solution is None else len(self._solution.family.linear.along)
+        N = 2 if self._solution is None else len(self._solution.family.linear.normal)
         kind = IMPACT if isinstance(self.system, System) else impact_of(N)
         if self._solution is None or not self._solution.K:
             return np.empty(0, kind)
@@ -190,13 +190,13 @@ class PeriodicOrbit:
                 f = held_flow(q) if rests else flow(q)
                 flights.sample_flights(f, starts, begins, which[chosen], wrapped[chosen], part, room)
                 out[chosen] = part
-        return self._masses(out[:, : 2 * len(q.along)])
+        return self._masses(out[:, : 2 * len(q.normal)])
 
     @cached_property
     def _pieces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Begins of flights and rests in order, the states there in contact coordinates, and which are rests."""
         s = self._solution
-        N, m = len(s.family.linear.along), flow(s.family.linear).B.shape[0]
+        N, m = len(s.family.linear.normal), flow(s.family.linear).B.shape[0]
         if s.rests:
             whole = s.whole()
             begins, starts, held = whole.resting.pieces()
@@ -224,9 +224,9 @@ class PeriodicOrbit:
         length = self.period * forcing_period(q)
         times = np.unique(np.concatenate([np.linspace(0, length, 400 * self.period + 1), self._whole[0] % length]))
         states = self.sample(times)
-        gap, rate = states[:, ::2] @ q.along, states[:, 1::2] @ q.along
+        gap, rate = states[:, ::2] @ q.normal, states[:, 1::2] @ q.normal
         R = q.restitution(self._whole[1])
-        t, v = self._whole[0] % length, self._whole[3][:, len(q.along)]
+        t, v = self._whole[0] % length, self._whole[3][:, len(q.normal)]
         title = f"{self.itinerary or 'free'}, period {self.period}, {'stable' if self.stable else 'unstable'}"
         jumps, stops = (t, self._whole[1], v, -R * v), (q.low, q.high)
         return plot_periodic(times, gap, rate, *jumps, stops, title, self.system, width=width)

@@ -42,7 +42,7 @@ def _patterns(solution: Solution) -> list[tuple[int, ...]]:
     """After which impacts it may rest: those that would press into the stop, all with R = 0, the last ones in a row."""
     q, sides = solution.family.linear, np.array(solution.sides, float)
     dead = q.restitution(sides) == 0
-    N = len(q.along)
+    N = len(q.normal)
     after = solution.motion[:, 1] + solution.jumps * flow(q).B[N, N]
     last = np.append(sides[1:], solution.sigma * sides[0]) != sides
     chosen = dead & (sides * after > 0), dead, dead & last

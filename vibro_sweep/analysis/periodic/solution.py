@@ -79,7 +79,7 @@ class Solution:
         """(K, 3) gap velocity, acceleration and jerk before each impact; the velocity as the jump says."""
         q = self.family.linear
         B = flow(q).B
-        N, states = len(q.along), self.states[: self.K]
+        N, states = len(q.normal), self.states[: self.K]
         rates, v = states @ B.T, -self.jumps / (1 + q.restitution(self.sides))
         return np.column_stack([np.where(v != 0, v, states[:, N]), rates[:, N], rates @ B[N]])
 

@@ -64,7 +64,7 @@ def figure_of(orbit: "Orbit", periods: int, width: float | None) -> "Figure":
     count = max(2, round((end - begin) / system.period * SAMPLES))
     times = np.unique(np.concatenate([np.linspace(begin, end, count), impacts["t"]]))
     states = orbit.sample(times)
-    gap, rate = states[:, 0::2] @ q.along, states[:, 1::2] @ q.along
+    gap, rate = states[:, 0::2] @ q.normal, states[:, 1::2] @ q.normal
     at = np.searchsorted(times, impacts["t"])
     gap[at], rate[at] = q.stop(impacts["side"]), impacts["v1"]  # before the impact
     title = f"{begin:.6g} < t < {end:.6g}, b = {system.b:.6g}"

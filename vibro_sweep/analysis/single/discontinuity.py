@@ -25,8 +25,8 @@ class DiscontinuityMap:
         if expand_at is not None and (at is None or not 0 < at < np.inf):
             raise ArgumentError(not_allowed("expand_at", expand_at, "a finite number > 0"))
         self._map = PeriodMap(system, int(order), at)
-        self.graze, self._masses = self._map.graze, len(system.linear.along)
-        self._at = float(system.linear.along @ self.graze[0::2])
+        self.graze, self._masses = self._map.graze, len(system.linear.normal)
+        self._at = float(system.linear.normal @ self.graze[0::2])
 
     def __repr__(self) -> str:
         return f"<DiscontinuityMap of order {self._map.order}, expanded at b = {self._at:.10g}; {self._map.system}>"

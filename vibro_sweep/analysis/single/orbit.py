@@ -199,19 +199,19 @@ def _carried(engine: Engine, section: np.ndarray) -> tuple[list[np.ndarray], lis
     return hits, rests, chatters, outcome
 
 
-def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, periods: int = 10_000) -> Exponents:
-    """Lyapunov spectrum (4,) of the orbit from `state` at t = 0: descending, natural logarithm, per unit time.
+def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, record: int = 10_000) -> Exponents:
+    """Lyapunov spectrum (2N,) of the orbit from `state` at t = 0: descending, natural logarithm, per unit time.
 
-    An array that has `.error`, the standard errors (4,), and `.residual`, the sum minus its exact value, too.
-    -inf for dimensions lost by sticking, NaN where the orbit fails. A periodic orbit (period at most periods/2) gives
-    its Floquet exponents. Raises ValueError as `simulate` does, and for more periods than memory is to be taken for.
+    An array that has `.error`, the standard errors (2N,), and `.residual`, the sum minus its exact value, too.
+    -inf for dimensions lost by sticking, NaN where the orbit fails. A periodic orbit (period at most record/2) gives
+    its Floquet exponents. Raises ValueError as `simulate` does, and for a longer record than memory is to be taken for.
     """
     checked_system(system)
     state, transient = checked_state(state, system.masses), checked_count("transient", transient, 0)
-    periods = checked_count("periods", periods, 1, MAX_RECORD)
+    record = checked_count("record", record, 1, MAX_RECORD)
     engine = Engine(system)
     engine.checked(state)
-    plan = plan_of(transient, periods, lyapunov=True)
+    plan = plan_of(transient, record, lyapunov=True)
     results, nothing = new_results((1, 1), engine.kind.masses), np.empty((1, 1, 0))
     starts = np.tile(state, (2, 1, 1))
     workspace = points.new_workspace(plan, engine.cells, 0, orbits=1, kind=engine.kind)
@@ -219,7 +219,7 @@ def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, per
     kept = nothing[..., None], nothing, nothing[..., None]
     interruptible(
         points.run_points, steps, starts, results, *kept, workspace, plan, None,
-        halt=workspace.ensemble.halt, cells=engine.cells * (transient + periods),
+        halt=workspace.ensemble.halt, cells=engine.cells * (transient + record),
     )  # fmt: skip
     point = results[0, 0]
     return Exponents(point["lyapunov"], point["lyapunov_error"], point["lyapunov_residual"])

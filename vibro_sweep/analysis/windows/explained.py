@@ -56,7 +56,7 @@ def _probed(task: Probe) -> tuple[str, Seed | None]:
         end = stable_end(orbit, task.parameter, bounds, float(np.sign(task.beyond - here)))
     except ValueError:
         return "failed", None
-    if end.type == "limit":
+    if end.type == "boundary":
         return "stable_at_both", None
     seed = seed_at(end, task.names)
     return ("alone", seed) if seed is not None else ("failed", None)
@@ -76,7 +76,7 @@ def explain(
     states: np.ndarray,
     system,
     names: tuple[str, str],
-    box,
+    bounds,
     of: tuple[str, ...],
     depth: int,
     probed: Callable[[list[str], list[Probe]], list[Flat]],
@@ -104,7 +104,7 @@ def explain(
         def evaluate(keys, tasks, turn=turn):
             return traced([f"{turn}:{key}" for key in keys], tasks)
 
-        known = Curves(names, box, of).run([seed for seed in seeds if seed.type in of], depth, evaluate, known)
+        known = Curves(names, bounds, of).run([seed for seed in seeds if seed.type in of], depth, evaluate, known)
         for i in range(before, len(known)):
             passed = passing(plane, edges, known[i].flat)
             passed = passed[curve[passed] < 0]

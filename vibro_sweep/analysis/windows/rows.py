@@ -95,8 +95,8 @@ def check_data(data: Contents) -> None:
         raise ArgumentError(f"holds {cut(str(data.attrs['kind']))}, not a sweep")
     if data.attrs.get("type") == BUILD:
         raise ArgumentError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
-    if data.attrs.get("model", "flow") != "flow":
-        raise ArgumentError("model: 'map' is not allowed; windows are those of the oscillator itself, model: flow")
+    if data.attrs.get("dynamics", "flow") != "flow":
+        raise ArgumentError("model: 'map' is not allowed; windows are those of the oscillator itself, dynamics: flow")
     if data.attrs.get("section", "phase") != "phase":
         raise ArgumentError("section: 'impact' is not allowed; windows start from states at t = 0 mod T, kind: phase")
     if "period" not in data or "x1" not in data:

@@ -25,7 +25,7 @@ def stable_stretch(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
 
 
 def stable_end(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], forwards: float) -> SpecialPoint:
-    """What ends the stability of an orbit one way, +1.0 or -1.0; type limit: it is stable up to the bound.
+    """What ends the stability of an orbit one way, +1.0 or -1.0; type boundary: it is stable up to the bound.
 
     Raises ValueError for an orbit that cannot be corrected.
     """

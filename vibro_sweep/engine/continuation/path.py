@@ -1,4 +1,4 @@
-"""Along a branch or a curve: how far steps may go, what is recorded, and whether it leaves its box or comes back."""
+"""Along a branch or a curve: how far steps may go, what is recorded, and whether it leaves its bounds or comes back."""
 
 import cmath
 import math
@@ -35,7 +35,7 @@ class Path(NamedTuple):
     longest: float
     shortest: float
     straight: float  # radians between neighbouring tangents
-    box: np.ndarray  # (2, 2): ends of both parameters
+    bounds: np.ndarray  # (2, 2): ends of both parameters
     counts: np.ndarray  # (3,) integers: points before this call; points and corrections of this call
     first: Place
     a: Place  # where the last step began
@@ -45,12 +45,12 @@ class Path(NamedTuple):
     before: np.ndarray  # (1,) the distance from there to a; 0 where it is not known
 
 
-def new_path(most: int, K: int, n: int, longest: float, shortest: float, straight: float, box) -> Path:
+def new_path(most: int, K: int, n: int, longest: float, shortest: float, straight: float, bounds) -> Path:
     """most: points of one call."""
     shapes = (most, K, n + 2), (most, K, 2), (most, 3), (most, len(TEST)), most, most, (most, n)
     places, past = (new_place(K, n), new_place(K, n)), (np.zeros((n, 2)), np.zeros(len(TEST)), np.zeros(1))
     record, counts = Record(*map(np.zeros, shapes)), np.zeros(3, np.int64)
-    return Path(longest, shortest, straight, box, counts, *places, record, *past)
+    return Path(longest, shortest, straight, bounds, counts, *places, record, *past)
 
 
 @jit
@@ -126,7 +126,7 @@ def state_at(f, c, x, phase, b, state):
 @jit
 def outside(path, place):
     for j in range(2):
-        if not path.box[j, 0] <= place.p[j] <= path.box[j, 1]:
+        if not path.bounds[j, 0] <= place.p[j] <= path.bounds[j, 1]:
             return True
     return False
 
@@ -162,7 +162,7 @@ def measured(c, a):
 
 @jit
 def bulges(path, c, a, b):
-    """Whether a parameter leaves the box between a and b, to return: by the cubic through both with their tangents."""
+    """Whether a parameter leaves its bounds between a and b and returns: by the cubic through both with tangents."""
     length = 0.0
     for k in range(measured(c, a)):
         length += offset(c, a, b, k) ** 2
@@ -176,7 +176,7 @@ def bulges(path, c, a, b):
             u = -rise / (bend + math.copysign(math.sqrt(max(bend * bend - 3.0 * twist * rise, 0.0)), -rise))
             top = a.p[j] + u * (rise + u * (bend + u * twist))
             slack = CAUTION * (top - max(a.p[j], b.p[j]) if rise > 0.0 else top - min(a.p[j], b.p[j]))
-            if not path.box[j, 0] < top + slack < path.box[j, 1]:
+            if not path.bounds[j, 0] < top + slack < path.bounds[j, 1]:
                 return True
     return False
 

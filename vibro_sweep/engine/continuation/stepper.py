@@ -31,7 +31,7 @@ from vibro_sweep.engine.impulses.pairs import coarse, exchanged
 from vibro_sweep.engine.simd.jit import entry, jit
 
 FULL, EVENT, CLOSED, FAILED, FAR, LEFT, CHATTER, TOUCH = range(8)
-# why a call ends; FAR: beyond the reach of the plane, LEFT: perhaps out of the box, CHATTER: more or fewer impacts of a
+# why a call ends; FAR: beyond the reach of the plane, LEFT: perhaps out of bounds, CHATTER: more or fewer impacts of a
 # chatter sequence are to be written out, TOUCH: something may vanish twice
 MOST_CORRECTIONS = 6
 CONVERGED = 1e-9  # Newton's change after which the next one is below rounding

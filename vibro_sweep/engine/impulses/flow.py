@@ -52,11 +52,11 @@ class Coordinates(NamedTuple):
         return result
 
 
-@remembered("M", "along")
+@remembered("M", "normal")
 def contact_coordinates(q: Linear) -> Coordinates:
     """Those of the masses where n = e_1 and M is diagonal. Which mass is left out depends on n alone: what follows from
     the coordinates stays smooth along branches."""
-    P, back = coordinates(q.along, int(np.argmax(np.abs(q.along))))
+    P, back = coordinates(q.normal, int(np.argmax(np.abs(q.normal))))
     push = push_of(q, P)
     W, inverse = (np.eye(len(P), dtype=push.dtype) for _ in range(2))
     W[1:, 0], inverse[1:, 0] = push[1:], 0.0 - push[1:]
@@ -87,7 +87,7 @@ class Flow(NamedTuple):
 
 def rates(q: Linear) -> np.ndarray:
     """B of zeta' = B zeta, (m, m)."""
-    N = len(q.along)
+    N = len(q.normal)
     to = contact_coordinates(q)
     n = 2 * N
     A = free_rates(q)
@@ -106,7 +106,7 @@ def rate_slopes(q: Linear, slope: Linear) -> np.ndarray:
 
 def free_rates(q: Linear) -> np.ndarray:
     """The part of it that knows no force, (n, n)."""
-    N = len(q.along)
+    N = len(q.normal)
     to = contact_coordinates(q)
     A = np.zeros((2 * N, 2 * N), to.U.dtype)
     A[:N, N:] = to.P @ to.U_back
@@ -125,7 +125,7 @@ def flow(q: Linear) -> Flow:
 def held_flow(q: Linear) -> Flow:
     """Tables of the motion while the gap stays as it is; rows: of what the gap's free acceleration is then."""
     B = rates(q)
-    N = len(q.along)
+    N = len(q.normal)
     held = B.copy()
     held[0], held[N] = 0.0, 0.0
     return _flow(q, held, B[N])
@@ -167,7 +167,7 @@ def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
 
     The gap is used only where the contact sees a free mode. Raises ResonanceError.
     """
-    N = len(q.along)
+    N = len(q.normal)
     n = 2 * N
     A = extended(free_rates(q))
     cells = cells_needed(q)

@@ -9,7 +9,7 @@ from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.linear import Linear, forcing_period, remembered
 
 MOST_CELLS = 1 << 17
-MATRICES = ("M", "K", "C", "along", "omega")  # fields that move the free flight
+MATRICES = ("M", "K", "C", "normal", "omega")  # fields that move the free flight
 
 
 class TooStiffError(VibroSweepError, ValueError):
@@ -32,11 +32,11 @@ def free_modes(q: Linear) -> tuple[np.ndarray, np.ndarray]:
     _, sizes, rows = np.linalg.svd(q.K / np.outer(scale, scale))
     shapes = (rows[sizes <= 1e-13 * max(sizes[0], q.omega**2)] / scale).T
     if shapes.shape[1] > 1:
-        seen = q.along @ shapes
+        seen = q.normal @ shapes
         rotation = np.linalg.qr(np.column_stack([seen, np.eye(len(seen))]))[0]
         shapes = shapes @ rotation
-    seen = q.along @ shapes
-    return shapes, np.where(np.abs(seen) > 1e-13 * np.abs(q.along) @ np.abs(shapes), seen, 0.0)
+    seen = q.normal @ shapes
+    return shapes, np.where(np.abs(seen) > 1e-13 * np.abs(q.normal) @ np.abs(shapes), seen, 0.0)
 
 
 def has_free_gap(q: Linear) -> bool:

@@ -71,7 +71,7 @@ def orthogonalise(t, who):
         for j in range(i + 1, size):
             w = column(Z, j)
             along = inverse * product(z, w)
-            put(t.along, place, along)
+            put(t.normal, place, along)
             put_column(Z, j, subtract(who, w, along, z))
             place += 1
 
@@ -113,7 +113,7 @@ def collect(t, who):
                     if d_i > 0.0 and t.logs[i, lane] > -np.inf:  # a lost direction has no row
                         ratio = d_k / d_i * math.exp(t.logs[k, lane] - t.logs[i, lane])
                         later = t.shear[place_of(size, k, j), lane] if k < j else 1.0
-                        total += t.along[place_of(size, i, k), lane] * ratio * later
+                        total += t.normal[place_of(size, i, k), lane] * ratio * later
                 t.shear[n, lane] = total
                 n += 1
 

@@ -34,7 +34,7 @@ class Equations(NamedTuple):
     columns: np.ndarray  # (m,): which stand in these columns of dz
     rate: float  # the fastest of A and `held`
     omega: float
-    along: np.ndarray  # (N,): n
+    normal: np.ndarray  # (N,): n
     push: np.ndarray  # (N,): p
     drag: np.ndarray  # (N,): (1 - p n^T) M^-1 C p
     walls: np.ndarray  # (2,): positions of the left stop and of the right one,
@@ -52,7 +52,7 @@ class Equations(NamedTuple):
 @jit
 def set_phase(e, cell, offset, z, dz):
     """sin, cos and 1 there, and their derivatives."""
-    phase, states = e.tau + 2.0 * np.pi * (cell / e.cells) + e.omega * offset, 2 * len(e.along)
+    phase, states = e.tau + 2.0 * np.pi * (cell / e.cells) + e.omega * offset, 2 * len(e.normal)
     z[states], z[states + 1], z[states + 2] = np.sin(phase), np.cos(phase), 1.0
     for j in range(dz.shape[1]):
         dz[states, j], dz[states + 1, j] = z[states + 1] * e.tau_slopes[j], -z[states] * e.tau_slopes[j]
@@ -78,19 +78,19 @@ def acceleration_of(e, i, z):
 def gap_of(e, column, first):
     """n.x (first = 0) or n.v (first = 1) of a column like z."""
     total = 0.0
-    for i in range(len(e.along)):
-        total += e.along[i] * column[2 * i + first]
+    for i in range(len(e.normal)):
+        total += e.normal[i] * column[2 * i + first]
     return total
 
 
 @jit
 def cross_impact(e, side, speed, z, dz, bend):
     """z and dz across an impact on this side with this speed of the gap. bend (2, N): scratch for a- and a+."""
-    n, masses = place_of(side), len(e.along)
+    n, masses = place_of(side), len(e.normal)
     R, pull = e.restitution[n], 0.0
     for i in range(masses):
         bend[0, i] = acceleration_of(e, i, z)
-        pull += e.along[i] * bend[0, i]
+        pull += e.normal[i] * bend[0, i]
     for i in range(masses):
         z[2 * i + 1] -= (1.0 + R) * speed * e.push[i]
     for i in range(masses):
@@ -108,7 +108,7 @@ def cross_impact(e, side, speed, z, dz, bend):
 @jit
 def come_to_rest(e, side, z, dz):
     """z and dz where the gap comes to rest on the stop."""
-    n, masses = place_of(side), len(e.along)
+    n, masses = place_of(side), len(e.normal)
     beyond, speed = gap_of(e, z, 0) - e.walls[n], gap_of(e, z, 1)
     for i in range(masses):
         z[2 * i] -= e.push[i] * beyond
@@ -160,7 +160,7 @@ def follow(e, leaving, impacts, rests, now, end, z, dz, bend, w):
         if impact_next:
             row = impacts[i]
             fly_to(e, resting, now, row, z, dz, w)
-            for k in range(2 * len(e.along)):
+            for k in range(2 * len(e.normal)):
                 z[k] = row[5 + k]
             cross_impact(e, row[3], row[4], z, dz, bend)
             leaving = e.restitution[place_of(row[3])] * row[4] != 0.0

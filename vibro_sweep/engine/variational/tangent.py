@@ -54,7 +54,7 @@ def tangents_of(masses: int, paper: bool) -> np.dtype:
         ("growth", float, (n, LANES)),  # products of the diagonals of R in Z = Q R
         ("logs", float, (n, LANES)),  # their logarithms, taken before they leave the range of the floats
         ("square_length", float, (n, LANES)),  # squares of the diagonal of R in the last Z = Q R, and
-        ("along", float, (pairs, LANES)),  # what stands beside it, over it, row by row: 01, 02, 03, 12, 13, 23;
+        ("normal", float, (pairs, LANES)),  # what stands beside it, over it, row by row: 01, 02, 03, 12, 13, 23;
         ("shear", float, (pairs, LANES)),  # the same of the product of all R, where they are `collected`
         ("wanted", np.bool_),  # else nothing is computed
         ("collected", np.bool_),

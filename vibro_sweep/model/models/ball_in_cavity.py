@@ -22,7 +22,7 @@ def ball_in_cavity(*, mass_ratio, zeta, F, omega, R, b, tau) -> Linear:
         M=np.array([[1, 0], [0, mass_ratio]]),
         K=np.diag([1.0, 0.0]),
         C=2 * zeta * np.diag([1.0, 0.0]),
-        along=np.array([-1.0, 1.0]),
+        normal=np.array([-1.0, 1.0]),
         constant=np.zeros(2),
         sine=np.array([F, 0]),
         cosine=np.zeros(2),

@@ -14,7 +14,7 @@ def chain(*, m, k, c, force, constant, stop_at, omega, R, R_left, b, offset, tau
         M=np.diag(m),
         K=between_walls(k),
         C=between_walls(c),
-        along=np.eye(n)[stop_at - 1],
+        normal=np.eye(n)[stop_at - 1],
         constant=np.array(constant),
         sine=np.array(force),
         cosine=np.zeros(n),

@@ -13,8 +13,8 @@ DAMPING = ("C", "modal_damping", "rayleigh")  # ways to give it
 
 
 def linear(
-    *, M, K, C, modal_damping, rayleigh, force, force_cos, constant, force_power, along, omega, R, R_left, b, offset,
-    tau, stops,
+    *, M, K, C, modal_damping, rayleigh, force, force_cos, constant, force_power, contact_normal, omega, R, R_left, b,
+    offset, tau, stops,
 ) -> Linear:  # fmt: skip
     """Also for complex numbers, but in the matrices."""
     M, K = np.array(M, float), np.array(K, float)
@@ -24,7 +24,7 @@ def linear(
         M=M,
         K=K,
         C=damping(M, K, C, modal_damping, rayleigh),
-        along=np.array(along, float),
+        normal=np.array(contact_normal, float),
         constant=np.array(constant),
         sine=power * np.array(force),
         cosine=power * np.array(force_cos),
@@ -48,13 +48,17 @@ def damping(M, K, C, modal_damping, rayleigh) -> np.ndarray:
 
 
 def _check(given) -> None:
-    sizes = {name: len(given[name]) for name in ("M", "K", "C", "along") if given[name] is not None}
+    sizes = {name: len(given[name]) for name in ("M", "K", "C", "contact_normal") if given[name] is not None}
     masses = sizes["M"]
     for name, size in sizes.items():
         if size != masses:
-            what = f"a matrix of {masses} x {masses} numbers" if name != "along" else f"a list of {masses} numbers"
+            what = (
+                f"a matrix of {masses} x {masses} numbers"
+                if name != "contact_normal"
+                else f"a list of {masses} numbers"
+            )
             raise ParameterError(name, told.plain(given[name]), f"{what}, as there are {masses} masses in M")
-        if name != "along":
+        if name != "contact_normal":
             _check_symmetric(name, np.array(given[name]))
     if np.linalg.eigvalsh(given["M"]).min() <= 0:
         raise ParameterError("M", told.plain(given["M"]), "positive definite: every motion must have kinetic energy")
@@ -65,10 +69,14 @@ def _check(given) -> None:
                 raise ParameterError(
                     name, told.plain(given[name]), "positive semidefinite: no motion may gain energy by it"
                 )
-    if not np.any(given["along"]):
-        raise ParameterError("along", told.plain(given["along"]), "other than zero: it is n of the gap n . x")
-    if not SMALLEST < np.abs(given["along"]).max() < 1 / SMALLEST:  # its square counts
-        raise ParameterError("along", told.plain(given["along"]), f"of a size from {SMALLEST:g} to {1 / SMALLEST:g}")
+    if not np.any(given["contact_normal"]):
+        raise ParameterError(
+            "contact_normal", told.plain(given["contact_normal"]), "other than zero: it is n of the gap n . x"
+        )
+    if not SMALLEST < np.abs(given["contact_normal"]).max() < 1 / SMALLEST:  # its square counts
+        raise ParameterError(
+            "contact_normal", told.plain(given["contact_normal"]), f"of a size from {SMALLEST:g} to {1 / SMALLEST:g}"
+        )
     several = [name for name in DAMPING if given[name] is not None]
     if len(several) > 1:
         raise ParameterError(several[1], told.plain(given[several[1]]), f"left out where {several[0]} is given")
@@ -102,12 +110,12 @@ MODEL = Model(
     title="any linear oscillator with one contact, by its matrices",
     sketch=r"""
         M, C, K: N masses, joined in any way
-        g = along . x    along = (1, 0, ..):  mass 1 and a wall;   (-1, 1, 0, ..): masses 1 and 2
+        g = n . x    contact_normal: n = (1, 0, ..):  mass 1 and a wall;   (-1, 1, 0, ..): masses 1 and 2
 """,
     equations="""
     M x'' + C x' + K x
         = constant + omega^force_power (force sin(omega t + tau) + force_cos cos(omega t + tau))
-    offset - b <= along . x <= offset + b
+    offset - b <= n . x <= offset + b
     force_power: 2   unbalance, or a shaken base
 """,
     source="docs/model.md",
@@ -151,7 +159,7 @@ MODEL = Model(
         Option("M", "matrix", "masses: symmetric, positive definite", units="kg"),
         Option("K", "matrix", "stiffnesses: symmetric, positive semidefinite", units="N m-1"),
         Option("C", "matrix", "damping: symmetric, positive semidefinite", optional=True, units="N s m-1"),
-        Option("along", "vector", "n of the gap g = n . x"),
+        Option("contact_normal", "vector", "n of the gap g = n . x"),
         WHICH_STOPS,
         UNITS,
     ),

@@ -13,7 +13,7 @@ def one_mass(*, k, zeta, F, constant, base, omega, R, R_left, b, offset, tau, st
         M=np.ones((1, 1)),
         K=np.array([[k]]),
         C=np.array([[2 * zeta]]),
-        along=np.ones(1),
+        normal=np.ones(1),
         constant=np.array([constant]),
         sine=np.array([F * omega * omega if base else F]),
         cosine=np.zeros(1),
