@@ -61,7 +61,7 @@ def additions(solution: Solution) -> dict[str, float]:
     periods = solution.halves // 2
     system = PAPER.replace(b=4.0)
     return {
-        "certificate": least(lambda: replace(solution).margin) * 1e6,
+        "certificate": least(lambda: replace(solution).stop_distance) * 1e6,
         "certificate and multipliers": least(lambda: replace(solution).multipliers) * 1e6,
         "periodic_orbit, from Python": least(lambda: vs.periodic_orbit(system, guess=guess, periods=periods)) * 1e6,
     }

@@ -19,10 +19,10 @@ def test_guess_may_be_a_rotation_of_the_itinerary():
 
 
 def test_failures_are_told_by_status():
-    assert vs.periodic_orbit(PAPER.replace(b=9.0), guess=[(0.0, 1, 3.0)]).status in ("not_converged", "not_real")
+    assert vs.periodic_orbit(PAPER.replace(b=9.0), guess=[(0.0, 1, 3.0)]).status in ("not_converged", "inadmissible")
     resonant = PAPER.replace(zeta=0.0, tau=0.0, omega=math.sqrt(PAPER.modes.omega_squared[0]))
     orbit = vs.periodic_orbit(resonant, itinerary="")
-    assert orbit.status == "resonance" and not orbit.ok and len(orbit.impacts) == 0 and math.isnan(orbit.margin)
+    assert orbit.status == "resonance" and not orbit.ok and len(orbit.impacts) == 0 and math.isnan(orbit.stop_distance)
     resting = PAPER.replace(b=0.03)
     state = vs.simulate(resting, (0, 0, 0, 0), 200).section[-1]
     assert vs.periodic_orbit(resting, state=state).status == "sticking"
@@ -108,4 +108,4 @@ def test_picture(tmp_path):
 
 def test_two_impacts_in_501_periods_pass_the_stops():
     """Thousands of solutions do, which a look at one period shows."""
-    assert vs.periodic_orbit(PAPER.replace(b=3.0), itinerary="LR", periods=501).status == "not_real"
+    assert vs.periodic_orbit(PAPER.replace(b=3.0), itinerary="LR", periods=501).status == "inadmissible"

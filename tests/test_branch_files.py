@@ -173,7 +173,7 @@ def test_commands(tmp_path, monkeypatch, capsys):
     assert "continue.from.itinerary: no orbit was found" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("variable", ["impact_speed", *slow_cases("multiplier", "margin")])
+@pytest.mark.parametrize("variable", ["impact_speed", *slow_cases("multiplier", "stop_distance")])
 def test_variables_that_a_picture_can_show(file, variable, tmp_path):
     assert main(["plot", str(file), "--variable", variable, "-o", str(tmp_path / "a.svg")]) == 0
 

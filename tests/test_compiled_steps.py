@@ -77,7 +77,7 @@ def test_points_are_orbits(system, itinerary, name, bounds):
         assert np.all(np.abs(exact.u - u) < error + 1e-13 * np.abs(u))
         slack = float(error.max() + 1e-12 * size)
         assert np.abs(exact.motion[:, :2] - rows.motion[i]).max() < 3 * slack
-        assert rows.margin[i] == pytest.approx(exact.margin, abs=slack)
+        assert rows.stop_distance[i] == pytest.approx(exact.stop_distance, abs=slack)
         found = PeriodicOrbit(orbit.system, "ok", exact, (0, 0))
         assert rows.state[i] == pytest.approx(found.state, abs=slack)
 

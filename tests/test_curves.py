@@ -95,9 +95,9 @@ def test_margin_where_cells_are_passed_over(symmetric_branch):
         (fold, ((6, 7.5), (0.61, 0.65))),
     ):
         curve = vs.bifurcation_curve(special, ("b", "omega"), bounds)
-        margins = curve.points.margin.values  # inf: there is no turning point
+        margins = curve.points.stop_distance.values  # inf: there is no turning point
         for k in range(0, len(margins), 5):
-            assert margins[k] == pytest.approx(solution_at(curve, k).margin, rel=1e-8, abs=1e-10)
+            assert margins[k] == pytest.approx(solution_at(curve, k).stop_distance, rel=1e-8, abs=1e-10)
 
 
 @pytest.mark.parametrize("count", [pytest.param(4, marks=pytest.mark.slow), pytest.param(20, marks=pytest.mark.soak)])

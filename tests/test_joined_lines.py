@@ -59,25 +59,25 @@ def test_a_mark_is_where_a_multiplier_is_on_the_circle():
 def test_another_turning_point_begins_another_line(at):
     """One turning point is the nearest up to a point of the branch, then there is none such, and it is another."""
     b = np.sort(np.random.default_rng(3).uniform(0, 1, 40))
-    margin = np.where(np.arange(40) < at, 0.2 + 0.3 * b, 1.5 - 0.4 * b)
+    stop_distance = np.where(np.arange(40) < at, 0.2 + 0.3 * b, 1.5 - 0.4 * b)
     points = Points(
-        branch_row_size=np.array([40]), b=b, x1=np.sin(b), margin=margin,
+        branch_row_size=np.array([40]), b=b, x1=np.sin(b), stop_distance=stop_distance,
         special_point=np.zeros(0, int), special_impact=np.zeros(0, int),
     )  # fmt: skip
     expected = np.ones(40, bool)
     expected[[at - 1, 39]] = False
     assert joined.margins(points, ["x1"]).tolist() == expected.tolist()
-    points.margin = 0.2 + 0.3 * b + 2 * b**3
+    points.stop_distance = 0.2 + 0.3 * b + 2 * b**3
     assert joined.margins(points, ["x1"])[:-1].all()
-    points.margin[20] = np.inf
+    points.stop_distance[20] = np.inf
     assert np.flatnonzero(~joined.margins(points, ["x1"])).tolist() == [19, 20, 39]
 
 
 def test_an_impact_that_vanishes_is_no_turning_point():
-    """At its graze the margin is 0, that of the impact; where a turning point grazes it goes to 0."""
+    """At its graze the stop_distance is 0, that of the impact; where a turning point grazes it goes to 0."""
     b = np.linspace(0, 1, 20)
     points = Points(
-        branch_row_size=np.array([20]), b=b, x1=b, margin=0.04 * b, special_point=np.array([0, 19]),
+        branch_row_size=np.array([20]), b=b, x1=b, stop_distance=0.04 * b, special_point=np.array([0, 19]),
         special_impact=np.array([1, -1]),
     )  # fmt: skip
     assert np.flatnonzero(~joined.margins(points, ["x1"])).tolist() == [0, 19]

@@ -128,7 +128,7 @@ def test_windows_of_long_orbits(case):
         solution = orbit._solution
         if TYPES[int(kind)].name == "graze":
             slowest = solution.pushes.min() / np.abs(solution.jumps).max()
-            assert min(abs(orbit.margin) / solution.size_of_gap, abs(slowest)) < 1e-8
+            assert min(abs(orbit.stop_distance) / solution.size_of_gap, abs(slowest)) < 1e-8
         elif TYPES[int(kind)].name != "boundary":
             assert np.abs(np.abs(orbit.multipliers) - 1).min() < 1e-4
 

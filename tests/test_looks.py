@@ -160,7 +160,7 @@ def test_commands(here, file, arguments, kind, look):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--at", "b"], ["--at b: write KEY=VALUE"]),
+        (["--at", "b"], ["--at b: write NAME=VALUE"]),
         (["--at", "b=x"], ["--at b: 'x' is no number"]),
         (["--at", "b=nan"], ["at.b: nan", "finite"]),
         (["--at", "R=1"], ["'R' is not swept", "allowed: b"]),

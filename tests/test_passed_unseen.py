@@ -164,7 +164,7 @@ def test_a_pair_that_becomes_two_of_which_a_flip_takes_one_back(loaded, factor):
 
 @pytest.mark.slow
 def test_a_graze_does_not_depend_on_the_start(loaded):
-    """Of a doubled orbit with a free mode: rounding of its margin is larger than that of the graze."""
+    """Of a doubled orbit with a free mode: rounding of its stop_distance is larger than that of the graze."""
     parent = follow(loaded)
     (flip,) = (special for special in parent.special if special.type == "flip")
     case = loaded._replace(orbit=vs.switch(flip)[0])

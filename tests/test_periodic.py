@@ -183,16 +183,16 @@ def test_margin_is_the_least_distance_of_a_turning_point(thirteen):
     away = np.abs(np.subtract.outer(times, orbit.impacts["t"] % (13 * system.period))).min(axis=1) > 1e-3
     turns = np.flatnonzero((rate[:-1] * rate[1:] < 0) & away[:-1] & away[1:])
     least = min(system.b - abs(gap[i]) for i in turns)
-    assert orbit.margin == pytest.approx(least, abs=1e-6) and orbit.margin <= least + 1e-15
+    assert orbit.stop_distance == pytest.approx(least, abs=1e-6) and orbit.stop_distance <= least + 1e-15
 
 
 def test_margin_of_the_free_motion_is_the_distance_from_the_graze():
     orbit = vs.periodic_orbit(PAPER.replace(b=6.8), itinerary="")
     assert orbit.ok and orbit.symmetric and orbit.itinerary == "" and len(orbit.impacts) == 0
-    assert orbit.margin == pytest.approx(6.8 - vs.grazing(PAPER).b, abs=1e-13)
+    assert orbit.stop_distance == pytest.approx(6.8 - vs.grazing(PAPER).b, abs=1e-13)
     assert np.abs(orbit.multipliers) == pytest.approx(np.exp(-np.repeat(PAPER.eta, 2) * PAPER.period), rel=1e-12)
     virtual = vs.periodic_orbit(PAPER.replace(b=6.7), itinerary="")
-    assert virtual.status == "not_real" and virtual.margin < 0
+    assert virtual.status == "inadmissible" and virtual.stop_distance < 0
 
 
 def test_orbit_close_to_the_graze_where_shooting_has_a_square_root():

@@ -87,7 +87,7 @@ def test_what_matters(objects, name):
 def test_a_long_list_of_windows(objects):
     windows = objects["windows"]
     many = type(windows)(list(windows) * 20)
-    many.parameter, many.unseen = windows.parameter, windows.unseen
+    many.parameter, many.unvisited = windows.parameter, windows.unvisited
     lines = repr(many).splitlines()
     assert len(lines) == LINES and lines[-1] == "  and 52 more>"
 

@@ -17,7 +17,7 @@ from vibro_sweep.store.attributes import text
 TRAJECTORY = "trajectory: {periods: 2, samples: 5}\n"
 MOTION = {f"trajectory_{name}" for name in ("x1", "v1", "x2", "v2")}
 CROSSED = {f"trajectory_section_{name}" for name in ("x1", "v1", "x2", "v2")}
-HITS = {f"trajectory_impact_{name}" for name in ("time", "side", "v1", "v1_after", "x2", "v2")}
+HITS = {f"trajectory_impact_{name}" for name in ("t_over_T", "side", "v1", "v1_after", "x2", "v2")}
 RUNNING = MOTION | CROSSED | HITS | {"trajectory_impacts"}
 
 # the text after SYSTEM: (the dimensions of the sweep and the starts, the datasets)
@@ -36,7 +36,7 @@ KINDS = {
 }
 EXTRA = {
     **{name: {"sample": 4} for name in ("x1", "v1", "x2", "v2", "phase")},
-    **{name: {"time": 5} for name in MOTION},
+    **{name: {"t_over_T": 5} for name in MOTION},
     **{name: {"trajectory_section": 3} for name in CROSSED},
     **{name: {"trajectory_impact": 5} for name in HITS},
     **{name: {"exponent": 4} for name in ("lyapunov", "lyapunov_error")},
@@ -75,8 +75,8 @@ def test_xarray_opens_it(made):
             assert data["sample"].values.tolist() == [0, 1, 2, 3]
         if "exponent" in data:
             assert data["exponent"].values.tolist() == [1, 2, 3, 4]
-        if "time" in data:
-            np.testing.assert_allclose(data["time"], np.arange(5) / 2, rtol=1e-15)
+        if "t_over_T" in data:
+            np.testing.assert_allclose(data["t_over_T"], np.arange(5) / 2, rtol=1e-15)
 
 
 def test_everything_is_described(made):

@@ -12,7 +12,7 @@ import vibro_sweep as vs
 from vibro_sweep.driver import blocks, compute
 
 CONFIGS = ROOT / "configs"
-COORDINATES = ("b", "omega", "R", "tau", "b_star", "start", "sample", "exponent", "time")
+COORDINATES = ("b", "omega", "R", "tau", "b_star", "start", "sample", "exponent", "t_over_T")
 
 
 # What the numbers are
@@ -70,11 +70,11 @@ observe: [section]
 trajectory: {periods: 3, samples: 101}"""
     data = run(tmp_path, text, PAPER.replace("0.8", "0.4"))
     base = scene_of(text, PAPER.replace("0.8", "0.4")).system
-    np.testing.assert_allclose(data["time"], np.linspace(0, 3, 101), rtol=1e-15)
+    np.testing.assert_allclose(data["t_over_T"], np.linspace(0, 3, 101), rtol=1e-15)
     for i, b in enumerate((0.5, 6.68)):
         last = np.array([data[name][i, -1] for name in ("x1", "v1", "x2", "v2")])
         orbit = vs.simulate(base.replace(b=b), last, 3)
-        expected = orbit.sample(np.minimum(data["time"] * base.period, orbit.section_times[-1]))
+        expected = orbit.sample(np.minimum(data["t_over_T"] * base.period, orbit.section_times[-1]))
         for j, name in enumerate(("x1", "v1", "x2", "v2")):
             np.testing.assert_allclose(data[f"trajectory_{name}"][i], expected[:, j], rtol=0, atol=1e-11)
         assert np.all(abs(data["trajectory_x1"][i]) <= b * (1 + 1e-15))

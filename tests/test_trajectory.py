@@ -52,11 +52,13 @@ def test_impacts_are_those_of_simulate(orbits):
         hits = orbit.impacts
         if len(hits) > 200:  # the ends of chatter sequences are left out
             hits = hits[abs(hits["v1"]) > np.sort(abs(hits["v1"]))[-201]]
-        stored = {name: data[f"trajectory_impact_{name}"][i] for name in ("time", "side", "v1", "v1_after", "x2", "v2")}
-        there = np.isfinite(stored["time"])
+        stored = {
+            name: data[f"trajectory_impact_{name}"][i] for name in ("t_over_T", "side", "v1", "v1_after", "x2", "v2")
+        }
+        there = np.isfinite(stored["t_over_T"])
         assert there[: len(hits)].all() and not there[len(hits) :].any()
         assert np.all(stored["side"][~there] == 0)
-        np.testing.assert_allclose(stored["time"][there], hits["t"] / scene.system.period, rtol=1e-13)
+        np.testing.assert_allclose(stored["t_over_T"][there], hits["t"] / scene.system.period, rtol=1e-13)
         np.testing.assert_array_equal(stored["side"][there], hits["side"])
         for name in ("v1", "x2", "v2"):
             np.testing.assert_allclose(stored[name][there], hits[name], rtol=0, atol=1e-12 * b)
@@ -93,7 +95,7 @@ def test_an_orbit_of_period_1_shows_one_dot(orbits):
     (line,) = dots
     assert len(line.get_xdata()) == 5 and np.ptp(line.get_xydata(), axis=0).max() < 1e-9
     with h5py.File(path) as file:
-        t, x1 = file["time"][()], file["trajectory_x1"][2]
+        t, x1 = file["t_over_T"][()], file["trajectory_x1"][2]
         nearest = x1[[np.argmin(abs(t - n)) for n in range(5)]]
         assert np.ptp(nearest) > 1e-2  # what was drawn before
         assert np.array_equal(line.get_xdata(), file["trajectory_section_x1"][2])

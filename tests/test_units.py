@@ -30,7 +30,7 @@ def test_what_begins_at_points_of_codimension_two(k, pitchforks):
 
 
 def test_what_begins_where_a_pitchfork_meets_a_graze():
-    """The asymmetric orbits graze with one half; of the margin of the other, which touches too, rounding is left."""
+    """The asymmetric orbits graze with one half; of the distance of the other, which touches too, rounding is left."""
     system = vs.System(mu_m=1.5, mu_k=2.65, zeta=0.08, f2=0, omega=1.58, R=0.45, b=1.0)
     star, q = vs.grazing(system).b, system.linear
     numbers = dict(M=q.M, K=q.K, C=q.C, contact_normal=q.normal, force=q.sine, omega=q.omega, R=q.R_high, tau=q.tau)

@@ -191,7 +191,9 @@ def test_windows(tmp_path):
     vs.sweep(CHAIN, {"omega": [27.0, 27.1]}, observe=["section"], output=tmp_path / "s.h5", **SHORT)
     assert main(["windows", str(tmp_path / "s.h5"), "-o", str(tmp_path / "w.h5"), "--quiet"]) == 0
     with vs.open(tmp_path / "w.h5") as data:
-        assert {data[name].attrs["units"] for name in ("window_lo", "window_hi", "omega", "unseen_at")} == {"rad s-1"}
+        assert {data[name].attrs["units"] for name in ("window_lo", "window_hi", "omega", "unvisited_at")} == {
+            "rad s-1"
+        }
 
 
 @pytest.mark.slow

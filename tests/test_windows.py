@@ -135,7 +135,7 @@ def test_values_at_the_very_end_of_a_window_are_within_none(tmp_path):
     windows = vs.windows(tmp_path / "k.h5")
     (window,) = [one for one in windows if one.lo == 0]
     assert windows.window.ravel().tolist()[1:] == [0, 0] and windows.window[0, 0] == -1
-    assert window.missed == 0 and windows.unseen == []
+    assert window.other_attractor == 0 and windows.unvisited == []
 
 
 def test_what_has_no_windows_is_refused(tmp_path):

@@ -152,7 +152,7 @@ def test_rests_of_a_motion_are_marked(tmp_path):
     x1, v1 = np.array([0, 1, 2, 2, 2, 1, 0, -1, 0.0]), np.array([1, 1, 0, 0, 0, -1, -1, 0, 1.0])
     none = np.full(1, np.nan)
     quantities = {f"trajectory_{name}": values for name, values in (("x1", x1), ("v1", v1), ("x2", x1 / 2))}
-    quantities |= {f"trajectory_impact_{name}": none for name in ("time", "v1", "v1_after", "x2")}
+    quantities |= {f"trajectory_impact_{name}": none for name in ("t_over_T", "v1", "v1_after", "x2")}
     quantities |= {"trajectory_impact_side": np.zeros(1, int), "trajectory_impacts": 0}
     file = write(tmp_path / "o.h5", {}, quantities, settings=SETTINGS | {"b": 2.0}, time=np.arange(9) / 8)
     for kind, expected in (("phase-portrait", 0.0), ("history", 2.0), ("configuration", 1.0)):

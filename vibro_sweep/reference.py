@@ -202,7 +202,7 @@ def _pictures() -> Iterator[str]:
     yield "## Kinds of pictures\n"
     yield (
         "`vibro-sweep plot FILE.h5 --kind KIND`; the default is the scene's `picture`, else the first that a file can "
-        "show. `--at KEY=VALUE` draws single orbits at that value of the sweep, `--variable NAME` another variable (a "
+        "show. `--at NAME=VALUE` draws single orbits at that value of the sweep, `--variable NAME` another variable (a "
         "wrong name lists those of the file), `--xlim LOW HIGH` and `--ylim LOW HIGH` a part, `--size WIDTH HEIGHT` "
         "(inches), `--width MM` (85: one column of a journal) and `--dpi N` set how large it is.\n"
     )

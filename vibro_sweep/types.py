@@ -13,7 +13,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.single.discontinuity import DiscontinuityMap
 from vibro_sweep.analysis.single.exponents import Exponents
 from vibro_sweep.analysis.single.orbit import Orbit, Status
-from vibro_sweep.analysis.windows.unseen import Unseen
+from vibro_sweep.analysis.windows.unvisited import Unvisited
 from vibro_sweep.analysis.windows.window import Window, Windows
 from vibro_sweep.driver.cost import Estimate
 from vibro_sweep.driver.sweep import RunReport
@@ -48,7 +48,7 @@ __all__ = [
     "Start",
     "Status",
     "Trajectory",
-    "Unseen",
+    "Unvisited",
     "Window",
     "WindowFamily",
     "Windows",

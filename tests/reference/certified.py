@@ -159,8 +159,8 @@ class Reference:
             error[chosen] = bound + rounding + 4 * UNIT * t[chosen] * np.abs(c[1])
         return x, error
 
-    def inside(self, z, b, end, margin):
-        """Whether |gap| < b + margin up to the time `end` (N,): POSITIVE, NEGATIVE or OPEN for each flight."""
+    def inside(self, z, b, end, stop_distance):
+        """Whether |gap| < b + stop_distance up to the time `end` (N,): POSITIVE, NEGATIVE or OPEN for each flight."""
         verdict = np.full(len(z), POSITIVE, np.int8)
         for k in range(self.cells):
             begin = k * self.width
@@ -169,7 +169,7 @@ class Reference:
                 break
             c, error = self.coefficients(k, z[alive])
             powers = (self.width * (1 + REAL(1e-17))) ** np.arange(1, self.ORDER + 1)
-            wall = b + margin[alive]
+            wall = b + stop_distance[alive]
             near = np.abs(c[0]) + powers @ np.abs(c[1:]) + error >= wall
             for side in (1, -1):
                 close = near & (side * c[0] + powers @ np.abs(c[1:]) + error >= wall)

@@ -10,9 +10,9 @@ SETTINGS = dict(mu_m=10.0, mu_k=5.0, zeta=0.05, f2=0.0, omega=0.63, R=0.8, b=6.6
 SETTINGS |= dict(b_star=6.70571674097302, model="flow", section="phase", transient=300, record=20)
 OWN = {"lyapunov": ("exponent",), "x1": ("sample",), "v1": ("sample",), "phase": ("sample",)}
 OWN |= {"lyapunov_running": ("elapsed", "exponent"), "lyapunov_error": ("exponent",)}
-OWN |= {f"trajectory_{name}": ("time",) for name in ("x1", "v1", "x2", "v2")}
+OWN |= {f"trajectory_{name}": ("t_over_T",) for name in ("x1", "v1", "x2", "v2")}
 OWN |= {f"trajectory_section_{name}": ("trajectory_section",) for name in ("x1", "v1", "x2")}
-OWN |= {f"trajectory_impact_{name}": ("trajectory_impact",) for name in ("time", "side", "v1", "v1_after", "x2")}
+OWN |= {f"trajectory_impact_{name}": ("trajectory_impact",) for name in ("t_over_T", "side", "v1", "v1_after", "x2")}
 
 
 def write(path, coordinates, quantities, done=None, settings=SETTINGS, time=(), along=None):
@@ -34,7 +34,7 @@ def write(path, coordinates, quantities, done=None, settings=SETTINGS, time=(), 
         for name, values in quantities.items():
             data = file.create_dataset(name, data=values)
             for i, dim in enumerate((*coordinates, *OWN.get(name, ()))):
-                known.setdefault(dim, time if dim == "time" else np.arange(np.shape(values)[i]))
+                known.setdefault(dim, time if dim == "t_over_T" else np.arange(np.shape(values)[i]))
                 if dim not in file:
                     file[dim] = known[dim]
                     file[dim].make_scale(dim)
@@ -82,7 +82,7 @@ def trajectory(tmp_path):
         **{"trajectory_x1": x1, "trajectory_v1": v1, "trajectory_x2": x1 / 2, "x1": np.zeros(2)},
         **{"trajectory_section_x1": np.zeros(3), "trajectory_section_v1": np.ones(3)},
         **{"trajectory_section_x2": np.zeros(3), "trajectory_impacts": 4, "trajectory_impact_side": side},
-        "trajectory_impact_time": np.append([2, 6, 10, 14], nan) / 8,
+        "trajectory_impact_t_over_T": np.append([2, 6, 10, 14], nan) / 8,
         "trajectory_impact_v1": np.append(side[:4], nan),
         "trajectory_impact_v1_after": np.append(-side[:4], nan),
         "trajectory_impact_x2": np.append(side[:4], nan),

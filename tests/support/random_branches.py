@@ -101,7 +101,7 @@ def settle(orbit, largest):
     The disturbance is smaller than the distance of the orbit from a graze: beyond that the motion may go elsewhere.
     """
     system, state, periods = orbit.system, orbit.state, orbit.period
-    share = min(1e-7, 0.01 * orbit.margin / system.b)
+    share = min(1e-7, 0.01 * orbit.stop_distance / system.b)
     rate = -math.log(min(max(largest, 1e-3), 1 - 1e-9)) / periods
     count = periods * math.ceil(min(25 / rate, MOST_PERIODS) / periods)
     N = len(state) // 2

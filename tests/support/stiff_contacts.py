@@ -132,8 +132,8 @@ def impacts_of(q, state, guesses, sides, walls=None, look=False):
 def leaves_stops(q, flight, parts, s):
     """Whether a flight passes a stop before the time s."""
     gaps = flight.gaps(parts, np.linspace(0, float(s), SAMPLES)[1:-1])
-    margin = BETWEEN * np.abs(gaps).max()
-    return gaps.max() > float(q.high) + margin or gaps.min() < float(q.low) - margin
+    stop_distance = BETWEEN * np.abs(gaps).max()
+    return gaps.max() > float(q.high) + stop_distance or gaps.min() < float(q.low) - stop_distance
 
 
 def strikes_until(q, state, hits, true, end):

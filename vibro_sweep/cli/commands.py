@@ -96,7 +96,7 @@ def windows_command(
     file: DataFile,
     output: Annotated[Path | None, output_option("FILE.h5", "FILE.windows.h5 in the current folder")] = None,
     parameter: Annotated[
-        str | None, typer.Option(metavar="KEY", help="The swept number, of a plane; by default the first.")
+        str | None, typer.Option(metavar="NAME", help="The swept number, of a plane; by default the first.")
     ] = None,
     workers: Annotated[
         int | None, typer.Option(parser=positive, metavar="N", help="Processes; by default one.")
@@ -131,7 +131,7 @@ def plot_command(
     ] = None,
     at: Annotated[
         list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Draw single orbits at this value of the sweep; may be repeated."),
+        typer.Option(metavar="NAME=VALUE", help="Draw single orbits at this value of the sweep; may be repeated."),
     ] = None,
     variable: Annotated[
         str | None,

@@ -51,10 +51,10 @@ def executor_of(scheduler: str | None) -> contextlib.AbstractContextManager:
 
 
 def key_and_value(text: str) -> tuple[str, float]:
-    """KEY=VALUE, as --at has it."""
+    """NAME=VALUE, as --at has it."""
     key, equals, value = text.partition("=")
     if not equals:
-        raise InputError(f"--at {text}: write KEY=VALUE, for example b=6.6")
+        raise InputError(f"--at {text}: write NAME=VALUE, for example b=6.6")
     return key.strip(), number_in(f"--at {key}", value)
 
 

@@ -12,7 +12,7 @@ from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Flat
 from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.job import window_of
 from vibro_sweep.analysis.windows.rows import Contents, Row, check_data, chosen_key, rows_of
-from vibro_sweep.analysis.windows.unseen import unseen_in
+from vibro_sweep.analysis.windows.unvisited import unvisited_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.provenance import provenance
@@ -25,7 +25,7 @@ from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.state import state
-from vibro_sweep.model.window_columns import UNSEEN
+from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.progress import given_or_bar
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.flat_files import Subject
@@ -58,8 +58,8 @@ def windows(
 
     Returns a list of windows with .lo, .hi, .lower, .upper (special points), .period, .itinerary, .symmetric and
     .orbit. Mirror images are one window, and so is an orbit that several points of the sweep found. Ends may lie
-    beyond the sweep, by its length at most. `.reason` of the list says of orbits in no window why; `.unseen` lists the
-    stretches of windows on which the sweep shows other attractors only, each with a start.
+    beyond the sweep, by its length at most. `.reason` of the list says of orbits in no window why; `.unvisited` lists
+    the stretches of windows on which the sweep shows other attractors only, each with a start.
 
     Raises StoreError for a file that cannot be read or is in the way, ValueError for a sweep that has no windows to
     look for, and what `run` raises.
@@ -165,17 +165,17 @@ def _contents(cover: Cover) -> tuple:
         "window_branch": np.arange(len(found)),
         "window_row": np.array([one.row for one in found], int),
         "window_orbits": cover.counts,
-        "window_missed": cover.missed,
+        "window_other_attractor": cover.other_attractor,
         "orbit_window": window.ravel(),
         "orbit_reason": reason.ravel(),
     }
-    arrays |= _unseen(cover, masses)
+    arrays |= _unvisited(cover, masses)
     return columns_of(WINDOWS, names, first.system), arrays
 
 
-def _unseen(cover: Cover, masses: int) -> dict[str, np.ndarray]:
-    """The columns over `unseen`."""
-    found, names = unseen_in(cover), state(masses)
+def _unvisited(cover: Cover, masses: int) -> dict[str, np.ndarray]:
+    """The columns over `unvisited`."""
+    found, names = unvisited_in(cover), state(masses)
     states = np.array([one.state for one in found]).reshape(len(found), len(names))
-    numbers = {f"unseen_{key}": np.array([getattr(one, key) for one in found]) for key in UNSEEN}
-    return numbers | {f"unseen_{name}": states[:, i] for i, name in enumerate(names)}
+    numbers = {f"unvisited_{key}": np.array([getattr(one, key) for one in found]) for key in UNVISITED}
+    return numbers | {f"unvisited_{name}": states[:, i] for i, name in enumerate(names)}

@@ -117,12 +117,12 @@ CODES_OF_CURVES = {one.name: code for code, one in enumerate(CODIMENSION_TWO)}
 
 KINDS = ("none", "persistence", "nonsmooth_fold")  # of a graze
 CRITICALITIES = ("none", "super", "sub")
-STATUSES = ("ok", "not_real")  # of points of a branch
+STATUSES = ("ok", "inadmissible")  # of points of a branch
 BRANCH_STATUSES = ("ok", "failed")  # failed: it could not be followed to an end, or not at all
 
 EDGES = {  # of a plane between points of different periods: why; what says most comes first
     "curve": "a curve passes between the two points on which one of their orbits ends or loses its stability",
-    "alone": "an orbit ends or loses its stability between the points, but no curve was followed from there",
+    "no_curve": "an orbit ends or loses its stability between the points, but no curve was followed from there",
     "stable_at_both": "the periodic orbits are stable at both points; other starts, or a record that has not settled",
     "not_settled": "the recorded orbit is not yet the periodic one that it approaches",
     "failed": "the orbit could not be followed",

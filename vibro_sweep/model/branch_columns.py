@@ -56,7 +56,14 @@ OF_BRANCHES = (
         "of Floquet multipliers; of a pair the positive one first",
     ),
     Column("unstable", ("point",), "i4", "unstable multipliers", "number of multipliers outside the unit circle"),
-    Column("margin", ("point",), "f8", "margin", "least distance of a turning point of the gap from its stop", "m"),
+    Column(
+        "stop_distance",
+        ("point",),
+        "f8",
+        "stop_distance",
+        "least distance of a turning point of the gap from its stop",
+        "m",
+    ),
     Column(
         "min_impact_speed",
         ("point",),

@@ -6,7 +6,7 @@ from vibro_sweep.model.column import OF_FIRST, OF_PARAMETER, Column
 from vibro_sweep.model.curve_columns import OF_CURVES
 from vibro_sweep.model.state import coordinates
 from vibro_sweep.model.units import unit_in
-from vibro_sweep.model.window_columns import OF_WINDOWS, UNSEEN
+from vibro_sweep.model.window_columns import OF_WINDOWS, UNVISITED
 
 BRANCHES, WINDOWS, CHART = "branches", "windows", "curves"  # the kinds of such files
 
@@ -19,9 +19,9 @@ def columns(kind: str, parameters: list[str], masses: int) -> list[Column]:
     if kind == CHART:
         return [*own, *OF_CURVES]
     if kind == WINDOWS:
-        text = "at t = 0 mod T, of a start that stays on the window's orbit at `unseen_at`; NaN where none is known"
-        starts = [Column(f"unseen_{n}", ("unseen",), "f8", n, f"{n} {text}", units[n]) for n in units]
-        return [*own, *OF_BRANCHES, *OF_WINDOWS, *UNSEEN.values(), *starts]
+        text = "at t = 0 mod T, of a start that stays on the window's orbit at `unvisited_at`; NaN where none is known"
+        starts = [Column(f"unvisited_{n}", ("unvisited",), "f8", n, f"{n} {text}", units[n]) for n in units]
+        return [*own, *OF_BRANCHES, *OF_WINDOWS, *UNVISITED.values(), *starts]
     sections = [Column(f"section_{n}", ("section",), "f8", n, f"{n} at t = 0 mod T", units[n]) for n in units]
     return [*own, *OF_BRANCHES, BRANCH_SECTIONS, *sections]
 

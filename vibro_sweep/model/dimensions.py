@@ -36,7 +36,7 @@ def dimensions(masses: int) -> dict[str, Dimension]:
             "average of", "section points, impacts in a forcing period, lambda_1", len(averaged(masses))
         ),
         "elapsed": Dimension("forcing periods recorded", "forcing periods since the end of the transient"),
-        "time": Dimension("time t/T", "forcing periods since the last section point"),
+        "t_over_T": Dimension("time t/T", "forcing periods since the last section point"),
         "trajectory_section": Dimension("time t/T", "forcing periods since the last section point"),
         "trajectory_impact": Dimension("impact", "impact along the orbit, counted from the last section point"),
     }

@@ -24,7 +24,7 @@ CLASSICAL = 1e-13  # of the matrices: what may couple modes and be neglected
 ROUNDING = 2.0**-48  # of the terms of a sum: what rounding may leave of it, for each mass
 NO_PLANES = 1e10  # condition from which on coordinates that part what is not coupled are tried
 NO_PART = 1e-14  # of the terms of the gap: what is rounding
-UNSEEN = 1e-10  # share of the gap in a plane, in the metric of the masses, that is none
+UNVISITED = 1e-10  # share of the gap in a plane, in the metric of the masses, that is none
 NO_EASE = 1e6  # condition from which on planes of real roots are tried whose e2 has a part in y1
 MAY_BE_NONE = 1e-6  # of the largest root: one that may be 0
 NO_ROOT = 1e-12  # of the largest root: length of the first vector of a plane that is none
@@ -60,7 +60,7 @@ def frame_of(natural: Natural, omega: float) -> Frame:
         planes = _planes(A, root, K, C, natural.normal)
     eta, square, seconds, rounding = planes
     effective = 1 / (natural.normal @ (natural.normal / natural.masses))
-    order = np.argsort(np.abs(natural.normal @ seconds[1::2]) * np.sqrt(effective) > UNSEEN, kind="stable")
+    order = np.argsort(np.abs(natural.normal @ seconds[1::2]) * np.sqrt(effective) > UNVISITED, kind="stable")
     eta, square, seconds = eta[order], square[order], seconds[:, order]
     product = square + eta**2
     scale = np.maximum(np.sqrt(np.abs(square)), LEAST_SCALE * np.sqrt(np.maximum(product, 0)))
@@ -188,7 +188,7 @@ def _pairs(
     upper, real = np.flatnonzero(roots.imag > 0), np.flatnonzero(roots.imag == 0)
     real = real[np.argsort(roots[real].real)]
     sizes = np.linalg.norm(vectors * root[:, None], axis=0)
-    seen = np.abs(gap @ vectors[:, real]) * effective > UNSEEN * sizes[real]
+    seen = np.abs(gap @ vectors[:, real]) * effective > UNVISITED * sizes[real]
     groups = [real[seen], real[~seen]] if np.sum(seen) % 2 == 0 else [real]  # one of each kind makes no plane
 
     def planes(partners, any_of=None):

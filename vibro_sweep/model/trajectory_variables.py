@@ -15,7 +15,7 @@ def _trajectory(name: str, label: str, text: str, dimension: str | None, dtype: 
 
 def of_a_trajectory(masses: int, gap: bool) -> tuple[Variable, ...]:
     """The continuous motion, its sections and its impacts."""
-    along, at_impacts = "time", "trajectory_impact"
+    along, at_impacts = "t_over_T", "trajectory_impact"
     other = coordinates(masses) if gap else coordinates(masses)[2:]  # at an impact x1 is at the stop, v1 jumps
     speed, mass = ("gap velocity", "of the gap") if gap else ("velocity v1", "of mass 1")
     return (
@@ -34,7 +34,7 @@ def of_a_trajectory(masses: int, gap: bool) -> tuple[Variable, ...]:
             "impacts", "impacts", "number of impacts along the orbit; of too many the fastest are stored", None, "i8",
         ),
         _trajectory(
-            "impact_time", "time of impact, t/T", "forcing periods from the last section point to an impact",
+            "impact_t_over_T", "time of impact, t/T", "forcing periods from the last section point to an impact",
             at_impacts,
         ),
         _trajectory(

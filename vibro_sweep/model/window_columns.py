@@ -13,7 +13,13 @@ OF_WINDOWS = (
     Column("window_branch", ("window",), "i4", "branch", "index of the branch between the two ends", index_in="branch"),
     Column("window_row", ("window",), "i4", "row", "of a plane: index of the row along the parameter"),
     Column("window_orbits", ("window",), "i4", "orbits", "orbits of the sweep that lie in it"),
-    Column("window_missed", ("window",), "i4", "missed", "orbits at its values that went to another attractor"),
+    Column(
+        "window_other_attractor",
+        ("window",),
+        "i4",
+        "other attractor",
+        "orbits at its values that went to another attractor",
+    ),
     Column(
         "orbit_window",
         ("orbit",),
@@ -28,18 +34,25 @@ OF_WINDOWS = (
     ),
 )
 
-UNSEEN = {  # of a stretch of a window on which the sweep shows other attractors only
+UNVISITED = {  # of a stretch of a window on which the sweep shows other attractors only
     "window": Column(
-        "unseen_window", ("unseen",), "i4", "window", "whose orbit is stable there: its index", index_in="window"
+        "unvisited_window", ("unvisited",), "i4", "window", "whose orbit is stable there: its index", index_in="window"
     ),
     "lo": Column(
-        "unseen_lo", ("unseen",), "f8", "from", "the parameter where the sweep begins to miss the orbit", OF_FIRST
+        "unvisited_lo", ("unvisited",), "f8", "from", "the parameter where the sweep begins to miss the orbit", OF_FIRST
     ),
     "hi": Column(
-        "unseen_hi", ("unseen",), "f8", "to", "the parameter up to which the sweep misses the orbit", OF_FIRST
+        "unvisited_hi", ("unvisited",), "f8", "to", "the parameter up to which the sweep misses the orbit", OF_FIRST
     ),
-    "values": Column("unseen_values", ("unseen",), "i4", "values", "values of the sweep that show other attractors"),
+    "values": Column(
+        "unvisited_values", ("unvisited",), "i4", "values", "values of the sweep that show other attractors"
+    ),
     "at": Column(
-        "unseen_at", ("unseen",), "f8", "at", "one of these values, of which `unseen_x1` .. is a start", OF_FIRST
+        "unvisited_at",
+        ("unvisited",),
+        "f8",
+        "at",
+        "one of these values, of which `unvisited_x1` .. is a start",
+        OF_FIRST,
     ),
 }

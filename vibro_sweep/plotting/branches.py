@@ -21,7 +21,7 @@ MOST = 3.0  # modulus of a multiplier that is shown: at a graze it is infinite
 
 def variables(file: FlatFile) -> tuple[str, ...]:
     """What may be drawn over the parameter."""
-    return (*_sections(file), "impact_speed", "multiplier", "margin")
+    return (*_sections(file), "impact_speed", "multiplier", "stop_distance")
 
 
 def branches(path, look: Look, ax=None):
@@ -41,7 +41,7 @@ def branches(path, look: Look, ax=None):
     if look.over is not None:
         _sweep(ax, look, file, name)
     values = values_of(file, name)
-    together = joined.margins(file, _sections(file)) if name == "margin" else np.ones(len(values), bool)
+    together = joined.margins(file, _sections(file)) if name == "stop_distance" else np.ones(len(values), bool)
     _lines(ax, file, _drawn(file, name, values, look.over is not None), together)
     marks = _marks(ax, file, values)
     ax.set_xlabel(axis_name(file.parameters[0], file.unit(file.parameters[0])))
@@ -74,7 +74,7 @@ def values_of(file: FlatFile, name: str) -> np.ndarray:
     """(points,) or (points, lines) what is drawn, of each point; NaN where it is not there."""
     if name == "multiplier":
         return joined.multipliers(file)
-    if name in ("impact_speed", "margin"):
+    if name in ("impact_speed", "stop_distance"):
         found = file["min_impact_speed" if name == "impact_speed" else name].astype(float)
         return np.where(np.isfinite(found), found, np.nan)
     return file[name]
@@ -84,7 +84,7 @@ def _label(name: str) -> str:
     labels = {
         "impact_speed": "smallest impact speed",
         "multiplier": "modulus $|\\mu|$ of the multipliers",
-        "margin": "distance of the nearest turning point from its stop",
+        "stop_distance": "distance of the nearest turning point from its stop",
     }
     return labels.get(name) or f"{symbol(name)} at $t = 0$"
 

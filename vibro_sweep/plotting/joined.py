@@ -36,18 +36,18 @@ def margins(file: FlatFile, states: list[str]) -> np.ndarray:
     """(points,) which points may be joined with the next one of their branch: where both margins are of one turning
     point.
 
-    At a graze where an impact vanishes, the margin is that of the impact. Elsewhere turning points come and go in
-    pairs, and the margin jumps: it then changes by far more, in relation to the step, than before and behind.
+    At a graze where an impact vanishes, the distance is that of the impact. Elsewhere turning points come and go in
+    pairs, and the distance jumps: it then changes by far more, in relation to the step, than before and behind.
     """
-    margin, sizes = file["margin"], file["branch_row_size"]
+    stop_distance, sizes = file["stop_distance"], file["branch_row_size"]
     coordinates = np.column_stack([file[name] for name in (*file.parameters, *states)])
     scale = np.ptp(coordinates, axis=0)
-    result = np.zeros(len(margin), bool)
-    finite = margin[np.isfinite(margin)]
+    result = np.zeros(len(stop_distance), bool)
+    finite = stop_distance[np.isfinite(stop_distance)]
     small = SMALL * np.ptp(finite) if finite.size else 0.0
     ends = np.cumsum(sizes)
     for begin, end in zip(ends - sizes, ends, strict=True):
-        m = margin[begin:end]
+        m = stop_distance[begin:end]
         steps = np.linalg.norm(np.diff(coordinates[begin:end], axis=0) / np.where(scale > 0, scale, 1.0), axis=1)
         with np.errstate(invalid="ignore", divide="ignore"):
             change = np.abs(np.diff(m))

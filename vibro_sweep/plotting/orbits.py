@@ -30,7 +30,7 @@ ARROWS_AT = (0.06, 0.36, 0.66, 0.91)  # of the first forcing period, or of the w
 
 def shows_trajectory(result: Result) -> bool:
     """A trajectory."""
-    return all(name in result for name in ("trajectory_x1", "trajectory_v1", "time"))
+    return all(name in result for name in ("trajectory_x1", "trajectory_v1", "t_over_T"))
 
 
 def shows_both_masses(result: Result) -> bool:

@@ -40,12 +40,12 @@ class Path(NamedTuple):
 
 def path(result: Result, point: Point) -> Path:
     """The trajectory of an orbit, as the file holds it."""
-    t, along = result.coordinate("time"), result.contact_normal
+    t, along = result.coordinate("t_over_T"), result.contact_normal
     names = state(result.masses)
     motion = {name: _stored(result, f"trajectory_{name}", point, len(t)) for name in names}
     jumping = before(along is not None)
     when, side, speed, after = (
-        result.one(f"trajectory_impact_{name}", point) for name in ("time", "side", jumping, f"{jumping}_after")
+        result.one(f"trajectory_impact_{name}", point) for name in ("t_over_T", "side", jumping, f"{jumping}_after")
     )
     hits = np.isfinite(when)
     at_impact = {name: _stored(result, f"trajectory_impact_{name}", point, len(when))[hits] for name in names}

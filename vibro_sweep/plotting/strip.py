@@ -41,14 +41,14 @@ def windows(ax, result: Result, values, order):
             if file["window_symmetric"][w] == chosen
         ]
         ax.add_collection(PolyCollection(bars, facecolor=colour, edgecolor=FAINT, linewidth=0.4, label=name))
-    unseen = _unseen(ax, file, shown, lanes, (left, right))
+    unvisited = _unvisited(ax, file, shown, lanes, (left, right))
     _ends(ax, file, shown, lanes, (left, right))
     _periods(ax, file, shown, lanes, lo, hi, (0.08 if getattr(ax.figure, "narrow", False) else 0.03) * (right - left))
     reasons = _reasons(ax, result, file, values, order)
     ax.set_ylim(max(lanes, default=0) + 0.7, -1.6)
     ax.set_yticks([])
     ax.set_ylabel("windows")
-    _legend(ax, file, shown, unseen, (left, right), reasons)
+    _legend(ax, file, shown, unvisited, (left, right), reasons)
 
 
 def _windows_of(result: Result) -> FlatFile:
@@ -83,16 +83,16 @@ def lanes_of(lo: np.ndarray, hi: np.ndarray, apart: float) -> list[int]:
     return result
 
 
-def _unseen(ax, file, shown, lanes, limits) -> bool:
+def _unvisited(ax, file, shown, lanes, limits) -> bool:
     """Hatch the bars where the sweep shows other attractors only. Whether there are such stretches."""
-    if "unseen_window" not in file.arrays:  # of an earlier version
+    if "unvisited_window" not in file.arrays:  # of an earlier version
         return False
     lane_of, hatched = dict(zip(shown.tolist(), lanes, strict=True)), []
-    lows, highs = np.maximum(file["unseen_lo"], limits[0]), np.minimum(file["unseen_hi"], limits[1])
-    for w, lo, hi in zip(file["unseen_window"].tolist(), lows, highs, strict=True):
+    lows, highs = np.maximum(file["unvisited_lo"], limits[0]), np.minimum(file["unvisited_hi"], limits[1])
+    for w, lo, hi in zip(file["unvisited_window"].tolist(), lows, highs, strict=True):
         if w in lane_of and lo <= hi:
             hatched.append([(x, lane_of[w] + y) for x, y in ((lo, -0.32), (hi, -0.32), (hi, 0.32), (lo, 0.32))])
-    style = {"facecolor": "none", "edgecolor": HATCHES, "linewidth": 0, "hatch": HATCH, "gid": "unseen"}
+    style = {"facecolor": "none", "edgecolor": HATCHES, "linewidth": 0, "hatch": HATCH, "gid": "unvisited"}
     ax.add_collection(PolyCollection(hatched, **style))
     return bool(hatched)
 
@@ -130,7 +130,7 @@ def _reasons(ax, result, file, values, order) -> list[str]:
     return named
 
 
-def _legend(ax, file, shown, unseen, limits, reasons):
+def _legend(ax, file, shown, unvisited, limits, reasons):
     types = file.types()
     there = {
         types[file[f"window_{end}"][w]]
@@ -144,7 +144,7 @@ def _legend(ax, file, shown, unseen, limits, reasons):
     symmetric = file["window_symmetric"][shown].astype(bool)
     colours = {"window": (BAR, ~symmetric), "symmetric orbit": (SYMMETRIC, symmetric)}
     handles += [Patch(facecolor=colour, label=name) for name, (colour, who) in colours.items() if who.any()]
-    if unseen:
+    if unvisited:
         handles.append(Patch(facecolor=BAR, edgecolor=HATCHES, linewidth=0, hatch=HATCH, label="missed by all starts"))
     handles += [Patch(facecolor=REASON_COLOURS[name], label=name.replace("_", " ")) for name in reasons]
     where = {"loc": "upper left", "bbox_to_anchor": (1.005, 1.05)}

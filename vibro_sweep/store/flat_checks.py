@@ -13,11 +13,11 @@ from vibro_sweep.model.branch_file import BRANCHES, CHART, RAGGED, WINDOWS, colu
 from vibro_sweep.model.column import Column
 from vibro_sweep.model.curve_columns import OF_EDGES
 from vibro_sweep.model.refusals import cut, shown
-from vibro_sweep.model.window_columns import UNSEEN
+from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.store.attributes import check_dataset, text, texts
 
 KINDS = (BRANCHES, WINDOWS, CHART)
-LATER = {column.dimensions[0] for column in (*OF_EDGES, *UNSEEN.values())}  # dimensions that a file need not have
+LATER = {column.dimensions[0] for column in (*OF_EDGES, *UNVISITED.values())}  # dimensions that a file need not have
 
 
 class Stored(NamedTuple):

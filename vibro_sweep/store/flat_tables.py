@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVES, EDGES, KINDS, REASONS, TYPES
-from vibro_sweep.model.window_columns import UNSEEN
+from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.model.window_families import families
 
 LONGEST_WORD = 12  # letters of an itinerary that is printed as it is
@@ -16,12 +16,12 @@ def windows_table(arrays: Mapping, parameter: str) -> list[str]:
     """A line for each window, then what its ends are and what no window covers."""
     lower, upper = np.asarray(arrays["window_lower"]), np.asarray(arrays["window_upper"])
     words = [_short(word) for word in _words(arrays)]
-    rows = [("from", "ends with", "to", "ends with", "period", "impacts", "symmetric", "orbits", "elsewhere")]
+    rows = [("from", "ends with", "to", "ends with", "period", "impacts", "symmetric", "orbits", "other attractor")]
     for w, branch in enumerate(np.asarray(arrays["window_branch"]).tolist()):
         ends = [ending(arrays, int(end[w])) for end in (lower, upper)]
         numbers = [_number(arrays, int(end[w])) for end in (lower, upper)]
         kind = [str(arrays["window_period"][w]), words[branch], "yes" if arrays["window_symmetric"][w] else "no"]
-        orbits = [str(arrays[name][w]) for name in ("window_orbits", "window_missed")]
+        orbits = [str(arrays[name][w]) for name in ("window_orbits", "window_other_attractor")]
         rows.append((numbers[0], ends[0], numbers[1], ends[1], *kind, *orbits))
     lines = [f"windows in {parameter}: {len(rows) - 1}", *_aligned(rows)]
     named = Counter(TYPES[code].name for code in np.asarray(arrays["special_type"])[np.append(lower, upper)].tolist())
@@ -32,7 +32,7 @@ def windows_table(arrays: Mapping, parameter: str) -> list[str]:
     found = {names[code]: int(count) for code, count in zip(codes.tolist(), numbers.tolist(), strict=True)}
     covered = found.pop("in_a_window", 0)
     lines.append(f"orbits       {covered:,} of {reasons.size:,} in windows" + (f"; {_counted(found)}" if found else ""))
-    return [*lines, *_families(arrays), *_unseen(arrays, parameter)]
+    return [*lines, *_families(arrays), *_unvisited(arrays, parameter)]
 
 
 def _families(arrays: Mapping) -> list[str]:
@@ -49,18 +49,20 @@ def _families(arrays: Mapping) -> list[str]:
     return lines
 
 
-def _unseen(arrays: Mapping, parameter: str) -> list[str]:
+def _unvisited(arrays: Mapping, parameter: str) -> list[str]:
     """A line for each stretch of a window on which the sweep shows other attractors only, with a start."""
-    if "unseen_window" not in arrays:  # a file of an earlier version
+    if "unvisited_window" not in arrays:  # a file of an earlier version
         return []
     words, branches = _words(arrays), np.asarray(arrays["window_branch"])
-    names = [name for name in arrays if name.startswith("unseen_") and name.removeprefix("unseen_") not in UNSEEN]
+    names = [
+        name for name in arrays if name.startswith("unvisited_") and name.removeprefix("unvisited_") not in UNVISITED
+    ]
     rows = [("from", "to", "period", "impacts", "values", parameter, "start")]
-    for u, w in enumerate(np.asarray(arrays["unseen_window"]).tolist()):
-        lo, hi, at = (f"{arrays[f'unseen_{name}'][u]:.10g}" for name in ("lo", "hi", "at"))
-        start = ", ".join(f"{name.removeprefix('unseen_')}: {float(arrays[name][u])!r}" for name in names)
+    for u, w in enumerate(np.asarray(arrays["unvisited_window"]).tolist()):
+        lo, hi, at = (f"{arrays[f'unvisited_{name}'][u]:.10g}" for name in ("lo", "hi", "at"))
+        start = ", ".join(f"{name.removeprefix('unvisited_')}: {float(arrays[name][u])!r}" for name in names)
         kind = str(arrays["window_period"][w]), _short(words[branches[w]])
-        rows.append((lo, hi, *kind, str(arrays["unseen_values"][u]), at, start))
+        rows.append((lo, hi, *kind, str(arrays["unvisited_values"][u]), at, start))
     count = len(rows) - 1
     told = "1 stretch of a window" if count == 1 else f"{count} stretches of windows"
     return [f"coexistence  {told} on which the sweep shows other attractors only", *_aligned(rows)] if count else []

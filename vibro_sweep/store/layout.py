@@ -43,7 +43,7 @@ def _own_axis(scene: Scene, name: str) -> np.ndarray:
     if name == "elapsed":
         parts = min(RUNNING, scene.record)
         return np.array([periods_read(m, parts, scene.record) for m in range(parts)])
-    if name == "time":
+    if name == "t_over_T":
         return np.linspace(0.0, trajectory.periods, trajectory.samples)
     if name == "trajectory_section":
         return np.arange(trajectory.periods + 1)

@@ -149,7 +149,7 @@ def corrected(system, name: str, points: dict, stored: list[Motion]) -> list[str
         if error is None:  # it was not found again either when the record was made
             continue
         orbit = vs.periodic_orbit(system.replace(**{name: value}), **motion.start)
-        if orbit.status not in ("ok", "not_real"):
+        if orbit.status not in ("ok", "inadmissible"):
             lines.append(f"point at {value!r}: {orbit.status}")
             continue
         found = motion_of(orbit)

@@ -8,7 +8,12 @@ from support import ROOT
 
 FOLDER = ROOT / "tests" / "data" / "golden"
 KINDS = ("branches", "curves", "searches", "windows")
-RENAMED = {'"limit"': '"boundary"', '"along":': '"contact_normal":'}  # since the record was made
+RENAMED = {  # since the record was made
+    '"limit"': '"boundary"',
+    '"along":': '"contact_normal":',
+    '"unseen":': '"unvisited":',
+    '"missed":': '"other_attractor":',
+}
 
 
 def read(kind: str, folder: Path = FOLDER) -> dict[str, dict]:

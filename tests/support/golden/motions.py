@@ -131,7 +131,7 @@ def errors_of(system, name: str, value: float, motion: Motion, rng) -> tuple[flo
             found = vs.periodic_orbit(system.replace(**{name: there}), **motion.disturbed(rng, noise))
         except ValueError:  # the value is at the end of its range
             continue
-        if found.status not in ("ok", "not_real"):
+        if found.status not in ("ok", "inadmissible"):
             return None
         moved.append(distance(motion, motion_of(found)))
         multipliers.append(multiplier_distance(motion, motion_of(found)))

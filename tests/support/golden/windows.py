@@ -8,7 +8,7 @@ from pathlib import Path
 import vibro_sweep as vs
 from support.golden.special_points import changed, differences, special_record
 
-LABELS = ("period", "itinerary", "symmetric", "points", "missed", "held")
+LABELS = ("period", "itinerary", "symmetric", "points", "other_attractor", "held")
 
 
 def windows_in(file: Path):
@@ -25,7 +25,7 @@ def result_of(windows) -> dict:
         "window": windows.window.tolist(),
         "reason": windows.reason.tolist(),
         "windows": [_window(one) for one in windows],
-        "unseen": [[one.window, one.lo, one.hi, one.values, one.at] for one in windows.unseen],
+        "unvisited": [[one.window, one.lo, one.hi, one.values, one.at] for one in windows.unvisited],
     }
 
 
@@ -46,9 +46,9 @@ def compared(record: dict, result: dict, windows) -> list[str]:
         lines += [f"window {k}: {line}" for line in own]
         errors = [end["error"] for two in (stored, one) for end in two["ends"]]
         allowed.append(sum(error for error in errors if error == error))
-    unseen = [(one, other) for one, other in zip(result["unseen"], now["unseen"], strict=False)]
-    if len(result["unseen"]) != len(now["unseen"]) or not all(_same(*both, allowed) for both in unseen):
-        lines.append(f"unseen: {result['unseen']}, now {now['unseen']}")
+    unvisited = [(one, other) for one, other in zip(result["unvisited"], now["unvisited"], strict=False)]
+    if len(result["unvisited"]) != len(now["unvisited"]) or not all(_same(*both, allowed) for both in unvisited):
+        lines.append(f"unvisited: {result['unvisited']}, now {now['unvisited']}")
     return lines
 
 

@@ -62,7 +62,7 @@ class Branch:
 
     @cached_property
     def points(self) -> "xarray.Dataset":
-        """Dataset over `point`: the parameter, state at t = 0, multipliers, margin, impacts (docs of `columns`)."""
+        """Dataset over `point`: the parameter, state at t = 0, multipliers, distance, impacts (docs of `columns`)."""
         return dataset(self._start, self.parameter, self._frame, self._rows)
 
 

@@ -24,7 +24,7 @@ Flat = dict[str, np.ndarray]
 SHAPES = {
     # branch_origin: the point that it was followed from; branch_begins, branch_ends: indices among the special points
     "": "branch_period branch_symmetric branch_closed branch_origin branch_begins branch_ends branch_status",
-    "n": "value margin min_impact_speed residual unstable status",  # value: of the parameter
+    "n": "value stop_distance min_impact_speed residual unstable status",  # value: of the parameter
     "n 2N": "state multiplier_re multiplier_im",
     # as `orbit.impacts`; impact_t_off: the end of the rest after an impact, or NaN
     "n K": "impact_t impact_v impact_t_off",
@@ -61,7 +61,10 @@ def flatten(branch: Branch, origin: float) -> Flat:
         "branch_status": np.int8(BRANCH_STATUSES.index(branch.status)),
         "branch_origin": np.int32(np.argmin(np.abs(p - origin))),
         "state": np.stack([data[name] for name in words], axis=-1),
-        **{name: data[name] for name in ("multiplier_re", "multiplier_im", "margin", "min_impact_speed", "residual")},
+        **{
+            name: data[name]
+            for name in ("multiplier_re", "multiplier_im", "stop_distance", "min_impact_speed", "residual")
+        },
         "unstable": data["unstable"].astype(np.int32),
         "status": np.zeros(len(p), np.int8),
         "special_impact": np.array([-1 if one.impact is None else one.impact for one in special], np.int32),

@@ -32,9 +32,9 @@ def ends_between(walk: Tracer, bounds, a: Point, b: Point) -> list[Event]:
             events.append(Event("sticking", lambda point, i=i: point.releases[i]))
     if a.stays > 0 >= b.stays:
         events.append(Event("sticking", lambda point: min(point.stays, 1.0)))
-    if b.margin <= 0 < a.margin or _passes(b):
-        most = 2 * abs(a.margin) if math.isfinite(a.margin) else 1.0
-        test = _positive_at(a, lambda point: min(point.margin, most))
+    if b.stop_distance <= 0 < a.stop_distance or _passes(b):
+        most = 2 * abs(a.stop_distance) if math.isfinite(a.stop_distance) else 1.0
+        test = _positive_at(a, lambda point: min(point.stop_distance, most))
         events.append(Event("graze", test, touches=True))
     return events
 
@@ -64,7 +64,7 @@ def earliest(located: list[Found]) -> Found:
 
 def _passes(point: Point) -> bool:
     """Whether a flight is beyond its stop by more than rounding."""
-    return bool(point.margin < -PASSED * point.solution.size_of_gap)
+    return bool(point.stop_distance < -PASSED * point.solution.size_of_gap)
 
 
 def bifurcations(walk: Tracer, a: Point, b: Point) -> list[Found]:

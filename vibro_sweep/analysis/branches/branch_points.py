@@ -24,8 +24,8 @@ def dataset(start: Solution, name: str, frame: tuple[int, int], rows: Rows) -> "
 
 def columns(start: Solution, name: str, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:
     """Dimensions and values over `point`, in order: the parameter; `multiplier_re`, `multiplier_im` (multiplier) of the
-    whole period; `unstable`, the number of multipliers outside the unit circle; the state x1 v1 .. at t = 0; `margin`;
-    `min_impact_speed`; `residual`, the largest jump of the gap between two flights, relative to its size; `impact_t`,
+    whole period; `unstable`, the number of multipliers outside the unit circle; the state x1 v1 .. at t = 0;
+    `stop_distance`; `min_impact_speed`; `residual`, the largest jump of the gap between two flights, relative to its size; `impact_t`,
     `impact_side` and `impact_v` (impact) as `orbit.impacts` of the first point, from there on continuous: times are not
     wrapped.
     """
@@ -40,7 +40,7 @@ def columns(start: Solution, name: str, frame: tuple[int, int], rows: Rows) -> d
         "multiplier_im": (("point", "multiplier"), multipliers.imag),
         "unstable": ("point", np.count_nonzero(np.abs(multipliers) > 1, axis=1)),
         **{word: ("point", states[:, i]) for i, word in enumerate(names)},
-        "margin": ("point", rows.margin),
+        "stop_distance": ("point", rows.stop_distance),
         "min_impact_speed": ("point", np.abs(v).min(axis=1, initial=np.inf)),
         "residual": ("point", rows.residual),
         "impact_t": (("point", "impact"), t),

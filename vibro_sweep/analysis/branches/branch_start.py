@@ -80,7 +80,7 @@ def is_real(point: Point | FreePoint, least: float = 0.0) -> bool:
     s = point.solution
     length = least * s.size_of_gap
     rests = not s.K or (bool(np.all(point.releases > 0)) and point.stays > 0)
-    return bool(np.all(s.pushes > s.family.linear.omega * length)) and s.margin > length and rests
+    return bool(np.all(s.pushes > s.family.linear.omega * length)) and s.stop_distance > length and rests
 
 
 def is_stable(point: Point | FreePoint) -> bool:

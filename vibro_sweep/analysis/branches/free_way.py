@@ -57,9 +57,9 @@ class FreePoint:
         return replace(self, rate=-self.rate)
 
     @cached_property
-    def margin(self) -> float:
+    def stop_distance(self) -> float:
         """Least distance from the stops."""
-        return self.solution.margin
+        return self.solution.stop_distance
 
     def ahead(self, length: float) -> "FreePoint | None":
         return self.tracer.at(self.value + self.rate * length * self.tracer.unit, self.rate)
@@ -116,24 +116,28 @@ def longest_step(point: FreePoint) -> float:
 
 def grazes(a: FreePoint, b: FreePoint) -> FreePoint | None:
     """The first point from a to b at which the motion touches a stop, if it passes it there."""
-    inside = max(a.margin, np.finfo(float).tiny)  # at the start rounding may say otherwise
-    beyond = b if b.margin <= 0 < a.margin or b.margin < -PASSED * b.solution.size_of_gap else _highest(a, b)
+    inside = max(a.stop_distance, np.finfo(float).tiny)  # at the start rounding may say otherwise
+    beyond = (
+        b
+        if b.stop_distance <= 0 < a.stop_distance or b.stop_distance < -PASSED * b.solution.size_of_gap
+        else _highest(a, b)
+    )
     if beyond is None:
         return None
-    most = 2 * abs(a.margin) if math.isfinite(a.margin) else 1.0
+    most = 2 * abs(a.stop_distance) if math.isfinite(a.stop_distance) else 1.0
 
     def test(value: float) -> float:
         if value == a.value:
             return inside
         point = a.tracer.at(value, a.rate)
-        return -most if point is None else min(point.margin, most)  # in a resonance it is beyond all stops
+        return -most if point is None else min(point.stop_distance, most)  # in a resonance it is beyond all stops
 
     return a.tracer.at(brentq(test, a.value, beyond.value, xtol=1e-300, rtol=4 * np.finfo(float).eps), a.rate)
 
 
 def _highest(a: FreePoint, b: FreePoint) -> FreePoint | None:
     """The point between a and b, which stay inside, at which the motion is farthest beyond a stop."""
-    if a.solution.is_free or min(a.margin, b.margin) <= 0:
+    if a.solution.is_free or min(a.stop_distance, b.stop_distance) <= 0:
         return None
     ends, aside = sorted((a.value, b.value)), ASIDE * abs(b.value - a.value)
     for side in (1, -1):
@@ -146,6 +150,6 @@ def _highest(a: FreePoint, b: FreePoint) -> FreePoint | None:
         if all(distance(end + step) < distance(end) for end, step in zip(ends, (aside, -aside), strict=True)):
             least = minimize_scalar(distance, bounds=ends, method="bounded", options={"xatol": aside})
             found = a.tracer.at(float(least.x), a.rate)
-            if found is not None and found.margin < 0:
+            if found is not None and found.stop_distance < 0:
                 return found
     return None

@@ -98,7 +98,7 @@ def _touched(walk: Tracer, beside: tuple, places: list[Point], found: list[Found
     K, pushing = walk.K, (a.solution.pushes > 0) & ~walk.problem.rests
     types = {one.event.type for one in found}
     tests = [test for kind, test in tests_between(walk, a, b, scaled=True) if kind not in types]
-    tests += [lambda point: point.margin]
+    tests += [lambda point: point.stop_distance]
     seen = [point for point in (beside[0], *places, beside[1]) if point is not None]
     for test in tests:
         for triple in zip(seen, seen[1:], seen[2:], strict=False):

@@ -19,7 +19,7 @@ def row_of(p: float, s: Solution, frame: tuple[int, int]) -> Rows:
     """A point alone."""
     state = PeriodicOrbit(s.family, "ok", s, frame).state
     t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
-    values = p, t, D, s.ends, motion, s.margin, s.change, state
+    values = p, t, D, s.ends, motion, s.stop_distance, s.change, state
     return Rows(*(np.array([value], float) for value in values))
 
 

@@ -60,9 +60,9 @@ class Point(Place):
         return rounding_error(self.tracer, self, self.direction)
 
     @property
-    def margin(self) -> float:
+    def stop_distance(self) -> float:
         """Least distance of the flights from the stops."""
-        return float(self.tests[TEST.margin] * self.tracer.units.length)
+        return float(self.tests[TEST.stop_distance] * self.tracer.units.length)
 
     @cached_property
     def releases(self) -> np.ndarray:

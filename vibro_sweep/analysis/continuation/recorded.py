@@ -16,7 +16,7 @@ class Rows(NamedTuple):
     D: np.ndarray  # (points, K)
     ends: np.ndarray  # (points, rests)
     motion: np.ndarray  # (points, K, 2): gap velocity and acceleration before each impact
-    margin: np.ndarray  # (points,)
+    stop_distance: np.ndarray  # (points,)
     residual: np.ndarray  # (points,)
     state: np.ndarray  # (points, 2N): x1 v1 .. xN vN at t = 0; of a curve what is free of the state before the first
     # impact, in contact coordinates
@@ -48,5 +48,5 @@ def rows_of(tracer: Tracer, x, motion, p, tests, omega, tau, state) -> Rows:
     t, speeds = (x[..., -2] - np.reshape(tau, (-1, 1))) / omega, motion * units.speed * [1.0, units.rate]
     D = np.where(rests, -speeds[..., 0], x[..., -1] * units.speed)
     ends = (t + x[..., -1] / omega)[:, rests]
-    margin, residual = tests[:, TEST.margin] * units.length, tests[:, TEST.residual].copy()
-    return Rows(p.copy(), t, D, ends, speeds, margin, residual, state)
+    stop_distance, residual = tests[:, TEST.stop_distance] * units.length, tests[:, TEST.residual].copy()
+    return Rows(p.copy(), t, D, ends, speeds, stop_distance, residual, state)

@@ -232,7 +232,7 @@ class Tracer:
         pushes = -self.problem.sides * place.jumps
         if self.problem.kind >= GRAZE:
             pushes = np.delete(pushes, self.problem.index)
-        return bool(np.all(pushes > 0) and place.tests[TEST.margin] > -TOUCHING)
+        return bool(np.all(pushes > 0) and place.tests[TEST.stop_distance] > -TOUCHING)
 
     def family(self, place: Place) -> Family:
         return self.oscillators.at(place.p)

@@ -150,7 +150,7 @@ def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
     found = replace(guess.start, solution=tracer.solution(place))
     if found.type == "graze":
         without = bare(found.solution, found.index)
-        if without.margin < -TOUCHING * without.size_of_gap:  # the other half passes the stop
+        if without.stop_distance < -TOUCHING * without.size_of_gap:  # the other half passes the stop
             return None
     return as_special(found, names, special.orbit.system, special.error)
 

@@ -23,7 +23,7 @@ SHAPES = {
     # graze curve, or -1
     "": "branch_type branch_period branch_symmetric branch_closed branch_begins branch_ends branch_grazing",
     "n 2": "value",  # both parameters
-    "n": "b_star margin min_impact_speed residual unstable status",
+    "n": "b_star stop_distance min_impact_speed residual unstable status",
     "n 2N": "state multiplier_re multiplier_im",
     "n K": "impact_t impact_v",  # continuous along the curve
     "K": "impact_side",
@@ -48,7 +48,7 @@ def flatten(curve: BifurcationCurve) -> Flat:
         "branch_grazing": np.int32(grazing),
         "value": value,
         "state": np.column_stack([data[name].values for name in state(data.sizes["multiplier"] // 2)]),
-        **{name: data[name].values for name in ("multiplier_re", "multiplier_im", "margin", "residual")},
+        **{name: data[name].values for name in ("multiplier_re", "multiplier_im", "stop_distance", "residual")},
         "min_impact_speed": speeds.min(axis=1, initial=np.inf),
         "b_star": np.array([_grazing_clearance(q) for q in oscillators]),
         "unstable": data.unstable.values.astype(np.int32),

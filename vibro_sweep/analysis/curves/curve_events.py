@@ -35,7 +35,7 @@ VANISHED = 1e-12  # of a test: more than rounding leaves of it at a zero
 SLOW = 1e-6  # in units of the curve: an impulse next to which rounding of the multipliers is too large
 SETTLED = 1e-10  # Newton's last change
 REACH = (0.25, 0.5, 1.0, 2.0, 4.0)
-SAME = 1e-3  # of a step: a margin that vanishes with an impact does so like the square of its speed
+SAME = 1e-3  # of a step: a stop_distance that vanishes with an impact does so like the square of its speed
 
 
 def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
@@ -48,10 +48,10 @@ def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
     for i in range(tracer.K):
         if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == tracer.problem.index):
             events.append(Event(type_at(tracer, VANISHES), lambda place, i=i: place.jumps[i], impact=i))
-    least, most = sorted(place.tests[TEST.margin] for place in (a, b))
+    least, most = sorted(place.tests[TEST.stop_distance] for place in (a, b))
     if least < -TOUCHING and most > TOUCHING:
         name = type_at(tracer, TOUCHES)
-        events.append(Event(name, lambda place: min(place.tests[TEST.margin], 1.0), touches=True))
+        events.append(Event(name, lambda place: min(place.tests[TEST.stop_distance], 1.0), touches=True))
     if kind == TORUS:
         for name, angle in ANGLES.items():
             if (a.p[THETA] - angle) * (b.p[THETA] - angle) < 0:

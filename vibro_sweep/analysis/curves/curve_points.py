@@ -26,8 +26,8 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     """Over `point`, in order: both parameters; the state x1 v1 .. at t = 0, before an impact there; `multiplier_re`,
     `multiplier_im` (multiplier) of the whole period, at a graze of the orbit without the grazing impact; `unstable`,
     how many lie outside the unit circle beside those that the curve is about; `virtual`, whether the orbit is no
-    motion: an impulse pulls or a flight passes a stop; `margin`, the least distance of its other turning points from
-    their stop; `residual`; `impact_t`, `impact_side` and `impact_v` (impact): of the half orbit where it is symmetric,
+    motion: an impulse pulls or a flight passes a stop; `stop_distance`, the least distance of its other turning points
+    from their stop; `residual`; `impact_t`, `impact_side` and `impact_v` (impact): of the half orbit where it is symmetric,
     times not wrapped.
 
     At an onset of sticking there are no multipliers and no states (NaN). The impacts are the end of the chatter, with
@@ -63,8 +63,8 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
         "multiplier_re": (("point", "multiplier"), values.real),
         "multiplier_im": (("point", "multiplier"), values.imag),
         "unstable": ("point", unstable),
-        "virtual": ("point", ~(pushes & (rows.margin > -TOUCHING * tracer.units.length))),
-        "margin": ("point", rows.margin),
+        "virtual": ("point", ~(pushes & (rows.stop_distance > -TOUCHING * tracer.units.length))),
+        "stop_distance": ("point", rows.stop_distance),
         "residual": ("point", rows.residual),
         "impact_t": (("point", "impact"), rows.t + np.array(shifts)[:, None]),
         "impact_side": (("point", "impact"), np.tile(sides, (len(rows.p), 1))),

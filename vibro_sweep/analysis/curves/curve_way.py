@@ -226,7 +226,16 @@ class Way:
         t = solution.times + (q.tau - w.tau) / q.omega
         motion = solution.motion[:, :2]
         h = solution.states[0, : w.n] - steady_motion(q, solution.times[0])
-        values = p, t, solution.jumps, solution.ends, motion, np.array(solution.margin), np.array(solution.change), h
+        values = (
+            p,
+            t,
+            solution.jumps,
+            solution.ends,
+            motion,
+            np.array(solution.stop_distance),
+            np.array(solution.change),
+            h,
+        )
         self.rows.append(Rows(*(value[None].copy() for value in values)))
 
     def _at(self, of_type, place: Place, error: float, event: Event | None = None, tracer=None) -> CurvePoint:

@@ -24,7 +24,7 @@ from vibro_sweep.model.oscillator import System
 STATUS = {
     "ok": "a periodic orbit, certified",
     "not_converged": "Newton's method found no orbit near the guess",
-    "not_real": "a solution of the equations that passes a stop, or whose impulse pulls",
+    "inadmissible": "a solution of the equations that passes a stop, or whose impulse pulls",
     "sticking": "the orbit rests on a stop after infinitely many impacts: they are no finite list",
     "resonance": "an undamped mode repeats itself after the period: such orbits do not exist, or are not isolated",
     "too_stiff": "the rates of the oscillator are too far apart",
@@ -156,9 +156,9 @@ class PeriodicOrbit:
         return self._solution is not None and bool(np.all(np.abs(self.multipliers) < 1))
 
     @property
-    def margin(self) -> float:
+    def stop_distance(self) -> float:
         """Least distance of a turning point of the gap from its stop; negative: not real; inf: there is none."""
-        return math.nan if self._solution is None else self._solution.margin
+        return math.nan if self._solution is None else self._solution.stop_distance
 
     @property
     def residual(self) -> float:
@@ -258,7 +258,7 @@ def orbit_of(system, solution: Solution | None) -> PeriodicOrbit:
         return PeriodicOrbit(system, "not_converged")
     if solution.K == 0 and not is_isolated(solution):
         return PeriodicOrbit(system, "resonance")
-    return PeriodicOrbit(system, "ok" if solution.real else "not_real", solution)
+    return PeriodicOrbit(system, "ok" if solution.real else "inadmissible", solution)
 
 
 def leans(solution: Solution) -> bool:

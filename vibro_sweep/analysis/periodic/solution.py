@@ -101,7 +101,7 @@ class Solution:
         return float(distance), float(time), int(side)
 
     @property
-    def margin(self) -> float:
+    def stop_distance(self) -> float:
         return self.nearest[0]
 
     @cached_property
@@ -141,7 +141,7 @@ class Solution:
         speed = self.family.linear.omega * rounding
         held = self.hold > -self.family.linear.omega * speed and np.all(self.ends >= self.times[list(self.rests)])
         held = held and not np.any(self.family.linear.restitution(np.array(self.sides)[list(self.rests)]))
-        return bool(np.all(self.pushes > -speed) and self.margin > -rounding and held)
+        return bool(np.all(self.pushes > -speed) and self.stop_distance > -rounding and held)
 
     @cached_property
     def size_of_gap(self) -> float:

@@ -100,7 +100,7 @@ class Cover:
         return inside[:, None] & known & (window != w)
 
     @property
-    def missed(self) -> np.ndarray:
+    def other_attractor(self) -> np.ndarray:
         """Orbits of the sweep at values within each window that went to another attractor."""
         return np.array([self.elsewhere(w).sum() for w in range(len(self.found))], int)
 

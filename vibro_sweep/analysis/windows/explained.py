@@ -59,7 +59,7 @@ def _probed(task: Probe) -> tuple[str, Seed | None]:
     if end.type == "boundary":
         return "stable_at_both", None
     seed = seed_at(end, task.names)
-    return ("alone", seed) if seed is not None else ("failed", None)
+    return ("no_curve", seed) if seed is not None else ("failed", None)
 
 
 class Explained(NamedTuple):

@@ -11,7 +11,7 @@ from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows import window_text
 from vibro_sweep.analysis.windows.cover import Cover
-from vibro_sweep.analysis.windows.unseen import Unseen, unseen_in
+from vibro_sweep.analysis.windows.unvisited import Unvisited, unvisited_in
 from vibro_sweep.model.window_families import Family, families
 
 
@@ -23,7 +23,7 @@ class Window:
     lo, hi : its values at the ends
     held : the other swept numbers, of a plane
     points : how many orbits of the sweep lie in it, mirror images among them
-    missed : how many orbits at values within lo .. hi went to another attractor
+    other_attractor : how many orbits at values within lo .. hi went to another attractor
     """
 
     parameter: str
@@ -31,7 +31,7 @@ class Window:
     hi: float
     held: dict[str, float]
     points: int
-    missed: int
+    other_attractor: int
     _flat: Flat = field(repr=False)
     _system: object = field(repr=False)
 
@@ -74,12 +74,12 @@ class Windows(list[Window]):
     parameter : the number along which they were followed
     window : index of the window of each orbit of the sweep, (*sweep, starts), -1 where there is none
     reason : codes of `model.bifurcations.REASONS`, of the same shape; 0 in a window
-    unseen : stretches of windows on which the sweep shows other attractors only, each with a start for the window's
+    unvisited : stretches of windows on which the sweep shows other attractors only, each with a start for the window's
         orbit: .window (index), .lo, .hi, .values, .at, .orbit, .state
     """
 
     parameter: str
-    unseen: list[Unseen]
+    unvisited: list[Unvisited]
     window: np.ndarray
     reason: np.ndarray
 
@@ -96,12 +96,12 @@ class Windows(list[Window]):
 def windows_of(cover: Cover) -> Windows:
     """The windows of a search that is done."""
     result = Windows()
-    for found, points, missed in zip(cover.found, cover.counts.tolist(), cover.missed.tolist(), strict=True):
+    for found, *counts in zip(cover.found, cover.counts.tolist(), cover.other_attractor.tolist(), strict=True):
         row = cover.rows[found.row]
-        result.append(Window(row.parameter, *found.ends, row.held, points, missed, found.flat, found.system))
+        result.append(Window(row.parameter, *found.ends, row.held, *counts, found.flat, found.system))
     result.parameter = cover.rows[0].parameter
     result.window, result.reason = in_file_order(cover)
-    result.unseen = unseen_in(cover)
+    result.unvisited = unvisited_in(cover)
     return result
 
 

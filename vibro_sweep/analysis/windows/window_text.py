@@ -13,7 +13,7 @@ def of_window(window: "Window") -> str:
     held = "".join(f", {name} = {value:.10g}" for name, value in window.held.items())
     lines = [
         f"<Window {_window(window)}{held}",
-        f"{window.points:,} orbits of the sweep; {window.missed:,} at its values went to another attractor",
+        f"{window.points:,} orbits of the sweep; {window.other_attractor:,} at its values went to another attractor",
         f"begins with {event(window.lower)}",
         f"ends with {event(window.upper)}",
     ]
@@ -21,7 +21,7 @@ def of_window(window: "Window") -> str:
 
 
 def of_windows(windows: "Windows") -> str:
-    head = f"<Windows in {windows.parameter}: {len(windows)}; {len(windows.unseen)} stretches that the sweep missed"
+    head = f"<Windows in {windows.parameter}: {len(windows)}; {len(windows.unvisited)} stretches that the sweep missed"
     lines = [_window(one) for one in windows[: LINES - 2]]
     more = len(windows) - len(lines)
     return told([head, *lines, *([f"and {more:,} more"] if more else [])])

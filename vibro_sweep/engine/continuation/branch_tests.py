@@ -21,7 +21,7 @@ FAR_OUTSIDE = 0.5  # of |mu|^2 - 1: multipliers from there on do not reach the c
 def examine_branch(f, c, place, b):
     """Tests and certificate of a corrected point of a branch, for which `assemble` has filled b."""
     n, x, work = f.A.shape[0], place.tests, b.work[0]
-    x[TEST.rate], x[TEST.margin] = place.tangent_p[0], certify(f, c, place, b)
+    x[TEST.rate], x[TEST.stop_distance] = place.tangent_p[0], certify(f, c, place, b)
     x[TEST.release] = x[TEST.hold] = x[TEST.away] = np.inf
     x[TEST.pair] = x[TEST.reflected] = x[TEST.crossing] = 1.0
     x[TEST.below] = x[TEST.pairs] = x[TEST.on_circle] = 0.0
@@ -126,7 +126,7 @@ def happens_on_branch(c, a, b):
         here, there = side * a.x[i, D], side * b.x[i, D]
         if not there > 0.0 or turns_back(here, side * a.tangent[i, D], there, side * b.tangent[i, D], y[TEST.length]):
             return True
-    if x[TEST.margin] > 0.0 >= y[TEST.margin] or y[TEST.margin] < -PASSED:
+    if x[TEST.stop_distance] > 0.0 >= y[TEST.stop_distance] or y[TEST.stop_distance] < -PASSED:
         return True
     if counts_differ(x, y) or exchanged(a.multipliers, b.multipliers):
         return True
@@ -142,7 +142,7 @@ def touches_on_branch(path, a, b):
     before, x, y, z = path.before[0], path.past_tests, a.tests, b.tests
     if before == 0.0:
         return False
-    for i in (TEST.rate, TEST.margin, TEST.reflected, TEST.crossing):
+    for i in (TEST.rate, TEST.stop_distance, TEST.reflected, TEST.crossing):
         if dips(x[i], y[i], z[i], before, z[TEST.length]):
             return True
     return False

@@ -18,7 +18,7 @@ from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 
 LATEST, EARLIEST = 0.9, 0.4  # of the tests `last` and `before`, where another number of impacts is to be written out
 NEAR_STRONG = 0.05  # theta from 0 or pi: the resonance 1:1 or 1:2
-TOUCHING = 1e-12  # margin, in parts of the size of the gap, that counts as zero
+TOUCHING = 1e-12  # stop_distance, in parts of the size of the gap, that counts as zero
 
 
 @jit
@@ -84,7 +84,7 @@ def examine_curve(f, c, place, b):
         tests[i] = 1.0
     for r in range(n):
         place.multipliers[r, 0] = place.multipliers[r, 1] = np.nan
-    tests[TEST.margin] = certify(f, c, place, b)
+    tests[TEST.stop_distance] = certify(f, c, place, b)
     if c.kind == STICK:
         K, reach = len(place.x), b.tail[0].numbers[REACH] * f.numbers[OMEGA]
         end = place.x[0, n] + math.pi * f.half_turns
@@ -134,7 +134,7 @@ def changes_sign(x, y):
 
 @jit
 def passes(a, b):
-    """Whether a margin changes its sign by more than rounding: where both stops are touched at once, it is zero."""
+    """Whether a distance changes its sign by more than rounding: where both stops are touched at once, it is zero."""
     return (a > TOUCHING and b < -TOUCHING) or (a < -TOUCHING and b > TOUCHING)
 
 
@@ -168,7 +168,7 @@ def happens_on_curve(c, a, b):
     for i in range(len(a.x)):
         if a.x[i, D] * b.x[i, D] < 0.0 and not (c.kind >= GRAZE and i == c.index):
             return True
-    if passes(a.tests[TEST.margin], b.tests[TEST.margin]):
+    if passes(a.tests[TEST.stop_distance], b.tests[TEST.stop_distance]):
         return True
     if c.kind == TORUS:
         for angle in (math.pi / 2, 2 * math.pi / 3):

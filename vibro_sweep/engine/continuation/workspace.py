@@ -24,7 +24,7 @@ PARAMETERS = 2  # of the oscillator that may be free
 ROWS = 3  # most scalar rows: conditions, and the plane across a tangent
 
 # What is known of each point, by name: tests of bifurcations, as their table names them, and
-#     margin, length, residual    distance of the flights from the stops, of the next step, Newton's last change
+#     stop_distance, length, residual    distance of the flights from the stops, of the next step, Newton's last change
 #     last, before                time from the last impact written out, and from the one before, to the end of the
 #                                 chatter, in units of the reach of its series
 #     release                     least acceleration away from the stop after an impact with R = 0
@@ -38,7 +38,9 @@ ALONG_BRANCHES = tuple(dict.fromkeys(one.test for one in TYPES if one.test))
 ALONG_CURVES = tuple(
     dict.fromkeys(test for one in CODIMENSION_TWO for _, test in one.tests if test not in ("vanishes", "touches"))
 )
-OTHERS = "margin length residual last before release above below pairs on_circle away reflected crossing hold".split()
+OTHERS = (
+    "stop_distance length residual last before release above below pairs on_circle away reflected crossing hold".split()
+)
 NAMES = tuple(dict.fromkeys([*ALONG_CURVES, *ALONG_BRANCHES, *OTHERS]))
 TEST = namedtuple("Test", NAMES)(*range(len(NAMES)))  # the index of each
 BRANCH_TESTS = tuple(NAMES.index(name) for name in ALONG_BRANCHES)

@@ -237,6 +237,6 @@ def find_extremes(f, o, stops, cells, offsets, states, durations, out):
             size = max(size, size_here(f, o, from_node, length))
             find_turns(o.c[0], min(length, rest), bounds(q, o.c[0])[1], flown, rest <= length, row)
             from_node = go_on(f, o, length, last, from_node)
-        margin = CHAIN * (o.period + 1.0) * size
-        row[0], row[1] = row[0] - margin, row[1] + margin
-        row[3], row[4] = row[3] - margin, row[4] + margin
+        stop_distance = CHAIN * (o.period + 1.0) * size
+        row[0], row[1] = row[0] - stop_distance, row[1] + stop_distance
+        row[3], row[4] = row[3] - stop_distance, row[4] + stop_distance

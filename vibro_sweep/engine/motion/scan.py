@@ -27,11 +27,11 @@ def first_suspect(f, o):
     points before it are inside (`suspect_state`). What leaves the range of single precision is not inside.
     """
     cells, bound, y, states = o.cells, o.remainder, o.y, len(o.remainder) - 1
-    margin = bound[0] * abs(y[0]) + bound[1] * abs(y[1])
+    stop_distance = bound[0] * abs(y[0]) + bound[1] * abs(y[1])
     for j in range(2, states, 2):
-        margin = margin + (bound[j] * abs(y[j]) + bound[j + 1] * abs(y[j + 1]))
-    margin = margin + bound[states]
-    low, high = o.limits[0] + margin, o.limits[1] - margin
+        stop_distance = stop_distance + (bound[j] * abs(y[j]) + bound[j + 1] * abs(y[j + 1]))
+    stop_distance = stop_distance + bound[states]
+    low, high = o.limits[0] + stop_distance, o.limits[1] - stop_distance
     o.low, o.high = low, high
     p = 2 * o.cell
     while p < 2 * cells:

@@ -85,7 +85,7 @@ def fill_stiff_exclusion(q, nodes, scan, point, turned):
         largest = 0.0
         for p in range(2 * q.cells + 1):
             largest = max(largest, abs(scan[i, p]))
-        margin = rounding(q, i, largest + fast)
-        q.remainder[i] = (fast + fourth * q.width**4 / 144.0) + (DOUBT * q.remainder[i] + margin)
+        stop_distance = rounding(q, i, largest + fast)
+        q.remainder[i] = (fast + fourth * q.width**4 / 144.0) + (DOUBT * q.remainder[i] + stop_distance)
         if not (point.told and q.remainder[i] < np.inf):
             q.remainder[i] = np.inf  # no cell can be excluded

@@ -11,7 +11,7 @@ from vibro_sweep.analysis.windows.members import solution_in
 
 
 @dataclass(frozen=True, eq=False)
-class Unseen:
+class Unvisited:
     """A stretch of a window on which orbits of the sweep show other attractors, and none shows the window's.
 
     window : index of the window
@@ -35,12 +35,12 @@ class Unseen:
         return self.orbit.state if self.orbit.ok else np.full(2 * self.orbit.system.masses, np.nan)
 
 
-def unseen_in(cover: Cover) -> list[Unseen]:
+def unvisited_in(cover: Cover) -> list[Unvisited]:
     """All such stretches of the windows of a search that is done, by window and rising value."""
     return [found for w in range(len(cover.found)) for found in _of_window(cover, w)]
 
 
-def _of_window(cover: Cover, w: int) -> Iterator[Unseen]:
+def _of_window(cover: Cover, w: int) -> Iterator[Unvisited]:
     found, values = cover.found[w], cover.rows[cover.found[w].row].values
     ends = found.ends
     inside = np.flatnonzero((ends[0] < values) & (values < ends[1]))
@@ -55,7 +55,7 @@ def _of_window(cover: Cover, w: int) -> Iterator[Unseen]:
             lo = ends[0]
         if inside[-1] == missed[-1] < len(values) - 1:
             hi = ends[1]
-        yield Unseen(w, lo, hi, len(missed), *_start(cover, w, values[missed]))
+        yield Unvisited(w, lo, hi, len(missed), *_start(cover, w, values[missed]))
 
 
 def _start(cover: Cover, w: int, values: np.ndarray) -> tuple[float, PeriodicOrbit]:
