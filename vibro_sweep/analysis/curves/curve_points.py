@@ -27,8 +27,8 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     `multiplier_im` (multiplier) of the whole period, at a graze of the orbit without the grazing impact; `unstable`,
     how many lie outside the unit circle beside those that the curve is about; `virtual`, whether the orbit is no
     motion: an impulse pulls or a flight passes a stop; `stop_distance`, the least distance of its other turning points
-    from their stop; `residual`; `impact_t`, `impact_side` and `impact_v` (impact): of the half orbit where it is symmetric,
-    times not wrapped.
+    from their stop; `residual`; `impact_t`, `impact_side` and `impact_v` (impact): of the half orbit where it is
+    symmetric, times not wrapped.
 
     At an onset of sticking there are no multipliers and no states (NaN). The impacts are the end of the chatter, with
     no speed, and those before the next end that are written out (NaN: fewer than elsewhere on the curve).
