@@ -26,8 +26,8 @@ def columns(start: Solution, name: str, frame: tuple[int, int], rows: Rows) -> d
     """Dimensions and values over `point`, in order: the parameter; `multiplier_re`, `multiplier_im` (multiplier) of the
     whole period; `unstable`, the number of multipliers outside the unit circle; the state x1 v1 .. at t = 0;
     `stop_distance`; `min_impact_speed`; `residual`, the largest jump of the gap between two flights, relative to its
-    size; `impact_t`, `impact_side` and `impact_v` (impact) as `orbit.impacts` of the first point, from there on continuous:
-    times are not wrapped.
+    size; `impact_t`, `impact_side` and `impact_v` (impact) as `orbit.impacts` of the first point, from there on
+    continuous: times are not wrapped.
     """
     oscillators = _oscillators(start, name, rows)
     T = np.array([[forcing_period(q)] for q in oscillators])
