@@ -17,9 +17,9 @@ from support.branches import repeated
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.track import Track
+from vibro_sweep.analysis.branches.compiled_stepper import CompiledStepper
 from vibro_sweep.analysis.continuation.first_point import start_of_branch
-from vibro_sweep.analysis.continuation.tracer import LONGEST_STEP, branch_through
+from vibro_sweep.analysis.continuation.solution_curve import LONGEST_STEP, branch_through
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -74,8 +74,8 @@ def points(solution: Solution, name="b", bounds=(3.3, 4.3)) -> tuple[float, floa
     counts = []
 
     def job():
-        track = Track(first, 0, length)
-        counts.append(track.record_steps(1)[1:])
+        stepper = CompiledStepper(first, 0, length)
+        counts.append(stepper.record_steps(1)[1:])
 
     seconds = least(job)
     return counts[-1][0] / seconds, counts[-1][1] / counts[-1][0]

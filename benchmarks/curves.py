@@ -16,8 +16,8 @@ from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.continuation.solution_curve import LONGEST_STEP, SolutionCurve, copy
 from vibro_sweep.analysis.continuation.starting_orbit import Start
-from vibro_sweep.analysis.continuation.tracer import LONGEST_STEP, Tracer, copy
 from vibro_sweep.analysis.curves.bifurcation_curve import first_of
 from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -30,19 +30,19 @@ BOX = ((0.01, 9), (0.58, 0.68))  # b, omega
 
 def speed(start: Start, names, bounds) -> tuple[float, float, int]:
     """Points per second, corrections for each, and how many impacts there are in the equations."""
-    tracer, first = first_of(Tracer(start, names, bounds))
-    tracer.path = tracer.path._replace(longest=LONGEST_STEP / PIECES)
-    place, best, corrections = new_place(tracer.K, tracer.n), 0.0, 0.0
+    curve, first = first_of(SolutionCurve(start, names, bounds))
+    curve.path = curve.path._replace(longest=LONGEST_STEP / PIECES)
+    place, best, corrections = new_place(curve.K, curve.n), 0.0, 0.0
     for _ in range(ROUNDS):
-        for aim in (tracer.path.first, tracer.path.a):
+        for aim in (curve.path.first, curve.path.a):
             copy(first, aim)
-        tracer.path.a.tests[TEST.length] = LONGEST_STEP / PIECES
+        curve.path.a.tests[TEST.length] = LONGEST_STEP / PIECES
         began = time.process_time()
-        tracer.walk(place)
+        curve.take_steps(place)
         spent = time.process_time() - began
-        points, made = map(int, tracer.path.counts[1:])
+        points, made = map(int, curve.path.counts[1:])
         best, corrections = max(best, points / spent), made / max(points, 1)
-    return best, corrections, tracer.K
+    return best, corrections, curve.K
 
 
 def longer(start: Start, times: int) -> Start:

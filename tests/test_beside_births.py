@@ -7,12 +7,12 @@ from support.drawn_branches import Case
 from support.same_branch import follow
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.branch_start import start_of_walk
-from vibro_sweep.analysis.branches.branch_way import Way
+from vibro_sweep.analysis.branches.branch_run import BranchRun
+from vibro_sweep.analysis.branches.branch_start import start_of_run
 from vibro_sweep.analysis.branches.own_birth import halves_apart
 from vibro_sweep.analysis.branches.passed_births import passed
 from vibro_sweep.analysis.continuation.recorded import Rows
-from vibro_sweep.analysis.continuation.tracer import branch_through
+from vibro_sweep.analysis.continuation.solution_curve import branch_through
 from vibro_sweep.analysis.windows.stretch import stable_end
 
 TURNED = vs.Oscillator.named(
@@ -87,20 +87,20 @@ def test_a_step_that_lands_before_a_birth_by_less_than_rounding():
     )
     guess = [(t, -1, -D / (1 + system.R)) for t, D in zip(u[:8], u[8:], strict=True)]
     born, bounds = vs.periodic_orbit(system, guess=guess, periods=2), (-0.022696426666061177, -0.0008753827954189938)
-    a = start_of_walk(born._solution, "offset", *bounds)
+    a = start_of_run(born._solution, "offset", *bounds)
     here = halves_apart(a.solution, 1)
     low, high = 3e-4, 5e-4  # before and beyond the birth
-    apart = [here @ halves_apart(a.tracer.step(a, length).solution, 1) for length in (low, high)]
+    apart = [here @ halves_apart(a.curve.step(a, length).solution, 1) for length in (low, high)]
     assert apart[1] < 0 < apart[0]
     birth = np.interp(0, apart[::-1], [high, low])
     ended = 0
     for share in np.geomspace(1e-3, 0.8, 10):
-        way, length = Way(a, system), (1 - share) * birth
-        if (b := a.tracer.step(a, length)) is not None:
-            assert way._pass(a, b) == (len(way.special) == 1)
-            assert [special.type for special in way.special] in ([], ["flip"])
-            ended += len(way.special)
-            for special in way.special:
+        run, length = BranchRun(a, system), (1 - share) * birth
+        if (b := a.curve.step(a, length)) is not None:
+            assert run._pass(a, b) == (len(run.special) == 1)
+            assert [special.type for special in run.special] in ([], ["flip"])
+            ended += len(run.special)
+            for special in run.special:
                 assert abs(special.parameters["offset"] + 0.0112802354692) < 1e-12
     assert 3 < ended < 10
 
@@ -114,7 +114,7 @@ def mirrored_ball(b: float):
 
 @pytest.mark.parametrize("factor", [0.4, 0.5, 0.7, 1.0])
 def test_a_birth_that_steps_went_over_is_seen(factor):
-    """Behind it lies the mirror image of the branch: the way went on there, over a fold that is none."""
+    """Behind it lies the mirror image of the branch: the run went on there, over a fold that is not one."""
     bounds = (6.0, 8.0)
     parent = vs.continue_orbit(vs.periodic_orbit(mirrored_ball(7.0), itinerary="LR"), "b", bounds)
     (birth,) = (special for special in parent.special if special.type == "pitchfork")
@@ -128,10 +128,10 @@ def test_where_halves_turn_round_is_counted():
     """Of points that pass a birth, and of those beside it on the parent's branch."""
     orbit = vs.periodic_orbit(mirrored_ball(7.0), itinerary="LR")
     s = orbit._solution.whole()
-    walk = branch_through(s, "b", 1.0)
+    curve = branch_through(s, "b", 1.0)
     late = np.array([0.1, 0.02, -0.03, -0.1, 1e-14, -1e-14])
     t = np.tile(s.times, (6, 1)) + late[:, None] * [0, 1]
     nothing = np.zeros((6, 0))
     rows = Rows(np.full(6, 7.0), t, np.tile(s.jumps, (6, 1)), nothing, nothing, nothing, nothing, nothing)
-    assert passed(walk, [rows], None) == [2, 4, 5]
-    assert passed(walk, [rows.taken(np.s_[:2]), rows.taken(np.s_[2:3])], None) == [2]
+    assert passed(curve, [rows], None) == [2, 4, 5]
+    assert passed(curve, [rows.taken(np.s_[:2]), rows.taken(np.s_[2:3])], None) == [2]

@@ -7,10 +7,10 @@ from support.branches import repeated
 from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches.branch_way import FIRST_STEP
-from vibro_sweep.analysis.branches.track import Track
+from vibro_sweep.analysis.branches.branch_run import FIRST_STEP
+from vibro_sweep.analysis.branches.compiled_stepper import CompiledStepper
 from vibro_sweep.analysis.continuation.first_point import guess_of, start_of_branch
-from vibro_sweep.analysis.continuation.tracer import branch_through
+from vibro_sweep.analysis.continuation.solution_curve import branch_through
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -21,9 +21,9 @@ from vibro_sweep.engine.simd.jit import entry
 from vibro_sweep.model.linear import Family
 
 
-def track_of(solution, name, bounds, forwards=1.0):
+def stepper_of(solution, name, bounds, forwards=1.0):
     first = start_of_branch(branch_through(solution, name, bounds[1] - bounds[0], bounds))
-    return first, Track(first if forwards > 0 else first.backwards(), 0, FIRST_STEP)
+    return first, CompiledStepper(first if forwards > 0 else first.backwards(), 0, FIRST_STEP)
 
 
 CASES = [
@@ -61,8 +61,8 @@ def orbit_of(system, itinerary):
 @pytest.mark.parametrize(("system", "itinerary", "name", "bounds"), CASES)
 def test_points_are_orbits(system, itinerary, name, bounds):
     orbit = orbit_of(system, itinerary)
-    first, track = track_of(orbit._solution, name, bounds)
-    _, rows = track.run(1)
+    first, stepper = stepper_of(orbit._solution, name, bounds)
+    _, rows = stepper.run(1)
     assert len(rows.p) >= 2 and rows.p[-1] != rows.p[0]
     for i in np.linspace(0, len(rows.p) - 1, 5).astype(int):
         family = first.solution.family.replace(**{name: rows.p[i]})
@@ -86,15 +86,15 @@ def test_points_are_orbits(system, itinerary, name, bounds):
 def test_tests_have_the_signs_of_the_precise_ones(system, itinerary, name, bounds):
     """Of det G(-1) up to a factor of one sign, of the torus test, of the tangent; and the count of multipliers."""
     orbit = orbit_of(system, itinerary)
-    first, track = track_of(orbit._solution, name, bounds)
-    precise, found = [first], [track.a.tests.copy()]
+    first, stepper = stepper_of(orbit._solution, name, bounds)
+    precise, found = [first], [stepper.a.tests.copy()]
     for _ in range(4):
-        track.run(1)
-        precise.append(track.point(track.a))
-        found.append(track.a.tests.copy())
-        precise.append(track.point(track.b))
-        found.append(track.b.tests.copy())
-        track.accept(precise[-2], precise[-1])
+        stepper.run(1)
+        precise.append(stepper.point(stepper.a))
+        found.append(stepper.a.tests.copy())
+        precise.append(stepper.point(stepper.b))
+        found.append(stepper.b.tests.copy())
+        stepper.accept(precise[-2], precise[-1])
     pairs = [(x.solution.multipliers, n) for x, n in zip(precise, found, strict=True) if x]
     assert len({np.sign(np.prod(1 + mu).real * n[TEST.minus]) for mu, n in pairs}) == 1
     for x, n in zip(precise, found, strict=True):
@@ -119,12 +119,12 @@ def test_tests_have_the_signs_of_the_precise_ones(system, itinerary, name, bound
 @pytest.mark.parametrize("count", [4, 30])
 def test_orbit_written_out_several_times_has_the_same_branch(count):
     short = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
-    _, one = track_of(short._solution, "b", (3.5, 4.2))
-    _, many = track_of(repeated(short, count), "b", (3.5, 4.2))
-    for track in (one, many):
-        track.run(1)
-    for track in (one, many):
-        point = track.point(track.a)
+    _, one = stepper_of(short._solution, "b", (3.5, 4.2))
+    _, many = stepper_of(repeated(short, count), "b", (3.5, 4.2))
+    for stepper in (one, many):
+        stepper.run(1)
+    for stepper in (one, many):
+        point = stepper.point(stepper.a)
         same = vs.periodic_orbit(PAPER.replace(b=point.value), itinerary="R")._solution
         assert np.abs(point.solution.jumps - same.jumps).max() < 1e-11
         assert np.abs(point.solution.states[:, :4] - same.states[0, :4]).max() < 1e-11
@@ -143,9 +143,9 @@ def asked(planes, states, turns, low, high, nearest, answers):
 def test_cells_left_out_have_no_turning_point_of_interest(system, itinerary, name):
     """Against 400 samples of each cell, by matrix exponentials: 4000 random flights, both bounds have work to do."""
     rng, count, samples = np.random.default_rng(5), 4000, 400
-    tracer = branch_through(orbit_of(system, itinerary)._solution, name, 0.1)
-    tracer.go_to(guess_of(tracer))
-    plane = tracer.planes[0]
+    curve = branch_through(orbit_of(system, itinerary)._solution, name, 0.1)
+    curve.go_to(guess_of(curve))
+    plane = curve.planes[0]
     A, width, omega, swing = plane["A"], float(plane["width"]), float(plane["numbers"][OMEGA]), plane["Z"][0]
     n = len(A)
     B = np.vstack([A, np.zeros(n + 1)])
@@ -158,7 +158,7 @@ def test_cells_left_out_have_no_turning_point_of_interest(system, itinerary, nam
     high, low = rng.uniform(0.1, 100, count), -rng.uniform(0.1, 100, count)
     nearest = np.where(rng.random(count) < 0.5, np.inf, rng.uniform(0, 50, count))
     answers = np.zeros(count, bool)
-    asked(tracer.planes, states, turned, low, high, nearest, answers)
+    asked(curve.planes, states, turned, low, high, nearest, answers)
     turns = np.any(slope[:, 1:] * slope[:, :-1] < 0, axis=1)
     distance = np.minimum(high - gap.max(axis=1), gap.min(axis=1) - low)
     assert not np.any(~answers & turns & (distance < nearest))

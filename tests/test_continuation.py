@@ -10,8 +10,8 @@ from support.oscillators import BALL, CAVITY, CHAIN, LONG_CHAIN, ONE_MASS, PAPER
 from support.random_branches import random_oscillator, random_system
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import branch_way
-from vibro_sweep.analysis.branches.branch_start import start_of_walk
+from vibro_sweep.analysis.branches import branch_run
+from vibro_sweep.analysis.branches.branch_start import start_of_run
 
 B_STAR = 6.7057167409730219272  # |e_1.(K - omega^2 M + i omega C)^-1 P| in 40 digits
 
@@ -105,7 +105,7 @@ def test_special_points_do_not_depend_on_the_step(symmetric_branch, one_sided_br
 
 def undivided(orbit, name, bounds, factor, monkeypatch):
     """Types on the branch if no step is divided in which more happens than its tests tell."""
-    monkeypatch.setattr(branch_way, "DIVISIONS", 0)
+    monkeypatch.setattr(branch_run, "DIVISIONS", 0)
     with other_steps(factor):
         return [special.type for special in vs.continue_orbit(orbit, name, bounds).special]
 
@@ -238,7 +238,7 @@ def test_bad_input_is_refused():
 def test_steps_to_masses_that_are_not_positive(recwarn):
     """A step along a branch may try one; it is made shorter, and nothing is said of square roots."""
     system = vs.System(mu_m=1, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=9)
-    first = start_of_walk(vs.periodic_orbit(system, itinerary="")._solution, "mu_m", 1.0, 41.0).backwards()
+    first = start_of_run(vs.periodic_orbit(system, itinerary="")._solution, "mu_m", 1.0, 41.0).backwards()
     assert first.ahead(0.05) is None  # 1 - 0.05 * 40 is negative
     assert first.ahead(0.01).value == pytest.approx(0.6)
     assert not recwarn.list

@@ -6,8 +6,8 @@ from support.drawn_branches import drawn_oscillator
 from support.random_switching import attractor
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.continuation import chord
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation import secant
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 
 SEED = [1, 840]
 
@@ -27,15 +27,15 @@ def graze():
 def test_searches_end_where_rounding_of_the_tests_begins(graze, monkeypatch):
     b, omega = graze.parameters["b"], graze.orbit.system.omega
     bounds, counts, found = ((0.9 * b, 1.1 * b), (0.95 * omega, 1.05 * omega)), [], []
-    correct = Tracer.correct
+    correct = SolutionCurve.correct
 
-    def counted(tracer, guess, row, exact=True):
+    def counted(curve, guess, row, exact=True):
         counts[-1] += exact
-        return correct(tracer, guess, row, exact)
+        return correct(curve, guess, row, exact)
 
-    monkeypatch.setattr(Tracer, "correct", counted)
-    for coarse in (chord.COARSE, 1.0):
-        monkeypatch.setattr(chord, "COARSE", coarse)
+    monkeypatch.setattr(SolutionCurve, "correct", counted)
+    for coarse in (secant.COARSE, 1.0):
+        monkeypatch.setattr(secant, "COARSE", coarse)
         counts.append(0)
         found.append(vs.bifurcation_curve(graze, ("b", "omega"), bounds).special)
     assert len(found[0]) > 8 and counts[0] < 0.6 * counts[1]

@@ -7,9 +7,9 @@ from support.oscillators import PAPER
 from support.random_branches import attractors, random_oscillator
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.continuation import tracer
+from vibro_sweep.analysis.continuation import solution_curve
 from vibro_sweep.analysis.continuation.oscillators import BEYOND, Oscillators, Units
-from vibro_sweep.analysis.curves import curve_way
+from vibro_sweep.analysis.curves import curve_run
 from vibro_sweep.model.linear import family_of
 
 NAMES, BOX = ("b", "omega"), ((0.3, 9), (0.5, 0.8))
@@ -42,8 +42,8 @@ def test_longer_steps_pass_no_strong_resonance(symmetric_branch, one_sided_branc
         assert "failed" not in [kind for kind, *_ in expected]
         for factor in (0.5, 2, 4):
             with monkeypatch.context() as patch:
-                patch.setattr(tracer, "LONGEST_STEP", factor * tracer.LONGEST_STEP)
-                patch.setattr(tracer, "STRAIGHT", factor * tracer.STRAIGHT)
+                patch.setattr(solution_curve, "LONGEST_STEP", factor * solution_curve.LONGEST_STEP)
+                patch.setattr(solution_curve, "STRAIGHT", factor * solution_curve.STRAIGHT)
                 assert same(places(vs.bifurcation_curve(start, NAMES, BOX)), expected), factor
 
 
@@ -52,8 +52,8 @@ def same_whatever_the_step(special, names, bounds, monkeypatch):
     expected = places(vs.bifurcation_curve(special, names, bounds))
     for factor in (0.5, 2):
         with monkeypatch.context() as patch:
-            patch.setattr(tracer, "LONGEST_STEP", factor * tracer.LONGEST_STEP)
-            patch.setattr(tracer, "STRAIGHT", factor * tracer.STRAIGHT)
+            patch.setattr(solution_curve, "LONGEST_STEP", factor * solution_curve.LONGEST_STEP)
+            patch.setattr(solution_curve, "STRAIGHT", factor * solution_curve.STRAIGHT)
             assert same(places(vs.bifurcation_curve(special, names, bounds)), expected), factor
     return [kind for kind, *_ in expected]
 
@@ -152,8 +152,8 @@ def test_an_impact_that_vanishes_on_a_virtual_stretch_is_left_out(monkeypatch):
     """With steps of twice the length another one vanishes in the same step, behind which the orbit is real."""
     record = files.read("curves")["paper, one side, neimark_sacker 1, resonance_1_4 3, fold 2"]
     special = curves.start_of_curve(record)
-    monkeypatch.setattr(tracer, "LONGEST_STEP", 2 * tracer.LONGEST_STEP)
-    monkeypatch.setattr(tracer, "STRAIGHT", 2 * tracer.STRAIGHT)
-    monkeypatch.setattr(curve_way, "FIRST_STEP", 2 * curve_way.FIRST_STEP)
+    monkeypatch.setattr(solution_curve, "LONGEST_STEP", 2 * solution_curve.LONGEST_STEP)
+    monkeypatch.setattr(solution_curve, "STRAIGHT", 2 * solution_curve.STRAIGHT)
+    monkeypatch.setattr(curve_run, "FIRST_STEP", 2 * curve_run.FIRST_STEP)
     curve = vs.bifurcation_curve(special, tuple(record["names"]), record["bounds"])
     assert [one.type for one in curve.special] == ["boundary", "resonant_graze", "resonance_1_4"]

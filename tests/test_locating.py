@@ -5,8 +5,8 @@ from support.oscillators import BALL, CAVITY, ONE_MASS, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.continuation.first_point import first_place
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import KINDS
-from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.model.linear import Family, family_of
 
@@ -36,7 +36,7 @@ def test_special_points_are_where_their_equations_hold(system, itinerary, name, 
     found = [one for one in vs.continue_orbit(orbit_of(system, itinerary), name, bounds).special if one.type in KINDS]
     assert found
     for special in found:
-        place = first_place(Tracer(start_at(special, (name,)), (name,), [bounds]))
+        place = first_place(SolutionCurve(start_at(special, (name,)), (name,), [bounds]))
         assert abs(place.p[0] - special.parameters[name]) <= 2 * max(special.error, 1e-14) < 1e-12, special  # of both
 
 

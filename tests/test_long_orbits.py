@@ -66,7 +66,7 @@ def test_long_orbit_is_followed_like_the_short_one():
     short = vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
     long = repeated(short, 61)
     start = followed_from(long, "b", 1.0)
-    point = start.tracer.step(start, 0.01)
+    point = start.curve.step(start, 0.01)
     found = vs.periodic_orbit(PAPER.replace(b=point.value), itinerary="R")
     assert point.solution.jumps == pytest.approx(-1.8 * found.impacts["v1"][0], rel=1e-12)
     assert np.sign(point.tests[TEST.minus]) == np.sign(start.tests[TEST.minus])

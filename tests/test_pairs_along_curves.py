@@ -3,7 +3,7 @@
 import pytest
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.continuation import tracer
+from vibro_sweep.analysis.continuation import solution_curve
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +22,7 @@ def graze():
 def followed(graze, factor, monkeypatch):
     with monkeypatch.context() as patch:
         for name in ("LONGEST_STEP", "STRAIGHT"):
-            patch.setattr(tracer, name, factor * getattr(tracer, name))
+            patch.setattr(solution_curve, name, factor * getattr(solution_curve, name))
         curve = vs.bifurcation_curve(graze, ("b", "omega"), ((0.112, 0.448), (0.566, 0.885)))
     return [(special.type, special.parameters["b"]) for special in curve.special]
 

@@ -33,7 +33,7 @@ def test_a_weakly_damped_pair_crosses_the_circle_between_two_points_near_it():
 @pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.1, 0.5, 1, 2])
 def test_a_start_on_a_torus_of_a_weakly_damped_chain(factor):
-    """The neighbour at which the walk begins, and the point behind it, are within 1e-6 of the circle."""
+    """The neighbour at which the run begins, and the point behind it, are within 1e-6 of the circle."""
     chain = vs.Oscillator.named(
         "chain", stop_at=4, omega=1.93, R=0.93, b=0.15, tau=1.05, m=[2] * 6, k=[1, 1, 2, 2, 1, 1, 1],
         c=[0.001, 0.002, 0.003, 0.003, 0.002, 0.001, 0.002], force=[0, -2, 1, 0, -1, -2],

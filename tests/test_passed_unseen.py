@@ -8,10 +8,10 @@ from support.drawn_branches import Case
 from support.same_branch import follow, rows
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.branches import branch_way
+from vibro_sweep.analysis.branches import branch_run
 from vibro_sweep.analysis.branches.crossings import explained, stands_alone
 from vibro_sweep.analysis.branches.looking import extremum
-from vibro_sweep.analysis.continuation import tracer
+from vibro_sweep.analysis.continuation import solution_curve
 from vibro_sweep.engine.continuation.branch_tests import FARTHER
 
 BESIDE = vs.Oscillator(
@@ -54,9 +54,9 @@ def test_a_pair_goes_out_where_a_fold_takes_one_in(beside_fold):
 @pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.5, 2])
 def test_they_do_not_depend_on_the_step(beside_fold, factor, monkeypatch):
-    monkeypatch.setattr(branch_way, "FIRST_STEP", factor * branch_way.FIRST_STEP)
+    monkeypatch.setattr(branch_run, "FIRST_STEP", factor * branch_run.FIRST_STEP)
     for name in ("LONGEST_STEP", "STRAIGHT"):
-        monkeypatch.setattr(tracer, name, factor * getattr(tracer, name))
+        monkeypatch.setattr(solution_curve, name, factor * getattr(solution_curve, name))
     for branch in beside_fold[:2]:
         begun = next(special.orbit for special in branch.special if special.type == "fold")
         same_points(vs.continue_orbit(begun, "b", (0.0856, 0.3425)), types(beside_fold[2]), 1e-12)

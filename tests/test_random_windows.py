@@ -11,9 +11,9 @@ import vibro_sweep as vs
 from vibro_sweep import store
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.windows import members
-from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.analysis.windows.rows import REASON_CODES
+from vibro_sweep.analysis.windows.window_search import WindowSearch
 from vibro_sweep.driver.windows import rows_in
 from vibro_sweep.model.bifurcations import REASONS
 
@@ -39,7 +39,7 @@ def test_the_same_windows_of_all_sweeps(seeds, capsys):
 
 
 def test_a_window_from_its_ends(few):  # noqa: F811
-    """Also beside a fold or pitchfork: the walk began on their other side, and the window was an unstable stretch."""
+    """Also beside a fold or pitchfork: the run began on their other side, and the window was an unstable stretch."""
     windows = vs.windows(few)
     chosen = [window for window in windows if {window.lower.type, window.upper.type} & {"fold", "pitchfork"}]
     assert {end.type for window in chosen for end in (window.lower, window.upper)} == {"graze", "fold", "pitchfork"}
@@ -60,7 +60,7 @@ def test_a_window_from_its_ends(few):  # noqa: F811
     ],
 )
 def test_a_window_from_an_orbit_at_its_fold(b, state):
-    """3e-11 to 2e-13 of its width inside: the walk began on the unstable side, and came to 0.1622 .. 0.1806."""
+    """3e-11 to 2e-13 of its width inside: the run began on the unstable side, and came to 0.1622 .. 0.1806."""
     ball = dict(mass_ratio=0.11034866750723367, zeta=0.030816339144821438, F=0.28850344990689725, b=b)
     ball |= dict(omega=0.6214661466051168, tau=1.838287462997773, R=0.4039709200133826)
     flat = window_of(Job(vs.Oscillator.named("ball_in_cavity", **ball), np.array(state), 1, "b", (4e-4, 0.98)))
@@ -88,7 +88,7 @@ def test_a_window_ends_at_the_first_of_three_tori(b):
 def test_an_orbit_without_a_window_of_its_own_is_in_the_one_that_covers_it(few):  # noqa: F811
     """The job of the first point of period 13 says `not_settled`; the window comes from its neighbours."""
     with store.contents(few) as data:
-        cover = Cover(rows_in(data, "b"))
+        search = WindowSearch(rows_in(data, "b"))
     refused = []
 
     def evaluate(names, jobs):
@@ -99,10 +99,10 @@ def test_an_orbit_without_a_window_of_its_own_is_in_the_one_that_covers_it(few):
             results.append({"reason": REASON_CODES["not_settled"]} if refuses else window_of(job))
         return results
 
-    cover.search(evaluate)
+    search.search(evaluate)
     ((row, i, j),) = refused
-    assert cover.rows[row].period[i, j] == 13 and cover.window[row][i, j] >= 0
-    assert list(REASONS)[cover.reason[row][i, j]] == "in_a_window"
+    assert search.rows[row].period[i, j] == 13 and search.window[row][i, j] >= 0
+    assert list(REASONS)[search.reason[row][i, j]] == "in_a_window"
 
 
 def test_orbits_of_a_window_beside_its_birth_are_its_own(tmp_path):

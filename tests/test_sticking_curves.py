@@ -10,7 +10,7 @@ from reference.chatter import Chatter
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.curves.bifurcation_curve import first_of
 from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
@@ -99,10 +99,10 @@ def test_one_mass(names, one_mass_onset):
 def test_the_tangent_is_that_of_the_points(symmetric_onset):
     """By differences of neighbouring points: the derivatives of the chatter's series have fewer orders than it."""
     names = ("mu_m", "omega")
-    tracer, place = first_of(Tracer(start_at(symmetric_onset, names), names, ((9, 11), (0.6, 0.65))))
+    curve, place = first_of(SolutionCurve(start_at(symmetric_onset, names), names, ((9, 11), (0.6, 0.65))))
     h = 1e-3  # nearer, rounding of slow impacts is seen
-    beside = [tracer.step(place, sign * h) for sign in (-2, -1, 1, 2)]
-    far, near = tracer.difference(beside[0], beside[3]), tracer.difference(beside[1], beside[2])
+    beside = [curve.step(place, sign * h) for sign in (-2, -1, 1, 2)]
+    far, near = curve.difference(beside[0], beside[3]), curve.difference(beside[1], beside[2])
     slope = (8 * near - far) / (12 * h)
     np.testing.assert_allclose(slope, place.direction, rtol=0, atol=3e-8)
 

@@ -7,7 +7,7 @@ import pytest
 from support import slow_cases
 from support.golden import curves, files
 
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.curves.bifurcation_curve import first_of
 from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.engine.continuation import stepper
@@ -39,25 +39,27 @@ def curve(request):
     """A curve of the golden record and its first point."""
     record = files.read("curves")[request.param]
     names = tuple(record["names"])
-    tracer, place = first_of(Tracer(start_at(curves.start_of_curve(record), names), names, record["box"]))
-    return tracer, tracer.step(place, 10 * H)
+    solution_curve, place = first_of(
+        SolutionCurve(start_at(curves.start_of_curve(record), names), names, record["box"])
+    )
+    return solution_curve, solution_curve.step(place, 10 * H)
 
 
 def test_tangents_are_those_of_the_points(curve):
-    tracer, place = curve
-    beside = [tracer.step(place, sign * H) for sign in (-2, -1, 1, 2)]
-    far, near = tracer.difference(beside[0], beside[3]), tracer.difference(beside[1], beside[2])
+    solution_curve, place = curve
+    beside = [solution_curve.step(place, sign * H) for sign in (-2, -1, 1, 2)]
+    far, near = solution_curve.difference(beside[0], beside[3]), solution_curve.difference(beside[1], beside[2])
     np.testing.assert_allclose((8 * near - far) / (12 * H), place.direction, rtol=0, atol=3e-8)
 
 
 def test_newtons_method_converges_quadratically(curve):
     """From a guess that satisfies no equation: states before impacts are off, too."""
-    tracer, place = curve
-    guess, row = tracer.copied(place), place.direction
+    solution_curve, place = curve
+    guess, row = solution_curve.copied(place), place.direction
     guess.x[:] += 1e-4 * np.random.default_rng(1).normal(size=guess.x.shape)
     changes = []
     while not changes or changes[-1] > ROUNDED:
-        assert tracer.take(guess) and len(changes) < 5
-        changes.append(tracer.do(stepper.CORRECT, guess, row))
+        assert solution_curve.take(guess) and len(changes) < 5
+        changes.append(solution_curve.do(stepper.CORRECT, guess, row))
     constant = max(changes[1] / changes[0] ** 2, 1.0)
     assert changes[0] > 1e-6 and all(b < 30 * constant * a * a + ROUNDED for a, b in pairwise(changes))

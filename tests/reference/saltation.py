@@ -43,7 +43,7 @@ def field(q):
     return A
 
 
-class Found(NamedTuple):
+class MapOverPeriod(NamedTuple):
     """Of m orbits.
 
     matrix : (m, 2N, 2N) derivative of the map over P, with the sign sigma, from just before the first impact on
@@ -57,7 +57,7 @@ class Found(NamedTuple):
 
 
 def monodromy(oscillators, sigma, periods, t, sides, v):
-    """`Found` of m orbits with impacts at times t (m, K), on sides (K,), with the gap's speeds v (m, K) before.
+    """`MapOverPeriod` of m orbits with impacts at times t (m, K), on sides (K,), with the gap's speeds v (m, K) before.
 
     oscillators : m with the fields of the equations above, R_low, R_high; tau a number
     periods : (m,) P, after which the motion is sigma times itself
@@ -116,4 +116,4 @@ def monodromy(oscillators, sigma, periods, t, sides, v):
         total = flown[:, k] @ S @ total
     if K == 0:
         total = flown[:, 0]
-    return Found(sigma * total, states, left / np.maximum(size, 1e-300))
+    return MapOverPeriod(sigma * total, states, left / np.maximum(size, 1e-300))

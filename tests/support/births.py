@@ -23,7 +23,7 @@ MOST_IMPACTS = 100
 GENERATIONS, MOST_ORBITS = 3, 2
 
 
-class Found(NamedTuple):
+class LocatedTwice(NamedTuple):
     """Two locations of one point."""
 
     where: str
@@ -37,7 +37,7 @@ class Found(NamedTuple):
         return self.apart / self.error
 
 
-def births(seed: int) -> list[Found]:
+def births(seed: int) -> list[LocatedTwice]:
     """Of an attractor of a random oscillator, and of the orbits that are born from its branch."""
     rng = np.random.default_rng([5, seed])
     model = str(rng.choice(MODELS))
@@ -65,7 +65,7 @@ def _bounds(name: str, value: float, share: float) -> tuple[float, float]:
     return (1 - share) * value, min((1 + share) * value, 1.0) if name == "R" else (1 + share) * value
 
 
-def _again(where: str, special, child, name: str) -> list[Found]:
+def _again(where: str, special, child, name: str) -> list[LocatedTwice]:
     at, value = special.parameters[name], getattr(child.system, name)
     K, found = special.orbit._solution.K, [special]
     for width in WIDTHS:
@@ -76,12 +76,12 @@ def _again(where: str, special, child, name: str) -> list[Found]:
                 found.append(one)
     where = f"{where} = {at!r}, {K} impacts"
     return [
-        Found(where, K, abs(a.parameters[name] - b.parameters[name]), a.error + b.error, (a, b))
+        LocatedTwice(where, K, abs(a.parameters[name] - b.parameters[name]), a.error + b.error, (a, b))
         for a, b in combinations(found, 2)
     ]
 
 
-def summary(found: list[Found], tried: int) -> str:
+def summary(found: list[LocatedTwice], tried: int) -> str:
     ratios = np.array([one.ratio for one in found])
     long = sum(one.impacts >= 8 for one in found)
     return (

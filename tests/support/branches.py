@@ -9,9 +9,9 @@ from reference.shooting import Shooting
 
 import vibro_sweep as vs
 from support.oscillators import PAPER
-from vibro_sweep.analysis.branches import branch_way
-from vibro_sweep.analysis.branches.track import Track
-from vibro_sweep.analysis.continuation import tracer
+from vibro_sweep.analysis.branches import branch_run
+from vibro_sweep.analysis.branches.compiled_stepper import CompiledStepper
+from vibro_sweep.analysis.continuation import solution_curve
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import contact_coordinates
 
@@ -31,18 +31,18 @@ def same_points(branch, expected, tolerance=1e-12):
 @contextmanager
 def other_steps(factor):
     """Branches are followed by steps `factor` times as long as they are otherwise. Compiled steps are seen to do so."""
-    longest, straight, first = tracer.LONGEST_STEP, tracer.STRAIGHT, branch_way.FIRST_STEP
-    begin, seen = Track.__init__, set()
+    longest, straight, first = solution_curve.LONGEST_STEP, solution_curve.STRAIGHT, branch_run.FIRST_STEP
+    begin, seen = CompiledStepper.__init__, set()
 
-    def watched(track, point, origin, length):
-        begin(track, point, origin, length)
-        seen.add((track.path.longest, track.path.straight, length))
+    def watched(stepper, point, origin, length):
+        begin(stepper, point, origin, length)
+        seen.add((stepper.path.longest, stepper.path.straight, length))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(tracer, "LONGEST_STEP", factor * longest)
-        patch.setattr(tracer, "STRAIGHT", factor * straight)
-        patch.setattr(branch_way, "FIRST_STEP", factor * first)
-        patch.setattr(Track, "__init__", watched)
+        patch.setattr(solution_curve, "LONGEST_STEP", factor * longest)
+        patch.setattr(solution_curve, "STRAIGHT", factor * straight)
+        patch.setattr(branch_run, "FIRST_STEP", factor * first)
+        patch.setattr(CompiledStepper, "__init__", watched)
         yield
     assert seen == {(factor * longest, factor * straight, factor * first)}
 

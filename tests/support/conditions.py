@@ -121,7 +121,7 @@ def _met(sets):
 
 
 def at_point(orbit):
-    """(`Found`, q, t, sides, v, P) of a periodic orbit, over half the period if it is symmetric."""
+    """(`MapOverPeriod`, q, t, sides, v, P) of a periodic orbit, over half the period if it is symmetric."""
     q, impacts = family_of(orbit.system).linear, orbit.impacts
     sigma = -1 if orbit.symmetric else 1
     K = len(impacts) // 2 if orbit.symmetric else len(impacts)

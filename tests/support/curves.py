@@ -27,14 +27,14 @@ def chosen(curve, count):
     points = curve.points
     speeds = np.abs(points.impact_v.values)
     if curve.type == "graze":
-        speeds = np.delete(speeds, curve._tracer.problem.index, axis=1)
+        speeds = np.delete(speeds, curve._solution_curve.problem.index, axis=1)
     allowed = np.flatnonzero(~points.virtual.values & (speeds.min(axis=1, initial=np.inf) > SLOWEST))
     return allowed[np.linspace(0, len(allowed) - 1, count).round().astype(int)]
 
 
 def solution_at(curve, k) -> Solution:
     """The orbit of a point, from what `points` says."""
-    points, start = curve.points, curve._tracer.orbit
+    points, start = curve.points, curve._solution_curve.orbit
     family = start.family.replace(**{name: float(points[name][k]) for name in curve.parameters})
     sides = points.impact_side[k].values
     D = -(1 + family.linear.restitution(sides)) * points.impact_v[k].values
@@ -65,7 +65,7 @@ def error_at(curve, k, digits=30) -> float:
         elif curve.type == "neimark_sacker":
             found = shooting.where_torus(u, name, value)
         else:
-            found = shooting.where_vanishing(curve._tracer.problem.index, u, name, value)
+            found = shooting.where_vanishing(curve._solution_curve.problem.index, u, name, value)
         return float(abs(found - mpf(value)) / abs(value))
 
 

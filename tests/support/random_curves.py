@@ -13,9 +13,9 @@ import numpy as np
 import vibro_sweep as vs
 from support.curves import chosen, solution_at
 from support.random_branches import attractors, random_system
-from vibro_sweep.analysis.branches.branch_way import stop_and_impact
+from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.continuation import tracer
+from vibro_sweep.analysis.continuation import solution_curve
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 
 TYPES = ("fold", "flip", "pitchfork", "neimark_sacker", "graze")
@@ -78,12 +78,12 @@ def _follow(report: Report, special, rng) -> None:
 @contextmanager
 def steps_of(factor: float):
     """Within, steps along a curve, and the angles between them, may be so much larger."""
-    before = tracer.LONGEST_STEP, tracer.STRAIGHT
-    tracer.LONGEST_STEP, tracer.STRAIGHT = (factor * most for most in before)
+    before = solution_curve.LONGEST_STEP, solution_curve.STRAIGHT
+    solution_curve.LONGEST_STEP, solution_curve.STRAIGHT = (factor * most for most in before)
     try:
         yield
     finally:
-        tracer.LONGEST_STEP, tracer.STRAIGHT = before
+        solution_curve.LONGEST_STEP, solution_curve.STRAIGHT = before
 
 
 def key(special):
@@ -94,7 +94,7 @@ def special_at(curve, k, special) -> SpecialPoint:
     solution = solution_at(curve, k)
     names = curve.parameters
     system = special.orbit.system.replace(**{name: float(curve.points[name][k]) for name in names})
-    impact = stop_and_impact(solution, curve._tracer.problem.index)[1] if curve.type == "graze" else None
+    impact = stop_and_impact(solution, curve._solution_curve.problem.index)[1] if curve.type == "graze" else None
     parameters = {name: solution.family.numbers[name] for name in names}
     return SpecialPoint(curve.type, parameters, orbit_of(system, solution), np.empty(0), impact=impact)
 
@@ -103,7 +103,7 @@ def simulate_beside(report: Report, curve, k, where: str) -> None:
     """The orbit on each side of the curve, where there is one, is the motion that the engine computes."""
     solution = solution_at(curve, k)
     if curve.type == "graze":
-        keep = np.delete(np.arange(solution.K), curve._tracer.problem.index)
+        keep = np.delete(np.arange(solution.K), curve._solution_curve.problem.index)
         sides = tuple(solution.sides[i] for i in keep)
         u = np.concatenate([solution.times[keep], solution.jumps[keep]])
         solution = replace(solution, sides=sides, u=u)

@@ -7,8 +7,8 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.drawn_branches import Case
-from vibro_sweep.analysis.branches import branch_way
-from vibro_sweep.analysis.continuation import tracer
+from vibro_sweep.analysis.branches import branch_run
+from vibro_sweep.analysis.continuation import solution_curve
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 
 CLOSE = 1e-9  # relative to the parameter or its range: values of one special point differ by less
@@ -24,7 +24,8 @@ class TooLongError(Exception):
 def steps(factor: float):
     """First and longest steps, and the turn that a step may make, so many times as large."""
     places = (
-        (tracer, "LONGEST_STEP"), (tracer, "STRAIGHT"), (branch_way, "FIRST_STEP"), (branch_way, "OF_STABLE"),
+        (solution_curve, "LONGEST_STEP"), (solution_curve, "STRAIGHT"),
+        (branch_run, "FIRST_STEP"), (branch_run, "OF_STABLE"),
     )  # fmt: skip
     kept = [(place, name, getattr(place, name)) for place, name in places]
     for place, name, value in kept:

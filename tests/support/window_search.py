@@ -142,7 +142,9 @@ def other_starts(report, wrong, window, bounds) -> None:
             f"{window.itinerary or 'free'} of period {window.period}, {window.lo!r} .. {window.hi!r}, from {value!r}"
         )
         report.counted["starts"] += 1
-        beside = min(share, 1 - share) <= 1e-6  # there Newton's method may find no orbit, and Cover takes it back
+        beside = (
+            min(share, 1 - share) <= 1e-6
+        )  # there Newton's method may find no orbit, and WindowSearch takes it back
         if "reason" in result:
             reason = list(REASONS)[int(result["reason"])]
             report.counted[f"starts {reason}"] += 1

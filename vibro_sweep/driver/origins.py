@@ -15,16 +15,16 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.curves import curve_arrays as curves
 from vibro_sweep.analysis.curves.curve_arrays import point_of_codimension_two
+from vibro_sweep.analysis.curves.curve_run import CurvePoint
 from vibro_sweep.analysis.curves.curve_switching import switch as curves_through
-from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.lcp import born_at_grazing
 from vibro_sweep.analysis.periodic.periodic_orbit import STATUS, PeriodicOrbit, orbit_of
-from vibro_sweep.analysis.windows.cover import Cover, Found
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.rows import Row
+from vibro_sweep.analysis.windows.window_search import RowWindow, WindowSearch
 from vibro_sweep.driver.source_file import SourceError
-from vibro_sweep.driver.windows import cover_of, rows_in
+from vibro_sweep.driver.windows import rows_in, search_of
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.bifurcations import CURVES, WAYS
 from vibro_sweep.model.branch_file import CHART, WINDOWS
@@ -135,7 +135,7 @@ def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | No
     with store.contents(Path(scene.begin)) as data:
         rows = _rows(scene, data)
     orbits = []
-    for found in _chosen(scene, cover_of(rows, file, pool)):
+    for found in _chosen(scene, search_of(rows, file, pool)):
         lo, hi = np.clip(found.ends, *scene.parameter[key])
         value = float(np.clip(found.flat["value"][found.flat["branch_origin"]], lo, hi))
         system = found.system.replace(**{key: value})
@@ -145,9 +145,9 @@ def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | No
     return orbits
 
 
-def _chosen(scene: Continuation, cover: Cover) -> list[Found]:
+def _chosen(scene: Continuation, search: WindowSearch) -> list[RowWindow]:
     """The windows from which a scene begins, in the order of the sweep: all, or the largest within its range."""
-    found, (lo, hi) = cover.found, next(iter(scene.parameter.values()))
+    found, (lo, hi) = search.found, next(iter(scene.parameter.values()))
     if scene.largest is None:
         return found
     widths = np.array([np.ptp(np.clip(one.ends, lo, hi)) for one in found])
@@ -185,7 +185,7 @@ def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> lis
     with store.contents(Path(scene.begin)) as data:
         rows = _rows(scene, data)
     key = next(iter(scene.parameter))
-    chosen = _chosen(scene, cover_of(rows, file, pool))
+    chosen = _chosen(scene, search_of(rows, file, pool))
     return [special_point(one.flat, end, key, one.system) for one in chosen for end in (0, 1)]
 
 

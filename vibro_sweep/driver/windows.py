@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Flat
-from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.job import window_of
 from vibro_sweep.analysis.windows.rows import Contents, Row, check_data, chosen_key, rows_of
 from vibro_sweep.analysis.windows.unvisited import unvisited_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
+from vibro_sweep.analysis.windows.window_search import WindowSearch
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.sweep import check_how
@@ -70,13 +70,13 @@ def windows(
         raise ArgumentError(not_allowed("mode", mode, "'new' without a file, `output`"))
     with given_or_bar(progress, 0) as tell:
         if output is not None:
-            cover = run_windows(data, output, parameter, workers, None, tell, mode)
-            if cover is not None:
-                return windows_of(cover)
+            search = run_windows(data, output, parameter, workers, None, tell, mode)
+            if search is not None:
+                return windows_of(search)
         with contents_of(data) as found:
             rows = rows_in(found, parameter)
             with workers_of(workers, None) as pool:
-                return windows_of(cover_of(rows, NothingKept(), pool, tell))
+                return windows_of(search_of(rows, NothingKept(), pool, tell))
 
 
 def run_windows(
@@ -87,7 +87,7 @@ def run_windows(
     executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
     mode: str = "new",
-) -> Cover | None:
+) -> WindowSearch | None:
     """Write the file of a sweep's windows; arguments and errors as of `windows` and `run`. None: it is complete
     already."""
     output = file_to_write("output", output)
@@ -98,11 +98,11 @@ def run_windows(
             if file.complete:
                 return None
             with workers_of(workers, executor) as pool:
-                cover = cover_of(rows, file, pool, progress)
+                search = search_of(rows, file, pool, progress)
             if progress:
-                progress(cover.total, cover.total)
-            file.finish(provenance(), *_contents(cover))
-            return cover
+                progress(search.total, search.total)
+            file.finish(provenance(), *_contents(search))
+            return search
 
 
 class NothingKept:
@@ -115,17 +115,17 @@ class NothingKept:
         """Nothing is kept."""
 
 
-def cover_of(
+def search_of(
     rows: list[Row],
     file: Pieces | NothingKept,
     pool: Executor | None,
     progress: Callable[[int, int], None] | None = None,
-) -> Cover:
+) -> WindowSearch:
     """The windows of rows; those that `file` has pieces of are not followed again."""
-    cover = Cover(rows)
-    tell = (lambda *_: progress(cover.done, cover.total)) if progress else None
-    cover.search(computed(window_of, is_window, pool, file, tell))
-    return cover
+    search = WindowSearch(rows)
+    tell = (lambda *_: progress(search.done, search.total)) if progress else None
+    search.search(computed(window_of, is_window, pool, file, tell))
+    return search
 
 
 def rows_in(data: Contents, parameter: str | None) -> list[Row]:
@@ -143,18 +143,18 @@ def _subject(data: Contents, parameter: str) -> Subject:
     return Subject(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)
 
 
-def _contents(cover: Cover) -> tuple:
+def _contents(search: WindowSearch) -> tuple:
     """Columns and arrays of the file."""
-    first, found = cover.rows[0], cover.found
+    first, found = search.rows[0], search.found
     names = [first.parameter, *first.held]
     masses = first.system.masses
     flats = [one.flat for one in found]
-    held = [tuple(cover.rows[one.row].held.values()) for one in found]
+    held = [tuple(search.rows[one.row].held.values()) for one in found]
     arrays = joined(flats, SHAPES, names, masses, held)
     none = np.full(len(found), -1, np.int32)
     arrays |= {"branch_parent": none, "branch_parent_special": none, "branch_generation": 0 * none}
     ends = np.array([one.ends for one in found]).reshape(len(found), 2)
-    window, reason = in_file_order(cover)
+    window, reason = in_file_order(search)
     arrays |= {
         "window_lo": ends[:, 0],
         "window_hi": ends[:, 1],
@@ -164,18 +164,18 @@ def _contents(cover: Cover) -> tuple:
         "window_symmetric": arrays["branch_symmetric"],
         "window_branch": np.arange(len(found)),
         "window_row": np.array([one.row for one in found], int),
-        "window_orbits": cover.counts,
-        "window_other_attractor": cover.other_attractor,
+        "window_orbits": search.counts,
+        "window_other_attractor": search.other_attractor,
         "orbit_window": window.ravel(),
         "orbit_reason": reason.ravel(),
     }
-    arrays |= _unvisited(cover, masses)
+    arrays |= _unvisited(search, masses)
     return columns_of(WINDOWS, names, first.system), arrays
 
 
-def _unvisited(cover: Cover, masses: int) -> dict[str, np.ndarray]:
+def _unvisited(search: WindowSearch, masses: int) -> dict[str, np.ndarray]:
     """The columns over `unvisited`."""
-    found, names = unvisited_in(cover), state(masses)
+    found, names = unvisited_in(search), state(masses)
     states = np.array([one.state for one in found]).reshape(len(found), len(names))
     numbers = {f"unvisited_{key}": np.array([getattr(one, key) for one in found]) for key in UNVISITED}
     return numbers | {f"unvisited_{name}": states[:, i] for i, name in enumerate(names)}

@@ -6,12 +6,12 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.sizes import size_of
 from vibro_sweep.analysis.continuation.first_point import followed_from, guess_of
-from vibro_sweep.analysis.continuation.tracer import Tracer, branch_through
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, branch_through
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.solution import Solution
 
-AMPLITUDE = 1e-3  # of a branch that is born, in the units of a walk
+AMPLITUDE = 1e-3  # of a branch that is born, in the units of its curve
 LARGER = (4.0, 16.0, 64.0)  # times as large: where the branch leaves nearly along the born orbits
 
 
@@ -23,13 +23,13 @@ def born(parent: Solution, name: str, sign: int) -> Solution | None:
     neighbours: the amplitude is then larger. None where no orbit can be told.
     """
     twice = parent.repeated(2)
-    walk = branch_through(twice, name, size_of(parent, name))
+    curve = branch_through(twice, name, size_of(parent, name))
     w = Linearised(parent).critical_direction(-1)
     change = repeated(parent, 2, w, -1.0)[1]
     size = np.linalg.norm(change / twice.units[: len(change)])
     w *= -np.copysign(1 / size, w[parent.K : 2 * parent.K].sum())  # a choice: which of two mirror images comes first
     for factor in (1.0, *LARGER):
-        solution = with_amplitude(walk, *repeated(parent, 2, sign * AMPLITUDE * factor * w, -1.0))
+        solution = with_amplitude(curve, *repeated(parent, 2, sign * AMPLITUDE * factor * w, -1.0))
         if solution is not None and is_steady(solution, name):
             return solution
     return None
@@ -59,11 +59,11 @@ def repeated(parent: Solution, count: int, w: np.ndarray, mu: complex) -> tuple[
     return replace(child, u=child.u + change), change
 
 
-def with_amplitude(walk: Tracer, guess: Solution, change: np.ndarray) -> Solution | None:
+def with_amplitude(curve: SolutionCurve, guess: Solution, change: np.ndarray) -> Solution | None:
     """The orbit near a guess with its amplitude in the direction `change`; the parameter is found with it."""
     change, K, rests = change / guess.units[: len(change)], guess.K, np.array(guess.rests, int)
     row = np.append(change[: 2 * K], [0.0, 0.0, 0.0])
-    row[K + rests] = change[2 * K :] - change[rests]  # tracers measure lengths of rests
-    place = guess_of(walk, guess)
-    point = place and walk.correct(place, row / np.linalg.norm(row))
+    row[K + rests] = change[2 * K :] - change[rests]  # the unknowns of a curve are lengths of rests
+    place = guess_of(curve, guess)
+    point = place and curve.correct(place, row / np.linalg.norm(row))
     return point and point.solution

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.branches.branch_points import dataset
-from vibro_sweep.analysis.branches.branch_start import NoStartError, changes_rests, start_of_walk
-from vibro_sweep.analysis.branches.free_way import way_from
+from vibro_sweep.analysis.branches.branch_start import NoStartError, changes_rests, start_of_run
+from vibro_sweep.analysis.branches.compiled_stepper import row_of
+from vibro_sweep.analysis.branches.free_run import run_from
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.branches.sticking import sticking_onset
-from vibro_sweep.analysis.branches.track import row_of
-from vibro_sweep.analysis.continuation.recorded import Rows, both_ways
+from vibro_sweep.analysis.continuation.recorded import Rows, both_directions
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -68,9 +68,9 @@ class Branch:
 
 @one_thread()
 def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], progress=None) -> Branch:
-    """Follow a periodic orbit both ways in `parameter`, a number of its system, within bounds = (lo, hi).
+    """Follow a periodic orbit in both directions of `parameter`, a number of its system, within bounds = (lo, hi).
 
-    `progress(points, value)` is called now and then with the points so far, of this way, and where they are.
+    `progress(points, value)` is called now and then with the points of this direction so far, and where they are.
 
     A branch that comes to where the number is not allowed any more ends there, with the type "boundary". What fails is
     told by `.status`.
@@ -92,19 +92,19 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     lo, hi = checked_interval("bounds", bounds, family.numbers[parameter])
     lo, hi = (_allowed(orbit.system, parameter, bound) for bound in (lo, hi))
     try:
-        first = start_of_walk(solution, parameter, lo, hi)
+        first = start_of_run(solution, parameter, lo, hi)
     except NoStartError:
         return not_followed(orbit, parameter)
-    start, down = first.tracer.orbit, way_from(first.backwards(), orbit.system, progress)
+    start, down = first.curve.orbit, run_from(first.backwards(), orbit.system, progress)
     down.go()
     if down.closed:
         closed = down.special
         return Branch(parameter, closed, closed[-1], closed[-1], True, start, down.frame, down.points)
-    up = way_from(first, orbit.system, progress)
+    up = run_from(first, orbit.system, progress)
     up.go()
-    (begins, before), (ends, after) = (_accumulation(way.special[-1], lo, hi) for way in (down, up))
+    (begins, before), (ends, after) = (_accumulation(run.special[-1], lo, hi) for run in (down, up))
     special = [*before, begins, *reversed(down.special[:-1]), *up.special[:-1], ends, *after]
-    rows = both_ways(down.points, up.points)
+    rows = both_directions(down.points, up.points)
     return Branch(parameter, special, begins, ends, False, start, down.frame, rows)
 
 
@@ -138,7 +138,7 @@ def _allowed(system, name: str, bound: float) -> float:
 
 
 def _accumulation(end: SpecialPoint, lo: float, hi: float) -> tuple[SpecialPoint, list[SpecialPoint]]:
-    """The end of a way, and the onset of sticking beyond it, if there is one within the bounds."""
+    """The end of a run, and the onset of sticking beyond it, if there is one within the bounds."""
     onset = sticking_onset(end)
     if onset is None:
         return end, []

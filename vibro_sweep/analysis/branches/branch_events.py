@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from vibro_sweep.analysis.continuation.chord import error_of, root
-from vibro_sweep.analysis.continuation.events import Event, Found, Test
+from vibro_sweep.analysis.continuation.events import Event, LocatedEvent, Test
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.rounding import rounding_error
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.secant import error_of, root
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.periodic.solution import NO_SPEED
 from vibro_sweep.engine.continuation.branch_tests import PASSED
 from vibro_sweep.engine.continuation.workspace import NAMES
@@ -18,13 +18,13 @@ from vibro_sweep.model.bifurcations import TYPES
 ROUNDED = 1e-9  # of a step, by which rounding may put an event behind its end
 
 
-def ends_between(walk: Tracer, bounds, a: Point, b: Point) -> list[Event]:
-    """What may end the branch on the way from a, which is real, to b."""
+def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event]:
+    """What may end the branch from a, which is real, to b."""
     events = []
     for boundary, side in zip(bounds, (-1, 1), strict=True):
         if (b.value - boundary) * side > 0:
             events.append(Event("boundary", _beyond(boundary, side, a), boundary=boundary))
-    for i in range(walk.K):
+    for i in range(curve.K):
         if b.solution.pushes[i] <= 0:
             test = _positive_at(a, lambda point, i=i: point.solution.pushes[i])
             events.append(Event("graze", test, impact=i))
@@ -39,7 +39,7 @@ def ends_between(walk: Tracer, bounds, a: Point, b: Point) -> list[Event]:
     return events
 
 
-def first_end(walk: Tracer, events: list[Event], a: Point, b: Point) -> Found | None:
+def first_end(curve: SolutionCurve, events: list[Event], a: Point, b: Point) -> LocatedEvent | None:
     """The first of these events; None where none is found.
 
     Behind an impact that vanishes, and often behind a boundary, a flight passes its stop: where none does so at the
@@ -49,13 +49,13 @@ def first_end(walk: Tracer, events: list[Event], a: Point, b: Point) -> Found | 
     for event in sorted(events, key=lambda event: event.touches):
         if event.touches and located and not _passes(earliest(located).place):
             break
-        found = locate(walk, event, a, b)
+        found = locate(curve, event, a, b)
         if found is not None:
             located.append(found)
     return earliest(located) if located else None
 
 
-def earliest(located: list[Found]) -> Found:
+def earliest(located: list[LocatedEvent]) -> LocatedEvent:
     """Of ends at the same place the impact that vanishes: behind it the motion passes the stop, which looks alike."""
     first = min(found.share for found in located)
     same = [found for found in located if found.share <= first + 1e-7]
@@ -67,21 +67,21 @@ def _passes(point: Point) -> bool:
     return bool(point.stop_distance < -PASSED * point.solution.size_of_gap)
 
 
-def bifurcations(walk: Tracer, a: Point, b: Point) -> list[Found]:
+def bifurcations(curve: SolutionCurve, a: Point, b: Point) -> list[LocatedEvent]:
     """What lies between a and b and ends no branch, as far as tests differ, in order."""
     found = []
-    for name, test in tests_between(walk, a, b):
-        if np.sign(test(a)) * np.sign(test(b)) < 0 and (place := locate(walk, Event(name, test), a, b)) is not None:
+    for name, test in tests_between(curve, a, b):
+        if np.sign(test(a)) * np.sign(test(b)) < 0 and (place := locate(curve, Event(name, test), a, b)) is not None:
             found.append(place)
     return sorted(found, key=lambda one: one.share)
 
 
-def locate(walk: Tracer, event: Event, a: Point, b: Point) -> Found | None:
+def locate(curve: SolutionCurve, event: Event, a: Point, b: Point) -> LocatedEvent | None:
     """Where the event lies between a and b; None if it cannot be found."""
-    point = None if event.boundary is None else walk.at_value(a, b, 0, event.boundary)
+    point = None if event.boundary is None else curve.at_value(a, b, 0, event.boundary)
     if point is not None and 0 <= along(a, point) <= (1 + ROUNDED) * along(a, b):
         point.hold(event.boundary)
-        return Found(event, along(a, point) / along(a, b), point, 0.0)
+        return LocatedEvent(event, along(a, point) / along(a, b), point, 0.0)
     size = max(abs(event.test(a)), abs(event.test(b)))
     if size == 0:
         return None
@@ -89,7 +89,7 @@ def locate(walk: Tracer, event: Event, a: Point, b: Point) -> Found | None:
     def test(point: Point) -> float:
         return event.test(point) / size
 
-    found = root(walk, a, b, test)
+    found = root(curve, a, b, test)
     if found is None:
         return None
     share, point = found
@@ -97,20 +97,20 @@ def locate(walk: Tracer, event: Event, a: Point, b: Point) -> Found | None:
         point.hold(event.boundary)
     if event.impact is not None:  # one of the unknowns has a value: no test rounds
         point.touch(event.impact)
-        error = rounding_error(walk, point, np.eye(1, 2 * walk.K + 3, walk.K + event.impact)[0])
+        error = rounding_error(curve, point, np.eye(1, 2 * curve.K + 3, curve.K + event.impact)[0])
     else:
-        error = error_of(walk, a, b, test, share, point)
-    return None if error is None else Found(event, along(a, point) / along(a, b), point, error)
+        error = error_of(curve, a, b, test, share, point)
+    return None if error is None else LocatedEvent(event, along(a, point) / along(a, b), point, error)
 
 
-def tests_between(walk: Tracer, a: Point, b: Point, scaled: bool = False) -> list[tuple[str, Test]]:
+def tests_between(curve: SolutionCurve, a: Point, b: Point, scaled: bool = False) -> list[tuple[str, Test]]:
     """The types of the table that orbits of this branch may have between a and b, with their tests.
 
     scaled : all of a size that poles of multipliers do not change, to tell where they are nearest to zero
     """
     found = []
     for one in TYPES:
-        if one.test and one.sigma in (0, walk.orbit.sigma):
+        if one.test and one.sigma in (0, curve.orbit.sigma):
             test = test_of(one.test)
             if one.test == "pair":
                 test = torus_test(a, b) if scaled or np.all(b.solution.pushes > 0) else None
@@ -127,7 +127,7 @@ def test_of(name: str) -> Test:
     return lambda point: float(point.tests[index])
 
 
-def is_outside(walk: Tracer, bounds, point: Point) -> bool:
+def is_outside(curve: SolutionCurve, bounds, point: Point) -> bool:
     """Whether a point lies beyond an end of its branch by more than rounding."""
     s = point.solution
     slow = -NO_SPEED * s.family.linear.omega * s.size_of_gap

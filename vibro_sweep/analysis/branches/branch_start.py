@@ -1,27 +1,27 @@
-"""Where a walk along a branch begins: beside a special point, so that it is met like any other one."""
+"""Where a run along a branch begins: beside a special point, so that it is met like any other one."""
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.free_way import FreeBranch, FreePoint
+from vibro_sweep.analysis.branches.free_run import FreeBranch, FreePoint
 from vibro_sweep.analysis.continuation.first_point import beside_start, followed_from, start_of_branch
 from vibro_sweep.analysis.continuation.point import Point
+from vibro_sweep.analysis.continuation.solution_curve import branch_through
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
-from vibro_sweep.analysis.continuation.tracer import branch_through
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.errors import ArgumentError, VibroSweepError
 
-BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # in units of a walk; near the onset of sticking branches are short
+BESIDE = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)  # in units of the curve; near the onset of sticking branches are short
 FARTHER = (1e-3, 1e-2)  # beside a fold so flat that Newton's method stands still only there
 NEAR = 1e-6  # of a test, relative to its own size, within which an orbit may be the special point itself
 TOUCHES = 1e-12  # distance from a stop, relative to the gap, and the like of a speed, within which it may be zero
-NARROW = 1e-6  # of the parameter's size: the least range that is a unit of a walk
+NARROW = 1e-6  # of the parameter's size: the least range that is a unit of a curve
 
 
 class NoStartError(VibroSweepError, ValueError):
     """Newton's method stands still neither at an orbit nor beside it."""
 
 
-def start_of_walk(solution: Solution, name: str, lo: float, hi: float, stable: bool = False) -> Point | FreePoint:
+def start_of_run(solution: Solution, name: str, lo: float, hi: float, stable: bool = False) -> Point | FreePoint:
     """This orbit as a point of its branch, towards larger parameters, or its neighbour within the bounds where it is a
     special point itself, or so nearly a fold that Newton's method does not stand still there. stable : only a stable
     one, so that a stable orbit and its neighbour lie on the same side of the special point.
@@ -33,16 +33,16 @@ def start_of_walk(solution: Solution, name: str, lo: float, hi: float, stable: b
         solution = solution.whole()
     unit = max(hi - lo, NARROW * max(abs(lo), abs(hi)))
     if solution.K:
-        walk = branch_through(solution, name, unit, (lo, hi))
-        first = start_of_branch(walk)
+        curve = branch_through(solution, name, unit, (lo, hi))
+        first = start_of_branch(curve)
     else:
-        walk = FreeBranch(solution, (name,), unit, ((lo, hi),))
-        first = walk.at(solution.family.numbers[name], 1.0)
+        curve = FreeBranch(solution, (name,), unit, ((lo, hi),))
+        first = curve.at(solution.family.numbers[name], 1.0)
     if first is not None and not is_special(first):
         return first
     for length in BESIDE if first is not None else (*BESIDE, *FARTHER):
         for sign in (1, -1):
-            beside = beside_start(walk, sign * length) if solution.K else first and first.ahead(sign * length)
+            beside = beside_start(curve, sign * length) if solution.K else first and first.ahead(sign * length)
             if (
                 beside is not None
                 and lo <= beside.value <= hi

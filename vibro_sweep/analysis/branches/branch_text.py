@@ -11,7 +11,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 
 if TYPE_CHECKING:
     from vibro_sweep.analysis.branches.branch import Branch
-    from vibro_sweep.analysis.branches.generations import Followed
+    from vibro_sweep.analysis.branches.generations import FollowedBranch
     from vibro_sweep.analysis.branches.special import SpecialPoint
 
 
@@ -51,14 +51,14 @@ def way_of(begins: "SpecialPoint", special: "Sequence[SpecialPoint]", ends: "Spe
     ]
 
 
-def of_followed(followed: "Followed") -> str:
+def of_followed(followed: "FollowedBranch") -> str:
     """One line, as these come in lists."""
     branch = followed.branch
     ends = f"{branch.begins.type} .. {branch.ends.type}".replace("_", "-")
     reached = "" if followed.special is None else f" over {event(followed.special)} of branch {followed.parent}"
     p = span(branch.points[branch.parameter].values)
     kind = f"{itinerary_of(_orbit_on(branch))}, {branch.parameter} {p}, {ends}, status {branch.status}"
-    return f"<Followed, generation {followed.generation}{reached}: {kind}>"
+    return f"<FollowedBranch, generation {followed.generation}{reached}: {kind}>"
 
 
 def event(point: "SpecialPoint") -> str:

@@ -18,7 +18,7 @@ from vibro_sweep.model.refusals import not_allowed
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Followed:
+class FollowedBranch:
     """A branch, and how it was reached.
 
     generation : 0 for the branch of the orbit given, 1 for those that are reached from its special points, ...
@@ -37,7 +37,7 @@ class Followed:
 
 def follow_branches(
     orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], follow=WAYS, depth: int = 1, progress=None
-) -> list[Followed]:
+) -> list[FollowedBranch]:
     """The branch of an orbit and those that are reached from it over special points of the types `follow`.
 
     Branches come generation by generation, up to `depth`, each in the order of its parent's special points. A branch
@@ -71,10 +71,10 @@ def follow_branches(
     lo, hi = map(float, bounds)
     branching = Branches((parameter,), ((lo, hi),), tuple(follow), at_once=1)
     nodes = branching.run([seed_of(orbit.system, Start("orbit", orbit._solution))], depth, evaluate)
-    found: list[Followed] = []
+    found: list[FollowedBranch] = []
     for node in nodes:
         parent, special = node.seed.parent, None
         if parent >= 0:
             special = found[parent].branch.special[node.seed.special]
-        found.append(Followed(branches[node.name], node.generation, parent if parent >= 0 else None, special))
+        found.append(FollowedBranch(branches[node.name], node.generation, parent if parent >= 0 else None, special))
     return found

@@ -7,9 +7,9 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.branch_events import is_outside, tests_between
 from vibro_sweep.analysis.branches.crossings import counts_of, explained, is_torus, stands_alone
-from vibro_sweep.analysis.continuation.events import Found, Test
+from vibro_sweep.analysis.continuation.events import LocatedEvent, Test
 from vibro_sweep.analysis.continuation.point import Point, along
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.engine.continuation.branch_tests import FARTHER
 from vibro_sweep.model.bifurcations import BY_NAME
 
@@ -19,7 +19,9 @@ CLOSE = 1e-6  # share of a step: so near to an end of the branch
 MOST_LOOKS = 8  # for one extremum
 
 
-def hidden_between(walk: Tracer, bounds, a: Point, b: Point, found: list[Found], beside: tuple) -> Point | None:
+def hidden_between(
+    curve: SolutionCurve, bounds, a: Point, b: Point, found: list[LocatedEvent], beside: tuple
+) -> Point | None:
     """A point between a and b that divides what their tests do not tell apart; None if nothing is hidden.
 
     found : bifurcations between a and b, in order
@@ -27,13 +29,13 @@ def hidden_between(walk: Tracer, bounds, a: Point, b: Point, found: list[Found],
     """
     length = along(a, b)
     for one in found:
-        if along(a, one.place) < (1 - CLOSE) * length and is_outside(walk, bounds, one.place):
+        if along(a, one.place) < (1 - CLOSE) * length and is_outside(curve, bounds, one.place):
             return one.place
     cuts = [a]
     for one, other in pairwise(found):
         at, next_at = along(a, one.place), along(a, other.place)
         if next_at - at > APART * length:
-            cuts.append(walk.step(a, (at + next_at) / 2, one.place))
+            cuts.append(curve.step(a, (at + next_at) / 2, one.place))
             if cuts[-1] is None:
                 return None
     cuts.append(b)
@@ -41,15 +43,15 @@ def hidden_between(walk: Tracer, bounds, a: Point, b: Point, found: list[Found],
         inside = [
             one
             for one in found
-            if 0 < walk.difference(x, one.place) @ a.direction < walk.difference(x, y) @ a.direction
+            if 0 < curve.difference(x, one.place) @ a.direction < curve.difference(x, y) @ a.direction
         ]
-        if not _are_all(walk, x, y, inside):
-            return y if y is not b else x if x is not a else _middle(walk, a, b, found)
+        if not _are_all(curve, x, y, inside):
+            return y if y is not b else x if x is not a else _middle(curve, a, b, found)
     places = [a, *(one.place for one in found), b]
-    return _divided(walk, places, found) or _touched(walk, beside, places, found)
+    return _divided(curve, places, found) or _touched(curve, beside, places, found)
 
 
-def _are_all(walk: Tracer, a: Point, b: Point, found: list[Found]) -> bool:
+def _are_all(curve: SolutionCurve, a: Point, b: Point, found: list[LocatedEvent]) -> bool:
     """Whether nothing but these bifurcations, at one place, lies between a and b, as far as a and b tell."""
     at = [(one.event.type, one.place) for one in found if any(BY_NAME[one.event.type].crosses)]
     crossed = [(kind, point) for kind, point in at if not BY_NAME[kind].crosses[2] or is_torus(point)]
@@ -58,59 +60,59 @@ def _are_all(walk: Tracer, a: Point, b: Point, found: list[Found]) -> bool:
     if len(crossed) == 1 and not stands_alone(a, b, crossed[0][1], crossed[0][0]):
         return False
     types = {one.event.type for one in found}
-    return all((test(a) * test(b) < 0) == (kind in types) for kind, test in tests_between(walk, a, b, scaled=True))
+    return all((test(a) * test(b) < 0) == (kind in types) for kind, test in tests_between(curve, a, b, scaled=True))
 
 
-def _middle(walk: Tracer, a: Point, b: Point, found: list[Found]) -> Point | None:
+def _middle(curve: SolutionCurve, a: Point, b: Point, found: list[LocatedEvent]) -> Point | None:
     """A point on the longer side of what was found, with no multiplier on the circle by chance."""
     length = along(a, b)
     at = along(a, found[0].place) if found else 0.0
     low, high = (at, length) if at < length / 2 else (0.0, at)
     for share in SHARES:
-        point = walk.step(a, low + share * (high - low))
+        point = curve.step(a, low + share * (high - low))
         if point is not None and counts_of(point).on_circle <= counts_of(a).on_circle:
             return point
     return None
 
 
-def _divided(walk: Tracer, places: list[Point], found: list[Found]) -> Point | None:
+def _divided(curve: SolutionCurve, places: list[Point], found: list[LocatedEvent]) -> Point | None:
     """A point beside a bifurcation at which another test has the other sign than before and behind it."""
     for one, a, c, b in zip(found, places, places[1:], places[2:], strict=False):
-        for kind, test in tests_between(walk, a, b, scaled=True):
+        for kind, test in tests_between(curve, a, b, scaled=True):
             if kind != one.event.type and test(a) * test(c) < 0 and test(c) * test(b) < 0:
-                return _with_sign(walk, test, c, b)
+                return _with_sign(curve, test, c, b)
     return None
 
 
-def _with_sign(walk: Tracer, test: Test, c: Point, b: Point) -> Point | None:
+def _with_sign(curve: SolutionCurve, test: Test, c: Point, b: Point) -> Point | None:
     """A point between c and b at which the test has the sign that it has at c."""
     length = along(c, b)
     for k in range(1, 40):
-        point = walk.step(c, length * 0.5**k)
+        point = curve.step(c, length * 0.5**k)
         if point is None or test(point) * test(c) > 0:
             return point
     return None
 
 
-def _touched(walk: Tracer, beside: tuple, places: list[Point], found: list[Found]) -> Point | None:
+def _touched(curve: SolutionCurve, beside: tuple, places: list[Point], found: list[LocatedEvent]) -> Point | None:
     """A point between the first and the last of `places` at which a test has changed its sign, to change it again."""
     a, b = places[0], places[-1]
-    K, pushing = walk.K, (a.solution.pushes > 0) & ~walk.problem.rests
+    K, pushing = curve.K, (a.solution.pushes > 0) & ~curve.problem.rests
     types = {one.event.type for one in found}
-    tests = [test for kind, test in tests_between(walk, a, b, scaled=True) if kind not in types]
+    tests = [test for kind, test in tests_between(curve, a, b, scaled=True) if kind not in types]
     tests += [lambda point: point.stop_distance]
     seen = [point for point in (beside[0], *places, beside[1]) if point is not None]
     for test in tests:
         for triple in zip(seen, seen[1:], seen[2:], strict=False):
-            point = _beyond_extremum(walk, test, a, b, triple)
+            point = _beyond_extremum(curve, test, a, b, triple)
             if point is not None:
                 return point
     length = along(a, b)
-    slopes = [-walk.problem.sides * point.direction[K : 2 * K] for point in (a, b)]
+    slopes = [-curve.problem.sides * point.direction[K : 2 * K] for point in (a, b)]
     for i in np.flatnonzero(pushing & (slopes[0] < 0) & (slopes[1] > 0) & (b.solution.pushes > 0)):
-        middle = walk.step(a, length * _least(a, b, K + i))
+        middle = curve.step(a, length * _least(a, b, K + i))
         if middle is not None:
-            point = _beyond_extremum(walk, lambda point, i=i: point.solution.pushes[i], a, b, (a, middle, b))
+            point = _beyond_extremum(curve, lambda point, i=i: point.solution.pushes[i], a, b, (a, middle, b))
             if point is not None:
                 return point
     return None
@@ -118,7 +120,7 @@ def _touched(walk: Tracer, beside: tuple, places: list[Point], found: list[Found
 
 def _least(a: Point, b: Point, i: int) -> float:
     """Where between two points, as a share, the cubic of one unknown has its extremum; its slopes differ in sign."""
-    change = a.tracer.difference(a, b)
+    change = a.curve.difference(a, b)
     length, rise = float(np.linalg.norm(change)), change[i]
     p, q = a.direction[i] * length, b.direction[i] * length
     # slope of the cubic: p + 2 (3 rise - 2 p - q) s + 3 (p + q - 2 rise) s^2
@@ -127,7 +129,7 @@ def _least(a: Point, b: Point, i: int) -> float:
     return min(inside, default=0.5, key=lambda root: abs(root - 0.5))
 
 
-def _beyond_extremum(walk: Tracer, test: Test, a: Point, b: Point, triple) -> Point | None:
+def _beyond_extremum(curve: SolutionCurve, test: Test, a: Point, b: Point, triple) -> Point | None:
     """The extremum of a test near the middle one of three points, if it lies between a and b with another sign."""
     seen = [(along(a, point), test(point)) for point in triple]
     middle, length = triple[1], along(a, b)
@@ -137,7 +139,7 @@ def _beyond_extremum(walk: Tracer, test: Test, a: Point, b: Point, triple) -> Po
         if at is None:
             return None
         at = _apart(s + at, (r, s, t))
-        point = walk.step(a, at, middle)
+        point = curve.step(a, at, middle)
         if point is None:
             return None
         value = test(point)

@@ -10,10 +10,10 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.branch_events import locate, test_of
 from vibro_sweep.analysis.branches.crossings import counts_of
-from vibro_sweep.analysis.continuation.events import Event, Found
+from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.first_point import followed_from
 from vibro_sweep.analysis.continuation.point import Point
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.pairs import ON_SQUARE
 from vibro_sweep.model.bifurcations import name_of
@@ -24,10 +24,10 @@ LANDS = 0.3  # of what tells the halves apart before a step, at its end
 APART = 4.0  # times its rounding: so far a point lies from a birth at least, to be told from it
 
 
-def own_birth(walk: Tracer, a: Point, b: Point) -> Found | None:
+def own_birth(curve: SolutionCurve, a: Point, b: Point) -> LocatedEvent | None:
     """The birth between a and b, located on the parent's branch; None without one."""
     for sigma, share in turns(a.solution, b.solution):
-        found = _on_parent(walk, walk.between(a, b, share).solution, sigma)
+        found = _on_parent(curve, curve.between(a, b, share).solution, sigma)
         if found is not None:
             return found._replace(share=share)
     return None
@@ -44,7 +44,7 @@ def turns(one: Solution, other: Solution) -> Iterator[tuple[int, float]]:
             yield sigma, sizes[0] / sum(sizes)
 
 
-def before_birth(walk: Tracer, a: Point, distance: float, parent: Point) -> Point | None:
+def before_birth(curve: SolutionCurve, a: Point, distance: float, parent: Point) -> Point | None:
     """A point on the way to a birth at which fewer multipliers are 1; None where a is too near to the birth.
 
     Beside the birth rounding moves a point along its branch. The tangent turns with the multipliers above 1: where it
@@ -52,7 +52,7 @@ def before_birth(walk: Tracer, a: Point, distance: float, parent: Point) -> Poin
     """
     most = _ones(parent.solution.multipliers**2) - 1
     for share in BEFORE:
-        point = walk.step(a, (1 - share) * distance)
+        point = curve.step(a, (1 - share) * distance)
         if point is None or abs(point.value - parent.value) < APART * point.rounding:
             continue
         if _ones(point.solution.multipliers) <= most:
@@ -62,28 +62,28 @@ def before_birth(walk: Tracer, a: Point, distance: float, parent: Point) -> Poin
     return None
 
 
-def over_birth(walk: Tracer, a: Point) -> tuple[Point, Point] | None:
+def over_birth(curve: SolutionCurve, a: Point) -> tuple[Point, Point] | None:
     """The point beyond the birth to which a leads, and the parent; None where it leads to none within `NEAR`."""
-    ahead = walk.moved(a, 1.0)  # at the distance 1, with the parameter of the point
+    ahead = curve.moved(a, 1.0)  # at the distance 1, with the parameter of the point
     ahead.hold(a.value)
     for sigma in (1, -1):
         here, there = (halves_apart(solution, sigma) for solution in (a.solution, ahead.solution))
         if here is None or not here @ (there - here) < 0:
             continue
         distance = float(here @ here / (here @ (here - there)))
-        b = walk.step(a, 2 * distance) if distance < NEAR else None
-        birth = None if b is None else own_birth(walk, a, b)
+        b = curve.step(a, 2 * distance) if distance < NEAR else None
+        birth = None if b is None else own_birth(curve, a, b)
         if birth is not None:
             return b, birth.place
     return None
 
 
-def lands_on_birth(walk: Tracer, a: Point, b: Point) -> Point | None:
+def lands_on_birth(curve: SolutionCurve, a: Point, b: Point) -> Point | None:
     """The point beyond the birth to which a leads, where rounding does not tell b from the birth."""
     for sigma in (1, -1):
         parts = [halves_apart(point.solution, sigma) for point in (a, b)]
         if all(part is not None for part in parts) and np.linalg.norm(parts[1]) < LANDS * np.linalg.norm(parts[0]):
-            over = over_birth(walk, a)
+            over = over_birth(curve, a)
             if over is not None and abs(b.value - over[1].value) < APART * b.rounding:
                 return over[0]
     return None
@@ -93,16 +93,16 @@ def _ones(multipliers: np.ndarray) -> int:
     return int(np.sum(np.abs(multipliers - 1) < ON_SQUARE))
 
 
-def _on_parent(walk: Tracer, whole: Solution, sigma: int) -> Found | None:
+def _on_parent(curve: SolutionCurve, whole: Solution, sigma: int) -> LocatedEvent | None:
     parent = whole.part(2, sigma, alike=0.1)
     if parent is None:
         return None
-    first = followed_from(parent, walk.names[0], walk.unit[0])
+    first = followed_from(parent, curve.names[0], curve.unit[0])
     kind, reach = name_of("flip", sigma), 1e-6
     while kind and first is not None and reach < 0.05:
-        event, ends = Event(kind, test_of("minus")), [first.tracer.step(first, sign * reach) for sign in (-1, 1)]
+        event, ends = Event(kind, test_of("minus")), [first.curve.step(first, sign * reach) for sign in (-1, 1)]
         if None not in ends and event.test(ends[0]) * event.test(ends[1]) < 0:
-            return locate(first.tracer, event, *ends)
+            return locate(first.curve, event, *ends)
         reach *= 4
     return None
 

@@ -9,23 +9,23 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.compiled_stepper import CompiledStepper
 from vibro_sweep.analysis.branches.own_birth import may_be_born, over_birth
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.branches.track import Track
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.recorded import Rows
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
-from vibro_sweep.analysis.continuation.tracer import Tracer
 
 BACK = 16  # points, at most, to one that lies before what rounding does beside a birth
 
 
-def passed(walk: Tracer, rows: list[Rows], behind: Point | None) -> list[int]:
+def passed(curve: SolutionCurve, rows: list[Rows], behind: Point | None) -> list[int]:
     """How many of these points lie before each place where what tells the halves apart turns round.
 
     behind : the point to which steps have led; None where there is none
     """
-    start, family, (name,), found = walk.orbit, walk.orbit.family, walk.names, []
+    start, family, (name,), found = curve.orbit, curve.orbit.family, curve.names, []
     signs = [sigma for sigma in (1, -1) if may_be_born(start, sigma)]
     if -1 in signs and not keeps_symmetry(family, name):
         signs.remove(-1)
@@ -35,7 +35,7 @@ def passed(walk: Tracer, rows: list[Rows], behind: Point | None) -> list[int]:
     p = np.concatenate([*(part.p for part in rows), [point.value for point in last]])
     t = np.concatenate([*(part.t for part in rows), *(point.solution.times[None] for point in last)])
     D = np.concatenate([*(part.D for part in rows), *(point.solution.jumps[None] for point in last)])
-    omega = family.linear.omega + walk.oscillators.slopes[0].omega * (p - family.numbers[name])
+    omega = family.linear.omega + curve.oscillators.slopes[0].omega * (p - family.numbers[name])
     half, speed = start.K // 2, family.linear.omega * start.size_of_gap
     delay = omega[:, None] * (t[:, half:] - t[:, :half]) - start.halves * np.pi / 2
     for sigma in signs:
@@ -44,7 +44,7 @@ def passed(walk: Tracer, rows: list[Rows], behind: Point | None) -> list[int]:
     return sorted(found)
 
 
-def before_passed(walk: Tracer, track: Track, rows: Rows, counts: Iterable[int], first: Point):
+def before_passed(curve: SolutionCurve, compiled: CompiledStepper, rows: Rows, counts: Iterable[int], first: Point):
     """(points before a birth, the last of them, a point behind it); None where no birth is found.
 
     counts : of points that lie before one perhaps, as `passed` gives them
@@ -53,8 +53,8 @@ def before_passed(walk: Tracer, track: Track, rows: Rows, counts: Iterable[int],
     for last in counts:
         for count in range(last, max(0, last - BACK), -1):
             kept = rows.taken(np.s_[:count])
-            a = track.point_behind(kept) if count > 1 else first
-            over = None if a is None else over_birth(walk, a)
+            a = compiled.point_behind(kept) if count > 1 else first
+            over = None if a is None else over_birth(curve, a)
             if over is not None:
                 return kept, a, over[0]
     return None

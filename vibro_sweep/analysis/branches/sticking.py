@@ -11,8 +11,8 @@ from vibro_sweep.analysis.branches.sizes import LEAST, least_size
 from vibro_sweep.analysis.branches.special import SpecialPoint, inserted
 from vibro_sweep.analysis.continuation.chatter import Chatter, chatter_at, written_out
 from vibro_sweep.analysis.continuation.first_point import guess_of, settle
+from vibro_sweep.analysis.continuation.solution_curve import NoPlaneError, SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import Start
-from vibro_sweep.analysis.continuation.tracer import NoPlaneError, Tracer
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import FIRST, Place
@@ -40,10 +40,10 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
     found = [onset for guess in _guesses(solution, index) if (onset := _onset(guess, name)) is not None]
     if not found:
         return None
-    tracer, place = min(found, key=lambda one: abs(one[1].p[FIRST] - special.parameters[name]))
+    curve, place = min(found, key=lambda one: abs(one[1].p[FIRST] - special.parameters[name]))
     onset, error = float(place.p[FIRST]), place.rounding
     orbit = PeriodicOrbit(special.orbit.system.replace(**{name: onset}), "sticking")
-    none, chatter = np.empty(0, complex), chatter_at(tracer, place, False)
+    none, chatter = np.empty(0, complex), chatter_at(curve, place, False)
     return SpecialPoint("sticking", {name: onset}, orbit, none, error, special.stop, _chatter=chatter)
 
 
@@ -70,22 +70,22 @@ def _guesses(touching: Solution, index: int) -> list[Chatter]:
     return guesses
 
 
-def _onset(guess: Chatter, name: str) -> tuple[Tracer, Place] | None:
+def _onset(guess: Chatter, name: str) -> tuple[SolutionCurve, Place] | None:
     """The onset near a guess, whose impacts are nearer to those of the guess than these to each other."""
     s = guess.solution
     value, size = s.family.numbers[name], least_size(s, name) / LEAST
     try:
-        tracer = Tracer(Start("sticking", s, state=guess.state), (name,), [(value - size / 2, value + size / 2)])
+        curve = SolutionCurve(Start("sticking", s, state=guess.state), (name,), [(value - size / 2, value + size / 2)])
     except NoPlaneError:
         return None
-    first = guess_of(tracer)
-    found = first and written_out(tracer, first)
+    first = guess_of(curve)
+    found = first and written_out(curve, first)
     if not found:
         return None
-    tracer, place = found[0], settle(*found)
-    if place is None or not tracer.is_real(place):
+    curve, place = found[0], settle(*found)
+    if place is None or not curve.is_real(place):
         return None
-    shared = slice(1, min(s.K, tracer.K))
+    shared = slice(1, min(s.K, curve.K))
     flights = np.diff(first.phases, append=first.phases[0] + np.pi * s.halves)
     moved = np.abs(place.phases[shared] - first.phases[shared])
-    return (tracer, place) if np.all(moved < flights[shared]) else None
+    return (curve, place) if np.all(moved < flights[shared]) else None

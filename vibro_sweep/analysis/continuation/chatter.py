@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.chatter_sum import NEXT, REACH
 from vibro_sweep.engine.continuation.curve_tests import LATEST
@@ -31,37 +31,37 @@ class Chatter:
     state: np.ndarray
 
 
-def written_out(tracer: Tracer, place: Place) -> tuple[Tracer, Place] | None:
+def written_out(curve: SolutionCurve, place: Place) -> tuple[SolutionCurve, Place] | None:
     """The same point, not corrected, with as many impacts as are needed; None where these are too many."""
-    while tracer.K <= MOST_IMPACTS:
-        reach = tracer.tail(place)[REACH]
-        times = tracer.times(place)
-        before_end = times[0] + tracer.period(place) - times[1:]
+    while curve.K <= MOST_IMPACTS:
+        reach = curve.tail(place)[REACH]
+        times = curve.times(place)
+        before_end = times[0] + curve.period(place) - times[1:]
         if before_end[-1] > LATEST * reach:
-            tracer, place = with_impacts(tracer, place, tracer.K + 1)
+            curve, place = with_impacts(curve, place, curve.K + 1)
             continue
         needed = max(int(np.sum(before_end > NEAR_END * reach)), 1)
         if before_end[needed - 1] > LATEST * reach:
             needed += 1
-        return with_impacts(tracer, place, 1 + needed)
+        return with_impacts(curve, place, 1 + needed)
     return None
 
 
-def with_impacts(tracer: Tracer, place: Place, K: int) -> tuple[Tracer, Place]:
+def with_impacts(curve: SolutionCurve, place: Place, K: int) -> tuple[SolutionCurve, Place]:
     """The point with the first K impacts, or with more of the chatter sequence."""
-    while tracer.K < K:
-        time = tracer.period(place) - tracer.tail(place)[NEXT]
-        tracer, place = _resized(tracer, place, tracer.K + 1)
-        place.phases[-1] = place.phases[0] + tracer.omega(place) * time
-        tracer.do(FOLLOW, place)
-        gain = 1 + tracer.family(place).linear.restitution(tracer.problem.sides[-1:])[0]
-        place.jumps[-1] = -gain * tracer.motion(place)[-1, 0] / tracer.units.speed
-    return (tracer, tracer.copied(place)) if tracer.K == K else _resized(tracer, place, K)
+    while curve.K < K:
+        time = curve.period(place) - curve.tail(place)[NEXT]
+        curve, place = _resized(curve, place, curve.K + 1)
+        place.phases[-1] = place.phases[0] + curve.omega(place) * time
+        curve.do(FOLLOW, place)
+        gain = 1 + curve.family(place).linear.restitution(curve.problem.sides[-1:])[0]
+        place.jumps[-1] = -gain * curve.motion(place)[-1, 0] / curve.units.speed
+    return (curve, curve.copied(place)) if curve.K == K else _resized(curve, place, K)
 
 
-def _resized(tracer: Tracer, place: Place, K: int) -> tuple[Tracer, Place]:
+def _resized(curve: SolutionCurve, place: Place, K: int) -> tuple[SolutionCurve, Place]:
     """Numbers of impacts that are new are 0."""
-    w, old = tracer.resized(K), tracer.K
+    w, old = curve.resized(K), curve.K
     result, kept = new_place(K, w.n), min(K, old)
     for name in ("x", "tangent"):
         getattr(result, name)[:kept] = getattr(place, name)[:kept]
@@ -70,13 +70,13 @@ def _resized(tracer: Tracer, place: Place, K: int) -> tuple[Tracer, Place]:
     return w, result
 
 
-def chatter_at(tracer: Tracer, place: Place, touches: bool) -> Chatter:
+def chatter_at(curve: SolutionCurve, place: Place, touches: bool) -> Chatter:
     """To start from, at a point of a curve; touches: with the nearest turning point as an impact without speed."""
-    solution = tracer.solution(place)
-    steady = (tracer.planes[0]["Z"] * np.exp(1j * place.phases[0])).real
-    state = (place.x[0, : tracer.n] + steady) * tracer.state_units
+    solution = curve.solution(place)
+    steady = (curve.planes[0]["Z"] * np.exp(1j * place.phases[0])).real
+    state = (place.x[0, : curve.n] + steady) * curve.state_units
     if not touches:
         return Chatter(solution, state)
-    time, side = tracer.nearest(place)
-    time += solution.times[0] - tracer.times(place)[0]
+    time, side = curve.nearest(place)
+    time += solution.times[0] - curve.times(place)[0]
     return Chatter(solution.with_touch(int(np.searchsorted(solution.times, time)), time, side), state)

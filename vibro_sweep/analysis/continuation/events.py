@@ -27,7 +27,7 @@ class Event:
     boundary: float | None = None
 
 
-class Found(NamedTuple):
+class LocatedEvent(NamedTuple):
     """An event, located."""
 
     event: Event

@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.analysis.continuation.point import Point
-from vibro_sweep.analysis.continuation.tracer import Tracer, branch_through
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, branch_through
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.problem import conditions, is_critical, unknowns
@@ -13,30 +13,30 @@ SLOW = 1e-5  # impulse, relative to the largest, of an impact that is next to a 
 STILL = 1e-5  # in units of a branch: an orbit that Newton's method takes farther off is another one
 
 
-def first_place(tracer: Tracer, row: np.ndarray | None = None) -> Point | None:
+def first_place(curve: SolutionCurve, row: np.ndarray | None = None) -> Point | None:
     """The point of the curve at `start`, or near it on the plane across `row`; None where it is not isolated."""
-    place = guess_of(tracer)
-    return place and settle(tracer, place, row)
+    place = guess_of(curve)
+    return place and settle(curve, place, row)
 
 
-def start_of_branch(tracer: Tracer) -> Point | None:
+def start_of_branch(curve: SolutionCurve) -> Point | None:
     """The orbit itself as a point of its branch, towards larger parameters.
 
     None where Newton's method fails, or leads to another orbit, as at a fold to that from which it was born.
     """
-    guess = guess_of(tracer)
-    point = guess and (tracer.correct(guess, tracer.axis(0)) or _across(tracer, guess))
-    if point is None or np.abs(tracer.difference(guess, point)).max() > STILL:
+    guess = guess_of(curve)
+    point = guess and (curve.correct(guess, curve.axis(0)) or _across(curve, guess))
+    if point is None or np.abs(curve.difference(guess, point)).max() > STILL:
         return None
     point.hold(guess.value)
     return point
 
 
-def _across(tracer: Tracer, guess: Point) -> Point | None:
+def _across(curve: SolutionCurve, guess: Point) -> Point | None:
     """The start on the plane across its tangent, where impacts are so slow that the parameter hardly tells them."""
-    speeds = np.abs(tracer.orbit.jumps)
-    row = first_direction(tracer, guess) if speeds.min() < SLOW * speeds.max() else None
-    return None if row is None else tracer.correct(guess, np.copysign(1.0, row[-3]) * row)
+    speeds = np.abs(curve.orbit.jumps)
+    row = first_direction(curve, guess) if speeds.min() < SLOW * speeds.max() else None
+    return None if row is None else curve.correct(guess, np.copysign(1.0, row[-3]) * row)
 
 
 def followed_from(solution: Solution, name: str, unit: float, bounds=(-np.inf, np.inf)) -> Point | None:
@@ -47,61 +47,61 @@ def followed_from(solution: Solution, name: str, unit: float, bounds=(-np.inf, n
         return None
 
 
-def beside_start(tracer: Tracer, length: float) -> Point | None:
+def beside_start(curve: SolutionCurve, length: float) -> Point | None:
     """The point of a branch at a distance from the orbit that it goes through, also where that is a fold."""
-    guess = guess_of(tracer)
-    row = guess and first_direction(tracer, guess)
-    return None if row is None else tracer.correct(tracer.moved(guess, length), row)
+    guess = guess_of(curve)
+    row = guess and first_direction(curve, guess)
+    return None if row is None else curve.correct(curve.moved(guess, length), row)
 
 
-def guess_of(tracer: Tracer, solution: Solution | None = None) -> Point | None:
+def guess_of(curve: SolutionCurve, solution: Solution | None = None) -> Point | None:
     """The start, or another orbit of its branch, as it is; None where the oscillator has no forced motion."""
-    s, place = solution or tracer.orbit, Point(tracer, new_place(tracer.K, tracer.n))
+    s, place = solution or curve.orbit, Point(curve, new_place(curve.K, curve.n))
     q = s.family.linear
-    tau = tracer.tau if solution is None else tracer.tau_at(s.family.numbers[tracer.names[0]])
-    place.phases[:], place.jumps[:] = q.omega * s.times + tau, s.jumps / tracer.units.speed
+    tau = curve.tau if solution is None else curve.tau_at(s.family.numbers[curve.names[0]])
+    place.phases[:], place.jumps[:] = q.omega * s.times + tau, s.jumps / curve.units.speed
     rests = list(s.rests)
     place.jumps[rests] = q.omega * (s.ends - s.times[rests])
-    place.p[: len(tracer.names)] = [s.family.numbers[name] for name in tracer.names]
-    place.p[THETA] = tracer.start.theta
-    if not tracer.go_to(place):
+    place.p[: len(curve.names)] = [s.family.numbers[name] for name in curve.names]
+    place.p[THETA] = curve.start.theta
+    if not curve.go_to(place):
         return None
-    states = s.states[: tracer.K, : tracer.n] if tracer.start.state is None else tracer.start.state[None]
-    steady = (tracer.planes[0]["Z"] * np.exp(1j * place.phases[:, None])).real
-    place.x[:, : tracer.n] = states / tracer.state_units - steady
-    if tracer.start.state is not None:
-        tracer.do(stepper.FOLLOW, place)
+    states = s.states[: curve.K, : curve.n] if curve.start.state is None else curve.start.state[None]
+    steady = (curve.planes[0]["Z"] * np.exp(1j * place.phases[:, None])).real
+    place.x[:, : curve.n] = states / curve.state_units - steady
+    if curve.start.state is not None:
+        curve.do(stepper.FOLLOW, place)
     return place
 
 
-def settle(tracer: Tracer, place: Place, row: np.ndarray | None = None) -> Point | None:
+def settle(curve: SolutionCurve, place: Place, row: np.ndarray | None = None) -> Point | None:
     """The point of the curve near a guess without a tangent."""
-    if not tracer.go_to(place):
+    if not curve.go_to(place):
         return None
-    if is_critical(tracer.problem):
-        _take_null_vectors(tracer, place)
+    if is_critical(curve.problem):
+        _take_null_vectors(curve, place)
     if row is None:
-        is_single = conditions(tracer.problem) == unknowns(tracer.problem)
-        row = place.direction if is_single else first_direction(tracer, place)
-    return None if row is None else tracer.correct(place, row)
+        is_single = conditions(curve.problem) == unknowns(curve.problem)
+        row = place.direction if is_single else first_direction(curve, place)
+    return None if row is None else curve.correct(place, row)
 
 
-def _take_null_vectors(tracer: Tracer, place: Place) -> None:
+def _take_null_vectors(curve: SolutionCurve, place: Place) -> None:
     """v and w of the critical multiplier, at a place that has none."""
     place.v[:], place.w[:] = 0.0, 0.0
     for _ in range(2):  # with any border, then with what that gives
-        tracer.do(stepper.ASSEMBLE, place)
-        for here, found in ((place.v, tracer.bench.events["v"]), (place.w, tracer.bench.trial)):
+        curve.do(stepper.ASSEMBLE, place)
+        for here, found in ((place.v, curve.bench.events["v"]), (place.w, curve.bench.trial)):
             here[:] = found / np.linalg.norm(found)
 
 
-def first_direction(tracer: Tracer, place: Place) -> np.ndarray | None:
+def first_direction(curve: SolutionCurve, place: Place) -> np.ndarray | None:
     """The tangent at a place to which the oscillator was moved; it is kept there."""
-    if not tracer.do(stepper.ASSEMBLE, place):
+    if not curve.do(stepper.ASSEMBLE, place):
         return None
-    n, size = tracer.n, tracer.n + unknowns(tracer.problem)
-    null = np.linalg.svd(tracer.bench.work[0]["ends"][: size - 1, :size])[2][-1]
-    change, events = tracer.taken_apart(place, null[:n], null[n:]), tracer.bench.events
+    n, size = curve.n, curve.n + unknowns(curve.problem)
+    null = np.linalg.svd(curve.bench.work[0]["ends"][: size - 1, :size])[2][-1]
+    change, events = curve.taken_apart(place, null[:n], null[n:]), curve.bench.events
     length = np.linalg.norm(change)
     place.tangent[:] = events["changes"][:, 1]
     place.tangent[:, :n] += events["rate"] * place.tangent[:, n, None]

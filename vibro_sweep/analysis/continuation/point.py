@@ -10,17 +10,17 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.workspace import TEST, Place
 
 if TYPE_CHECKING:
-    from vibro_sweep.analysis.continuation.tracer import Tracer
+    from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 
 
 class Point(Place):
     """A `Place` with the solution set on which it lies: a point that was corrected and examined, or a guess of one."""
 
-    tracer: "Tracer"
+    curve: "SolutionCurve"
 
-    def __new__(cls, tracer: "Tracer", place: Place) -> "Point":
+    def __new__(cls, curve: "SolutionCurve", place: Place) -> "Point":
         point = super().__new__(cls, *place)
-        point.tracer = tracer
+        point.curve = curve
         return point
 
     @property
@@ -40,7 +40,7 @@ class Point(Place):
 
     def backwards(self) -> "Point":
         """The same point in the other direction."""
-        other = self.tracer.copied(self)
+        other = self.curve.copied(self)
         for values in (other.tangent, other.tangent_p, other.tests[TEST.rate : TEST.rate + 1]):
             values *= -1
         return other
@@ -52,29 +52,29 @@ class Point(Place):
 
     @cached_property
     def solution(self) -> Solution:
-        return self.tracer.solution(self)
+        return self.curve.solution(self)
 
     @property
     def rounding(self) -> float:
         """What rounding of the equations does to the parameters, on the plane across the tangent."""
-        return rounding_error(self.tracer, self, self.direction)
+        return rounding_error(self.curve, self, self.direction)
 
     @property
     def stop_distance(self) -> float:
         """Least distance of the flights from the stops."""
-        return float(self.tests[TEST.stop_distance] * self.tracer.units.length)
+        return float(self.tests[TEST.stop_distance] * self.curve.units.length)
 
     @cached_property
     def releases(self) -> np.ndarray:
         """(K,) acceleration away from the stop just after an impact with R = 0; infinite for other impacts."""
-        return self.tracer.releases(self)
+        return self.curve.releases(self)
 
     @property
     def stays(self) -> float:
         """The least of what makes a rest: its length, the acceleration into the stop and the speed before it."""
-        return float(min(self.jumps[self.tracer.problem.rests].min(initial=np.inf), self.tests[TEST.hold]))
+        return float(min(self.jumps[self.curve.problem.rests].min(initial=np.inf), self.tests[TEST.hold]))
 
 
 def along(a: Point, b: Point) -> float:
     """How far b lies ahead of a, along the tangent there."""
-    return float(a.tracer.difference(a, b) @ a.direction)
+    return float(a.curve.difference(a, b) @ a.direction)

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.engine.continuation.workspace import TEST
 
 
@@ -37,14 +37,14 @@ def join(parts: list[Rows]) -> Rows:
     return Rows(*(np.concatenate(values) for values in zip(*full, strict=True)))
 
 
-def both_ways(down: Rows, up: Rows) -> Rows:
+def both_directions(down: Rows, up: Rows) -> Rows:
     """From the end of the one to that of the other; they begin at the same point."""
     return join([down.taken(np.s_[:0:-1]), up])
 
 
-def rows_of(tracer: Tracer, x, motion, p, tests, omega, tau, state) -> Rows:
+def rows_of(curve: SolutionCurve, x, motion, p, tests, omega, tau, state) -> Rows:
     """Points, of what kernels have of them; omega, tau: (points,) of the force, state: as of `Rows`."""
-    units, rests, omega = tracer.units, tracer.problem.rests, omega[:, None] * tracer.units.rate
+    units, rests, omega = curve.units, curve.problem.rests, omega[:, None] * curve.units.rate
     t, speeds = (x[..., -2] - np.reshape(tau, (-1, 1))) / omega, motion * units.speed * [1.0, units.rate]
     D = np.where(rests, -speeds[..., 0], x[..., -1] * units.speed)
     ends = (t + x[..., -1] / omega)[:, rests]

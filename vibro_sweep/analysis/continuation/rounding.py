@@ -9,22 +9,22 @@ from vibro_sweep.engine.continuation.problem import STICK, conditions, unknowns
 from vibro_sweep.engine.continuation.workspace import Place
 
 if TYPE_CHECKING:
-    from vibro_sweep.analysis.continuation.tracer import Tracer
+    from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 
 DIGITS = 8 * np.finfo(float).eps  # of the parameters themselves
 ROWS = 2 * np.finfo(float).eps  # of the size of each row
 
 
-def rounding_error(tracer: "Tracer", place: Place, row: np.ndarray) -> float:
+def rounding_error(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
     """Of the parameters of a point on the plane across `row`."""
-    return float(DIGITS * np.abs(place.p[:2]).max() + ROWS * sensitivity(tracer, place, row))
+    return float(DIGITS * np.abs(place.p[:2]).max() + ROWS * sensitivity(curve, place, row))
 
 
-def sensitivity(tracer: "Tracer", place: Place, row: np.ndarray) -> float:
+def sensitivity(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
     """By how much a parameter moves, on the plane across `row`, where each equation is off by its own size."""
-    if not tracer.assemble(place, row):
+    if not curve.assemble(place, row):
         return 0.0
-    c, n, work, events = tracer.problem, tracer.n, tracer.bench.work[0], tracer.bench.events
+    c, n, work, events = curve.problem, curve.n, curve.bench.work[0], curve.bench.events
     free, found = unknowns(c), []
     try:
         inverse = np.linalg.inv(work["ends"][: n + free, : n + free])
@@ -34,10 +34,10 @@ def sensitivity(tracer: "Tracer", place: Place, row: np.ndarray) -> float:
         by_last, by_rows = inverse[n + j, :n], inverse[n + j, n:]
         work["left"][:] = by_last
         events["sides"][:] = -np.einsum("ikr,k->ir", events["factors"][:, :free], by_rows)
-        tracer.do(stepper.TAKE_UP, place)
+        curve.do(stepper.TAKE_UP, place)
         if c.kind == STICK:
-            tracer.bench.trial[0, 0] -= tracer.bench.trial[-2, 2:] @ tracer.bench.tail[0]["by_end"]
-        rows = np.abs(tracer.bench.trial)
+            curve.bench.trial[0, 0] -= curve.bench.trial[-2, 2:] @ curve.bench.tail[0]["by_end"]
+        rows = np.abs(curve.bench.trial)
         total = rows[:-1, :2].sum() + rows[-2, 2:].sum() + np.abs(by_rows[: conditions(c)]).sum()
         found.append(total * c.unit[j])
     return float(max(found))

@@ -13,12 +13,12 @@ import numpy as np
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.chatter import written_out
 from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
-from vibro_sweep.analysis.continuation.recorded import Rows, both_ways
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.recorded import Rows, both_directions
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.curves import curve_text
 from vibro_sweep.analysis.curves.curve_points import dataset
+from vibro_sweep.analysis.curves.curve_run import CurvePoint, CurveRun
 from vibro_sweep.analysis.curves.curve_start import start_at
-from vibro_sweep.analysis.curves.curve_way import CurvePoint, Way
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.engine.continuation.workspace import Place
 from vibro_sweep.model.arguments import check_call, check_type, checked_flag, checked_interval
@@ -50,7 +50,7 @@ class BifurcationCurve:
     begins: CurvePoint
     ends: CurvePoint
     closed: bool
-    _tracer: Tracer
+    _solution_curve: SolutionCurve
     _rows: Rows
 
     def __repr__(self) -> str:
@@ -59,7 +59,7 @@ class BifurcationCurve:
     @cached_property
     def points(self) -> "xarray.Dataset":
         """Dataset over `point`: parameters, multipliers, whether it is real, impacts (docs of `dataset`)."""
-        return dataset(self._tracer, self._rows)
+        return dataset(self._solution_curve, self._rows)
 
     def plot(self, *others: "BifurcationCurve", width: float | None = None):
         """This curve and `others` in the same parameters, with their points of codimension two: a matplotlib Figure,
@@ -85,7 +85,7 @@ class BifurcationCurve:
 def bifurcation_curve(
     special: SpecialPoint, parameters: tuple[str, str], bounds, progress=None, virtual: bool = True
 ) -> BifurcationCurve:
-    """Follow a bifurcation both ways in two parameters, numbers of its system.
+    """Follow a bifurcation in both directions in two parameters, numbers of its system.
 
     special : a fold, flip, pitchfork, neimark_sacker, graze or sticking onset of a branch or of another curve
     bounds : ((lo, hi), (lo, hi)) of both parameters, around the point
@@ -113,33 +113,33 @@ def bifurcation_curve(
     check_call("progress", progress, "progress(points, (p, q))", 0, (0.0, 0.0))
     virtual = checked_flag("virtual", virtual)
     start = start_at(special, names)
-    tracer = Tracer(start, names, limits)
-    tracer, first = first_of(tracer)
+    curve = SolutionCurve(start, names, limits)
+    curve, first = first_of(curve)
     if first is None:
         raise ArgumentError(f"special: this {special.type} cannot be followed; it may belong to several curves at once")
     if len(special.parameters) > 1 or special.type != start.type:  # perhaps of codimension two: begin beside it
-        places = tracer.beside(first)
-        first = next((place for place in places if tracer.is_real(place)), (places or [first])[0])
-    if not (virtual or tracer.is_real(first)):
+        places = curve.beside(first)
+        first = next((place for place in places if curve.is_real(place)), (places or [first])[0])
+    if not (virtual or curve.is_real(first)):
         raise ArgumentError(f"special: beside this {special.type} there is no motion")
     rates = first.tangent_p[:2]
     sign = -1 if rates[np.argmax(np.abs(rates) > LEVEL)] > 0 else 1  # down in the first parameter that changes
-    down = Way(tracer, first, sign, special.orbit.system, progress, virtual)
+    down = CurveRun(curve, first, sign, special.orbit.system, progress, virtual)
     down.go()
     if down.closed:
         ends = down.special
-        return BifurcationCurve(start.type, names, ends, ends[-1], ends[-1], True, tracer, down.points)
-    up = Way(tracer, first, -sign, special.orbit.system, progress, virtual)
+        return BifurcationCurve(start.type, names, ends, ends[-1], ends[-1], True, curve, down.points)
+    up = CurveRun(curve, first, -sign, special.orbit.system, progress, virtual)
     up.go()
     ends = [*reversed(down.special), *up.special]
-    rows = both_ways(down.points, up.points)
-    return BifurcationCurve(start.type, names, ends, down.special[-1], up.special[-1], False, tracer, rows)
+    rows = both_directions(down.points, up.points)
+    return BifurcationCurve(start.type, names, ends, down.special[-1], up.special[-1], False, curve, rows)
 
 
-def first_of(tracer: Tracer) -> tuple[Tracer, Place | None]:
+def first_of(curve: SolutionCurve) -> tuple[SolutionCurve, Place | None]:
     """The first point, if there is one; of an onset of sticking with as many impacts as are needed."""
-    if tracer.start.state is None:
-        return tracer, first_place(tracer)
-    guess = guess_of(tracer)
-    found = guess and written_out(tracer, guess)
-    return (found[0], settle(*found)) if found else (tracer, None)
+    if curve.start.state is None:
+        return curve, first_place(curve)
+    guess = guess_of(curve)
+    found = guess and written_out(curve, guess)
+    return (found[0], settle(*found)) if found else (curve, None)

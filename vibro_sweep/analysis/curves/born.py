@@ -29,10 +29,10 @@ from vibro_sweep.analysis.branches.criticality import cubic_terms
 from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, branch_through
 from vibro_sweep.analysis.continuation.starting_orbit import Start
-from vibro_sweep.analysis.continuation.tracer import Tracer, branch_through
+from vibro_sweep.analysis.curves.curve_run import CurvePoint
 from vibro_sweep.analysis.curves.curve_start import as_special
-from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.curves.pair import in_time, rates_of_pair, second_order
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
@@ -91,20 +91,20 @@ def _leads_to(special: CurvePoint, one: SpecialPoint, nearer: SpecialPoint, rati
 def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: float, sign: int) -> Entry | None:
     """For orbits with `count` times the period at this amplitude; sign: which of two folds. None: there are none."""
     names, values = tuple(special.parameters), np.array(list(special.parameters.values()))
-    tracer = Tracer(parent, names, box_around(special))
-    place = first_place(tracer)
+    curve = SolutionCurve(parent, names, box_around(special))
+    place = first_place(curve)
     if place is None:
         return None
     critical = place.v[:, -2:].T.ravel()  # of phases and jumps
-    w, factor = critical * in_time(tracer, place), amplitude / critical[np.argmax(np.abs(critical))]
+    w, factor = critical * in_time(curve, place), amplitude / critical[np.argmax(np.abs(critical))]
     if count == 4:
-        found = _quarter(tracer, place, abs(factor), name, sign)
+        found = _quarter(curve, place, abs(factor), name, sign)
         if found is None:
             return None
         factor, moved, theta = found
         child, change = repeated(parent.solution, 4, factor * w, 1j)
         family = parent.solution.family.replace(**dict(zip(names, map(float, values + moved), strict=True)))
-        child = replace(_bent(child, tracer, place, factor, moved), family=family)
+        child = replace(_bent(child, curve, place, factor, moved), family=family)
         return Entry(Start(name, child, theta=theta), change, moved)
     child, change = repeated(parent.solution, 2, factor * w, -1.0)
     if name == "fold":
@@ -117,8 +117,8 @@ def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: 
         pair = mu[np.argmin(np.where(mu.imag > 1e-6, np.abs(np.abs(mu) - 1), np.inf))]
         return Entry(Start(name, child, theta=abs(float(np.angle(pair**2)))), change, None)
     across = int(np.argmin(np.abs(place.tangent_p[:2])))
-    walk = branch_through(child, names[across], size_of(child, names[across]))
-    found = with_amplitude(walk, child, change)
+    curve = branch_through(child, names[across], size_of(child, names[across]))
+    found = with_amplitude(curve, child, change)
     theta = found and _angle_near_one(found)
     return Entry(Start(name, found, theta=theta), change, None) if theta else None
 
@@ -134,10 +134,10 @@ def _angle_near_one(solution: Solution) -> float | None:
 def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
     """The point of the curve with the amplitude of the guess, if it is near."""
     names, values = tuple(special.parameters), np.array(list(special.parameters.values()))
-    tracer = Tracer(guess.start, names, box_around(special))
-    place = guess_of(tracer)
-    row = None if place is None else np.append(guess.change / in_time(tracer, place), np.zeros(3))
-    place = place and settle(tracer, place, tracer.unit_row(row))
+    curve = SolutionCurve(guess.start, names, box_around(special))
+    place = guess_of(curve)
+    row = None if place is None else np.append(guess.change / in_time(curve, place), np.zeros(3))
+    place = place and settle(curve, place, curve.unit_row(row))
     if place is None:
         return None
     far = np.abs(place.p[:2] - values) > FARTHEST * sizes_of(special.orbit._solution, names)
@@ -147,7 +147,7 @@ def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
         return None
     if guess.start.theta and abs(place.p[THETA] - guess.start.theta) > ALIKE * guess.start.theta:
         return None
-    found = replace(guess.start, solution=tracer.solution(place))
+    found = replace(guess.start, solution=curve.solution(place))
     if found.type == "graze":
         without = bare(found.solution, found.index)
         if without.stop_distance < -TOUCHING * without.size_of_gap:  # the other half passes the stop
@@ -162,28 +162,28 @@ def box_around(special: CurvePoint) -> np.ndarray:
     return np.column_stack([values - reach, values + reach])
 
 
-def _bent(child: Solution, tracer: Tracer, place: Place, z: complex, moved) -> Solution:
+def _bent(child: Solution, curve: SolutionCurve, place: Place, z: complex, moved) -> Solution:
     """To second order in z: the multipliers of the child, near 1, differ from 1 by as much as this changes them."""
-    bend, mean = second_order(tracer, place)
-    K, s, count = tracer.K, float(tracer.orbit.sigma), child.K // tracer.K
+    bend, mean = second_order(curve, place)
+    K, s, count = curve.K, float(curve.orbit.sigma), child.K // curve.K
     turns, signs = (-1.0) ** np.arange(count)[:, None], s ** np.arange(count)[:, None]
-    _, along = rates_of_pair(tracer, place)
+    _, along = rates_of_pair(curve, place)
     each = 2 * turns * (z * z * bend).real + abs(z) ** 2 * mean + along @ moved  # (count, 2K)
     return replace(child, u=child.u + np.concatenate([each[:, :K].ravel(), (signs * each[:, K:]).ravel()]))
 
 
-def _quarter(tracer: Tracer, place: Place, size: float, name: str, sign: int):
+def _quarter(curve: SolutionCurve, place: Place, size: float, name: str, sign: int):
     """z, in units of w with |z| = size, the parameters' change, and theta (0 of a fold); None: there are none."""
-    tracer.take(place)
-    tracer.do(stepper.EXAMINE, place)
-    (c, d), _ = cubic_terms(tracer.bench, tracer.problem, place)
+    curve.take(place)
+    curve.do(stepper.EXAMINE, place)
+    (c, d), _ = cubic_terms(curve.bench, curve.problem, place)
     A = c / abs(d)
     u = _turn(A, name, sign)
     if u is None:
         return None
     z = size * np.exp(1j * (np.angle(d) - np.angle(u)) / 4)
     eps = -abs(d) * size**2 * (A + u)
-    rates, _ = rates_of_pair(tracer, place)
+    rates, _ = rates_of_pair(curve, place)
     moved = np.linalg.solve(np.array([rates.real, rates.imag]), [eps.real, eps.imag])
     determinant = -8 * (1 + (A * u.conjugate()).real)
     theta = 4 * abs(d) * size**2 * determinant**0.5 if name == "neimark_sacker" else 0.0

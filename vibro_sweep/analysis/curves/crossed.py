@@ -7,9 +7,9 @@ Farther off points are exact, and the polynomials through them give what lies be
 
 import numpy as np
 
-from vibro_sweep.analysis.continuation.chord import Chord
 from vibro_sweep.analysis.continuation.rounding import DIGITS, ROWS, sensitivity
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.secant import Secant
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.engine.continuation.stepper import EXAMINE
 from vibro_sweep.engine.continuation.workspace import TEST, Place
 
@@ -21,54 +21,54 @@ LOST = 1e-10  # of the parameters, by rounding of the equations
 SMOOTH = 1e-8  # of the bounds: what all points and those without the outermost may say apart
 
 
-def is_on_other(tracer: Tracer, a: Place, b: Place, place: Place, impact: int) -> bool:
+def is_on_other(curve: SolutionCurve, a: Place, b: Place, place: Place, impact: int) -> bool:
     """Whether a place where this impulse vanishes, located between a and b, lies on the curve of orbits without it."""
-    change, j = tracer.difference(a, b), tracer.K + impact
+    change, j = curve.difference(a, b), curve.K + impact
     return bool(abs(place.direction[j]) < FLAT * abs(change[j]) / np.linalg.norm(change))
 
 
-def is_lost(tracer: Tracer, a: Place, b: Place, place: Place) -> bool:
+def is_lost(curve: SolutionCurve, a: Place, b: Place, place: Place) -> bool:
     """Whether rounding of the equations moves a place, located between a and b, so far that others may be near."""
-    return ROWS * sensitivity(tracer, place, tracer.unit_row(tracer.difference(a, b))) > LOST
+    return ROWS * sensitivity(curve, place, curve.unit_row(curve.difference(a, b))) > LOST
 
 
-def aside(tracer: Tracer, a: Place, b: Place, place: Place, share: float, gone: list[int]) -> Place | None:
-    """The point of the curve that lies this share of the chord from a to b beside a place on it. gone : impacts that
+def aside(curve: SolutionCurve, a: Place, b: Place, place: Place, share: float, gone: list[int]) -> Place | None:
+    """The point of the curve that lies this share of the secant from a to b beside a place on it. gone : impacts that
     vanish between a and b; None where there is but one of the orbits without them."""
-    change = tracer.difference(a, b)
-    row = tracer.unit_row(change)
+    change = curve.difference(a, b)
+    row = curve.unit_row(change)
     length = share * (row @ change) / (row @ place.direction)
-    point = tracer.correct(tracer.moved(place, length), row)
-    return None if point is None or any(is_on_other(tracer, a, b, point, i) for i in gone) else point
+    point = curve.correct(curve.moved(place, length), row)
+    return None if point is None or any(is_on_other(curve, a, b, point, i) for i in gone) else point
 
 
-def crossed(tracer: Tracer, a: Place, b: Place, impact: int) -> tuple[float, Place, float] | None:
-    """(share of the chord from a to b, place, error of its parameters) where this impulse vanishes; None where it does
+def crossed(curve: SolutionCurve, a: Place, b: Place, impact: int) -> tuple[float, Place, float] | None:
+    """(share of the secant from a to b, place, error of its parameters) where this impulse vanishes; None where it does
     so at a pole or there are no points beside it."""
-    chord = Chord(tracer, a, b, lambda place: float(place.jumps[impact]))
-    reach = REACH / float(np.linalg.norm(tracer.difference(a, b)))
-    low, high = chord.test(a), chord.test(b)
+    secant = Secant(curve, a, b, lambda place: float(place.jumps[impact]))
+    reach = REACH / float(np.linalg.norm(curve.difference(a, b)))
+    low, high = secant.test(a), secant.test(b)
     zero = low / (low - high)
     try:
         for _ in range(ROUNDS):
             shares = zero + reach * NODES
-            places = [chord.at(share) for share in shares.tolist()]
-            tests = np.array([chord.test(place) for place in places])
+            places = [secant.at(share) for share in shares.tolist()]
+            tests = np.array([secant.test(place) for place in places])
             weights, fewer = _weights(tests), np.pad(_weights(tests[1:-1]), 1)
             zero = float(weights @ shares)
     except ArithmeticError:
         return None
     p = np.array([place.p[:2] for place in places])
     apart = np.abs((weights - fewer) @ p)
-    if not (0.0 <= zero <= 1.0 and np.all(apart <= SMOOTH * np.ptp(tracer.bounds, axis=1))):
+    if not (0.0 <= zero <= 1.0 and np.all(apart <= SMOOTH * np.ptp(curve.bounds, axis=1))):
         return None
-    place = tracer.copied(places[0])
+    place = curve.copied(places[0])
     for name in ("x", "p", "tangent", "tangent_p", "v", "w"):
         getattr(place, name)[:] = np.tensordot(weights, [getattr(one, name) for one in places], 1)
     place.jumps[impact], place.tests[TEST.residual] = 0.0, 0.0
-    if not (tracer.take(place) and tracer.do(EXAMINE, place)):
+    if not (curve.take(place) and curve.do(EXAMINE, place)):
         return None
-    lost = np.abs(weights) @ [sensitivity(tracer, one, chord.row) for one in places]
+    lost = np.abs(weights) @ [sensitivity(curve, one, secant.row) for one in places]
     return zero, place, float(apart.max() + DIGITS * np.abs(p).max() + ROWS * lost)
 
 

@@ -9,7 +9,7 @@ from vibro_sweep.analysis.branches.branch_arrays import Flat, common, solution_o
 from vibro_sweep.analysis.branches.criticality import critical_angle
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
-from vibro_sweep.analysis.curves.curve_way import CurvePoint
+from vibro_sweep.analysis.curves.curve_run import CurvePoint
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import GRAZE
@@ -34,12 +34,12 @@ SHAPES = {
 
 def flatten(curve: BifurcationCurve) -> Flat:
     """The arrays of a curve."""
-    data, tracer, start = curve.points, curve._tracer, curve._tracer.orbit
-    grazing = tracer.problem.index if tracer.problem.kind == GRAZE else -1
+    data, solution_curve, start = curve.points, curve._solution_curve, curve._solution_curve.orbit
+    grazing = solution_curve.problem.index if solution_curve.problem.kind == GRAZE else -1
     value = np.column_stack([data[name].values for name in curve.parameters])
     t, v, sides = (data[name].values for name in ("impact_t", "impact_v", "impact_side"))
     speeds = np.abs(np.delete(v, grazing, axis=1) if grazing >= 0 else v)
-    oscillators = [tracer.oscillators.at(p).linear for p in value]
+    oscillators = [solution_curve.oscillators.at(p).linear for p in value]
     if start.sigma == -1:
         half = np.array([np.pi * start.halves / q.omega for q in oscillators])
         t, v, sides = np.hstack([t, t + half[:, None]]), np.hstack([v, -v]), np.hstack([sides, -sides])

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from vibro_sweep.analysis.continuation.chord import error_of, root
-from vibro_sweep.analysis.continuation.events import Event, Found
+from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
+from vibro_sweep.analysis.continuation.secant import error_of, root
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import CONDITIONS
-from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.crossed import aside, crossed, is_lost, is_on_other
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import GRAZE, TORUS
@@ -38,19 +38,19 @@ REACH = (0.25, 0.5, 1.0, 2.0, 4.0)
 SAME = 1e-3  # of a step: a stop_distance that vanishes with an impact does so like the square of its speed
 
 
-def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
+def events_between(curve: SolutionCurve, a: Place, b: Place) -> list[Event]:
     """What changes its sign from a to b."""
-    kind, events = tracer.problem.kind, []
+    kind, events = curve.problem.kind, []
     for i in CURVE_TESTS:
         if np.sign(a.tests[i]) * np.sign(b.tests[i]) < 0:
             size = max(abs(a.tests[i]), abs(b.tests[i]))
-            events.append(Event(type_at(tracer, i), lambda place, i=i, size=size: place.tests[i] / size, i))
-    for i in range(tracer.K):
-        if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == tracer.problem.index):
-            events.append(Event(type_at(tracer, VANISHES), lambda place, i=i: place.jumps[i], impact=i))
+            events.append(Event(type_at(curve, i), lambda place, i=i, size=size: place.tests[i] / size, i))
+    for i in range(curve.K):
+        if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == curve.problem.index):
+            events.append(Event(type_at(curve, VANISHES), lambda place, i=i: place.jumps[i], impact=i))
     least, most = sorted(place.tests[TEST.stop_distance] for place in (a, b))
     if least < -TOUCHING and most > TOUCHING:
-        name = type_at(tracer, TOUCHES)
+        name = type_at(curve, TOUCHES)
         events.append(Event(name, lambda place: min(place.tests[TEST.stop_distance], 1.0), touches=True))
     if kind == TORUS:
         for name, angle in ANGLES.items():
@@ -59,13 +59,13 @@ def events_between(tracer: Tracer, a: Place, b: Place) -> list[Event]:
     return [event for event in events if event.type]
 
 
-def found_between(tracer: Tracer, a: Place, b: Place) -> list[Found]:
+def found_between(curve: SolutionCurve, a: Place, b: Place) -> list[LocatedEvent]:
     """All events from a to b, located.
 
     Of several in one step two may hide each other: a test has a pole where an impact vanishes, or passes zero twice. So
     the pieces of the step beside each event are looked at as well.
     """
-    found = without_echoes(tracer, _located(tracer, a, b))
+    found = without_echoes(curve, _located(curve, a, b))
     if len(found) < 2 and not any(one.event.impact is not None for one in found):
         return found
     known = {0.0: a, 1.0: b} | {one.share: one.place for one in found}
@@ -74,126 +74,126 @@ def found_between(tracer: Tracer, a: Place, b: Place) -> list[Found]:
     beside_each = [(share, sign * apart) for share in shares[1:-1].tolist() for sign in (-1, 1)]
     cuts = [0.0, *(share + apart for share, apart in beside_each), 1.0]
     gone = [one.event.impact for one in found if one.event.impact is not None]
-    places = [a, *(aside(tracer, a, b, known[share], apart, gone) for share, apart in beside_each), b]
+    places = [a, *(aside(curve, a, b, known[share], apart, gone) for share, apart in beside_each), b]
     if any(place is None for place in places):
         return found
     result = []
     for i in range(len(cuts) - 1):
-        for one in _located(tracer, places[i], places[i + 1]):
+        for one in _located(curve, places[i], places[i + 1]):
             result.append(one._replace(share=cuts[i] + one.share * (cuts[i + 1] - cuts[i])))
     return result
 
 
-def found_to_edge(tracer: Tracer, a: Place, b: Place) -> list[Found]:
+def found_to_edge(curve: SolutionCurve, a: Place, b: Place) -> list[LocatedEvent]:
     """All events from a, which is real, to the one after which the orbit is no motion any more, which is the last one.
 
     Where an impact vanishes, other tests have poles and the motion behind passes the stop: so what lies before it is
     looked at by itself. Empty where the end cannot be located.
     """
-    events = events_between(tracer, a, b)
+    events = events_between(curve, a, b)
     edges = [one for one in events if one.impact is not None] or [one for one in events if one.touches]
-    ends = [found for event in edges if (found := locate(tracer, event, a, b)) is not None]
+    ends = [found for event in edges if (found := locate(curve, event, a, b)) is not None]
     if not ends:
         return []
     end = min(ends, key=lambda one: one.share)
     share = (1 - PIECE) * end.share
     gone = [] if end.event.impact is None else [end.event.impact]
-    before = aside(tracer, a, b, end.place, share - end.share, gone)
+    before = aside(curve, a, b, end.place, share - end.share, gone)
     if before is None:
         return [end]
-    return [*(one._replace(share=one.share * share) for one in found_between(tracer, a, before)), end]
+    return [*(one._replace(share=one.share * share) for one in found_between(curve, a, before)), end]
 
 
-def _located(tracer: Tracer, a: Place, b: Place) -> list[Found]:
-    return [found for event in events_between(tracer, a, b) if (found := locate(tracer, event, a, b)) is not None]
+def _located(curve: SolutionCurve, a: Place, b: Place) -> list[LocatedEvent]:
+    return [found for event in events_between(curve, a, b) if (found := locate(curve, event, a, b)) is not None]
 
 
-def without_echoes(tracer: Tracer, found: list[Found]) -> list[Found]:
+def without_echoes(curve: SolutionCurve, found: list[LocatedEvent]) -> list[LocatedEvent]:
     """In order, each place once.
 
     Where an impact vanishes, the motion behind passes the stop, which looks like another graze there; and with one mass
     M(mu) is singular for all mu at a resonant graze.
     """
     gone = [one for one in found if one.event.impact is not None]
-    kept: list[Found] = []
+    kept: list[LocatedEvent] = []
     for one in sorted(found, key=lambda one: (one.event.impact is None, one.share)):
-        echo = one.event.impact is None and any(echoes(tracer, one, other) for other in gone)
-        if not echo and not any(one.event.type == other.event.type and same(tracer, one, other) for other in kept):
+        echo = one.event.impact is None and any(echoes(curve, one, other) for other in gone)
+        if not echo and not any(one.event.type == other.event.type and same(curve, one, other) for other in kept):
             kept.append(one)
     return sorted(kept, key=lambda one: one.share)
 
 
-def echoes(tracer: Tracer, one: Found, other: Found) -> bool:
-    return same(tracer, one, other) or (one.event.index is None and abs(one.share - other.share) < SAME)
+def echoes(curve: SolutionCurve, one: LocatedEvent, other: LocatedEvent) -> bool:
+    return same(curve, one, other) or (one.event.index is None and abs(one.share - other.share) < SAME)
 
 
-def same(tracer: Tracer, one: Found, other: Found) -> bool:
+def same(curve: SolutionCurve, one: LocatedEvent, other: LocatedEvent) -> bool:
     """Whether two points are one, to rounding."""
     apart = np.abs(one.place.p - other.place.p)[:2] - one.error - other.error
-    return bool(np.all(apart <= ROUNDING * np.ptp(tracer.bounds, axis=1)))
+    return bool(np.all(apart <= ROUNDING * np.ptp(curve.bounds, axis=1)))
 
 
-def beside(tracer: Tracer, a: Place, b: Place, one: Found, found: list[Found]) -> list[Place]:
+def beside(curve: SolutionCurve, a: Place, b: Place, one: LocatedEvent, found: list[LocatedEvent]) -> list[Place]:
     """A point on either side of one of those found from a to b, with no other place between at which the orbit may
     begin or cease to be real."""
     edges = [other.share for other in found if other.event.index is None and abs(other.share - one.share) > SAME]
     near = max((share for share in edges if share < one.share), default=None)
     far = min((share for share in edges if share > one.share), default=None)
-    row, places = tracer.unit_row(tracer.difference(a, b)), []
+    row, places = curve.unit_row(curve.difference(a, b)), []
     for end, share in ((a, near), (b, far)):
-        middle = None if share is None else tracer.between(a, b, (share + one.share) / 2)
-        places.append((middle and tracer.correct(middle, row)) or end)
+        middle = None if share is None else curve.between(a, b, (share + one.share) / 2)
+        places.append((middle and curve.correct(middle, row)) or end)
     return places
 
 
-def type_at(tracer: Tracer, test: int | str) -> str:
+def type_at(curve: SolutionCurve, test: int | str) -> str:
     """The type at which this changes its sign along the curve; "" where there is none for its orbits."""
-    types = TYPES[tracer.problem.kind, test]
-    return types.get(0) or types.get(int(tracer.problem.sigma), "")
+    types = TYPES[curve.problem.kind, test]
+    return types.get(0) or types.get(int(curve.problem.sigma), "")
 
 
-def locate(tracer: Tracer, event: Event, a: Place, b: Place) -> Found | None:
+def locate(curve: SolutionCurve, event: Event, a: Place, b: Place) -> LocatedEvent | None:
     """None where the test does not vanish between a and b, or at a place that is singular for Newton's method.
 
     A test may change its sign at a pole as well, where an impact vanishes.
 
     The error (`error_of`) is an estimate from several locations and from what rounding of the equations does.
     """
-    found = root(tracer, a, b, event.test)
+    found = root(curve, a, b, event.test)
     settled = found is not None and found[1].tests[TEST.residual] <= SETTLED
     if event.impact is not None:
-        settled = settled and not is_on_other(tracer, a, b, found[1], event.impact)
-        if not settled or is_lost(tracer, a, b, found[1]):
-            at_crossing = crossed(tracer, a, b, event.impact)
+        settled = settled and not is_on_other(curve, a, b, found[1], event.impact)
+        if not settled or is_lost(curve, a, b, found[1]):
+            at_crossing = crossed(curve, a, b, event.impact)
             if at_crossing is not None:
-                return Found(event, *at_crossing)
+                return LocatedEvent(event, *at_crossing)
     if not settled:
         return None
     share, place = found
     if event.index is not None:
         at, *ends = (abs(float(one.tests[event.index])) for one in (place, a, b))
-        if at > max(0.5 * min(ends), VANISHED) or not is_sharp(tracer, event, place):
+        if at > max(0.5 * min(ends), VANISHED) or not is_sharp(curve, event, place):
             return None
-    error = error_of(tracer, a, b, event.test, share, place)
-    return None if error is None else Found(event, share, place, error)
+    error = error_of(curve, a, b, event.test, share, place)
+    return None if error is None else LocatedEvent(event, share, place, error)
 
 
-def is_sharp(tracer: Tracer, event: Event, place: Place) -> bool:
+def is_sharp(curve: SolutionCurve, event: Event, place: Place) -> bool:
     """Whether rounding leaves a test its sign: that of multipliers has a pole where another impact vanishes."""
     impulses = np.abs(place.jumps)
-    if tracer.problem.kind == GRAZE:
-        impulses = np.delete(impulses, tracer.problem.index)
+    if curve.problem.kind == GRAZE:
+        impulses = np.delete(impulses, curve.problem.index)
     return event.index != TEST.pair or not np.any(impulses < SLOW)
 
 
-def event_near(tracer: Tracer, place: Place, length: float, types) -> Found | None:
+def event_near(curve: SolutionCurve, place: Place, length: float, types) -> LocatedEvent | None:
     """The first event of these types on the curve on either side of `place`, a few times `length` away at most."""
     for factor in REACH:
-        ends = [tracer.step(place, sign * factor * length) for sign in (-1, 1)]
+        ends = [curve.step(place, sign * factor * length) for sign in (-1, 1)]
         if ends[0] is None or ends[1] is None:
             continue
-        for event in events_between(tracer, ends[0], ends[1]):
-            found = locate(tracer, event, *ends) if event.type in types else None
+        for event in events_between(curve, ends[0], ends[1]):
+            found = locate(curve, event, *ends) if event.type in types else None
             if found is not None:
                 return found
     return None

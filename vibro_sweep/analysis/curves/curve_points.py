@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.analysis.continuation.recorded import Rows
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.periodic.motion_between import multipliers_of
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 FREE = ("M", "K", "C", "normal", "constant")  # fields of an oscillator on which its free flight depends
 
 
-def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
+def dataset(curve: SolutionCurve, rows: Rows) -> "xarray.Dataset":
     """Over `point`, in order: both parameters; the state x1 v1 .. at t = 0, before an impact there; `multiplier_re`,
     `multiplier_im` (multiplier) of the whole period, at a graze of the orbit without the grazing impact; `unstable`,
     how many lie outside the unit circle beside those that the curve is about; `virtual`, whether the orbit is no
@@ -33,16 +33,16 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     At an onset of sticking there are no multipliers and no states (NaN). The impacts are the end of the chatter, with
     no speed, and those before the next end that are written out (NaN: fewer than elsewhere on the curve).
     """
-    s, kind, names, K = tracer.orbit, tracer.problem.kind, tracer.names, rows.t.shape[1]
-    sides = tracer.resized(K).problem.sides.astype(int)
-    others = np.delete(np.arange(K), tracer.problem.index) if kind >= GRAZE else np.arange(K)
+    s, kind, names, K = curve.orbit, curve.problem.kind, curve.names, rows.t.shape[1]
+    sides = curve.resized(K).problem.sides.astype(int)
+    others = np.delete(np.arange(K), curve.problem.index) if kind >= GRAZE else np.arange(K)
     multipliers, shifts, states = [], [], []
-    oscillators = [tracer.oscillators.at(p).linear for p in rows.p]
+    oscillators = [curve.oscillators.at(p).linear for p in rows.p]
     flows = _flows(oscillators) if kind != STICK else oscillators
     for q, f, t, D, motion, h in zip(oscillators, flows, rows.t, rows.D, rows.motion, rows.state, strict=True):
         contacts = np.column_stack([q.stop(sides), 1 + q.restitution(sides)])[others]
         P, u = forcing_period(q) / 2 * s.halves, np.concatenate([t[others], D[others]])
-        shifts.append((tracer.tau - q.tau) / q.omega)
+        shifts.append((curve.tau - q.tau) / q.omega)
         if kind == STICK:
             multipliers.append(np.full(2 * len(q.normal), np.nan, complex))
             states.append(np.full(2 * len(q.normal), np.nan))
@@ -54,7 +54,7 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
     values **= 1 if s.sigma == 1 else 2
     order = np.lexsort((-values.imag, -np.abs(values)), axis=-1)
     values = np.take_along_axis(values, order, axis=-1)
-    pulls = -sides[others] * rows.D[:, others] <= -TOUCHING * tracer.units.speed
+    pulls = -sides[others] * rows.D[:, others] <= -TOUCHING * curve.units.speed
     pushes = ~np.any(pulls, axis=1)  # NaN: not written out
     variables = {
         names[0]: ("point", rows.p[:, 0]),
@@ -63,7 +63,7 @@ def dataset(tracer: Tracer, rows: Rows) -> "xarray.Dataset":
         "multiplier_re": (("point", "multiplier"), values.real),
         "multiplier_im": (("point", "multiplier"), values.imag),
         "unstable": ("point", unstable),
-        "virtual": ("point", ~(pushes & (rows.stop_distance > -TOUCHING * tracer.units.length))),
+        "virtual": ("point", ~(pushes & (rows.stop_distance > -TOUCHING * curve.units.length))),
         "stop_distance": ("point", rows.stop_distance),
         "residual": ("point", rows.residual),
         "impact_t": (("point", "impact"), rows.t + np.array(shifts)[:, None]),

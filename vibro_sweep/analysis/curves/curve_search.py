@@ -14,8 +14,8 @@ from vibro_sweep.analysis.branches.search import Bounds, Search, Task
 from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.first_point import first_place
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
-from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.bifurcation_curve import bifurcation_curve
 from vibro_sweep.analysis.curves.curve_arrays import flatten, solution_at, start_from, type_of
 from vibro_sweep.analysis.curves.curve_start import as_special, start_at
@@ -82,11 +82,11 @@ def _crossings(flat: Flat, seed: Seed, names, bounds: Bounds, place, size):
         row = int(i + (share[i] > 0.5))
         row = min(max(row, 1), len(at) - 2) if len(at) > 2 else row  # at its ends a curve may be singular
         system = seed.system.replace(**dict(zip(names, map(float, flat["value"][row]), strict=True)))
-        tracer = Tracer(start_from(flat, row, system), names, bounds)
-        first, axis = first_place(tracer), int(abs(chord[i, 1]) > abs(chord[i, 0]))
-        found = None if first is None else tracer.level(first, axis, float(place[axis]))
+        curve = SolutionCurve(start_from(flat, row, system), names, bounds)
+        first, axis = first_place(curve), int(abs(chord[i, 1]) > abs(chord[i, 0]))
+        found = None if first is None else curve.level(first, axis, float(place[axis]))
         if found is not None and np.all(np.abs(found.p[:2] - place) <= SAME * size):
-            yield tracer.solution(found)
+            yield curve.solution(found)
 
 
 def _solution(flat: Flat, point: int, seed: Seed, names) -> Solution:

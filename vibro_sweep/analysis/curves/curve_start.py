@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.branches.branch_switching import index_in
-from vibro_sweep.analysis.branches.branch_way import stop_and_impact
 from vibro_sweep.analysis.branches.criticality import critical_angle
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted, vanishing
 from vibro_sweep.analysis.continuation.starting_orbit import KINDS, Start, keeps_symmetry

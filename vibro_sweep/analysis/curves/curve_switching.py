@@ -10,11 +10,11 @@ from vibro_sweep.analysis.branches.branch_switching import switch as switch_bran
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
 from vibro_sweep.analysis.continuation.chatter import Chatter
 from vibro_sweep.analysis.continuation.first_point import first_place
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import Start
-from vibro_sweep.analysis.continuation.tracer import Tracer
 from vibro_sweep.analysis.curves.born import born, box_around
+from vibro_sweep.analysis.curves.curve_run import CurvePoint
 from vibro_sweep.analysis.curves.curve_start import as_special, slow_impacts
-from vibro_sweep.analysis.curves.curve_way import CurvePoint
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -121,8 +121,8 @@ def _beside_strong(special: CurvePoint) -> SpecialPoint | None:
     solution = special.orbit._solution
     names = tuple(special.parameters)
     theta = BESIDE if special.type == "resonance_1_1" else math.pi - BESIDE
-    tracer = Tracer(Start("neimark_sacker", solution, theta=theta), names, box_around(special))
-    place = first_place(tracer, tracer.axis(THETA))
+    curve = SolutionCurve(Start("neimark_sacker", solution, theta=theta), names, box_around(special))
+    place = first_place(curve, curve.axis(THETA))
     if place is None:
         return None
-    return as_special(Start("neimark_sacker", tracer.solution(place)), names, special.orbit.system, special.error)
+    return as_special(Start("neimark_sacker", curve.solution(place)), names, special.orbit.system, special.error)

@@ -1,38 +1,38 @@
-"""The stretch of a branch on which its orbit is stable: to the first special point either way."""
+"""The stretch of a branch on which its orbit is stable: to the first special point in each direction."""
 
 from vibro_sweep.analysis.branches.branch import Branch
-from vibro_sweep.analysis.branches.branch_start import start_of_walk
+from vibro_sweep.analysis.branches.branch_start import start_of_run
 from vibro_sweep.analysis.branches.branch_switching import mirrored
-from vibro_sweep.analysis.branches.free_way import way_from
+from vibro_sweep.analysis.branches.free_run import run_from
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.continuation.recorded import both_ways
+from vibro_sweep.analysis.continuation.recorded import both_directions
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 
 
 def stable_stretch(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float]) -> Branch:
-    """From a stable orbit both ways in `parameter`, to the first bifurcation or end of the branch, or to a bound.
+    """The branch of a stable orbit to its first bifurcation, its end or a bound, in both directions of `parameter`.
 
     Raises ValueError for an orbit that cannot be corrected.
     """
-    first = start_of_walk(orbit._solution, parameter, *bounds, stable=True)
-    down, up = (way_from(point, orbit.system, stable=True) for point in (first.backwards(), first))
+    first = start_of_run(orbit._solution, parameter, *bounds, stable=True)
+    down, up = (run_from(point, orbit.system, stable=True) for point in (first.backwards(), first))
     down.go()
     up.go()
-    rows = both_ways(down.points, up.points)
+    rows = both_directions(down.points, up.points)
     special = [down.special[0], up.special[0]]
-    return Branch(parameter, special, *special, down.closed, first.tracer.orbit, down.frame, rows)
+    return Branch(parameter, special, *special, down.closed, first.curve.orbit, down.frame, rows)
 
 
 def stable_end(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], forwards: float) -> SpecialPoint:
-    """What ends the stability of an orbit one way, +1.0 or -1.0; type boundary: it is stable up to the bound.
+    """What ends the stability of an orbit in one direction, +1.0 or -1.0; type boundary: it is stable up to the bound.
 
     Raises ValueError for an orbit that cannot be corrected.
     """
-    first = start_of_walk(orbit._solution, parameter, *bounds, stable=True)
-    way = way_from(first if forwards > 0 else first.backwards(), orbit.system, stable=True)
-    way.go()
-    return way.special[0]
+    first = start_of_run(orbit._solution, parameter, *bounds, stable=True)
+    run = run_from(first if forwards > 0 else first.backwards(), orbit.system, stable=True)
+    run.go()
+    return run.special[0]
 
 
 def representative(orbit: PeriodicOrbit, parameter: str) -> PeriodicOrbit:

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
-from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.members import solution_in
+from vibro_sweep.analysis.windows.window_search import WindowSearch
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,17 +35,17 @@ class Unvisited:
         return self.orbit.state if self.orbit.ok else np.full(2 * self.orbit.system.masses, np.nan)
 
 
-def unvisited_in(cover: Cover) -> list[Unvisited]:
+def unvisited_in(search: WindowSearch) -> list[Unvisited]:
     """All such stretches of the windows of a search that is done, by window and rising value."""
-    return [found for w in range(len(cover.found)) for found in _of_window(cover, w)]
+    return [found for w in range(len(search.found)) for found in _of_window(search, w)]
 
 
-def _of_window(cover: Cover, w: int) -> Iterator[Unvisited]:
-    found, values = cover.found[w], cover.rows[cover.found[w].row].values
+def _of_window(search: WindowSearch, w: int) -> Iterator[Unvisited]:
+    found, values = search.found[w], search.rows[search.found[w].row].values
     ends = found.ends
     inside = np.flatnonzero((ends[0] < values) & (values < ends[1]))
-    seen = (cover.window[found.row][inside] == w).any(axis=1)
-    others = cover.elsewhere(w)[inside].any(axis=1) & ~seen
+    seen = (search.window[found.row][inside] == w).any(axis=1)
+    others = search.elsewhere(w)[inside].any(axis=1) & ~seen
     for run in np.split(inside, np.flatnonzero(np.diff(seen)) + 1):
         missed = run[others[run - inside[:1]]]
         if not len(missed):
@@ -55,13 +55,13 @@ def _of_window(cover: Cover, w: int) -> Iterator[Unvisited]:
             lo = ends[0]
         if inside[-1] == missed[-1] < len(values) - 1:
             hi = ends[1]
-        yield Unvisited(w, lo, hi, len(missed), *_start(cover, w, values[missed]))
+        yield Unvisited(w, lo, hi, len(missed), *_start(search, w, values[missed]))
 
 
-def _start(cover: Cover, w: int, values: np.ndarray) -> tuple[float, PeriodicOrbit]:
+def _start(search: WindowSearch, w: int, values: np.ndarray) -> tuple[float, PeriodicOrbit]:
     """The value farthest from the window's ends at which its orbit is known, and the orbit there."""
-    found = cover.found[w]
-    row, (lo, hi) = cover.rows[found.row], found.ends
+    found = search.found[w]
+    row, (lo, hi) = search.rows[found.row], found.ends
     order = np.argsort(-np.minimum(values - lo, hi - values), kind="stable")
     for value in values[order].tolist():
         system = row.system_at(value)

@@ -10,8 +10,8 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows import window_text
-from vibro_sweep.analysis.windows.cover import Cover
 from vibro_sweep.analysis.windows.unvisited import Unvisited, unvisited_in
+from vibro_sweep.analysis.windows.window_search import WindowSearch
 from vibro_sweep.model.window_families import Family, families
 
 
@@ -93,23 +93,23 @@ class Windows(list[Window]):
         return families(*map(list, zip(*rows, strict=True))) if rows else []
 
 
-def windows_of(cover: Cover) -> Windows:
+def windows_of(search: WindowSearch) -> Windows:
     """The windows of a search that is done."""
     result = Windows()
-    for found, *counts in zip(cover.found, cover.counts.tolist(), cover.other_attractor.tolist(), strict=True):
-        row = cover.rows[found.row]
+    for found, *counts in zip(search.found, search.counts.tolist(), search.other_attractor.tolist(), strict=True):
+        row = search.rows[found.row]
         result.append(Window(row.parameter, *found.ends, row.held, *counts, found.flat, found.system))
-    result.parameter = cover.rows[0].parameter
-    result.window, result.reason = in_file_order(cover)
-    result.unvisited = unvisited_in(cover)
+    result.parameter = search.rows[0].parameter
+    result.window, result.reason = in_file_order(search)
+    result.unvisited = unvisited_in(search)
     return result
 
 
-def in_file_order(cover: Cover) -> tuple[np.ndarray, np.ndarray]:
+def in_file_order(search: WindowSearch) -> tuple[np.ndarray, np.ndarray]:
     """Windows and reasons of all orbits, (*sweep, starts)."""
-    row = cover.rows[0]
+    row = search.rows[0]
     found = []
-    for part in (cover.window, cover.reason):
+    for part in (search.window, search.reason):
         values = np.empty_like(part)
         values[:, row.places] = part
         found.append(np.moveaxis(values, 0, 1 - row.axis) if row.held else values[0])

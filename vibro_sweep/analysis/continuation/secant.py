@@ -1,4 +1,4 @@
-"""Where a test vanishes between two points of a branch or a curve: on planes across the chord between them."""
+"""Where a test vanishes between two points of a branch or a curve: on planes across the secant through them."""
 
 from collections.abc import Callable
 
@@ -7,44 +7,44 @@ from scipy.optimize import brentq
 
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.rounding import rounding_error
-from vibro_sweep.analysis.continuation.tracer import Tracer
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.engine.continuation.workspace import Place
 
 MANY = 60  # impacts of a long orbit
 ROUNDING = 1e-15  # of tests, in their units
-ASIDE = 1e-7  # of a chord: a zero found by polynomials is exact to far less
-LEAST = 1e-14  # of a chord, far below what rounding of tests leaves of a zero
-NOISE = 1e-11  # of a chord: nearer to a zero rounding of a test may lie
+ASIDE = 1e-7  # of a secant: a zero found by polynomials is exact to far less
+LEAST = 1e-14  # of a secant, far below what rounding of tests leaves of a zero
+NOISE = 1e-11  # of a secant: nearer to a zero rounding of a test may lie
 COARSE = 1e3  # times both, of orbits of many impacts: their tests round by more, and each point takes long
 STEPS = 4
-BESIDE = (-3e-12, -1e-12, 0.0, 1e-12, 3e-12)  # of a chord, from the zero: so near that only rounding differs
+BESIDE = (-3e-12, -1e-12, 0.0, 1e-12, 3e-12)  # of a secant, from the zero: so near that only rounding differs
 TIMES = 5.0  # the largest difference between locations
 OF_TESTS = 3.0  # times what rounding of the equations does, where rounding of a test comes to it
 
 
-def root(tracer: Tracer, a: Place, b: Place, test: Callable[[Point], float]) -> tuple[float, Point] | None:
-    """(share of the chord from a to b, point) where the test, of size 1, vanishes."""
-    chord = Chord(tracer, a, b, test)
+def root(curve: SolutionCurve, a: Place, b: Place, test: Callable[[Point], float]) -> tuple[float, Point] | None:
+    """(share of the secant from a to b, point) where the test, of size 1, vanishes."""
+    secant = Secant(curve, a, b, test)
     try:
-        if chord.value(0.0) * chord.value(1.0) > 0:
+        if secant.value(0.0) * secant.value(1.0) > 0:
             return None
-        share = chord.near_zero()
+        share = secant.near_zero()
         if share is None:
-            share = brentq(chord.value, 0.0, 1.0, xtol=chord.coarse * LEAST, rtol=1e-15, maxiter=100)
-            chord.value(share)
+            share = brentq(secant.value, 0.0, 1.0, xtol=secant.coarse * LEAST, rtol=1e-15, maxiter=100)
+            secant.value(share)
     except (ArithmeticError, RuntimeError):
         return None
-    return share, chord.seen[share]
+    return share, secant.seen[share]
 
 
-class Chord:
-    """A test along the line between a and b, over shares of the chord. ArithmeticError where there is no point."""
+class Secant:
+    """A test along the line between a and b, over shares of the secant. ArithmeticError where there is no point."""
 
-    def __init__(self, tracer: Tracer, a: Place, b: Place, test: Callable[[Point], float]):
-        self.tracer, self.a, self.b, self.test = tracer, a, b, test
-        change = tracer.difference(a, b)
+    def __init__(self, curve: SolutionCurve, a: Place, b: Place, test: Callable[[Point], float]):
+        self.curve, self.a, self.b, self.test = curve, a, b, test
+        change = curve.difference(a, b)
         self.row = change / np.linalg.norm(change)
-        self.coarse = COARSE if tracer.K >= MANY else 1.0
+        self.coarse = COARSE if curve.K >= MANY else 1.0
         self.seen = {0.0: a, 1.0: b}
 
     def value(self, share: float) -> float:
@@ -88,40 +88,40 @@ class Chord:
         return zero if abs(self.value(zero)) <= self.coarse * NOISE * abs(slope) else None
 
     def at(self, share: float, exact: bool = True) -> Point:
-        """The point at a share of the chord, without keeping it."""
+        """The point at a share of the secant, without keeping it."""
         return self._point(share, self.seen, exact)
 
     def _point(self, share: float, seen: dict[float, Point], exact: bool) -> Point:
         near = min(seen, key=lambda other: abs(other - share))
-        guess = self.tracer.shifted(seen[near], self.a, self.b, share - near)
-        point = self.tracer.correct(guess, self.row, exact)
+        guess = self.curve.shifted(seen[near], self.a, self.b, share - near)
+        point = self.curve.correct(guess, self.row, exact)
         if point is None:
             raise ArithmeticError
         return point
 
 
 def error_of(
-    tracer: Tracer, a: Place, b: Place, test: Callable[[Point], float], share: float, point: Point
+    curve: SolutionCurve, a: Place, b: Place, test: Callable[[Point], float], share: float, point: Point
 ) -> float | None:
-    """Of the parameters of a zero at a share of the chord from a to b; None: there are no points beside it.
+    """Of the parameters of a zero at a share of the secant from a to b; None: there are no points beside it.
 
     Rounding of the equations moves the line, and rounding of the test moves its zero along the line. The second is seen
     in what points beside it say, which round differently: p - test dp/dtest, without the straight line that a wrong
     slope makes of these. It is not added, so that most errors are the same from whichever start.
     """
-    chord = Chord(tracer, a, b, test)
-    chord.seen[share] = point
+    secant = Secant(curve, a, b, test)
+    secant.seen[share] = point
     try:
-        points = [chord.at(share + step) if step else point for step in BESIDE]
-        far = chord.at(share + (ASIDE if share < 0.5 else -ASIDE), exact=False)
+        points = [secant.at(share + step) if step else point for step in BESIDE]
+        far = secant.at(share + (ASIDE if share < 0.5 else -ASIDE), exact=False)
     except ArithmeticError:
         return None
-    tests, p = (np.array([of(one) for one in points]) for of in (test, tracer.parameters))
+    tests, p = (np.array([of(one) for one in points]) for of in (test, curve.parameters))
     middle, scatter = BESIDE.index(0.0), 0.0
     with np.errstate(all="ignore"):
-        rate = (tracer.parameters(far) - p[middle]) / np.float64(test(far) - tests[middle])
+        rate = (curve.parameters(far) - p[middle]) / np.float64(test(far) - tests[middle])
     if np.isfinite(rate).all():
         said = p - p[middle] - np.outer(tests, rate)
         slope, mean = np.polyfit(BESIDE, said, 1)
         scatter = np.abs(said - np.outer(BESIDE, slope) - mean).max()
-    return float(max(TIMES * scatter, OF_TESTS * rounding_error(tracer, point, chord.row)))
+    return float(max(TIMES * scatter, OF_TESTS * rounding_error(curve, point, secant.row)))

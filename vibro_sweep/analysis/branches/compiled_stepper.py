@@ -7,7 +7,7 @@ import numpy as np
 from vibro_sweep.analysis.continuation.first_point import guess_of
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.recorded import Rows, rows_of
-from vibro_sweep.analysis.continuation.tracer import NoPlaneError, copy
+from vibro_sweep.analysis.continuation.solution_curve import NoPlaneError, copy
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
@@ -23,13 +23,13 @@ def row_of(p: float, s: Solution, frame: tuple[int, int]) -> Rows:
     return Rows(*(np.array([value], float) for value in values))
 
 
-class Track:
-    """Steps one way along a branch from its first point."""
+class CompiledStepper:
+    """Compiled steps in one direction along a branch from its first point."""
 
     def __init__(self, first: Point, origin: int, length: float):
         """origin : forcing periods, at which states are recorded; length : of the first step"""
-        self.walk, self.path, self.origin = first.tracer, first.tracer.path, origin
-        self.b = new_place(self.walk.K, self.walk.n)
+        self.curve, self.path, self.origin = first.curve, first.curve.path, origin
+        self.b = new_place(self.curve.K, self.curve.n)
         copy(first, self.a)
         self.a.tests[TEST.length] = length
         self.path.before[0] = 0.0
@@ -43,13 +43,13 @@ class Track:
     def record_steps(self, passed: int) -> tuple[int, int, int]:
         """The compiled part of `run`: reason, points, corrections; passed: points of the branch so far."""
         self.path.counts[0] = passed
-        return self.walk.walk(self.b), int(self.path.counts[1]), int(self.path.counts[2])
+        return self.curve.take_steps(self.b), int(self.path.counts[1]), int(self.path.counts[2])
 
     def run(self, passed: int) -> tuple[int, Rows]:
         """Steps until something happens, or as many points as one call records: the reason and the points before the
         step. FAILED too where around the last point the oscillator is not to be had as polynomials of the parameter."""
         reason, count, _ = self.record_steps(passed)
-        r, w = type(self.path.record)(*(values[:count] for values in self.path.record)), self.walk
+        r, w = type(self.path.record)(*(values[:count] for values in self.path.record)), self.curve
         tau = np.array([w.tau_at(value) for value in r.p[:, 0].tolist()])
         r.phase[:] = 2 * np.pi * self.origin + tau
         w.do(stepper.STATES, self.b)
@@ -63,7 +63,7 @@ class Track:
 
     def _masses(self, p: np.ndarray, states: np.ndarray) -> np.ndarray:
         """x1 v1 .. xN vN from contact coordinates."""
-        of, (slope,) = self.walk.oscillators, self.walk.oscillators.slopes
+        of, (slope,) = self.curve.oscillators, self.curve.oscillators.slopes
         if np.any(slope.M) or np.any(slope.normal):
             values = [of.at([value]).linear for value in p.tolist()]
             found = [contact_coordinates(q).to_masses(state) for q, state in zip(values, states, strict=True)]
@@ -83,18 +83,18 @@ class Track:
 
     def point(self, place: Place) -> Point | None:
         """The same point, corrected with the oscillator itself."""
-        return self.walk.correct(place, place.direction)
+        return self.curve.correct(place, place.direction)
 
     def point_of(self, rows: Rows) -> Point | None:
         """The last of recorded points, which lies before the place a."""
         guess = self._guess(rows, -1)
-        return guess and self.walk.correct(guess, self.a.direction)
+        return guess and self.curve.correct(guess, self.a.direction)
 
     def point_behind(self, rows: Rows) -> Point | None:
         """The last of two or more points; forwards is from the one before."""
         before, last = self._guess(rows, -2), self._guess(rows, -1)
-        return self.walk.correct(last, self.walk.unit_row(self.walk.difference(before, last)))
+        return self.curve.correct(last, self.curve.unit_row(self.curve.difference(before, last)))
 
     def _guess(self, rows: Rows, i: int) -> Point | None:
-        family, u = self.walk.oscillators.at(rows.p[i : i + 1 or None]), [rows.t[i], rows.D[i], rows.ends[i]]
-        return guess_of(self.walk, replace(self.walk.orbit, family=family, u=np.concatenate(u)))
+        family, u = self.curve.oscillators.at(rows.p[i : i + 1 or None]), [rows.t[i], rows.D[i], rows.ends[i]]
+        return guess_of(self.curve, replace(self.curve.orbit, family=family, u=np.concatenate(u)))

@@ -1,4 +1,4 @@
-"""One way along a branch without impacts: each of its points is known from the parameter alone.
+"""A run along a branch without impacts in one direction. Each point is known from the parameter alone.
 
 The gap's amplitude |n.X| with Z X = f, Z = K - omega^2 M + i omega C, has peaks as narrow as the losses are small.
 Where Z^-1 Z' times the step is small, X follows its tangent within the step, and so no peak is passed unseen.
@@ -12,17 +12,17 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from vibro_sweep.analysis.branches.births import is_steady
-from vibro_sweep.analysis.branches.branch_way import MOST_POINTS, Way
+from vibro_sweep.analysis.branches.branch_run import MOST_POINTS, BranchRun
 from vibro_sweep.analysis.continuation.events import Event
 from vibro_sweep.analysis.continuation.point import Point
-from vibro_sweep.analysis.continuation.tracer import LONGEST_STEP, SHORTEST_STEP
+from vibro_sweep.analysis.continuation.solution_curve import LONGEST_STEP, SHORTEST_STEP
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import steady_gap
 from vibro_sweep.engine.continuation.branch_tests import PASSED
 from vibro_sweep.model.linear import dynamic_stiffness
 
 SHARE = 0.25  # by which Z may change in a step, relative to itself
-SHORTEST = 1e-7  # step: an undamped mode that is not driven in its resonance does not stop the way
+SHORTEST = 1e-7  # step: an undamped mode that is not driven in its resonance does not stop the run
 ASIDE = 1e-7  # of a step, over which a slope is seen
 ROUNDED = 48 * float(np.finfo(float).eps)  # of the parameter
 
@@ -47,7 +47,7 @@ class FreeBranch:
 class FreePoint:
     """A point of such a branch; rate: 1 or -1, the direction in which it is followed."""
 
-    tracer: FreeBranch
+    curve: FreeBranch
     value: float
     rate: float
     solution: Solution
@@ -62,11 +62,11 @@ class FreePoint:
         return self.solution.stop_distance
 
     def ahead(self, length: float) -> "FreePoint | None":
-        return self.tracer.at(self.value + self.rate * length * self.tracer.unit, self.rate)
+        return self.curve.at(self.value + self.rate * length * self.curve.unit, self.rate)
 
 
-class FreeWay(Way):
-    """One way along a branch without impacts."""
+class FreeRun(BranchRun):
+    """A run along a branch without impacts in one direction."""
 
     def go(self) -> None:
         """To the branch's end."""
@@ -80,7 +80,7 @@ class FreeWay(Way):
                 continue
             boundary = max(self.bounds[0], min(b.value, self.bounds[1]))
             if boundary != b.value:
-                b = self.walk.at(boundary, b.rate)
+                b = self.curve.at(boundary, b.rate)
             graze = grazes(a, b)
             if graze is not None:
                 self._add(graze)
@@ -95,14 +95,14 @@ class FreeWay(Way):
         self.special.append(self._at("failed", a, math.nan))
 
 
-def way_from(first: Point | FreePoint, system, progress=None, stable: bool = False) -> Way:
-    """One way along a branch from a point of it, as `Way`."""
-    return (FreeWay if isinstance(first, FreePoint) else Way)(first, system, progress, stable)
+def run_from(first: Point | FreePoint, system, progress=None, stable: bool = False) -> BranchRun:
+    """The run along a branch from a point of it."""
+    return (FreeRun if isinstance(first, FreePoint) else BranchRun)(first, system, progress, stable)
 
 
 def longest_step(point: FreePoint) -> float:
     """In which Z changes by `SHARE`, in the units of the branch."""
-    name, unit, q = point.tracer.names[0], point.tracer.unit, point.solution.family.linear
+    name, unit, q = point.curve.names[0], point.curve.unit, point.solution.family.linear
     slope = point.solution.family.derivative(name, q)
     turned = slope.omega * (1j * q.C - 2 * q.omega * q.M)
     change = slope.K - q.omega**2 * slope.M + 1j * q.omega * slope.C + turned
@@ -129,10 +129,10 @@ def grazes(a: FreePoint, b: FreePoint) -> FreePoint | None:
     def test(value: float) -> float:
         if value == a.value:
             return inside
-        point = a.tracer.at(value, a.rate)
+        point = a.curve.at(value, a.rate)
         return -most if point is None else min(point.stop_distance, most)  # in a resonance it is beyond all stops
 
-    return a.tracer.at(brentq(test, a.value, beyond.value, xtol=1e-300, rtol=4 * np.finfo(float).eps), a.rate)
+    return a.curve.at(brentq(test, a.value, beyond.value, xtol=1e-300, rtol=4 * np.finfo(float).eps), a.rate)
 
 
 def _highest(a: FreePoint, b: FreePoint) -> FreePoint | None:
@@ -143,13 +143,13 @@ def _highest(a: FreePoint, b: FreePoint) -> FreePoint | None:
     for side in (1, -1):
 
         def distance(value: float, side: int = side) -> float:
-            q = a.solution.family.replace(**{a.tracer.names[0]: value}).linear
+            q = a.solution.family.replace(**{a.curve.names[0]: value}).linear
             mean, swing = steady_gap(q)
             return side * (float(q.stop(side)) - mean) - abs(swing)
 
         if all(distance(end + step) < distance(end) for end, step in zip(ends, (aside, -aside), strict=True)):
             least = minimize_scalar(distance, bounds=ends, method="bounded", options={"xatol": aside})
-            found = a.tracer.at(float(least.x), a.rate)
+            found = a.curve.at(float(least.x), a.rate)
             if found is not None and found.stop_distance < 0:
                 return found
     return None

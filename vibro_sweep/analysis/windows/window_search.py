@@ -24,7 +24,7 @@ SAME = 1e-9  # of the range: ends that differ by less, of windows of the same it
 UNDECIDED = ("not_settled", "failed")  # reasons that say nothing of where an orbit went to
 
 
-class Found(NamedTuple):
+class RowWindow(NamedTuple):
     """A window of a row."""
 
     row: int
@@ -37,7 +37,7 @@ class Found(NamedTuple):
         return float(values[0]), float(values[-1])
 
 
-class Cover:
+class WindowSearch:
     """Windows of rows, and for each point (rows, values, starts) its window, -1: none, or the reason why.
 
     Orbits that are not periodic within their record are computed further first.
@@ -45,7 +45,7 @@ class Cover:
 
     def __init__(self, rows: list[Row]):
         self.rows = [_decided(row) for row in rows]
-        self.found: list[Found] = []
+        self.found: list[RowWindow] = []
         self.reason = np.stack([row.reason for row in self.rows])
         self.window = np.full(self.reason.shape, -1, np.int32)
 
@@ -59,7 +59,7 @@ class Cover:
                 if "reason" in flat:
                     self.reason[r, i, j] = flat["reason"]
                 else:
-                    self._add(Found(r, flat, self.rows[r].system_at(self.rows[r].values[i])))
+                    self._add(RowWindow(r, flat, self.rows[r].system_at(self.rows[r].values[i])))
             for w in range(before, len(self.found)):
                 self._take_points(w, self._open[self.found[w].row])
             for at in points:  # a point that its own window does not pass, which has moved to another orbit
@@ -119,7 +119,7 @@ class Cover:
         system = row.system_at(row.values[i])
         return Job(system, row.states[i, j], int(row.period[i, j]), row.parameter, row.bounds)
 
-    def _add(self, found: Found) -> None:
+    def _add(self, found: RowWindow) -> None:
         """Keep a window, unless it is known."""
         near = SAME * np.ptp(self.rows[found.row].bounds)
         if not any(

@@ -27,7 +27,7 @@ class NoPlaneError(VibroSweepError, ValueError):
     """The oscillator has no polynomials around a point of the plane."""
 
 
-class Tracer:
+class SolutionCurve:
     """A branch in one parameter, a curve of one kind in two, or a single point, through `start`."""
 
     def __init__(self, start: Start, names: tuple[str, ...], bounds, unit=None):
@@ -62,7 +62,7 @@ class Tracer:
         self.bench = new_bench(K, self.n)
         self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.bounds)
 
-    def resized(self, K: int) -> "Tracer":
+    def resized(self, K: int) -> "SolutionCurve":
         """For the same curve with K impacts: without the last, or with more on the same stop."""
         other, sides = copy_object(self), tuple(map(int, self.problem.sides))
         other._take_sides(sides[:K] + sides[-1:] * (K - len(sides)))
@@ -106,7 +106,7 @@ class Tracer:
         """Leave the equations at `place` in `bench`. False where they are singular."""
         return self.go_to(place) and bool(self.do(stepper.ASSEMBLE, place, row))
 
-    def walk(self, place: Place) -> int:
+    def take_steps(self, place: Place) -> int:
         """Compiled steps from `path.a` until something happens, and why they end (engine/continuation/stepper.py)."""
         return int(self.do(stepper.WALK, place, np.zeros(2 * self.K + 3)))
 
@@ -211,11 +211,11 @@ class Tracer:
         return place.p[: len(self.names)]
 
     def between(self, a: Place, b: Place, share: float) -> Point:
-        """On the chord."""
+        """On the secant."""
         return self.shifted(a, a, b, share)
 
     def shifted(self, place: Place, a: Place, b: Place, share: float) -> Point:
-        """`place` moved by a share of the chord from a to b."""
+        """`place` moved by a share of the secant from a to b."""
         result = self.copied(place)
         result.x[:] += share * (b.x - a.x)
         result.p[:] += share * (b.p - a.p)
@@ -287,9 +287,9 @@ class Tracer:
         return np.where((R == 0) & ~rests, -sides * after, np.inf)
 
 
-def branch_through(solution: Solution, name: str, unit: float, bounds=(-np.inf, np.inf)) -> Tracer:
+def branch_through(solution: Solution, name: str, unit: float, bounds=(-np.inf, np.inf)) -> SolutionCurve:
     """The branch of an orbit in one parameter. Raises NoPlaneError, TooStiffError."""
-    return Tracer(Start("orbit", solution), (name,), [bounds], [unit])
+    return SolutionCurve(Start("orbit", solution), (name,), [bounds], [unit])
 
 
 def copy(source: Place, target: Place) -> None:

@@ -1,4 +1,4 @@
-"""One way along a branch: steps that adapt, what they pass, and where the branch ends."""
+"""A run along a branch in one direction: steps of adaptive length, what they pass, and where the branch ends."""
 
 import math
 from functools import cached_property
@@ -6,18 +6,18 @@ from functools import cached_property
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_events import bifurcations, ends_between, first_end
+from vibro_sweep.analysis.branches.compiled_stepper import CompiledStepper, row_of
 from vibro_sweep.analysis.branches.criticality import criticality
 from vibro_sweep.analysis.branches.crossings import is_torus
 from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
 from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
-from vibro_sweep.analysis.branches.track import Track, row_of
-from vibro_sweep.analysis.continuation.events import Event, Found
+from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.recorded import Rows, join
+from vibro_sweep.analysis.continuation.solution_curve import SHORTEST_STEP
 from vibro_sweep.analysis.continuation.starting_orbit import KINDS
-from vibro_sweep.analysis.continuation.tracer import SHORTEST_STEP
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
@@ -32,13 +32,13 @@ BEFORE = 1e-8  # share of the way to a graze
 DIVISIONS = 60  # of a step in which more happens than its tests tell, in all
 
 
-class Way:
-    """One way along a branch."""
+class BranchRun:
+    """A run along a branch in one direction."""
 
     def __init__(self, first: Point, system, progress=None, stable: bool = False):
         """stable : only as far as the orbit is stable, that is to the first bifurcation."""
-        self.first, self.walk, self.system, self.progress, self.stable = first, first.tracer, system, progress, stable
-        (self.name,), self.bounds = self.walk.names, self.walk.bounds[0]
+        self.first, self.curve, self.system, self.progress, self.stable = first, first.curve, system, progress, stable
+        (self.name,), self.bounds = self.curve.names, self.curve.bounds[0]
         self.first_step = OF_STABLE if stable else FIRST_STEP
         self.special: list[SpecialPoint] = []
         self.closed = False
@@ -57,47 +57,47 @@ class Way:
     def go(self) -> None:
         """To the branch's end."""
         self._add(self.first)
-        track = Track(self.first, self.frame[1], self.first_step)
+        compiled = CompiledStepper(self.first, self.frame[1], self.first_step)
         a, count, looked = self.first, 1, 0
         while count < MOST_POINTS:
-            reason, rows = track.run(count)
+            reason, rows = compiled.run(count)
             count += len(rows.p)
             if len(rows.p):
                 self.rows.append(rows)
                 self._passed = None
-            self._tell(count, track.a.p[0])
+            self._tell(count, compiled.a.p[0])
             if reason in (stepper.FULL, stepper.FAR):
                 continue
-            a, b = track.point(track.a), track.point(track.b)
+            a, b = compiled.point(compiled.a), compiled.point(compiled.b)
             before = self._count(looked)
-            if self._over_birth(track, [before + more for more in passed(self.walk, self.rows[looked:], a)]):
+            if self._over_birth(compiled, [before + more for more in passed(self.curve, self.rows[looked:], a)]):
                 return
             looked = len(self.rows) - 1
             if reason == stepper.FAILED or a is None or b is None:
-                if self._over_birth(track, [self._count()]):
+                if self._over_birth(compiled, [self._count()]):
                     return
                 break
             if reason == stepper.CLOSED:
                 self._close()
                 return
-            before = self._point_before(track) if reason == stepper.TOUCH else None
+            before = self._point_before(compiled) if reason == stepper.TOUCH else None
             if before is not None and self._again(before, a, b):
                 return
             if self._pass(a, b, beside=(before, None)):
                 return
-            track.accept(a, b)
+            compiled.accept(a, b)
         self.special.append(self._at("failed", a or self.first, math.nan))
 
-    def _point_before(self, track: Track) -> Point | None:
+    def _point_before(self, compiled: CompiledStepper) -> Point | None:
         """The last point of the branch before the place a."""
         if self._passed is not None:
             return self._passed[0]
         last = next((rows for rows in reversed(self._without_last()) if len(rows.p)), None)
-        return None if last is None else track.point_of(last)
+        return None if last is None else compiled.point_of(last)
 
-    def _over_birth(self, track: Track, counts: list[int]) -> bool:
+    def _over_birth(self, compiled: CompiledStepper, counts: list[int]) -> bool:
         """End at the birth that lies behind one of so many points. False: there is none (`before_passed`)."""
-        found = before_passed(self.walk, track, self.points, counts, self.first) if counts else None
+        found = before_passed(self.curve, compiled, self.points, counts, self.first) if counts else None
         if found is None:
             return False
         kept, a, b = found
@@ -144,37 +144,37 @@ class Way:
         """
         self._passed = a, len(self.rows), len(self.special)
         self._divisions = DIVISIONS
-        over = lands_on_birth(self.walk, a, b)
+        over = lands_on_birth(self.curve, a, b)
         if over is not None:
             b, beside = over, (beside[0], None)
         return self._divide(a, b, beside)
 
     def _divide(self, a: Point, b: Point, beside) -> bool:
         """`_pass`, in as many parts as it takes until tests at their ends tell what lies in them."""
-        ends = ends_between(self.walk, self.bounds, a, b)
-        end = first_end(self.walk, ends, a, b)
+        ends = ends_between(self.curve, self.bounds, a, b)
+        end = first_end(self.curve, ends, a, b)
         if ends and end is None:  # what follows is no motion
             self.special.append(self._at("failed", a, math.nan))
             return True
         last = end.place if end else b
-        birth = own_birth(self.walk, a, last)
+        birth = own_birth(self.curve, a, last)
         before = None
         if birth:
-            before = before_birth(self.walk, a, birth.share * along(a, last), birth.place)
+            before = before_birth(self.curve, a, birth.share * along(a, last), birth.place)
         elif end and end.event.impact is not None:
-            before = self.walk.step(a, (1 - BEFORE) * along(a, last), last)
-        found = [] if birth else bifurcations(self.walk, a, last)
+            before = self.curve.step(a, (1 - BEFORE) * along(a, last), last)
+        found = [] if birth else bifurcations(self.curve, a, last)
         if (
             end and end.event.boundary is not None
         ):  # where rounding does not tell them from the end they may lie beyond it
             found = [one for one in found if abs(one.place.value - last.value) > one.error]
         if before is not None:
             known = {one.event.type for one in found}
-            found += [one for one in bifurcations(self.walk, a, before) if one.event.type not in known]
+            found += [one for one in bifurcations(self.curve, a, before) if one.event.type not in known]
             found.sort(key=lambda one: along(a, one.place))
         if self._divisions and along(a, b) > SHORTEST_STEP and (before or not birth):
             behind = None if end or birth else beside[1]
-            c = hidden_between(self.walk, self.bounds, a, before or last, found, (beside[0], behind))
+            c = hidden_between(self.curve, self.bounds, a, before or last, found, (beside[0], behind))
             if c is not None:
                 self._divisions -= 1
                 return self._divide(a, c, (beside[0], b)) or self._divide(c, b, (a, beside[1]))
@@ -188,8 +188,8 @@ class Way:
             self.special.append(self._end(end.event, last, end.error))
         return end is not None
 
-    def _bifurcate(self, found: list[Found]) -> bool:
-        """Record bifurcations. True where the way ends at the first."""
+    def _bifurcate(self, found: list[LocatedEvent]) -> bool:
+        """Record bifurcations. True where the run ends at the first."""
         for event, _, point, error in found:
             self._add(point)
             if event.type == "neimark_sacker" and not is_torus(point):
@@ -199,7 +199,7 @@ class Way:
                 return True
         return False
 
-    def _birth(self, found: Found) -> None:
+    def _birth(self, found: LocatedEvent) -> None:
         """The branch begins at a flip or pitchfork of its parent."""
         special = self._at(found.event.type, found.place, found.error)
         self._add_solution(found.place.value, special.orbit._solution.repeated(2))

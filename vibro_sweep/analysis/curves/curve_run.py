@@ -1,17 +1,17 @@
-"""One way along a bifurcation curve: compiled steps, what they pass, and where the curve ends."""
+"""A run along a bifurcation curve in one direction: compiled steps, what they pass, and where the curve ends."""
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_way import stop_and_impact
+from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare
 from vibro_sweep.analysis.continuation.chatter import chatter_at, with_impacts, written_out
-from vibro_sweep.analysis.continuation.chord import root
 from vibro_sweep.analysis.continuation.events import Event
 from vibro_sweep.analysis.continuation.recorded import Rows, join, rows_of
-from vibro_sweep.analysis.continuation.tracer import Tracer, copy
+from vibro_sweep.analysis.continuation.secant import root
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, copy
 from vibro_sweep.analysis.curves.curve_events import beside, found_between, found_to_edge, without_echoes
 from vibro_sweep.analysis.curves.ends import End, birth, birth_near, in_full, just_before, strong_resonance
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
@@ -45,12 +45,12 @@ class CurvePoint(SpecialPoint):
     touches: bool = False
 
 
-class Way:
-    """From the first point, forwards along its tangent or (sign = -1) backwards."""
+class CurveRun:
+    """A run from the first point, forwards along its tangent or (sign = -1) backwards."""
 
-    def __init__(self, tracer: Tracer, first: Place, sign: int, system, progress=None, virtual: bool = True):
-        self.tracer, self.system, self.progress, self.virtual = tracer, system, progress, virtual
-        self.first = tracer.copied(first)
+    def __init__(self, curve: SolutionCurve, first: Place, sign: int, system, progress=None, virtual: bool = True):
+        self.curve, self.system, self.progress, self.virtual = curve, system, progress, virtual
+        self.first = curve.copied(first)
         self.first.tangent[:] *= sign
         self.first.tangent_p[:] *= sign
         self.special: list[CurvePoint] = []
@@ -64,7 +64,7 @@ class Way:
 
     def go(self) -> None:
         """To the curve's end."""
-        w, passed = self.tracer, 1
+        w, passed = self.curve, 1
         path, b = w.path, new_place(w.K, w.n)
         a = path.a
         copy(self.first, path.first)
@@ -72,7 +72,7 @@ class Way:
         a.tests[TEST.length], path.before[0] = FIRST_STEP, 0.0
         while passed < MOST_POINTS:
             path.counts[0] = passed
-            reason, count = w.walk(b), int(path.counts[1])
+            reason, count = w.take_steps(b), int(path.counts[1])
             passed += count
             self._keep(path.record, count)
             if self.progress is not None:
@@ -82,7 +82,7 @@ class Way:
             elif reason == stepper.CHATTER:
                 if not self._write_out(a):
                     break
-                w, path = self.tracer, self.tracer.path
+                w, path = self.curve, self.curve.path
                 a, b = path.a, new_place(w.K, w.n)
             elif reason == stepper.LEFT and (beyond := outside_between(w, a, b)) is not None:
                 self._leave(a, beyond)
@@ -110,16 +110,16 @@ class Way:
 
     def _write_out(self, a: Place) -> bool:
         """Go on with as many impacts of the chatter sequence as are needed at a."""
-        found = written_out(self.tracer, a)
+        found = written_out(self.curve, a)
         if found is None:
             return False
         w, place = found
         place = w.correct(place, place.direction)
         if place is None:
             return False
-        copy(with_impacts(self.tracer, self.tracer.path.first, w.K)[1], w.path.first)
+        copy(with_impacts(self.curve, self.curve.path.first, w.K)[1], w.path.first)
         copy(place, w.path.a)
-        self.tracer = w
+        self.curve = w
         return True
 
     def _keep(self, record: Record, count: int) -> None:
@@ -128,13 +128,13 @@ class Way:
             self._record(r.x, r.motion, r.p, r.tests, r.omega)
 
     def _add(self, place: Place) -> None:
-        w = self.tracer
+        w = self.curve
         w.assemble(place)
         motion, omega = w.bench.events["motion"][None], w.planes[0]["numbers"][OMEGA, None]
         self._record(place.x[None], motion, place.p[None], place.tests[None], omega)
 
     def _record(self, x, motion, p, tests, omega) -> None:
-        w = self.tracer
+        w = self.curve
         state = x[:, 0, : w.n] * w.state_units
         self.rows.append(rows_of(w, x, motion, p, tests, omega, w.tau, state))
 
@@ -143,7 +143,7 @@ class Way:
 
         A curve without virtual points ends where its orbit stops being real.
         """
-        w = self.tracer
+        w = self.curve
         ends = not (self.virtual or w.is_real(b))
         found = without_echoes(w, (found_to_edge if ends else found_between)(w, a, b))
         for one in found:
@@ -160,7 +160,7 @@ class Way:
 
     def _holds(self, event: Event, place: Place, a: Place, b: Place) -> bool:
         """Whether this is a bifurcation of a motion, real there or at the edge of what is real; no neutral saddle."""
-        w = self.tracer
+        w = self.curve
         if event.index is None and not event.type.startswith("resonance"):
             return w.is_real(a) or w.is_real(b)
         if not w.is_real(place):
@@ -175,7 +175,7 @@ class Way:
 
     def _leave(self, a: Place, b: Place) -> None:
         """The point where the curve leaves the bounds; near a corner the step to b passes two sides."""
-        w = self.tracer
+        w = self.curve
         sides = [(j, boundary, side) for j in range(2) for boundary, side in zip(w.bounds[j], (-1, 1), strict=True)]
         passed = [(j, boundary) for j, boundary, side in sides if (b.p[j] - boundary) * side > 0]
         found = [place for j, boundary in passed if (place := self._at_boundary(a, b, j, boundary)) is not None]
@@ -188,7 +188,7 @@ class Way:
 
     def _at_boundary(self, a: Place, b: Place, j: int, boundary: float) -> Place | None:
         """Where a parameter is at its boundary; the curve may be nearly parallel to that side of the bounds."""
-        w = self.tracer
+        w = self.curve
         place = w.at_value(a, b, j, boundary)
         if place is None:
             found = root(w, a, b, lambda place: (place.p[j] - boundary) / np.ptp(w.bounds[j]))
@@ -202,7 +202,7 @@ class Way:
 
         inside : whether the curve goes on from b within its bounds
         """
-        w = self.tracer
+        w = self.curve
         end = strong_resonance(w, a, b) if inside and is_near_strong(w, b) else None
         if end is None and (w.problem.repeats or w.problem.mirrors):
             end = birth(w, a, b)
@@ -217,8 +217,8 @@ class Way:
 
     def _end(self, end: End) -> None:
         """The end, on the curve of another orbit."""
-        other, found = end.tracer, end.found
-        w, solution, p = self.tracer, in_full(self.tracer, end), found.place.p.copy()
+        other, found = end.curve, end.found
+        w, solution, p = self.curve, in_full(self.curve, end), found.place.p.copy()
         self.special.append(self._at(found.event.type, found.place, found.error, found.event, other))
         q = solution.family.linear
         if w.problem.kind == TORUS:
@@ -238,8 +238,8 @@ class Way:
         )
         self.rows.append(Rows(*(value[None].copy() for value in values)))
 
-    def _at(self, of_type, place: Place, error: float, event: Event | None = None, tracer=None) -> CurvePoint:
-        w = tracer or self.tracer
+    def _at(self, of_type, place: Place, error: float, event: Event | None = None, curve=None) -> CurvePoint:
+        w = curve or self.curve
         solution = w.solution(place)
         parameters = dict(zip(w.names, map(float, place.p[:2]), strict=True))
         if w.problem.kind == STICK:
@@ -259,33 +259,33 @@ class Way:
         )  # fmt: skip
 
 
-def outside_between(tracer: Tracer, a: Place, b: Place) -> Place | None:
+def outside_between(curve: SolutionCurve, a: Place, b: Place) -> Place | None:
     """b, or the point between a and b where a parameter has its extremum, if it lies out of the bounds."""
     extrema = [j for j in range(2) if a.tangent_p[j] * b.tangent_p[j] < 0]
-    found = [root(tracer, a, b, lambda place, j=j: place.tangent_p[j]) for j in extrema]
+    found = [root(curve, a, b, lambda place, j=j: place.tangent_p[j]) for j in extrema]
     for place in (b, *(one[1] for one in found if one is not None)):
-        if np.any((place.p[:2] < tracer.bounds[:, 0]) | (place.p[:2] > tracer.bounds[:, 1])):
+        if np.any((place.p[:2] < curve.bounds[:, 0]) | (place.p[:2] > curve.bounds[:, 1])):
             return place
     return None
 
 
-def passable(tracer: Tracer, place: Place) -> bool:
+def passable(curve: SolutionCurve, place: Place) -> bool:
     """False where a Neimark-Sacker curve has passed the end that was not found."""
-    return tracer.problem.kind != TORUS or 0 < place.p[THETA] < math.pi
+    return curve.problem.kind != TORUS or 0 < place.p[THETA] < math.pi
 
 
-def is_near_strong(tracer: Tracer, place: Place) -> bool:
+def is_near_strong(curve: SolutionCurve, place: Place) -> bool:
     """Whether the pair of a Neimark-Sacker curve is about to meet at 1 or -1."""
-    return tracer.problem.kind == TORUS and not NEAR_STRONG < place.p[THETA] < math.pi - NEAR_STRONG
+    return curve.problem.kind == TORUS and not NEAR_STRONG < place.p[THETA] < math.pi - NEAR_STRONG
 
 
-def closes(tracer: Tracer, a: Place, b: Place, first: Place) -> bool:
+def closes(curve: SolutionCurve, a: Place, b: Place, first: Place) -> bool:
     """Whether the curve passes through its first point between a and b; other curves may come as near as a step."""
-    first = tracer.copied(first)
+    first = curve.copied(first)
     first.phases[:] += 2 * np.pi * np.round(np.mean(a.phases - first.phases) / (2 * np.pi))
     row = first.direction
-    ends = [row @ tracer.difference(first, place) for place in (a, b)]
+    ends = [row @ curve.difference(first, place) for place in (a, b)]
     if ends[0] * ends[1] > 0:
         return False
-    place = tracer.correct(tracer.between(a, b, ends[0] / (ends[0] - ends[1])), row)
-    return place is not None and bool(np.linalg.norm(tracer.difference(first, place)) < CLOSE)
+    place = curve.correct(curve.between(a, b, ends[0] / (ends[0] - ends[1])), row)
+    return place is not None and bool(np.linalg.norm(curve.difference(first, place)) < CLOSE)
