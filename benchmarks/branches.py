@@ -58,7 +58,7 @@ def additions(solution: Solution) -> dict[str, float]:
     """Microseconds that the certificate, the multipliers and the call from Python add."""
     sides = solution.sides
     guess = [(t, side, -D / 1.8) for t, side, D in zip(solution.times, sides, solution.jumps, strict=True)]
-    periods = solution.halves // 2
+    periods = solution.half_periods // 2
     system = PAPER.replace(b=4.0)
     return {
         "certificate": least(lambda: replace(solution).stop_distance) * 1e6,

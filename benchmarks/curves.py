@@ -53,7 +53,7 @@ def longer(start: Start, times: int) -> Start:
     u = np.concatenate([np.tile(s.times, times) + shifts * s.P, np.tile(s.jumps, times) * signs])
     sides = tuple(int(side * sign) for side, sign in zip(s.sides * times, signs, strict=True))
     theta = abs(float(np.angle(np.exp(1j * times * start.theta))))
-    solution = Solution(s.family, s.sigma**times, s.halves * times, sides, u)
+    solution = Solution(s.family, s.sigma**times, s.half_periods * times, sides, u)
     return Start(start.type, solution, start.index, theta)
 
 
@@ -100,7 +100,7 @@ def main() -> None:
     for start in starts():
         s = start.solution
         numbers = s.family.numbers
-        print(f"{start.type}, P = {s.halves / 2:g} T:")
+        print(f"{start.type}, P = {s.half_periods / 2:g} T:")
         for names in (("b", "omega"), ("b", "R"), ("mu_m", "zeta")):
             bounds = [(0.97 * numbers[name], 1.03 * numbers[name]) for name in names]
             rate, made, K = speed(start, names, bounds)

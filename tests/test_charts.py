@@ -8,7 +8,7 @@ from support.windows import SYSTEM
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.special import SpecialPoint
-from vibro_sweep.analysis.curves.curve_search import Curves, seed_at, trace
+from vibro_sweep.analysis.curves.curve_search import Curves, compute_curve, seed_at
 from vibro_sweep.analysis.windows.edges import Plane, edges_of, passing
 from vibro_sweep.cli.commands import main
 from vibro_sweep.driver.curves import run_curves
@@ -68,7 +68,7 @@ def test_the_file_holds_the_curve(file, curve):
 
 def test_a_curve_is_known_from_another_of_its_points():
     curves = Curves(NAMES, BOX, CURVES)
-    known = curves.run([seed_at(pitchfork(), NAMES)], 0, lambda _, tasks: [trace(task) for task in tasks])
+    known = curves.run([seed_at(pitchfork(), NAMES)], 0, lambda _, tasks: [compute_curve(task) for task in tasks])
     for omega in (0.612, 0.64):
         assert curves.lies_on(known, seed_at(pitchfork(omega), NAMES))
     beside = pitchfork()
@@ -83,14 +83,14 @@ def test_edges_between_which_a_line_passes():
     period = np.where(y > 0.5 * x[:, None] + 0.6, 3, 1)
     plane = Plane((x, y), period)
     line = np.column_stack([[-1.0, 2.1, 6.0], [0.1, 1.65, 3.6]])
-    flat = {"branch_type": 0, "branch_period": 3, "value": line, "unstable": np.array([0, 0, 0])}
+    arrays = {"branch_type": 0, "branch_period": 3, "value": line, "unstable": np.array([0, 0, 0])}
     edges = edges_of(plane)
-    assert len(edges.axis) == len(passing(plane, edges, flat)) == 7
-    assert len(passing(plane, edges, flat | {"branch_period": 2})) == 0  # the orbits of other regions
-    assert len(passing(plane, edges, flat | {"unstable": np.array([1, 1, 1])})) == 0  # that bound no attractor
+    assert len(edges.axis) == len(passing(plane, edges, arrays)) == 7
+    assert len(passing(plane, edges, arrays | {"branch_period": 2})) == 0  # the orbits of other regions
+    assert len(passing(plane, edges, arrays | {"unstable": np.array([1, 1, 1])})) == 0  # that bound no attractor
     period[0, 3] = 2
     edges = edges_of(plane)
-    found = passing(plane, edges, flat)
+    found = passing(plane, edges, arrays)
     assert len(edges.axis) == 9 and sorted(map(sorted, edges.periods[found].tolist())) == 7 * [[1, 3]]
 
 

@@ -68,7 +68,7 @@ def test_points_are_orbits(system, itinerary, name, bounds):
         family = first.solution.family.replace(**{name: rows.p[i]})
         s = orbit._solution
         u = np.concatenate([rows.t[i], rows.D[i]])
-        start = Solution(family, s.sigma, s.halves, s.sides, u)
+        start = Solution(family, s.sigma, s.half_periods, s.sides, u)
         exact, u = start.corrected(), start.u
         size = exact.size_of_gap
         back, slowest = np.linalg.inv(Linearised(exact).closure(1)), np.abs(exact.motion[:, 0]).min()

@@ -7,7 +7,7 @@ from support.oscillators import ONE_MASS, PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches import branch_search
-from vibro_sweep.analysis.branches.branch_arrays import flatten, outline, special_point
+from vibro_sweep.analysis.branches.branch_arrays import arrays_of, outline, special_point
 from vibro_sweep.analysis.branches.branch_switching import mirrored
 from vibro_sweep.analysis.branches.recognising import passes
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
@@ -67,7 +67,7 @@ def test_period_doubling_cascade():
     orbit = vs.periodic_orbit(ONE_MASS.replace(F=0.37), itinerary="R", periods=2)
     tree = vs.follow_branches(orbit, "F", (0.3, 0.6), follow=["flip"], depth=2)
     periods = [item.branch.begins.orbit.period for item in tree]
-    assert periods[0] == 2 and {item.branch._start.halves // 2 for item in tree} >= {2, 4, 8}
+    assert periods[0] == 2 and {item.branch._start.half_periods // 2 for item in tree} >= {2, 4, 8}
     assert all(item.special.type == "flip" for item in tree[1:])
 
 
@@ -99,9 +99,13 @@ def test_one_branch_that_fails_loses_no_other(monkeypatch):
     assert [types(item.branch) for item in (*found[:2], found[4])] == [types(whole[i].branch) for i in (0, 1, 3)]
     assert types(found[3].branch) == [(kind, pytest.approx(value, abs=1e-12)) for kind, value in types(whole[2].branch)]
     assert types(found[2].branch) == [("failed", found[2].branch.begins.orbit.system.b)]
-    flat = flatten(found[2].branch, found[2].branch.begins.orbit.system.b)
-    assert flat["branch_status"] == 1 and len(flat["value"]) == 1 and flat["branch_ends"] == flat["branch_begins"] == 0
-    again = special_point(flat, 0, "b", PAPER)
+    arrays = arrays_of(found[2].branch, found[2].branch.begins.orbit.system.b)
+    assert (
+        arrays["branch_status"] == 1
+        and len(arrays["value"]) == 1
+        and arrays["branch_ends"] == arrays["branch_begins"] == 0
+    )
+    again = special_point(arrays, 0, "b", PAPER)
     np.testing.assert_allclose(again.orbit.state, found[2].branch.begins.orbit.state, rtol=1e-12)
 
 

@@ -119,12 +119,12 @@ def test_windows_of_long_orbits(case):
     """At their ends an impact vanishes or appears, or a multiplier is on the unit circle."""
     numbers, name, period, bounds, state = LONG[case]
     job = Job(vs.Oscillator.named("chain", **numbers), np.array(state), period, name, bounds)
-    flat = window_of(job)
-    assert len(flat["impact_side"]) == int(case.split()[1]) and not flat["branch_symmetric"]
-    assert np.all(flat["special_error"] < 2e-11)
-    for point, kind, value in zip((0, -1), flat["special_type"], flat["special_value"], strict=True):
+    arrays = window_of(job)
+    assert len(arrays["impact_side"]) == int(case.split()[1]) and not arrays["branch_symmetric"]
+    assert np.all(arrays["special_error"] < 2e-11)
+    for point, kind, value in zip((0, -1), arrays["special_type"], arrays["special_value"], strict=True):
         system = job.system.replace(**{name: float(value)})
-        orbit = orbit_at(flat, point, system)
+        orbit = orbit_at(arrays, point, system)
         solution = orbit._solution
         if TYPES[int(kind)].name == "graze":
             slowest = solution.pushes.min() / np.abs(solution.jumps).max()
@@ -156,7 +156,7 @@ def test_newton_finds_an_orbit_of_many_impacts_beside_a_fold():
     one = beside(side * 5e-14, (near.u - there.u) @ critical * 5e-6**0.5)
     shifts = np.repeat(np.arange(237) * one.P, one.K)
     u = np.concatenate([np.tile(one.times, 237) + shifts, np.tile(one.jumps, 237)])
-    many = replace(one, halves=237 * one.halves, sides=one.sides * 237, u=u)
+    many = replace(one, half_periods=237 * one.half_periods, sides=one.sides * 237, u=u)
     found = many.corrected()
     assert found.change < 1e-7 and np.abs(found.u - many.u).max() < 1e-6
     assert replace(many, family=family_of(system.replace(b=end - side * 1e-9))).corrected() is None

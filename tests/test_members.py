@@ -18,7 +18,7 @@ def test_section_states_are_those_of_simulated_orbits(few):  # noqa: F811
         values = window.lo + (window.hi - window.lo) * np.array([0.1, 0.5, 0.93])
         for value in values:
             system = SYSTEM.replace(b=value)
-            states = section_states(orbit_of(system, solution_in(window._flat, value, system)))
+            states = section_states(orbit_of(system, solution_in(window._arrays, value, system)))
             assert len(states) == window.period * (1 if window.symmetric else 2)
             flight = vs.simulate(system, states[0], window.period)
             assert np.abs(flight.section[-1] - states[0]).max() < 1e-9
@@ -41,7 +41,7 @@ def test_recorded_states_are_members(key, values, tmp_path):
     there, states = np.array(values)[inside], states[inside]
     expected = (windows.window[inside] >= 0) & (np.array([one.period for one in windows])[windows.window[inside]] == 13)
     assert expected.any()
-    assert (members(window._flat, SYSTEM, key, there, states) == expected).all()
-    assert not members(window._flat, SYSTEM, key, there, 1.01 * states + 0.02).any()
+    assert (members(window._arrays, SYSTEM, key, there, states) == expected).all()
+    assert not members(window._arrays, SYSTEM, key, there, 1.01 * states + 0.02).any()
     system = SYSTEM.replace(**{key: there[0]})
-    assert solution_in(window._flat, float(there[0]), system).real
+    assert solution_in(window._arrays, float(there[0]), system).real

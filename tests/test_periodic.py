@@ -88,7 +88,7 @@ def test_multipliers_over_ten_decades_against_40_digits():
     orbit = vs.periodic_orbit(system, itinerary="LR")
     with mp.workdps(40):
         numbers = {name: getattr(system, name) for name in ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")}
-        shooting = Shooting(numbers, sigma=-1, halves=1, sides=[-1])
+        shooting = Shooting(numbers, sigma=-1, half_periods=1, sides=[-1])
         first = orbit.impacts[0]
         u = shooting.unknowns([first["t"]], [-system.b, first["v1"], first["x2"], first["v2"]])
         A, n = shooting.system()
@@ -225,7 +225,7 @@ def test_shooting_of_the_reference_finds_the_same_orbit():
     orbit = orbit if orbit.ok else vs.periodic_orbit(PAPER.replace(b=4.0), itinerary="R")
     with mp.workdps(30):
         names = ("mu_m", "mu_k", "zeta", "f2", "omega", "R", "b", "tau")
-        shooting = Shooting({name: getattr(orbit.system, name) for name in names}, sigma=1, halves=2, sides=[1])
+        shooting = Shooting({name: getattr(orbit.system, name) for name in names}, sigma=1, half_periods=2, sides=[1])
         i = orbit.impacts[0]
         x = shooting.solve(shooting.unknowns([i["t"]], [orbit.system.b, i["v1"], i["x2"], i["v2"]]))
         for mine, exact in zip((i["t"], i["x2"], i["v1"], i["v2"]), (x[0], x[2], x[3], x[4]), strict=True):

@@ -63,8 +63,8 @@ def test_a_window_from_an_orbit_at_its_fold(b, state):
     """3e-11 to 2e-13 of its width inside: the run began on the unstable side, and came to 0.1622 .. 0.1806."""
     ball = dict(mass_ratio=0.11034866750723367, zeta=0.030816339144821438, F=0.28850344990689725, b=b)
     ball |= dict(omega=0.6214661466051168, tau=1.838287462997773, R=0.4039709200133826)
-    flat = window_of(Job(vs.Oscillator.named("ball_in_cavity", **ball), np.array(state), 1, "b", (4e-4, 0.98)))
-    assert np.abs(flat["special_value"][[0, -1]] - [0.16708787864496785, 0.18060386953228552]).max() < 1e-12
+    arrays = window_of(Job(vs.Oscillator.named("ball_in_cavity", **ball), np.array(state), 1, "b", (4e-4, 0.98)))
+    assert np.abs(arrays["special_value"][[0, -1]] - [0.16708787864496785, 0.18060386953228552]).max() < 1e-12
 
 
 @pytest.mark.slow
@@ -124,8 +124,8 @@ def test_orbits_of_a_window_beside_its_birth_are_its_own(tmp_path):
         for share in (1e-3, 1e-4, 1e-6):
             value = (window.hi, window.lo)[1 - k] + (window.lo - window.hi) * share * (1 if k else -1)
             system = damper.replace(R=value)
-            orbit = orbit_of(system, members.solution_in(window._flat, value, system))
-            _, guess, _ = members.guess_at(window._flat, value)
+            orbit = orbit_of(system, members.solution_in(window._arrays, value, system))
+            _, guess, _ = members.guess_at(window._arrays, value)
             half = len(guess) // 2
             apart, guessed = (np.abs(v[half:] + v[:half]).max() for v in (orbit.impacts["v1"], guess))
             assert orbit.stable and apart > 1e-6 and 0.5 < guessed / apart < 2, share

@@ -76,7 +76,7 @@ def test_orbit_and_derivatives_are_those_of_matrix_exponentials(b):
     q, rests = s.family.linear, list(s.rests)
     assert s.K == (2 if b > 1.5 else 1)
     with mp.workdps(50):
-        exact = Resting(q, s.sigma, s.halves, s.sides, rests)
+        exact = Resting(q, s.sigma, s.half_periods, s.sides, rests)
         x = contact_coordinates(q).to_masses(s.states[:1, :4])[0]
         found = [*x[::2], *x[1::2], *s.times, *s.ends]
         w = exact.solve(found)
@@ -88,7 +88,7 @@ def test_orbit_and_derivatives_are_those_of_matrix_exponentials(b):
         J, h = exact.jacobian(w), mpf(10) ** -15
         for name in ("b", "omega", "zeta", "mu_m", "mu_k", "f2"):
             slope = s.family.derivative(name)
-            sides = [Resting(q, s.sigma, s.halves, s.sides, rests, slope, d).residual(w) for d in (h, -h)]
+            sides = [Resting(q, s.sigma, s.half_periods, s.sides, rests, slope, d).residual(w) for d in (h, -h)]
             moved = np.array(lu_solve(J, (sides[1] - sides[0]) / (2 * h))[4:], float).ravel()
             tangent = followed_from(s, name, 1.0).direction
             tangent /= tangent[-3]

@@ -52,7 +52,7 @@ def error_at(special) -> float:
     s, q, state, end = numbers_at(special)
     oscillator = SimpleNamespace(linear=q, omega=q.omega, b=q.high, offset=0.0, R=q.R_high, R_left=None)
     with mp.workdps(34):
-        chatter = Chatter(oscillator, s.sigma, s.halves, s.sides[1:])
+        chatter = Chatter(oscillator, s.sigma, s.half_periods, s.sides[1:])
         exact = chatter.where_sticking(state, end, s.times[1:], "b", q.high)
     return abs(float(exact) - q.high) / max(q.high, abs(steady_gap(q).swing))
 

@@ -31,7 +31,7 @@ def test_coefficient_agrees_with_differences_of_the_map_in_50_digits(omega):
     back = expm(-flow(s.family.linear).B * s.P / 2)[:4, :4]
     size = np.linalg.norm(back @ (e.place.v[0, :4] * [1, 1, s.family.linear.omega, s.family.linear.omega]))
     with mp.workdps(50):
-        shooting = Shooting({key: s.family.numbers[key] for key in NUMBERS}, s.sigma, s.halves, s.sides)
+        shooting = Shooting({key: s.family.numbers[key] for key in NUMBERS}, s.sigma, s.half_periods, s.sides)
         x1, x2, v1, v2 = s.states[0][:4]
         A, n = shooting.system()
         u = shooting.unknowns(s.times, (x1, v1, x2, v2))

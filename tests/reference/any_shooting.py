@@ -10,10 +10,10 @@ from reference.gmp import expm
 
 
 class AnyShooting:
-    """Orbits of an `Oscillator` with a number for tau, with z(t + halves T/2) = sigma z(t) and impacts on `sides`."""
+    """Orbits of an `Oscillator` (tau a number) with z(t + half_periods T/2) = sigma z(t) and impacts on `sides`."""
 
-    def __init__(self, oscillator, sigma: int, halves: int, sides):
-        self.q, self.sigma, self.halves, self.sides = oscillator.linear, sigma, halves, tuple(sides)
+    def __init__(self, oscillator, sigma: int, half_periods: int, sides):
+        self.q, self.sigma, self.half_periods, self.sides = oscillator.linear, sigma, half_periods, tuple(sides)
         self.numbers = {name: mpf(getattr(oscillator, name)) for name in ("omega", "b", "offset", "R")}
         self.numbers["R_left"] = self.numbers["R"] if oscillator.R_left is None else mpf(oscillator.R_left)
         self.follows = oscillator.R_left is None
@@ -75,7 +75,7 @@ class AnyShooting:
         z, before = list(u[K:]), []
         for k, side in enumerate(self.sides):
             before.append((t[k], z))
-            following = t[k + 1] if k + 1 < K else t[0] + pi / n["omega"] * self.halves
+            following = t[k + 1] if k + 1 < K else t[0] + pi / n["omega"] * self.half_periods
             z = self.fly(A, n, t[k], self.struck(n, z, side), following - t[k])
         return before, z
 
@@ -101,7 +101,7 @@ class AnyShooting:
             for i in range(2 * N):
                 for j in range(N):
                     S[i, j] += (behind[i] - kept[i]) * mpf(float(self.q.normal[j])) / self.speed(z)
-            following = u[k + 1] if k + 1 < K else u[0] + pi / n["omega"] * self.halves
+            following = u[k + 1] if k + 1 < K else u[0] + pi / n["omega"] * self.half_periods
             product = expm(A * (following - t))[: 2 * N, : 2 * N] * S * product
         return self.sigma * product
 

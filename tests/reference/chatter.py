@@ -90,7 +90,7 @@ class Chatter(AnyShooting):
             for side, aim in zip(self.sides[-2::-1], times[-2::-1], strict=True):
                 t, state = self.back(A, n, t, state, side, to_gmp(aim))
                 state = self.before(n, state, side)
-            period = to_gmp(pi / n["omega"] * self.halves)
+            period = to_gmp(pi / n["omega"] * self.half_periods)
             state = self.at(self.taylor(A, n, t, state), end - period - t)
             second = self.taylor(A, n, T, z)[2]
             rows = [self.gap(z) - to_gmp(self.stop(n, self.sides[-1])), self.speed(z), 2 * self.gap(second)]

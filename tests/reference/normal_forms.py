@@ -18,7 +18,7 @@ class SectionMap:
 
     def __init__(self, shooting: Shooting, A, n, u):
         self.s, self.A, self.n = shooting, A, n
-        K, self.P = len(shooting.sides), pi / n["omega"] * shooting.halves
+        K, self.P = len(shooting.sides), pi / n["omega"] * shooting.half_periods
         t, self.t = u[:K], list(u[:K])
         z = list(u[K:])
         flights = [(t[k + 1] if k + 1 < K else t[0] + self.P) - t[k] for k in range(K)]

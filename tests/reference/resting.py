@@ -17,8 +17,8 @@ FIELDS = ("M", "K", "C", "normal", "constant", "sine", "cosine", "omega", "tau",
 class Resting:
     """Orbits of q + h slope with impacts on `sides`, R = 0, and rests after the impacts `rests`."""
 
-    def __init__(self, q, sigma, halves, sides, rests, slope=None, h=0):
-        self.sigma, self.halves, self.sides, self.rests = sigma, halves, sides, list(rests)
+    def __init__(self, q, sigma, half_periods, sides, rests, slope=None, h=0):
+        self.sigma, self.half_periods, self.sides, self.rests = sigma, half_periods, sides, list(rests)
         M, K, C, n, *forces, self.omega, self.tau, low, high = (
             _exact(getattr(q, name), getattr(slope, name) if slope is not None else None, h) for name in FIELDS
         )
@@ -38,7 +38,7 @@ class Resting:
             self.gap[i] = self.speed[self.N + i] = n[i]
             self.push[self.N + i] = (inverse * n)[i] / (n.T * inverse * n)[0]
         self.B, self.H = B, B - self.push * self.speed * B
-        self.stops, self.P = {1: high, -1: low}, mp.pi / self.omega * halves
+        self.stops, self.P = {1: high, -1: low}, mp.pi / self.omega * half_periods
 
     def residual(self, w):
         """w: (2N) state before the first impact, (K) times, ends of the rests."""

@@ -10,10 +10,10 @@ from reference.gmp import expm
 
 
 class Shooting:
-    """Orbits of the paper's oscillator with z(t + halves T/2) = sigma z(t) and impacts on `sides`."""
+    """Orbits of the paper's oscillator with z(t + half_periods T/2) = sigma z(t) and impacts on `sides`."""
 
-    def __init__(self, numbers: dict, sigma: int, halves: int, sides):
-        self.numbers, self.sigma, self.halves, self.sides = numbers, sigma, halves, tuple(sides)
+    def __init__(self, numbers: dict, sigma: int, half_periods: int, sides):
+        self.numbers, self.sigma, self.half_periods, self.sides = numbers, sigma, half_periods, tuple(sides)
 
     def system(self, name=None, value=None):
         """Matrix A of z' = A z with z = (x1, x2, v1, v2, sin, cos), and the numbers, with one of them replaced."""
@@ -60,7 +60,7 @@ class Shooting:
         K = len(self.sides)
         t, z = u[:K], list(u[K : K + 4])
         start = list(z)
-        P = pi / n["omega"] * self.halves
+        P = pi / n["omega"] * self.half_periods
         result = []
         for k, side in enumerate(self.sides):
             result.append(z[0] - side * n["b"])
@@ -73,7 +73,7 @@ class Shooting:
         """4 x 4, sigma times the derivative of the map over P."""
         K = len(self.sides)
         t, z = u[:K], list(u[K : K + 4])
-        P = pi / n["omega"] * self.halves
+        P = pi / n["omega"] * self.half_periods
         product = eye(4)
         for k in range(K):
             before = self.rate(A, n, t[k], z)

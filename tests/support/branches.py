@@ -78,7 +78,7 @@ def repeated(orbit, times):
     s = orbit._solution.whole()
     shifts = np.repeat(np.arange(times) * s.P, s.K)
     u = np.concatenate([np.tile(s.times, times) + shifts, np.tile(s.jumps, times)])
-    return Solution(s.family, 1, s.halves * times, s.sides * times, u)
+    return Solution(s.family, 1, s.half_periods * times, s.sides * times, u)
 
 
 def _located(special, name, shooting, u):
@@ -100,7 +100,7 @@ def exact(special, name):
     """The parameter of a special point in 40 digits, by shooting."""
     solution = special.orbit._solution
     numbers = {key: getattr(special.orbit.system, key) for key in NUMBERS}
-    shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
+    shooting = Shooting(numbers, solution.sigma, solution.half_periods, solution.sides)
     x1, x2, v1, v2 = solution.states[0][:4]
     u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
     return _located(special, name, shooting, u)
@@ -111,7 +111,7 @@ def shooting_of(orbit):
     solution, q = orbit._solution, orbit.system.linear
     N = len(q.normal)
     state = contact_coordinates(q).to_masses(solution.states[0]).reshape(N, 2).T.ravel()
-    shooting = AnyShooting(orbit.system, solution.sigma, solution.halves, solution.sides)
+    shooting = AnyShooting(orbit.system, solution.sigma, solution.half_periods, solution.sides)
     return shooting, shooting.unknowns(solution.times, state)
 
 

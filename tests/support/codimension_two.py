@@ -20,7 +20,7 @@ def error_of(special, digits=50) -> float:
     names = list(special.parameters)
     numbers = {key: solution.family.numbers[key] for key in NUMBERS}
     with mp.workdps(digits):
-        shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
+        shooting = Shooting(numbers, solution.sigma, solution.half_periods, solution.sides)
         x1, x2, v1, v2 = solution.states[0][:4]
         u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
         extra = [mpf(time) for time, _ in touches]

@@ -27,7 +27,7 @@ class Pieces:
         self.oscillators = [family_of(system.replace(**{case.name: float(value)})).linear for value in self.values]
         t, v = points.impact_t.values, points.impact_v.values
         sides = points.impact_side.values[0].astype(int)
-        periods = branch._start.halves * np.pi / np.array([q.omega for q in self.oscillators])
+        periods = branch._start.half_periods * np.pi / np.array([q.omega for q in self.oscillators])
         self.sigma = branch._start.sigma
         if self.symmetric:
             K = len(sides) // 2

@@ -38,7 +38,9 @@ def solution_at(curve, k) -> Solution:
     family = start.family.replace(**{name: float(points[name][k]) for name in curve.parameters})
     sides = points.impact_side[k].values
     D = -(1 + family.linear.restitution(sides)) * points.impact_v[k].values
-    return Solution(family, start.sigma, start.halves, start.sides, np.concatenate([points.impact_t[k].values, D]))
+    return Solution(
+        family, start.sigma, start.half_periods, start.sides, np.concatenate([points.impact_t[k].values, D])
+    )
 
 
 def steepest(curve, k) -> str:
@@ -55,7 +57,7 @@ def error_at(curve, k, digits=30) -> float:
     numbers = {key: solution.family.numbers[key] for key in NUMBERS}
     value = numbers[name]
     with mp.workdps(digits):
-        shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
+        shooting = Shooting(numbers, solution.sigma, solution.half_periods, solution.sides)
         x1, x2, v1, v2 = solution.states[0][:4]
         u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
         if curve.type == "fold":
@@ -75,7 +77,7 @@ def exact_codimension_two(special, digits=40) -> dict[str, float]:
     numbers = {key: solution.family.numbers[key] for key in NUMBERS}
     with mp.workdps(digits):
         x1, x2, v1, v2 = solution.states[0][:4]
-        shooting = Shooting(numbers, solution.sigma, solution.halves, solution.sides)
+        shooting = Shooting(numbers, solution.sigma, solution.half_periods, solution.sides)
         u = shooting.unknowns(solution.times, (x1, v1, x2, v2))
         size = len(u)
 

@@ -20,7 +20,7 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.changed_files import LONG, Case, damages, edits
-from support.kinds_of_files import KINDS, PERIODIC, SYSTEM, Made, write_scenes
+from support.kinds_of_files import KINDS, PERIODIC, SYSTEM, WrittenKinds, write_scenes
 from vibro_sweep.cli.commands import main
 
 HARMLESS, REFUSED, TOLD, DRAWN = "as the whole file", "refused", "told damaged", "another result"
@@ -187,7 +187,7 @@ def _windows(file: str) -> Said:
 
 
 def table(
-    kinds: Made, name: str, some: int, slow: bool = False, seed: int = 1
+    kinds: WrittenKinds, name: str, some: int, slow: bool = False, seed: int = 1
 ) -> tuple[collections.Counter, list[str]]:
     """(damage, command, outcome) -> how often, of a file of this kind in the current folder; and what failed.
 

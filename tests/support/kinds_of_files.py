@@ -87,7 +87,7 @@ def write_scenes(folder: Path, longer: bool = False) -> None:
         (folder / f"{name}.yaml").write_text(text)
 
 
-class Made:
+class WrittenKinds:
     """Files of all kinds in a folder, each made when it is first asked for; nobody may change them."""
 
     def __init__(self, folder: Path):
@@ -109,5 +109,5 @@ class Made:
 
 
 @pytest.fixture(scope="session")
-def kinds(tmp_path_factory) -> Made:
-    return Made(tmp_path_factory.mktemp("kinds"))
+def kinds(tmp_path_factory) -> WrittenKinds:
+    return WrittenKinds(tmp_path_factory.mktemp("kinds"))

@@ -211,7 +211,7 @@ def _kind(branch) -> tuple:
     whole = branch._start.whole()
     sides = np.array(whole.sides, int)
     rotations = [np.roll(sign * sides, k).tolist() for sign in (1, -1) for k in range(max(len(sides), 1))]
-    return min(rotations), whole.halves
+    return min(rotations), whole.half_periods
 
 
 def _same(one, other, name: str) -> bool:
@@ -231,7 +231,7 @@ def _same(one, other, name: str) -> bool:
         guess = list(zip(t, here.impact_side.values, v, strict=True))
         if not guess:
             return True
-        found = vs.periodic_orbit(system, guess=guess, periods=other._start.whole().halves // 2)
+        found = vs.periodic_orbit(system, guess=guess, periods=other._start.whole().half_periods // 2)
         if not found.ok:
             continue
         T, n = system.period, found.period

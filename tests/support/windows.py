@@ -68,10 +68,10 @@ def _distance(a, b) -> float:
 
 def _near(window, special, step: float):
     """The orbit at an end; at a fold, where orbits move like the square root, the one `step` beside it, roughly."""
-    flat, (point, beside) = window._flat, (0, 1) if special is window.lower else (-1, -2)
-    share = np.sqrt(step / abs(flat["value"][beside] - flat["value"][point])) if special.type == "fold" else 0.0
+    arrays, (point, beside) = window._arrays, (0, 1) if special is window.lower else (-1, -2)
+    share = np.sqrt(step / abs(arrays["value"][beside] - arrays["value"][point])) if special.type == "fold" else 0.0
     parts = [
-        (1 - share) * flat[name][point] + share * flat[name][beside]
+        (1 - share) * arrays[name][point] + share * arrays[name][beside]
         for name in ("impact_t", "impact_v", "impact_t_off")
     ]
-    return solution_of(flat, special.orbit.system, *parts)
+    return solution_of(arrays, special.orbit.system, *parts)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_arrays import SHAPES
-from vibro_sweep.analysis.branches.branch_search import Branches, grow
+from vibro_sweep.analysis.branches.branch_search import Branches, compute_branch
 from vibro_sweep.analysis.branches.search import Node
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of
@@ -49,7 +49,7 @@ def run_branches(
                 except NoOrbitError:
                     file.drop()
                     raise
-                evaluate = computed(grow, is_branch, pool, file, progress)
+                evaluate = computed(compute_branch, is_branch, pool, file, progress)
                 branching = Branches(tuple(scene.parameter), tuple(scene.parameter.values()), scene.follow)
                 found = branching.run(seeds, scene.depth, evaluate)
             file.finish(provenance(), *_contents(scene, found))
@@ -59,11 +59,11 @@ def run_branches(
 def _contents(scene: Continuation, found: list[Node]) -> tuple:
     """Columns and arrays of the file."""
     names, masses = list(scene.parameter), scene.system.masses
-    arrays = joined([node.flat for node in found], SHAPES, names, masses)
-    sections = [node.flat["section"].reshape(-1, 2 * masses) for node in found]
+    arrays = joined([node.arrays for node in found], SHAPES, names, masses)
+    sections = [node.arrays["section"].reshape(-1, 2 * masses) for node in found]
     together = np.concatenate(sections) if sections else np.zeros((0, 2 * masses))
     arrays |= {f"section_{name}": together[:, i] for i, name in enumerate(state(masses))}
-    arrays["branch_sections"] = np.array([node.flat["section"].shape[1] for node in found], int)
+    arrays["branch_sections"] = np.array([node.arrays["section"].shape[1] for node in found], int)
     return columns_of(BRANCHES, names, scene.system), arrays | where_met(found, arrays["branch_special"])
 
 

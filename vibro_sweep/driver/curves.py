@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_arrays import special_point
-from vibro_sweep.analysis.branches.branch_search import Branches, grow
+from vibro_sweep.analysis.branches.branch_search import Branches, compute_branch
 from vibro_sweep.analysis.branches.seeds import Seed
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.curve_arrays import SHAPES
-from vibro_sweep.analysis.curves.curve_search import Curves, seed_at, trace
+from vibro_sweep.analysis.curves.curve_search import Curves, compute_curve, seed_at
 from vibro_sweep.analysis.windows.explained import explain, probe
 from vibro_sweep.driver.branches import where_met
 from vibro_sweep.driver.jobs import computed, workers_of
@@ -59,10 +59,10 @@ def _contents(scene: Continuation, of_plane, workers, executor, file, progress) 
     """Columns and arrays of the file."""
     names, bounds, more = tuple(scene.parameter), tuple(scene.parameter.values()), {}
     with workers_of(workers, executor) as pool:
-        evaluate = computed(trace, is_curve, pool, file, progress)
+        evaluate = computed(compute_curve, is_curve, pool, file, progress)
         if of_plane is not None:
-            probed = computed(probe, is_probe, pool, file, progress)
-            found = explain(*of_plane, names, bounds, scene.of, scene.depth, probed, evaluate)
+            evaluate_probes = computed(probe, is_probe, pool, file, progress)
+            found = explain(*of_plane, names, bounds, scene.of, scene.depth, evaluate_probes, evaluate)
             curves, more = found.curves, edges_in_file(of_plane[0], found)
         else:
             try:
@@ -71,7 +71,7 @@ def _contents(scene: Continuation, of_plane, workers, executor, file, progress) 
                 file.drop()
                 raise
             curves = Curves(names, bounds, scene.of).run(starts, scene.depth, evaluate)
-    arrays = joined([one.flat for one in curves], SHAPES, list(names), scene.system.masses)
+    arrays = joined([one.arrays for one in curves], SHAPES, list(names), scene.system.masses)
     held = columns_of(CHART, list(names), scene.system, OF_EDGES if more else ())
     return held, arrays | where_met(curves, arrays["branch_special"]) | more
 
@@ -88,7 +88,7 @@ def _starts(scene: Continuation, names, bounds, pool, file, progress) -> list[Se
 def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint]:
     """All special points of the branches of the scene's orbits along its first number."""
     key, bounds = next(iter(scene.parameter.items()))
-    keep = computed(grow, is_branch, pool, file, progress)
+    keep = computed(compute_branch, is_branch, pool, file, progress)
 
     def evaluate(names, jobs):
         return keep([f"branch {name}" for name in names], jobs)
@@ -96,7 +96,7 @@ def _on_branches(scene: Continuation, pool, file, progress) -> list[SpecialPoint
     branching = Branches((key,), (bounds,), scene.follow)
     nodes = branching.run(seeds_of(scene, file, pool), scene.depth, evaluate)
     return [
-        special_point(node.flat, i, key, node.seed.system)
+        special_point(node.arrays, i, key, node.seed.system)
         for node in nodes
-        for i in range(len(node.flat["special_type"]))
+        for i in range(len(node.arrays["special_type"]))
     ]

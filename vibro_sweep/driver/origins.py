@@ -137,9 +137,9 @@ def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | No
     orbits = []
     for found in _chosen(scene, search_of(rows, file, pool)):
         lo, hi = np.clip(found.ends, *scene.parameter[key])
-        value = float(np.clip(found.flat["value"][found.flat["branch_origin"]], lo, hi))
+        value = float(np.clip(found.arrays["value"][found.arrays["branch_origin"]], lo, hi))
         system = found.system.replace(**{key: value})
-        orbit = orbit_of(system, solution_in(found.flat, value, system))
+        orbit = orbit_of(system, solution_in(found.arrays, value, system))
         if found.ends[0] <= value <= found.ends[1] and orbit.ok:
             orbits.append(orbit)
     return orbits
@@ -186,7 +186,7 @@ def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> lis
         rows = _rows(scene, data)
     key = next(iter(scene.parameter))
     chosen = _chosen(scene, search_of(rows, file, pool))
-    return [special_point(one.flat, end, key, one.system) for one in chosen for end in (0, 1)]
+    return [special_point(one.arrays, end, key, one.system) for one in chosen for end in (0, 1)]
 
 
 def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:

@@ -25,13 +25,13 @@ def is_window(piece: Arrays) -> bool:
 
 
 def is_branch(piece: Arrays) -> bool:
-    """Of `grow`."""
+    """Of `compute_branch`."""
     shapes = branches.SHAPES | seeds.SHAPES | {"n m 2N": "section"}
     return _fits(piece, shapes, columns(WINDOWS, [], 0)) and seeds.fit_together(piece)
 
 
 def is_curve(piece: Arrays) -> bool:
-    """Of `trace`: nothing, where there is no curve."""
+    """Of `compute_curve`: nothing, where there is no curve."""
     return not piece or (
         _fits(piece, curves.SHAPES | seeds.SHAPES, columns(CHART, [], 0)) and seeds.fit_together(piece)
     )

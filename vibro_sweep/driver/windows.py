@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Flat
+from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Arrays
 from vibro_sweep.analysis.windows.job import window_of
 from vibro_sweep.analysis.windows.rows import Contents, Row, check_data, chosen_key, rows_of
 from vibro_sweep.analysis.windows.unvisited import unvisited_in
@@ -108,10 +108,10 @@ def run_windows(
 class NothingKept:
     """Of a run without a file."""
 
-    def get(self, _key: str, _usable: Callable[[Flat], bool]) -> None:
+    def get(self, _key: str, _usable: Callable[[Arrays], bool]) -> None:
         """Nothing is known already."""
 
-    def write(self, _key: str, _arrays: Flat) -> None:
+    def write(self, _key: str, _arrays: Arrays) -> None:
         """Nothing is kept."""
 
 
@@ -148,9 +148,9 @@ def _contents(search: WindowSearch) -> tuple:
     first, found = search.rows[0], search.found
     names = [first.parameter, *first.held]
     masses = first.system.masses
-    flats = [one.flat for one in found]
+    all_arrays = [one.arrays for one in found]
     held = [tuple(search.rows[one.row].held.values()) for one in found]
-    arrays = joined(flats, SHAPES, names, masses, held)
+    arrays = joined(all_arrays, SHAPES, names, masses, held)
     none = np.full(len(found), -1, np.int32)
     arrays |= {"branch_parent": none, "branch_parent_special": none, "branch_generation": 0 * none}
     ends = np.array([one.ends for one in found]).reshape(len(found), 2)

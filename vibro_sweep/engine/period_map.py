@@ -87,15 +87,15 @@ class PeriodMap:
 
         Raises ValueError for another number of periods, or for states of another shape.
         """
-        halves = 2 * periods
-        if not (math.isfinite(halves) and halves >= 0 and halves == int(halves)):
+        half_periods = 2 * periods
+        if not (math.isfinite(half_periods) and half_periods >= 0 and half_periods == int(half_periods)):
             raise ArgumentError(not_allowed("periods", periods, "a multiple of 1/2, and not negative"))
         start, count = np.array(states, float), self._engine.states
         if start.ndim != 2 or start.shape[1] != count:
             raise ArgumentError(f"states: shape {start.shape} is not allowed; it must be (n, {count})")
         compute = self._flow if self.order == 0 else self._discontinuity_map
         equations = self._equations(parameters) if jacobian or parameters or self.order else None
-        ends, codes, impacts, sticking, derivatives = compute(start, int(halves), equations)
+        ends, codes, impacts, sticking, derivatives = compute(start, int(half_periods), equations)
         ends[codes != status.OK] = np.nan
         by_state = derivatives[..., :count] if jacobian else None
         by_parameter = derivatives[..., count:] if parameters else None
@@ -134,15 +134,15 @@ class PeriodMap:
             float(self._engine.point["tau"][0]), self._engine.cells, self._engine.width,
         )  # fmt: skip
 
-    def _flow(self, start: np.ndarray, halves: int, equations: Equations | None):
+    def _flow(self, start: np.ndarray, half_periods: int, equations: Equations | None):
         """Half a period more than whole ones begins in the middle of a period of a force half a period later."""
         engine, cell = self._engine, 0
-        if halves % 2:
+        if half_periods % 2:
             if self._half_engine is None:
                 self._half_engine = Engine(self.system, later=np.pi)
             engine, cell = self._half_engine, self._half_engine.cells // 2
-        periods, (n, states) = (halves + 1) // 2, start.shape
-        end, begin = halves / 2 * engine.period, engine.time(0, cell, 0.0)
+        periods, (n, states) = (half_periods + 1) // 2, start.shape
+        end, begin = half_periods / 2 * engine.period, engine.time(0, cell, 0.0)
         ends, codes = np.full((n, states), np.nan), np.full(n, status.OK, np.int8)
         contact = engine.to_contact(start)
         finite = np.isfinite(start).all(axis=1)
@@ -178,7 +178,7 @@ class PeriodMap:
                 derivatives[chosen] = found
         return ends, codes, tuple(impacts), tuple(sticking), derivatives
 
-    def _discontinuity_map(self, start: np.ndarray, halves: int, equations: Equations):
+    def _discontinuity_map(self, start: np.ndarray, half_periods: int, equations: Equations):
         engine, (n, states) = self._engine, start.shape
         columns, masses = len(equations.omega_slopes), len(equations.normal)
         slopes = self._slopes(columns > states)
@@ -202,9 +202,9 @@ class PeriodMap:
             self.order, stops != "left", stops != "right", self.graze, d_graze, pull, d_pull, parameter
         )
         ends, derivatives = np.empty((n, states)), np.empty((n, states, columns))
-        hits, counts = np.empty((n, halves + 1, 5 + states)), np.empty(n, np.int64)
+        hits, counts = np.empty((n, half_periods + 1, 5 + states)), np.empty(n, np.int64)
         scratch = new_scratch(2 * masses + 3, len(equations.columns))
-        iterate(equations, expansion, halves, start, ends, derivatives, hits, counts, scratch)
+        iterate(equations, expansion, half_periods, start, ends, derivatives, hits, counts, scratch)
         codes = np.where(np.isfinite(ends).all(axis=1), status.OK, status.NOT_FINITE).astype(np.int8)
         impacts = tuple(engine.impacts_of(hits[i, :k, :5], hits[i, :k, 5:]) for i, k in enumerate(counts))
         return ends, codes, impacts, (engine.sticking(np.empty((0, 4)), 0.0),) * n, derivatives

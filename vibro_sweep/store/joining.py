@@ -14,19 +14,21 @@ from vibro_sweep.model.state import state
 Arrays = dict[str, np.ndarray]
 
 
-def joined(flats: list[Arrays], shapes: Mapping[str, str], parameters: list[str], masses: int, others=None) -> Arrays:
+def joined(
+    all_arrays: list[Arrays], shapes: Mapping[str, str], parameters: list[str], masses: int, others=None
+) -> Arrays:
     """The arrays of a file, by name.
 
     others : of each branch the values of those `parameters` that do not change along it, behind those that do
     """
     counted = {"branch_row_size": "value", "branch_impacts": "impact_side", "branch_special": "special_type"}
-    result = {name: np.array([len(flat[of]) for flat in flats], np.int32) for name, of in counted.items()}
+    result = {name: np.array([len(arrays[of]) for arrays in all_arrays], np.int32) for name, of in counted.items()}
     points, specials = result["branch_row_size"], result["branch_special"]
     lengths = {"2": 2, "2N": 2 * masses}
     for dimensions, names in shapes.items():
         tail = [lengths[one] for one in dimensions.split() if one in lengths]
         for name in names.split():
-            parts = [np.reshape(flat[name], (-1, *tail)) for flat in flats]
+            parts = [np.reshape(arrays[name], (-1, *tail)) for arrays in all_arrays]
             if dimensions == "K":
                 parts = [np.tile(part, n) for part, n in zip(parts, points, strict=True)]
             result[name] = np.concatenate(parts) if parts else np.zeros((0, *tail))
@@ -37,8 +39,8 @@ def joined(flats: list[Arrays], shapes: Mapping[str, str], parameters: list[str]
         result["branch_origin"] = result["branch_origin"] + first_point
     places = result["special_point"]
     result["special_point"] = np.where(places >= 0, places + np.repeat(first_point, specials), -1)
-    result["special_branch"] = np.repeat(np.arange(len(flats)), specials)
-    held = np.zeros((len(flats), 0)) if others is None else np.reshape(others, (len(flats), -1))
+    result["special_branch"] = np.repeat(np.arange(len(all_arrays)), specials)
+    held = np.zeros((len(all_arrays), 0)) if others is None else np.reshape(others, (len(all_arrays), -1))
     result["special_value"] = np.column_stack([result["special_value"], np.repeat(held, specials, axis=0)])
     values = np.column_stack([result.pop("value"), np.repeat(held, points, axis=0)])
     result |= dict(zip(parameters, values.T, strict=True))

@@ -79,14 +79,14 @@ class Pieces:
             self._part.remove()
 
 
-class Made:
+class CompleteResult:
     """A file that exists already, of the same subject and code."""
 
     complete = True
 
 
 @contextlib.contextmanager
-def pieces(subject: Subject, path: Path, mode: str, inputs: Collection[Path]) -> Iterator[Pieces | Made]:
+def pieces(subject: Subject, path: Path, mode: str, inputs: Collection[Path]) -> Iterator[Pieces | CompleteResult]:
     """A run of a subject into `path`; `mode` is "new", "resume" or "overwrite". Raises StoreError.
 
     inputs : files that the run reads, which it must not write
@@ -96,7 +96,7 @@ def pieces(subject: Subject, path: Path, mode: str, inputs: Collection[Path]) ->
     if mode != "overwrite" and names.stamp(path) and not names.stamp(part):
         damage = _damage_of_made(subject, path)
         if not damage:
-            yield Made()
+            yield CompleteResult()
             return
         if mode == "new":
             raise StoreError(f"{path} exists, and is damaged: {damage}; `resume` computes it again")

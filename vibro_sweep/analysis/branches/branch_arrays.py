@@ -18,7 +18,7 @@ from vibro_sweep.model.bifurcations import BIRTHS, BRANCH_STATUSES, CODES, CRITI
 from vibro_sweep.model.linear import family_of, forcing_period
 from vibro_sweep.model.state import state
 
-Flat = dict[str, np.ndarray]
+Arrays = dict[str, np.ndarray]
 
 # n points, K impacts, s special points, N masses
 SHAPES = {
@@ -35,12 +35,12 @@ SHAPES = {
 }
 
 
-def outline(branch: Branch) -> Flat:
+def outline(branch: Branch) -> Arrays:
     """Of the arrays of a branch those that say which orbits lie on it."""
     start = branch._start
     t, sides, v = impacts(start, branch.parameter, branch._frame, branch._rows)
     return {
-        "branch_period": np.int32(start.whole().halves // 2),
+        "branch_period": np.int32(start.whole().half_periods // 2),
         "branch_symmetric": np.int8(start.sigma == -1),
         "value": branch._rows.p,
         "impact_t": t,
@@ -50,7 +50,7 @@ def outline(branch: Branch) -> Flat:
     }
 
 
-def flatten(branch: Branch, origin: float) -> Flat:
+def arrays_of(branch: Branch, origin: float) -> Arrays:
     """The arrays of a branch; origin: the parameter of the orbit that it was followed from."""
     start, parameter = branch._start, branch.parameter
     data = {name: values for name, (_, values) in columns(start, parameter, branch._frame, branch._rows).items()}
@@ -92,7 +92,7 @@ def _rest_ends(branch: Branch, t: np.ndarray) -> np.ndarray:
     return ends
 
 
-def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Mapping[str, int]) -> Flat:
+def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Mapping[str, int]) -> Arrays:
     """Arrays of a branch or curve of orbits like `start` in the parameters `names`: what it is, where its special
     points are. p : (n,) or (n, 2); codes : of their types"""
     places = np.array([[one.parameters[name] for name in names] for one in of.special])
@@ -102,7 +102,7 @@ def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Ma
         least += int(there[0]) if len(there) else 0
         points.append(least if len(there) else -1)
     return {
-        "branch_period": np.int32(start.whole().halves // 2),
+        "branch_period": np.int32(start.whole().half_periods // 2),
         "branch_symmetric": np.int8(start.sigma == -1),
         "branch_closed": np.int8(of.closed),
         "branch_begins": np.int32(of.special.index(of.begins)),
@@ -114,42 +114,42 @@ def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Ma
     }
 
 
-def solution_of(flat: Flat, system, t, v, t_off) -> Solution:
+def solution_of(arrays: Arrays, system, t, v, t_off) -> Solution:
     """The solution with these impacts (K,) of a branch, for the oscillator `system`; not corrected. TooStiffError."""
-    family, symmetric = family_of(system), bool(flat["branch_symmetric"])
-    period, sides = int(flat["branch_period"]), flat["impact_side"]
+    family, symmetric = family_of(system), bool(arrays["branch_symmetric"])
+    period, sides = int(arrays["branch_period"]), arrays["impact_side"]
     K = len(sides) // 2 if symmetric else len(sides)
     sides = tuple(map(int, sides[:K]))
     rests = tuple(np.flatnonzero(np.isfinite(t_off[:K])).tolist())
     D = -(1 + family.linear.restitution(sides)) * v[:K]
     u = np.concatenate([t[:K], D, t_off[list(rests)]])
-    sigma, halves = (-1, period) if symmetric else (1, 2 * period)
-    checked_cells(family.linear, halves)
-    return Solution(family, sigma, halves, sides, u, 0.0, rests)
+    sigma, half_periods = (-1, period) if symmetric else (1, 2 * period)
+    checked_cells(family.linear, half_periods)
+    return Solution(family, sigma, half_periods, sides, u, 0.0, rests)
 
 
-def orbit_at(flat: Flat, point: int, system) -> PeriodicOrbit:
+def orbit_at(arrays: Arrays, point: int, system) -> PeriodicOrbit:
     """The orbit at a point of a branch; `system` has the parameter's value there."""
-    solution = solution_of(flat, system, *(flat[name][point] for name in ("impact_t", "impact_v", "impact_t_off")))
+    solution = solution_of(arrays, system, *(arrays[name][point] for name in ("impact_t", "impact_v", "impact_t_off")))
     return orbit_of(system, solution)
 
 
-def special_point(flat: Flat, index: int, parameter: str, system) -> SpecialPoint:
+def special_point(arrays: Arrays, index: int, parameter: str, system) -> SpecialPoint:
     """A special point of a branch; `system` is one of its oscillators."""
-    kind, value = TYPES[flat["special_type"][index]].name, float(flat["special_value"][index])
-    there, point = system.replace(**{parameter: value}), int(flat["special_point"][index])
-    orbit = PeriodicOrbit(there, "sticking") if point < 0 else orbit_at(flat, point, there)
-    if kind in BIRTHS and index in (flat["branch_begins"], flat["branch_ends"]):  # a birth
+    kind, value = TYPES[arrays["special_type"][index]].name, float(arrays["special_value"][index])
+    there, point = system.replace(**{parameter: value}), int(arrays["special_point"][index])
+    orbit = PeriodicOrbit(there, "sticking") if point < 0 else orbit_at(arrays, point, there)
+    if kind in BIRTHS and index in (arrays["branch_begins"], arrays["branch_ends"]):  # a birth
         orbit = orbit_of(orbit.system, orbit._solution.reduced())
-    impact, graze = int(flat["special_impact"][index]), kind == "graze"
+    impact, graze = int(arrays["special_impact"][index]), kind == "graze"
     multipliers = orbit.multipliers if point < 0 else orbit._solution.multipliers
     return SpecialPoint(
-        kind, {parameter: value}, orbit, multipliers, float(flat["special_error"][index]),
-        stop=int(flat["special_stop"][index]) if graze else None,
-        kind=KINDS[flat["special_kind"][index]].replace("_", " ") if graze else None,
+        kind, {parameter: value}, orbit, multipliers, float(arrays["special_error"][index]),
+        stop=int(arrays["special_stop"][index]) if graze else None,
+        kind=KINDS[arrays["special_kind"][index]].replace("_", " ") if graze else None,
         impact=impact if impact >= 0 else None,
-        direction=int(flat["special_direction"][index]) if graze else None,
-        criticality=CRITICALITIES[c] if (c := int(flat["special_criticality"][index])) else None,
+        direction=int(arrays["special_direction"][index]) if graze else None,
+        criticality=CRITICALITIES[c] if (c := int(arrays["special_criticality"][index])) else None,
     )  # fmt: skip
 
 

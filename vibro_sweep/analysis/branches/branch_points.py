@@ -61,7 +61,7 @@ def impacts(
 
 def _impacts(start: Solution, frame: tuple[int, int], rows: Rows, T: np.ndarray):
     t, v, sides = rows.t, rows.motion[:, :, 0], np.array(start.sides, int)
-    half = T / 2 * start.halves
+    half = T / 2 * start.half_periods
     if start.sigma == -1:
         t, v, sides = np.hstack([t, t + half]), np.hstack([v, -v]), np.append(sides, -sides)
     first, shift = frame
@@ -83,7 +83,7 @@ def _multipliers(start: Solution, name: str, oscillators: list[Linear], rows: Ro
             result.append(replace(start, family=family, u=np.concatenate([t, D, ends])).multipliers)
             continue
         contacts[:, 1] = 1 + q.restitution(sides)
-        P, u = forcing_period(q) / 2 * start.halves, np.concatenate([t, D])
+        P, u = forcing_period(q) / 2 * start.half_periods, np.concatenate([t, D])
         result.append(multipliers_of(flow(q), start.sigma, P, contacts, u, motion))
     values = np.array(result) if start.sigma == 1 else np.array(result) ** 2
     order = np.lexsort((-values.imag, -np.abs(values)), axis=-1)

@@ -7,7 +7,7 @@ same generation that an earlier one has passed.
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch import Branch, continue_orbit, not_followed
-from vibro_sweep.analysis.branches.branch_arrays import Flat, flatten, orbit_at, section_states
+from vibro_sweep.analysis.branches.branch_arrays import Arrays, arrays_of, orbit_at, section_states
 from vibro_sweep.analysis.branches.branch_switching import switch
 from vibro_sweep.analysis.branches.recognising import clearest, passes, point_of
 from vibro_sweep.analysis.branches.search import Node, Search, Task
@@ -20,13 +20,13 @@ LEAST = 1e-4  # distance of a graze from the onset of sticking, as a part of the
 
 
 @one_thread()
-def grow(task: Task) -> Flat:
+def compute_branch(task: Task) -> Arrays:
     """The branch of a task, with `section`, and with the seeds beyond it, as `packed` has them."""
     branch = followed(task)
     (origin,) = task.seed.place(task.names)
-    flat = flatten(branch, origin)
-    flat["section"] = _sections(flat, task)
-    return flat | packed(beyond(branch, task), task.names)
+    arrays = arrays_of(branch, origin)
+    arrays["section"] = _sections(arrays, task)
+    return arrays | packed(beyond(branch, task), task.names)
 
 
 def followed(task: Task, progress=None) -> Branch:
@@ -60,20 +60,20 @@ def accumulates(branch: Branch, end: SpecialPoint, reach: float) -> bool:
     return False
 
 
-def _sections(flat: Flat, task: Task) -> np.ndarray:
+def _sections(arrays: Arrays, task: Task) -> np.ndarray:
     """(n, m, 2N) all section states of each point: those at t = 0 mod T of the orbit and of its mirror image."""
-    systems = [task.seed.system.replace(**{task.names[0]: value}) for value in flat["value"].tolist()]
-    return np.array([section_states(orbit_at(flat, i, system)) for i, system in enumerate(systems)])
+    systems = [task.seed.system.replace(**{task.names[0]: value}) for value in arrays["value"].tolist()]
+    return np.array([section_states(orbit_at(arrays, i, system)) for i, system in enumerate(systems)])
 
 
 class Branches(Search):
     """A search for branches in one parameter."""
 
-    def passes(self, flat: Flat, seed: Seed) -> bool:
-        return passes(flat, self.names[0], seed.system, seed.solution)
+    def passes(self, arrays: Arrays, seed: Seed) -> bool:
+        return passes(arrays, self.names[0], seed.system, seed.solution)
 
-    def is_known(self, known: list[Node], flat: Flat, seed: Seed) -> bool:
+    def is_known(self, known: list[Node], arrays: Arrays, seed: Seed) -> bool:
         """Also where that could not be told from the seed, which lies next to a birth or a fold."""
-        i = clearest(flat)
-        system = seed.system.replace(**{self.names[0]: float(flat["value"][i])})
-        return self.lies_on(known, seed_of(system, Start("orbit", point_of(flat, i, system))))
+        i = clearest(arrays)
+        system = seed.system.replace(**{self.names[0]: float(arrays["value"][i])})
+        return self.lies_on(known, seed_of(system, Start("orbit", point_of(arrays, i, system))))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.branches.branch import Branch, continue_orbit
-from vibro_sweep.analysis.branches.branch_arrays import Flat, outline
+from vibro_sweep.analysis.branches.branch_arrays import Arrays, outline
 from vibro_sweep.analysis.branches.branch_search import Branches, beyond, followed
 from vibro_sweep.analysis.branches.search import Task
 from vibro_sweep.analysis.branches.seeds import packed, seed_of
@@ -61,7 +61,7 @@ def follow_branches(
 
     first = continue_orbit(orbit, parameter, bounds, tell)
 
-    def evaluate(names: list[str], tasks: list[Task]) -> list[Flat]:
+    def evaluate(names: list[str], tasks: list[Task]) -> list[Arrays]:
         result = []
         for name, task in zip(names, tasks, strict=True):
             branches[name] = branch = followed(task, tell) if branches else first

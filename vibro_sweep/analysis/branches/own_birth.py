@@ -124,4 +124,4 @@ def may_be_born(whole: Solution, sigma: int) -> bool:
     half = whole.K // 2
     if any(a != sigma * b for a, b in zip(whole.sides[:half], whole.sides[half:], strict=True)):
         return False
-    return whole.halves % 4 == (0 if sigma == 1 else 2) and (sigma == 1 or whole.family.linear.symmetric)
+    return whole.half_periods % 4 == (0 if sigma == 1 else 2) and (sigma == 1 or whole.family.linear.symmetric)

@@ -37,7 +37,7 @@ def passed(curve: SolutionCurve, rows: list[Rows], behind: Point | None) -> list
     D = np.concatenate([*(part.D for part in rows), *(point.solution.jumps[None] for point in last)])
     omega = family.linear.omega + curve.oscillators.slopes[0].omega * (p - family.numbers[name])
     half, speed = start.K // 2, family.linear.omega * start.size_of_gap
-    delay = omega[:, None] * (t[:, half:] - t[:, :half]) - start.halves * np.pi / 2
+    delay = omega[:, None] * (t[:, half:] - t[:, :half]) - start.half_periods * np.pi / 2
     for sigma in signs:
         apart = np.hstack([delay, (D[:, half:] - sigma * D[:, :half]) / speed])
         found += (np.flatnonzero(np.sum(apart[:-1] * apart[1:], axis=1) < 0) + 1).tolist()

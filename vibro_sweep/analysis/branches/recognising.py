@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Flat, solution_of
+from vibro_sweep.analysis.branches.branch_arrays import Arrays, solution_of
 from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.solution import Solution
 
@@ -11,43 +11,43 @@ MIRROR = str.maketrans("RLrl", "LRlr")
 IMPACTS = ("impact_t", "impact_v", "impact_t_off")
 
 
-def passes(flat: Flat, parameter: str, system, s: Solution) -> bool:
+def passes(arrays: Arrays, parameter: str, system, s: Solution) -> bool:
     """Whether an orbit of `system`, or its mirror image, lies on a branch: by Newton's method from its points on both
     sides."""
-    if not _may_pass(flat, s):
+    if not _may_pass(arrays, s):
         return False
-    offset = flat["value"] - s.family.numbers[parameter]
+    offset = arrays["value"] - s.family.numbers[parameter]
     if len(offset) == 1:  # a branch that could not be followed
-        return not offset[0] and alike(point_of(flat, 0, system), s)
+        return not offset[0] and alike(point_of(arrays, 0, system), s)
     for i in np.flatnonzero(offset[:-1] * offset[1:] <= 0):
         share = offset[i] / (offset[i] - offset[i + 1]) if offset[i] != offset[i + 1] else 0.0
-        parts = [(1 - share) * flat[name][i] + share * flat[name][i + 1] for name in IMPACTS]
-        found = solution_of(flat, system, *parts).corrected()
+        parts = [(1 - share) * arrays[name][i] + share * arrays[name][i + 1] for name in IMPACTS]
+        found = solution_of(arrays, system, *parts).corrected()
         if found is not None and alike(found, s):
             return True
     return False
 
 
-def point_of(flat: Flat, i: int, system) -> Solution:
+def point_of(arrays: Arrays, i: int, system) -> Solution:
     """The solution at a point of a branch, not corrected; `system` has the parameter's value there."""
-    return solution_of(flat, system, *(flat[name][i] for name in IMPACTS))
+    return solution_of(arrays, system, *(arrays[name][i] for name in IMPACTS))
 
 
-def clearest(flat: Flat) -> int:
+def clearest(arrays: Arrays) -> int:
     """The point that is farthest from a fold: next to one Newton's method tells orbits badly apart."""
-    p = flat["value"]
+    p = arrays["value"]
     return int(np.argmax(np.abs(p[2:] - p[:-2]))) + 1 if len(p) > 2 else 0
 
 
-def _may_pass(flat: Flat, s: Solution) -> bool:
+def _may_pass(arrays: Arrays, s: Solution) -> bool:
     """Whether the orbit may be a rotation, or a mirror image, of those of a branch: by its period and its impacts."""
     halves = 1 if s.sigma == 1 else 2  # that the whole orbit consists of
     sides = [*s.sides, *(-side for side in s.sides)][: halves * s.K]
-    rests = int(np.isfinite(flat["impact_t_off"][0]).sum())
-    known = len(flat["impact_side"]), 2 * int(flat["branch_period"]), 1 + int(flat["branch_symmetric"]), rests
-    if known != (len(sides), halves * s.halves, halves, halves * len(s.rests)):
+    rests = int(np.isfinite(arrays["impact_t_off"][0]).sum())
+    known = len(arrays["impact_side"]), 2 * int(arrays["branch_period"]), 1 + int(arrays["branch_symmetric"]), rests
+    if known != (len(sides), halves * s.half_periods, halves, halves * len(s.rests)):
         return False
-    return rotates(word(flat["impact_side"]), word(sides), s.family.linear.symmetric)
+    return rotates(word(arrays["impact_side"]), word(sides), s.family.linear.symmetric)
 
 
 def rotates(known: str, own: str, mirrors: bool) -> bool:

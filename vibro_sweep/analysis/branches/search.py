@@ -7,10 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from vibro_sweep.analysis.branches.branch_arrays import Flat
+from vibro_sweep.analysis.branches.branch_arrays import Arrays
 from vibro_sweep.analysis.branches.seeds import Seed, unpacked
 
-Evaluate = Callable[[list[str], list[Any]], list[Flat]]  # the arrays of tasks by their names; none: nothing was found
+Evaluate = Callable[[list[str], list[Any]], list[Arrays]]  # the arrays of tasks by their names; none: nothing was found
 Bounds = tuple[tuple[float, float], ...]
 
 
@@ -19,7 +19,7 @@ class Node(NamedTuple):
     between it and the first ones."""
 
     name: str
-    flat: Flat
+    arrays: Arrays
     seed: Seed
     generation: int
 
@@ -48,17 +48,17 @@ class Search:
     of: tuple[str, ...]
     at_once: int | None = None
 
-    def passes(self, flat: Flat, seed: Seed) -> bool:
+    def passes(self, arrays: Arrays, seed: Seed) -> bool:
         """Whether a seed lies on the branch or curve with these arrays, also as a rotation or a mirror image."""
         raise NotImplementedError
 
-    def is_known(self, known: list[Node], flat: Flat, seed: Seed) -> bool:
+    def is_known(self, known: list[Node], arrays: Arrays, seed: Seed) -> bool:
         """Whether what was found from a seed that lies on none of these is one of them all the same."""
         return False
 
     def lies_on(self, known: list[Node], seed: Seed) -> bool:
         """Whether a seed lies on one of these."""
-        return any(self.passes(node.flat, seed) for node in known)
+        return any(self.passes(node.arrays, seed) for node in known)
 
     def run(self, seeds: list[Seed], depth: int, evaluate: Evaluate, known: list[Node] | tuple = ()) -> list[Node]:
         """All that is found, generation by generation, up to `depth` behind the first, behind those that are known."""
@@ -72,12 +72,12 @@ class Search:
                 todo = {f"{generation}:{i}": seed for i, seed in batch if not self.lies_on(found[first:], seed)}
                 tasks = [Task(seed, self.names, self.bounds, of) for seed in todo.values()]
                 before = len(found)
-                for (name, seed), flat in zip(todo.items(), evaluate(list(todo), tasks), strict=True):
-                    if flat and not self.lies_on(found[before:], seed) and not self.is_known(found, flat, seed):
-                        found.append(Node(name, flat, seed, generation))
+                for (name, seed), arrays in zip(todo.items(), evaluate(list(todo), tasks), strict=True):
+                    if arrays and not self.lies_on(found[before:], seed) and not self.is_known(found, arrays, seed):
+                        found.append(Node(name, arrays, seed, generation))
             seeds = [
                 seed
                 for i, node in enumerate(found[first:], first)
-                for seed in unpacked(node.flat, self.names, node.seed.system, i)
+                for seed in unpacked(node.arrays, self.names, node.seed.system, i)
             ]
         return found

@@ -4,14 +4,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Flat
+from vibro_sweep.analysis.branches.branch_arrays import Arrays
 from vibro_sweep.analysis.continuation.starting_orbit import KINDS, Start
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.linear import family_of
 
 TYPES = ("orbit", *KINDS)
-SCALARS = {"sigma": int, "halves": int, "index": int, "theta": float, "special": int}
+SCALARS = {"sigma": int, "half_periods": int, "index": int, "theta": float, "special": int}
 SHAPES = {  # of `packed`
     # values of the p parameters; which of them are those of a seed's special point
     "q p": "beyond_place beyond_own",
@@ -26,7 +26,7 @@ class Seed(NamedTuple):
 
     system: Any
     sigma: int
-    halves: int
+    half_periods: int
     impacts: np.ndarray  # (K, 4): side, t, D and the end of the rest or NaN
     type: str = "orbit"
     index: int = 0  # of the impact that grazes
@@ -44,7 +44,7 @@ class Seed(NamedTuple):
         side, t, D, ends = self.impacts.T
         rests = np.flatnonzero(np.isfinite(ends))
         sides, u = tuple(side.astype(int).tolist()), np.concatenate([t, D, ends[rests]])
-        return Solution(family_of(self.system), self.sigma, self.halves, sides, u, 0.0, tuple(rests.tolist()))
+        return Solution(family_of(self.system), self.sigma, self.half_periods, sides, u, 0.0, tuple(rests.tolist()))
 
     def orbit(self) -> PeriodicOrbit:
         return orbit_of(self.system, self.solution)
@@ -61,37 +61,45 @@ def seed_of(system, start: Start, parameters=(), special: int = -1) -> Seed:
     ends[list(s.rests)] = s.ends
     impacts = np.column_stack([s.sides, s.times, s.jumps, ends])
     return Seed(
-        system, s.sigma, s.halves, impacts, start.type, start.index, start.theta, tuple(parameters), special=special
+        system,
+        s.sigma,
+        s.half_periods,
+        impacts,
+        start.type,
+        start.index,
+        start.theta,
+        tuple(parameters),
+        special=special,
     )
 
 
-def packed(seeds: list[Seed], names: tuple[str, ...]) -> Flat:
+def packed(seeds: list[Seed], names: tuple[str, ...]) -> Arrays:
     """Arrays `SHAPES` of q seeds that differ from one oscillator in the p parameters `names` alone."""
-    flat = {name: np.array([getattr(seed, name) for seed in seeds], kind) for name, kind in SCALARS.items()} | {
+    arrays = {name: np.array([getattr(seed, name) for seed in seeds], kind) for name, kind in SCALARS.items()} | {
         "type": np.array([TYPES.index(seed.type) for seed in seeds], int),
         "place": np.array([seed.place(names) for seed in seeds]).reshape(-1, len(names)),
         "own": np.array([[n in seed.parameters for n in names] for seed in seeds], bool).reshape(-1, len(names)),
         "impacts": np.array([len(seed.impacts) for seed in seeds], int),
         "impact": np.concatenate([np.empty((0, 4)), *(seed.impacts for seed in seeds)]),
     }
-    return {f"beyond_{name}": values for name, values in flat.items()}
+    return {f"beyond_{name}": values for name, values in arrays.items()}
 
 
-def fit_together(flat: Flat) -> bool:
+def fit_together(arrays: Arrays) -> bool:
     """Whether arrays of these shapes are of seeds."""
-    types, counts = flat["beyond_type"], flat["beyond_impacts"]
+    types, counts = arrays["beyond_type"], arrays["beyond_impacts"]
     known = np.all((types >= 0) & (types < len(TYPES)))
-    return bool(known and np.all(counts >= 0) and counts.sum() == len(flat["beyond_impact"]))
+    return bool(known and np.all(counts >= 0) and counts.sum() == len(arrays["beyond_impact"]))
 
 
-def unpacked(flat: Flat, names: tuple[str, ...], system, parent: int = -1) -> list[Seed]:
+def unpacked(arrays: Arrays, names: tuple[str, ...], system, parent: int = -1) -> list[Seed]:
     """The seeds of `packed`. system : one of their oscillators"""
-    seeds, ends = [], np.cumsum(flat["beyond_impacts"])
+    seeds, ends = [], np.cumsum(arrays["beyond_impacts"])
     for i, end in enumerate(ends):
-        there = system.replace(**dict(zip(names, flat["beyond_place"][i].tolist(), strict=True)))
-        impacts = flat["beyond_impact"][end - flat["beyond_impacts"][i] : end]
-        own = tuple(name for name, one in zip(names, flat["beyond_own"][i], strict=True) if one)
-        scalars = {name: flat[f"beyond_{name}"][i].item() for name in SCALARS}
-        kind = TYPES[flat["beyond_type"][i]]
+        there = system.replace(**dict(zip(names, arrays["beyond_place"][i].tolist(), strict=True)))
+        impacts = arrays["beyond_impact"][end - arrays["beyond_impacts"][i] : end]
+        own = tuple(name for name, one in zip(names, arrays["beyond_own"][i], strict=True) if one)
+        scalars = {name: arrays[f"beyond_{name}"][i].item() for name in SCALARS}
+        kind = TYPES[arrays["beyond_type"][i]]
         seeds.append(Seed(there, impacts=impacts, type=kind, parameters=own, parent=parent, **scalars))
     return seeds

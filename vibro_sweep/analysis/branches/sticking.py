@@ -66,7 +66,7 @@ def _guesses(touching: Solution, index: int) -> list[Chatter]:
     for times in EARLIER:
         u = np.concatenate([t[:kept], [0.0], D[1:kept]])
         u[0] -= times * acceleration / jerk
-        guesses.append(Chatter(Solution(touching.family, sigma, touching.halves, tuple(sides[:kept]), u), state))
+        guesses.append(Chatter(Solution(touching.family, sigma, touching.half_periods, tuple(sides[:kept]), u), state))
     return guesses
 
 
@@ -86,6 +86,6 @@ def _onset(guess: Chatter, name: str) -> tuple[SolutionCurve, Place] | None:
     if place is None or not curve.is_real(place):
         return None
     shared = slice(1, min(s.K, curve.K))
-    flights = np.diff(first.phases, append=first.phases[0] + np.pi * s.halves)
+    flights = np.diff(first.phases, append=first.phases[0] + np.pi * s.half_periods)
     moved = np.abs(place.phases[shared] - first.phases[shared])
     return (curve, place) if np.all(moved < flights[shared]) else None

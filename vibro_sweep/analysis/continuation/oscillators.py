@@ -55,9 +55,9 @@ def numbers_of(q: Linear, units: Units) -> list[float]:
 class Oscillators:
     """Of a family, along two of its parameters, or fewer, over so many half forcing periods. Raises TooStiffError."""
 
-    def __init__(self, family: Family, names: tuple[str, ...], halves: int, units: Units):
-        checked_cells(family.linear, halves)
-        self.family, self.names, self.halves, self.units = family, names, halves, units
+    def __init__(self, family: Family, names: tuple[str, ...], half_periods: int, units: Units):
+        checked_cells(family.linear, half_periods)
+        self.family, self.names, self.half_periods, self.units = family, names, half_periods, units
         self.slopes = [family.derivative(name) for name in names]
         still = not any(np.any(getattr(slope, field)) for slope in self.slopes for field in TABLES)
         self._still = sampled(family.linear, units) if still else None
@@ -153,10 +153,10 @@ class Oscillators:
         r["centre"], r["reach"], r["degree"] = centre, reach, degrees
         r["fit"][: c.shape[0], : c.shape[1]] = c
         r["fit"][0, 0][np.isinf(at_centre)] = at_centre[np.isinf(at_centre)]
-        r["half_turns"] = self.halves
+        r["half_turns"] = self.half_periods
         r["width"] = flow(q).width * self.units.rate
         r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))
-        longest = np.pi * self.halves / values[..., -1].min()
+        longest = np.pi * self.half_periods / values[..., -1].min()
         r["bits"] = min(max(int(np.ceil(np.log2(2 * longest / r["width"]))), 1), moving_flow.BITS)
         A = at_centre[: n * (n + 1)]
         r["series"][:, :, : n + 1], r["powers"][: r["bits"], :, : n + 1] = tables_of(

@@ -40,7 +40,7 @@ class SolutionCurve:
         self.units = Units(float(s.size_of_gap), float(q.omega))
         self.tau = float(q.tau)  # by which phases become times: those of the curve do not move with it
         self._taus = [(s.family.numbers[names[0]], self.tau)]
-        self.oscillators = Oscillators(s.family, names, s.halves, self.units)
+        self.oscillators = Oscillators(s.family, names, s.half_periods, self.units)
         self.n = 2 * len(q.normal)
         self._take_sides(s.sides)
         planes = self.oscillators.around(self.bounds.mean(axis=1), self.unit / 2) if len(names) > 1 else None
@@ -54,8 +54,8 @@ class SolutionCurve:
         struck = which[: start.index] + which[start.index + 1 :] if kind == GRAZE and K % 2 else which
         half, whole = len(struck) // 2, s.sigma == 1 and len(struck) > 0 and len(struck) % 2 == 0
         whole = whole and kind != STICK
-        repeats = whole and s.halves % 4 == 0 and struck[:half] == struck[half:]
-        mirrors = whole and s.halves % 4 == 2 and struck[:half] == tuple(-side for side in struck[half:])
+        repeats = whole and s.half_periods % 4 == 0 and struck[:half] == struck[half:]
+        mirrors = whole and s.half_periods % 4 == 2 and struck[:half] == tuple(-side for side in struck[half:])
         mirrors = mirrors and q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
         sides, rests, count = np.array(which, float), np.isin(np.arange(K), s.rests), len(self.names)
         self.problem = Problem(kind, start.index, sides, rests, float(s.sigma), count, self.unit, repeats, mirrors)
@@ -136,7 +136,7 @@ class SolutionCurve:
         return (place.phases - self.tau) / self.omega(place)
 
     def period(self, place: Place) -> float:
-        return float(np.pi * self.orbit.halves / self.omega(place))
+        return float(np.pi * self.orbit.half_periods / self.omega(place))
 
     def beside(self, place: Place) -> list[Point]:
         """Points of the curve within the bounds, a little beside `place`."""
@@ -245,7 +245,7 @@ class SolutionCurve:
         ends = (t + place.jumps / family.linear.omega)[rests]
         jumps = np.where(rests, -self.speeds(place), place.jumps) if len(ends) else place.jumps
         u = np.concatenate([t, jumps * self.units.speed, ends])
-        return Solution(family, s.sigma, s.halves, sides, u, float(place.tests[TEST.residual]), s.rests)
+        return Solution(family, s.sigma, s.half_periods, sides, u, float(place.tests[TEST.residual]), s.rests)
 
     def _tau_of(self, place: Place) -> float:
         """The phase of the force, by which phases become times; on a curve they are as near to the start's as they can

@@ -5,7 +5,7 @@ The arrays, `SHAPES`, have the names that they have in files. Words are codes of
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Flat, common, solution_of
+from vibro_sweep.analysis.branches.branch_arrays import Arrays, common, solution_of
 from vibro_sweep.analysis.branches.criticality import critical_angle
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
@@ -32,7 +32,7 @@ SHAPES = {
 }
 
 
-def flatten(curve: BifurcationCurve) -> Flat:
+def arrays_of(curve: BifurcationCurve) -> Arrays:
     """The arrays of a curve."""
     data, solution_curve, start = curve.points, curve._solution_curve, curve._solution_curve.orbit
     grazing = solution_curve.problem.index if solution_curve.problem.kind == GRAZE else -1
@@ -41,7 +41,7 @@ def flatten(curve: BifurcationCurve) -> Flat:
     speeds = np.abs(np.delete(v, grazing, axis=1) if grazing >= 0 else v)
     oscillators = [solution_curve.oscillators.at(p).linear for p in value]
     if start.sigma == -1:
-        half = np.array([np.pi * start.halves / q.omega for q in oscillators])
+        half = np.array([np.pi * start.half_periods / q.omega for q in oscillators])
         t, v, sides = np.hstack([t, t + half[:, None]]), np.hstack([v, -v]), np.hstack([sides, -sides])
     result = common(curve, start, curve.parameters, value, CODES_OF_CURVES) | {
         "branch_type": np.int8(CURVES.index(curve.type)),
@@ -67,33 +67,33 @@ def _grazing_clearance(q: Linear) -> float:
     return np.nan if gain is None else abs(gain)
 
 
-def type_of(flat: Flat) -> str:
-    return CURVES[int(flat["branch_type"])]
+def type_of(arrays: Arrays) -> str:
+    return CURVES[int(arrays["branch_type"])]
 
 
-def solution_at(flat: Flat, point: int, system) -> Solution:
+def solution_at(arrays: Arrays, point: int, system) -> Solution:
     """The orbit at a point of a curve; `system` has the parameters of that point."""
-    t = flat["impact_t"][point]
-    return solution_of(flat, system, t, flat["impact_v"][point], np.full(len(t), np.nan))
+    t = arrays["impact_t"][point]
+    return solution_of(arrays, system, t, arrays["impact_v"][point], np.full(len(t), np.nan))
 
 
-def start_from(flat: Flat, point: int, system) -> Start:
+def start_from(arrays: Arrays, point: int, system) -> Start:
     """The bifurcation at a point of a curve, to follow it again from there."""
-    solution = solution_at(flat, point, system)
-    theta = critical_angle(solution) if type_of(flat) == "neimark_sacker" else 0.0
-    return Start(type_of(flat), solution, max(int(flat["branch_grazing"]), 0), theta)
+    solution = solution_at(arrays, point, system)
+    theta = critical_angle(solution) if type_of(arrays) == "neimark_sacker" else 0.0
+    return Start(type_of(arrays), solution, max(int(arrays["branch_grazing"]), 0), theta)
 
 
-def point_of_codimension_two(flat: Flat, index: int, names: list[str], system) -> CurvePoint:
+def point_of_codimension_two(arrays: Arrays, index: int, names: list[str], system) -> CurvePoint:
     """A special point of a curve; `system` is one of its oscillators."""
-    parameters = dict(zip(names, map(float, flat["special_value"][index]), strict=True))
+    parameters = dict(zip(names, map(float, arrays["special_value"][index]), strict=True))
     there = system.replace(**parameters)
-    solution = solution_at(flat, int(flat["special_point"][index]), there)
-    if index in (flat["branch_begins"], flat["branch_ends"]):  # perhaps the birth of a doubled or asymmetric orbit
+    solution = solution_at(arrays, int(arrays["special_point"][index]), there)
+    if index in (arrays["branch_begins"], arrays["branch_ends"]):  # perhaps the birth of a doubled or asymmetric orbit
         solution = solution.reduced()
-    kind = CODIMENSION_TWO[int(flat["special_type"][index])].name
+    kind = CODIMENSION_TWO[int(arrays["special_type"][index])].name
     none = np.full(2 * len(solution.family.linear.normal), np.nan, complex)
     return CurvePoint(
-        kind, parameters, orbit_of(there, solution), none, float(flat["special_error"][index]),
-        curve=type_of(flat), touches=bool(flat["special_touches"][index]),
+        kind, parameters, orbit_of(there, solution), none, float(arrays["special_error"][index]),
+        curve=type_of(arrays), touches=bool(arrays["special_touches"][index]),
     )  # fmt: skip

@@ -41,7 +41,7 @@ def dataset(curve: SolutionCurve, rows: Rows) -> "xarray.Dataset":
     flows = _flows(oscillators) if kind != STICK else oscillators
     for q, f, t, D, motion, h in zip(oscillators, flows, rows.t, rows.D, rows.motion, rows.state, strict=True):
         contacts = np.column_stack([q.stop(sides), 1 + q.restitution(sides)])[others]
-        P, u = forcing_period(q) / 2 * s.halves, np.concatenate([t[others], D[others]])
+        P, u = forcing_period(q) / 2 * s.half_periods, np.concatenate([t[others], D[others]])
         shifts.append((curve.tau - q.tau) / q.omega)
         if kind == STICK:
             multipliers.append(np.full(2 * len(q.normal), np.nan, complex))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Flat
+from vibro_sweep.analysis.branches.branch_arrays import Arrays
 from vibro_sweep.analysis.branches.recognising import apart, rotates
 from vibro_sweep.analysis.branches.search import Bounds, Search, Task
 from vibro_sweep.analysis.branches.seeds import Seed, packed, seed_of
@@ -17,7 +17,7 @@ from vibro_sweep.analysis.continuation.first_point import first_place
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.analysis.curves.bifurcation_curve import bifurcation_curve
-from vibro_sweep.analysis.curves.curve_arrays import flatten, solution_at, start_from, type_of
+from vibro_sweep.analysis.curves.curve_arrays import arrays_of, solution_at, start_from, type_of
 from vibro_sweep.analysis.curves.curve_start import as_special, start_at
 from vibro_sweep.analysis.curves.curve_switching import ENDS, switch
 from vibro_sweep.analysis.periodic.itinerary import word
@@ -37,7 +37,7 @@ def seed_at(special: SpecialPoint, names: tuple[str, str], index: int = -1) -> S
 
 
 @one_thread()
-def trace(task: Task) -> Flat:
+def compute_curve(task: Task) -> Arrays:
     """The curve of a task, with the seeds on it, as `packed` has them; nothing where there is no curve."""
     seed, names = task.seed, task.names
     special = as_special(seed.start, seed.parameters, seed.system)
@@ -51,7 +51,7 @@ def trace(task: Task) -> Flat:
             found = seed_at(other, names, index) if other.type in task.of else None
             if found is not None:
                 beyond.append(found)
-    return flatten(curve) | packed(beyond, names)
+    return arrays_of(curve) | packed(beyond, names)
 
 
 @dataclass(frozen=True)
@@ -60,47 +60,47 @@ class Curves(Search):
 
     at_once: int | None = 8
 
-    def passes(self, flat: Flat, seed: Seed) -> bool:
+    def passes(self, arrays: Arrays, seed: Seed) -> bool:
         """By Newton's method from the points beside it, on a curve of orbits like its own."""
-        if seed.type != type_of(flat) or not _may_pass(flat, seed, self.names):
+        if seed.type != type_of(arrays) or not _may_pass(arrays, seed, self.names):
             return False
         solution, place, size = seed.solution, seed.place(self.names), np.ptp(self.bounds, axis=1)
         least = 100 * SAME * solution.family.linear.omega * solution.size_of_gap
-        for s in np.flatnonzero(np.all(np.abs(flat["special_value"] - place) <= SAME * size, axis=1)):
-            if apart(_solution(flat, int(flat["special_point"][s]), seed, self.names), solution) <= least:
+        for s in np.flatnonzero(np.all(np.abs(arrays["special_value"] - place) <= SAME * size, axis=1)):
+            if apart(_solution(arrays, int(arrays["special_point"][s]), seed, self.names), solution) <= least:
                 return True
-        crossings = _crossings(flat, seed, self.names, self.bounds, place, size)
+        crossings = _crossings(arrays, seed, self.names, self.bounds, place, size)
         return any(apart(found, solution) <= least for found in crossings)
 
 
-def _crossings(flat: Flat, seed: Seed, names, bounds: Bounds, place, size):
+def _crossings(arrays: Arrays, seed: Seed, names, bounds: Bounds, place, size):
     """The orbits of a curve where it passes the place, if it does."""
-    at = flat["value"] / size
+    at = arrays["value"] / size
     chord, away = np.diff(at, axis=0), place / size - at[:-1]
     share = np.clip((away * chord).sum(axis=1) / np.maximum((chord**2).sum(axis=1), 1e-300), 0, 1)
     for i in np.flatnonzero(np.hypot(*(away - share[:, None] * chord).T) < NEAR):
         row = int(i + (share[i] > 0.5))
         row = min(max(row, 1), len(at) - 2) if len(at) > 2 else row  # at its ends a curve may be singular
-        system = seed.system.replace(**dict(zip(names, map(float, flat["value"][row]), strict=True)))
-        curve = SolutionCurve(start_from(flat, row, system), names, bounds)
+        system = seed.system.replace(**dict(zip(names, map(float, arrays["value"][row]), strict=True)))
+        curve = SolutionCurve(start_from(arrays, row, system), names, bounds)
         first, axis = first_place(curve), int(abs(chord[i, 1]) > abs(chord[i, 0]))
         found = None if first is None else curve.level(first, axis, float(place[axis]))
         if found is not None and np.all(np.abs(found.p[:2] - place) <= SAME * size):
             yield curve.solution(found)
 
 
-def _solution(flat: Flat, point: int, seed: Seed, names) -> Solution:
-    values = dict(zip(names, map(float, flat["value"][point]), strict=True))
-    return solution_at(flat, point, seed.system.replace(**values))
+def _solution(arrays: Arrays, point: int, seed: Seed, names) -> Solution:
+    values = dict(zip(names, map(float, arrays["value"][point]), strict=True))
+    return solution_at(arrays, point, seed.system.replace(**values))
 
 
-def _may_pass(flat: Flat, seed: Seed, names) -> bool:
+def _may_pass(arrays: Arrays, seed: Seed, names) -> bool:
     """Whether the orbit may be a rotation, or a mirror image, of those of a curve: by its period and its impacts."""
     s, whole = seed.solution, seed.solution.whole()
-    if whole.halves != 2 * flat["branch_period"]:
+    if whole.half_periods != 2 * arrays["branch_period"]:
         return False
     own = _word(whole.sides, seed.index if seed.type == "graze" else -1, s.sigma == -1)
-    known = _word(flat["impact_side"], int(flat["branch_grazing"]), bool(flat["branch_symmetric"]))
+    known = _word(arrays["impact_side"], int(arrays["branch_grazing"]), bool(arrays["branch_symmetric"]))
     mirrors = s.family.linear.symmetric and all(keeps_symmetry(s.family, name) for name in names)
     return rotates(known, own, mirrors)
 

@@ -94,6 +94,6 @@ def _grazing(solution: Solution, index: int, symmetric: bool) -> Start:
     simpler = bare(solution, gone).reduced()
     if not symmetric and simpler.sigma == -1:
         simpler = simpler.whole()
-    if len(gone) > 1 and simpler.halves < solution.halves:
+    if len(gone) > 1 and simpler.half_periods < solution.half_periods:
         return Start("graze", *inserted(simpler))
     return Start("graze", solution, index)

@@ -152,7 +152,7 @@ def birth_near(curve: SolutionCurve, a: Place) -> End | None:
 def _first_found(curve: SolutionCurve, aim: Place, sigma: int, lengths) -> End | None:
     solution, kind = struck(curve, curve.solution(aim)), curve.problem.kind
     starts = []
-    if sigma > 0 and solution.K % 4 == 0 and solution.halves % 4 == 0 and kind in (FOLD, TORUS):
+    if sigma > 0 and solution.K % 4 == 0 and solution.half_periods % 4 == 0 and kind in (FOLD, TORUS):
         mirrored = solution.sides[solution.K // 4] == -solution.sides[0]
         quarter = solution.part(4, -1 if mirrored else 1, alike=0.1, exact=False)
         if quarter is not None:

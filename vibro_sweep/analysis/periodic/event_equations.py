@@ -20,16 +20,16 @@ from vibro_sweep.model.linear import Linear, amplitudes, remembered
 
 
 class EventEquations:
-    """Orbits of `q` with impacts on `sides`, z(t + P) = sigma z(t), P = halves T/2.
+    """Orbits of `q` with impacts on `sides`, z(t + P) = sigma z(t), P = half_periods T/2.
 
-    sigma = +1 and an even number of halves, or sigma = -1 and an odd one (symmetric orbits).
+    sigma = +1 and an even number of half periods, or sigma = -1 and an odd one (symmetric orbits).
     Raises ResonanceError, TooStiffError (free_modes.py).
     """
 
-    def __init__(self, q: Linear, sigma: int, halves: int, sides, rests=()):
+    def __init__(self, q: Linear, sigma: int, half_periods: int, sides, rests=()):
         """rests : indices of impacts after which the mass rests"""
         self.q, self.K, self.n = q, len(sides), 2 * len(q.normal)
-        planes, self.closing = _tables(q, sigma, halves, bool(rests))
+        planes, self.closing = _tables(q, sigma, half_periods, bool(rests))
         self.planes = planes.copy()  # kernels write the contact's numbers into it
         self.planes[0]["numbers"] = self.planes[0]["exact"][-NUMBERS:] = _contact_of(q)
         resting = np.isin(np.arange(self.K), rests)
@@ -39,7 +39,7 @@ class EventEquations:
     @classmethod
     def of(cls, solution) -> "EventEquations":
         """Those of a `Solution`."""
-        return cls(solution.family.linear, solution.sigma, solution.halves, solution.sides, solution.rests)
+        return cls(solution.family.linear, solution.sigma, solution.half_periods, solution.sides, solution.rests)
 
     @cached_property
     def _path(self) -> path.Path:
@@ -84,9 +84,9 @@ def _contact_of(q: Linear) -> list[float]:
 
 
 @remembered(*TABLES)
-def _tables(q: Linear, sigma: int, halves: int, rests: bool) -> tuple[np.ndarray, np.ndarray | None]:
+def _tables(q: Linear, sigma: int, half_periods: int, rests: bool) -> tuple[np.ndarray, np.ndarray | None]:
     """(1,) `plane_of` of an oscillator, without its contact; `closing` in its units, without rests."""
-    checked_cells(q, halves)
+    checked_cells(q, half_periods)
     steady_gap(q)  # where it does not exist there is no such orbit; nor where this does not, but rests hold the gap
     if not rests:
         push_of_free_mode(q)
@@ -104,7 +104,7 @@ def _tables(q: Linear, sigma: int, halves: int, rests: bool) -> tuple[np.ndarray
     r["series"][:, :, : n + 1] = f.series.reshape(-1, m, m)[:, :n, columns] * scale * rates[:, None, None]
     r["powers"][:, :, : n + 1] = f.powers[:, :n, columns] * scale
     r["width"], r["bits"], r["is_still"], r["is_known"] = f.width * q.omega, moving_flow.BITS, 1, 1
-    r["half_turns"], r["reach"] = halves, 1.0
+    r["half_turns"], r["reach"] = half_periods, 1.0
     r["exact"][: n * (n + 1)] = r["A"].ravel()
     r["exact"][n * (n + 1) : n * (n + 2)] = f.B[n // 2 : n, n : n + 2].T.ravel() / q.omega**2
     r["middle_weights"], r["rest_weights"] = middle_weights(float(r["width"]))
@@ -113,4 +113,4 @@ def _tables(q: Linear, sigma: int, halves: int, rests: bool) -> tuple[np.ndarray
     if sigma == 1:
         r["held"] = unseen_modes(q) / np.outer(units, units)
         r["is_held"] = bool(np.any(r["held"]))
-    return result, closing(q, sigma, halves) * np.append(units, 1.0) / units[:, None]
+    return result, closing(q, sigma, half_periods) * np.append(units, 1.0) / units[:, None]

@@ -197,7 +197,7 @@ def _seeded(start: Solution):
         for end, change in zip(ends, changes, strict=True):
             if np.all((np.abs(known - end) > SAME * (units + np.abs(known))).any(axis=1)):
                 known = np.vstack([known, end])
-                yield Solution(start.family, start.sigma, start.halves, start.sides, end, float(change))
+                yield Solution(start.family, start.sigma, start.half_periods, start.sides, end, float(change))
 
     for first in range(0, SEEDS, AT_ONCE):
         ends, changes = e.newton(guesses[first : first + AT_ONCE])

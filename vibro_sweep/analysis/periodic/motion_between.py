@@ -9,13 +9,13 @@ from vibro_sweep.model.linear import Linear, forcing_period
 UNORDERED = 1e-9  # of the period: by so much rounding may exchange impacts
 
 
-def fly(q: Linear, sigma: int, halves: int, sides, u) -> tuple[np.ndarray, np.ndarray]:
+def fly(q: Linear, sigma: int, half_periods: int, sides, u) -> tuple[np.ndarray, np.ndarray]:
     """States (max(K, 1), 2N + 3) before each impact, in contact coordinates; and (distance, t, side) of the turning
     point of the gap nearest to its stop, inf where there is none."""
-    f, close = flow(q), closing(q, sigma, halves)
+    f, close = flow(q), closing(q, sigma, half_periods)
     m, K = f.B.shape[0], len(sides)
     states, nearest, room = np.empty((max(K, 1) + 1, m)), np.empty(3), flights.new_room(m)
-    P = forcing_period(q) / 2 * halves
+    P = forcing_period(q) / 2 * half_periods
     flights.fly_orbit(f, close, contacts_of(q, sides), u, P, q.low, q.high, states, nearest, room)
     return states[:-1], nearest
 

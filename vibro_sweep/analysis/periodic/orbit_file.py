@@ -42,7 +42,7 @@ def save_orbit(orbit: PeriodicOrbit, path) -> Path:
         "format": FORMAT,
         "system": numbers,
         "sigma": s.sigma,
-        "halves": s.halves,
+        "halves": s.half_periods,
         "sides": [int(side) for side in s.sides],
         "rests": list(s.rests),
         "unknowns": [float(value) for value in s.u],
@@ -79,15 +79,18 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
         check_type("system", record["system"], dict, "an object of numbers")
         numbers = dict(record["system"])
         system = Oscillator.named(numbers.pop("type", System.model.name), **numbers)
-        sigma, halves = checked_count("sigma", record["sigma"], -1, 1), checked_count("halves", record["halves"], 1)
+        sigma, half_periods = (
+            checked_count("sigma", record["sigma"], -1, 1),
+            checked_count("halves", record["halves"], 1),
+        )
         sides, rests = _whole("sides", record["sides"]), _whole("rests", record.get("rests", []))
         u, change = array_of(record["unknowns"], 1), number_of(record["residual"])
         if u is None or change is None:
             raise ValueError("its unknowns and its residual are no numbers")
         family = family_of(system)
-        odd = sigma == -1 and halves % 2 == 1 and family.linear.symmetric
-        even = sigma == 1 and halves % 2 == 0
-        if not (odd or even) or halves < 1 or set(sides) - {1, -1}:
+        odd = sigma == -1 and half_periods % 2 == 1 and family.linear.symmetric
+        even = sigma == 1 and half_periods % 2 == 0
+        if not (odd or even) or half_periods < 1 or set(sides) - {1, -1}:
             raise ValueError("its symmetry, period or sides do not fit together")
         if list(rests) != sorted(set(rests)) or not all(0 <= k < len(sides) for k in rests):
             raise ValueError("its rests do not belong to impacts")
@@ -102,7 +105,7 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
     except (TypeError, ValueError) as problem:
         raise FileError(path, f"damaged: {problem}") from None
     try:
-        return orbit_of(system, Solution(family, sigma, halves, sides, u, change, rests))
+        return orbit_of(system, Solution(family, sigma, half_periods, sides, u, change, rests))
     except ResonanceError:
         return PeriodicOrbit(system, "resonance")
     except TooStiffError:

@@ -57,7 +57,7 @@ class PeriodicOrbit:
     def period(self) -> int:
         if self._solution is None:
             return 0
-        return self._solution.halves if self.symmetric else self._solution.halves // 2
+        return self._solution.half_periods if self.symmetric else self._solution.half_periods // 2
 
     @property
     def symmetric(self) -> bool:
@@ -248,7 +248,7 @@ def found_orbit(system, solution: Solution | None) -> PeriodicOrbit:
     if leans(solution):
         return PeriodicOrbit(system, "resonance")
     least = solution.reduced()
-    same = (least.sigma, least.halves) == (solution.sigma, solution.halves)
+    same = (least.sigma, least.half_periods) == (solution.sigma, solution.half_periods)
     return orbit_of(system, solution if same else least)
 
 

@@ -18,7 +18,7 @@ class RestingOrbit:
 
     def __init__(self, solution):
         e = self.equations = EventEquations.of(solution)
-        self.q, self.sigma, self.length, self.n = e.q, solution.sigma, np.pi * solution.halves, e.n
+        self.q, self.sigma, self.length, self.n = e.q, solution.sigma, np.pi * solution.half_periods, e.n
         self.rests, self.place, self.events, self.Z = list(solution.rests), e.place, e.bench.events, e.planes[0]["Z"]
         e.move()
         e.take(solution)

@@ -21,7 +21,7 @@ def with_rests(solution: Solution) -> Solution | None:
         for share in SHARES:
             ends = (t + share * flights)[list(rests)]
             u = np.concatenate([t, solution.jumps, ends])
-            guess = Solution(solution.family, solution.sigma, solution.halves, solution.sides, u, 0.0, rests)
+            guess = Solution(solution.family, solution.sigma, solution.half_periods, solution.sides, u, 0.0, rests)
             found = guess.corrected()
             if found is not None and found.real:
                 return found
@@ -35,7 +35,7 @@ def evenly(start: Solution):
         times = (first + np.arange(K) / K) * P
         jumps = -np.array(start.sides) * q.omega * np.abs(q.stop(start.sides))
         u = np.concatenate([times, jumps])
-        yield Solution(start.family, start.sigma, start.halves, start.sides, u)
+        yield Solution(start.family, start.sigma, start.half_periods, start.sides, u)
 
 
 def _patterns(solution: Solution) -> list[tuple[int, ...]]:

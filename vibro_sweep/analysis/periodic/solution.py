@@ -25,14 +25,14 @@ NO_SPEED = 1e-9  # impulse, relative to omega times the gap, of an impact that i
 
 @dataclass(frozen=True)
 class Solution:
-    """z(t + P) = sigma z(t), P = halves T/2, with impacts u = (t_1 .. t_K, D_1 .. D_K) on `sides`.
+    """z(t + P) = sigma z(t), P = half_periods T/2, with impacts u = (t_1 .. t_K, D_1 .. D_K) on `sides`.
 
     With R = 0 the mass may rest after the impacts `rests`; u then goes on with the ends of the rests.
     """
 
     family: Family
     sigma: int
-    halves: int
+    half_periods: int
     sides: tuple[int, ...]
     u: np.ndarray
     change: float = 0.0  # of the last Newton step
@@ -49,7 +49,7 @@ class Solution:
 
     @property
     def P(self) -> float:
-        return forcing_period(self.family.linear) / 2 * self.halves
+        return forcing_period(self.family.linear) / 2 * self.half_periods
 
     @property
     def is_free(self) -> bool:
@@ -87,7 +87,7 @@ class Solution:
     def _flights(self):
         if self.rests:
             return self.resting.states, *self.resting.certificate()
-        return fly(self.family.linear, self.sigma, self.halves, self.sides, self.u)
+        return fly(self.family.linear, self.sigma, self.half_periods, self.sides, self.u)
 
     @property
     def states(self) -> np.ndarray:
@@ -185,7 +185,7 @@ class Solution:
         u = np.concatenate([(self.times + later).ravel(), (signs * self.jumps).ravel(), (self.ends + later).ravel()])
         sides = tuple(self.sigma**k * side for k in range(count) for side in self.sides)
         rests = tuple(k + K * i for i in range(count) for k in self.rests)
-        return Solution(self.family, self.sigma**count, self.halves * count, sides, u, self.change, rests)
+        return Solution(self.family, self.sigma**count, self.half_periods * count, sides, u, self.change, rests)
 
     def part(self, count: int, sigma: int, alike: float = ALIKE, exact: bool = True) -> "Solution | None":
         """The first of `count` equal parts (mirrored ones for sigma = -1), if they are equal to the share `alike`.
@@ -202,7 +202,7 @@ class Solution:
         if np.ptp(shifted, 0).max() > alike * P or np.ptp(aligned, 0).max() > alike * scale:
             return None
         u = np.concatenate([shifted.mean(0), aligned.mean(0), self.ends[: len(rests)]])
-        found = Solution(self.family, sigma, self.halves // count, tuple(self.sides[:K]), u, 0.0, rests)
+        found = Solution(self.family, sigma, self.half_periods // count, tuple(self.sides[:K]), u, 0.0, rests)
         if not exact:
             return found
         found = found.corrected()
@@ -218,12 +218,12 @@ class Solution:
             return Solution(family, -1 if symmetric else 1, 1 if symmetric else 2, (), self.u, 0.0)
         whole = self.whole()
         for count in repetitions(whole.sides):
-            if whole.halves // 2 % count == 0:
+            if whole.half_periods // 2 % count == 0:
                 found = whole.part(count, 1)
                 if found is not None:
                     whole = found
                     break
-        if self.family.linear.symmetric and whole.halves % 4 == 2 and is_mirrored(whole.sides):
+        if self.family.linear.symmetric and whole.half_periods % 4 == 2 and is_mirrored(whole.sides):
             half = whole.part(2, -1)
             if half is not None:
                 return half

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Flat
+from vibro_sweep.analysis.branches.branch_arrays import Arrays
 from vibro_sweep.model.bifurcations import BY_NAME, CURVES
 
 SLACK = 0.25  # of a cell: curves are drawn by chords
@@ -47,16 +47,16 @@ def edges_of(plane: Plane) -> Edges:
     return Edges(places, plane.period[places[..., 0], places[..., 1]])
 
 
-def passing(plane: Plane, edges: Edges, flat: Flat) -> np.ndarray:
+def passing(plane: Plane, edges: Edges, arrays: Arrays) -> np.ndarray:
     """Indices of the edges between whose points a curve passes that can be their reason.
 
     It has no unstable multiplier there but its own, and the period of one of the two orbits; of a flip the doubled one
     as well.
     """
-    period, at = int(flat["branch_period"]), flat["value"]
-    own = [period, 2 * period] if BY_NAME[CURVES[int(flat["branch_type"])]].beyond == "doubled" else [period]
+    period, at = int(arrays["branch_period"]), arrays["value"]
+    own = [period, 2 * period] if BY_NAME[CURVES[int(arrays["branch_type"])]].beyond == "doubled" else [period]
     able = np.isin(edges.periods, own).any(axis=1)
-    bounds = flat["unstable"] == 0
+    bounds = arrays["unstable"] == 0
     pieces = np.flatnonzero(bounds[:-1] | bounds[1:])
     result = []
     for axis in (0, 1):

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from vibro_sweep.analysis.branches.branch_arrays import Flat
+from vibro_sweep.analysis.branches.branch_arrays import Arrays
 from vibro_sweep.analysis.branches.search import Evaluate, Node
 from vibro_sweep.analysis.branches.seeds import Seed, packed, unpacked
 from vibro_sweep.analysis.curves.curve_search import Curves, seed_at
@@ -39,7 +39,7 @@ class Probe(NamedTuple):
 
 
 @one_thread()
-def probe(task: Probe) -> Flat:
+def probe(task: Probe) -> Arrays:
     """What ends the stability of an orbit on its way across an edge: `reason`, a code of EDGES, and, as `packed`
     has it, a start of a curve or none."""
     reason, seed = _probed(task)
@@ -79,11 +79,11 @@ def explain(
     bounds,
     of: tuple[str, ...],
     depth: int,
-    probed: Callable[[list[str], list[Probe]], list[Flat]],
-    traced: Evaluate,
+    evaluate_probes: Callable[[list[str], list[Probe]], list[Arrays]],
+    evaluate_curves: Evaluate,
 ) -> Explained:
-    """Curves for the edges of a plane. states : (n, m, 2N), of the orbits; probed, traced : give `probe` and `trace` of
-    tasks by their names."""
+    """Curves for the edges of a plane. states : (n, m, 2N), of the orbits; evaluate_probes, evaluate_curves : give
+    `probe` and `compute_curve` of tasks by their names."""
     edges = edges_of(plane)
     count = len(edges.periods)
     reason, curve = np.full(count, _CODES["open"]), np.full(count, -1)
@@ -93,20 +93,20 @@ def explain(
     while len(picks := _picked(plane, edges, tried)):
         jobs = {f"edge {edge}:{side}": _task(plane, states, system, names, edges, edge, side) for edge, side in picks}
         seeds, before = [], len(known)
-        for (edge, side), flat in zip(picks, probed(list(jobs), list(jobs.values())), strict=True):
-            found = unpacked(flat, names, system)
+        for (edge, side), arrays in zip(picks, evaluate_probes(list(jobs), list(jobs.values())), strict=True):
+            found = unpacked(arrays, names, system)
             tried[edge, side] = True
-            reason[edge] = min(reason[edge], flat["reason"])  # what says most comes first
+            reason[edge] = min(reason[edge], arrays["reason"])  # what says most comes first
             if found:
                 tried[edge] = True
                 seeds += found
 
         def evaluate(keys, tasks, turn=turn):
-            return traced([f"{turn}:{key}" for key in keys], tasks)
+            return evaluate_curves([f"{turn}:{key}" for key in keys], tasks)
 
         known = Curves(names, bounds, of).run([seed for seed in seeds if seed.type in of], depth, evaluate, known)
         for i in range(before, len(known)):
-            passed = passing(plane, edges, known[i].flat)
+            passed = passing(plane, edges, known[i].arrays)
             passed = passed[curve[passed] < 0]
             curve[passed], reason[passed], tried[passed] = i, _CODES["curve"], True
         turn += 1

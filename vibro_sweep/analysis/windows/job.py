@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch import Branch
-from vibro_sweep.analysis.branches.branch_arrays import Flat, flatten, section_states
+from vibro_sweep.analysis.branches.branch_arrays import Arrays, arrays_of, section_states
 from vibro_sweep.analysis.branches.branch_start import changes_rests
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.one_thread import one_thread
@@ -29,13 +29,13 @@ class Job(NamedTuple):
 
 
 @one_thread()
-def window_of(job: Job) -> Flat:
+def window_of(job: Job) -> Arrays:
     """The window of a recorded orbit, as a branch between its two ends; or `reason`, why there is none."""
     found = _found(job)
     return {"reason": np.int8(REASON_CODES[found])} if isinstance(found, str) else found
 
 
-def _found(job: Job) -> Flat | str:
+def _found(job: Job) -> Arrays | str:
     try:
         orbit = periodic_orbit(job.system, job.state, job.period)
     except ValueError:  # impacts of the recorded orbit that are none of a period
@@ -54,7 +54,7 @@ def _found(job: Job) -> Flat | str:
     value = chosen._solution.family.numbers[job.parameter]
     if not holds(branch, value, SLACK * (job.bounds[1] - job.bounds[0])):
         return "not_settled"
-    return flatten(branch, value)
+    return arrays_of(branch, value)
 
 
 def holds(branch: Branch, value: float, slack: float) -> bool:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Flat, section_states, solution_of
+from vibro_sweep.analysis.branches.branch_arrays import Arrays, section_states, solution_of
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import ALIKE, Solution, corrected
 from vibro_sweep.analysis.windows.job import are_near
@@ -12,47 +12,47 @@ from vibro_sweep.model.bifurcations import BIRTHS, BY_NAME, TYPES
 from vibro_sweep.model.linear import family_of
 
 
-def members(flat: Flat, system, parameter: str, values: np.ndarray, states: np.ndarray) -> np.ndarray:
+def members(arrays: Arrays, system, parameter: str, values: np.ndarray, states: np.ndarray) -> np.ndarray:
     """(m, starts) whether section states (m, starts, 2N) at m values within a window lie on its orbit."""
     family, result = family_of(system), np.zeros(states.shape[:2], bool)
-    guesses = [solution_of(flat, family.replace(**{parameter: p}), *guess_at(flat, p)) for p in values.tolist()]
+    guesses = [solution_of(arrays, family.replace(**{parameter: p}), *guess_at(arrays, p)) for p in values.tolist()]
     for i, found in enumerate(corrected(guesses)):
         if found is not None:
             result[i] = are_near(section_states(PeriodicOrbit(found.family, "ok", found, (0, 0))), states[i])
     return result
 
 
-def solution_in(flat: Flat, value: float, system) -> Solution | None:
+def solution_in(arrays: Arrays, value: float, system) -> Solution | None:
     """The orbit of a window at a value within it, where it is known to be real; None where Newton's method fails."""
-    return solution_of(flat, system, *guess_at(flat, value)).corrected()
+    return solution_of(arrays, system, *guess_at(arrays, value)).corrected()
 
 
-def guess_at(flat: Flat, value: float) -> list[np.ndarray]:
+def guess_at(arrays: Arrays, value: float) -> list[np.ndarray]:
     """Times and speeds of impacts, and ends of rests, (K,) each, from the neighbouring points of the branch.
 
     Beside a fold, or where the orbit is born, they move like the square root of the distance from there: on a straight
     line Newton's method would find the parent.
     """
-    p = flat["value"]
+    p = arrays["value"]
     i = int(np.clip(np.searchsorted(p, value) - 1, 0, len(p) - 2))
     share = (value - p[i]) / (p[i + 1] - p[i]) if p[i + 1] > p[i] else 0.0
-    if i == 0 and _turns(flat, 0):
+    if i == 0 and _turns(arrays, 0):
         share = math.sqrt(max(share, 0.0))
-    if i == len(p) - 2 and _turns(flat, -1):
+    if i == len(p) - 2 and _turns(arrays, -1):
         share = 1 - math.sqrt(max(1 - share, 0.0))
     return [
-        (1 - share) * flat[name][i] + share * flat[name][i + 1] for name in ("impact_t", "impact_v", "impact_t_off")
+        (1 - share) * arrays[name][i] + share * arrays[name][i + 1] for name in ("impact_t", "impact_v", "impact_t_off")
     ]
 
 
-def _turns(flat: Flat, end: int) -> bool:
+def _turns(arrays: Arrays, end: int) -> bool:
     """Whether the branch turns back at an end (0 or -1) of a window: at a fold, and where a doubled or asymmetric orbit
     is born, whose halves are alike there."""
-    kind = TYPES[int(flat["special_type"][end])].name
+    kind = TYPES[int(arrays["special_type"][end])].name
     if kind == "fold":
         return True
-    K, t, v = len(flat["impact_side"]), flat["impact_t"][end], flat["impact_v"][end]
-    if kind not in BIRTHS or flat["branch_symmetric"] or K % 2:
+    K, t, v = len(arrays["impact_side"]), arrays["impact_t"][end], arrays["impact_v"][end]
+    if kind not in BIRTHS or arrays["branch_symmetric"] or K % 2:
         return False
     sign = BY_NAME[kind].sigma
     lengths, speeds = np.diff(t), v[K // 2 :] - sign * v[: K // 2]

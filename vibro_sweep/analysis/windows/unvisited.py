@@ -45,7 +45,7 @@ def _of_window(search: WindowSearch, w: int) -> Iterator[Unvisited]:
     ends = found.ends
     inside = np.flatnonzero((ends[0] < values) & (values < ends[1]))
     seen = (search.window[found.row][inside] == w).any(axis=1)
-    others = search.elsewhere(w)[inside].any(axis=1) & ~seen
+    others = search.on_other_attractors(w)[inside].any(axis=1) & ~seen
     for run in np.split(inside, np.flatnonzero(np.diff(seen)) + 1):
         missed = run[others[run - inside[:1]]]
         if not len(missed):
@@ -65,7 +65,7 @@ def _start(search: WindowSearch, w: int, values: np.ndarray) -> tuple[float, Per
     order = np.argsort(-np.minimum(values - lo, hi - values), kind="stable")
     for value in values[order].tolist():
         system = row.system_at(value)
-        orbit = orbit_of(system, solution_in(found.flat, value, system))
+        orbit = orbit_of(system, solution_in(found.arrays, value, system))
         if orbit.ok and orbit.stable:
             return value, orbit
     first = float(values[order[0]])

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Flat, orbit_at, special_point
+from vibro_sweep.analysis.branches.branch_arrays import Arrays, orbit_at, special_point
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
@@ -32,7 +32,7 @@ class Window:
     held: dict[str, float]
     points: int
     other_attractor: int
-    _flat: Flat = field(repr=False)
+    _arrays: Arrays = field(repr=False)
     _system: object = field(repr=False)
 
     def __repr__(self) -> str:
@@ -41,31 +41,31 @@ class Window:
     @property
     def period(self) -> int:
         """In forcing periods."""
-        return int(self._flat["branch_period"])
+        return int(self._arrays["branch_period"])
 
     @property
     def symmetric(self) -> bool:
-        return bool(self._flat["branch_symmetric"])
+        return bool(self._arrays["branch_symmetric"])
 
     @property
     def itinerary(self) -> str:
         """Of the orbit with more impacts on the right, of two mirror images."""
-        return word(self._flat["impact_side"])
+        return word(self._arrays["impact_side"])
 
     @cached_property
     def orbit(self) -> PeriodicOrbit:
         """At a point of the sweep."""
-        return orbit_at(self._flat, int(self._flat["branch_origin"]), self._system)
+        return orbit_at(self._arrays, int(self._arrays["branch_origin"]), self._system)
 
     @cached_property
     def lower(self) -> SpecialPoint:
         """What ends the window at `lo`."""
-        return special_point(self._flat, 0, self.parameter, self._system)
+        return special_point(self._arrays, 0, self.parameter, self._system)
 
     @cached_property
     def upper(self) -> SpecialPoint:
         """What ends the window at `hi`."""
-        return special_point(self._flat, 1, self.parameter, self._system)
+        return special_point(self._arrays, 1, self.parameter, self._system)
 
 
 class Windows(list[Window]):
@@ -98,7 +98,7 @@ def windows_of(search: WindowSearch) -> Windows:
     result = Windows()
     for found, *counts in zip(search.found, search.counts.tolist(), search.other_attractor.tolist(), strict=True):
         row = search.rows[found.row]
-        result.append(Window(row.parameter, *found.ends, row.held, *counts, found.flat, found.system))
+        result.append(Window(row.parameter, *found.ends, row.held, *counts, found.arrays, found.system))
     result.parameter = search.rows[0].parameter
     result.window, result.reason = in_file_order(search)
     result.unvisited = unvisited_in(search)

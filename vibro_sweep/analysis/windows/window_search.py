@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch_arrays import Flat
+from vibro_sweep.analysis.branches.branch_arrays import Arrays
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.windows.continued import continued
 from vibro_sweep.analysis.windows.job import Job
@@ -28,12 +28,12 @@ class RowWindow(NamedTuple):
     """A window of a row."""
 
     row: int
-    flat: Flat
+    arrays: Arrays
     system: Any  # of the row, at the parameter of the orbit that the window was found from
 
     @property
     def ends(self) -> tuple[float, float]:
-        values = self.flat["special_value"]
+        values = self.arrays["special_value"]
         return float(values[0]), float(values[-1])
 
 
@@ -50,16 +50,16 @@ class WindowSearch:
         self.window = np.full(self.reason.shape, -1, np.int32)
 
     @one_thread()
-    def search(self, evaluate: Callable[[list[str], list[Job]], Iterable[Flat]]) -> None:
+    def search(self, evaluate: Callable[[list[str], list[Job]], Iterable[Arrays]]) -> None:
         """Follow windows until no periodic point is left. evaluate : gives `window_of` of jobs by their names."""
         while points := list(self._middles()):
             results = evaluate([":".join(map(str, at)) for at in points], [self._job(*at) for at in points])
             before = len(self.found)
-            for (r, i, j), flat in zip(points, results, strict=True):
-                if "reason" in flat:
-                    self.reason[r, i, j] = flat["reason"]
+            for (r, i, j), arrays in zip(points, results, strict=True):
+                if "reason" in arrays:
+                    self.reason[r, i, j] = arrays["reason"]
                 else:
-                    self._add(RowWindow(r, flat, self.rows[r].system_at(self.rows[r].values[i])))
+                    self._add(RowWindow(r, arrays, self.rows[r].system_at(self.rows[r].values[i])))
             for w in range(before, len(self.found)):
                 self._take_points(w, self._open[self.found[w].row])
             for at in points:  # a point that its own window does not pass, which has moved to another orbit
@@ -91,7 +91,7 @@ class WindowSearch:
         """Orbits of the sweep in each window."""
         return np.bincount(self.window.ravel() + 1, minlength=len(self.found) + 1)[1:]
 
-    def elsewhere(self, w: int) -> np.ndarray:
+    def on_other_attractors(self, w: int) -> np.ndarray:
         """(values, starts) which orbits of a window's row lie at its values and went to another attractor."""
         found = self.found[w]
         row, window, (lo, hi) = self.rows[found.row], self.window[found.row], found.ends
@@ -102,7 +102,7 @@ class WindowSearch:
     @property
     def other_attractor(self) -> np.ndarray:
         """Orbits of the sweep at values within each window that went to another attractor."""
-        return np.array([self.elsewhere(w).sum() for w in range(len(self.found))], int)
+        return np.array([self.on_other_attractors(w).sum() for w in range(len(self.found))], int)
 
     def _middles(self) -> Iterator[tuple[int, int, int]]:
         """Row, value and start of the middle point of each group."""
@@ -123,7 +123,9 @@ class WindowSearch:
         """Keep a window, unless it is known."""
         near = SAME * np.ptp(self.rows[found.row].bounds)
         if not any(
-            known.row == found.row and _same(known.flat, found.flat) and np.allclose(known.ends, found.ends, 0, near)
+            known.row == found.row
+            and _same(known.arrays, found.arrays)
+            and np.allclose(known.ends, found.ends, 0, near)
             for known in self.found
         ):
             self.found.append(found)
@@ -135,9 +137,9 @@ class WindowSearch:
         row = self.rows[found.row]
         lo, hi = found.ends
         inside = (lo <= row.values) & (row.values <= hi)
-        wanted = still & inside[:, None] & (row.period % int(found.flat["branch_period"]) == 0)
+        wanted = still & inside[:, None] & (row.period % int(found.arrays["branch_period"]) == 0)
         places = np.flatnonzero(wanted.any(axis=1))
-        wanted[places] &= members(found.flat, row.system, row.parameter, row.values[places], row.states[places])
+        wanted[places] &= members(found.arrays, row.system, row.parameter, row.values[places], row.states[places])
         self.window[found.row][wanted], self.reason[found.row][wanted] = w, REASON_CODES["in_a_window"]
 
     def _sort(self) -> None:
@@ -159,7 +161,7 @@ def _decided(row: Row) -> Row:
     return replace(row, states=states, period=period, reason=reason)
 
 
-def _same(one: Flat, other: Flat) -> bool:
+def _same(one: Arrays, other: Arrays) -> bool:
     """Whether two windows are of orbits with one itinerary and period."""
     return (
         one["branch_period"] == other["branch_period"]

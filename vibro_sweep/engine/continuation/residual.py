@@ -5,7 +5,7 @@ contact coordinates z = y + S, and y' = A (y, 1) knows the constant force alone.
 its velocity jump D_i, two rows, and the flight after it; s_i = (phi_{i+1} - phi_i)/omega:
 
     impact: gap_i = stop_i, D_i + (1 + R_i) v_i = 0        watched: v_i = 0, D_i = 0
-    y_{i+1} = E(s_i) (y_i + D_i e_v, 1)                    y_{K+1} = sigma y_1, phi_{K+1} = phi_1 + pi halves
+    y_{i+1} = E(s_i) (y_i + D_i e_v, 1)                    y_{K+1} = sigma y_1, phi_{K+1} = phi_1 + pi half_periods
 
 Newton's changes are (xi_i, dphi_i, dD_i) with dy_i = xi_i + y'_i dphi_i, so that only neighbours are coupled:
 

@@ -162,7 +162,7 @@ def _flow(q: Linear, B: np.ndarray, row: np.ndarray) -> Flow:
 
 
 @remembered(*MATRICES)
-def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
+def closing(q: Linear, sigma: int, half_periods: int) -> np.ndarray:
     """(n, n + 1): from what a period adds to a zero state, and the gap, the state that repeats itself with sigma.
 
     The gap is used only where the contact sees a free mode. Raises ResonanceError.
@@ -172,7 +172,7 @@ def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
     A = extended(free_rates(q))
     cells = cells_needed(q)
     half = power(exponential(A, extended(forcing_period(q)) / 2 / cells), cells)
-    matrix = (sigma * np.eye(n) - power(half, halves)).astype(float)
+    matrix = (sigma * np.eye(n) - power(half, half_periods)).astype(float)
     result = np.zeros((n, n + 1))
     if sigma == 1 and has_free_gap(q):
         momentum, gauge = _free_motion(q)
@@ -182,7 +182,9 @@ def closing(q: Linear, sigma: int, halves: int) -> np.ndarray:
         result[:] = np.linalg.inv(bordered)[:n, : n + 1]
         return result
     if np.linalg.cond(matrix) > 1e14:
-        raise ResonanceError(f"an undamped mode repeats itself, with sign {sigma:+d}, after {halves} half periods")
+        raise ResonanceError(
+            f"an undamped mode repeats itself, with sign {sigma:+d}, after {half_periods} half periods"
+        )
     result[:, :n] = np.linalg.inv(matrix)
     return result
 

@@ -54,9 +54,11 @@ def cells_needed(q: Linear) -> int:
     return max(math.ceil(norm * forcing_period(q) / 2 / REACH), 4)
 
 
-def checked_cells(q: Linear, halves: int) -> int:
+def checked_cells(q: Linear, half_periods: int) -> int:
     """Cells in so many half forcing periods. Raises TooStiffError."""
-    cells = cells_needed(q) * halves
+    cells = cells_needed(q) * half_periods
     if cells > MOST_CELLS:
-        raise TooStiffError(f"tables over {halves} half periods need {cells} cells, at most {MOST_CELLS} are allowed")
+        raise TooStiffError(
+            f"tables over {half_periods} half periods need {cells} cells, at most {MOST_CELLS} are allowed"
+        )
     return cells

@@ -104,10 +104,10 @@ def fly_half(e, x, side, X, dX, w):
 
 
 @entry
-def iterate(e, x, halves, states, ends, derivatives, impacts, counts, w):
+def iterate(e, x, half_periods, states, ends, derivatives, impacts, counts, w):
     """So many half periods from each of `states` (n, 2 N), the first from the phase of the right graze.
 
-    ends (n, 2 N), derivatives (n, 2 N, columns), impacts (n, halves + 1, 5 + 2 N) and counts (n,) receive the results.
+    ends (n, 2 N), derivatives (n, 2 N, columns), impacts (n, half_periods + 1, 5 + 2 N), counts (n,) get results.
     """
     for n in range(len(states)):
         X, dX = ends[n], derivatives[n]
@@ -116,7 +116,7 @@ def iterate(e, x, halves, states, ends, derivatives, impacts, counts, w):
             X[i] = states[n, i]
             for j in range(dX.shape[1]):
                 dX[i, j] = 1.0 if i == j else 0.0
-        for half in range(halves):
+        for half in range(half_periods):
             side = 1.0 if half % 2 == 0 else -1.0
             row = impacts[n, counts[n]]
             if (x.right if side > 0.0 else x.left) and jump(e, x, side, X, dX, w, row):
