@@ -20,6 +20,7 @@ from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.observables import VARIABLES, WORDS, asked_for
 from vibro_sweep.model.parameters import BY_NAME, NAMES
 from vibro_sweep.model.state import state
+from vibro_sweep.model.told import sentence
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.model.units import unit_in
 from vibro_sweep.scene import parse_scene
@@ -136,7 +137,7 @@ class TestOnlyWhatIsAskedFor:
                 one = by_name[name]
                 for attribute, value in (
                     ("long_name", one.long_name),
-                    ("description", one.text),
+                    ("description", sentence(one.text)),
                     ("units", unit_in(one.units, None)),
                 ):
                     assert dataset.attrs[attribute].decode() == value, name

@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES, EDGES, REASONS, TYPES, WAYS
+from vibro_sweep.model.branch_file import BRANCHES, CHART, WINDOWS, columns
 from vibro_sweep.model.catalogue import NUMBERS
 from vibro_sweep.model.dimensions import DIMENSIONS
 from vibro_sweep.model.models import DEFAULT, MODELS
@@ -12,6 +13,7 @@ from vibro_sweep.model.observables import VARIABLES, WORDS
 from vibro_sweep.model.parameters import FOLLOWING, PARAMETERS
 from vibro_sweep.model.state import INITIAL
 from vibro_sweep.model.status import STATUSES
+from vibro_sweep.model.told import sentence
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.plotting import KINDS
 from vibro_sweep.scene import json_schema
@@ -30,7 +32,10 @@ _BOUNDS = {"exclusiveMinimum": "> {}", "minimum": ">= {}", "maximum": "<= {}"}
 def page() -> str:
     """The page as Markdown."""
     return "\n".join(
-        [HEAD, *_scene(), *_words(), *_variables(), *_numbers(), *_statuses(), *_bifurcations(), *_pictures()]
+        [
+            *(HEAD, *_scene(), *_words(), *_variables(), *_columns()),
+            *(*_numbers(), *_statuses(), *_bifurcations(), *_pictures()),
+        ]
     )
 
 
@@ -134,11 +139,24 @@ def _variables() -> Iterator[str]:
         "`0.005 m`; without `units` all but radians are `1`.\n"
     )
     rows = (
-        (f"`{one.name}`", ", ".join(one.dimensions), one.dtype, one.units, one.label, one.text) for one in VARIABLES
+        (f"`{one.name}`", ", ".join(one.dimensions), one.dtype, one.units, one.label, sentence(one.text))
+        for one in VARIABLES
     )
     yield from _table(("name", "dimensions", "type", "units", "`long_name`", "`description`"), rows)
     yield "## Dimensions\n"
     yield from _table(("name", "meaning"), ((f"`{name}`", one.text) for name, one in DIMENSIONS.items()))
+
+
+def _columns() -> Iterator[str]:
+    """Variables of the other kinds of files, of branches in b and curves in b and omega."""
+    known: set[str] = set()
+    for kind, parameters in ((BRANCHES, ["b"]), (WINDOWS, ["b"]), (CHART, ["b", "omega"])):
+        yield f"## Variables of a file of {kind}\n"
+        yield "Beside those of a file of branches.\n" if known else ""
+        found = [one for one in columns(kind, parameters, 2) if one.name not in known]
+        known = known or {one.name for one in found}
+        rows = ((f"`{one.name}`", ", ".join(one.dimensions), one.dtype, one.label, sentence(one.text)) for one in found)
+        yield from _table(("name", "dimensions", "type", "`long_name`", "`description`"), rows)
 
 
 def _numbers() -> Iterator[str]:

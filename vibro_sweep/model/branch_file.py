@@ -14,15 +14,15 @@ BRANCHES, WINDOWS, CHART = "branches", "windows", "curves"  # the kinds of such 
 def columns(kind: str, parameters: list[str], masses: int) -> list[Column]:
     """All variables of a file; parameters : the names of numbers along which branches lead."""
     units = {one.name: one.units for one in coordinates(masses)}
-    own = [Column(name, ("point",), "f8", name, f"the parameter {name}") for name in parameters]
-    own += [Column(n, ("point",), "f8", n, f"{n} at t = 0, before an impact there", units[n]) for n in units]
+    own = [Column(name, ("point",), "f8", name, f"value of the parameter {name}") for name in parameters]
+    own += [Column(n, ("point",), "f8", n, f"value of {n} at t = 0, before an impact there", units[n]) for n in units]
     if kind == CHART:
         return [*own, *OF_CURVES]
     if kind == WINDOWS:
         text = "at t = 0 mod T, of a start that stays on the window's orbit at `unvisited_at`; NaN where none is known"
-        starts = [Column(f"unvisited_{n}", ("unvisited",), "f8", n, f"{n} {text}", units[n]) for n in units]
+        starts = [Column(f"unvisited_{n}", ("unvisited",), "f8", n, f"value of {n} {text}", units[n]) for n in units]
         return [*own, *OF_BRANCHES, *OF_WINDOWS, *UNVISITED.values(), *starts]
-    sections = [Column(f"section_{n}", ("section",), "f8", n, f"{n} at t = 0 mod T", units[n]) for n in units]
+    sections = [Column(f"section_{n}", ("section",), "f8", n, f"value of {n} at t = 0 mod T", units[n]) for n in units]
     return [*own, *OF_BRANCHES, BRANCH_SECTIONS, *sections]
 
 

@@ -12,7 +12,7 @@ _SHARED = {
 }
 
 OF_CURVES = (  # branches are curves here, along which an orbit bifurcates
-    Column("branch_type", ("branch",), "i1", "type", "what happens along the curve", "1", CURVES),
+    Column("branch_type", ("branch",), "i1", "type", "type of the bifurcation along the curve", "1", CURVES),
     Column(
         "branch_grazing",
         ("branch",),
@@ -26,14 +26,14 @@ OF_CURVES = (  # branches are curves here, along which an orbit bifurcates
         ("point",),
         "i4",
         "unstable multipliers",
-        "number of multipliers outside the unit circle, beside those that the curve is about; 0: it bounds attractors",
+        "number of multipliers outside the unit circle, without the critical ones; 0 where the curve bounds attractors",
     ),
     Column(
         "b_star",
         ("point",),
         "f8",
         "grazing clearance",
-        "b at which the free motion grazes both stops; NaN: no such",
+        "clearance b at which the free motion grazes both stops; NaN where there is none",
         "m",
     ),
     Column(
@@ -41,12 +41,18 @@ OF_CURVES = (  # branches are curves here, along which an orbit bifurcates
         ("special",),
         "i1",
         "type",
-        "of codimension two",
+        "type of the point of codimension two",
         "1",
         tuple(one.name for one in CODIMENSION_TWO),
     ),
     Column(
-        "special_touches", ("special",), "i1", "touches", "whether a flight touches a stop there", "1", ("no", "yes")
+        "special_touches",
+        ("special",),
+        "i1",
+        "touches",
+        "whether a flight touches a stop at the special point",
+        "1",
+        ("no", "yes"),
     ),
 )
 
@@ -57,13 +63,18 @@ OF_EDGES = (  # of curves that begin at the edges of a plane
         ("edge", "parameter"),
         "f8",
         "from",
-        "the numbers `parameters` at one point of the sweep",
+        "values of the attribute `parameters` at one point of the sweep",
         OF_PARAMETER,
     ),
     Column(
-        "edge_to", ("edge", "parameter"), "f8", "to", "at its neighbour, whose orbit has another period", OF_PARAMETER
+        "edge_to",
+        ("edge", "parameter"),
+        "f8",
+        "to",
+        "values of the attribute `parameters` at its neighbour, whose orbit has another period",
+        OF_PARAMETER,
     ),
-    Column("edge_reason", ("edge",), "i1", "reason", "why the two differ", "1", tuple(EDGES)),
+    Column("edge_reason", ("edge",), "i1", "reason", "why the orbits of the two points differ", "1", tuple(EDGES)),
     Column(
         "edge_curve",
         ("edge",),

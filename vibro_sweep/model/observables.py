@@ -111,11 +111,11 @@ _OF_ANY = (
         "average", ("attractors",), "average", "averages that orbits of one attractor share", ("averaged",),
     ),
     Variable(
-        "average_error", ("attractors",), "error of the average", "how well the averages are known", ("averaged",),
+        "average_error", ("attractors",), "error of the average", "error of the averages", ("averaged",),
     ),
     Variable(
         "lyapunov_running", ("convergence",), "Lyapunov exponent",
-        "Lyapunov exponents as they converge, in the order of their vectors", ("elapsed", "exponent"),
+        "Lyapunov exponents as they converge along the record, in the order of their vectors", ("elapsed", "exponent"),
         units="s-1", in_kernel=False,
     ),
     Variable(

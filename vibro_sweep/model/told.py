@@ -6,6 +6,11 @@ LONGEST = 600  # letters of what is told in full
 FEW = 3  # entries of a list that are told otherwise
 
 
+def sentence(text: str) -> str:
+    """A declared text, which begins small and ends without a full stop, as a sentence."""
+    return text[:1].upper() + text[1:] + "."
+
+
 def arguments(given: Mapping[str, object]) -> tuple[str, bool]:
     """As they are given in Python, and whether these are all of them."""
     known = {name: value for name, value in given.items() if value is not None}

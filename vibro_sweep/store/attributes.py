@@ -6,6 +6,7 @@ import numpy as np
 
 from vibro_sweep.model import catalogue
 from vibro_sweep.model.refusals import cut
+from vibro_sweep.model.told import sentence
 from vibro_sweep.model.variable import Variable
 
 # the attributes of a file that hold a number, or a word, for all points (`numbers.attributes`)
@@ -25,6 +26,12 @@ def set_texts(of: h5py.File | h5py.Dataset, name: str, values: list[str]) -> Non
     raw = [value.encode() for value in values]
     kind = h5py.string_dtype("utf-8", max([2, *map(len, raw)]))  # h5netcdf takes those of length 1 for characters
     of.attrs.create(name, np.array(raw) if raw else h5py.Empty(kind), dtype=kind)
+
+
+def describe(dataset: h5py.Dataset, units: str, long_name: str, description: str) -> None:
+    """Set its attributes for readers: `long_name` is short, for axes; `description` is a sentence."""
+    for name, value in (("units", units), ("long_name", long_name), ("description", sentence(description))):
+        set_text(dataset, name, value)
 
 
 def text(of: h5py.File | h5py.Dataset, name: str) -> str:

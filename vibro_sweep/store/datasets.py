@@ -16,7 +16,7 @@ from vibro_sweep.model.units import unit_in
 from vibro_sweep.model.variable import Variable
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import numbers
-from vibro_sweep.store.attributes import MATRIX, set_text
+from vibro_sweep.store.attributes import MATRIX, describe, set_text
 from vibro_sweep.store.layout import chunk_shape, coordinates, dimensions, quantities
 
 # To Fletcher-32 two zero bytes are the same as two bytes of ones, so that 0 could become -65536 unseen. Adler-32, which
@@ -84,8 +84,7 @@ def _create_matrices(file: h5py.File, scene: Scene) -> tuple[str, ...]:
         file[name][...] = values
         option = next(one for one in scene.system.model.options if one.name == name)
         units = unit_in(option.units, scene.system.units)
-        for attribute, text in (("units", units), ("long_name", f"matrix {name}"), ("description", option.text)):
-            set_text(file[name], attribute, text)
+        describe(file[name], units, f"matrix {name}", option.text)
         for axis, length in zip(MATRIX, values.shape, strict=True):
             if axis not in file:
                 create_length(file, axis, length)
@@ -109,10 +108,7 @@ def write_following(file: h5py.File, scene: Scene) -> None:
 
 
 def _describe(dataset: h5py.Dataset, of: Parameter | Dimension | Variable, scene: Scene) -> None:
-    """`long_name` is short, for axes; `description` says more."""
-    set_text(dataset, "units", unit_in(of.units, scene.system.units))
-    set_text(dataset, "long_name", of.long_name)
-    set_text(dataset, "description", of.text)
+    describe(dataset, unit_in(of.units, scene.system.units), of.long_name, of.text)
 
 
 def _create_compact(file: h5py.File, name: str, dtype: np.dtype, shape: tuple[int, ...], fill: float | None = None):

@@ -10,7 +10,7 @@ from vibro_sweep import __version__
 from vibro_sweep.model.branch_file import RAGGED
 from vibro_sweep.model.column import Column
 from vibro_sweep.store import heap, parts
-from vibro_sweep.store.attributes import set_text, set_texts
+from vibro_sweep.store.attributes import describe, set_text, set_texts
 from vibro_sweep.store.creating import now
 from vibro_sweep.store.datasets import CHECKSUMS, create_length
 from vibro_sweep.store.sink import LIBVER
@@ -70,9 +70,7 @@ def _create(file: h5py.File, column: Column, values: np.ndarray) -> None:
         rows = max(1, min(len(values), CHUNK // max(1, values[0].size)))
         how = {"chunks": (rows, *values.shape[1:]), **CHECKSUMS}
     dataset = file.create_dataset(column.name, data=values, **how)
-    set_text(dataset, "units", column.units)
-    set_text(dataset, "long_name", column.label)
-    set_text(dataset, "description", column.text)
+    describe(dataset, column.units, column.label, column.text)
     if column.flags:
         dataset.attrs["flag_values"] = np.arange(len(column.flags), dtype=column.dtype)
         set_text(dataset, "flag_meanings", " ".join(column.flags))
