@@ -61,7 +61,7 @@ def strikes(t, c, gap, side, third, rest, out):
 
 
 def first_contacts_by_eights(c, gap, side, third, rest, out):
-    """As an orbit finds them: by the long way what is not clear at once. Returns how many are."""
+    """As an orbit finds them: event by event what is not clear at once. Returns how many are."""
     first_contacts(c, gap, side, third, rest, out)
     t = np.zeros(1, strikes_of(2))
     # it leaves fast enough not to come back within the cell: the first contact alone is judged here

@@ -23,21 +23,21 @@ CHAIN = 8 * EPS  # of the largest term of x1 along the flight: rounding allowed 
 
 
 @entry  # like the kernels, without reference counts: a view of an array passes from one to the other
-def first_impacts(e, stops, states, record, suspects, nothing):
+def first_impacts(e, stops, states, record, candidates, nothing):
     o, t = e.orbits[0], e.tangent[0]
     f, records = together.flight_of(e, o), together.records_of(e, o)
     for i in range(len(states)):
         x = states[i]
-        orbits.place(o, f.nodes, stops, 0, 0.0, x)
-        orbits.know(o, f.oscillator[0])
-        o.suspect = scan.first_suspect(f, o)
-        suspects[i] = scan.suspect_state(o, f.nodes)[0]
+        orbits.set_state(o, f.nodes, stops, 0, 0.0, x)
+        orbits.load_constants(o, f.oscillator[0])
+        o.candidate = scan.first_candidate(f, o)
+        candidates[i] = scan.candidate_state(o, f.nodes)[0]
         # the first cell alone, with one event allowed: R = 1 makes a mass that creeps off the stop knock for ever
-        orbits.place(o, f.nodes, stops, 0, 0.0, x)
+        orbits.set_state(o, f.nodes, stops, 0, 0.0, x)
         o.events = impacts.MOST_EVENTS - 1
         outcome = impacts.cross_cell(f, stops, o, records, t, 0, 0.0)
         if o.impacts_logged == 0:
-            orbits.place(o, f.nodes, stops, 0, 0.0, x)
+            orbits.set_state(o, f.nodes, stops, 0, 0.0, x)
             o.periods = 1
             ensemble.carry(e, None, together.Readings(nothing, False, nothing, 0))
             outcome = o.status
@@ -98,9 +98,9 @@ def judge_flights(count, rng):
     states[leaving, 0] = np.copysign(system.b, states[leaving, 0])
     states[leaving, 1] = -np.sign(states[leaving, 0]) * 10.0 ** -rng.uniform(0, 15, leaving.sum())
     engine = one_system.Engine(system)
-    record, suspects = np.empty((len(states), 4)), np.empty(len(states), np.int64)
+    record, candidates = np.empty((len(states), 4)), np.empty(len(states), np.int64)
     eight = engine.ensemble._replace(records=orbits.new_records(1, impacts=1))
-    first_impacts(eight, engine.stops, states, record, suspects, np.empty((1, 0, 4)))
+    first_impacts(eight, engine.stops, states, record, candidates, np.empty((1, 0, 4)))
     assert np.isin(record[:, 3], [status.OK, status.EVENT_LIMIT]).all()  # none is unresolved
     z = reference.forced(states)
     # every term of x1 at any time
@@ -111,7 +111,7 @@ def judge_flights(count, rng):
     missed = verdict != POSITIVE
     x1, error = reference.gap(z, time.astype(REAL))
     invented = hit & (record[:, 2] * x1 < system.b - tolerance - error)
-    excluded = np.minimum(suspects * engine.width, engine.period)
+    excluded = np.minimum(candidates * engine.width, engine.period)
     wrong, later = missed & (excluded >= time), excluded > time  # up to `time` it is judged already
     wrong[later] = reference.inside(z[later], system.b, excluded[later].astype(REAL), tolerance[later]) == NEGATIVE
     rows = np.zeros((len(DECADES), 2, 5), int)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.motion.ensemble import carry
-from vibro_sweep.engine.motion.orbits import Records, Stops, place
+from vibro_sweep.engine.motion.orbits import Records, Stops, set_state
 from vibro_sweep.engine.motion.together import Ensemble, Readings
 from vibro_sweep.engine.points import prepare
 from vibro_sweep.engine.simd.jit import entry, jit
@@ -157,7 +157,7 @@ def carry_one(e, w, begin, rest, part):
     """The first orbit over one period, from a state in contact coordinates."""
     o = e.orbits[0]
     f = e.flights.nodes[o.table]
-    place(o, f, Stops(o.stops[0], o.stops[1], o.stops[2], o.stops[3]), 0, 0.0, begin)
+    set_state(o, f, Stops(o.stops[0], o.stops[1], o.stops[2], o.stops[3]), 0, 0.0, begin)
     o.resting, o.periods, o.log_side = rest, 1, 0.0
     carry(
         Ensemble(e.flights, e.orbits, e.strike, e.tangent, part, e.halt), None, Readings(w.section, False, w.growth, 0)
@@ -182,7 +182,7 @@ def run_energy(points, begins, resting, masses, back, origin, periods, w, plan, 
         if outcome[n] != status.NOT_COMPUTED:
             continue
         stops = prepare(points[n : n + 1], 0, w, plan)
-        place(o, e.flights.nodes[o.table], stops, 0, 0.0, begins[n])
+        set_state(o, e.flights.nodes[o.table], stops, 0, 0.0, begins[n])
         q = e.flights.oscillator[o.table, 0]
         rest, loss[n], outcome[n] = resting[n], 0.0, status.OK
         for j in range(states):

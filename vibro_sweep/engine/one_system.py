@@ -196,13 +196,15 @@ class Engine:
     def put(self, state, cell: int = 0, offset: float = 0.0, lane: int = 0) -> None:
         """Start a new orbit from an allowed state in contact coordinates, at this offset of this cell."""
         nodes = self.ensemble.flights.nodes[0]
-        orbits.place(self.ensemble.orbits[lane], nodes, self.stops, int(cell), float(offset), np.asarray(state, float))
+        orbits.set_state(
+            self.ensemble.orbits[lane], nodes, self.stops, int(cell), float(offset), np.asarray(state, float)
+        )
 
     def carry(self, records: orbits.Records, section: np.ndarray) -> int:
         """Carry the orbit over as many periods as `section` (n, 2 N) has rows. Returns a status."""
         self.orbit["periods"] = len(section)
         self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
-        self._run(points.WAY, 1, section[None], records=records)
+        self._run(points.MOTION, 1, section[None], records=records)
         return int(self.orbit["status"][0])
 
     def carry_eight(self, states: np.ndarray, cell: int, periods: int) -> tuple[np.ndarray, orbits.Records]:
@@ -215,7 +217,7 @@ class Engine:
                 self.put(state, cell, lane=lane)
             eight["periods"] = periods
             records = orbits.new_records(LANES, impacts=room, rests=room, masses=self.kind.masses)
-            self._run(points.WAY, 1, records=records)
+            self._run(points.MOTION, 1, records=records)
             here = eight[: len(states)]
             logged = max(here["impacts_logged"].max(), here["rests_logged"].max())
             if logged <= room:

@@ -1,4 +1,4 @@
-"""A block: for each orbit the tables of its point, its way, and what the scene observes of it."""
+"""A block: for each orbit the tables of its point, its motion, and what the scene observes of it."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.engine.motion import strike
 from vibro_sweep.engine.motion.ensemble import carry
-from vibro_sweep.engine.motion.orbits import Stops, new_records, place
+from vibro_sweep.engine.motion.orbits import Stops, new_records, set_state
 from vibro_sweep.engine.motion.together import Ensemble, Readings, flight_of, new_ensemble
 from vibro_sweep.engine.observe import PHASES, RECORD, begin_phase, close, end_phase
 from vibro_sweep.engine.point_tables import fill_tables, same_tables, set_graze, to_contact
@@ -19,7 +19,9 @@ from vibro_sweep.model import status
 
 LARGE = 8.0  # clearances that the motion r may measure before flights from a later node are formed without it
 WARM_UP = 200  # periods for the tangent vectors to find their directions
-ALL, TABLES, WAY = range(3)  # what `run_points` does: all, the tables alone, or the way alone of orbits that have them
+ALL, TABLES, MOTION = range(
+    3
+)  # what `run_points` does: all, the tables alone, or the motion alone of orbits that have tables
 
 
 class Plan(NamedTuple):
@@ -96,7 +98,7 @@ def prepare(points, i, w, plan):
         w.built[table] = point
     set_graze(q, point)
     stops = Stops(point.stops[0], point.stops[1], point.stops[2], point.stops[3])
-    o.careful = int(q.stiff or q.largest > LARGE * clearance(stops))
+    o.from_base = int(q.stiff or q.largest > LARGE * clearance(stops))
     strike.set_stops(e.strike[0], i, stops)
     if not same_tables(point, w.carried[i], w.paper, w.other):
         strike.set_oscillator(e.strike[0], i, q)
@@ -126,7 +128,7 @@ def set_orbits(points, starts, results, n, first, w, plan):
         to_contact(point, state, stops, w.other)
         if plan.order == 0:  # points of the map may lie beyond the stops
             state[0] = min(max(state[0], stops.left), stops.right)
-        place(o, e.flights.nodes[o.table], stops, 0, 0.0, state)
+        set_state(o, e.flights.nodes[o.table], stops, 0, 0.0, state)
 
 
 @entry
@@ -146,17 +148,17 @@ def run_points(points, starts, results, sections, phases, running, w, plan, mapp
         for n in range(len(points)):
             if e.halt[0] != 0:
                 return
-            if plan.step != WAY:
+            if plan.step != MOTION:
                 set_orbits(points, starts, results, n, first, w, plan)
             if plan.step == TABLES:
                 continue
             rows, row = points[n, first:last], results[n, first:last]
             for phase in range(PHASES):
-                parts = 0 if plan.step == WAY else begin_phase(e, w, plan, phase, row)
+                parts = 0 if plan.step == MOTION else begin_phase(e, w, plan, phase, row)
                 if parts >= 0:
-                    keep = plan.states and (phase == RECORD or plan.step == WAY)
+                    keep = plan.states and (phase == RECORD or plan.step == MOTION)
                     carry(e, mapping, Readings(w.section, keep, w.growth, parts))
-                    if plan.step == WAY:
+                    if plan.step == MOTION:
                         return
                     end_phase(
                         e, w, plan, phase, rows, row,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.motion.ensemble import carry
-from vibro_sweep.engine.motion.orbits import Records, place
+from vibro_sweep.engine.motion.orbits import Records, set_state
 from vibro_sweep.engine.motion.together import Ensemble, Readings
 from vibro_sweep.engine.points import prepare
 from vibro_sweep.engine.simd.jit import entry, jit
@@ -117,7 +117,7 @@ def run_trajectories(points, results, hits, kept, w, plan):
             result, o = results[p, s], e.orbits[0]
             if result.status in status.STANDING:
                 stops = prepare(points[p : p + 1], 0, w, plan)
-                place(o, e.flights.nodes[o.table], stops, 0, 0.0, result.end)
+                set_state(o, e.flights.nodes[o.table], stops, 0, 0.0, result.end)
                 o.resting = result.resting
                 samples, sections, impacts = kept.samples[p, s], kept.sections[p, s], kept.impacts[p, s]
                 count = follow(w, plan.periods, hits, samples, sections, impacts)

@@ -1,7 +1,8 @@
 """The loop: eight orbits from section to section over the phase grid.
 
-Each goes on by itself, over whole cells and periods, to the next cell in which it may strike (`seek`); there all of
-them strike at once. None waits for another at a section, and none depends on another.
+Each goes on by itself, over whole cells and periods, to the next candidate cell, in which it may strike
+(`advance_to_candidates`); there all of them strike at once. None waits for another at a section, and none
+depends on another.
 """
 
 from typing import NamedTuple
@@ -11,15 +12,15 @@ import numpy as np
 from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
-from vibro_sweep.engine.motion.orbits import add_count, keep_start, know, take_off, take_samples
+from vibro_sweep.engine.motion.orbits import add_count, begin_free_flight, keep_start, load_constants, take_samples
 from vibro_sweep.engine.motion.scan import (
-    careful_state,
-    first_suspect,
+    candidate_state,
+    first_candidate,
     is_inside,
     next_watched,
     open_cell,
     state_at,
-    suspect_state,
+    state_from_base,
 )
 from vibro_sweep.engine.motion.section import end_period, end_period_here
 from vibro_sweep.engine.motion.strike import clear_counts, strike
@@ -31,7 +32,7 @@ from vibro_sweep.engine.tables.flight import load
 from vibro_sweep.engine.variational import tangent, tangent_flight
 from vibro_sweep.model import status
 
-STRETCH = 2**21  # cells over which orbits are carried, some tenths of a second, before a look at `halt`
+CELLS_BETWEEN_LOOKS = 2**21  # cells over which orbits are carried (some tenths of a second) before `halt` is read
 
 
 class Mapping(NamedTuple):
@@ -47,21 +48,21 @@ def under_way(o):
 
 
 @aside
-def hold(o, X):
-    """X at the node that the orbit has reached, from which it goes the long way."""
-    if o.careful:
+def set_node_state(o, X):
+    """Set X at the node that the orbit has reached, before `resolve_events`."""
+    if o.from_base:
         keep_start(o)
     put(o.X, 0, X)
 
 
 @aside
-def go_long_way(e, o, f, readings):
-    """Follow the orbit through all that happens, to the end of its cell or of the one in which M1 leaves the stop."""
+def resolve_events(e, o, f, readings):
+    """Follow the orbit from event to event to the end of its cell, or of the cell in which M1 leaves the stop."""
     q = f.oscillator[0]
-    if o.careful and o.offset == 0.0 and o.resting == 0.0:
+    if o.from_base and o.offset == 0.0 and o.resting == 0.0:
         if q.stiff and o.cell > o.origin:
             o.cell = open_cell(f, o, o.cell)
-        put(o.X, 0, careful_state(o, f.nodes, o.cell))
+        put(o.X, 0, state_from_base(o, f.nodes, o.cell))
         if o.cell == q.cells:
             end_period_here(e, o, f, readings)
             return
@@ -71,9 +72,9 @@ def go_long_way(e, o, f, readings):
         free = not (rested or o.events > events)
         o.cell += 1
         if not free:
-            take_off(o, f.nodes, row(o.X, 0))
-        elif o.careful:
-            X = careful_state(o, f.nodes, o.cell)
+            begin_free_flight(o, f.nodes, row(o.X, 0))
+        elif o.from_base:
+            X = state_from_base(o, f.nodes, o.cell)
             put(o.X, 0, X)
             o.origin = o.cell
             put(o.y, 0, X - row(f.nodes[np.uint64(o.cell)].z, 0))
@@ -87,20 +88,20 @@ def go_long_way(e, o, f, readings):
 
 
 @aside
-def put_carefully(e, waiting):
-    """The states from which orbits strike, for those where r is large."""
+def put_states_from_base(e, waiting):
+    """Set the states at the beginning of the cell of those orbits for which r is large."""
     for i in range(LANES):
         if waiting >> i & 1:
             o = e.orbits[i]
             keep_start(o)
-            put(e.strike[0].z, i, careful_state(o, flight_of(e, o).nodes, o.cell))
+            put(e.strike[0].z, i, state_from_base(o, flight_of(e, o).nodes, o.cell))
 
 
 @aside
 def coast(e, o, f, readings):
-    """Go on to the last section before the end, if the orbit can strike no more; at once if nobody looks on the way.
+    """Go on to the last section before the end, if the orbit can strike no more.
 
-    No samples are taken on the way.
+    It is one flight if nothing is recorded in between; no samples are taken.
     """
     q, t = f.oscillator[0], e.tangent[0]
     periods = o.periods - o.done - 1
@@ -111,7 +112,7 @@ def coast(e, o, f, readings):
             end_period(e, o, q, f.nodes, state_at(o, f.nodes, o.ends), readings)
         return
     fly_periods(q, f.nodes[q.cells].E, o, periods)
-    take_off(o, f.nodes, row(o.X, 0))
+    begin_free_flight(o, f.nodes, row(o.X, 0))
     o.period += periods
     o.done += periods
     if t.wanted:
@@ -119,43 +120,46 @@ def coast(e, o, f, readings):
 
 
 @inline
-def glide(e, o, f, readings):
-    """Find the next suspect cell, over a section if none is before it; the last section is left to `seek`."""
-    o.suspect = first_suspect(f, o)
-    if o.suspect == o.ends and o.done + 1 < o.goal:
+def find_candidate(e, o, f, readings):
+    """Find the next candidate cell, over a section if there is none before it.
+
+    The last section is left to `advance_to_candidates`.
+    """
+    o.candidate = first_candidate(f, o)
+    if o.candidate == o.ends and o.done + 1 < o.goal:
         X = state_at(o, f.nodes, o.ends)
-        if is_inside(o, number(X, 0)):  # else the last cell is suspect
+        if is_inside(o, number(X, 0)):  # else the last cell is a candidate
             end_period(e, o, f.oscillator[0], f.nodes, X, readings)
-            o.suspect = first_suspect(f, o)
+            o.candidate = first_candidate(f, o)
 
 
 @inline
-def seek(e, seeking, readings):
-    """Carry these orbits, as bits, on to the next cells in which they may strike. Returns who has one.
+def advance_to_candidates(e, advancing, readings):
+    """Carry these orbits, as bits, on to their next candidate cells. Returns, as bits, those that have one.
 
     Each step is done for all of them before the next, so that the processor has work while one waits for its numbers.
     """
     sampled, strikes = len(e.records.times) > 0, e.strike[0]
     waiting = 0
-    while seeking != 0:
+    while advancing != 0:
         for i in range(LANES):
-            if seeking >> i & 1:
+            if advancing >> i & 1:
                 o = e.orbits[i]
                 if sampled:
-                    o.suspect = next_watched(flight_of(e, o), o, records_of(e, o).times)
+                    o.candidate = next_watched(flight_of(e, o), o, records_of(e, o).times)
                 else:
-                    glide(e, o, flight_of(e, o), readings)
+                    find_candidate(e, o, flight_of(e, o), readings)
         for i in range(LANES):
-            if seeking >> i & 1:
+            if advancing >> i & 1:
                 o = e.orbits[i]
                 f = flight_of(e, o)
                 q = f.oscillator[0]
-                k, X = suspect_state(o, f.nodes)
+                k, X = candidate_state(o, f.nodes)
                 o.cell = k
                 if k < o.crossed and o.stops[0] < number(X, 0) < o.stops[1]:
                     put(strikes.z, i, X)
                     waiting |= 1 << i
-                    seeking ^= 1 << i
+                    advancing ^= 1 << i
                     continue
                 if k == o.ends:
                     end_period(e, o, q, f.nodes, X, readings)
@@ -164,11 +168,11 @@ def seek(e, seeking, readings):
                             coast(e, o, f, readings)
                         continue
                 else:
-                    hold(o, X)
-                    go_long_way(e, o, f, readings)
+                    set_node_state(o, X)
+                    resolve_events(e, o, f, readings)
                     if under_way(o):
                         continue
-                seeking ^= 1 << i
+                advancing ^= 1 << i
     return waiting
 
 
@@ -185,19 +189,19 @@ def watch_cell(e, o, f, free):
 
 
 @aside
-def stay(e, o, free, struck, readings):
-    """`settle` for an orbit that is watched in its cell, or neither flies freely there nor strikes once."""
+def resolve_cell(e, o, free, struck, readings):
+    """Finish the cell of an orbit that is recorded there, or that neither flies freely nor strikes once."""
     f, X = flight_of(e, o), row(e.strike[0].z, o.lane)
     if free or struck:
         watch_cell(e, o, f, free)
     else:
-        hold(o, X)
-        go_long_way(e, o, f, readings)
+        set_node_state(o, X)
+        resolve_events(e, o, f, readings)
 
 
 @inline
-def settle(e, waiting, free, struck, readings):
-    """Go on to the ends of the cells in which the `waiting` may have struck. Returns who has periods to go."""
+def finish_cells(e, waiting, free, struck, readings):
+    """Go on to the ends of the cells in which the `waiting` may have struck. Returns those that have periods to go."""
     left = waiting & ~(free | struck)
     if len(e.records.times) > 0:
         left = waiting
@@ -206,7 +210,7 @@ def settle(e, waiting, free, struck, readings):
     while left != 0:
         i = lowest(left)
         left &= left - 1
-        stay(e, e.orbits[i], free >> i & 1, struck >> i & 1, readings)
+        resolve_cell(e, e.orbits[i], free >> i & 1, struck >> i & 1, readings)
         if not under_way(e.orbits[i]):
             waiting ^= 1 << i
     while free != 0:
@@ -216,22 +220,22 @@ def settle(e, waiting, free, struck, readings):
         o = e.orbits[lowest(struck)]
         struck &= struck - 1
         o.cell += 1
-        take_off(o, flight_of(e, o).nodes, row(e.strike[0].X, o.lane))
+        begin_free_flight(o, flight_of(e, o).nodes, row(e.strike[0].X, o.lane))
     return waiting
 
 
 @aside
 def begin(e, readings):
-    """Begin a stretch, unless nobody waits for the orbits any more. Returns who has periods to go, as bits."""
+    """Set how far orbits are carried before `halt` is read again. Returns those that have periods to go, as bits."""
     waiting = 0
     for i in range(LANES):
         o = e.orbits[i]
         if e.halt[0] != 0:
             o.status = status.NOT_COMPUTED
         elif o.done >= o.goal and o.status == status.OK:
-            o.goal = min(o.periods, o.done + max(1, STRETCH // o.cells))
+            o.goal = min(o.periods, o.done + max(1, CELLS_BETWEEN_LOOKS // o.cells))
         if under_way(o) and (o.offset > 0.0 or o.resting != 0.0):
-            go_long_way(e, o, flight_of(e, o), readings)
+            resolve_events(e, o, flight_of(e, o), readings)
         waiting |= int(under_way(o)) << i
     return waiting
 
@@ -243,13 +247,13 @@ def carry(e, mapping, readings):
     mapping: None for the flow, or the `Mapping` that takes its place.
     """
     t, strikes = e.tangent[0], e.strike[0]
-    careful = 0
+    from_base = 0
     for i in range(LANES):
         o = e.orbits[i]
         o.done = o.read = o.goal = 0
         if o.periods > 0 and o.status == status.OK:  # of others there may be no tables
-            know(o, flight_of(e, o).oscillator[0])
-            careful |= o.careful << i
+            load_constants(o, flight_of(e, o).oscillator[0])
+            from_base |= o.from_base << i
     clear_counts(strikes)
     if mapping is not None:
         for i in range(LANES):
@@ -257,14 +261,14 @@ def carry(e, mapping, readings):
         return
     waiting = begin(e, readings)
     while True:
-        waiting = seek(e, waiting, readings)
+        waiting = advance_to_candidates(e, waiting, readings)
         if waiting == 0:
             waiting = begin(e, readings)
             if waiting == 0:
                 break
             continue
-        if waiting & careful != 0:
-            put_carefully(e, waiting & careful)
+        if waiting & from_base != 0:
+            put_states_from_base(e, waiting & from_base)
         free, struck = strike(strikes, lanes_of(waiting))
         if t.wanted and struck != 0:
             left = struck
@@ -276,7 +280,7 @@ def carry(e, mapping, readings):
                 tangent_flight.aim(t, i, f.oscillator[0], f.nodes, o.cell, strikes.offset[i])
             tangent_flight.fly(t, lanes_of(struck))
             tangent.saltate(t, lanes_of(struck), row(strikes.jump, 0) / row(strikes.speed, 0), row(strikes.R, 0))
-        waiting = settle(e, waiting, free, struck, readings)
+        waiting = finish_cells(e, waiting, free, struck, readings)
     for i in range(LANES):
         add_count(e.orbits[i], strikes.hits[0, i], strikes.hits[1, i], strikes.slowest[i], strikes.miss[i])
 

@@ -15,7 +15,15 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.motion.contact import ROUNDING, first_contact, set_gap
-from vibro_sweep.engine.motion.orbits import advance, advance_exactly, is_finite, place, round_off, take_off, wall_of
+from vibro_sweep.engine.motion.orbits import (
+    advance,
+    advance_exactly,
+    begin_free_flight,
+    is_finite,
+    round_off,
+    set_state,
+    wall_of,
+)
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.motion.scan import state_at
 from vibro_sweep.engine.simd.jit import entry, jit
@@ -63,7 +71,7 @@ def go_on(f, o, length, last, from_node):
         o.period += 1
         from_node = False
     if not from_node:
-        take_off(o, f.nodes, row(o.X, 0))
+        begin_free_flight(o, f.nodes, row(o.X, 0))
     return True
 
 
@@ -85,7 +93,7 @@ def size_here(f, o, from_node, length):
 @jit
 def start(f, o, stops, k, s, X):
     """Begin a flight at offset s of cell k. Returns whether that is a node."""
-    place(o, f.nodes, stops, k, s, X)
+    set_state(o, f.nodes, stops, k, s, X)
     return s == 0.0
 
 

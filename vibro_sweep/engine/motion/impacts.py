@@ -1,4 +1,4 @@
-"""One orbit through one cell, the long way: from contact to contact to the cell's end."""
+"""One orbit through one cell, event by event to the cell's end."""
 
 import math
 
@@ -156,9 +156,9 @@ def is_beyond(stops, o, f, k):
         size += abs(o.X[1]) * q.width * q.cells + q.largest
     else:
         E = nodes[k - o.base].E
-        size += 0.0 if o.careful else abs(nodes[k].z[0])
+        size += 0.0 if o.from_base else abs(nodes[k].z[0])
         for j in range(len(E)):
-            size += abs(E[j, 0] * (o.start[j] if o.careful else o.y[j]))
+            size += abs(E[j, 0] * (o.start[j] if o.from_base else o.y[j]))
     return beyond > EXPLAINED * size
 
 

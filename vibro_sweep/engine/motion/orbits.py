@@ -1,4 +1,4 @@
-"""The moving state of an orbit, what is counted of it, and what is kept of its way."""
+"""The moving state of an orbit, what is counted of it, and what is recorded of it."""
 
 import math
 from typing import NamedTuple
@@ -37,12 +37,12 @@ def restitution_of(stops, side):
 
 
 def orbit_of(masses: int, constant: bool = False) -> np.dtype:
-    """The record of one orbit on its way, what is counted of it, and what it has written into its `Records`."""
+    """The record of one orbit: its motion, what is counted of it, and what it has written into its `Records`."""
     width = width_of(masses, constant)
     motion = [
         ("X", float, width),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
         ("y", float, width),  # X - r at node `origin`, from which the exclusion test looks ahead
-        ("start", float, width),  # if `careful`, and `origin` is no longer `base`: X, sin and cos at node `base`
+        ("start", float, width),  # if `from_base`, and `origin` is no longer `base`: X, sin and cos at node `base`
         ("largest", float, width),  # sizes of the section states that were kept
         # of the oscillator, for the search: in its tables the processor would have to look for them
         ("remainder", float, 2 * masses + 1),
@@ -58,12 +58,15 @@ def orbit_of(masses: int, constant: bool = False) -> np.dtype:
         ("read", np.int64),  # readings of the growth of tangent vectors
         ("cell", np.int64),
         ("offset", float),
-        ("careful", np.int64),  # 1 if the motion r is much larger than the clearance, or the system stiff (scan.py)
-        ("ends", np.int64),  # the node at which a period ends; -1, which is no node, if `careful`
+        (
+            "from_base",
+            np.int64,
+        ),  # 1 if states are formed from `base`: r is much larger than the clearance, or the system stiff
+        ("ends", np.int64),  # the node at which a period ends; -1 (none) if `from_base`
         ("base", np.int64),  # the node where free flight began
-        # `base`, or if `careful` a later node: the less is left of a fast mode, the tighter the exclusion test
+        # `base`, or if `from_base` a later node: the less is left of a fast mode, the tighter the exclusion test
         ("origin", np.int64),
-        ("suspect", np.int64),  # the next cell in which contact cannot be excluded, and
+        ("candidate", np.int64),  # the next cell in which contact cannot be excluded, and
         ("low", float),  # what x1 at its beginning is held against
         ("high", float),
         ("stops", float, 4),  # left, right, and the restitution of each
@@ -94,7 +97,7 @@ def orbit_of(masses: int, constant: bool = False) -> np.dtype:
 
 
 class Records(NamedTuple):
-    """What is kept of an orbit on its way; an observation that nobody wants has m = 0."""
+    """What is recorded of an orbit; an observation that is not asked for has m = 0."""
 
     impacts: np.ndarray  # (m, 3 + 2 N): period, cell, offset, side, v1 before, x2, v2, ...
     rests: np.ndarray  # (m, 4): period, cell, offset, side at the onset of a rest, 0 at its end
@@ -113,31 +116,31 @@ def new_records(orbits: int, impacts: int = 0, rests: int = 0, samples: int = 0,
 
 
 @entry
-def place(o, nodes, stops, cell, offset, state):
-    """Start an orbit from `state` (2 N,) at this offset of this cell, with nothing counted yet."""
+def set_state(o, nodes, stops, cell, offset, state):
+    """Set the state (2 N,) of an orbit at this offset of this cell, with nothing counted yet."""
     for j in range(2 * len(o.c)):
         o.X[j] = state[j]
     o.stops[0], o.stops[1], o.stops[2], o.stops[3] = stops.left, stops.right, stops.R_left, stops.R_right
     o.status, o.resting, o.cell, o.offset = status.OK, 0.0, cell, offset
     o.period = o.events = o.impacts_logged = o.rests_logged = o.samples_taken = 0
-    take_off(o, nodes, row(o.X, 0))
+    begin_free_flight(o, nodes, row(o.X, 0))
     reset_counts(o)
     round_off(o)
 
 
 @jit
-def know(o, q):
-    """Keep with the orbit what the search asks of its oscillator again and again, and what it holds x1 against."""
+def load_constants(o, q):
+    """Copy from the oscillator into the orbit the constants of the exclusion test, and set the limits of x1."""
     for j in range(len(o.remainder)):
         o.remainder[j] = q.remainder[j]
     o.cells, o.crossed = q.cells, 0 if q.stiff else q.cells
-    o.ends = -1 if o.careful else q.cells
+    o.ends = -1 if o.from_base else q.cells
     o.limits[0], o.limits[1] = max(o.stops[0], -FARTHEST), min(o.stops[1], FARTHEST)
 
 
 @inline
-def take_off(o, nodes, X):
-    """Free flight begins with X at the node where the orbit is."""
+def begin_free_flight(o, nodes, X):
+    """Begin free flight with X at the node where the orbit is."""
     z = row(nodes[np.uint64(o.cell)].z, 0)
     X = state_and_rest(X, z, o.c)  # z ends in sin and cos
     o.base = o.origin = o.cell

@@ -19,12 +19,12 @@ def control_points(scan, p, since, y, states):
 
 
 @inline
-def first_suspect(f, o):
+def first_candidate(f, o):
     """The first cell from `o.cell` on in which contact cannot be excluded; `cells` if there is none.
 
     The orbit is in free flight from node `origin`. The control points of all cells
     (tables/control_points.py) are looked at, `CHUNK` at a time; an end of a cell may lie outside though all control
-    points before it are inside (`suspect_state`). What leaves the range of single precision is not inside.
+    points before it are inside (`candidate_state`). What leaves the range of single precision is not inside.
     """
     cells, bound, y, states = o.cells, o.remainder, o.y, len(o.remainder) - 1
     stop_distance = bound[0] * abs(y[0]) + bound[1] * abs(y[1])
@@ -45,10 +45,10 @@ def first_suspect(f, o):
 
 @aside
 def next_watched(f, o, times):
-    """The next suspect cell, or one before it in which there is a sample to take."""
+    """The next candidate cell, or one before it in which there is a sample to take."""
     i = o.samples_taken
     sampled = int(times[i, 0]) if i < len(times) else o.cells
-    return o.cell if sampled <= o.cell else min(sampled, first_suspect(f, o))
+    return o.cell if sampled <= o.cell else min(sampled, first_candidate(f, o))
 
 
 @inline
@@ -76,9 +76,9 @@ def is_inside(o, x):
 
 
 @inline
-def suspect_state(o, nodes):
-    """The suspect cell, and X at its beginning; or the cell before, if that end of it lies outside."""
-    k = o.suspect
+def candidate_state(o, nodes):
+    """The candidate cell, and X at its beginning; or the cell before, if that end of it lies outside."""
+    k = o.candidate
     X = state_at(o, nodes, k)
     if k > o.cell and not is_inside(o, number(X, 0)):
         k -= 1
@@ -109,7 +109,7 @@ def open_cell(f, o, k):
 
 
 @inline
-def careful_state(o, nodes, k):
+def state_from_base(o, nodes, k):
     """X, sin and cos at node k from X at node `base`, and not from X - r.
 
     Between near stops r, the motion from rest at node 0, is far larger than the motion itself, and a flight of some

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.engine.motion.orbits import take_off
+from vibro_sweep.engine.motion.orbits import begin_free_flight
 from vibro_sweep.engine.simd.jit import aside, inline
 from vibro_sweep.engine.simd.lanes import select
 from vibro_sweep.engine.simd.memory import put, put_state, row
@@ -14,7 +14,7 @@ def end_period(e, o, q, nodes, X, readings):
     """Take the orbit over the section, where its state is X."""
     parts = readings.parts
     o.cell = o.events = o.samples_taken = 0
-    take_off(o, nodes, X)
+    begin_free_flight(o, nodes, X)
     o.period += 1
     if readings.keep:
         largest = row(o.largest, 0)

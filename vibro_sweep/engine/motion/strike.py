@@ -1,6 +1,6 @@
 """One impact in a cell, or none: eight orbits at once, each in a cell of its own.
 
-What takes a closer look (impacts.py) is left alone: two contacts in a cell, a graze, a mass that turns back within
+What impacts.py resolves event by event is left alone: two contacts in a cell, a graze, a mass that turns back within
 the cell, chatter and rest.
 """
 

@@ -73,8 +73,8 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         ("rest_response", float, 2),  # steady response of x2 to sin and cos
         ("impulse_third", float),  # bound on |d3 x1/du3| over a cell after a unit impulse on M1
         ("vanishing", np.int64),  # of tangent.py: directions that a flight over a cell takes below the others' rounding
-        ("stretch", np.int64),  # cells that may be flown between looks at the tangent vectors, and
-        ("leash", np.int64),  # while each lies in the plane of one mode
+        ("most_cells_mixed", np.int64),  # cells that tangent vectors may fly between orthonormalisations, and
+        ("most_cells_in_planes", np.int64),  # the same while each lies in the plane of one mode
         ("frame_scale", float, masses),  # g_j
         ("frame_square", float, masses),  # omega_dj^2
         ("to_frame", float, (states, states)),

@@ -9,9 +9,9 @@ from vibro_sweep.engine.tables.flight import ORDER
 from vibro_sweep.engine.tables.series import clear
 
 VANISHED = 30.0  # logarithm of what is below rounding
-STRETCH = 4.0  # logarithm of what free flight may do to a tangent vector and not to another: two digits are lost
+SEPARATION = 4.0  # logarithm of what free flight may do to a tangent vector and not to another: two digits are lost
 LOST = 200.0  # logarithm of what free flight may do to all of them
-MOST_STRETCH = 1_000_000_000
+MOST_CELLS = 1_000_000_000
 
 
 @jit
@@ -49,7 +49,9 @@ def fill_frame(q, psi, omega_squared, mu_m):
             from_frame[2 * i + 1, 2 * j] = -eta * psi[i, j] / scale
             from_frame[2 * i + 1, 2 * j + 1] = psi[i, j]
     apart = (fastest - slowest) * q.width
-    q.stretch = max(1, int(STRETCH / apart)) if apart > 1e-9 * STRETCH else MOST_STRETCH
-    q.leash = q.stretch
+    q.most_cells_mixed = max(1, int(SEPARATION / apart)) if apart > 1e-9 * SEPARATION else MOST_CELLS
+    q.most_cells_in_planes = q.most_cells_mixed
     if turning:  # nothing then but the range of the floats asks for a look
-        q.leash = max(q.stretch, int(min(LOST / (fastest * q.width), MOST_STRETCH)) if fastest > 0.0 else MOST_STRETCH)
+        q.most_cells_in_planes = max(
+            q.most_cells_mixed, int(min(LOST / (fastest * q.width), MOST_CELLS)) if fastest > 0.0 else MOST_CELLS
+        )

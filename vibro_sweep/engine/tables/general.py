@@ -9,7 +9,7 @@ from vibro_sweep.engine.simd.jit import entry, jit
 from vibro_sweep.engine.tables.exclusion import fill_exclusion
 from vibro_sweep.engine.tables.fast_roots import fill_stiff_exclusion
 from vibro_sweep.engine.tables.flight import ORDER, WIDTH, decaying, inputs_of
-from vibro_sweep.engine.tables.frame import LOST, MOST_STRETCH, STRETCH, VANISHED
+from vibro_sweep.engine.tables.frame import LOST, MOST_CELLS, SEPARATION, VANISHED
 from vibro_sweep.engine.tables.products import fill_forced_motion, fill_products
 from vibro_sweep.engine.tables.series import clear, derive, set_grid
 
@@ -169,6 +169,6 @@ def fill_any_frame(q, nodes, point):
             q.to_frame[i, j], q.from_frame[i, j] = point.to_frame[i, j], point.from_frame[i, j]
     apart = (fastest - slowest) * q.width
     # with one rate of decay all vectors shrink alike: they must not leave the range of the floats
-    most = max(1, int(min(LOST / (fastest * q.width), MOST_STRETCH))) if fastest > 0.0 else MOST_STRETCH
-    q.stretch = min(most, max(1, int(STRETCH / apart))) if apart > 1e-9 * STRETCH else most
-    q.leash = max(q.stretch, most) if turning else q.stretch
+    most = max(1, int(min(LOST / (fastest * q.width), MOST_CELLS))) if fastest > 0.0 else MOST_CELLS
+    q.most_cells_mixed = min(most, max(1, int(SEPARATION / apart))) if apart > 1e-9 * SEPARATION else most
+    q.most_cells_in_planes = max(q.most_cells_mixed, most) if turning else q.most_cells_mixed

@@ -20,7 +20,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.motion.orbits import place, reset_counts
+from vibro_sweep.engine.motion.orbits import reset_counts, set_state
 from vibro_sweep.engine.motion.together import flight_of, stops_of
 from vibro_sweep.engine.simd.jit import aside, jit
 from vibro_sweep.engine.variational import tangent
@@ -80,7 +80,7 @@ def step_aside(e, o, direction, state):
     for m in range(size):
         state[m] = o.X[m] + step * state[m]
     state[0] = min(max(state[0], stops.left), stops.right)
-    place(o, f.nodes, stops, 0, 0.0, state)
+    set_state(o, f.nodes, stops, 0, 0.0, state)
 
 
 @aside

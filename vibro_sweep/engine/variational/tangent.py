@@ -43,7 +43,7 @@ def tangents_of(masses: int, paper: bool) -> np.dtype:
         ("leap", float, (n, LANES)),  # c_1, s_1, c_2, s_2, ... of a flight over whole cells
         ("part", float, LANES),  # of a cell, to fly after it
         ("flight", float, (n, LANES)),  # c_1, s_1, c_2, s_2, ... of the flight since Z was last touched
-        ("stretch", np.int64, LANES),  # whole cells of that flight
+        ("flown", np.int64, LANES),  # whole cells of that flight
         ("mixed", float, LANES),  # 0: each vector lies in the plane of one mode, where free flight turns it
         ("Z", float, (n * n, LANES)),  # columns of Z (n, n) are vectors
         # what a rest multiplies (dx2, dv2, dx3, ...) by, from row and column 2 on; and one of them before it and after
@@ -97,7 +97,7 @@ def begin(t, i):
             t.Z[size * m + j, i] = 1.0 if m == j else 0.0
         t.flight[m, i] = 1.0 - m % 2
     t.lost[i], t.volume[i], t.offset[i], t.mixed[i] = 0.0, 1.0, 0.0, 0.0
-    t.cell[i] = t.stretch[i] = 0
+    t.cell[i] = t.flown[i] = 0
     start_record(t, i)
 
 

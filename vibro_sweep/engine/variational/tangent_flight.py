@@ -85,16 +85,16 @@ def decay_over(t, i, q, u):
 
 @inline
 def most_cells(t, i, q):
-    """Cells that may be flown between looks at the vectors."""
-    return q.stretch if t.mixed[i] > 0.0 else q.leash
+    """Cells that may be flown between orthonormalisations of the vectors."""
+    return q.most_cells_mixed if t.mixed[i] > 0.0 else q.most_cells_in_planes
 
 
 @aside
 def stop_over(t, i, q, nodes, cells):
-    """Fly on, with looks at the vectors, or all would become the one that decays least. Returns the cells left."""
+    """Fly on with orthonormalisations, without which all vectors would align. Returns the cells left."""
     limit = most_cells(t, i, q)
-    while t.stretch[i] + cells > limit:
-        part = limit - t.stretch[i]
+    while t.flown[i] + cells > limit:
+        part = limit - t.flown[i]
         leap_over(t, i, q, nodes, part)
         fly(t, only(i))
         catch_up(t, only(i))
@@ -105,9 +105,9 @@ def stop_over(t, i, q, nodes, cells):
 @aside
 def aim_far(t, i, q, nodes, cells, u):
     """`aim` where the flight is long, or the system stiff."""
-    if t.stretch[i] + cells > most_cells(t, i, q):
+    if t.flown[i] + cells > most_cells(t, i, q):
         cells = stop_over(t, i, q, nodes, cells)
-    t.stretch[i] += cells
+    t.flown[i] += cells
     leap_over(t, i, q, nodes, cells)
     if not q.stiff:
         t.part[i] = u
@@ -124,10 +124,10 @@ def aim(t, i, q, nodes, k, s):
         cells -= 1
         u += q.width
     t.cell[i], t.offset[i] = k, s
-    if cells > q.cells or t.stretch[i] + cells > most_cells(t, i, q) or q.stiff:
+    if cells > q.cells or t.flown[i] + cells > most_cells(t, i, q) or q.stiff:
         aim_far(t, i, q, nodes, cells, u)
     else:
-        t.stretch[i] += cells
+        t.flown[i] += cells
         t.part[i] = u
         leap_in_period(t, i, nodes, cells)
 
@@ -157,7 +157,7 @@ def apply_flight(t, who):
     put(t.volume, 0, select(who, volume, row(t.volume, 0)))
     left = bits(who)
     while left != 0:
-        t.stretch[lowest(left)] = 0
+        t.flown[lowest(left)] = 0
         left &= left - 1
 
 
