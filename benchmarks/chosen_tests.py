@@ -52,9 +52,11 @@ class Tests:
         self.tests[item.nodeid] = {"seconds": round(time.perf_counter() - begun, 3), "calls": calls}
 
     def called(self, frame, event, argument):
-        """Of `sys.settrace`. A kernel is called by `entry.__call__`."""
+        """Of `sys.settrace`. A kernel is called by `exported.__call__`."""
         own = frame.f_locals.get("self") if frame.f_code.co_name == "__call__" else None
-        self.calls.add((own.__wrapped__.__code__, " kernel") if type(own).__name__ == "entry" else (frame.f_code, ""))
+        self.calls.add(
+            (own.__wrapped__.__code__, " kernel") if type(own).__name__ == "exported" else (frame.f_code, "")
+        )
 
     def pytest_runtest_logreport(self, report):
         if report.failed and self.chosen is not None:

@@ -16,7 +16,7 @@ from peers import ENGINE, METHODS
 from timing import interleaved, spent
 
 from vibro_sweep.engine.one_system import points_of
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import new_lines, put, row
 from vibro_sweep.engine.tables.economy import FEWER_TERMS
@@ -31,7 +31,7 @@ MULTIPLY_ADDS = 16 + 6 * TERMS + (3 + 2) * 2 * (TERMS - 1) + 4  # of an impact
 SUMS = 8  # side by side: one waits for the last one of the same sum
 
 
-@entry
+@exported
 def multiply_adds(rows, y, out, repeats):
     """One multiply-add and one load for each number of `rows` (n, LANES), `repeats` times; the sums go to `out`."""
     a = b = c = d = e = f = g = h = row(out, 0)
@@ -45,7 +45,7 @@ def multiply_adds(rows, y, out, repeats):
     put(out, 0, ((a + b) + (c + d)) + ((e + f) + (g + h)))
 
 
-@entry
+@exported
 def impacts(E, series, impulse, X, gap, width, c, repeats):
     """So many impacts of eight orbits, each from the state that the one before left: the least that finds an impact
     within a cell and takes the state X over it. One row for each number, one column for each orbit."""

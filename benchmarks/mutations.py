@@ -66,7 +66,12 @@ class Line:
         body = ast.parse((home / name).read_text()).body
         blocks = [n for n in body if isinstance(n, ast.FunctionDef | ast.ClassDef)]
         block = next((n for n in blocks if n.lineno <= row <= n.end_lineno), None)
-        jitted = {ast.unparse(d) for d in getattr(block, "decorator_list", [])} & {"jit", "inline", "aside", "entry"}
+        jitted = {ast.unparse(d) for d in getattr(block, "decorator_list", [])} & {
+            "jit",
+            "inline",
+            "noinline",
+            "exported",
+        }
         constant = block is None or any(
             re.search(rf"\b{block.name}\(", ast.unparse(n)) for n in body if n not in blocks
         )

@@ -12,11 +12,11 @@ from support import slow_cases
 PROGRAM = """
 from vibro_sweep.engine.simd import jit
 
-@jit.entry
+@jit.exported
 def double(x):
     return 2.0 * x
 
-@jit.entry
+@jit.exported
 def triple(x):
     return 3.0 * x
 
@@ -61,7 +61,7 @@ def test_a_second_start_compiles_nothing_and_loads_nothing_that_compiling_takes(
 
     Nor does it make an object for each kernel that only kernels call.
     """
-    with_part = PROGRAM.replace("@jit.entry", "@jit.jit\ndef half(x):\n    return 0.5 * x\n\n@jit.entry", 1)
+    with_part = PROGRAM.replace("@jit.exported", "@jit.jit\ndef half(x):\n    return 0.5 * x\n\n@jit.exported", 1)
     with_part = with_part.replace("return 2.0 * x", "return 4.0 * half(x)")
     told = "print('numba.np.linalg' in sys.modules, '_kernel' in vars(half), file=sys.stderr)\n"
     (tmp_path / "program.py").write_text("import sys\n" + with_part + told)

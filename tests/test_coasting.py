@@ -11,17 +11,17 @@ from scipy.linalg import expm
 import vibro_sweep as vs
 from vibro_sweep.engine.motion import coast
 from vibro_sweep.engine.one_system import Engine
-from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.simd.jit import exported
 
 SYSTEMS, PARTS = 40, 64
 
 
-@entry
+@exported
 def clear(q, o):
     return coast.is_clear(q, o)
 
 
-@entry
+@exported
 def fly(q, nodes, o, periods):
     coast.fly_periods(q, nodes[q.cells].E, o, periods)
 

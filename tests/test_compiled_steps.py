@@ -17,7 +17,7 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.certificate import may_turn
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.workspace import TEST
-from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.model.linear import Family
 
 
@@ -130,7 +130,7 @@ def test_orbit_written_out_several_times_has_the_same_branch(count):
         assert np.abs(point.solution.states[:, :4] - same.states[0, :4]).max() < 1e-11
 
 
-@entry
+@exported
 def asked(planes, states, turns, low, high, nearest, answers):
     for i in range(len(states)):
         answers[i] = may_turn(planes[0], states[i], turns[i], low[i], high[i], nearest[i])

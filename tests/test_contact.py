@@ -16,13 +16,13 @@ from support.decades import DECADES, EPS, show
 
 from vibro_sweep.engine.motion import contact
 from vibro_sweep.engine.motion.strike import TAIL, strike, strikes_of
-from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.simd.lanes import LANES, lanes_of
 from vibro_sweep.engine.tables.economy import TERMS
 from vibro_sweep.engine.tables.flight import ORDER
 
 
-@entry
+@exported
 def searched(g, c, gap, side, third, rest, out):
     for i in range(len(gap)):
         contact.set_gap(g, c[i], gap[i], side[i], 0 if gap[i] > 0.0 else 1)
@@ -34,7 +34,7 @@ def first_contacts(c, gap, side, third, rest, out):
     return 0
 
 
-@entry
+@exported
 def strikes(t, c, gap, side, third, rest, out):
     """The same, eight at once where that suffices; returns how often. c is the flight for z = (0, c_1, 0, 0, 0, 1)."""
     count = 0

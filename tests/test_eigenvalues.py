@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 from numpy.random import default_rng
 
-from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 from vibro_sweep.engine.variational.graded import is_separate
 
 SIZES = (1, 2, 3, 4, 6, 8, 16)
 
 
-@entry
+@exported
 def all_eigenvalues(matrices, n, re, im):
     found = 0
     for k in range(len(matrices)):
@@ -20,7 +20,7 @@ def all_eigenvalues(matrices, n, re, im):
     return found
 
 
-@entry
+@exported
 def is_parted(a, n, size):
     return is_separate(a, n, size)
 

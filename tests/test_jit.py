@@ -55,12 +55,12 @@ def test_a_compilation_within_another_one_leaves_it_lean():
     """Callees compile while their callers do; else all kernels but the innermost would take a tenth longer."""
     from numba.core.postproc import PostProcessor
 
-    from vibro_sweep.engine.simd.lean import lean
+    from vibro_sweep.engine.simd.numba_patches import patched
 
     own = PostProcessor.run
-    with lean():
+    with patched():
         instead = PostProcessor.run
-        with lean():
+        with patched():
             pass
         assert PostProcessor.run is instead is not own
     assert PostProcessor.run is own

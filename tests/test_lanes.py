@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from vibro_sweep.engine.simd.columns import put_transposed, sizes, transposed, weigh
-from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.simd.lanes import LANES, SINGLES, alike, bits, lanes_of, lowest, number, select, state_and_rest
 from vibro_sweep.engine.simd.memory import LINE, eight, head, new_lines, put, put_state, record, row, sixteen, widened
 
 SPECIAL = np.array([0.0, -0.0, 1.0, np.inf, -np.inf, np.nan, 1e-310, -1e300])
 
 
-@entry
+@exported
 def arithmetic(a, out):
     x, y = row(a, 0), row(a, 1)
     put(out, 0, x + y)
@@ -28,7 +28,7 @@ def arithmetic(a, out):
     put(out, 7, total)
 
 
-@entry
+@exported
 def comparisons(a, masks, out):
     x, y = row(a, 0), row(a, 1)
     masks[0], masks[1], masks[2], masks[3] = bits(x < y), bits(x <= y), bits(x > 1.0), bits(0.0 >= y)
@@ -54,7 +54,7 @@ def block(width, like):
     )
 
 
-@entry
+@exported
 def moved(r, a, out):
     put(out, 0, eight(a, 3))
     x = transposed(r.wide, r.like)
@@ -112,7 +112,7 @@ def test_rows_and_columns(width, like):
     np.testing.assert_array_equal(r["short"][0], [*(r["wide"][0, 2, :4] - r["wide"][0, 1, :4]), *-r["wide"][0, 1, 4:]])
 
 
-@entry
+@exported
 def single(a, y, masks):
     x, z = sixteen(a, 3), sixteen(a, 3 + a.shape[1])
     masks[0], masks[1] = bits(x * y + z > 1.0), bits((x <= z) & ~(x >= y))
@@ -142,7 +142,7 @@ def test_records_begin_with_a_cache_line():
         assert not lines["x"].any() and not lines["flag"].any()
 
 
-@entry
+@exported
 def parts(r, a, out):
     for n in range(len(a)):
         put_state(out, n, row(a, n), r.sums)

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from support import slow_cases
 
-from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.simd.lanes import LANES, lanes_of
 from vibro_sweep.engine.simd.memory import new_lines
 from vibro_sweep.engine.variational.orthonormal import orthonormalise
 from vibro_sweep.engine.variational.tangent import tangents_of
 
 
-@entry
+@exported
 def orthonormalise_some(tangents, who):
     orthonormalise(tangents[0], lanes_of(who))
 

@@ -15,14 +15,14 @@ from support.decades import DECADES, EPS, show
 import vibro_sweep as vs
 from vibro_sweep.engine import one_system
 from vibro_sweep.engine.motion import ensemble, impacts, orbits, scan, together
-from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.tables import exclusion
 from vibro_sweep.model import status
 
 CHAIN = 8 * EPS  # of the largest term of x1 along the flight: rounding allowed from the section to the contact
 
 
-@entry  # like the kernels, without reference counts: a view of an array passes from one to the other
+@exported  # like the kernels, without reference counts: a view of an array passes from one to the other
 def first_impacts(e, stops, states, record, candidates, nothing):
     o, t = e.orbits[0], e.tangent[0]
     f, records = together.flight_of(e, o), together.records_of(e, o)

@@ -28,7 +28,7 @@ from vibro_sweep.store.creating import skeleton_of
 
 SYSTEM = {"mu_m": 10, "mu_k": 5, "zeta": 0.05, "f2": 0.1, "omega": 0.63, "R": 0.8, "b": 6.6}
 SCENE = f"system: {SYSTEM}\norbit: {{transient: 3, record: 60}}\n".replace("'", "")
-JIT = {"jit", "inline", "aside", "entry"}
+JIT = {"jit", "inline", "noinline", "exported"}
 LONGEST_LABEL = 30  # characters, beside an axis
 
 

@@ -5,11 +5,11 @@ import pytest
 from support.oscillators import PAPER
 
 from vibro_sweep.engine.one_system import Engine
-from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.variational import tangent, tangent_flight
 
 
-@entry
+@exported
 def leaps(e, cells, out):
     t, flights = e.tangent[0], e.flights
     tangent.set_frame(t, 0, flights.oscillator[0, 0])

@@ -15,7 +15,7 @@ from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Records, Stops, set_state
 from vibro_sweep.engine.motion.together import Ensemble, Readings
 from vibro_sweep.engine.points import prepare
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 
@@ -164,7 +164,7 @@ def carry_one(e, w, begin, rest, part):
     )
 
 
-@entry
+@exported
 def run_energy(points, begins, resting, masses, back, origin, periods, w, plan, scratch, loss, squares, peaks, outcome):
     """Carry each orbit over its record. n = orbits.
 

@@ -10,7 +10,7 @@ from vibro_sweep.engine.averages import keep_averages
 from vibro_sweep.engine.motion.orbits import reset_counts
 from vibro_sweep.engine.periods import REPEAT, ROUNDING, find_period, has_settled
 from vibro_sweep.engine.point_tables import to_masses
-from vibro_sweep.engine.simd.jit import aside, jit
+from vibro_sweep.engine.simd.jit import jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import put
 from vibro_sweep.engine.variational.multipliers import BESIDE, begin_period, read_period
@@ -29,7 +29,7 @@ LEAST_RECORD = 50  # periods from which on a record can tell whether its orbit h
 TRANSIENT, WARM_UP, RECORD, FLOQUET, PHASES = 0, 1, 2, 3, 6
 
 
-@aside
+@noinline
 def begin_phase(e, w, plan, phase, results):
     """Set the orbits out. Returns how often the growth of their tangent vectors is to be read, or -1: nothing to do."""
     if phase == TRANSIENT:
@@ -62,7 +62,7 @@ def set_out(e, periods):
         e.orbits[i].periods = periods
 
 
-@aside
+@noinline
 def end_phase(e, w, plan, phase, points, results, sections, phases, running):
     """Keep what the phase has shown. One row for each orbit."""
     if phase == WARM_UP:
@@ -75,7 +75,7 @@ def end_phase(e, w, plan, phase, points, results, sections, phases, running):
         read_period(e, w, results, phase - FLOQUET)
 
 
-@aside
+@noinline
 def keep_record(e, w, plan, point, result, section, phase, running, o):
     """What the record of an orbit shows."""
     result.impacts_right, result.impacts_left = o.impacts_right, o.impacts_left
@@ -129,7 +129,7 @@ def turn_states(point, states, o, other):
                 o.largest[j] = max(o.largest[j], abs(states[n, j]))
 
 
-@aside
+@noinline
 def close(e, w, plan, points, results):
     """What remains to be said of the orbits after all phases, and how they went."""
     for i in range(len(results)):

@@ -11,7 +11,7 @@ from vibro_sweep.engine.motion.together import Ensemble, Readings, flight_of, ne
 from vibro_sweep.engine.observe import PHASES, RECORD, begin_phase, close, end_phase
 from vibro_sweep.engine.point_tables import fill_tables, same_tables, set_graze, to_contact
 from vibro_sweep.engine.records import PAPER, Kind, point_of
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import general, series
 from vibro_sweep.engine.variational import tangent
@@ -131,7 +131,7 @@ def set_orbits(points, starts, results, n, first, w, plan):
         set_state(o, e.flights.nodes[o.table], stops, 0, 0.0, state)
 
 
-@entry
+@exported
 def run_points(points, starts, results, sections, phases, running, w, plan, mapping):
     """Compute a block. n = steps, m = orbits; observations that nobody wants have no samples.
 

@@ -12,7 +12,7 @@ from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Records, set_state
 from vibro_sweep.engine.motion.together import Ensemble, Readings
 from vibro_sweep.engine.points import prepare
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 
@@ -105,7 +105,7 @@ def keep_fastest(hits, impacts, q, stops):
             n += 1
 
 
-@entry
+@exported
 def run_trajectories(points, results, hits, kept, w, plan):
     """Go on from where `run_points` left the orbits of a block. hits: scratch, (1, m, 3 + 2 N)."""
     e = w.ensemble

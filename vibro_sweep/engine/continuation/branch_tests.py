@@ -9,7 +9,7 @@ from vibro_sweep.engine.continuation.curve_tests import changes_sign, determinan
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, OMEGA
 from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE, exchanged
-from vibro_sweep.engine.simd.jit import aside, jit
+from vibro_sweep.engine.simd.jit import jit, noinline
 
 PASSED = 1e-13  # distance beyond a stop, in units of the gap, which rounding does not explain
 FARTHER = 2.0  # times: a number that is so much nearer to zero than at the points beside changes too fast between them
@@ -54,7 +54,7 @@ def examine_branch(f, c, place, b):
     take_products(work.re, work.im, math.sqrt(squares), x[TEST.on_circle] > 0.0, x)
 
 
-@aside
+@noinline
 def take_products(re, im, root, without_zeros, x):
     """The tests `reflected`, `pair` and `crossing`; where multipliers are on the circle, without factors that are zero
     at all points.

@@ -22,7 +22,7 @@ from vibro_sweep.engine.continuation.flight_tables import flight
 from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, NUMBERS, OMEGA
 from vibro_sweep.engine.continuation.reflections import put_last, take_apart
 from vibro_sweep.engine.continuation.residual import approach, eliminate, grown, is_short, land, leave
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 
 MOST_STEPS = 30
 LAST = 5  # of them
@@ -157,7 +157,7 @@ def settle(f, c, place, closing, b):
     return np.nan
 
 
-@entry
+@exported
 def settle_all(planes, c, place, closing, b, contacts, starts, ends, changes):
     """`settle` from many guesses, of oscillators that differ in their contact alone.
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from vibro_sweep.engine.impulses.extremes import OVERLAP, PIECES, extremes_of_cell, turns_near
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 
 
 class Room(NamedTuple):
@@ -137,7 +137,7 @@ def start_of_orbit(f, close, u, K, P, gap, z, room):
     set_phase(f, z, first)
 
 
-@entry
+@exported
 def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, room):
     """States before each impact, (max(K, 1), m), and the turning point nearest to its stop: (distance, t, side).
 
@@ -170,7 +170,7 @@ def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, room):
             nearest[1] += begin
 
 
-@entry
+@exported
 def free_part(f, h, t, D, P, moment, room):
     """room.state becomes the free part of zeta, without the harmonic force, at `moment` in [t_1, t_1 + P], before an
     impact there. h (n,): before the first impact; t, D: times and impulses (K,)."""
@@ -185,7 +185,7 @@ def free_part(f, h, t, D, P, moment, room):
         k += 1
 
 
-@entry
+@exported
 def fly_once(f, z, begin, length, low, high, nearest, room):
     """Fly `length` from z in place; lower `nearest` (distance, t, side) to the turning points of the gap."""
     distance = nearest[0]
@@ -210,14 +210,14 @@ def flight_matrix(f, length, E, room):
             E[i, j] = z[i]
 
 
-@entry
+@exported
 def flight_matrices(f, lengths, out, room):
     """`flight_matrix` of each flight: out (flights, n, n)."""
     for k in range(len(lengths)):
         flight_matrix(f, lengths[k], out[k], room)
 
 
-@entry
+@exported
 def sample_flights(f, starts, begins, which, times, out, room):
     """zeta at `times` of the flights that start with starts[which] at begins[which]: out (samples, m)."""
     for i in range(len(times)):

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 
 ON_SQUARE = 1e-6  # of mu^2: a real multiplier that near to the unit circle is on neither side
 ON_PAIR = 1e-9  # of |mu|^2 of a pair, which rounding moves by less than two real ones that are about to meet
@@ -43,7 +43,7 @@ def mixed(here, there, i, k):
     return min(abs(beside_circle(here, i)), abs(beside_circle(here, j))) < apart
 
 
-@entry
+@exported
 def coarse(past, here, there, before, length):
     """Whether a step is too long to tell if a pair of multipliers crosses the unit circle twice from here to there: two
     pairs are mixed up, or one lies farther from where it was heading here, on the outside of a bend, than from the
@@ -67,7 +67,7 @@ def coarse(past, here, there, before, length):
     return False
 
 
-@entry
+@exported
 def exchanged(here, there):
     """Whether a pair goes out of the unit circle and another one comes in between two points: counts do not tell."""
     out = back = False
@@ -81,7 +81,7 @@ def exchanged(here, there):
     return out and back
 
 
-@entry
+@exported
 def keeps_side(here, one, other):
     """Whether a pair on the unit circle here lies on one side of it at both of two points."""
     for i in range(len(here)):

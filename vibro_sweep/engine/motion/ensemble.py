@@ -25,7 +25,7 @@ from vibro_sweep.engine.motion.scan import (
 from vibro_sweep.engine.motion.section import end_period, end_period_here
 from vibro_sweep.engine.motion.strike import clear_counts, strike
 from vibro_sweep.engine.motion.together import flight_of, records_of, stops_of
-from vibro_sweep.engine.simd.jit import aside, inline, jit
+from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES, lanes_of, lowest, number
 from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.tables.flight import load
@@ -47,7 +47,7 @@ def under_way(o):
     return o.done < o.goal and o.status == status.OK
 
 
-@aside
+@noinline
 def set_node_state(o, X):
     """Set X at the node that the orbit has reached, before `resolve_events`."""
     if o.from_base:
@@ -55,7 +55,7 @@ def set_node_state(o, X):
     put(o.X, 0, X)
 
 
-@aside
+@noinline
 def resolve_events(e, o, f, readings):
     """Follow the orbit from event to event to the end of its cell, or of the cell in which M1 leaves the stop."""
     q = f.oscillator[0]
@@ -87,7 +87,7 @@ def resolve_events(e, o, f, readings):
                 return
 
 
-@aside
+@noinline
 def put_states_from_base(e, waiting):
     """Set the states at the beginning of the cell of those orbits for which r is large."""
     for i in range(LANES):
@@ -97,7 +97,7 @@ def put_states_from_base(e, waiting):
             put(e.strike[0].z, i, state_from_base(o, flight_of(e, o).nodes, o.cell))
 
 
-@aside
+@noinline
 def coast(e, o, f, readings):
     """Go on to the last section before the end, if the orbit can strike no more.
 
@@ -176,7 +176,7 @@ def advance_to_candidates(e, advancing, readings):
     return waiting
 
 
-@aside
+@noinline
 def watch_cell(e, o, f, free):
     """Keep an impact in the cell, and samples: of free flight, or before and after the impact."""
     q, strikes, records, i = f.oscillator[0], e.strike[0], records_of(e, o), o.lane
@@ -188,7 +188,7 @@ def watch_cell(e, o, f, free):
         watch_rebound(q, o, records, o.cell, strikes.offset[i], strikes.side[i], strikes.speed[i], strikes.impulse[i])
 
 
-@aside
+@noinline
 def resolve_cell(e, o, free, struck, readings):
     """Finish the cell of an orbit that is recorded there, or that neither flies freely nor strikes once."""
     f, X = flight_of(e, o), row(e.strike[0].z, o.lane)
@@ -224,7 +224,7 @@ def finish_cells(e, waiting, free, struck, readings):
     return waiting
 
 
-@aside
+@noinline
 def begin(e, readings):
     """Set how far orbits are carried before `halt` is read again. Returns those that have periods to go, as bits."""
     waiting = 0
@@ -285,7 +285,7 @@ def carry(e, mapping, readings):
         add_count(e.orbits[i], strikes.hits[0, i], strikes.hits[1, i], strikes.slowest[i], strikes.miss[i])
 
 
-@aside
+@noinline
 def iterate(e, o, mapping, readings):
     """Carry one orbit over its `periods` of the discontinuity mapping."""
     f = flight_of(e, o)

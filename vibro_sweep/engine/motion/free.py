@@ -26,7 +26,7 @@ from vibro_sweep.engine.motion.orbits import (
 )
 from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.motion.scan import state_at
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.tables.flight import ORDER, bounds, load
 from vibro_sweep.model import status
@@ -123,7 +123,7 @@ def sign_of_gap(o, side, wall):
     return math.copysign(1.0, -side * o.c[0, n]), n
 
 
-@entry
+@exported
 def find_contacts(f, o, stops, cells, offsets, states, durations, found, sides, statuses):
     """For each flight the time until x1 first is at a stop again, infinite if later than its duration, and the side."""
     q = f.oscillator[0]
@@ -228,7 +228,7 @@ def find_turns(c, length, third, flown, ends, out):
             r *= 0.5
 
 
-@entry
+@exported
 def find_extremes(f, o, stops, cells, offsets, states, durations, out):
     """out (n, 6): bounds on x1 at the highest turning point of each flight and its time, and at the lowest."""
     q = f.oscillator[0]

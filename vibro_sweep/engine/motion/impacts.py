@@ -15,7 +15,7 @@ from vibro_sweep.engine.motion.orbits import (
     wall_of,
 )
 from vibro_sweep.engine.motion.rest import begin_rest, chatter, first_nonzero, stay_at_rest
-from vibro_sweep.engine.simd.jit import aside, jit
+from vibro_sweep.engine.simd.jit import jit, noinline
 from vibro_sweep.engine.simd.lanes import alike
 from vibro_sweep.engine.simd.memory import row
 from vibro_sweep.engine.tables.flight import ORDER, bounds, evaluate, load
@@ -162,7 +162,7 @@ def is_beyond(stops, o, f, k):
     return beyond > EXPLAINED * size
 
 
-@aside
+@noinline
 def cross_cell(f, stops, o, records, t, k, s):
     """Follow the orbit from offset s in cell k to the cell's end, through all that happens. Returns a status."""
     q, node, X, c1 = f.oscillator[0], f.nodes[k], o.X, o.c[0]

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import aside, entry, inline, jit
+from vibro_sweep.engine.simd.jit import exported, inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import state_and_rest
 from vibro_sweep.engine.simd.memory import put, record, row
 from vibro_sweep.engine.tables.flight import ORDER, evaluate, width_of
@@ -115,7 +115,7 @@ def new_records(orbits: int, impacts: int = 0, rests: int = 0, samples: int = 0,
     )
 
 
-@entry
+@exported
 def set_state(o, nodes, stops, cell, offset, state):
     """Set the state (2 N,) of an orbit at this offset of this cell, with nothing counted yet."""
     for j in range(2 * len(o.c)):
@@ -218,7 +218,7 @@ def advance_exactly(o, u):
         add_change(o, i, u)
 
 
-@aside
+@noinline
 def take_samples(o, records, k, start, stop):
     """Take the samples that fall in cell k between the offset `start`, where the series begins, and `stop`."""
     times, samples = records.times, records.samples

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import aside, inline, jit
+from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import bits, lowest, number, state_and_rest
 from vibro_sweep.engine.simd.memory import head, row, sixteen, widened
 from vibro_sweep.engine.tables.flight import CHUNK
@@ -43,7 +43,7 @@ def first_candidate(f, o):
     return cells
 
 
-@aside
+@noinline
 def next_watched(f, o, times):
     """The next candidate cell, or one before it in which there is a sample to take."""
     i = o.samples_taken

@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.engine.motion.orbits import begin_free_flight
-from vibro_sweep.engine.simd.jit import aside, inline
+from vibro_sweep.engine.simd.jit import inline, noinline
 from vibro_sweep.engine.simd.lanes import select
 from vibro_sweep.engine.simd.memory import put, put_state, row
 from vibro_sweep.engine.variational import tangent
@@ -29,7 +29,7 @@ def end_period(e, o, q, nodes, X, readings):
             o.read += 1
 
 
-@aside
+@noinline
 def end_period_here(e, o, f, readings):
     """`end_period` of an orbit that has its state there, for those that came a rare way."""
     end_period(e, o, f.oscillator[0], f.nodes, row(o.X, 0), readings)

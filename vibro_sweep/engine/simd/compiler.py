@@ -1,13 +1,14 @@
-"""numba's compiler, so that a first run waits half as long.
+"""numba's compiler, changed so that a first run takes half as long.
 
 By itself numba optimises each kernel, turns it into machine code, and does all of that again with what it calls, in
-every kernel that calls it. Here that is done once: for an entry, together with all that it reaches.
+every kernel that calls it. Here that is done once: for an exported kernel, together with all that it reaches.
 
-This leans on the inside of numba, as it is in 0.68; the import fails where what it needs is not there.
+This depends on internals of numba 0.68; the import fails where they are missing.
 """
 
 import gc
 
+import numba
 from llvmlite.binding import Linkage, parse_assembly, set_option
 from numba.core.codegen import CPUCodegen, JITCodeLibrary
 from numba.core.compiler import Compiler, Flags
@@ -17,7 +18,7 @@ from vibro_sweep.engine.halting import heard
 
 NEEDED = {JITCodeLibrary: "_optimize_functions", CPUCodegen: "_pass_builder", Flags(): "_values"}
 if not all(hasattr(where, name) for where, name in NEEDED.items()):
-    raise ImportError("this numba is another inside")
+    raise ImportError(f"numba {numba.__version__} lacks internals that compiler.py needs")
 
 # Passes for what kernels do not hold: closures, array expressions, literal arguments; and inlining, which LLVM does.
 SPARED = frozenset(
@@ -26,11 +27,11 @@ SPARED = frozenset(
 )
 
 
-def _lean():
-    """What leaves steps out, loaded when there is something to compile: it takes 0.1 s."""
-    from vibro_sweep.engine.simd import lean
+def _patches():
+    """The patches of numba (numba_patches.py), imported when there is something to compile: it takes 0.1 s."""
+    from vibro_sweep.engine.simd import numba_patches
 
-    return lean
+    return numba_patches
 
 
 class LinkError(RuntimeError):
@@ -65,8 +66,8 @@ def _relinked(module, before, after):
     return module
 
 
-class _Aside(_Part):
-    """One that stays a call: within what is on the way of all orbits it would take registers and room from that."""
+class _NoInline(_Part):
+    """A part that stays a call: inlined, it would take registers and room from the hot path."""
 
     def add_ir_module(self, ir_module):
         for function in ir_module.functions:
@@ -76,7 +77,7 @@ class _Aside(_Part):
 
 
 class _Whole(JITCodeLibrary):
-    """An entry, with all parts that it reaches."""
+    """An exported kernel, with all parts that it reaches."""
 
     def add_linking_library(self, library):
         if library not in self._linking_libraries:
@@ -93,7 +94,7 @@ class _Whole(JITCodeLibrary):
             raise LinkError(f"{self.name} refers to {', '.join(lost)}")
 
     def _get_module_for_linking(self):
-        """The names alone: an entry is linked with nothing, and a start would take 30 ms to read its code once more."""
+        """The names alone: an exported kernel is linked with nothing, and reading its code again takes 30 ms."""
         if self._shared_module is None:
             functions = (f for f in self._final_module.functions if not f.is_declaration)
             names = (f'define void @"{f.name}"() {{ ret void }}' for f in functions if f.linkage == Linkage.external)
@@ -147,20 +148,20 @@ class _Flags(Flags):
 
 
 class WholeCompiler(Compiler):
-    """For an entry."""
+    """For an exported kernel."""
 
     library = _Whole
 
     def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
-        targetctx.load_additional_registries()  # once: for kernels that this one calls, a lean compiler does not
-        with _lean().lean():
+        targetctx.load_additional_registries()  # once: for kernels that this one calls, a patched compiler does not
+        with _patches().patched():
             super().__init__(typingctx, targetctx, library, args, return_type, _Flags(flags), locals)
         # Wherever an array is used, numba asks for a function "__array__" that there is not, and loads all registries
         # to ask once more.
         context = self.state.targetctx
         ask = context.get_function
         context.get_function = lambda fn, sig, _firstcall=True: ask(fn, sig, _firstcall and not isinstance(fn, str))
-        _lean().remember_sizes(context)
+        _patches().remember_sizes(context)
 
     def define_pipelines(self):
         [pipeline] = super().define_pipelines()
@@ -175,7 +176,7 @@ class WholeCompiler(Compiler):
         collecting = gc.isenabled()
         gc.disable()  # a tenth of the time, and there is little to collect
         try:
-            with _lean().lean(), heard():
+            with _patches().patched(), heard():
                 return super().compile_extra(func)
         finally:
             if collecting:
@@ -194,7 +195,7 @@ class PartCompiler(WholeCompiler):
         self.state.targetctx.get_executable = lambda library, fndesc, env: [].append
 
 
-class AsideCompiler(PartCompiler):
-    """For one of those that is no part of its callers."""
+class NoInlineCompiler(PartCompiler):
+    """For a kernel that only kernels call and that is never inlined."""
 
-    library = _Aside
+    library = _NoInline

@@ -1,4 +1,4 @@
-"""All jit policy in one place: nogil, no fastmath but fused multiply-adds, no reference counts, cached on disk.
+"""All jit policy in one file: nogil, fused multiply-adds as the only fastmath, no reference counts, cached on disk.
 
 numba's cache does not see an edit in a helper's file, so the cache folder is named by a hash of all kernel sources:
 those of the engine, and what kernels have of the model.
@@ -21,9 +21,9 @@ from numba.core.caching import FunctionCache
 from numba.core.cpu import CPUTargetOptions
 
 try:
-    from vibro_sweep.engine.simd.compiler import AsideCompiler, PartCompiler, WholeCompiler
-except Exception:  # another numba: kernels compile as it does by itself, in twice the time
-    AsideCompiler = PartCompiler = WholeCompiler = None
+    from vibro_sweep.engine.simd.compiler import NoInlineCompiler, PartCompiler, WholeCompiler
+except Exception:  # another version of numba: kernels compile without compiler.py, in twice the time
+    NoInlineCompiler = PartCompiler = WholeCompiler = None
 
 
 @property
@@ -76,7 +76,7 @@ def _cache_folder() -> str | None:
 
 
 def _tell(folder: str, error: Exception) -> None:
-    """Say once why a folder does not serve."""
+    """Log once why compiled kernels cannot be kept in a folder."""
     global _told
     if not _told:
         _told = True
@@ -85,13 +85,13 @@ def _tell(folder: str, error: Exception) -> None:
 
 
 class _Cache(FunctionCache):
-    """numba's, but what cannot be read is compiled anew and put in its place, and what cannot be written is not."""
+    """numba's cache, but a kernel that cannot be read is compiled anew, and one that cannot be written is not kept."""
 
     def load_overload(self, sig, target_context):
-        """By itself numba loads all that compiling takes, scipy too, before it looks for what is compiled already."""
+        """Without this, numba would load all that compiling takes, scipy too, before it looks for a compiled kernel."""
         try:
             found = self._load_overload(sig, target_context)
-        except Exception as error:  # of pickle, any: the entry is empty or cut off
+        except Exception as error:  # of pickle, any: the cached kernel is empty or cut off
             _tell(self.cache_path, error)
             with contextlib.suppress(OSError):
                 self.flush()
@@ -112,7 +112,7 @@ class _Cache(FunctionCache):
 
 
 def _announce(folder: str) -> None:
-    """Say once why there is a wait."""
+    """Log once that kernels are being compiled."""
     global _announced
     if not _announced:
         _announced = True
@@ -155,13 +155,13 @@ def jit(function):
 
 
 def inline(function):
-    """`jit` for what is on the way of all orbits: a call would pass vectors, and the tables' many words, by memory."""
+    """`jit` for a hot path, always inlined: a call would pass vectors, and the tables' many words, by memory."""
     return _Part(function, PartCompiler, forceinline=True)
 
 
-def aside(function):
-    """`jit` for what is rare: inlined, it would take registers and room from what is on the way."""
-    return _Part(function, AsideCompiler)
+def noinline(function):
+    """`jit` for a rare path, never inlined: inlined, it would take registers and room from the hot path."""
+    return _Part(function, NoInlineCompiler)
 
 
 def exactly(function):
@@ -169,7 +169,7 @@ def exactly(function):
     return _Part(function, PartCompiler, fastmath=False)
 
 
-class entry:  # noqa: N801  # a decorator
+class exported:  # noqa: N801  # a decorator
     """`numba.njit` for a kernel that Python calls, too: one for Python, cached, and a `jit` for other kernels."""
 
     def __init__(self, function):
@@ -210,7 +210,7 @@ def _compiled(function, compiler, forceinline=False, **options):
 
 
 def _works() -> bool:
-    """Whether an entry, a part and an aside compile as one and compute what they should: numba may differ inside."""
+    """Whether exported, plain and noinline kernels compile as one and are right with this numba."""
 
     def double(record):
         return 2.0 * record.numbers[1]
@@ -218,7 +218,7 @@ def _works() -> bool:
     def half(x):
         return 0.5 * x
 
-    double, half = jit(double), aside(half)
+    double, half = jit(double), noinline(half)
 
     def both(records):
         total = 0.0
@@ -229,7 +229,7 @@ def _works() -> bool:
     try:
         records = np.array([([1.0, 3.0],), ([2.0, 4.0],)], [("numbers", float, 2)])
         return _compiled(both, WholeCompiler)(records) == 11.0
-    except Exception:  # whatever numba's inside says to what it does not expect
+    except Exception:  # whatever numba's internals raise
         return False
 
 
@@ -259,6 +259,6 @@ def _enable_caching(dispatcher):
 
 
 if not _usable():
-    AsideCompiler = PartCompiler = WholeCompiler = None
+    NoInlineCompiler = PartCompiler = WholeCompiler = None
 
 AS_ONE = WholeCompiler is not None  # else other multiply-adds are fused, and last digits differ

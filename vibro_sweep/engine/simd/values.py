@@ -21,7 +21,7 @@ _find_values, _store_variable = lowering.Lower._find_singly_assigned_variable, l
 _extract_value, _insert_value, _mul = ir.IRBuilder.extract_value, ir.IRBuilder.insert_value, ir.IRBuilder.mul
 
 
-class _Held(cgutils.ValueStructProxy):
+class _KnownMembers(cgutils.ValueStructProxy):
     """A structure whose members are known in the block where it was made; for other blocks it goes into memory."""
 
     def __init__(self, context, builder, value=None, ref=None):
@@ -38,11 +38,11 @@ class _Held(cgutils.ValueStructProxy):
     def __getattr__(self, name):
         """numba's own methods ask for the place in memory."""
         if name in ("_value", "_outer_ref"):
-            self._settle()
+            self._store()
             return self._value
         return super().__getattr__(name)
 
-    def _settle(self):
+    def _store(self):
         """Put the structure into memory, at the end of the block where it was made."""
         self._value = self._outer_ref = cgutils.alloca_once(self._builder, self._be_type)
         with self._builder.goto_block(self._home):
@@ -87,7 +87,7 @@ class _Held(cgutils.ValueStructProxy):
 
 @functools.cache
 def _held(fe_type):
-    return type(f"Held_{type(fe_type).__name__}", (_Held,), {"_fe_type": fe_type})
+    return type(f"Held_{type(fe_type).__name__}", (_KnownMembers,), {"_fe_type": fe_type})
 
 
 def create_struct_proxy(fe_type, kind="value"):

@@ -1,7 +1,7 @@
 """The tables of one oscillator (`Flight`), from its modes."""
 
 from vibro_sweep.engine.motion.coast import fill_coasting
-from vibro_sweep.engine.simd.jit import entry
+from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.tables.close_modes import CLOSE
 from vibro_sweep.engine.tables.control_points import fill_scan
 from vibro_sweep.engine.tables.forced import fill_motion, fill_phases
@@ -12,7 +12,7 @@ from vibro_sweep.engine.tables.series import fill_equations, fill_impulse, fill_
 from vibro_sweep.engine.tables.stiff import rate_of
 
 
-@entry
+@exported
 def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, tau):
     """Fill the tables of an oscillator with modes psi (2, 2), omega_squared (2,), and phase tau (radians) at node 0.
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.tables.exclusion import fill_exclusion
 from vibro_sweep.engine.tables.fast_roots import fill_stiff_exclusion
 from vibro_sweep.engine.tables.flight import ORDER, WIDTH, decaying, inputs_of
@@ -33,7 +33,7 @@ def new_scratch(masses: int, constant: bool, own: bool = True) -> Scratch:
     )
 
 
-@entry
+@exported
 def build_any(f, w, point):
     """Fill the tables of a point (`point_of`)."""
     q = f.oscillator[0]

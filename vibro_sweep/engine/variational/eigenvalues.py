@@ -2,7 +2,7 @@
 
 import math
 
-from vibro_sweep.engine.simd.jit import aside, jit
+from vibro_sweep.engine.simd.jit import jit, noinline
 from vibro_sweep.engine.variational.graded import separate
 
 STEPS = 60  # to one eigenvalue or one pair; some three are usual
@@ -71,7 +71,7 @@ def is_split(a, k):
     return min(abs(left), abs(above)) * (most / scale) <= ROUNDING * (smaller * (larger / scale))
 
 
-@aside
+@noinline
 def eigenvalues(a, n, re, im):
     """Eigenvalues re + i im of the leading n x n block of a, which is destroyed. Returns whether all were found.
 

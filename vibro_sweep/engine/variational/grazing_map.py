@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.graze import impact_near_graze, impact_slopes
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.variational.propagator import propagate
 from vibro_sweep.engine.variational.sensitivity import gap_of, place_of
 
@@ -103,7 +103,7 @@ def fly_half(e, x, side, X, dX, w):
             X[i] += w.E[i, k] * w.column[k]
 
 
-@entry
+@exported
 def iterate(e, x, half_periods, states, ends, derivatives, impacts, counts, w):
     """So many half periods from each of `states` (n, 2 N), the first from the phase of the right graze.
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from vibro_sweep.engine.motion.orbits import reset_counts, set_state
 from vibro_sweep.engine.motion.together import flight_of, stops_of
-from vibro_sweep.engine.simd.jit import aside, jit
+from vibro_sweep.engine.simd.jit import jit, noinline
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.engine.variational.eigenvalues import eigenvalues
 from vibro_sweep.engine.variational.orthonormal import CONDITION, orthonormalise, place_of
@@ -83,7 +83,7 @@ def step_aside(e, o, direction, state):
     set_state(o, f.nodes, stops, 0, 0.0, state)
 
 
-@aside
+@noinline
 def read_period(e, w, results, which):
     """The multipliers over the first of three periods; with their errors over the next; and what the last adds."""
     t = e.tangent[0]

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import aside, inline, jit
+from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES, bits, select
 from vibro_sweep.engine.simd.matrices import column, product, put_column, scaled, subtract
 from vibro_sweep.engine.simd.memory import put, row
@@ -37,7 +37,7 @@ def watch(t, who, determinant):
         orthonormalise(t, close)
 
 
-@aside
+@noinline
 def orthonormalise(t, who):
     """Gram-Schmidt: Z = Q R, Z becomes Q and the diagonal of R is added to the growth."""
     orthogonalise(t, who)
@@ -93,7 +93,7 @@ def normalise(t, who):
     return extreme
 
 
-@aside
+@noinline
 def collect(t, who):
     """The product of all R so far: D U, with D the growths and U, which has ones on its diagonal, the shear.
 
@@ -118,7 +118,7 @@ def collect(t, who):
                 n += 1
 
 
-@aside
+@noinline
 def take_logs(t, who):
     """Begin the products of these orbits anew before they leave the range of the floats. who: as bits."""
     for j in range(len(t.growth)):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 
 TERMS = 24  # of the series: what is left out is below 2^-80 times the condition number of the eigenvectors of A
 SHORT = 0.5  # rate times flight for the series
@@ -67,7 +67,7 @@ def accumulate(a, out):
             out[i, j] += a[i, j]
 
 
-@entry
+@exported
 def propagate(A, A_p, rate, u, w):
     """w.E = exp(A u), and w.E_p its derivatives; A_p (m, k, k), rate: the spectral radius of A."""
     halvings, size = 0, rate * abs(u)
@@ -127,7 +127,7 @@ def advance(A, A_p, rate, u, z, dz, columns, w):
         z[i] = w.column[i]
 
 
-@entry
+@exported
 def fly(A, rate, states, phases, angles, w, out):
     """out (n, m, 2 N): flights from `states` (n, 2 N) at the phases omega t + tau (n,) over the angles (n, m) of s."""
     count = states.shape[1]

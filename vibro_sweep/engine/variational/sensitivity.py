@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import entry, jit
+from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.variational.propagator import advance
 from vibro_sweep.model import status
 
@@ -176,7 +176,7 @@ def follow(e, leaving, impacts, rests, now, end, z, dz, bend, w):
     fly_to(e, resting, now, end, z, dz, w)
 
 
-@entry
+@exported
 def differentiate(
     e, first_cell, states, leaving, statuses, impacts, counts, rests, rest_counts, end, now, z, dz, bend, w, out
 ):

@@ -10,7 +10,7 @@ Their flight is in tangent_flight.py. `who` is the mask of the orbits to which s
 
 import numpy as np
 
-from vibro_sweep.engine.simd.jit import aside, entry, inline, jit
+from vibro_sweep.engine.simd.jit import exported, inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES, select
 from vibro_sweep.engine.simd.memory import put, record, row
 from vibro_sweep.engine.tables.flight import ORDER
@@ -88,7 +88,7 @@ def set_frame(t, i, q):
             t.both[1] = 1
 
 
-@entry
+@exported
 def begin(t, i):
     """Orthonormal vectors at the section."""
     size = len(t.growth)
@@ -163,7 +163,7 @@ def strike_vector(t, who, j, dx, dv, steepness, R):
         put(Z, size * m + j, select(who, after, z))
 
 
-@aside
+@noinline
 def saltate_by_both(t, who, steepness, R):
     """What an impact does to the vectors, where both numbers of a mode move the gap."""
     Z, back, size = t.Z, t.from_frame, len(t.growth)
@@ -192,7 +192,7 @@ def saltate(t, who, steepness, R):
     watch(t, who, R * R)
 
 
-@aside
+@noinline
 def read_growth(t, i, q, nodes, out):
     """Logarithms of the growth of the vectors up to this section, -inf for dimensions lost by sticking."""
     fly_to(t, i, q, nodes, 0, 0.0)

@@ -4,7 +4,7 @@ vectors at the next impact.
 `who` is the mask of the orbits to which something happens; i is one of them. The frame: tangent.py.
 """
 
-from vibro_sweep.engine.simd.jit import aside, inline, jit
+from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import bits, lanes_of, lowest, select
 from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.tables.flight import ORDER, decaying
@@ -89,7 +89,7 @@ def most_cells(t, i, q):
     return q.most_cells_mixed if t.mixed[i] > 0.0 else q.most_cells_in_planes
 
 
-@aside
+@noinline
 def stop_over(t, i, q, nodes, cells):
     """Fly on with orthonormalisations, without which all vectors would align. Returns the cells left."""
     limit = most_cells(t, i, q)
@@ -102,7 +102,7 @@ def stop_over(t, i, q, nodes, cells):
     return cells
 
 
-@aside
+@noinline
 def aim_far(t, i, q, nodes, cells, u):
     """`aim` where the flight is long, or the system stiff."""
     if t.flown[i] + cells > most_cells(t, i, q):

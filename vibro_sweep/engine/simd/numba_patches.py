@@ -1,10 +1,10 @@
-"""Steps of numba's compiler that kernels have no use for, left out while kernels compile: a third of the time.
+"""Patches that leave out steps of numba's compiler that kernels do not need: a third of the time.
 
 numba looks after each pass for how long every variable lives, for references that kernels do not count; puts what it
 computes into memory and takes it out again (values.py); measures how long each call of LLVM takes, once for each kernel
 that is being compiled; finds the type of an operation anew wherever it stands, how its arguments are passed, and
 whether the function that writes it takes a line number; goes through a whole kernel for each variable that is assigned
-twice; writes out each statement and the types of the kernel, for whoever listens; imports all that could be called,
+twice; writes out each statement and the types of the kernel, for its listeners; imports all that could be called,
 once for each kernel; searches for `with` and for dictionaries; asks LLVM for the size of a type as often as a variable
 has it; and prepares, for each operation, to catch warnings about it and to tell where an error has come from. (Errors
 still name their line; warnings go where all others go.)
@@ -36,14 +36,14 @@ from numba.np import arrayobj
 
 from vibro_sweep.engine.simd import values
 
-_settle, _call_type = PostProcessor.run, types.Function.get_call_type
+_lifetimes, _call_type = PostProcessor.run, types.Function.get_call_type
 _pack, _rewrite = base.BaseContext.get_arg_packer, ssa._run_block_rewrite
 
 
-def _settle_at_the_end(self, emit_dels=False, extend_lifetimes=False):
+def _lifetimes_if_counted(self, emit_dels=False, extend_lifetimes=False):
     """`PostProcessor.run` in full only where references are counted: for that it says where variables end."""
     if emit_dels and targetconfig.ConfigStack.top_or_none().nrt:
-        _settle(self, emit_dels, extend_lifetimes)
+        _lifetimes(self, emit_dels, extend_lifetimes)
         return
     ir = self.func_ir
     ir.blocks = canonicalize_cfg(ir.blocks)
@@ -85,8 +85,8 @@ def _names(block):
     return names
 
 
-def _in_no_context(*args, **about):
-    """In place of numba's context managers that are entered for every operation."""
+def _null_context(*args, **about):
+    """Replaces numba's context managers that are entered for every operation."""
     return _nothing
 
 
@@ -100,7 +100,7 @@ def _look_through_registries(context):
 
 
 class _Silent:
-    """In place of numba's loggers, which are told of each bytecode and statement."""
+    """Replaces numba's loggers, which log each bytecode and statement."""
 
     @staticmethod
     def debug(*args):
@@ -108,14 +108,14 @@ class _Silent:
 
 
 INSTEAD = (
-    (PostProcessor, "run", _settle_at_the_end),
+    (PostProcessor, "run", _lifetimes_if_counted),
     (types.Function, "get_call_type", _call_type_once),
     (base.BaseContext, "get_arg_packer", _pack_once),
     (ssa, "_run_block_rewrite", _rewrite_where_named),
-    (event, "install_timer", _in_no_context),
-    (typeinfer, "new_error_context", _in_no_context),
-    (lowering, "new_error_context", _in_no_context),
-    (errors.WarningsFixer, "catch_warnings", _in_no_context),
+    (event, "install_timer", _null_context),
+    (typeinfer, "new_error_context", _null_context),
+    (lowering, "new_error_context", _null_context),
+    (errors.WarningsFixer, "catch_warnings", _null_context),
     (base, "_has_loc", functools.cache(base._has_loc)),
     (interpreter, "peep_hole_delete_with_exit", lambda func_ir: func_ir),
     (interpreter, "peep_hole_fuse_dict_add_updates", lambda func_ir: func_ir),
@@ -135,8 +135,8 @@ INSTEAD = (
 
 
 @contextlib.contextmanager
-def lean() -> Iterator[None]:
-    """While numba's lock for compiling is held: nobody else compiles meanwhile, but kernels that this one calls."""
+def patched() -> Iterator[None]:
+    """Apply the patches while numba's lock for compiling is held: only what this kernel calls compiles meanwhile."""
     before = [(where, name, getattr(where, name)) for where, name, _ in INSTEAD]
     for where, name, instead in INSTEAD:
         setattr(where, name, instead)
