@@ -51,7 +51,7 @@ def draws(made, share: int):
         for argument in call.valid
         for kind in values
         for place in range(-1, len(inside(argument, None)))
-        if argument != "changes"
+        if argument not in ("changes", "options")
     ]
     choose.shuffle(bad)
     for name, argument, kind, place in bad[::share]:

@@ -71,5 +71,5 @@ def test_branch_against_simulation(name):
 def test_orbit_of_an_oscillator_survives_its_file(tmp_path):
     system = CASES["one mass"][0]
     orbit = vs.periodic_orbit(system, state=settled(system)[0])
-    again = vs.load_orbit(orbit.save(tmp_path / "orbit.json"))
+    again = vs.load(orbit.save(tmp_path / "orbit.json"))
     assert again.ok and again.system == system and again.impacts.tobytes() == orbit.impacts.tobytes()

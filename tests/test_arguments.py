@@ -185,7 +185,7 @@ PATH = r"is not allowed; it must be the path of a file"
         (lambda: vs.load_scene("."), r"\.: cannot be read: Is a directory"),
         (lambda: vs.load_scene(""), f"path: '' {PATH}, and not empty"),
         (lambda: vs.open("a\0b"), f"path: 'a.x00b' {PATH}, without a NUL"),
-        (lambda: vs.load_orbit("\ud800"), f"path: '.ud800' {PATH}, of whole characters"),
+        (lambda: vs.load("\ud800"), f"path: '.ud800' {PATH}, of whole characters"),
         (lambda: vs.plot("x" * 5000), rf"data: 'x{{56}}\.\.\. {PATH}, and shorter"),
         (lambda: vs.sweep(SYSTEM, {"b": [6.6]}, output="x" * 252), f"output: 'x.* {PATH}, and shorter"),
     ],
@@ -215,7 +215,7 @@ DEEP = "[" * 100_000
 def test_texts_that_are_no_orbits(tmp_path, text):
     (tmp_path / "x.json").write_bytes(text.encode(errors="surrogatepass"))
     with pytest.raises(ValueError, match="not a file of the format"):
-        vs.load_orbit(tmp_path / "x.json")
+        vs.load(tmp_path / "x.json")
 
 
 @pytest.mark.parametrize(
@@ -234,7 +234,7 @@ def test_edited_orbits(orbit, tmp_path, key, value):
     record = json.loads(orbit.save(tmp_path / "x.json").read_text())
     (tmp_path / "y.json").write_text(json.dumps(record | {key: value}))
     with pytest.raises(ValueError, match=r"y\.json: damaged: "):
-        vs.load_orbit(tmp_path / "y.json")
+        vs.load(tmp_path / "y.json")
 
 
 def test_places_where_no_orbit_can_be_read_or_saved(orbit, tmp_path):
@@ -244,6 +244,6 @@ def test_places_where_no_orbit_can_be_read_or_saved(orbit, tmp_path):
     with pytest.raises(ValueError, match=r"cannot be written: there is no folder .*nodir$"):
         orbit.save(tmp_path / "nodir" / "x.json")
     with pytest.raises(FileNotFoundError, match=r"y\.json: there is no such file"):
-        vs.load_orbit(tmp_path / "y.json")
+        vs.load(tmp_path / "y.json")
     with pytest.raises(OSError, match="cannot be read: Is a directory"):
-        vs.load_orbit(tmp_path)
+        vs.load(tmp_path)

@@ -67,7 +67,7 @@ def test_bad_input_is_refused(arguments, said):
 def test_orbit_survives_its_file(tmp_path):
     orbit = vs.periodic_orbit(PAPER.replace(b=1.0), itinerary="LLRR")
     path = orbit.save(tmp_path / "orbit.json")
-    again = vs.load_orbit(path)
+    again = vs.load(path)
     assert again.status == "ok" and again.system == orbit.system
     assert again.impacts.tobytes() == orbit.impacts.tobytes()
     with pytest.raises(FileExistsError):
@@ -76,10 +76,10 @@ def test_orbit_survives_its_file(tmp_path):
     for damage in ({"format": "x"}, {"sides": [1, 5]}, {"unknowns": [1.0]}, {"system": {"b": 1}}, {"halves": 2}):
         path.write_text(json.dumps(record | damage))
         with pytest.raises(ValueError, match=path.name):
-            vs.load_orbit(path)
+            vs.load(path)
     path.write_bytes(b"\xff\x00")
     with pytest.raises(ValueError, match=path.name):
-        vs.load_orbit(path)
+        vs.load(path)
 
 
 def test_files_of_orbits_from_before_they_had_a_checksum(tmp_path):
@@ -88,11 +88,11 @@ def test_files_of_orbits_from_before_they_had_a_checksum(tmp_path):
     new = json.loads(path.read_text())
     old = {key: value for key, value in new.items() if key != "checksum"}
     path.write_text(json.dumps(old | {"format": "vibro_sweep periodic orbit 1"}))
-    assert vs.load_orbit(path).impacts.tobytes() == orbit.impacts.tobytes()
+    assert vs.load(path).impacts.tobytes() == orbit.impacts.tobytes()
     for damaged in (old, new | {"format": "vibro_sweep periodic orbit 1"}, new | {"residual": 1e-9}):
         path.write_text(json.dumps(damaged))
         with pytest.raises(ValueError, match="checksum"):
-            vs.load_orbit(path)
+            vs.load(path)
 
 
 def test_picture(tmp_path):

@@ -60,7 +60,7 @@ def test_a_changed_digit_of_a_periodic_orbit(kinds, tmp_path):
             continue
         path.write_text(changed)
         with pytest.raises(ValueError, match=r"x\.json: damaged: its "):
-            vs.load_orbit(path)
+            vs.load(path)
 
 
 @pytest.mark.parametrize(

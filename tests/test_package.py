@@ -59,7 +59,7 @@ found = vs.sweep(system, {"b": np.linspace(6.5, 6.6, 3)}, transient=10, record=4
 print(found.lyapunov)
 periodic = vs.periodic_orbit(system.replace(b=6.9), state=(0, 0, 0, 0))
 periodic.save("orbit.json")
-again = vs.load_orbit("orbit.json")
+again = vs.load("orbit.json")
 branch = vs.continue_orbit(again, "b", (6.6, 7.0))
 for special in branch.special:
     if special.type == "graze":

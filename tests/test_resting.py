@@ -139,7 +139,7 @@ def test_points_of_the_branch(branch):
 
 def test_orbit_survives_its_file(resting, tmp_path):
     orbit, _ = resting
-    again = vs.load_orbit(orbit.save(tmp_path / "orbit.json"))
+    again = vs.load(orbit.save(tmp_path / "orbit.json"))
     assert again.ok and again.sticking.tobytes() == orbit.sticking.tobytes()
     assert again.impacts.tobytes() == orbit.impacts.tobytes()
 

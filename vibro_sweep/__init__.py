@@ -5,9 +5,8 @@ At a prompt
 Sweeps
     sweep (from Python), load_scene and run (from YAML to an HDF5 file), open (that file as an xarray.Dataset), plot
 Periodic orbits
-    periodic_orbit, continue_orbit, switch, follow_branches, bifurcation_curve, born_at_grazing, sticking_onset,
-    load_orbit
-    windows (of a sweep's file)
+    periodic_orbit, continue_orbit, switch, follow_branches, bifurcation_curve, born_at_grazing, sticking_onset
+    windows (of a sweep), load (what the results' `.save` wrote)
 Errors
     VibroSweepError, the base of all; ParameterError, SceneError, StoreError, PlotError (each is a ValueError), RunError
 For annotations
@@ -36,7 +35,7 @@ __all__ = [
     "discontinuity_map",
     "follow_branches",
     "grazing",
-    "load_orbit",
+    "load",
     "load_scene",
     "lyapunov",
     "open",
@@ -58,11 +57,12 @@ if TYPE_CHECKING:
     from vibro_sweep.analysis.curves.curve_switching import switch
     from vibro_sweep.analysis.periodic.finding import periodic_orbit
     from vibro_sweep.analysis.periodic.lcp import born_at_grazing
-    from vibro_sweep.analysis.periodic.orbit_file import load_orbit
     from vibro_sweep.analysis.single.discontinuity import discontinuity_map
     from vibro_sweep.analysis.single.orbit import lyapunov, simulate
     from vibro_sweep.driver.compute import RunError
     from vibro_sweep.driver.from_python import sweep
+    from vibro_sweep.driver.opening import open
+    from vibro_sweep.driver.results import load
     from vibro_sweep.driver.run import run
     from vibro_sweep.driver.windows import windows
     from vibro_sweep.model.errors import VibroSweepError
@@ -74,7 +74,6 @@ if TYPE_CHECKING:
     from vibro_sweep.plotting.front import plot
     from vibro_sweep.scene import SceneError, load_scene
     from vibro_sweep.store.opening import StoreError
-    from vibro_sweep.store.reading import open
 else:
     _HOME = {
         "Oscillator": "model.general",
@@ -91,10 +90,10 @@ else:
         "discontinuity_map": "analysis.single.discontinuity",
         "follow_branches": "analysis.branches.generations",
         "grazing": "model.grazing",
-        "load_orbit": "analysis.periodic.orbit_file",
+        "load": "driver.results",
         "load_scene": "scene",
         "lyapunov": "analysis.single.orbit",
-        "open": "store",
+        "open": "driver.opening",
         "periodic_orbit": "analysis.periodic.finding",
         "plot": "plotting.front",
         "run": "driver.run",

@@ -166,7 +166,10 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
         "PeriodicOrbit.sample": Call(orbit.sample, times),
         "PeriodicOrbit.plot": Call(orbit.plot, width),
         "PeriodicOrbit.save": Call(orbit.save, each("path", "new.json", Path("new.json"))),
-        "load_orbit": Call(vs.load_orbit, each("path", "orbit.json", Path("orbit.json"))),
+        "Branch.save": Call(made["Branch"].save, each("path", "new.h5", Path("new.h5"))),
+        "Branch.plot": Call(made["Branch"].plot, any_of("options", width | each("variable", "v1"))),
+        "BifurcationCurve.save": Call(made["BifurcationCurve"].save, each("path", "new.h5", Path("new.h5"))),
+        "load": Call(vs.load, each("path", "orbit.json", Path("orbit.json"))),
         "born_at_grazing": Call(vs.born_at_grazing, system | each("periods", 1, 1.0)),
         "continue_orbit": Call(vs.continue_orbit, each("orbit", orbit) | parameter | bounds | progress),
         "follow_branches": Call(

@@ -42,7 +42,7 @@ def commands(name: str) -> dict[str, Callable[[str], Said]]:
     """What reads a file of a kind, by its words; each is called with the file's name."""
     found = {"info": lambda file: said(["info", file]), "plot": lambda file: _drawn(["plot", file])}
     if name == PERIODIC:
-        return found | {"vs.load_orbit": _loaded}
+        return found | {"vs.load": _loaded}
     found |= {"open": _opened, "vs.plot": _plotted, "vs.plot of the dataset": _plotted_dataset}
     found["run --resume" if KINDS[name].scene else "windows --resume"] = lambda file: _resumed(name, file)
     found["again"] = lambda file: said(_of(name, file))
@@ -173,7 +173,7 @@ def _plotted_dataset(file: str) -> Said:
 
 def _loaded(file: str) -> Said:
     def read() -> str:
-        orbit = vs.load_orbit(file)
+        orbit = vs.load(file)
         return repr((orbit.status, orbit.system, orbit.impacts.tobytes(), orbit.multipliers.tobytes()))
 
     return _python(read)

@@ -68,15 +68,18 @@ def windows(
     check_how(workers, None, progress, mode)
     if output is None and mode != "new":
         raise ArgumentError(not_allowed("mode", mode, "'new' without a file, `output`"))
+    search = None
     with given_or_bar(progress, 0) as tell:
         if output is not None:
             search = run_windows(data, output, parameter, workers, None, tell, mode)
-            if search is not None:
-                return windows_of(search)
         with contents_of(data) as found:
             rows = rows_in(found, parameter)
-            with workers_of(workers, None) as pool:
-                return windows_of(search_of(rows, NothingKept(), pool, tell))
+            if search is None:
+                with workers_of(workers, None) as pool:
+                    search = search_of(rows, NothingKept(), pool, tell)
+            result = windows_of(search)
+            result._held = _subject(found, rows[0].parameter), *_contents(search)
+            return result
 
 
 def run_windows(

@@ -17,12 +17,11 @@ from vibro_sweep.model.errors import ArgumentTypeError
 from vibro_sweep.model.pictures import PICTURES
 from vibro_sweep.model.refusals import not_allowed, shown
 from vibro_sweep.plotting import basins, branches, charts, coexistence, convergence, energy, orbits, planes, sweeps
-from vibro_sweep.plotting.flat import drawable
 from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.pictures import check_output, save
 from vibro_sweep.plotting.result import PlotError, Result
-from vibro_sweep.plotting.source import name_of
+from vibro_sweep.plotting.source import name_of, readable
 
 if TYPE_CHECKING:
     import xarray
@@ -82,7 +81,7 @@ def figure(
     """
     if ax is not None and not isinstance(ax, Axes):
         raise ArgumentTypeError(not_allowed("ax", ax, "matplotlib axes"))
-    data, of = drawable(data)
+    data, of = readable(data)
     if of is not None:
         _check_flat(data, of, kind, look or Look())
         with matplotlib.rc_context((look or Look()).style):
@@ -109,7 +108,7 @@ def plot(path, output=None, kind: str | None = None, overwrite: bool = False, lo
         raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
     beside = (look.windows, look.over) if look else ()
     inputs = [path, *(one for one in beside if isinstance(one, Path))]
-    data, of = drawable(path)
+    data, of = readable(path)
     if of is not None:
         check_output(output, overwrite, inputs)
         return [save(figure(data, kind, look), output, overwrite, inputs)]

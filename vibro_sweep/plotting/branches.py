@@ -7,6 +7,7 @@ from matplotlib.lines import Line2D
 
 from vibro_sweep.model.bifurcations import ON_CIRCLE
 from vibro_sweep.model.branch_file import BRANCHES
+from vibro_sweep.model.refusals import shown
 from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import joined, sweeps
 from vibro_sweep.plotting.flat import FlatFile, sweep_below
@@ -27,11 +28,9 @@ def variables(file: FlatFile) -> tuple[str, ...]:
 def branches(path, look: Look, ax=None):
     """The diagram of a file of branches; over a sweep where the look names one. Raises PlotError."""
     file = FlatFile(path, BRANCHES)
-    if len(file.parameters) != 1:
-        raise PlotError(f"{file.name}: its curves lie in {' and '.join(file.parameters)}")
     name = look.variable or "x1"
     if name not in variables(file):
-        raise PlotError(f"variable {name!r} is not allowed; there are {', '.join(variables(file))}")
+        raise PlotError(f"variable {shown(name)} is not allowed; there are {', '.join(variables(file))}")
     if not len(file["branch_period"]):
         raise PlotError(f"{file.name}: nothing to show, it has no branches")
     fig = None

@@ -7,6 +7,7 @@ import numpy as np
 
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
 from vibro_sweep.model.branch_file import CHART
+from vibro_sweep.model.refusals import shown
 from vibro_sweep.plotting import planes
 from vibro_sweep.plotting.curves import Drawn, draw, handles, name_points
 from vibro_sweep.plotting.flat import FlatFile, sweep_below
@@ -26,7 +27,7 @@ def chart(path: str | Path, look: Look, ax=None):
     if look.over is not None:
         return _over(file, look, ax)
     if look.variable is not None:
-        raise PlotError(f"variable {look.variable!r} is not allowed; a chart has one where it lies over a plane")
+        raise PlotError(f"variable {shown(look.variable)} is not allowed; a chart has one where it lies over a plane")
     names = file.parameters
     curves = drawn(file, names, look.relative)
     fig = None
@@ -78,7 +79,7 @@ def _over(file: FlatFile, look: Look, ax):
             raise PlotError(f"over: {result.path} is no plane over {' and '.join(file.parameters)}")
         if look.variable is not None and look.variable not in planes.variables(result):
             told = ", ".join(planes.variables(result))
-            raise PlotError(f"variable {look.variable!r} is not allowed; there are {told}")
+            raise PlotError(f"variable {shown(look.variable)} is not allowed; there are {told}")
         curves = drawn(file, list(result.sweep), look.relative)
 
         def over(panel):

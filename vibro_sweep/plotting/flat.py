@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.model.bifurcations import KINDS, TYPES
-from vibro_sweep.model.branch_file import WINDOWS
+from vibro_sweep.model.branch_file import BRANCHES, WINDOWS
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.units import shown_unit
 from vibro_sweep.plotting.source import PlotError, name_of, readable
@@ -28,12 +28,12 @@ class FlatFile:
     def __init__(self, given: "str | Path | xarray.Dataset", kind: str):
         given, found = readable(given)
         self.name = name_of(given)
-        if found != kind:
+        if found != kind and not (kind == BRANCHES and found == WINDOWS):  # which are stable parts of branches
             raise PlotError(f"{self.name}: holds no {kind}")
         if isinstance(given, (str, Path)):
             self._read(Path(given))
         else:
-            self._take(given, kind)
+            self._take(given, str(found))
 
     def _read(self, path: Path) -> None:
         try:
@@ -78,12 +78,3 @@ def sweep_below(path: str | Path) -> "str | Path | xarray.Dataset":
     if kind is not None:
         raise PlotError(f"over: {path} holds {cut(kind)}, and no sweep")
     return given
-
-
-def drawable(given: "str | Path | xarray.Dataset") -> tuple["str | Path | xarray.Dataset", str | None]:
-    """As `readable`; PlotError for windows says what shows them."""
-    data, kind = readable(given)
-    if kind == WINDOWS:
-        name = name_of(data)
-        raise PlotError(f"{name} holds the windows of a sweep; `plot SWEEP.h5 --windows {name}` shows them")
-    return data, kind

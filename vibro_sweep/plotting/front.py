@@ -19,7 +19,7 @@ from vibro_sweep.plotting.pictures import check_output, save
 if TYPE_CHECKING:
     import xarray
 
-A_FILE = "the path of a file, or a Dataset"
+A_FILE = "the path of a file, a Dataset, a branch, a curve or windows"
 
 
 @overload
@@ -50,7 +50,8 @@ def plot(
     output: str | Path | None = None,
     overwrite: bool = False,
 ) -> Figure | None:
-    """A picture of a file, or of a Dataset of `vibro_sweep.open` or `vibro_sweep.sweep`; a matplotlib Figure.
+    """A picture of a file, of a Dataset of `vibro_sweep.open` or `vibro_sweep.sweep`, or of a result: an orbit, a
+    branch, a curve or windows; a matplotlib Figure. Of an orbit `width` alone is an option.
 
     A notebook shows it as the value of a cell. In axes of pyplot, which shows them itself, it is not returned too.
     Options have the names that they have on the command line.
@@ -72,6 +73,8 @@ def plot(
 
     Raises `PlotError` where the data cannot be read or cannot show that kind; it says which can be shown.
     """
+    if _is_result(data) and hasattr(data, "sample"):  # an orbit, whose motion is computed as it is drawn
+        return data.plot(width=width)
     data = _data("data", data)
     check_type("kind", kind, (str, NoneType), "the name of a kind of picture, or None")
     check_type("variable", variable, (str, NoneType), "the name of a variable, or None")
@@ -101,13 +104,18 @@ def plot(
     return None if ax is not None and drawn.canvas.manager is not None else drawn
 
 
+def _is_result(given) -> bool:
+    return type(given).__module__.startswith("vibro_sweep.analysis")
+
+
 def _data(name: str, given) -> "Path | xarray.Dataset":
     if isinstance(given, (str, Path)):
         return checked_path(name, given)
     from xarray import Dataset  # it is imported already where it is one
 
-    check_type(name, given, Dataset, A_FILE)
-    return given
+    data = given.to_xarray() if _is_result(given) and hasattr(given, "to_xarray") else given
+    check_type(name, data, Dataset, A_FILE)
+    return data
 
 
 def _pair(name: str, given) -> tuple[float, float] | None:

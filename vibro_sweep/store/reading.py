@@ -45,12 +45,7 @@ class Description(NamedTuple):
 
 
 def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray expect
-    """The file, or what is computed in a part, as an `xarray.Dataset` with coordinates; numbers are read when used.
-
-    It is read through once, for its checksums. Raises StoreError for a file that is none of ours, and for a damaged
-    one: it names the datasets. Of a missing file the StoreError is a FileNotFoundError too. A file that xarray or
-    another program wrote from one of this program is opened too, with a warning in the log: it has no checksums.
-    """
+    """An HDF5 file, or what is computed in a part, as a Dataset; `vibro_sweep.open` (driver/opening.py) says more."""
     from vibro_sweep.store import foreign, lazy
 
     try:

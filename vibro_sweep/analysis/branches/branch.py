@@ -9,17 +9,20 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vibro_sweep.analysis.branches import branch_text
-from vibro_sweep.analysis.branches.branch_points import dataset
+from vibro_sweep.analysis.branches.branch_points import dataset, dataset_from_file
 from vibro_sweep.analysis.branches.branch_start import NoStartError, changes_rests, start_of_run
 from vibro_sweep.analysis.branches.compiled_stepper import row_of
 from vibro_sweep.analysis.branches.free_run import run_from
-from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
 from vibro_sweep.analysis.branches.sticking import sticking_onset
 from vibro_sweep.analysis.continuation.recorded import Rows, both_directions
 from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.analysis.single.result import FileResult
 from vibro_sweep.model.arguments import check_call, check_type, checked_interval, checked_word
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.linear import family_of
@@ -30,7 +33,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Branch:
+class Branch(FileResult):
     """A branch, from the end that is reached towards smaller parameters first to the other one.
 
     special : all special points in order, `begins` and `ends` among them. Beyond an end at which a chatter sequence
@@ -47,7 +50,8 @@ class Branch:
     closed: bool
     _start: Solution
     _frame: tuple[int, int]
-    _rows: Rows
+    _rows: Rows | None  # None of one that was read from a file, which has
+    _arrays: dict[str, np.ndarray] | None = None
 
     def __repr__(self) -> str:
         return branch_text.of_branch(self)
@@ -63,7 +67,12 @@ class Branch:
     @cached_property
     def points(self) -> "xarray.Dataset":
         """Dataset over `point`: the parameter, state at t = 0, multipliers, distance, impacts (docs of `columns`)."""
+        if self._rows is None:
+            return dataset_from_file(self._arrays, self.parameter)
         return dataset(self._start, self.parameter, self._frame, self._rows)
+
+    def _table(self) -> dict[str, list]:
+        return table_of(self.special)
 
 
 @one_thread()

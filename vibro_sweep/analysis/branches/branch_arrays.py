@@ -52,6 +52,8 @@ def outline(branch: Branch) -> Arrays:
 
 def arrays_of(branch: Branch, origin: float) -> Arrays:
     """The arrays of a branch; origin: the parameter of the orbit that it was followed from."""
+    if branch._arrays is not None:
+        return branch._arrays
     start, parameter = branch._start, branch.parameter
     data = {name: values for name, (_, values) in columns(start, parameter, branch._frame, branch._rows).items()}
     p, special = data[parameter], branch.special
@@ -132,6 +134,22 @@ def orbit_at(arrays: Arrays, point: int, system) -> PeriodicOrbit:
     """The orbit at a point of a branch; `system` has the parameter's value there."""
     solution = solution_of(arrays, system, *(arrays[name][point] for name in ("impact_t", "impact_v", "impact_t_off")))
     return orbit_of(system, solution)
+
+
+def branch_of(arrays: Arrays, parameter: str, system) -> Branch:
+    """The branch with these arrays; `system` is one of its oscillators."""
+    special = [special_point(arrays, i, parameter, system) for i in range(len(arrays["special_type"]))]
+    origin = int(arrays["branch_origin"])
+    orbit = orbit_at(arrays, origin, system.replace(**{parameter: float(arrays["value"][origin])}))
+    begins, ends = (special[int(arrays[name])] for name in ("branch_begins", "branch_ends"))
+    closed = bool(arrays["branch_closed"])
+    return Branch(parameter, special, begins, ends, closed, orbit._solution, (0, 0), None, arrays)
+
+
+def sections_of(arrays: Arrays, parameter: str, system) -> np.ndarray:
+    """(n, m, 2N) all section states of each point: those at t = 0 mod T of the orbit and of its mirror image."""
+    systems = [system.replace(**{parameter: value}) for value in arrays["value"].tolist()]
+    return np.array([section_states(orbit_at(arrays, i, one)) for i, one in enumerate(systems)])
 
 
 def special_point(arrays: Arrays, index: int, parameter: str, system) -> SpecialPoint:

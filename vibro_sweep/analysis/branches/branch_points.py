@@ -10,6 +10,7 @@ from vibro_sweep.analysis.periodic.motion_between import multipliers_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.model.linear import Linear, forcing_period
+from vibro_sweep.model.state import state
 
 if TYPE_CHECKING:
     import xarray
@@ -20,6 +21,19 @@ def dataset(start: Solution, name: str, frame: tuple[int, int], rows: Rows) -> "
     import xarray
 
     return xarray.Dataset(columns(start, name, frame, rows))
+
+
+def dataset_from_file(arrays: dict[str, np.ndarray], name: str) -> "xarray.Dataset":
+    """The same, from the arrays of a file (branch_arrays.py)."""
+    import xarray
+
+    words, sides = state(arrays["state"].shape[1] // 2), np.tile(arrays["impact_side"], (len(arrays["value"]), 1))
+    values = {"multiplier_re": "multiplier", "multiplier_im": "multiplier", "impact_t": "impact", "impact_v": "impact"}
+    result = {name: ("point", arrays["value"])} | {one: (("point", d), arrays[one]) for one, d in values.items()}
+    result |= {word: ("point", arrays["state"][:, i]) for i, word in enumerate(words)}
+    numbers = ("unstable", "stop_distance", "min_impact_speed", "residual")
+    result |= {one: ("point", arrays[one]) for one in numbers}
+    return xarray.Dataset(result | {"impact_side": (("point", "impact"), sides)})
 
 
 def columns(start: Solution, name: str, frame: tuple[int, int], rows: Rows) -> dict[str, tuple]:

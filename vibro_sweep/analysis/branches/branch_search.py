@@ -4,10 +4,8 @@ Of the orbits that it finds beyond these, those that lie on a branch that is kno
 same generation that an earlier one has passed.
 """
 
-import numpy as np
-
 from vibro_sweep.analysis.branches.branch import Branch, continue_orbit, not_followed
-from vibro_sweep.analysis.branches.branch_arrays import Arrays, arrays_of, orbit_at, section_states
+from vibro_sweep.analysis.branches.branch_arrays import Arrays, arrays_of, sections_of
 from vibro_sweep.analysis.branches.branch_switching import switch
 from vibro_sweep.analysis.branches.recognising import clearest, passes, point_of
 from vibro_sweep.analysis.branches.search import Node, Search, Task
@@ -25,7 +23,7 @@ def compute_branch(task: Task) -> Arrays:
     branch = followed(task)
     (origin,) = task.seed.place(task.names)
     arrays = arrays_of(branch, origin)
-    arrays["section"] = _sections(arrays, task)
+    arrays["section"] = sections_of(arrays, *task.names, task.seed.system)
     return arrays | packed(beyond(branch, task), task.names)
 
 
@@ -58,12 +56,6 @@ def accumulates(branch: Branch, end: SpecialPoint, reach: float) -> bool:
         if end is last and outermost is not last:
             return abs(outermost.parameters[branch.parameter] - end.parameters[branch.parameter]) < reach
     return False
-
-
-def _sections(arrays: Arrays, task: Task) -> np.ndarray:
-    """(n, m, 2N) all section states of each point: those at t = 0 mod T of the orbit and of its mirror image."""
-    systems = [task.seed.system.replace(**{task.names[0]: value}) for value in arrays["value"].tolist()]
-    return np.array([section_states(orbit_at(arrays, i, system)) for i, system in enumerate(systems)])
 
 
 class Branches(Search):

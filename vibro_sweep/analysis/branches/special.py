@@ -47,6 +47,14 @@ class SpecialPoint:
         return branch_text.of_special_point(self)
 
 
+def table_of(special: list[SpecialPoint]) -> dict[str, list]:
+    """The special points of a branch or a curve as columns: parameters, type, what tells it apart, orbit, error."""
+    numbers = {name: [one.parameters[name] for one in special] for name in special[0].parameters}
+    words = {name: [getattr(one, name) for one in special] for name in ("type", "kind", "criticality", "stop")}
+    orbits = {name: [getattr(one.orbit, name) for one in special] for name in ("period", "itinerary")}
+    return numbers | words | orbits | {"error": [one.error for one in special]}
+
+
 @dataclass(frozen=True)
 class Graze:
     """The same motion as an orbit without and with the impact that has zero speed."""

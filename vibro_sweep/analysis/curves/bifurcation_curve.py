@@ -10,16 +10,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
 from vibro_sweep.analysis.continuation.chatter import written_out
 from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
 from vibro_sweep.analysis.continuation.recorded import Rows, both_directions
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.curves import curve_text
-from vibro_sweep.analysis.curves.curve_points import dataset
+from vibro_sweep.analysis.curves.curve_points import dataset, dataset_from_file
 from vibro_sweep.analysis.curves.curve_run import CurvePoint, CurveRun
 from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.analysis.periodic.one_thread import one_thread
+from vibro_sweep.analysis.single.result import FileResult
 from vibro_sweep.engine.continuation.workspace import Place
 from vibro_sweep.model.arguments import check_call, check_type, checked_flag, checked_interval
 from vibro_sweep.model.errors import ArgumentError
@@ -34,7 +35,7 @@ LEVEL = 1e-9  # rate of a parameter, in parts of its range: rounding, where the 
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BifurcationCurve:
+class BifurcationCurve(FileResult):
     """A bifurcation curve, from the end that is reached towards a smaller first parameter to the other one.
 
     type : fold, flip, pitchfork, neimark_sacker, graze or sticking; a pitchfork is a fold where a parameter breaks the
@@ -50,8 +51,9 @@ class BifurcationCurve:
     begins: CurvePoint
     ends: CurvePoint
     closed: bool
-    _solution_curve: SolutionCurve
-    _rows: Rows
+    _solution_curve: SolutionCurve | None  # None of one that was read from a file, which has
+    _rows: Rows | None
+    _arrays: dict[str, np.ndarray] | None = None
 
     def __repr__(self) -> str:
         return curve_text.of_curve(self)
@@ -59,7 +61,12 @@ class BifurcationCurve:
     @cached_property
     def points(self) -> "xarray.Dataset":
         """Dataset over `point`: parameters, multipliers, whether it is real, impacts (docs of `dataset`)."""
+        if self._solution_curve is None or self._rows is None:
+            return dataset_from_file(self._arrays, self.parameters)
         return dataset(self._solution_curve, self._rows)
+
+    def _table(self) -> dict[str, list]:
+        return table_of(self.special) | {"touches": [one.touches for one in self.special]}
 
     def plot(self, *others: "BifurcationCurve", width: float | None = None):
         """This curve and `others` in the same parameters, with their points of codimension two: a matplotlib Figure,

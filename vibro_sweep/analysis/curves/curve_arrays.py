@@ -3,10 +3,14 @@
 The arrays, `SHAPES`, have the names that they have in files. Words are codes of model/bifurcations.py.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_arrays import Arrays, common, solution_of
+from vibro_sweep.analysis.branches.branch_run import stop_and_impact
 from vibro_sweep.analysis.branches.criticality import critical_angle
+from vibro_sweep.analysis.branches.special import bare
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 from vibro_sweep.analysis.curves.curve_run import CurvePoint
@@ -34,6 +38,8 @@ SHAPES = {
 
 def arrays_of(curve: BifurcationCurve) -> Arrays:
     """The arrays of a curve."""
+    if curve._arrays is not None:
+        return curve._arrays
     data, solution_curve, start = curve.points, curve._solution_curve, curve._solution_curve.orbit
     grazing = solution_curve.problem.index if solution_curve.problem.kind == GRAZE else -1
     value = np.column_stack([data[name].values for name in curve.parameters])
@@ -84,7 +90,15 @@ def start_from(arrays: Arrays, point: int, system) -> Start:
     return Start(type_of(arrays), solution, max(int(arrays["branch_grazing"]), 0), theta)
 
 
-def point_of_codimension_two(arrays: Arrays, index: int, names: list[str], system) -> CurvePoint:
+def curve_of(arrays: Arrays, names: tuple[str, str], system) -> BifurcationCurve:
+    """The curve with these arrays; `system` is one of its oscillators."""
+    special = [point_of_codimension_two(arrays, i, names, system) for i in range(len(arrays["special_type"]))]
+    begins, ends = (special[int(arrays[name])] for name in ("branch_begins", "branch_ends"))
+    closed = bool(arrays["branch_closed"])
+    return BifurcationCurve(type_of(arrays), names, special, begins, ends, closed, None, None, arrays)
+
+
+def point_of_codimension_two(arrays: Arrays, index: int, names: Sequence[str], system) -> CurvePoint:
     """A special point of a curve; `system` is one of its oscillators."""
     parameters = dict(zip(names, map(float, arrays["special_value"][index]), strict=True))
     there = system.replace(**parameters)
@@ -92,8 +106,11 @@ def point_of_codimension_two(arrays: Arrays, index: int, names: list[str], syste
     if index in (arrays["branch_begins"], arrays["branch_ends"]):  # perhaps the birth of a doubled or asymmetric orbit
         solution = solution.reduced()
     kind = CODIMENSION_TWO[int(arrays["special_type"][index])].name
-    none = np.full(2 * len(solution.family.linear.normal), np.nan, complex)
+    grazing = int(arrays["branch_grazing"])
+    own, stop, impact = solution, None, None
+    if 0 <= grazing < solution.K:
+        own, (stop, impact) = bare(solution, grazing), stop_and_impact(solution, grazing)
     return CurvePoint(
-        kind, parameters, orbit_of(there, solution), none, float(arrays["special_error"][index]),
-        curve=type_of(arrays), touches=bool(arrays["special_touches"][index]),
+        kind, parameters, orbit_of(there, solution), own.multipliers, float(arrays["special_error"][index]),
+        stop=stop, impact=impact, curve=type_of(arrays), touches=bool(arrays["special_touches"][index]),
     )  # fmt: skip

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.analysis.branches import branch_points
 from vibro_sweep.analysis.continuation.recorded import Rows
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.periodic.motion_between import multipliers_of
@@ -73,6 +74,17 @@ def dataset(curve: SolutionCurve, rows: Rows) -> "xarray.Dataset":
     import xarray
 
     return xarray.Dataset(variables)
+
+
+def dataset_from_file(arrays: dict[str, np.ndarray], names: tuple[str, str]) -> "xarray.Dataset":
+    """The same, from the arrays of a file (curve_arrays.py), which has the impacts of whole orbits."""
+    import xarray
+
+    one = branch_points.dataset_from_file(arrays | {"value": arrays["value"][:, 0]}, names[0])
+    if arrays["branch_symmetric"]:
+        one = one.isel(impact=slice(one.sizes["impact"] // 2))
+    more = {names[1]: ("point", arrays["value"][:, 1]), "virtual": ("point", arrays["status"] != 0)}
+    return xarray.Dataset({**one, **more}).drop_vars("min_impact_speed")
 
 
 def _state(q: Linear, f: Flow, sigma: int, P: float, t: np.ndarray, D: np.ndarray, h: np.ndarray) -> np.ndarray:

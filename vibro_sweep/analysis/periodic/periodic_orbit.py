@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from vibro_sweep.analysis.periodic import orbit_text
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.analysis.single.result import Result, impact_table
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import contact_coordinates, flow, held_flow
 from vibro_sweep.engine.impulses.free_modes import ResonanceError
@@ -18,8 +20,11 @@ from vibro_sweep.engine.one_system import IMPACT, STICKING, impact_of
 from vibro_sweep.model.arguments import LATEST, checked_times
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.general import Oscillator
-from vibro_sweep.model.linear import Family, forcing_period
+from vibro_sweep.model.linear import Family, family_of, forcing_period
 from vibro_sweep.model.oscillator import System
+
+if TYPE_CHECKING:
+    import xarray
 
 STATUS = {
     "ok": "a periodic orbit, certified",
@@ -32,7 +37,7 @@ STATUS = {
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PeriodicOrbit:
+class PeriodicOrbit(Result):
     """A periodic orbit of a linear oscillator between stops. Times are absolute and nondimensional.
 
     status : "ok", or a key of `STATUS`; numbers of an orbit that is not ok are of the solution found, or empty
@@ -214,6 +219,25 @@ class PeriodicOrbit:
         """(2N,) state x1 v1 .. xN vN at t = 0, before an impact there."""
         return self.sample([0.0])[0]
 
+    def to_xarray(self) -> "xarray.Dataset":
+        """The orbit as a Dataset: states over `section`, impacts over `impact`, rests over `rest`, multipliers.
+
+        Raises ValueError for an orbit without a motion, and for one of a Family, which has no numbers with names.
+        """
+        from vibro_sweep.analysis.single.dataset import dataset_of
+
+        if isinstance(self.system, Family):
+            raise ArgumentError("an orbit of a Family has no Dataset: its numbers are those of a function")
+        times = forcing_period(family_of(self.system).linear) * np.arange(self.period)
+        words = {name: getattr(self, name) for name in ("status", "period", "itinerary", "stop_distance", "residual")}
+        about = {"kind": "periodic_orbit", **words, "symmetric": int(self.symmetric), "stable": int(self.stable)}
+        data = dataset_of(self, times, self.sample(times), about)
+        values = self.multipliers
+        return data.assign(multiplier_re=("multiplier", values.real), multiplier_im=("multiplier", values.imag))
+
+    def _table(self) -> dict[str, list]:
+        return impact_table(self.impacts)
+
     def plot(self, width: float | None = None):
         """Phase portrait of the gap and its time history, impacts marked: a matplotlib Figure, `width` mm wide."""
         from vibro_sweep.plotting.periodic import plot_periodic
@@ -232,7 +256,7 @@ class PeriodicOrbit:
         return plot_periodic(times, gap, rate, *jumps, stops, title, self.system, width=width)
 
     def save(self, path) -> Path:
-        """Write the orbit as JSON, for `load_orbit`; nothing is overwritten."""
+        """Write the orbit as JSON, for `vibro_sweep.load`; nothing is overwritten."""
         from vibro_sweep.analysis.periodic.orbit_file import save_orbit
 
         return save_orbit(self, path)

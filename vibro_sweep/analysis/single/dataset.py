@@ -1,9 +1,10 @@
 """A simulated orbit as an `xarray.Dataset`, and as a picture."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vibro_sweep.analysis.single.result import columns_of
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.models.declaration import UNITS
 from vibro_sweep.model.state import state
@@ -19,25 +20,21 @@ _UNITS = {"t": "s", "xdot": "m s-1", "x": "m", "v": "m s-1"}  # in SI, of fields
 SAMPLES = 400  # of a picture, in a forcing period
 
 
-def dataset_of(orbit: "Orbit") -> "xarray.Dataset":
-    """States x1 .. vN over `section`, whose coordinate is t; impacts over `impact`, rests over `rest`.
+def dataset_of(orbit: Any, times: np.ndarray, section: np.ndarray, about: dict[str, Any]) -> "xarray.Dataset":
+    """Of an Orbit or a PeriodicOrbit: states x1 .. vN over `section` at these times (m,), its coordinate t; impacts
+    over `impact`, rests over `rest`.
 
     These are named as the fields of `Orbit`: `impact_t`, .., `rest_t_on`, ..; where the oscillator is no System also of
-    all masses, `impact_x1`, `impact_xdot1`, .. Attributes: numbers, options, `start_time`, `status` and its note.
+    all masses, `impact_x1`, `impact_xdot1`, .. Attributes: numbers and options of the oscillator, and `about`.
     """
     import xarray
 
     system = orbit.system
-    variables = {name: ("section", orbit.section[:, i]) for i, name in enumerate(state(system.masses))}
-    for name in orbit.impacts.dtype.names:
-        values = orbit.impacts[name]
-        columns = {name: values} if values.ndim == 1 else {f"{name}{i}": one for i, one in enumerate(values.T, 1)}
-        variables |= {f"impact_{key}": ("impact", one) for key, one in columns.items()}
-    variables |= {f"rest_{name}": ("rest", orbit.sticking[name]) for name in orbit.sticking.dtype.names}
+    variables = {name: ("section", section[:, i]) for i, name in enumerate(state(system.masses))}
+    variables |= {f"impact_{key}": ("impact", one) for key, one in columns_of(orbit.impacts).items()}
+    variables |= {f"rest_{key}": ("rest", one) for key, one in columns_of(orbit.sticking).items()}
     options = {name: value for name, value in system.options.items() if value is not None and name != UNITS.name}
-    attributes = system.parameters() | options | {"start_time": orbit.start_time}
-    attributes |= {"status": str(orbit.status), "status_note": orbit.status.note}
-    data = xarray.Dataset(variables, {"t": ("section", orbit.section_times)}, attributes)
+    data = xarray.Dataset(variables, {"t": ("section", times)}, system.parameters() | options | about)
     for name, one in data.variables.items():
         one.attrs["units"] = unit_in(_unit(str(name)), system.units)
     return data

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibro_sweep.analysis.single.exponents import Exponents
+from vibro_sweep.analysis.single.result import Result, impact_table
 from vibro_sweep.engine import points
 from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.motion import orbits
@@ -57,7 +58,7 @@ class Status(str):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Orbit:
+class Orbit(Result):
     """What `simulate` returns. Times are absolute and nondimensional, sides +1 (right, A) and -1 (left, C).
 
     impacts : structured, fields t, side, v1 (before), x2, v2; in order. Of chatter, those computed one by one.
@@ -90,7 +91,11 @@ class Orbit:
         """The orbit as a Dataset: states over `section`, impacts over `impact`, rests over `rest`."""
         from vibro_sweep.analysis.single.dataset import dataset_of
 
-        return dataset_of(self)
+        about = {"start_time": self.start_time, "status": str(self.status), "status_note": self.status.note}
+        return dataset_of(self, self.section_times, self.section, {"kind": "orbit", **about})
+
+    def _table(self) -> dict[str, list]:
+        return impact_table(self.impacts)
 
     def plot(self, periods: int = 4, width: float | None = None) -> Figure:
         """Phase portrait and time history of the last forcing periods, impacts marked; so many mm wide.

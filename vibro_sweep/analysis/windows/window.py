@@ -9,6 +9,7 @@ from vibro_sweep.analysis.branches.branch_arrays import Arrays, orbit_at, specia
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.itinerary import word
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
+from vibro_sweep.analysis.single.result import FileResult
 from vibro_sweep.analysis.windows import window_text
 from vibro_sweep.analysis.windows.unvisited import Unvisited, unvisited_in
 from vibro_sweep.analysis.windows.window_search import WindowSearch
@@ -68,7 +69,7 @@ class Window:
         return special_point(self._arrays, 1, self.parameter, self._system)
 
 
-class Windows(list[Window]):
+class Windows(FileResult, list[Window]):
     """The windows of a sweep, a list by rising `lo` (of a plane row by row).
 
     parameter : the number along which they were followed
@@ -82,9 +83,17 @@ class Windows(list[Window]):
     unvisited: list[Unvisited]
     window: np.ndarray
     reason: np.ndarray
+    _held: tuple  # what its file holds (driver/results.py)
 
     def __repr__(self) -> str:
         return window_text.of_windows(self)
+
+    def _table(self) -> dict[str, list]:
+        held = {name: [one.held[name] for one in self] for name in (self[0].held if self else {})}
+        own = {name: [getattr(one, name) for one in self] for name in ("lo", "hi", "period", "itinerary", "symmetric")}
+        ends = {name: [getattr(one, name).type for one in self] for name in ("lower", "upper")}
+        counts = {name: [getattr(one, name) for one in self] for name in ("points", "other_attractor")}
+        return held | own | ends | counts
 
     @property
     def families(self) -> list[Family]:

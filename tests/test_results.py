@@ -1,0 +1,168 @@
+"""Results of Python as tables, Datasets, pictures and files, and read again: the same numbers, bit for bit."""
+
+import json
+
+import numpy as np
+import pytest
+
+import vibro_sweep as vs
+
+SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4.0)
+BALL = vs.Oscillator.named("one_mass", k=0, zeta=0.0, F=1.0, omega=1.0, R=0.5, b=0.0, constant=-0.5, stops="left")
+
+
+def same_specials(one, other):
+    assert [point.type for point in one] == [point.type for point in other]
+    for x, y in zip(one, other, strict=True):
+        assert x.parameters == y.parameters and (x.error == y.error or np.isnan([x.error, y.error]).all())
+        assert (x.stop, x.kind, x.impact, x.criticality) == (y.stop, y.kind, y.impact, y.criticality)
+        assert (x.orbit.itinerary, x.orbit.period, x.orbit.status) == (
+            y.orbit.itinerary,
+            y.orbit.period,
+            y.orbit.status,
+        )
+        scale = np.abs(x.multipliers).max(initial=1.0)
+        np.testing.assert_allclose(x.multipliers, y.multipliers, rtol=0, atol=1e-12 * scale)
+
+
+def check_html(result):
+    """It says what `repr` says, and has a row for each line of the table."""
+    text, rows = result._repr_html_(), result.to_dataframe()
+    assert text.startswith("<pre>&lt;") and text.count("<tr") == (len(rows) + 1 if len(rows) else 0)
+
+
+@pytest.fixture(scope="module")
+def orbit():
+    return vs.periodic_orbit(SYSTEM, itinerary="R")
+
+
+@pytest.fixture(scope="module")
+def branch(orbit):
+    return vs.continue_orbit(orbit, "b", (3.0, 4.5))
+
+
+def test_an_orbit(orbit, tmp_path):
+    assert orbit.save(tmp_path / "o.json") == tmp_path / "o.json"
+    again = vs.load(tmp_path / "o.json")
+    assert again.impacts.tobytes() == orbit.impacts.tobytes() and again.system == orbit.system
+    data = vs.open(tmp_path / "o.json")
+    assert data.identical(orbit.to_xarray()) and data.attrs["kind"] == "periodic_orbit"
+    assert (data.attrs["itinerary"], data.attrs["period"], data.attrs["b"]) == ("R", 1, 4.0)
+    np.testing.assert_array_equal(data.multiplier_re + 1j * data.multiplier_im, orbit.multipliers)
+    flown = vs.simulate(SYSTEM, [float(data[name][0]) for name in ("x1", "v1", "x2", "v2")], 1)
+    np.testing.assert_allclose(flown.section[-1], flown.section[0], rtol=0, atol=1e-12)
+    assert orbit.to_dataframe()["t"].tolist() == orbit.impacts["t"].tolist()
+    assert flown.to_xarray().attrs["kind"] == "orbit" and len(flown.to_dataframe()) == len(flown.impacts)
+    for one in (orbit, flown):
+        check_html(one)
+        assert vs.plot(one, width=85).axes
+    nothing = vs.periodic_orbit(SYSTEM.replace(b=50.0), itinerary="R")
+    check_html(nothing)
+    with pytest.raises(ValueError, match="no motion"):
+        nothing.to_xarray()
+
+
+def test_a_branch(branch, tmp_path):
+    branch.save(tmp_path / "b.h5")
+    again = vs.load(tmp_path / "b.h5")
+    assert type(again) is type(branch) and again.points.identical(branch.points)
+    assert (again.parameter, again.closed, again.status) == (branch.parameter, branch.closed, branch.status)
+    same_specials(branch.special, again.special)
+    assert repr(again) == repr(branch) and again.to_dataframe().equals(branch.to_dataframe())
+    check_html(again)
+    assert again.to_dataframe()["type"].tolist() == ["graze", "neimark_sacker", "boundary"]
+    with vs.open(tmp_path / "b.h5") as data:
+        assert data.attrs["kind"] == "branches" and data.equals(branch.to_xarray())
+    assert [one.itinerary for one in vs.switch(again.begins)] == [one.itinerary for one in vs.switch(branch.begins)]
+    lines = [vs.plot(one).axes[0].lines[0].get_xydata() for one in (branch, again)]
+    np.testing.assert_array_equal(*lines)
+    again.save(tmp_path / "again.h5")
+    assert vs.load(tmp_path / "again.h5").points.identical(branch.points)
+    with pytest.raises(FileExistsError, match=r"b\.h5"):
+        branch.save(tmp_path / "b.h5")
+
+
+@pytest.mark.parametrize("system, begin", [(SYSTEM.replace(b=2.0), "LR"), (SYSTEM.replace(b=7.0), ""), (BALL, "L")])
+def test_branches_of_other_orbits(system, begin, tmp_path):
+    """Symmetric, without impacts, of one mass."""
+    name = "F" if begin == "L" else "b"
+    value = system.numbers[name]
+    branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary=begin), name, (0.6 * value, 1.4 * value))
+    branch.save(tmp_path / "b.h5")
+    again = vs.load(tmp_path / "b.h5")
+    assert again.points.identical(branch.points)
+    same_specials(branch.special, again.special)
+
+
+def test_a_curve(branch, tmp_path):
+    ends = {"neimark_sacker": ((3.8, 4.5), (0.6, 0.66)), "graze": ((3.0, 3.5), (0.62, 0.64))}
+    for kind, bounds in ends.items():
+        special = next(one for one in branch.special if one.type == kind)
+        curve = vs.bifurcation_curve(special, ("b", "omega"), bounds)
+        curve.save(tmp_path / f"{kind}.h5")
+        again = vs.load(tmp_path / f"{kind}.h5")
+        assert again.points.identical(curve.points) and repr(again) == repr(curve)
+        assert (again.type, again.parameters, again.closed) == (kind, ("b", "omega"), curve.closed)
+        same_specials(curve.special, again.special)
+        assert [one.touches for one in again.special] == [one.touches for one in curve.special]
+        check_html(again)
+        assert again.plot(curve).axes and vs.plot(again).axes
+        with vs.open(tmp_path / f"{kind}.h5") as data:
+            assert data.attrs["kind"] == "curves" and data.equals(again.to_xarray())
+
+
+def test_windows(tmp_path):
+    swept = vs.sweep(
+        SYSTEM, {"b": np.linspace(6.4, 6.65, 8)}, observe=["section"], transient=800, record=200, workers=1
+    )
+    windows = vs.windows(swept, output=tmp_path / "w.h5")
+    table = windows.to_dataframe()
+    assert table["lo"].tolist() == [one.lo for one in windows] and set(table["lower"]) <= {"graze", "fold", "flip"}
+    windows.save(tmp_path / "saved.h5")
+    for name in ("w.h5", "saved.h5"):
+        again = vs.load(tmp_path / name)
+        assert again.to_dataframe().equals(table) and repr(again) == repr(windows) and len(again) > 2
+        assert (again.window == windows.window).all() and (again.reason == windows.reason).all()
+        for one, other in zip(windows, again, strict=True):
+            same_specials([one.lower, one.upper], [other.lower, other.upper])
+            np.testing.assert_array_equal(one.orbit.multipliers, other.orbit.multipliers)
+        assert [(one.window, one.lo, one.hi, one.values, one.at) for one in again.unvisited] == [
+            (one.window, one.lo, one.hi, one.values, one.at) for one in windows.unvisited
+        ]
+        np.testing.assert_array_equal([one.state for one in again.unvisited], [one.state for one in windows.unvisited])
+    with vs.open(tmp_path / "w.h5") as data:
+        assert data.equals(windows.to_xarray())
+    check_html(windows)
+    assert windows.plot().axes
+
+
+def test_the_file_of_a_scene_gives_a_list(tmp_path):
+    (tmp_path / "s.yaml").write_text(
+        "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 2.0}\n"
+        "continue: {from: {itinerary: LR}, parameter: {b: [0.3, 6.8]}, depth: 1}\n"
+    )
+    vs.run(vs.load_scene(tmp_path / "s.yaml"), tmp_path / "s.h5")
+    found = vs.load(tmp_path / "s.h5")
+    followed = vs.follow_branches(vs.periodic_orbit(SYSTEM.replace(b=2.0), itinerary="LR"), "b", (0.3, 6.8))
+    assert len(found) == len(followed) > 2
+    for one, other in zip(found, followed, strict=True):
+        assert one.points.identical(other.branch.points)
+        same_specials(other.branch.special, one.special)
+
+
+def test_what_is_refused(branch, tmp_path):
+    vs.sweep(SYSTEM, {"b": [6.4, 6.5]}, transient=5, record=5, workers=1, output=tmp_path / "sweep.h5").close()
+    with pytest.raises(ValueError, match=r"holds a sweep, which `vibro_sweep\.open` gives"):
+        vs.load(tmp_path / "sweep.h5")
+    (tmp_path / "other.json").write_text(json.dumps({"format": "of somebody else"}))
+    for path in ("other.json", "none.h5"):
+        for read in (vs.load, vs.open):
+            with pytest.raises(vs.VibroSweepError, match=path):
+                read(tmp_path / path)
+    with pytest.raises(vs.VibroSweepError, match="nowhere"):
+        branch.save(tmp_path / "nowhere" / "b.h5")
+    family = vs.periodic_orbit(SYSTEM.family, itinerary="R")
+    with pytest.raises(ValueError, match="Family"):
+        vs.continue_orbit(family, "b", (3.9, 4.1)).save(tmp_path / "f.h5")
+    with pytest.raises(ValueError, match="Family"):
+        family.to_xarray()

@@ -1,0 +1,73 @@
+"""What results have in common: a table, which notebooks show; those that a file can hold also a Dataset and a file."""
+
+import html
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+    from matplotlib.figure import Figure
+
+ROWS = 30  # of a table in a notebook
+
+
+class Result:
+    """A result with a table."""
+
+    def _table(self) -> dict[str, list]:
+        """The columns of the table, lists of one length, by their names."""
+        raise NotImplementedError
+
+    def to_dataframe(self) -> "pandas.DataFrame":
+        """The table: impacts of an orbit, special points of a branch or a curve, or windows."""
+        import pandas
+
+        return pandas.DataFrame(self._table())
+
+    def _repr_html_(self) -> str:
+        rows = self.to_dataframe()
+        table = rows.to_html(border=0, max_rows=ROWS, na_rep="") if len(rows) else ""
+        return f"<pre>{html.escape(repr(self))}</pre>{table}"
+
+
+class FileResult(Result):
+    """A branch, a curve or windows: `save` writes the file that a scene writes for it, `load` reads it again."""
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """The Dataset that `vibro_sweep.open` gives of its file."""
+        from vibro_sweep.driver.results import dataset_of
+
+        return dataset_of(self)
+
+    def plot(self, **options: Any) -> "Figure | None":
+        """`vibro_sweep.plot` of it, with the same options."""
+        from vibro_sweep.plotting.front import plot
+
+        return plot(self.to_xarray(), **options)
+
+    def save(self, path: str | Path) -> Path:
+        """Write its HDF5 file, for `vibro_sweep.load` and `vibro_sweep.open`.
+
+        Raises ExistingFileError where there is a file, StoreError where none can be written, ValueError for what no
+        file can hold: an orbit of a `Family`, and a curve of onsets of sticking.
+        """
+        from vibro_sweep.driver.results import save
+
+        return save(self, path)
+
+
+def columns_of(records: np.ndarray) -> dict[str, np.ndarray]:
+    """The fields of structured records by name; of several masses one by one, as x1, x2, ..."""
+    result = {}
+    for name in records.dtype.names or ():
+        values = records[name]
+        result |= {name: values} if values.ndim == 1 else {f"{name}{i}": one for i, one in enumerate(values.T, 1)}
+    return result
+
+
+def impact_table(impacts: np.ndarray) -> dict[str, list]:
+    """The table of an orbit: its impacts."""
+    return {name: values.tolist() for name, values in columns_of(impacts).items()}

@@ -1,0 +1,37 @@
+"""`vibro_sweep.open`: any file of this program as a Dataset."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vibro_sweep import store
+from vibro_sweep.model.files import checked_path
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray expect
+    """A file of this program as an `xarray.Dataset` with coordinates; numbers of an HDF5 file are read when used.
+
+    `.attrs["kind"]` says what it holds: branches, windows, curves or periodic_orbit; a sweep has no such attribute.
+    A file is read through once, for its checksums. Raises StoreError for a file that is none of ours, and for a damaged
+    one: it names the datasets. Of a missing file the StoreError is a FileNotFoundError too. A file that xarray or
+    another program wrote from one of this program is opened too, with a warning in the log: it has no checksums.
+    """
+    place = checked_path("path", path)
+    if first_bytes(place).lstrip()[:1] == b"{":  # the JSON of an orbit
+        from vibro_sweep.analysis.periodic.orbit_file import load_orbit
+
+        data = load_orbit(place).to_xarray()
+        data.encoding["source"] = str(path)
+        return data
+    return store.open(path)
+
+
+def first_bytes(path: Path) -> bytes:
+    """With which a file begins; none where it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            return file.read(16)
+    except OSError:
+        return b""
