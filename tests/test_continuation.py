@@ -45,7 +45,7 @@ def test_window_of_the_period_13_pair():
 
 
 def test_folds_that_end_hysteresis():
-    """orbits.md: a period-15 fold, and the fold of a period-19 orbit with five impacts on one side."""
+    """reference_values.md: a period-15 fold, and the fold of a period-19 orbit with five impacts on one side."""
     assert ("fold", pytest.approx(6.7130205450254, abs=1e-12)) in types(branch_of(6.7125, 15))
     branch = branch_of(6.7575, 19)
     assert ("fold", pytest.approx(6.757836047561766, abs=1e-12)) in types(branch)
@@ -81,7 +81,7 @@ def test_bouncing_ball_from_its_fold_to_its_flip(n, R, flip):
 
 
 def test_one_mass_oscillator_of_the_literature():
-    """arXiv 2510.16218, values of physics.md; the impact speed at the flip and the fold, and zero at the graze."""
+    """arXiv 2510.16218 (reference_values.md); the impact speed at the flip and the fold, and zero at the graze."""
     for omega, kind, F, speed in (
         (0.81, "flip", 0.347533397, 0.0653039433),
         (0.799, "fold", 0.362836202, 0.1240873449),

@@ -14,7 +14,7 @@ spec.loader.exec_module(pictures)
 def shown() -> set[str]:
     """Pictures of docs/ to which its pages and README.md link."""
     found = set()
-    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
+    for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md")):
         text = page.read_text()
         linked = re.findall(r"!\[[^]]*\]\(([^)]+)\)", text) + re.findall(r'<img src="([^"]+)"', text)
         found |= {(page.parent / one).resolve() for one in linked}

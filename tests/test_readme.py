@@ -16,7 +16,7 @@ PAGES = {
         (language, textwrap.dedent(text))
         for language, text in re.findall(r"^ *```(sh|python)\n(.*?)^ *```$", path.read_text(), re.MULTILINE | re.DOTALL)
     ]
-    for path in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    for path in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 }
 SLOW = (
     "README.md",
@@ -119,6 +119,6 @@ def test_what_is_found():
     install, test = PAGES["README.md"][0][1].splitlines()
     assert install.startswith("pip install . && vibro-sweep run configs/quickstart.yaml --plot")
     assert test.startswith("pip install '.[test]' && pytest")
-    for path in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]:
+    for path in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]:
         opened = re.findall(r"^ *```(\S+)", path.read_text(), re.MULTILINE)
         assert sum(language not in ("diff", "text") for language in opened) == len(PAGES[path.name]), path

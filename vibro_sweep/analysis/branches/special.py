@@ -67,7 +67,7 @@ class Graze:
 
     @property
     def kind(self) -> str:
-        """Whether the orbits with the impact go on where those without it end (orbits.md)."""
+        """Whether the orbits with the impact go on where those without it end."""
         return "persistence" if self.distance_slope * self.speed_slope < 0 else "nonsmooth fold"
 
 

@@ -1,4 +1,4 @@
-"""Which orbits are born where the steady motion grazes: a linear complementarity problem (orbits.md).
+"""Which orbits are born where the steady motion grazes: a linear complementarity problem.
 
 To lowest order in the distance b - b* the impacts happen where the steady motion touches the stops, at t_j = j T/2
 (both stops) or j T (one stop), with impulses d_j >= 0, and the gaps there are w_j >= 0:
