@@ -54,7 +54,7 @@ def _solver(params, states, observe, cells) -> Solver:
         def run():
             with grid():
                 arrays = thread.submit(compute.compute, block).result()[1]
-            if not status.stands(arrays["status"]).all():
+            if not status.is_valid(arrays["status"]).all():
                 raise ArithmeticError(f"status {arrays['status']}")
             return int(arrays["impacts_right"].sum() + arrays["impacts_left"].sum())
 

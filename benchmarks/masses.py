@@ -85,7 +85,7 @@ def solver(system: vs.Oscillator, states: np.ndarray, exponents: bool) -> Solver
             points.run_points(
                 table, starts, results, nothing[..., None], nothing, nothing[..., None], workspace, plan, None
             )
-            if not status.stands(results["status"]).all():
+            if not status.is_valid(results["status"]).all():
                 raise ArithmeticError(f"status {results['status']}")
             return int(results["impacts_right"].sum() + results["impacts_left"].sum())
 

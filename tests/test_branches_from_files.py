@@ -8,7 +8,7 @@ import vibro_sweep as vs
 from vibro_sweep.driver.branches import run_branches
 from vibro_sweep.driver.windows import run_windows
 from vibro_sweep.model.bifurcations import TYPES
-from vibro_sweep.plotting import Look, figure
+from vibro_sweep.plotting import PlotOptions, figure
 from vibro_sweep.scene import SceneError, parse_continuation
 
 NUMBERS = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
@@ -92,7 +92,7 @@ def test_the_row_of_a_plane(tmp_path):
             assert data.attrs["omega"] == omega
             assert np.abs(ends - vs.grazing(SYSTEM.replace(omega=omega)).b).min() < 1e-12
     run_windows(tmp_path / "plane.h5", tmp_path / "windows.h5", "b")
-    for panel in figure(tmp_path / "plane.h5", look=Look(windows=tmp_path / "windows.h5")).axes[:2]:
+    for panel in figure(tmp_path / "plane.h5", options=PlotOptions(windows=tmp_path / "windows.h5")).axes[:2]:
         drawn = [line.get_xydata() for line in panel.lines if line.get_gid() == "window end"]
         expected = [[omega, vs.grazing(SYSTEM.replace(omega=omega)).b] for omega in axes["omega"]]
         for place in expected:

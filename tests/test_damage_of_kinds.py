@@ -181,10 +181,10 @@ def begun(words: list[str], patch, change=lambda piece: piece) -> str:
 def edited_part(part: Path, records) -> None:
     """With more records, their checksums right."""
     with parts.open_regular(part) as file:
-        identity = parts.read_head(file).identity
+        run_id = parts.read_head(file).run_id
     with part.open("ab") as file:
         for text, data in records:
-            file.writelines(parts.record(identity, text, [memoryview(data)]))
+            file.writelines(parts.record(run_id, text, [memoryview(data)]))
 
 
 def test_a_part_with_records_of_somebody_else(kinds, tmp_path, monkeypatch):

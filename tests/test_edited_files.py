@@ -66,7 +66,7 @@ def test_no_number_is_written_elsewhere(folder, capsys, how):
     with h5py.File("skeleton.h5", "a") as file:
         elsewhere(file, "x1", how)
     skeleton = Path("skeleton.h5").read_bytes()
-    Path("y.h5.part").write_bytes(parts.new_head(skeleton, None, head.identity).packed() + skeleton + rest)
+    Path("y.h5.part").write_bytes(parts.new_head(skeleton, None, head.run_id).packed() + skeleton + rest)
     before = seen(folder)
     for arguments in (["info", "y.h5.part"], ["plot", "y.h5.part"], ["run", "scene.yaml", "-o", "y.h5", "--resume"]):
         refused(capsys, arguments, "y.h5.part")

@@ -15,7 +15,7 @@ from support.scenes import assert_same_bits, computed
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
-from vibro_sweep.model.status import STANDING
+from vibro_sweep.model.status import VALID
 from vibro_sweep.scene import SceneError, json_schema, parse_scene
 from vibro_sweep.scene.yaml_text import YAMLTextError, read_yaml
 
@@ -109,14 +109,14 @@ def test_every_run_keeps_what_every_run_must(tmp_path, count):
         if n % 10 == 0:  # through the file, by several workers
             path = tmp_path / f"{n}.h5"
             report = vs.run(one, path, workers=1 + n // 10 % 3)
-            assert report.points == one.n_points and report.bad == np.count_nonzero(~np.isin(whole["status"], STANDING))
+            assert report.points == one.n_points and report.bad == np.count_nonzero(~np.isin(whole["status"], VALID))
             with h5py.File(path) as file:
                 # attractors are numbered when all points are there
                 kept = {name: values for name, values in whole.items() if name != "attractor_id"}
                 assert_same_bits({name: file[name][()] for name in kept}, kept)
             path.unlink()
     print(f"\n{count} runs, {refused} refused: statuses {dict(statuses)}")
-    assert refused < count / 5 and sum(statuses[code] for code in STANDING) > 0.9 * statuses.total()
+    assert refused < count / 5 and sum(statuses[code] for code in VALID) > 0.9 * statuses.total()
 
 
 @pytest.mark.slow
@@ -135,14 +135,14 @@ def test_numbers_at_the_ends_of_the_floats():
             continue
         arrays, _ = computed(one, 1, None)
         statuses[int(arrays["status"])] += 1
-        if arrays["status"] in STANDING:
+        if arrays["status"] in VALID:
             assert not np.isnan(arrays["lyapunov"]).any() and np.isfinite(arrays["x1"]).all(), (n, numbers)
     assert len(statuses) >= 3
 
 
 def _hold(one, arrays, n):
     """What holds of every result."""
-    numbers, ok = one.parameters(), np.isin(arrays["status"], STANDING)
+    numbers, ok = one.parameters(), np.isin(arrays["status"], VALID)
     b = np.broadcast_to(numbers["b"][..., None] if one.n_starts > 1 else numbers["b"], one.shape)
     assert arrays["status"].shape == one.shape and (arrays["status"] >= 0).all(), n
     for name, values in arrays.items():

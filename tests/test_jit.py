@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from support import path_with, slow_cases
 
-from vibro_sweep import identity
+from vibro_sweep import code_hash
 from vibro_sweep.driver import blocks, compute
 from vibro_sweep.engine.simd import jit
 from vibro_sweep.scene import parse_scene
@@ -36,7 +36,7 @@ def arrays():
 
 def save(path):
     assert not jit.AS_ONE
-    np.savez(path, **arrays(), identity=identity.identity())
+    np.savez(path, **arrays(), code_hash=code_hash.code_hash())
 
 
 known = pytest.mark.skipif(
@@ -90,10 +90,10 @@ def test_numba_by_itself_gives_the_same_numbers_but_for_rounding(tmp_path):
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": path_with(Path(__file__).parent)}
     subprocess.run([sys.executable, "-c", PLAIN, tmp_path / "plain.npz"], env=environment, check=True)
     plain, whole = np.load(tmp_path / "plain.npz"), arrays()
-    assert set(plain) == set(whole) | {"identity"}
+    assert set(plain) == set(whole) | {"code_hash"}
     for name, values in whole.items():
         np.testing.assert_allclose(plain[name], values, rtol=1e-9, atol=1e-9, err_msg=name)
-    assert str(plain["identity"]) != identity.identity()
+    assert str(plain["code_hash"]) != code_hash.code_hash()
 
 
 def wander(records, times):

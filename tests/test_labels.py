@@ -10,7 +10,7 @@ from support.pictures import exponents, write
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
-from vibro_sweep.plotting import Look, curves, labels
+from vibro_sweep.plotting import PlotOptions, curves, labels
 from vibro_sweep.plotting.curves import Drawn, plot_curves
 from vibro_sweep.plotting.style import STYLE, edges
 
@@ -52,7 +52,7 @@ def searched(rng, tmp_path, cases):
         relative = case % 3 == 2
         file, period = planes_of(rng, tmp_path, f"{case}.h5", relative)
         size = tuple(rng.uniform((4, 3), (9, 6)))
-        fig = plotting.figure(file, look=Look(size=size, relative=relative))
+        fig = plotting.figure(file, options=PlotOptions(size=size, relative=relative))
         fig.draw_without_rendering()
         for bar in bars(fig):
             assert not overlaps(bar.get_xticklabels())
@@ -202,7 +202,7 @@ def test_curves_of_one_type_are_told_apart_by_their_periods():
 def test_a_plane_says_what_its_hatching_means(tmp_path):
     rng = np.random.default_rng(3)
     file, _ = planes_of(rng, tmp_path, "p.h5", True)
-    assert "outside of the sweep" in entries(plotting.figure(file, look=Look(relative=True)))
+    assert "outside of the sweep" in entries(plotting.figure(file, options=PlotOptions(relative=True)))
     assert not {"no number", "outside of the sweep"} & set(entries(plotting.figure(file)))
     coordinates = {"b": np.arange(4.0), "R": np.linspace(0, 1, 5)}
     times = np.zeros((4, 5))
@@ -220,11 +220,13 @@ def test_a_plane_says_what_its_hatching_means(tmp_path):
 def test_a_line_beyond_the_frame_is_not_in_the_legend(tmp_path):
     file, _ = planes_of(np.random.default_rng(4), tmp_path, "p.h5")  # b* = 6.7057
     assert any("b^*" in text for text in entries(plotting.figure(file)))
-    assert not any("b^*" in text for text in entries(plotting.figure(file, look=Look(ylim=(0.6, 0.65), xlim=(7, 8)))))
+    assert not any(
+        "b^*" in text for text in entries(plotting.figure(file, options=PlotOptions(ylim=(0.6, 0.65), xlim=(7, 8))))
+    )
     b = np.linspace(6.5, 6.9, 40)
     sweep = write(tmp_path / "s.h5", {"b": b}, {"lyapunov": exponents(40)})
     for limits, there in ((None, True), ((6.5, 6.6), False), ((6.7, 6.75), True)):
-        ax = plotting.figure(sweep, look=Look(xlim=limits)).axes[0]
+        ax = plotting.figure(sweep, options=PlotOptions(xlim=limits)).axes[0]
         assert any(line.get_gid() == "grazing" for line in ax.lines) == (ax.get_legend() is not None) == there
 
 
@@ -234,7 +236,7 @@ def test_a_part_of_a_plane_has_its_own_numbers_and_colours(tmp_path):
     spectrum[40:, 40:] = -5.0
     coordinates = {"b": np.linspace(3, 9, 60), "R": np.linspace(0.3, 0.9, 50)}
     file = write(tmp_path / "p.h5", coordinates, {"lyapunov": spectrum, "period": period})
-    fig = plotting.figure(file, look=Look(xlim=(3, 3.4), ylim=(0.3, 0.35)))
+    fig = plotting.figure(file, options=PlotOptions(xlim=(3, 3.4), ylim=(0.3, 0.35)))
     assert [text.get_text() for text in fig.axes[1].texts] == ["7"]
     assert fig.axes[0].images[0].norm.vmin == pytest.approx(-0.1)
 
@@ -243,7 +245,7 @@ def test_a_part_of_a_plane_of_uneven_steps(tmp_path):
     """The cells keep the borders that they have in the whole, also where there is one of them."""
     b = np.array([1.0, 2.0, 4.0, 8.0])
     file = write(tmp_path / "p.h5", {"b": b, "R": np.array([0.1, 0.2])}, {"period": np.ones((4, 2), int)})
-    (image,) = plotting.figure(file, look=Look(xlim=(1.6, 2.9))).axes[0].images
+    (image,) = plotting.figure(file, options=PlotOptions(xlim=(1.6, 2.9))).axes[0].images
     assert image.get_extent()[:2] == (1.5, 3.0)
 
 
@@ -257,7 +259,7 @@ def test_a_map_without_numbers_is_left_out(tmp_path):
 def test_labels_have_their_size_before_they_find_their_places(tmp_path):
     """On a page of 4 x 3 inches the labels of both colour bars would overlap; 0 and both ends stay."""
     file, _ = planes_of(np.random.default_rng(5), tmp_path, "p.h5")
-    fig = plotting.figure(file, look=Look(size=(4, 3)))
+    fig = plotting.figure(file, options=PlotOptions(size=(4, 3)))
     fig.draw_without_rendering()
     period = bars(fig)[1]
     told = [label.get_text() for label in period.get_xticklabels()]
@@ -270,7 +272,7 @@ def test_two_orbits_have_titles_beside_each_other(tmp_path):
     quantities = {"lyapunov_running": running, "lyapunov": running[:, :, -1]}
     quantities["lyapunov_error"] = np.full((2, 2, 4), 0.002)
     coordinates = {"b": np.array([6.51234, 6.6789]), "omega": np.array([0.634567, 0.641234])}
-    fig = plotting.figure(write(tmp_path / "c.h5", coordinates, quantities), "convergence", Look(size=(5, 4)))
+    fig = plotting.figure(write(tmp_path / "c.h5", coordinates, quantities), "convergence", PlotOptions(size=(5, 4)))
     fig.draw_without_rendering()
     assert not overlaps([ax.title for ax in fig.axes])
 

@@ -52,7 +52,7 @@ def test_resume_refuses_another_scene(path):
 
 def test_resume_refuses_other_code(path, monkeypatch):
     broken_off(scene_of(SWEEP), path)
-    monkeypatch.setattr("vibro_sweep.identity.identity", lambda: "0123456789abcdef")
+    monkeypatch.setattr("vibro_sweep.code_hash.code_hash", lambda: "0123456789abcdef")
     with pytest.raises(StoreError, match="other code"):
         vs.run(scene_of(SWEEP), path, mode="resume")
 

@@ -9,7 +9,7 @@ from support.kinds_of_files import KINDS
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
-from vibro_sweep.plotting import Look, figure
+from vibro_sweep.plotting import PlotOptions, figure
 from vibro_sweep.plotting import kinds as kinds_of
 
 pytestmark = pytest.mark.slow  # one file of each kind is made
@@ -20,8 +20,8 @@ FLAT = ("branches", "curves")
 
 def pictures(path, name):
     if name in FLAT:
-        return [figure(path, look=Look(width=WIDTH))]
-    return [figure(path, kind, Look(width=WIDTH)) for kind in kinds_of(path)]
+        return [figure(path, options=PlotOptions(width=WIDTH))]
+    return [figure(path, kind, PlotOptions(width=WIDTH)) for kind in kinds_of(path)]
 
 
 def texts_of(fig):
@@ -53,7 +53,7 @@ def test_all_type_is_read_and_on_the_page(kinds, name):
 
 
 def test_a_strip_of_windows(kinds):
-    fig = figure(kinds("sweep"), None, Look(width=WIDTH, windows=kinds("windows")))
+    fig = figure(kinds("sweep"), None, PlotOptions(width=WIDTH, windows=kinds("windows")))
     assert {text.get_fontsize() for text, _ in texts_of(fig)} == {8.0}
 
 
@@ -68,7 +68,7 @@ def test_one_option_of_python_and_the_command_line(kinds, tmp_path, monkeypatch,
         assert main(["plot", str(kinds("orbit")), *words]) == 2
         assert told in capsys.readouterr().err
     with pytest.raises(vs.PlotError, match="width and size exclude each other"):
-        Look(width=85, size=(3, 3))
+        PlotOptions(width=85, size=(3, 3))
     for wrong in ("85", [85], float("nan"), None.__class__):
         with pytest.raises(vs.PlotError, match="width: "):
             vs.plot(kinds("orbit"), width=wrong)

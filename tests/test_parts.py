@@ -23,7 +23,7 @@ def path(tmp_path):
 
 def begun(path):
     part = appending.make(path)
-    part.begin(parts.new_head(SKELETON, None, parts.new_identity()), SKELETON)
+    part.begin(parts.new_head(SKELETON, None, parts.new_run_id()), SKELETON)
     return part
 
 

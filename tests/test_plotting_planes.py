@@ -122,7 +122,7 @@ def test_planes_relative_to_the_grazing_clearance(tmp_path, monkeypatch, capsys)
     monkeypatch.chdir(tmp_path)
     axes = {"b": np.linspace(3, 5, 5), "omega": np.linspace(0.6, 0.606, 4)}
     data = vs.sweep(PAPER, axes, transient=30, record=10, observe=["section"], output="plane.h5", workers=1)
-    (mesh,) = plotting.figure(data, "plane", plotting.Look(relative=True)).axes[0].collections
+    (mesh,) = plotting.figure(data, "plane", plotting.PlotOptions(relative=True)).axes[0].collections
     x, y = mesh.get_coordinates().transpose(2, 0, 1)
     assert x.shape == (5, 6) and np.all(np.diff(y[:, 0]) > 0) and np.ptp(y, axis=1).max() == 0
     middle = (x[:-1, :-1] + x[1:, 1:] + x[1:, :-1] + x[:-1, 1:]) / 4

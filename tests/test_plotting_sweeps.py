@@ -140,7 +140,7 @@ def test_periodic_orbits_are_lines_in_a_density(window):
 
 def test_lines_do_not_break_in_a_part_of_the_picture(window):
     """Branches that move far across a narrow range of the axis are branches still."""
-    ax = plotting.figure(window, look=plotting.Look(ylim=(0.2, 0.25))).axes[0]
+    ax = plotting.figure(window, options=plotting.PlotOptions(ylim=(0.2, 0.25))).axes[0]
     three = [line.get_xydata() for line in ax.lines if line.get_gid() == "periodic"][1]
     assert np.isnan(three[:, 0]).sum() == 3
 

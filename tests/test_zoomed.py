@@ -7,7 +7,7 @@ import pytest
 from support.pictures import SETTINGS, drawn, exponents, write
 
 from vibro_sweep import plotting
-from vibro_sweep.plotting import Look, branches, decades, style
+from vibro_sweep.plotting import PlotOptions, branches, decades, style
 
 
 def entries(fig):
@@ -25,12 +25,16 @@ def large(tmp_path):
 
 def test_the_whole_is_a_density_and_a_part_of_few_points_is_dots(large):
     assert plotting.figure(large).axes[0].images
-    for look in (Look(xlim=(2, 2.5)), Look(ylim=(0.5, 0.52)), Look(xlim=(2, 5), ylim=(0.1, 0.2))):
-        ax = plotting.figure(large, look=look).axes[0]
+    for options in (
+        PlotOptions(xlim=(2, 2.5)),
+        PlotOptions(ylim=(0.5, 0.52)),
+        PlotOptions(xlim=(2, 5), ylim=(0.1, 0.2)),
+    ):
+        ax = plotting.figure(large, options=options).axes[0]
         assert not ax.images
         (dots,) = (line for line in ax.lines if line.get_linestyle() == "None")
         assert dots.get_markersize() >= 1.2
-    few = plotting.figure(large, look=Look(xlim=(2, 2.05))).axes[0]
+    few = plotting.figure(large, options=PlotOptions(xlim=(2, 2.05))).axes[0]
     (dots,) = (line for line in few.lines if line.get_linestyle() == "None")
     assert dots.get_markersize() > 2.5
 
@@ -52,7 +56,7 @@ def test_columns_of_many_points_are_a_density_also_if_they_are_few(tmp_path):
 
 
 def test_a_part_without_points_says_so(large):
-    ax = plotting.figure(large, look=Look(ylim=(2, 3))).axes[0]
+    ax = plotting.figure(large, options=PlotOptions(ylim=(2, 3))).axes[0]
     assert [text.get_text() for text in ax.texts] == ["no section points"] and ax.get_ylim() == (2, 3)
 
 
@@ -144,7 +148,7 @@ def test_panels_that_would_show_nothing_are_left_out(tmp_path):
     some = np.where(np.arange(30) < 10, 20, 0)
     file = write(tmp_path / "some.h5", {"b": b}, quantities | {"impacts_right": some})
     assert len(plotting.figure(file).axes) == 3
-    assert len(plotting.figure(file, look=Look(xlim=(7.5, 8))).axes) == 2  # none in this part
+    assert len(plotting.figure(file, options=PlotOptions(xlim=(7.5, 8))).axes) == 2  # none in this part
 
 
 def test_rests_of_a_motion_are_marked(tmp_path):
@@ -163,7 +167,7 @@ def test_rests_of_a_motion_are_marked(tmp_path):
 
 
 def test_dots_of_a_part_are_those_of_the_file(large):
-    ax = plotting.figure(large, look=Look(xlim=(2, 2.5))).axes[0]
+    ax = plotting.figure(large, options=PlotOptions(xlim=(2, 2.5))).axes[0]
     points = drawn(ax)
     assert len(points) % 200 == 0 and points[:, 0].min() >= 2 and points[:, 0].max() <= 2.5
 
@@ -194,13 +198,13 @@ class Branches(dict):
 def test_branches(monkeypatch):
     """Each point is named once, the onset of sticking has a line; of a part the axis and the legend are those of it."""
     monkeypatch.setattr(branches, "FlatFile", lambda *_: Branches())
-    fig = branches.branches("made up", Look())
+    fig = branches.branches("made up", PlotOptions())
     (ax,) = fig.axes
     assert sorted(text.get_text() for text in ax.texts) == ["GR", "LP", "PD", "ST"]
     (line,) = (line for line in ax.lines if line.get_gid() == "sticking")
     assert set(line.get_xdata()) == {10.0}
     assert len(entries(fig)) == 6
-    fig = branches.branches("made up", Look(xlim=(-0.1, 3)))
+    fig = branches.branches("made up", PlotOptions(xlim=(-0.1, 3)))
     (ax,) = fig.axes
     assert 2.5 < ax.get_ylim()[1] < 3.5 and sorted(text.get_text() for text in ax.texts) == ["LP", "PD"]
     assert entries(fig)[2:] == ["LP fold", "PD flip"]

@@ -73,7 +73,7 @@ def test_a_damaged_file_of_other_code_is_left_alone(scene, path, monkeypatch):
     vs.run(scene, path)
     flip(path, "x1")
     before = path.read_bytes()
-    monkeypatch.setattr("vibro_sweep.identity.identity", lambda: "0123456789abcdef")
+    monkeypatch.setattr("vibro_sweep.code_hash.code_hash", lambda: "0123456789abcdef")
     with pytest.raises(StoreError, match="other code, 0123456789abcdef, another numpy or numba, or a processor"):
         vs.run(scene, path, mode="resume")
     assert path.read_bytes() == before and os.listdir(path.parent) == [path.name]

@@ -74,7 +74,7 @@ def edited(change: Callable[[h5py.File], object]) -> Change:
             change(file)
         skeleton = Path("skeleton.h5").read_bytes()
         os.unlink("skeleton.h5")
-        path.write_bytes(parts.new_head(skeleton, None, head.identity).packed() + skeleton + rest)
+        path.write_bytes(parts.new_head(skeleton, None, head.run_id).packed() + skeleton + rest)
 
     return result
 
@@ -84,10 +84,10 @@ def records(*made: tuple[dict, int]) -> Change:
 
     def result(path: Path, rng: np.random.Generator) -> None:
         with parts.open_regular(path) as file:
-            identity = parts.read_head(file).identity
+            run_id = parts.read_head(file).run_id
         with open(path, "ab") as file:
             for text, length in made:
-                file.writelines(parts.record(identity, text, [memoryview(rng.bytes(length))]))
+                file.writelines(parts.record(run_id, text, [memoryview(rng.bytes(length))]))
 
     return result
 

@@ -12,7 +12,7 @@ import numpy as np
 
 import vibro_sweep as vs
 from support import ROOT
-from vibro_sweep.model.status import STANDING
+from vibro_sweep.model.status import VALID
 from vibro_sweep.scene import parse_scene
 
 SCENES = ROOT / "configs" / "paper"
@@ -116,7 +116,7 @@ def attractors(data, record) -> list[Attractor]:
 
 def bounded(data):
     """Which orbits have not run away."""
-    return data.status.isin(STANDING) & (abs(data.x1).max("sample") < FAR)
+    return data.status.isin(VALID) & (abs(data.x1).max("sample") < FAR)
 
 
 def strikes(data) -> np.ndarray:

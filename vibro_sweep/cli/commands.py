@@ -178,9 +178,9 @@ def plot_command(
         pair and tuple(number_in(f"--{name}", text) for text in pair)
         for name, pair in (("xlim", xlim), ("ylim", ylim), ("size", size))
     ]
-    look = (values, variable, *pairs, dpi and number_in("--dpi", dpi))
+    options = (values, variable, *pairs, dpi and number_in("--dpi", dpi))
     beside = {"width": width and number_in("--width", width), "windows": windows, "over": over, "relative": relative}
-    _draw(file, output, kind, overwrite, False, *look, **beside)
+    _draw(file, output, kind, overwrite, False, *options, **beside)
 
 
 @app.command()
@@ -272,12 +272,12 @@ def schema():
     say(json.dumps(json_schema(), indent=2))
 
 
-def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, *look, **beside):
-    from vibro_sweep.plotting import Look, PlotError, plot
+def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, *options, **beside):
+    from vibro_sweep.plotting import PlotError, PlotOptions, plot
     from vibro_sweep.store import StoreError
 
     all_is_imported()
     with input_errors(PlotError, StoreError), interrupt.tidied_up(), messages(quiet):
-        pictures = plot(file, output, kind, overwrite, Look(*look, **beside))
+        pictures = plot(file, output, kind, overwrite, PlotOptions(*options, **beside))
     if not quiet:
         say("\n".join(str(picture) for picture in pictures))

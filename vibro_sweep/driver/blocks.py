@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep import __version__
+from vibro_sweep.code_hash import code_hash
 from vibro_sweep.engine import points
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.spectrum import BATCHES
-from vibro_sweep.identity import identity
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.exponents import RUNNING
 from vibro_sweep.model.grid import grid
@@ -73,7 +73,7 @@ class Block(NamedTuple):
 
 def version() -> str:
     """Identifies the code that computes: equal versions give equal numbers on equal machines."""
-    return f"vibro_sweep {__version__}, code {identity()}"
+    return f"vibro_sweep {__version__}, code {code_hash()}"
 
 
 def plan_of(scene: Scene) -> points.Plan:

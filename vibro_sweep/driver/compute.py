@@ -112,13 +112,13 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
 
 def _ends(last: np.ndarray, anew: np.ndarray) -> np.ndarray:
     """From where chains go on; anew: from there after a point that failed."""
-    return np.where(status.stands(last["status"])[:, None], last["end"], anew)
+    return np.where(status.is_valid(last["status"])[:, None], last["end"], anew)
 
 
 def _drop_without_exponents(arrays: dict[str, np.ndarray]) -> None:
     """Where tangent vectors, but not the orbit, have left the range of the floats: the point is not finite."""
     results = arrays["results"]
-    lost = status.stands(results["status"]) & np.isnan(results["lyapunov"]).any(-1)
+    lost = status.is_valid(results["status"]) & np.isnan(results["lyapunov"]).any(-1)
     if lost.any():
         results[lost] = new_results((), results["end"].shape[-1] // 2)
         results["status"][lost] = status.NOT_FINITE
@@ -139,7 +139,7 @@ def _workspace(block: Block, kind: Kind, cells: int, orbits: int) -> points.Work
 def _attractors(results: np.ndarray, lead: tuple[int, ...]) -> dict[str, np.ndarray]:
     """Which starts of a point end on the same attractor."""
     label = grouping.group(results["period"], results["average"], results["average_error"])
-    label[~status.stands(results["status"])] = grouping.BAD
+    label[~status.is_valid(results["status"])] = grouping.BAD
     share = grouping.share(label)
     unknown = np.full(lead, grouping.BAD)  # until all points are there (attractor_ids.py)
     return {"attractor": label.reshape(lead), "share": share.reshape(lead), "attractor_id": unknown}

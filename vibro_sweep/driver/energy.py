@@ -23,10 +23,10 @@ def energies_of(
     shape, states = steps.shape, starts.shape[-1]
     begins = np.repeat(starts[1:], shape[0], axis=0)
     begins[0] = starts[0]
-    going_on = status.stands(results["status"][:-1])[..., None]
+    going_on = status.is_valid(results["status"][:-1])[..., None]
     begins[1:] = np.where(going_on, results["end"][:-1], begins[1:])  # where chains go on
     flat, begins, resting = steps.reshape(-1), begins.reshape(-1, states), np.zeros(steps.size)
-    outcome = np.where(status.stands(results["status"]), status.NOT_COMPUTED, results["status"]).reshape(-1)
+    outcome = np.where(status.is_valid(results["status"]), status.NOT_COMPUTED, results["status"]).reshape(-1)
     plan = block.plan._replace(states=False, lyapunov=False, impacts=False, attractors=False, section_side=0.0)
     plan = plan._replace(warm_up=0, parts=0, periods=0, record=1, transient=block.plan.transient - 1)
     workspace = points.new_workspace(plan, int(steps["cells"].max()), 0, LANES, kind)
@@ -58,7 +58,7 @@ def energies_of(
         room *= 8
         if workspace.ensemble.halt[0] != 0 or not (outcome == status.NOT_COMPUTED).any():
             break
-    known = np.where(status.stands(outcome), 1.0, np.nan)
+    known = np.where(status.is_valid(outcome), 1.0, np.nan)
     time = block.plan.record * 2 * np.pi / flat["omega"]
     named = {"impact_power": known * wanted["loss"] / time}
     for i, name in enumerate(state(kind.masses)):

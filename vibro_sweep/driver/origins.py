@@ -40,10 +40,10 @@ class NoOrbitError(SourceError):
 
 
 class Source(NamedTuple):
-    """The oscillator of a scene's branches or curves, and the identity of the file that they begin from, if any."""
+    """The oscillator of a scene's branches or curves, and the run id of the file that they begin from, if any."""
 
     system: AnyOscillator
-    identity: str
+    run_id: str
 
 
 def source_of(scene: Continuation) -> Source:
@@ -54,16 +54,16 @@ def source_of(scene: Continuation) -> Source:
             if "kind" in data.attrs:
                 raise SourceError(f"continue.from.sweep: {scene.begin} holds {cut(str(data.attrs['kind']))}, no sweep")
             own = _rows(scene, data)[0].system
-            identity = data.attrs.get("identity", "")
+            run_id = data.attrs.get("identity", "")
     elif scene.origin == "branches":
         with store.contents(Path(scene.begin)) as data:
             own, names = _at_special(scene, data)
-            identity = data.attrs["identity"]
+            run_id = data.attrs["identity"]
         free |= {name: own.numbers[name] for name in names}
     else:
         return Source(scene.system, "")
     _check_same(scene, own.replace(**free), scene.system.replace(**free))
-    return Source(own, identity)
+    return Source(own, run_id)
 
 
 def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
@@ -74,7 +74,7 @@ def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
     found = {name: value for name, value in source.system.parameters().items() if name not in scene.parameter}
     ends = [source.system.replace(**{name: end}) for name, limits in scene.parameter.items() for end in limits]
     held = {k: v for k, v in found.items() if k != "tau" or all(end.parameters()["tau"] == v for end in ends)}
-    return {"parameters": list(scene.parameter)} | held | ({"source": source.identity} if source.identity else {})
+    return {"parameters": list(scene.parameter)} | held | ({"source": source.run_id} if source.run_id else {})
 
 
 def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[Seed]:

@@ -34,7 +34,7 @@ from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.flat_files import Subject, image_of
 from vibro_sweep.store.joining import joined, part_of
-from vibro_sweep.store.parts import new_identity
+from vibro_sweep.store.parts import new_run_id
 from vibro_sweep.store.pieces import pieces
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def dataset_of(result: Saved) -> "xarray.Dataset":
     from vibro_sweep.store import lazy
 
     held = held_by(result)
-    image = image_of(held.subject, new_identity(), json.dumps(provenance()), held.columns, held.arrays)
+    image = image_of(held.subject, new_run_id(), json.dumps(provenance()), held.columns, held.arrays)
     with h5py.File(io.BytesIO(image)) as file:
         return lazy.dataset_of(file).load()
 

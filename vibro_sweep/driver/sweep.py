@@ -33,7 +33,7 @@ from vibro_sweep.engine.halting import heed, interruptible, new_halt
 from vibro_sweep.model.arguments import check_call
 from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.model.status import STANDING, meaning
+from vibro_sweep.model.status import VALID, meaning
 from vibro_sweep.progress import given_or_bar
 from vibro_sweep.scene import Scene
 from vibro_sweep.store.beginning import check_mode
@@ -91,7 +91,7 @@ def run_sweep(
         seconds = file.seconds if isinstance(file, store.Complete) else round(time.perf_counter() - began, 3)
         threads = (workers or available_cores()) if executor is None else None
         statuses = file.finish(_made(scene, threads, executor, seconds), partial(_complete, scene))
-    bad = sum(number for code, number in statuses.items() if code not in STANDING)
+    bad = sum(number for code, number in statuses.items() if code not in VALID)
     named = {meaning(code): number for code, number in statuses.items()}
     return RunReport(total, bad, named, seconds, missing)
 

@@ -43,7 +43,7 @@ def contents_of(data: "str | Path | xarray.Dataset") -> Iterator[Contents]:
 
 class DatasetContents:
     """As `Contents` of a file (store/arrays.py), of a Dataset or of a part of one that `sel` and the like have cut
-    out. A part has an identity of its own: windows of another part, or of the whole, are not taken for its windows."""
+    out. A part has a run id of its own: windows of another part, or of the whole, are not taken for its windows."""
 
     def __init__(self, data: "xarray.Dataset"):
         self._data = data
@@ -55,7 +55,7 @@ class DatasetContents:
             self.attrs["identity"] = part
 
     def _part(self, swept: list[str]) -> str | None:
-        """The identity of a part: of its run, and of the values that it has; None of the whole, and of what has no
+        """The run id of a part: of its run, and of the values that it has; None of the whole, and of what has no
         windows (`check_data`)."""
         if "kind" in self.attrs or self.attrs.get("type") == BUILD:
             return None

@@ -92,7 +92,7 @@ def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
     point["steady"], point["middle"], point["swing"], point["confining"] = confinement_of(q, contact)
     if point["cells"] == cells.STIFF_CELLS:
         sums = gap_exponentials(contact, q.omega, q.tau, WIDTH * q.omega * cells.STIFF_CELLS / (2 * np.pi))
-        point["told"], point["begin"] = sums.told, sums.begin
+        point["valid"], point["begin"] = sums.valid, sums.begin
         point["root"], point["part"] = (np.stack([one.real, one.imag], -1) for one in (sums.roots, sums.parts))
     if frames and point["cells"] > 0:
         frame = frame_of(natural_coordinates(q, contact), q.omega)

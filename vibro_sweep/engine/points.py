@@ -122,7 +122,7 @@ def set_orbits(points, starts, results, n, first, w, plan):
             result.status = status.TOO_STIFF
             continue
         stops = prepare(points[n, first:last], i, w, plan)
-        goes_on = n > 0 and results[n - 1, first + i].status in status.STANDING
+        goes_on = n > 0 and results[n - 1, first + i].status in status.VALID
         for j in range(len(state)):
             state[j] = results[n - 1, first + i].end[j] if goes_on else starts[min(n, 1), first + i, j]
         to_contact(point, state, stops, w.other)

@@ -60,7 +60,7 @@ def point_of(kind: Kind) -> np.dtype:
             ("middle", float),
             ("swing", float),
             ("confining", float, (2 * n, 2 * n)),  # here
-            ("told", np.bool_),  # of model/exponentials.py, for a stiff system:
+            ("valid", np.bool_),  # of model/exponentials.py, for a stiff system:
             ("root", float, (2 * n + 3, 2)),  # real and imaginary parts
             ("part", float, (2 * n + 1, 2 * n + 3, 2)),
             ("begin", float, 2 * n),

@@ -12,12 +12,12 @@ from vibro_sweep.model.contact import Contact, flight_matrix
 
 
 class Exponentials(NamedTuple):
-    """Roots with their parts in the gap; all parts zero where A has too few eigenvectors to tell."""
+    """Roots with their parts in the gap; all parts zero where A has too few eigenvectors."""
 
     roots: np.ndarray  # (2 N + 3,) complex
     parts: np.ndarray  # (2 N + 1, 2 N + 3) complex: of unit states, and of the motion that begins with `begin`
     begin: np.ndarray  # (2 N,): the state at t = 0 from which the force excites no fast root
-    told: bool
+    valid: bool  # False: A has too few eigenvectors
 
 
 def gap_exponentials(contact: Contact, omega: float, tau: float, fast: float) -> Exponentials:

@@ -32,7 +32,7 @@ STATUSES = {
     ),
 }
 
-STANDING = (OK, NOT_SETTLED)  # of points whose numbers stand
+VALID = (OK, NOT_SETTLED)  # of points whose numbers are valid
 
 
 def meaning(code: int) -> str:
@@ -40,6 +40,6 @@ def meaning(code: int) -> str:
     return STATUSES[code].name if code in STATUSES else f"unknown_status_{code}"
 
 
-def stands(codes):
-    """Whether the numbers of points with these codes stand; elementwise."""
-    return functools.reduce(operator.or_, (codes == code for code in STANDING))
+def is_valid(codes):
+    """Whether the numbers of points with these codes are valid; elementwise."""
+    return functools.reduce(operator.or_, (codes == code for code in VALID))

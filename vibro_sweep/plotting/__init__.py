@@ -17,16 +17,16 @@ from vibro_sweep.model.errors import ArgumentTypeError
 from vibro_sweep.model.pictures import PICTURES
 from vibro_sweep.model.refusals import not_allowed, shown
 from vibro_sweep.plotting import basins, branches, charts, coexistence, convergence, energy, orbits, planes, sweeps
-from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.pictures import check_output, save
+from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.source import name_of, readable
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["SUFFIXES", "Look", "PlotError", "check_output", "default_name", "figure", "kinds", "plot"]
+__all__ = ["SUFFIXES", "PlotError", "PlotOptions", "check_output", "default_name", "figure", "kinds", "plot"]
 
 SUFFIXES = (".png", ".svg", ".pdf")
 
@@ -70,31 +70,36 @@ def kinds(data: "str | Path | xarray.Dataset") -> list[str]:
 
 
 def figure(
-    data: "str | Path | xarray.Dataset", kind: str | None = None, look: Look | None = None, ax: Axes | None = None
+    data: "str | Path | xarray.Dataset",
+    kind: str | None = None,
+    options: PlotOptions | None = None,
+    ax: Axes | None = None,
 ) -> Figure:
-    """One picture of a file or a Dataset (default: the first of `kinds`), 7 inches wide unless `look` says otherwise.
+    """One picture of a file or a Dataset (default: the first of `kinds`), 7 inches wide unless `options` differ.
 
     Of a file of branches their diagram, of curves their chart.
 
-    ax : where its first or only panel is drawn, by default a new Figure; `look` has no size or resolution then
+    ax : where its first or only panel is drawn, by default a new Figure; `options` has no size or resolution then
     Raises `PlotError` where the data cannot be read or cannot show that kind.
     """
     if ax is not None and not isinstance(ax, Axes):
         raise ArgumentTypeError(not_allowed("ax", ax, "matplotlib axes"))
     data, of = readable(data)
     if of is not None:
-        _check_flat(data, of, kind, look or Look())
-        with matplotlib.rc_context((look or Look()).style):
-            drawn = (charts.chart if of == CHART else branches.branches)(data, look or Look(), ax)
-            if ax is None and look is not None:
-                look.applied(drawn)
+        _check_flat(data, of, kind, options or PlotOptions())
+        with matplotlib.rc_context((options or PlotOptions()).style):
+            drawn = (charts.chart if of == CHART else branches.branches)(data, options or PlotOptions(), ax)
+            if ax is None and options is not None:
+                options.applied(drawn)
             return drawn
-    with Result(data, look, ax) as result:
+    with Result(data, options, ax) as result:
         drawn = _draw(result, _chosen(result, kind)[0])
     return drawn.ax.figure if isinstance(drawn, Panel) else drawn
 
 
-def plot(path, output=None, kind: str | None = None, overwrite: bool = False, look: Look | None = None) -> list[Path]:
+def plot(
+    path, output=None, kind: str | None = None, overwrite: bool = False, options: PlotOptions | None = None
+) -> list[Path]:
     """Write pictures of the file; the paths written.
 
     `output` is FILE.png in the current folder unless given; its suffix (one of `SUFFIXES`) is the format. `kind` is
@@ -106,13 +111,13 @@ def plot(path, output=None, kind: str | None = None, overwrite: bool = False, lo
     output = Path(default_name(path)) if output is None else Path(output)
     if output.suffix.lower() not in SUFFIXES:
         raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
-    beside = (look.windows, look.over) if look else ()
+    beside = (options.windows, options.over) if options else ()
     inputs = [path, *(one for one in beside if isinstance(one, Path))]
     data, of = readable(path)
     if of is not None:
         check_output(output, overwrite, inputs)
-        return [save(figure(data, kind, look), output, overwrite, inputs)]
-    with Result(data, look) as result:
+        return [save(figure(data, kind, options), output, overwrite, inputs)]
+    with Result(data, options) as result:
         chosen = _chosen(result, kind)
         many = kind == "all"
         places = [output.with_stem(f"{output.stem}-{one}") if many else output for one in chosen]
@@ -121,10 +126,10 @@ def plot(path, output=None, kind: str | None = None, overwrite: bool = False, lo
         return [save(_draw(result, one), place, overwrite, inputs) for one, place in zip(chosen, places, strict=True)]
 
 
-def _check_flat(path, of: str, kind: str | None, look: Look) -> None:
+def _check_flat(path, of: str, kind: str | None, options: PlotOptions) -> None:
     """Refuse what belongs to pictures of sweeps."""
-    chosen = {"kind": kind not in (None, "all"), "at": look.at, "windows": look.windows}
-    chosen |= {} if of == CHART else {"relative": look.relative}
+    chosen = {"kind": kind not in (None, "all"), "at": options.at, "windows": options.windows}
+    chosen |= {} if of == CHART else {"relative": options.relative}
     for name, value in chosen.items():
         if value:
             raise PlotError(f"{name}: does not belong to {of}, which {name_of(path)} holds")
@@ -139,23 +144,23 @@ def _kinds(result: Result) -> list[str]:
 
 
 def _chosen(result: Result, kind: str | None) -> list[str]:
-    """The kinds to draw. Without a word for one: the first that can show what the look asks for."""
+    """The kinds to draw. Without a word for one: the first that can show what the options ask for."""
     available = _kinds(result)
     if not result.done.any():
         raise PlotError(f"{result.path}: nothing to show yet, no point is computed")
-    if result.look.over is not None:
+    if result.options.over is not None:
         raise PlotError(f"over: branches and curves are drawn over a sweep; {result.path} is one itself")
     if not available:
         raise PlotError(f"{result.path}: nothing to show, there is no picture of {result.contents()} alone")
     if kind not in (None, "all", *available):
         raise PlotError(f"kind {shown(kind)}: {result.path} can show {', '.join(available)} (or all)")
     candidates = available if kind in (None, "all") else [kind]
-    at, variable = result.look.at, result.look.variable
+    at, variable = result.options.at, result.options.variable
     fitting = [name for name in candidates if not at or KINDS[name].of_orbits]
     if not fitting:
         which = f"kind {kind} shows the whole sweep" if kind else f"{result.path} has no single orbits to show"
         raise PlotError(f"at: {which}; {_those(available, lambda name: KINDS[name].of_orbits)}")
-    if result.look.relative:
+    if result.options.relative:
         fitting = [name for name in fitting if KINDS[name].relative]
         if not fitting:
             raise PlotError(f"relative: belongs to charts and planes; {result.path} can show {', '.join(available)}")
@@ -174,10 +179,10 @@ def _those(available: list[str], fits: Callable[[str], bool]) -> str:
 
 
 def _draw(result: Result, kind: str) -> Figure | Panel:
-    with matplotlib.rc_context(result.look.style):
+    with matplotlib.rc_context(result.options.style):
         fig = KINDS[kind].draw(result)
         if isinstance(fig, Figure):
-            result.look.applied(fig)
+            result.options.applied(fig)
         if result.failed:
             for ax in fig.axes:
                 if ax.get_label() != "<colorbar>":

@@ -12,7 +12,7 @@ from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import joined, sweeps
 from vibro_sweep.plotting.flat import FlatFile, sweep_below
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
-from vibro_sweep.plotting.look import Look
+from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, SPECIAL, axis_name, limits, special_mark, symbol
 
@@ -25,31 +25,31 @@ def variables(file: FlatFile) -> tuple[str, ...]:
     return (*_sections(file), "impact_speed", "multiplier", "stop_distance")
 
 
-def branches(path, look: Look, ax=None):
-    """The diagram of a file of branches; over a sweep where the look names one. Raises PlotError."""
+def branches(path, options: PlotOptions, ax=None):
+    """The diagram of a file of branches; over a sweep where the options name one. Raises PlotError."""
     file = FlatFile(path, BRANCHES)
-    name = look.variable or "x1"
+    name = options.variable or "x1"
     if name not in variables(file):
         raise PlotError(f"variable {shown(name)} is not allowed; there are {', '.join(variables(file))}")
     if not len(file["branch_period"]):
         raise PlotError(f"{file.name}: nothing to show, it has no branches")
     fig = None
     if ax is None:
-        fig = look.page(5.0, f"Branches of periodic orbits: {file.title}")
+        fig = options.page(5.0, f"Branches of periodic orbits: {file.title}")
         ax = fig.subplots()
-    if look.over is not None:
-        _sweep(ax, look, file, name)
+    if options.over is not None:
+        _sweep(ax, options, file, name)
     values = values_of(file, name)
     together = joined.margins(file, _sections(file)) if name == "stop_distance" else np.ones(len(values), bool)
-    _lines(ax, file, _drawn(file, name, values, look.over is not None), together)
+    _lines(ax, file, _drawn(file, name, values, options.over is not None), together)
     marks = _marks(ax, file, values)
     ax.set_xlabel(axis_name(file.parameters[0], file.unit(file.parameters[0])))
-    if look.xlim:
-        ax.set_xlim(look.xlim)
-    if look.over is None:
-        finite = values[_inside(file[file.parameters[0]], look.xlim)]
+    if options.xlim:
+        ax.set_xlim(options.xlim)
+    if options.over is None:
+        finite = values[_inside(file[file.parameters[0]], options.xlim)]
         finite = finite[np.isfinite(finite)]
-        ax.set_ylim(look.ylim or (limits(finite) if finite.size else None))
+        ax.set_ylim(options.ylim or (limits(finite) if finite.size else None))
         ax.set_ylabel(_label(name) + file.unit("min_impact_speed" if name == "impact_speed" else name))
     if name == "multiplier":
         ax.axhline(1, color=INK, lw=0.5)
@@ -159,9 +159,9 @@ def _legend(where, ax, there: set[str]) -> None:
         legend_below(where, handles, 5)
 
 
-def _sweep(ax, look: Look, file: FlatFile, name: str) -> None:
+def _sweep(ax, options: PlotOptions, file: FlatFile, name: str) -> None:
     """The section points of a sweep, below everything."""
-    with Result(sweep_below(look.over), Look(variable=name, xlim=look.xlim, ylim=look.ylim)) as result:
+    with Result(sweep_below(options.over), PlotOptions(variable=name, xlim=options.xlim, ylim=options.ylim)) as result:
         if list(result.sweep) != file.parameters or name not in sweeps.section_variables(result):
             raise PlotError(f"over: {result.path} is no sweep over {file.parameters[0]} with section points {name}")
         ((_, values),) = result.sweep.items()

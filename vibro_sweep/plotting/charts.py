@@ -12,37 +12,39 @@ from vibro_sweep.plotting import planes
 from vibro_sweep.plotting.curves import Drawn, draw, handles, name_points
 from vibro_sweep.plotting.flat import FlatFile, sweep_below
 from vibro_sweep.plotting.labels import arrange, legend_below
-from vibro_sweep.plotting.look import Look
+from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.relative import axis_label, check_relative
 from vibro_sweep.plotting.result import PlotError, Result
 
 NAMED = 14  # points of codimension two that are named over a plane
 
 
-def chart(path: str | Path, look: Look, ax=None):
-    """The chart of a file of curves, over a plane where the look names one. Raises PlotError."""
+def chart(path: str | Path, options: PlotOptions, ax=None):
+    """The chart of a file of curves, over a plane where the options name one. Raises PlotError."""
     file = FlatFile(path, CHART)
     if not len(file["branch_type"]):
         raise PlotError(f"{file.name}: nothing to show, it has no curves")
-    if look.over is not None:
-        return _over(file, look, ax)
-    if look.variable is not None:
-        raise PlotError(f"variable {shown(look.variable)} is not allowed; a chart has one where it lies over a plane")
+    if options.over is not None:
+        return _over(file, options, ax)
+    if options.variable is not None:
+        raise PlotError(
+            f"variable {shown(options.variable)} is not allowed; a chart has one where it lies over a plane"
+        )
     names = file.parameters
-    curves = drawn(file, names, look.relative)
+    curves = drawn(file, names, options.relative)
     fig = None
     if ax is None:
-        fig = look.page(5.0, f"Bifurcation curves: {file.title}")
+        fig = options.page(5.0, f"Bifurcation curves: {file.title}")
         ax = fig.subplots()
     draw(ax, curves)
-    ax.set(xlim=look.xlim or ax.get_xlim(), ylim=look.ylim or ax.get_ylim())
+    ax.set(xlim=options.xlim or ax.get_xlim(), ylim=options.ylim or ax.get_ylim())
     found = handles(curves, _frame(ax))
-    across, up = (axis_label(name, look.relative, file.unit(name)) for name in names)
+    across, up = (axis_label(name, options.relative, file.unit(name)) for name in names)
     ax.set(xlabel=across, ylabel=up)
     if fig is None:
         ax.legend(handles=found, loc="best", frameon=True)
     else:
-        legend_below(fig, found, 6, grow=look.size is None, columnspacing=1.2)
+        legend_below(fig, found, 6, grow=options.size is None, columnspacing=1.2)
     arrange(ax.figure)
     name_points(ax, curves)
     return fig or ax.figure
@@ -72,15 +74,15 @@ def drawn(file: FlatFile, names: list[str], relative: bool = False) -> list[Draw
     return result
 
 
-def _over(file: FlatFile, look: Look, ax):
+def _over(file: FlatFile, options: PlotOptions, ax):
     """Over the plane of a sweep in the same two numbers."""
-    with Result(sweep_below(look.over), replace(look, over=None), ax) as result:
+    with Result(sweep_below(options.over), replace(options, over=None), ax) as result:
         if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
             raise PlotError(f"over: {result.path} is no plane over {' and '.join(file.parameters)}")
-        if look.variable is not None and look.variable not in planes.variables(result):
+        if options.variable is not None and options.variable not in planes.variables(result):
             told = ", ".join(planes.variables(result))
-            raise PlotError(f"variable {shown(look.variable)} is not allowed; there are {told}")
-        curves = drawn(file, list(result.sweep), look.relative)
+            raise PlotError(f"variable {shown(options.variable)} is not allowed; there are {told}")
+        curves = drawn(file, list(result.sweep), options.relative)
 
         def over(panel):
             frame = panel.get_xlim(), panel.get_ylim()

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from vibro_sweep.model.bifurcations import BY_NAME, CODIMENSION_TWO, TYPES
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
-from vibro_sweep.plotting.look import Look
+from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.style import INK, axis_name, with_unit
 
 COLOURS = {one.name: one.curve_colour for one in TYPES if one.condition}
@@ -37,9 +37,9 @@ class Drawn(NamedTuple):
 
 def plot_curves(curves: list[Drawn], names: tuple[str, str], system=None, width: float | None = None):
     """All curves of a system in one panel, so many mm wide. Returns a matplotlib Figure."""
-    look = Look(width=width)
-    with mpl.rc_context(look.style):
-        fig = look.page(4.2, "bifurcation curves")
+    options = PlotOptions(width=width)
+    with mpl.rc_context(options.style):
+        fig = options.page(4.2, "bifurcation curves")
         ax = fig.subplots()
         draw(ax, curves)
         known = getattr(system, "described", {})  # a Family has numbers without units

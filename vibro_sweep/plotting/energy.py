@@ -34,7 +34,7 @@ def energy(result: Result):
     if struck:
         _power(axes[0], values[order], power, result)
     below = axes[-1]
-    chosen = result.look.variable
+    chosen = result.options.variable
     shown = [chosen] if chosen else [name for name in variables(result) if name.startswith("rms_x")]
     for i, name in enumerate(shown):
         style = {"color": COLOURS[min(i, len(COLOURS) - 1)], "label": symbol(name.partition("_")[2])}

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class FlatFile:
     """A file of branches, curves or windows, or a Dataset that `vibro_sweep.open` made of one.
 
-    `arrays`: name -> values; `parameters`: names, that along which branches lead first; `sweep`: identity of the
+    `arrays`: name -> values; `parameters`: names, that along which branches lead first; `sweep`: run id of the
     sweep whose windows they are. Raises PlotError for anything else.
     """
 

@@ -13,7 +13,7 @@ from vibro_sweep.model.arguments import check_type, checked_flag
 from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.plotting import SUFFIXES, Look, PlotError, figure
+from vibro_sweep.plotting import SUFFIXES, PlotError, PlotOptions, figure
 from vibro_sweep.plotting.pictures import check_output, save
 
 if TYPE_CHECKING:
@@ -91,14 +91,14 @@ def plot(
     if dpi is not None and number_of(dpi) is None:
         raise PlotError(not_allowed("dpi", dpi, "a number of pixels an inch"))
     beside = [None if given is None else _data(name, given) for name, given in (("windows", windows), ("over", over))]
-    look = Look(chosen, variable, *limits, number_of(dpi), *beside, checked_flag("relative", relative), width)
+    options = PlotOptions(chosen, variable, *limits, number_of(dpi), *beside, checked_flag("relative", relative), width)
     inputs = [Path(one) for one in (data, *beside) if isinstance(one, (str, Path))]
     place = None if output is None else file_to_write("output", output)
     if place is not None:
         if place.suffix.lower() not in SUFFIXES:
             raise PlotError(f"output {place}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
         check_output(place, checked_flag("overwrite", overwrite), inputs)
-    drawn = figure(data, kind, look, ax)
+    drawn = figure(data, kind, options, ax)
     if place is not None:
         save(drawn, place, overwrite, inputs)
     return None if ax is not None and drawn.canvas.manager is not None else drawn

@@ -75,7 +75,7 @@ def phase_portrait(result: Result):
     """x1 and v1 between the stops, or another displacement and its velocity, one panel an orbit; impacts, and the state
     at each forcing period. Where the gap is not x1, that and its velocity."""
     fig, panels = _portraits(result, "Phase portrait")
-    x_name = result.look.variable or displacements(result)[0]
+    x_name = result.options.variable or displacements(result)[0]
     v_name = _velocity(x_name)
     for ax, point in panels:
         way = path(result, point)
@@ -142,7 +142,7 @@ def abscissae(result: Result) -> tuple[str, ...]:
 def poincare(result: Result):
     """Section points in the plane of x1 and v1, or of x2 and v2; of impacts of phase and v1. One panel an orbit."""
     fig, panels = _portraits(result, "Poincaré section")
-    x_name = result.look.variable or abscissae(result)[0]
+    x_name = result.options.variable or abscissae(result)[0]
     v_name = "v1" if x_name == "phase" else _velocity(x_name)
     for ax, point in panels:
         x, v = (result.one(name, point) for name in (x_name, v_name))
@@ -208,7 +208,7 @@ def history(result: Result):
     points = result.points()
     fig = result.page(1.5 * len(points) + 0.9 if len(points) > 1 else 3.2, result.title("Time history"))
     grid = fig.subplots(len(points), squeeze=False, sharex=True)[:, 0]
-    chosen = result.look.variable
+    chosen = result.options.variable
     gap = [] if result.contact_normal is None else ["gap"]
     names = [chosen] if chosen else [*gap, *(name for name in coordinates(result) if name.startswith("x"))]
     styles = [{"color": INK}, {"color": RIGHT, "ls": (0, (4, 1))}, {"color": LEFT, "ls": (0, (1, 1))}, {"color": FAINT}]
@@ -232,7 +232,7 @@ def history(result: Result):
 def iteration(result: Result):
     """The section's coordinate over the iterations (the paper's figures 7 and 8), one panel an orbit."""
     at_impact = "phase" in result
-    name = result.look.variable or section_variables(result)[0]
+    name = result.options.variable or section_variables(result)[0]
     points = result.points()
     fig = result.page(1.5 * len(points) + 0.9 if len(points) > 1 else 3.2, result.title("Iteration of the section"))
     grid = fig.subplots(len(points), squeeze=False, sharex=True)[:, 0]

@@ -3,8 +3,8 @@
 import matplotlib as mpl
 import numpy as np
 
-from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.orbits import ARROWS_AT, arrows, legend
+from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.style import DASHES, FAINT, IMPACT, INK, LEFT, RIGHT, with_unit
 
 
@@ -15,10 +15,10 @@ def plot_periodic(
 
     system : whose units the axes have; width : mm
     """
-    look, declared = Look(width=width), ("m", "m s-1", "s")
+    options, declared = PlotOptions(width=width), ("m", "m s-1", "s")
     x_label, v_label, t_label = map(with_unit, (*names, "time $t$"), declared, 3 * [system])
-    with mpl.rc_context(look.style):
-        fig = look.page(3.7, title)
+    with mpl.rc_context(options.style):
+        fig = options.page(3.7, title)
         portrait, history = fig.subplots(1, 2, width_ratios=(1, 1.4))
         # each flight starts with the velocity after its impact
         at = np.searchsorted(times, impact_t)

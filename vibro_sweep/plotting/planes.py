@@ -61,8 +61,8 @@ def plane(result: Result, overlay: Overlay | None = None):
     """lambda_1 and the period over the two parameters, side by side; the impacts where neither is stored.
 
     Of several starts the one with the largest lambda_1 is shown, point by point; beside it how many attractors they
-    reach, where that is stored. A variable that is chosen is shown alone. Raises PlotError where the look wants b in
-    parts of b*, and b* is not known.
+    reach, where that is stored. A variable that is chosen is shown alone. Raises PlotError where the options ask for b
+    in parts of b*, and b* is not known.
 
     overlay : drawn on each panel
     """
@@ -73,14 +73,14 @@ def plane(result: Result, overlay: Overlay | None = None):
     fig = result.page(4.4 if len(maps) > 1 else 5.4, result.title(what + note))
     grid = fig.subplots(1, len(maps), sharex=True, sharey=True, squeeze=False)[0]
     (x_key, x), (y_key, y) = result.sweep.items()
-    relative = result.look.relative
+    relative = result.options.relative
     if relative:
         columns, rows = np.argsort(x), np.argsort(y)
         corners = _relative_corners(result, columns, rows)
     else:
-        (columns, across), (rows, up) = _in_range(x, result.look.xlim), _in_range(y, result.look.ylim)
+        (columns, across), (rows, up) = _in_range(x, result.options.xlim), _in_range(y, result.options.ylim)
         corners = across, up
-    unit = result.unit(result.look.variable or "lyapunov")
+    unit = result.unit(result.options.variable or "lyapunov")
     shown = [np.ma.masked_invalid(values[np.ix_(columns, rows)].T) for _, values in maps]
     for ax, (draw, _), values in zip(grid, maps, shown, strict=True):
         draw(ax, *corners, values, unit)
@@ -89,16 +89,16 @@ def plane(result: Result, overlay: Overlay | None = None):
         if ax.get_subplotspec().is_first_col():
             ax.set_ylabel(axis_label(y_key, relative, result.unit(y_key)))
         ax.patch.set(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="///")
-        ax.set(xlim=result.look.xlim or ax.get_xlim(), ylim=result.look.ylim or ax.get_ylim())
+        ax.set(xlim=result.options.xlim or ax.get_xlim(), ylim=result.options.ylim or ax.get_ylim())
         rests.cells(ax, result, columns, rows, corners)
         _grazing_curve(ax, result)
-        if result.look.windows is not None:
+        if result.options.windows is not None:
             strip.ends_over(ax, result)
         if overlay is not None:
             overlay.draw(ax)
     zero = "lyapunov_error" in result and any(draw is _exponent and (values == 0).any() for draw, values in maps)
     more = [_within_errors(result)] if zero else []
-    _legend(fig, grid, any(values.mask.any() for values in shown), result.look, overlay, more)
+    _legend(fig, grid, any(values.mask.any() for values in shown), result.options, overlay, more)
     arrange(grid[0].figure)
     for ax, (draw, _), values in zip(grid, maps, shown, strict=True):
         taken = [] if overlay is None else overlay.name(ax)
@@ -128,7 +128,7 @@ def _relative_corners(result, columns, rows) -> tuple[np.ndarray, np.ndarray]:
     other, order = (x_key, columns) if y_key == "b" else (y_key, rows)
     b_star = result.grazing(other).get("b_star")
     check_relative(str(result.path), result.sweep, b_star)
-    if result.look.windows is not None:
+    if result.options.windows is not None:
         raise PlotError("relative: ends of windows have b itself as their axis; leave out `relative` or `windows`")
     X, Y = np.meshgrid(edges(x[columns]), edges(y[rows]))
     star = edges(b_star[order])
@@ -144,7 +144,7 @@ def _grazing_curve(ax, result):
     order = np.argsort(result.sweep[other])
     frame = ax.get_xlim(), ax.get_ylim()
     for name, curve in result.grazing(other).items():
-        line = result.sweep[other][order], np.ones(len(order)) if result.look.relative else curve[order]
+        line = result.sweep[other][order], np.ones(len(order)) if result.options.relative else curve[order]
         for style in ({"color": "white", "lw": 2.2}, {"color": INK, "lw": 1.0, "ls": CURVES[name], "gid": "grazing"}):
             ax.plot(*(line if keys[1] == "b" else line[::-1]), label=grazing_of(name), **style)
     ax.set(xlim=frame[0], ylim=frame[1])
@@ -156,7 +156,7 @@ def _within_errors(result) -> Patch:
     return Patch(facecolor=NEUTRAL, edgecolor=FAINT, label=text)
 
 
-def _legend(fig, grid, gaps, look, overlay, more):
+def _legend(fig, grid, gaps, options, overlay, more):
     handles = [line for line in grid[0].lines if line.get_gid() == "window end"]
     handles += more
     handles += [] if overlay is None else overlay.handles(grid[0])
@@ -167,11 +167,11 @@ def _legend(fig, grid, gaps, look, overlay, more):
     handles += [Line2D([], [], color=INK, lw=1.0, ls=style, label=label) for label, style in curves.items()]
     if any(one.get_gid() == "rest" for one in grid[0].collections):
         handles.append(rests.patch())
-    hatched = [text for text, there in (("outside of the sweep", look.relative), ("no number", gaps)) if there]
+    hatched = [text for text, there in (("outside of the sweep", options.relative), ("no number", gaps)) if there]
     if hatched:
         handles.append(Patch(facecolor=NOT_COMPUTED, edgecolor=FAINT, hatch="////", label=" or ".join(hatched)))
     if handles:
-        legend_below(fig, handles, 4, grow=look.size is None)
+        legend_below(fig, handles, 4, grow=options.size is None)
 
 
 def _visible(ax, line) -> bool:
@@ -192,7 +192,7 @@ def _maps(result):
     def shown(values):
         return np.take_along_axis(values, chosen, -1)[..., 0] if starts > 1 else values[..., 0]
 
-    if variable := result.look.variable:
+    if variable := result.options.variable:
         if variable == "lyapunov":
             return [(_exponent, shown(largest))], note
         draw = {"period": _period, "attractor": _number}.get(variable, _amount(_OF_A_POINT[variable]))

@@ -13,8 +13,8 @@ from vibro_sweep.model.refusals import not_allowed, shown
 from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.model.units import shown_unit
-from vibro_sweep.plotting.look import Look
 from vibro_sweep.plotting.panel import Panel
+from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.source import PlotError, source_of
 from vibro_sweep.plotting.style import axis_name, equation, in_formula
 from vibro_sweep.store.settings import settings_of
@@ -40,13 +40,13 @@ class Result:
     Raises `PlotError` where the file is missing or not a result.
     """
 
-    def __init__(self, given, look: Look | None = None, ax: Axes | None = None):
-        self.look, self.ax = look or Look(), ax
+    def __init__(self, given, options: PlotOptions | None = None, ax: Axes | None = None):
+        self.options, self.ax = options or PlotOptions(), ax
         self._source = source_of(given)
         self.path = self._source.name
         try:
             self._read_frame()
-            self._chosen = self._nearest(self.look.at)
+            self._chosen = self._nearest(self.options.at)
         except BaseException as error:
             self._source.close()
             if isinstance(error, (KeyError, TypeError, ValueError)) and not isinstance(error, PlotError):
@@ -66,10 +66,10 @@ class Result:
         codes = self._with_start(self._source.read("status"))
         self.done = codes != NOT_COMPUTED
         try:
-            self.settings, self._along, self.significant, standing = settings_of(self._source)
+            self.settings, self._along, self.significant, valid = settings_of(self._source)
         except OSError as error:
             raise PlotError(f"{self.path}: its numbers cannot be read, it is damaged or being written") from error
-        self.failed = self.done.any() and not np.isin(codes, standing).any()
+        self.failed = self.done.any() and not np.isin(codes, valid).any()
 
     def _nearest(self, at: dict[str, float]) -> dict[int, int]:
         """Axis and index of the values nearest to the given ones."""
@@ -234,7 +234,7 @@ class Result:
 
     def page(self, height: float, title: str) -> Figure | Panel:
         """Where a picture is drawn."""
-        return self.look.page(height, title) if self.ax is None else Panel(self.ax, title)
+        return self.options.page(height, title) if self.ax is None else Panel(self.ax, title)
 
     def title(self, what="") -> str:
         """What is shown, the numbers that are the same at every point, and how much is there if not all."""

@@ -28,7 +28,7 @@ REASON_COLOURS = {
 
 
 def windows(ax, result: Result, values, order):
-    """The strip of the windows file that the look names."""
+    """The strip of the windows file that the options name."""
     file = _windows_of(result)
     left, right = values[0], values[-1]
     lo, hi = np.maximum(file["window_lo"], left), np.minimum(file["window_hi"], right)
@@ -52,7 +52,7 @@ def windows(ax, result: Result, values, order):
 
 
 def _windows_of(result: Result) -> FlatFile:
-    file = FlatFile(result.look.windows, WINDOWS)
+    file = FlatFile(result.options.windows, WINDOWS)
     if file.sweep != str(result.settings.get("identity", "")) or sorted(file.parameters) != sorted(result.sweep):
         raise PlotError(f"windows: {file.name} has the windows of another sweep than {result.path}")
     return file

@@ -54,7 +54,7 @@ def shows_impacts(result: Result) -> bool:
 def bifurcation(result: Result):
     """Section points over the parameter; below, on the same axis, windows, spectrum and impacts where there are any."""
     panels = [(3.6, section)]
-    if result.look.windows:
+    if result.options.windows:
         panels.append((strip.HEIGHT, strip.windows))
     if shows_lyapunov(result):
         panels.append((1.7, spectrum))
@@ -99,7 +99,7 @@ def _stack(result, panels, what):
     for ax, (_, draw) in zip(axes, panels, strict=True):
         draw(ax, result, values, order)
     if key == "b":
-        mark_grazing(axes, result, *(result.look.xlim or values[[0, -1]]))
+        mark_grazing(axes, result, *(result.options.xlim or values[[0, -1]]))
     axes[-1].set_xlim(reach(values))
     axes[-1].set_xlabel(result.axis(key))
     _key(axes[0], result)
@@ -119,8 +119,8 @@ def in_range(result) -> np.ndarray:
     """The order in which the values rise, of those that the picture shows. Raises PlotError where there are none."""
     ((key, values),) = result.sweep.items()
     order = np.argsort(values)  # a sweep may run downwards; an axis does not
-    if result.look.xlim:
-        low, high = result.look.xlim
+    if result.options.xlim:
+        low, high = result.options.xlim
         order = order[(low <= values[order]) & (values[order] <= high)]
         if not len(order):
             raise PlotError(f"xlim: the file has no {key} from {low:g} to {high:g}")
@@ -174,7 +174,7 @@ def _explanations(fig, axes, result):
 
 def section(ax, result, values, order):
     """Section points over the parameter, on axes of the caller's."""
-    name = result.look.variable or section_variables(result)[0]
+    name = result.options.variable or section_variables(result)[0]
     at_impact = "phase" in result
     points = result.array(name)[order]  # (values, starts, samples)
     if at_impact:
@@ -185,7 +185,7 @@ def section(ax, result, values, order):
         return
     there = np.isfinite(points)
     low, high = limits(points) if there.any() else (0, 1)
-    bottom, top = result.look.ylim or (low, high)
+    bottom, top = result.options.ylim or (low, high)
     ax.set_ylim(bottom, top)
     there &= (bottom <= points) & (points <= top)
     if not there.any():

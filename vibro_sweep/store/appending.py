@@ -55,7 +55,7 @@ class HeldPart:
             raise RemovedError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(self.path))
         if parts.size(self.file) != self._end:
             raise ChangedError(errno.EBUSY, "another program has changed it", os.fspath(self.path))
-        self._write(parts.record(self.head.identity, text, data))
+        self._write(parts.record(self.head.run_id, text, data))
         if time.monotonic() - self._synced > SYNC_SECONDS:
             os.fsync(self.file.fileno())
             self._synced = time.monotonic()

@@ -152,13 +152,13 @@ def _of_complete(scene: Scene, path: Path, part: Path, stack: contextlib.ExitSta
 def _begun(scene: Scene, held: HeldPart, path: Path, replaces: Stamp | None) -> Writer:
     """With nothing computed yet, in place of what is in the part."""
     with contextlib.suppress(PartError):  # overwritten
-        unfinished(path, parts.read_head(held.file).identity).unlink(missing_ok=True)
+        unfinished(path, parts.read_head(held.file).run_id).unlink(missing_ok=True)
     try:
         _check_space(scene, held)
-        identity = parts.new_identity()
-        content = skeleton_of(scene, identity)
+        run_id = parts.new_run_id()
+        content = skeleton_of(scene, run_id)
         with said(held):
-            held.begin(parts.new_head(content, replaces, identity), content)
+            held.begin(parts.new_head(content, replaces, run_id), content)
     except BaseException:
         if parts.size(held.file) == 0:
             held.remove()
@@ -203,8 +203,8 @@ def _published(path: Path, held: HeldPart, head: Head) -> Complete | None:
     if names.stamp(path) is None:
         return None
     with contextlib.suppress(StoreError, KeyError), opened(path) as (file, _):
-        if text(file, "identity") == head.identity.hex():
-            unfinished(path, head.identity).unlink(missing_ok=True)
+        if text(file, "identity") == head.run_id.hex():
+            unfinished(path, head.run_id).unlink(missing_ok=True)
             held.remove()
             return _complete(file)
     return None

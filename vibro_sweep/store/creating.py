@@ -18,12 +18,12 @@ from vibro_sweep.store.opening import made_by
 from vibro_sweep.store.sink import LIBVER
 
 
-def skeleton_of(scene: Scene, identity: bytes) -> memoryview:
+def skeleton_of(scene: Scene, run_id: bytes) -> memoryview:
     """The bytes of an HDF5 file."""
     image = io.BytesIO()
     with h5py.File(image, "w", libver=LIBVER) as file:
         file.attrs["format"] = parts.FORMAT
-        set_text(file, "identity", identity.hex())
+        set_text(file, "identity", run_id.hex())
         set_text(file, "Conventions", "CF-1.11")
         set_text(file, "title", f"vibro_sweep: {scene.name}")
         set_text(file, "history", f"{now()} begun by vibro_sweep {__version__}")

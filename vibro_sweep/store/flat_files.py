@@ -33,13 +33,13 @@ class Subject(NamedTuple):
 
 
 def image_of(
-    subject: Subject, identity: bytes, provenance: str, columns: list[Column], arrays: dict[str, np.ndarray]
+    subject: Subject, run_id: bytes, provenance: str, columns: list[Column], arrays: dict[str, np.ndarray]
 ) -> memoryview:
     """The bytes of an HDF5 file; without columns and arrays the skeleton of a run."""
     image = io.BytesIO()
     with h5py.File(image, "w", libver=LIBVER) as file:
         file.attrs["format"] = parts.FORMAT
-        set_text(file, "identity", identity.hex())
+        set_text(file, "identity", run_id.hex())
         set_text(file, "Conventions", "CF-1.11")
         set_text(file, "kind", subject.kind)
         set_text(file, "title", f"vibro_sweep: {subject.title}")

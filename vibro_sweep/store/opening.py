@@ -276,6 +276,6 @@ def check_version(file: h5py.File, path: Path) -> None:
 
 def made_by() -> dict:
     """What must be the same for a run to be continued."""
-    from vibro_sweep.identity import identity  # drawing a file must not wait for the engine
+    from vibro_sweep.code_hash import code_hash  # drawing a file must not wait for the engine
 
-    return {"vibro_sweep": __version__, "code": identity()}
+    return {"vibro_sweep": __version__, "code": code_hash()}

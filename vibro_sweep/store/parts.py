@@ -1,12 +1,12 @@
 """FILE.h5.part: an empty HDF5 file and, after it, the blocks of a run as they come. Nothing in it is ever rewritten.
 
-    head       magic, format, identity, what the run may replace, length and checksum of the skeleton; its checksum
+    head       magic, format, run id, what the run may replace, length and checksum of the skeleton; its checksum
     skeleton   the HDF5 file of the run with nothing computed in it
-    record     identity, length of the text and of the data, their checksum; checksum of all that
+    record     run id, length of the text and of the data, their checksum; checksum of all that
                text (JSON: {"box": [[first, end], ...]}), data (the arrays of the box, one after the other)
     record ...
 
-A record that a kill has cut off is the last one and is as if it had never been begun. `identity` is 16 random bytes:
+A record that a kill has cut off is the last one and is as if it had never been begun. `run_id` is 16 random bytes:
 they make the file known as this run's own, and find the next record behind one whose length is damaged.
 """
 
@@ -41,7 +41,7 @@ class PartError(ValueError):
 
 class Head(NamedTuple):
     format: int
-    identity: bytes
+    run_id: bytes
     replaces: Stamp | None  # the file that stood at FILE.h5 when `overwrite` was asked for
     length: int  # of the skeleton
     checksum: int  # of the skeleton
@@ -53,7 +53,7 @@ class Head(NamedTuple):
 
     def packed(self) -> bytes:
         stamp = self.replaces or (0, 0, 0)
-        return _sealed(_HEAD.pack(MAGIC, self.format, self.identity, *stamp, self.length, self.checksum))
+        return _sealed(_HEAD.pack(MAGIC, self.format, self.run_id, *stamp, self.length, self.checksum))
 
 
 class Record(NamedTuple):
@@ -62,21 +62,21 @@ class Record(NamedTuple):
     length: int  # of its data
 
 
-def new_head(skeleton: bytes | memoryview, replaces: Stamp | None, identity: bytes) -> Head:
-    return Head(FORMAT, identity, replaces, len(skeleton), zlib.crc32(skeleton))
+def new_head(skeleton: bytes | memoryview, replaces: Stamp | None, run_id: bytes) -> Head:
+    return Head(FORMAT, run_id, replaces, len(skeleton), zlib.crc32(skeleton))
 
 
-def new_identity() -> bytes:
+def new_run_id() -> bytes:
     return secrets.token_bytes(16)
 
 
-def record(identity: bytes, text: dict, data: list[memoryview]) -> list[bytes | memoryview]:
+def record(run_id: bytes, text: dict, data: list[memoryview]) -> list[bytes | memoryview]:
     """A record as the pieces that are written one after the other."""
     told = json.dumps(text).encode()
     checksum = zlib.crc32(told)
     for piece in data:
         checksum = zlib.crc32(piece, checksum)
-    return [_sealed(_RECORD.pack(identity, len(told), sum(map(len, data)), checksum)), told, *data]
+    return [_sealed(_RECORD.pack(run_id, len(told), sum(map(len, data)), checksum)), told, *data]
 
 
 def open_regular(path: Path, flags: int = os.O_RDONLY) -> BinaryIO:
@@ -116,11 +116,11 @@ def read_head(file: BinaryIO) -> Head:
         raise PartError("is no file of vibro-sweep")
     if not _holds(raw, _HEAD):
         raise PartError("is damaged (its head); overwrite it")
-    _, version, identity, inode, length, changed, skeleton, checksum = _HEAD.unpack_from(raw)
+    _, version, run_id, inode, length, changed, skeleton, checksum = _HEAD.unpack_from(raw)
     if version != FORMAT:
         raise PartError(f"has the format {version} of another version of vibro_sweep; this one reads {FORMAT}")
     stamp = Stamp(inode, length, changed) if inode or length or changed else None
-    return Head(version, identity, stamp, skeleton, checksum)
+    return Head(version, run_id, stamp, skeleton, checksum)
 
 
 def copy_skeleton(file: BinaryIO, head: Head, target: BinaryIO) -> None:
@@ -151,8 +151,8 @@ class Scan:
             self._file.seek(at)
             raw = self._file.read(_RECORD.size + _CHECKSUM.size)
             mark, texts, length, checksum = _RECORD.unpack_from(raw)
-            if mark != self._head.identity or not _holds(raw, _RECORD) or texts > MOST_TEXT or length > MOST_DATA:
-                lost, at = True, find(self._file, self._head.identity, at + 1)
+            if mark != self._head.run_id or not _holds(raw, _RECORD) or texts > MOST_TEXT or length > MOST_DATA:
+                lost, at = True, find(self._file, self._head.run_id, at + 1)
                 continue
             self.damaged, lost = self.damaged + lost, False
             begin, end = at + len(raw), at + len(raw) + texts + length

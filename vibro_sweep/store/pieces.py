@@ -59,8 +59,8 @@ class Pieces:
         """Give the file its name, and remove the part."""
         head = self._part.head
         provenance["wall_time_s"] = round(time.perf_counter() - self._began, 3)
-        image = image_of(self._subject, head.identity, json.dumps(made_by() | provenance), columns, arrays)
-        new = unfinished(self._path, head.identity)
+        image = image_of(self._subject, head.run_id, json.dumps(made_by() | provenance), columns, arrays)
+        new = unfinished(self._path, head.run_id)
         with said(self._part):
             new.unlink(missing_ok=True)  # of a run that was killed here
             try:
@@ -118,10 +118,10 @@ def pieces(subject: Subject, path: Path, mode: str, inputs: Collection[Path]) ->
 
 
 def _begin(held: HeldPart, subject: Subject, replaces: names.Stamp | None) -> None:
-    identity = parts.new_identity()
-    content = image_of(subject, identity, json.dumps(made_by()), [], {})
+    run_id = parts.new_run_id()
+    content = image_of(subject, run_id, json.dumps(made_by()), [], {})
     with said(held):
-        held.begin(parts.new_head(content, replaces, identity), content)
+        held.begin(parts.new_head(content, replaces, run_id), content)
 
 
 def _continued(held: HeldPart, subject: Subject, path: Path) -> dict[str, Arrays]:

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from vibro_sweep.model.parameters import FOLLOWING
-from vibro_sweep.model.status import STANDING, STATUSES
+from vibro_sweep.model.status import STATUSES, VALID
 
 Along = dict[str, tuple[tuple[str, ...], np.ndarray]]  # name -> the keys that a number depends on, its values
 
@@ -26,14 +26,14 @@ class Settings(NamedTuple):
     """What holds for a run.
 
     `constant`: numbers and words that are the same at all points. `along`: numbers that follow from swept ones.
-    `significant`: standard errors that tell an exponent from zero; NaN where the file has none. `standing`: codes of
-    points whose numbers stand, as the file itself names them.
+    `significant`: standard errors that tell an exponent from zero; NaN where the file has none. `valid`: codes of
+    points whose numbers are valid, as the file itself names them.
     """
 
     constant: dict[str, Any]
     along: Along
     significant: float
-    standing: list[int]
+    valid: list[int]
 
 
 def settings_of(source: Source) -> Settings:
@@ -44,13 +44,13 @@ def settings_of(source: Source) -> Settings:
         if name in source and name not in source.sweep
     }
     significant = source.attribute("lyapunov_error", "significant") if "lyapunov_error" in source else None
-    return Settings(source.attributes, along, np.nan if significant is None else float(significant), _standing(source))
+    return Settings(source.attributes, along, np.nan if significant is None else float(significant), _valid(source))
 
 
-def _standing(source: Source) -> list[int]:
+def _valid(source: Source) -> list[int]:
     meanings = source.attribute("status", "flag_meanings")
     if meanings is None:
         return [0]
     named = zip(np.atleast_1d(source.attribute("status", "flag_values")).tolist(), meanings.split(), strict=False)
-    standing = {STATUSES[code].name for code in STANDING}
-    return [code for code, meaning in named if meaning in standing]
+    valid = {STATUSES[code].name for code in VALID}
+    return [code for code, meaning in named if meaning in valid]

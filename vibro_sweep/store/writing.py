@@ -53,7 +53,7 @@ class Writer:
 
         last : writes what follows from the blocks, once all of them are in the file
         """
-        new = unfinished(self._path, self._part.head.identity)
+        new = unfinished(self._path, self._part.head.run_id)
         with said(self._part):
             new.unlink(missing_ok=True)  # of a run that was killed here
             try:
@@ -132,9 +132,9 @@ def _bytes(values: np.ndarray) -> memoryview:
     return memoryview(np.ascontiguousarray(values).reshape(-1).view(np.uint8))
 
 
-def unfinished(path: Path, identity: bytes) -> Path:
+def unfinished(path: Path, run_id: bytes) -> Path:
     """Where the file of a run grows at the end of the run, before it gets its name."""
-    return path.with_name(f".vibro_sweep-{identity.hex()}.h5")
+    return path.with_name(f".vibro_sweep-{run_id.hex()}.h5")
 
 
 def _meet(one: checks.Piece, other: checks.Piece) -> bool:

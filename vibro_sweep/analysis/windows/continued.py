@@ -14,7 +14,7 @@ from vibro_sweep.engine.records import new_results
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model.exponents import sign_of
 from vibro_sweep.model.linear import family_of
-from vibro_sweep.model.status import NOT_SETTLED, stands
+from vibro_sweep.model.status import NOT_SETTLED, is_valid
 
 WARM_UP = 200  # forcing periods, for tangent vectors
 MORE = 3800  # forcing periods after them: the exponents' errors are then some 4 times smaller than in a record of 200
@@ -61,7 +61,7 @@ def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Con
         halt=workspace.ensemble.halt, cells=int(table["cells"].sum()) * (plan.transient + plan.record),
     )  # fmt: skip
     found = results[0]
-    period = np.where(stands(found["status"]) & (found["period"] <= LONGEST), found["period"], 0)
+    period = np.where(is_valid(found["status"]) & (found["period"] <= LONGEST), found["period"], 0)
     reasons = _reasons(found)
     free = found["impacts_left"] + found["impacts_right"] == 0
     for m in np.flatnonzero(free & (reasons == REASON_CODES["quasi_periodic"])):
@@ -75,7 +75,7 @@ def _reasons(found: np.ndarray) -> np.ndarray:
     largest = found["lyapunov"][:, 0]
     sign = sign_of(largest, found["lyapunov_error"][:, 0])
     return first_reason(
-        failed=~stands(found["status"]),
+        failed=~is_valid(found["status"]),
         in_a_window=(found["period"] > 0) & (found["period"] <= LONGEST),
         chaos=sign > 0,
         sticking=found["sticking_time"] > 0,

@@ -14,7 +14,7 @@ from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.parameters import range_of
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.state import state
-from vibro_sweep.model.status import NOT_COMPUTED, stands
+from vibro_sweep.model.status import NOT_COMPUTED, is_valid
 
 BEYOND = 1.0  # of the sweep's length: so far beyond its ends windows are followed
 BEFORE = 0.25  # of the way from where a number must not be: there a frequency's period is infinite
@@ -124,7 +124,7 @@ def rows_of(data: Contents, system, key: str) -> Iterator[Row]:
 
 def _reasons(status: np.ndarray, period: np.ndarray) -> np.ndarray:
     """Codes of `REASONS`: 0 for periodic orbits, `not_settled` for others until they have been computed further."""
-    return first_reason(not_computed=status == NOT_COMPUTED, failed=~stands(status), in_a_window=period > 0)
+    return first_reason(not_computed=status == NOT_COMPUTED, failed=~is_valid(status), in_a_window=period > 0)
 
 
 def first_reason(**holds: np.ndarray) -> np.ndarray:

@@ -87,5 +87,5 @@ def fill_stiff_exclusion(q, nodes, scan, point, turned):
             largest = max(largest, abs(scan[i, p]))
         stop_distance = rounding(q, i, largest + fast)
         q.remainder[i] = (fast + fourth * q.width**4 / 144.0) + (DOUBT * q.remainder[i] + stop_distance)
-        if not (point.told and q.remainder[i] < np.inf):
+        if not (point.valid and q.remainder[i] < np.inf):
             q.remainder[i] = np.inf  # no cell can be excluded

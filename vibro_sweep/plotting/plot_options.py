@@ -1,4 +1,4 @@
-"""What a user may choose of a picture besides its kind."""
+"""Options of a picture besides its kind."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -23,8 +23,8 @@ MOST_PIXELS = 10**8  # of a whole picture: 400 MB while it is drawn
 
 
 @dataclass(frozen=True)
-class Look:
-    """What is None is left to the kind of picture.
+class PlotOptions:
+    """Options of a picture; the kind of picture chooses those that are None.
 
     at: swept key -> value, where single orbits are drawn; variable: what is drawn; xlim, ylim: ranges of the axes, of
     several panels those of the first and of all that show the same; size: inches; width: mm, the height follows; dpi:

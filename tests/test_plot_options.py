@@ -11,7 +11,7 @@ from support.files import refused
 import vibro_sweep as vs
 from vibro_sweep import plotting
 from vibro_sweep.cli.commands import main
-from vibro_sweep.plotting import Look, PlotError, sweeps
+from vibro_sweep.plotting import PlotError, PlotOptions, sweeps
 from vibro_sweep.scene import parse_scene
 
 SYSTEM = (
@@ -44,17 +44,17 @@ def dots(ax):
 
 def test_point(files):
     data = vs.open(files / "sweep.h5")
-    (ax,) = plotting.figure(files / "sweep.h5", "iteration", Look(at={"b": 6.58})).axes
+    (ax,) = plotting.figure(files / "sweep.h5", "iteration", PlotOptions(at={"b": 6.58})).axes
     assert ax.get_title() == "$b = 6.6$" and np.array_equal(dots(ax)[:, 1], data.x1.sel(b=6.6))
-    (ax,) = plotting.figure(files / "plane.h5", "iteration", Look(at={"b": 6, "R": 0.8})).axes
+    (ax,) = plotting.figure(files / "plane.h5", "iteration", PlotOptions(at={"b": 6, "R": 0.8})).axes
     assert ax.get_title() == "$b = 6$, $R = 0.8$"
-    assert len(plotting.figure(files / "plane.h5", "iteration", Look(at={"b": 6})).axes) == 2
+    assert len(plotting.figure(files / "plane.h5", "iteration", PlotOptions(at={"b": 6})).axes) == 2
 
 
 def test_a_point_asks_for_a_picture_of_single_orbits(files, tmp_path):
-    fig = plotting.figure(files / "sweep.h5", look=Look(at={"b": 6.6}))
+    fig = plotting.figure(files / "sweep.h5", options=PlotOptions(at={"b": 6.6}))
     assert fig.get_suptitle().startswith("Phase portrait")
-    written = plotting.plot(files / "plane.h5", tmp_path / "x.png", "all", look=Look(at={"b": 6}))
+    written = plotting.plot(files / "plane.h5", tmp_path / "x.png", "all", options=PlotOptions(at={"b": 6}))
     assert [path.name for path in written] == ["x-iteration.png", "x-poincare.png"]
 
 
@@ -113,47 +113,52 @@ def test_poincare_section(files):
 
 
 def test_limits(files, monkeypatch):
-    look = Look(xlim=(6.45, 6.65), ylim=(6, 6.5))
-    section, spectrum, impacts = plotting.figure(files / "sweep.h5", look=look).axes
-    assert section.get_xlim() == impacts.get_xlim() == look.xlim and section.get_ylim() == look.ylim
+    options = PlotOptions(xlim=(6.45, 6.65), ylim=(6, 6.5))
+    section, spectrum, impacts = plotting.figure(files / "sweep.h5", options=options).axes
+    assert section.get_xlim() == impacts.get_xlim() == options.xlim and section.get_ylim() == options.ylim
     assert spectrum.get_ylim()[1] < 1
     assert set(dots(section)[:, 0]) == {6.5, 6.6}  # and the spectrum's range is that of these two
-    for ax in plotting.figure(files / "sweep.h5", "phase-portrait", Look(xlim=(0, 7), ylim=(-1, 2))).axes:
+    for ax in plotting.figure(files / "sweep.h5", "phase-portrait", PlotOptions(xlim=(0, 7), ylim=(-1, 2))).axes:
         assert (ax.get_xlim(), ax.get_ylim()) == ((0, 7), (-1, 2))
     monkeypatch.setattr(sweeps, "MANY", 5)
     data = vs.open(files / "sweep.h5").isel(sample=slice(4))
     inside = ((data.x1 >= 6) & (data.x1 <= 6.5)).sel(b=[6.5, 6.6]).sum().item()
-    section = plotting.figure(data.drop_vars("period"), look=look).axes[0]
+    section = plotting.figure(data.drop_vars("period"), options=options).axes[0]
     (picture,) = section.images
     assert 0 < picture.get_array().sum() == inside < 8  # the cells are those of the limits
     assert tuple(picture.get_extent()[2:]) == (6, 6.5)
 
 
 def test_limits_of_a_plane(files):
-    for ax in plotting.figure(files / "plane.h5", look=Look(xlim=(6.2, 6.8), ylim=(0.72, 0.81))).axes:
+    for ax in plotting.figure(files / "plane.h5", options=PlotOptions(xlim=(6.2, 6.8), ylim=(0.72, 0.81))).axes:
         if ax.get_label() != "<colorbar>":
             assert (ax.get_xlim(), ax.get_ylim()) == ((6.2, 6.8), (0.72, 0.81))
 
 
 @pytest.mark.parametrize(
-    ("file", "arguments", "kind", "look"),
+    ("file", "arguments", "kind", "options"),
     [
-        ("sweep", ["--size", "4", "3", "--dpi", "50"], None, Look(size=(4, 3), dpi=50)),
+        ("sweep", ["--size", "4", "3", "--dpi", "50"], None, PlotOptions(size=(4, 3), dpi=50)),
         *slow_cases(
-            ("sweep", ["--at", "b=6.58"], None, Look(at={"b": 6.6})),
-            ("plane", ["--at", "b=6", "--at", "R=0.7"], None, Look(at={"b": 6, "R": 0.7})),
-            ("sweep", ["--variable", "v1", "--kind", "history"], "history", Look(variable="v1")),
-            ("sweep", ["--xlim", "6.45", "6.65", "--ylim", "-2", "7"], None, Look(xlim=(6.45, 6.65), ylim=(-2, 7))),
+            ("sweep", ["--at", "b=6.58"], None, PlotOptions(at={"b": 6.6})),
+            ("plane", ["--at", "b=6", "--at", "R=0.7"], None, PlotOptions(at={"b": 6, "R": 0.7})),
+            ("sweep", ["--variable", "v1", "--kind", "history"], "history", PlotOptions(variable="v1")),
+            (
+                "sweep",
+                ["--xlim", "6.45", "6.65", "--ylim", "-2", "7"],
+                None,
+                PlotOptions(xlim=(6.45, 6.65), ylim=(-2, 7)),
+            ),
         ),
     ],
 )
-def test_commands(here, file, arguments, kind, look):
+def test_commands(here, file, arguments, kind, options):
     file = here / f"{file}.h5"
     assert main(["plot", str(file), "-o", "a.png", *arguments]) == 0
-    plotting.plot(file, "b.png", kind, look=look)
+    plotting.plot(file, "b.png", kind, options=options)
     plotting.plot(file, "c.png", kind)
     assert Path("a.png").read_bytes() == Path("b.png").read_bytes() != Path("c.png").read_bytes()
-    if look.dpi:
+    if options.dpi:
         assert matplotlib.image.imread("a.png").shape[:2] == (150, 200)
 
 
@@ -186,7 +191,7 @@ def test_bad_values(here, tmp_path, capsys, arguments, words):
 
 def test_a_single_point_has_no_sweep_to_choose_from(files):
     with pytest.raises(PlotError, match="allowed: nothing, it is one point"):
-        plotting.figure(files / "one.h5", look=Look(at={"b": 6.6}))
+        plotting.figure(files / "one.h5", options=PlotOptions(at={"b": 6.6}))
 
 
 @pytest.mark.parametrize("kind", ["history", "configuration", "iteration"])

@@ -10,17 +10,17 @@ from pathlib import Path
 import pytest
 
 import vibro_sweep
-from vibro_sweep import identity
+from vibro_sweep import code_hash
 from vibro_sweep.engine.simd import jit
 
 PACKAGE = Path(vibro_sweep.__file__).parent
 MODULES = {path.relative_to(PACKAGE).as_posix() for path in PACKAGE.rglob("*.py")}
-COUNTED = {path.relative_to(PACKAGE).as_posix() for path in identity.sources()}
+COUNTED = {path.relative_to(PACKAGE).as_posix() for path in code_hash.sources()}
 
 # What is reached from the code that computes and makes no number: the store's reading and writing, and the version.
 NUMBERLESS = {
     "__init__.py",
-    "identity.py",
+    "code_hash.py",
     "driver/__init__.py",
     "driver/cost.py",
     "store/__init__.py",
@@ -33,16 +33,16 @@ def copy(tmp_path, monkeypatch):
     """A copy of the package, of which identities are taken."""
     home = tmp_path / "vibro_sweep"
     shutil.copytree(PACKAGE, home, ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(identity, "HOME", home)
+    monkeypatch.setattr(code_hash, "HOME", home)
     return home
 
 
 def now():
-    return identity.identity.__wrapped__()
+    return code_hash.code_hash.__wrapped__()
 
 
 def test_a_copy_has_the_same_identity(copy):
-    assert now() == identity.identity()
+    assert now() == code_hash.code_hash()
 
 
 @pytest.mark.slow
@@ -75,10 +75,10 @@ def test_modules_that_come_and_go_change_it(copy):
     assert len(seen) == 3
 
 
-@pytest.mark.parametrize("library", identity.LIBRARIES)
+@pytest.mark.parametrize("library", code_hash.LIBRARIES)
 def test_the_libraries_that_compute_change_it(copy, monkeypatch, library):
-    before, real = now(), identity.version
-    monkeypatch.setattr(identity, "version", lambda name: "0.0.1" if name == library else real(name))
+    before, real = now(), code_hash.version
+    monkeypatch.setattr(code_hash, "version", lambda name: "0.0.1" if name == library else real(name))
     assert now() != before
 
 
@@ -136,7 +136,7 @@ def test_the_compiled_kernels_are_those_of_the_engine_alone(tmp_path):
 @pytest.mark.parametrize("setting", ["NUMBA_CPU_FEATURES=+avx2", "OPENBLAS_CORETYPE=Prescott"])
 def test_processors_that_round_otherwise_have_other_identities(setting):
     """One without fused multiply-adds, one for which BLAS adds in another order; told by a setting."""
-    code = "from vibro_sweep.identity import identity; print(identity())"
+    code = "from vibro_sweep.code_hash import code_hash; print(code_hash())"
     name, _, value = setting.partition("=")
     run = subprocess.run([sys.executable, "-c", code], env=os.environ | {name: value}, capture_output=True, text=True)
-    assert len(run.stdout.strip()) == 16 and run.stdout.strip() != identity.identity()
+    assert len(run.stdout.strip()) == 16 and run.stdout.strip() != code_hash.code_hash()

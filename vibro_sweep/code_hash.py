@@ -1,4 +1,4 @@
-"""What numbers depend on, in one word: equal identities give equal numbers.
+"""A hash of all that numbers depend on: equal hashes give equal numbers.
 
 Files and workers are compared by it. The folder of compiled kernels is named by the engine's sources alone
 (engine/simd/jit.py), so that other edits compile nothing anew.
@@ -18,7 +18,7 @@ from vibro_sweep.engine.simd import jit
 
 HOME = Path(__file__).parent
 
-# All that lies on the way from a scene's text to a file's numbers; what moves, stores or shows them is left out.
+# All modules that a scene's text passes through to become numbers; what moves, stores or shows these is left out.
 SOURCES = (
     "model",
     "engine",
@@ -42,7 +42,7 @@ def sources() -> list[Path]:
 
 
 @functools.cache  # of the sources as they were imported
-def identity() -> str:
+def code_hash() -> str:
     """A hash of the sources that numbers depend on, of the libraries that compute them and of how kernels compile.
 
     The processor is part of it where last digits depend on it: a product and a sum are rounded once where it has fused
