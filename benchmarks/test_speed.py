@@ -14,7 +14,7 @@ from vibro_sweep.driver.compute import compute
 from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.engine.tables import build as tables
 from vibro_sweep.engine.tables.flight import Flight, new_flight
-from vibro_sweep.engine.tables.series import new_scratch
+from vibro_sweep.engine.tables.series import new_workspace
 
 PERIODS = 29 * 100
 CLEARANCES = (6.8, *problem.CLEARANCES)
@@ -39,7 +39,7 @@ def test_tables(benchmark):
     cells = int(point["cells"])
     flights = new_flight(1, cells, 2)
     flight = Flight(flights.oscillator[0], flights.nodes[0], flights.scan[0])
-    arguments = (flight, new_scratch(), cells, *(point[name] for name in names))
+    arguments = (flight, new_workspace(), cells, *(point[name] for name in names))
     tables.build(*arguments)
     benchmark(tables.build, *arguments)
 

@@ -93,7 +93,7 @@ def test_fold_and_flip_begin_at_the_resonant_graze():
         real = curve.points.isel(point=~curve.points.virtual.values)
         omega, F = real.omega.values, real.F.values
         near = np.abs(omega - begin) > 1e-5
-        gain = np.hypot(1 - omega**2, 0.04 * omega)  # the free motion touches the stop at this F
-        distance = np.abs(F - gain)[near]
+        response = np.hypot(1 - omega**2, 0.04 * omega)  # the free motion touches the stop at this F
+        distance = np.abs(F - response)[near]
         power = np.polyfit(np.log(np.abs(omega - begin)[near]), np.log(distance), 1)[0]
         assert near.sum() >= 4 and power == pytest.approx(2, abs=0.05)

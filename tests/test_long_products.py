@@ -16,12 +16,12 @@ def exact(B, R, t, motion):
     with mp.workdps(400):
         A, M = mp.matrix(B[:4, :4].tolist()), mp.eye(4)
         for k, (v, a) in enumerate(motion[:, :2]):
-            gain, S = 1 + mpf(R), mp.eye(4)
-            S[0, 0] -= gain
+            one_plus_R, S = 1 + mpf(R), mp.eye(4)
+            S[0, 0] -= one_plus_R
             for i in (2, 3):
-                S[i, 0] -= gain * A[i, 2]
-            S[2, 0] += gain * mpf(a) / mpf(v)
-            S[2, 2] -= gain
+                S[i, 0] -= one_plus_R * A[i, 2]
+            S[2, 0] += one_plus_R * mpf(a) / mpf(v)
+            S[2, 2] -= one_plus_R
             end = mpf(t[k + 1]) if k + 1 < len(t) else mpf(t[0]) + mpf(P)
             M = mp.expm(A * (end - mpf(t[k])), method="taylor") * S * M
         return sorted((float(mp.log10(abs(value))) for value in mp.eig(M)[0]), reverse=True)

@@ -52,19 +52,19 @@ class TestEveryModel:
         q, touch = one.linear, vs.grazing(one)
         with mp.workdps(40):
             X = response(q)
-            gain = sum(mpf(n) * x for n, x in zip(q.normal, X, strict=True))
+            gap_response = sum(mpf(n) * x for n, x in zip(q.normal, X, strict=True))
             middle = mpf(0)
             if np.any(q.constant):
                 rest = mp.lu_solve(mp.matrix(q.K), mp.matrix(q.constant))
                 middle = sum(mpf(n) * x for n, x in zip(q.normal, rest, strict=True))
             offset = mpf(getattr(one, "offset", 0.0))
-            expected = abs(gain) + middle - offset, abs(gain) - middle + offset
+            expected = abs(gap_response) + middle - offset, abs(gap_response) - middle + offset
         assert touch.b_right == pytest.approx(float(expected[0]), rel=1e-13)
         assert touch.b_left == pytest.approx(float(expected[1]), rel=1e-13)
         assert (touch.b == touch.b_right) if expected[0] == expected[1] else math.isnan(touch.b)
-        assert abs(math.remainder(touch.tau + float(mp.arg(gain)), 2 * math.pi)) < 1e-13
+        assert abs(math.remainder(touch.tau + float(mp.arg(gap_response)), 2 * math.pi)) < 1e-13
         state = np.array(touch.state)
-        assert q.normal @ state[0::2] == pytest.approx(float(abs(gain) + middle), rel=1e-13)
+        assert q.normal @ state[0::2] == pytest.approx(float(abs(gap_response) + middle), rel=1e-13)
         assert abs(q.normal @ state[1::2]) < 1e-13 * np.abs(state).max()
         assert one.phase == pytest.approx(touch.tau, abs=1e-14)
 

@@ -29,8 +29,8 @@ class AnyNaiveMap:
         for i in range(n):
             self.push[2 * i + 1], self.normal[2 * i] = push[i], mpf(q.normal[i])
         x = mp.lu_solve(K - self.omega**2 * M + 1j * self.omega * C, column(q.cosine) - 1j * column(q.sine))
-        gain = sum(mpf(a) * b for a, b in zip(q.normal, x, strict=True))
-        x = x * mp.expj(-mp.arg(gain))
+        response = sum(mpf(a) * b for a, b in zip(q.normal, x, strict=True))
+        x = x * mp.expj(-mp.arg(response))
         self.graze = mp.zeros(2 * n, 1)
         for i in range(n):
             self.graze[2 * i], self.graze[2 * i + 1] = mp.re(x[i]), -self.omega * mp.im(x[i])

@@ -92,10 +92,10 @@ class AnyShooting:
         for k, side in enumerate(self.sides):
             t, z = before[k]
             S = eye(2 * N)
-            gain = 1 + n["R" if side > 0 else "R_left"]
+            one_plus_R = 1 + n["R" if side > 0 else "R_left"]
             for i in range(N):
                 for j in range(N):
-                    S[N + i, N + j] -= gain * n["push"][i] * mpf(float(self.q.normal[j]))
+                    S[N + i, N + j] -= one_plus_R * n["push"][i] * mpf(float(self.q.normal[j]))
             ahead, behind = self.rate(A, n, t, z), self.rate(A, n, t, self.struck(n, z, side))
             kept = S * mp.matrix(ahead)
             for i in range(2 * N):

@@ -67,7 +67,9 @@ def monodromy(oscillators, sigma, periods, t, sides, v):
     along = np.array([q.normal for q in oscillators])
     push = np.array([np.linalg.solve(q.M, q.normal) for q in oscillators])
     push /= np.sum(push * along, axis=1)[:, None]
-    gain = np.array([[1 + (q.R_high if side > 0 else q.R_low) for side in sides] for q in oscillators]).reshape(m, K)
+    one_plus_R = np.array([[1 + (q.R_high if side > 0 else q.R_low) for side in sides] for q in oscillators]).reshape(
+        m, K
+    )
     stop = np.array([[q.high if side > 0 else q.low for side in sides] for q in oscillators]).reshape(m, K)
     omega, tau = (np.array([getattr(q, name) for q in oscillators], float) for name in ("omega", "tau"))
     if K == 0:
@@ -88,7 +90,7 @@ def monodromy(oscillators, sigma, periods, t, sides, v):
             n[:, offset : offset + N] = along / np.broadcast_to(size, m)[:, None]
             rows.append((n[:, None] @ L)[:, 0])
             sums.append(value / size - np.sum(n * c, axis=1))
-        impulse[:, N:] = -(gain[:, k] * v[:, k])[:, None] * push
+        impulse[:, N:] = -(one_plus_R[:, k] * v[:, k])[:, None] * push
         L = flown[:, k] @ L
         c = (flown[:, k] @ (c + impulse)[..., None] + drive[:, k])[..., 0]
     if K == 0:
@@ -107,9 +109,9 @@ def monodromy(oscillators, sigma, periods, t, sides, v):
     for k in range(K):
         z = np.concatenate([states[:, k], forced[:, k]], axis=1)
         after = z.copy()
-        after[:, N : 2 * N] -= (gain[:, k] * v[:, k])[:, None] * push
+        after[:, N : 2 * N] -= (one_plus_R[:, k] * v[:, k])[:, None] * push
         DG = np.broadcast_to(np.eye(2 * N), (m, 2 * N, 2 * N)).copy()
-        DG[:, N:, N:] -= gain[:, k, None, None] * push[:, :, None] * along[:, None, :]
+        DG[:, N:, N:] -= one_plus_R[:, k, None, None] * push[:, :, None] * along[:, None, :]
         ahead, behind = ((A @ state[..., None])[:, : 2 * N, 0] for state in (z, after))
         S = DG
         S[:, :, :N] += ((behind - (DG @ ahead[..., None])[..., 0]) / v[:, k, None])[:, :, None] * along[:, None, :]

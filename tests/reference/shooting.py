@@ -37,8 +37,8 @@ class Shooting:
             stiffness = mp.matrix(
                 [[K[i][j] * (1 + 1j * w * z) - (w**2 * M[i] if i == j else 0) for j in range(2)] for i in range(2)]
             )
-            gain = mp.lu_solve(stiffness, mp.matrix(force))[0]
-            n["tau"] = pi / 2 - mp.arg(gain)
+            response = mp.lu_solve(stiffness, mp.matrix(force))[0]
+            n["tau"] = pi / 2 - mp.arg(response)
         return A, n
 
     def fly(self, A, n, t, z, length):

@@ -162,9 +162,9 @@ def flown(found, q, t, sides, v, period, k, lengths):
     if len(t):
         push = np.linalg.solve(q.M, q.normal)
         push /= push @ q.normal
-        gain = 1 + (q.R_high if sides[k] > 0 else q.R_low)
+        one_plus_R = 1 + (q.R_high if sides[k] > 0 else q.R_low)
         x, at = found.states[0, k].copy(), t[k]
-        x[N:] -= gain * v[k] * push
+        x[N:] -= one_plus_R * v[k] * push
     else:
         x, at = found.states[0, 0], 0.0
     phase = q.omega * at + q.tau
@@ -212,8 +212,8 @@ def passing(pieces: Pieces) -> list[tuple[str, str]]:
     for k in range(max(K, 1)):
         x = pieces.states[:, k].copy()
         if K:
-            gain = np.array([1 + (q.R_high if pieces.sides[k] > 0 else q.R_low) for q in pieces.oscillators])
-            x[:, N:] -= (gain * pieces.v[:, k])[:, None] * push
+            one_plus_R = np.array([1 + (q.R_high if pieces.sides[k] > 0 else q.R_low) for q in pieces.oscillators])
+            x[:, N:] -= (one_plus_R * pieces.v[:, k])[:, None] * push
         phase = omega * t[:, k] + tau
         z = np.concatenate([x, np.stack([np.sin(phase), np.cos(phase), np.ones(m)], axis=1)], axis=1)
         E = expm(A * ((ends[:, k] - t[:, k]) / SAMPLES)[:, None, None])

@@ -11,7 +11,7 @@ import typer
 from vibro_sweep.model.pictures import PICTURES
 
 from . import interrupt
-from .computing import Work, compute, compute_windows
+from .computing import Computation, compute, compute_windows
 from .console import BAD_INPUT, BAD_POINTS, all_is_imported, ended, input_errors, messages, say
 from .options import key_and_value, number_in, positive
 from .options import output as output_option
@@ -77,16 +77,16 @@ def run(
 ):
     """Compute a scene and write its HDF5 file."""
     output = output or Path(f"{scene_file.stem}.h5")
-    work = Work(output, workers, scheduler, resume, overwrite, plot, quiet, ("run", str(scene_file)))
-    work.announce()
+    computation = Computation(output, workers, scheduler, resume, overwrite, plot, quiet, ("run", str(scene_file)))
+    computation.announce()
     from vibro_sweep.scene import SceneError, load_scene
 
     with input_errors(SceneError):
         scene = load_scene(scene_file)
-    work.check_places(scene.inputs)
-    bad = compute(work, scene)
+    computation.check_places(scene.inputs)
+    bad = compute(computation, scene)
     if plot:
-        _draw(output, work.picture, None, overwrite, quiet)
+        _draw(output, computation.picture, None, overwrite, quiet)
     if bad:
         raise typer.Exit(BAD_POINTS)
 
@@ -113,12 +113,12 @@ def windows_command(
     """
     output = output or Path(f"{file.name.removesuffix('.h5')}.windows.h5")
     command = ("windows", str(file), *(("--parameter", parameter) if parameter else ()))
-    work = Work(output, workers, scheduler, resume, overwrite, plot, quiet, command)
-    work.announce()
-    work.check_places([file])
-    compute_windows(work, file, parameter)
+    computation = Computation(output, workers, scheduler, resume, overwrite, plot, quiet, command)
+    computation.announce()
+    computation.check_places([file])
+    compute_windows(computation, file, parameter)
     if plot:
-        _draw(file, work.picture, None, overwrite, quiet, windows=output)
+        _draw(file, computation.picture, None, overwrite, quiet, windows=output)
 
 
 @app.command("plot")

@@ -13,7 +13,7 @@ from .options import executor_of
 
 
 @dataclass(frozen=True)
-class Work:
+class Computation:
     """A file to be computed, and how the command line says that it should be."""
 
     output: Path
@@ -83,31 +83,31 @@ class Work:
                 raise InputError(f"{error}. Nothing that was computed is lost; {to_continue}") from None
 
 
-def compute(work: Work, scene) -> bool:
+def compute(computation: Computation, scene) -> bool:
     """Compute a scene and print what its file holds. Returns whether some points have a bad status."""
     from vibro_sweep.driver import run
     from vibro_sweep.scene import Scene
 
     of_sweep = isinstance(scene, Scene)
-    with work.under_way(scene.n_points if of_sweep else 0, ValueError) as (executor, progress):
-        report = run.run(scene, work.output, work.workers, executor, progress, work.mode)
-    if of_sweep and not work.quiet:
+    with computation.under_way(scene.n_points if of_sweep else 0, ValueError) as (executor, progress):
+        report = run.run(scene, computation.output, computation.workers, executor, progress, computation.mode)
+    if of_sweep and not computation.quiet:
         from .summaries import summary
 
-        say(summary(work.output, report))
-    elif not work.quiet:
-        say_tables(work.output)
+        say(summary(computation.output, report))
+    elif not computation.quiet:
+        say_tables(computation.output)
     return of_sweep and bool(report.bad)
 
 
-def compute_windows(work: Work, file: Path, parameter: str | None) -> None:
+def compute_windows(computation: Computation, file: Path, parameter: str | None) -> None:
     """Compute the windows of a sweep's file and print their table."""
     from vibro_sweep.driver.windows import run_windows
 
-    with work.under_way(0, ValueError) as (executor, progress):
-        run_windows(file, work.output, parameter, work.workers, executor, progress, work.mode)
-    if not work.quiet:
-        say_tables(work.output)
+    with computation.under_way(0, ValueError) as (executor, progress):
+        run_windows(file, computation.output, parameter, computation.workers, executor, progress, computation.mode)
+    if not computation.quiet:
+        say_tables(computation.output)
 
 
 def say_tables(output: Path) -> None:

@@ -18,7 +18,7 @@ def energies_of(
     block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray, starts: np.ndarray
 ) -> dict[str, np.ndarray]:
     """By dataset name, each of the shape of `steps` (n, m). starts: (2, m, 2 N), as of `run_points`."""
-    from vibro_sweep.engine.energy import new_scratch, run_energy
+    from vibro_sweep.engine.energy import new_workspace, run_energy
 
     shape, states = steps.shape, starts.shape[-1]
     begins = np.repeat(starts[1:], shape[0], axis=0)
@@ -53,7 +53,7 @@ def energies_of(
     while True:  # once in any case: what a scene needs is compiled with its first point, however that goes
         run_energy(
             flat, begins, resting, masses, back, origin, block.plan.record, workspace, plan,
-            new_scratch(parts, room, kind.masses), *wanted.values(), outcome,
+            new_workspace(parts, room, kind.masses), *wanted.values(), outcome,
         )  # fmt: skip
         room *= 8
         if workspace.ensemble.halt[0] != 0 or not (outcome == status.NOT_COMPUTED).any():

@@ -21,7 +21,7 @@ from vibro_sweep.model.contact import (
 from vibro_sweep.model.exact import exact_motion
 from vibro_sweep.model.exponentials import gap_exponentials
 from vibro_sweep.model.frame import frame_of
-from vibro_sweep.model.linear import Linear, steady_gain
+from vibro_sweep.model.linear import Linear, gap_response
 from vibro_sweep.model.sensitivity import grazing_state
 
 APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits
@@ -57,7 +57,7 @@ def grazing_points(linears: np.ndarray, expand_at: float | None) -> np.ndarray:
     result = np.full((*linears.shape, 2 * len(linears.flat[0].normal)), np.nan)
     for place in np.ndindex(linears.shape):
         q = linears[place]
-        if steady_gain(q):
+        if gap_response(q):
             state = np.kron(coordinates(q.normal, held_least(q))[0], np.eye(2)) @ grazing_state(q)
             state[0] = state[0] if expand_at is None else expand_at
             result[place] = state

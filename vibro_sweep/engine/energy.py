@@ -26,7 +26,7 @@ STEPS = 16  # of 0 .. 1, and one beyond on each side, at whose ends the polynomi
 TO_POWERS = np.ascontiguousarray(np.linalg.inv(np.vander(PLACES, NODES)))  # from values there, highest power first
 
 
-class Scratch(NamedTuple):
+class Workspace(NamedTuple):
     """What one orbit needs on its way."""
 
     hits: np.ndarray  # (1, room, 3 + 2 N)
@@ -38,10 +38,10 @@ class Scratch(NamedTuple):
     begin: np.ndarray  # (2 N,)
 
 
-def new_scratch(parts: int, room: int, masses: int) -> Scratch:
+def new_workspace(parts: int, room: int, masses: int) -> Workspace:
     """For periods of at most so many parts, impacts and rests."""
     longest, states = parts + 1 + 2 * room, 2 * masses
-    return Scratch(
+    return Workspace(
         np.empty((1, room, 3 + states)),
         np.empty((1, room, 4)),
         np.empty(longest),
@@ -165,7 +165,9 @@ def carry_one(e, w, begin, rest, part):
 
 
 @exported
-def run_energy(points, begins, resting, masses, back, origin, periods, w, plan, scratch, loss, squares, peaks, outcome):
+def run_energy(
+    points, begins, resting, masses, back, origin, periods, w, plan, workspace, loss, squares, peaks, outcome
+):
     """Carry each orbit over its record. n = orbits.
 
     points: (n,). begins: (n, 2 N) in contact coordinates, and `resting` (n,) the stops that they rest on. masses: (n,)
@@ -173,8 +175,8 @@ def run_energy(points, begins, resting, masses, back, origin, periods, w, plan, 
     integrals over time; peaks: (n, 2 N). outcome: (n,), NOT_COMPUTED where an orbit is wanted; then its status;
     NOT_COMPUTED again where there was too little room.
     """
-    e, hits, rests, begin = w.ensemble, scratch.hits, scratch.rests, scratch.begin
-    o, room, states = e.orbits[0], scratch.hits.shape[1], len(scratch.begin)
+    e, hits, rests, begin = w.ensemble, workspace.hits, workspace.rests, workspace.begin
+    o, room, states = e.orbits[0], workspace.hits.shape[1], len(workspace.begin)
     e.tangent[0].wanted = e.strike[0].measured = False
     for i in range(1, LANES):
         e.orbits[i].status = status.NOT_COMPUTED
@@ -190,16 +192,16 @@ def run_energy(points, begins, resting, masses, back, origin, periods, w, plan, 
         for _ in range(periods):
             for j in range(states):
                 begin[j] = o.X[j]
-            carry_one(e, w, begin, rest, Records(hits, rests, scratch.times[:0], scratch.samples[:0]))
+            carry_one(e, w, begin, rest, Records(hits, rests, workspace.times[:0], workspace.samples[:0]))
             if o.status != status.OK or o.impacts_logged > room or o.rests_logged > room:
                 outcome[n] = o.status if o.status != status.OK else status.NOT_COMPUTED
                 break
             struck = hits[0, : o.impacts_logged]
             loss[n] += loss_of(struck, stops, masses[n])
-            cuts = scratch.cuts[: cuts_of(struck, rests[0, : o.rests_logged], q, scratch.cuts)]
-            count = set_times(cuts, q, scratch.times)
-            carry_one(e, w, begin, rest, Records(hits, rests, scratch.times[:count], scratch.samples[:count]))
-            add_up(cuts, scratch.samples, back[n], origin[n], squares[n], peaks[n], scratch.values)
+            cuts = workspace.cuts[: cuts_of(struck, rests[0, : o.rests_logged], q, workspace.cuts)]
+            count = set_times(cuts, q, workspace.times)
+            carry_one(e, w, begin, rest, Records(hits, rests, workspace.times[:count], workspace.samples[:count]))
+            add_up(cuts, workspace.samples, back[n], origin[n], squares[n], peaks[n], workspace.values)
             rest = o.resting
         for j in range(states):
             squares[n, j] *= q.width

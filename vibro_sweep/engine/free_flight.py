@@ -10,7 +10,7 @@ import numpy as np
 
 from vibro_sweep.engine.motion.free import find_contacts, find_extremes
 from vibro_sweep.engine.one_system import Engine
-from vibro_sweep.engine.variational.propagator import fly, new_scratch
+from vibro_sweep.engine.variational.propagator import fly, new_workspace
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.oscillator import checked_system
@@ -55,7 +55,7 @@ class FreeFlight:
         result = np.empty((*elapsed.shape, self._engine.states))
         _, cell, offset = self._engine.locate(start_time)
         phase = self._q.tau + 2 * np.pi * cell / self._engine.cells + self._q.omega * offset
-        fly(self._A, self._rate, states, phase, elapsed * self._q.omega, new_scratch(len(self._A), 0), result)
+        fly(self._A, self._rate, states, phase, elapsed * self._q.omega, new_workspace(len(self._A), 0), result)
         return result
 
     def first_contact(self, states, start_time, duration) -> Contacts:

@@ -20,13 +20,13 @@ import numpy as np
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.grazing_map import Expansion, iterate
-from vibro_sweep.engine.variational.propagator import new_scratch
+from vibro_sweep.engine.variational.propagator import new_workspace
 from vibro_sweep.engine.variational.sensitivity import Equations, differentiate
 from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import is_number
 from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.linear import Linear, steady_gain
+from vibro_sweep.model.linear import Linear, gap_response
 from vibro_sweep.model.oscillator import System, checked_system
 from vibro_sweep.model.parameters import NAMES
 from vibro_sweep.model.refusals import not_allowed
@@ -203,8 +203,8 @@ class PeriodMap:
         )
         ends, derivatives = np.empty((n, states)), np.empty((n, states, columns))
         hits, counts = np.empty((n, half_periods + 1, 5 + states)), np.empty(n, np.int64)
-        scratch = new_scratch(2 * masses + 3, len(equations.columns))
-        iterate(equations, expansion, half_periods, start, ends, derivatives, hits, counts, scratch)
+        workspace = new_workspace(2 * masses + 3, len(equations.columns))
+        iterate(equations, expansion, half_periods, start, ends, derivatives, hits, counts, workspace)
         codes = np.where(np.isfinite(ends).all(axis=1), status.OK, status.NOT_FINITE).astype(np.int8)
         impacts = tuple(engine.impacts_of(hits[i, :k, :5], hits[i, :k, 5:]) for i, k in enumerate(counts))
         return ends, codes, impacts, (engine.sticking(np.empty((0, 4)), 0.0),) * n, derivatives
@@ -226,7 +226,7 @@ class PeriodMap:
 def _scratch(e: Equations, columns: int) -> tuple:
     """z, dz, bend and w of `differentiate`."""
     size, masses = len(e.A), len(e.normal)
-    return np.empty(size), np.empty((size, columns)), np.empty((2, masses)), new_scratch(size, len(e.columns))
+    return np.empty(size), np.empty((size, columns)), np.empty((2, masses)), new_workspace(size, len(e.columns))
 
 
 def _check_symmetric(system: AnyOscillator) -> None:
@@ -235,5 +235,5 @@ def _check_symmetric(system: AnyOscillator) -> None:
     if getattr(system, "offset", 0.0) != 0 or q.R_low != q.R_high or np.any(q.constant):
         allowed = "one with equal stops about 0 and without a constant force, for the discontinuity mapping"
         raise ArgumentError(not_allowed("system", system, allowed))
-    if not steady_gain(q):
+    if not gap_response(q):
         raise ArgumentError(not_allowed("system", system, "one whose gap has a steady motion, which grazes"))

@@ -53,8 +53,8 @@ class Workspace(NamedTuple):
     axes: np.ndarray  # (LANES, 4 N^2)
     beside: np.ndarray  # (LANES, 3, 2 N): of multipliers.py
     matrix: np.ndarray  # (2 N, 2 N)
-    paper: series.Scratch | None  # or
-    other: general.Scratch | None  # as in point_tables.py
+    paper: series.Workspace | None  # or
+    other: general.Workspace | None  # as in point_tables.py
 
 
 def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kind: Kind = PAPER) -> Workspace:
@@ -71,8 +71,8 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((LANES, states**2)),
         np.empty((LANES, 3, states)),
         np.empty((states, states)),
-        series.new_scratch() if kind.paper else None,
-        None if kind.paper else general.new_scratch(kind.masses, kind.constant, kind.own),
+        series.new_workspace() if kind.paper else None,
+        None if kind.paper else general.new_workspace(kind.masses, kind.constant, kind.own),
     )
 
 

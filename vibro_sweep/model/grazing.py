@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.linear import Linear, amplitudes, grazing_phase, static_state, steady_gain
+from vibro_sweep.model.linear import Linear, amplitudes, gap_response, grazing_phase, static_state
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.parameters import FREE_MOTION, PARAMETERS
 
@@ -173,14 +173,14 @@ def _of_any(system: AnyOscillator) -> Grazing:
     left_over = -np.expm1(rates(q) * system.period)  # 1 - multiplier
     unique = not _free(q) and bool((np.abs(left_over) > ROUNDING).all())
     determinant = float(left_over.prod().real) if unique else 0.0
-    gain = steady_gain(q)
-    if gain is None:
+    response = gap_response(q)
+    if response is None:
         nowhere = (math.nan,) * 2 * len(q.normal)
         return Grazing(math.nan, 0.0, nowhere, determinant, False, math.nan, math.nan)
     tau = grazing_phase(q)
     turned = amplitudes(q) * np.exp(1j * tau)
     state = np.stack([static_state(q) + turned.real, -q.omega * turned.imag], -1).reshape(-1)
-    return Grazing(abs(gain), tau, tuple(state.tolist()), determinant, unique, abs(gain), abs(gain))
+    return Grazing(abs(response), tau, tuple(state.tolist()), determinant, unique, abs(response), abs(response))
 
 
 def _free(q: Linear) -> bool:

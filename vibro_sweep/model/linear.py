@@ -170,27 +170,27 @@ def amplitude_slopes(q: Linear, slope: Linear) -> np.ndarray:
 
 def grazing_phase(q: Linear) -> float:
     """tau for which the steady gap is largest at t = 0; 0 where there is no steady motion (eq. 18 for any n)."""
-    gain = steady_gain(q)
-    return 0.0 if gain is None else 0.0 - float(np.angle(gain))
+    response = gap_response(q)
+    return 0.0 if response is None else 0.0 - float(np.angle(response))
 
 
 @remembered(*FORCED, most=1024)
-def steady_gain(q: Linear) -> complex | None:
+def gap_response(q: Linear) -> complex | None:
     """G of the steady gap g_s + Re(G e^{i(omega t + tau)}); None where there is no steady motion."""
     try:
-        gain = complex(q.normal @ amplitudes(q))
+        response = complex(q.normal @ amplitudes(q))
     except np.linalg.LinAlgError:
         return None
-    return gain if np.isfinite(gain) and static_state(q) is not None else None
+    return response if np.isfinite(response) and static_state(q) is not None else None
 
 
 def grazing_phase_slope(q: Linear, slope: Linear) -> float:
     if not any(np.any(getattr(slope, name)) for name in FORCED):
         return 0.0
-    gain = steady_gain(q)
-    if gain is None:
+    response = gap_response(q)
+    if response is None:
         return 0.0
-    return -float(np.imag((slope.normal @ amplitudes(q) + q.normal @ amplitude_slopes(q, slope)) / gain))
+    return -float(np.imag((slope.normal @ amplitudes(q) + q.normal @ amplitude_slopes(q, slope)) / response))
 
 
 def static_state(q: Linear) -> np.ndarray | None:

@@ -85,7 +85,7 @@ def grazing_state(q: Linear) -> np.ndarray:
 def grazing_state_slopes(q: Linear, slope: Linear) -> np.ndarray:
     """Derivatives (2 N,) of `grazing_state` where q changes by `slope`."""
     x, dx = amplitudes(q), amplitude_slopes(q, slope)
-    gain = q.normal @ x
-    turn = np.exp(-1j * np.angle(gain))
-    dy = (dx - 1j * x * ((q.normal @ dx) / gain).imag) * turn
+    response = q.normal @ x
+    turn = np.exp(-1j * np.angle(response))
+    dy = (dx - 1j * x * ((q.normal @ dx) / response).imag) * turn
     return np.stack([dy.real, -slope.omega * (x * turn).imag - q.omega * dy.imag], -1).reshape(-1)

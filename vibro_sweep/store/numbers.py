@@ -14,7 +14,7 @@ import numpy as np
 from vibro_sweep.model.built import Built, sizes_of, stored_names, stored_of
 from vibro_sweep.model.grazing import grazing_clearance
 from vibro_sweep.model.grid import grid, linears
-from vibro_sweep.model.linear import static_state, steady_gain
+from vibro_sweep.model.linear import gap_response, static_state
 from vibro_sweep.model.models import DEFAULT
 from vibro_sweep.model.models.declaration import UNITS
 from vibro_sweep.model.oscillator import System
@@ -122,8 +122,8 @@ def _of_built(each: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def _size(q) -> float:
-    gain = steady_gain(q)
-    return math.nan if gain is None else abs(gain)
+    response = gap_response(q)
+    return math.nan if response is None else abs(response)
 
 
 def _middle(q) -> float:

@@ -12,7 +12,7 @@ from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.normal_form import CUBE, OPPOSITE, RESONANT
 from vibro_sweep.engine.continuation.problem import FLIP, Problem
-from vibro_sweep.engine.continuation.workspace import THETA, Bench, Place
+from vibro_sweep.engine.continuation.workspace import THETA, Place, Workspace
 from vibro_sweep.engine.impulses.pairs import ON_PAIR
 
 STRONG = 1e-3  # |e^{i k theta} - 1| for k = 1 .. 4, or a flip's distance of the next multiplier from -1, below which c
@@ -49,15 +49,15 @@ def criticality(solution: Solution, kind: int, name: str) -> str | None:
         return None
     e = linearised.equations
     e.do(stepper.EXAMINE)
-    (c, _), (size, _) = cubic_terms(e.bench, e.problem, e.place)
+    (c, _), (size, _) = cubic_terms(e.workspace, e.problem, e.place)
     return None if not abs(c.real) > ROUNDED * size else "super" if c.real < 0 else "sub"
 
 
-def cubic_terms(bench: Bench, problem: Problem, place: Place) -> tuple[np.ndarray, np.ndarray]:
+def cubic_terms(workspace: Workspace, problem: Problem, place: Place) -> tuple[np.ndarray, np.ndarray]:
     """c and d, and the sum of the sizes of the terms of each, of an examined point; z is in units of `place.v`."""
-    closing, angle = bench.work[0]["closing"], place.p[THETA]
+    closing, angle = workspace.work[0]["closing"], place.p[THETA]
     n = len(closing)
-    left = [place.w[:-1, :2, None] * bench.events["left"], place.w[-2, 2:, None] * closing]
+    left = [place.w[:-1, :2, None] * workspace.events["left"], place.w[-2, 2:, None] * closing]
     orders = [CUBE if problem.kind == FLIP else RESONANT, OPPOSITE]
     terms = np.concatenate([one[..., orders].reshape(-1, 2) for one in left])
     terms /= -problem.sigma * np.exp(1j * angle) * (place.w[-2, 2:] @ place.v[0, :n])

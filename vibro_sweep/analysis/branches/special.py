@@ -124,10 +124,10 @@ def _nearest_aside(solution: Solution, slow) -> tuple[float, float, int]:
     ends = np.append(begins[1:], begins[0] + solution.P)
     aside = np.isin(np.arange(K), slow) * ASIDE / q.omega
     first, last = begins + aside, ends - np.roll(aside, -1)
-    flying, room = np.empty_like(starts), flights.new_room(starts.shape[1])
-    flights.sample_flights(f, starts, begins, np.arange(K), first, flying, room)
+    flying, workspace = np.empty_like(starts), flights.new_workspace(starts.shape[1])
+    flights.sample_flights(f, starts, begins, np.arange(K), first, flying, workspace)
     for state, begin, length in zip(flying, first, last - first, strict=True):
-        flights.fly_once(f, state, begin, length, q.low, q.high, nearest, room)
+        flights.fly_once(f, state, begin, length, q.low, q.high, nearest, workspace)
     return float(nearest[0]), float(nearest[1]), int(nearest[2])
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.sizes import LEAST, least_size
 from vibro_sweep.analysis.branches.special import SpecialPoint, inserted
 from vibro_sweep.analysis.continuation.chatter import Chatter, chatter_at, written_out
-from vibro_sweep.analysis.continuation.first_point import guess_of, settle
+from vibro_sweep.analysis.continuation.first_point import converge, guess_of
 from vibro_sweep.analysis.continuation.solution_curve import NoPlaneError, SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
@@ -82,7 +82,7 @@ def _onset(guess: Chatter, name: str) -> tuple[SolutionCurve, Place] | None:
     found = first and written_out(curve, first)
     if not found:
         return None
-    curve, place = found[0], settle(*found)
+    curve, place = found[0], converge(*found)
     if place is None or not curve.is_real(place):
         return None
     shared = slice(1, min(s.K, curve.K))

@@ -16,7 +16,7 @@ STILL = 1e-5  # in units of a branch: an orbit that Newton's method takes farthe
 def first_place(curve: SolutionCurve, row: np.ndarray | None = None) -> Point | None:
     """The point of the curve at `start`, or near it on the plane across `row`; None where it is not isolated."""
     place = guess_of(curve)
-    return place and settle(curve, place, row)
+    return place and converge(curve, place, row)
 
 
 def start_of_branch(curve: SolutionCurve) -> Point | None:
@@ -74,7 +74,7 @@ def guess_of(curve: SolutionCurve, solution: Solution | None = None) -> Point | 
     return place
 
 
-def settle(curve: SolutionCurve, place: Place, row: np.ndarray | None = None) -> Point | None:
+def converge(curve: SolutionCurve, place: Place, row: np.ndarray | None = None) -> Point | None:
     """The point of the curve near a guess without a tangent."""
     if not curve.go_to(place):
         return None
@@ -91,7 +91,7 @@ def _take_null_vectors(curve: SolutionCurve, place: Place) -> None:
     place.v[:], place.w[:] = 0.0, 0.0
     for _ in range(2):  # with any border, then with what that gives
         curve.do(stepper.ASSEMBLE, place)
-        for here, found in ((place.v, curve.bench.events["v"]), (place.w, curve.bench.trial)):
+        for here, found in ((place.v, curve.workspace.events["v"]), (place.w, curve.workspace.trial)):
             here[:] = found / np.linalg.norm(found)
 
 
@@ -100,8 +100,8 @@ def first_direction(curve: SolutionCurve, place: Place) -> np.ndarray | None:
     if not curve.do(stepper.ASSEMBLE, place):
         return None
     n, size = curve.n, curve.n + unknowns(curve.problem)
-    null = np.linalg.svd(curve.bench.work[0]["ends"][: size - 1, :size])[2][-1]
-    change, events = curve.taken_apart(place, null[:n], null[n:]), curve.bench.events
+    null = np.linalg.svd(curve.workspace.work[0]["ends"][: size - 1, :size])[2][-1]
+    change, events = curve.taken_apart(place, null[:n], null[n:]), curve.workspace.events
     length = np.linalg.norm(change)
     place.tangent[:] = events["changes"][:, 1]
     place.tangent[:, :n] += events["rate"] * place.tangent[:, n, None]

@@ -24,7 +24,7 @@ def sensitivity(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
     """By how much a parameter moves, on the plane across `row`, where each equation is off by its own size."""
     if not curve.assemble(place, row):
         return 0.0
-    c, n, work, events = curve.problem, curve.n, curve.bench.work[0], curve.bench.events
+    c, n, work, events = curve.problem, curve.n, curve.workspace.work[0], curve.workspace.events
     free, found = unknowns(c), []
     try:
         inverse = np.linalg.inv(work["ends"][: n + free, : n + free])
@@ -36,8 +36,8 @@ def sensitivity(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
         events["sides"][:] = -np.einsum("ikr,k->ir", events["factors"][:, :free], by_rows)
         curve.do(stepper.TAKE_UP, place)
         if c.kind == STICK:
-            curve.bench.trial[0, 0] -= curve.bench.trial[-2, 2:] @ curve.bench.tail[0]["by_end"]
-        rows = np.abs(curve.bench.trial)
+            curve.workspace.trial[0, 0] -= curve.workspace.trial[-2, 2:] @ curve.workspace.tail[0]["by_end"]
+        rows = np.abs(curve.workspace.trial)
         total = rows[:-1, :2].sum() + rows[-2, 2:].sum() + np.abs(by_rows[: conditions(c)]).sum()
         found.append(total * c.unit[j])
     return float(max(found))

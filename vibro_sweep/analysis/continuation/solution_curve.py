@@ -13,7 +13,7 @@ from vibro_sweep.engine.continuation import path, stepper
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK, Problem, unknowns
-from vibro_sweep.engine.continuation.workspace import TEST, Place, new_bench
+from vibro_sweep.engine.continuation.workspace import TEST, Place, new_workspace
 from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.linear import Family
 
@@ -59,7 +59,7 @@ class SolutionCurve:
         mirrors = mirrors and q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
         sides, rests, count = np.array(which, float), np.isin(np.arange(K), s.rests), len(self.names)
         self.problem = Problem(kind, start.index, sides, rests, float(s.sigma), count, self.unit, repeats, mirrors)
-        self.bench = new_bench(K, self.n)
+        self.workspace = new_workspace(K, self.n)
         self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.bounds)
 
     def resized(self, K: int) -> "SolutionCurve":
@@ -84,9 +84,9 @@ class SolutionCurve:
         self.planes = self._around(place.p)
 
     def do(self, task: int, place: Place, row: np.ndarray | None = None) -> float:
-        """One task of `stepper.at`; what it leaves is in `bench`."""
+        """One task of `stepper.at`; what it leaves is in `workspace`."""
         row = place.direction if row is None else row
-        return stepper.at(task, self.planes, self.problem, self.path, Place._make(place), row, self.bench)
+        return stepper.at(task, self.planes, self.problem, self.path, Place._make(place), row, self.workspace)
 
     def take(self, place: Place) -> bool:
         """Take the oscillator's numbers at the parameters of `place`. False where there is none."""
@@ -103,28 +103,28 @@ class SolutionCurve:
         return self.take(place) and bool(self.do(stepper.MOVE, place))
 
     def assemble(self, place: Place, row: np.ndarray | None = None) -> bool:
-        """Leave the equations at `place` in `bench`. False where they are singular."""
+        """Leave the equations at `place` in `workspace`. False where they are singular."""
         return self.go_to(place) and bool(self.do(stepper.ASSEMBLE, place, row))
 
     def take_steps(self, place: Place) -> int:
         """Compiled steps from `path.a` until something happens, and why they end (engine/continuation/stepper.py)."""
-        return int(self.do(stepper.WALK, place, np.zeros(2 * self.K + 3)))
+        return int(self.do(stepper.STEPS, place, np.zeros(2 * self.K + 3)))
 
     def motion(self, place: Place) -> np.ndarray:
         """(K, 2) gap velocity and acceleration before each impact."""
         self.assemble(place)
-        return self.bench.events["motion"] * self.units.speed * [1.0, self.units.rate]
+        return self.workspace.events["motion"] * self.units.speed * [1.0, self.units.rate]
 
     def tail(self, place: Place) -> np.ndarray:
         """`numbers` of what follows the last impact written out, of an onset of sticking: times."""
         self.assemble(place)
-        return self.bench.tail[0]["numbers"] / self.units.rate
+        return self.workspace.tail[0]["numbers"] / self.units.rate
 
     def nearest(self, place: Place) -> tuple[float, int]:
         """Time and side of the turning point nearest to its stop."""
         self.take(place)
         self.do(stepper.EXAMINE, place)
-        _, phase, side = self.bench.work[0]["nearest"]
+        _, phase, side = self.workspace.work[0]["nearest"]
         return float((phase - self.tau) / self.omega(place)), int(side)
 
     def omega(self, place: Place) -> float:
@@ -183,11 +183,11 @@ class SolutionCurve:
 
     def taken_apart(self, place: Place, first: np.ndarray, parameters: np.ndarray) -> np.ndarray:
         """(2 K + 3,) phases, jumps, parameters of a change with this xi_1, after `assemble`."""
-        null = self.bench.work[0]["null"]
+        null = self.workspace.work[0]["null"]
         null[:] = 0.0
         null[: self.n], null[self.n : self.n + len(parameters)] = first, parameters
         self.do(stepper.TAKE_APART, place)
-        changes = self.bench.events["changes"][:, 1]
+        changes = self.workspace.events["changes"][:, 1]
         return np.concatenate([changes[:, self.n], changes[:, self.n + 1], null[self.n :]])
 
     def unit_row(self, change: np.ndarray) -> np.ndarray:
@@ -282,7 +282,7 @@ class SolutionCurve:
         if np.all(R > 0):
             return np.full(len(sides), np.inf)
         self.assemble(place)
-        N, events = self.n // 2, self.bench.events
+        N, events = self.n // 2, self.workspace.events
         after = events["motion"][:, 1] + self.planes[0]["numbers"][OMEGA] * events["bend"][:, N]
         return np.where((R == 0) & ~rests, -sides * after, np.inf)
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
 from vibro_sweep.analysis.continuation.chatter import written_out
-from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
+from vibro_sweep.analysis.continuation.first_point import converge, first_place, guess_of
 from vibro_sweep.analysis.continuation.recorded import Rows, both_directions
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.curves import curve_text
@@ -149,4 +149,4 @@ def first_of(curve: SolutionCurve) -> tuple[SolutionCurve, Place | None]:
         return curve, first_place(curve)
     guess = guess_of(curve)
     found = guess and written_out(curve, guess)
-    return (found[0], settle(*found)) if found else (curve, None)
+    return (found[0], converge(*found)) if found else (curve, None)

@@ -28,7 +28,7 @@ from vibro_sweep.analysis.branches.births import repeated, with_amplitude
 from vibro_sweep.analysis.branches.criticality import cubic_terms
 from vibro_sweep.analysis.branches.sizes import size_of, sizes_of
 from vibro_sweep.analysis.branches.special import SpecialPoint, bare, inserted
-from vibro_sweep.analysis.continuation.first_point import first_place, guess_of, settle
+from vibro_sweep.analysis.continuation.first_point import converge, first_place, guess_of
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve, branch_through
 from vibro_sweep.analysis.continuation.starting_orbit import Start
 from vibro_sweep.analysis.curves.curve_run import CurvePoint
@@ -137,7 +137,7 @@ def entered(special: CurvePoint, guess: Entry) -> SpecialPoint | None:
     curve = SolutionCurve(guess.start, names, box_around(special))
     place = guess_of(curve)
     row = None if place is None else np.append(guess.change / in_time(curve, place), np.zeros(3))
-    place = place and settle(curve, place, curve.unit_row(row))
+    place = place and converge(curve, place, curve.unit_row(row))
     if place is None:
         return None
     far = np.abs(place.p[:2] - values) > FARTHEST * sizes_of(special.orbit._solution, names)
@@ -176,7 +176,7 @@ def _quarter(curve: SolutionCurve, place: Place, size: float, name: str, sign: i
     """z, in units of w with |z| = size, the parameters' change, and theta (0 of a fold); None: there are none."""
     curve.take(place)
     curve.do(stepper.EXAMINE, place)
-    (c, d), _ = cubic_terms(curve.bench, curve.problem, place)
+    (c, d), _ = cubic_terms(curve.workspace, curve.problem, place)
     A = c / abs(d)
     u = _turn(A, name, sign)
     if u is None:

@@ -18,7 +18,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.model.bifurcations import CODES_OF_CURVES, CODIMENSION_TWO, CURVES
-from vibro_sweep.model.linear import Linear, steady_gain
+from vibro_sweep.model.linear import Linear, gap_response
 from vibro_sweep.model.state import state
 
 # n points, K impacts of the whole orbit, s special points, N masses
@@ -69,8 +69,8 @@ def arrays_of(curve: BifurcationCurve) -> Arrays:
 
 def _grazing_clearance(q: Linear) -> float:
     """b at which the free motion touches both stops; NaN where there is none."""
-    gain = steady_gain(q) if q.low == -q.high and not np.any(q.constant) else None
-    return np.nan if gain is None else abs(gain)
+    response = gap_response(q) if q.low == -q.high and not np.any(q.constant) else None
+    return np.nan if response is None else abs(response)
 
 
 def type_of(arrays: Arrays) -> str:

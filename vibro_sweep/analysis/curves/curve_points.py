@@ -12,7 +12,7 @@ from vibro_sweep.analysis.periodic.motion_between import multipliers_of
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS
 from vibro_sweep.engine.continuation.workspace import THETA
-from vibro_sweep.engine.impulses.flights import free_part, new_room
+from vibro_sweep.engine.impulses.flights import free_part, new_workspace
 from vibro_sweep.engine.impulses.flow import Flow, contact_coordinates, flow, steady_motion
 from vibro_sweep.model.linear import Linear, forcing_period
 from vibro_sweep.model.state import state
@@ -90,9 +90,9 @@ def dataset_from_file(arrays: dict[str, np.ndarray], names: tuple[str, str]) -> 
 def _state(q: Linear, f: Flow, sigma: int, P: float, t: np.ndarray, D: np.ndarray, h: np.ndarray) -> np.ndarray:
     """(2N,) at t = 0, before an impact there: that at a multiple of P after the first impact."""
     later = math.ceil(t[0] / P) if len(t) else 0
-    room, N = new_room(len(f.B)), len(q.normal)
-    free_part(f, h, t, D, P, later * P, room)
-    y = (room.state[: 2 * N] + steady_motion(q, later * P)) * (1 if sigma == 1 or later % 2 == 0 else -1)
+    workspace, N = new_workspace(len(f.B)), len(q.normal)
+    free_part(f, h, t, D, P, later * P, workspace)
+    y = (workspace.state[: 2 * N] + steady_motion(q, later * P)) * (1 if sigma == 1 or later % 2 == 0 else -1)
     return contact_coordinates(q).to_masses(y)
 
 

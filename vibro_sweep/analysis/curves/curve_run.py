@@ -130,7 +130,7 @@ class CurveRun:
     def _add(self, place: Place) -> None:
         w = self.curve
         w.assemble(place)
-        motion, omega = w.bench.events["motion"][None], w.planes[0]["numbers"][OMEGA, None]
+        motion, omega = w.workspace.events["motion"][None], w.planes[0]["numbers"][OMEGA, None]
         self._record(place.x[None], motion, place.p[None], place.tests[None], omega)
 
     def _record(self, x, motion, p, tests, omega) -> None:

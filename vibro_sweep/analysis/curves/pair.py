@@ -12,7 +12,9 @@ def second_order(curve: SolutionCurve, place: Place) -> tuple[np.ndarray, np.nda
     """Of the times and impulses (2K,) on the plane z w + conj(z w): coefficients of z^2 and |z|^2."""
     curve.take(place)
     curve.do(stepper.EXAMINE, place)
-    series = curve.bench.events["series"].transpose(1, 0, 2).reshape(2 * curve.K, -1) * in_time(curve, place)[:, None]
+    series = (
+        curve.workspace.events["series"].transpose(1, 0, 2).reshape(2 * curve.K, -1) * in_time(curve, place)[:, None]
+    )
     return series[:, SQUARE].copy(), series[:, MIXED].real.copy()
 
 
@@ -20,7 +22,7 @@ def rates_of_pair(curve: SolutionCurve, place: Place) -> tuple[np.ndarray, np.nd
     """Slopes along the orbits by both parameters: of log mu of the pair (2,), of times and impulses (2K, 2)."""
     curve.assemble(place)
     n, unit, omega = curve.n, curve.problem.unit, curve.omega(place)
-    ends = curve.bench.work[0]["ends"][: n + 2, : n + 3].copy()
+    ends = curve.workspace.work[0]["ends"][: n + 2, : n + 3].copy()
     first = -np.linalg.solve(ends[:n, :n], ends[:n, n : n + 2])
     along = np.array([curve.taken_apart(place, first[:, j], np.eye(2)[j]) for j in range(2)]).T
     slopes = ends[n] + 1j * ends[n + 1]

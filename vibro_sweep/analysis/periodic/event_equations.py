@@ -11,7 +11,7 @@ from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_g
 from vibro_sweep.engine.continuation import guesses, moving_flow, path, stepper
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, NUMBERS
 from vibro_sweep.engine.continuation.problem import ORBIT, Problem
-from vibro_sweep.engine.continuation.workspace import new_bench, new_place
+from vibro_sweep.engine.continuation.workspace import new_place, new_workspace
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import TABLES, closing, contact_coordinates, flow, unseen_modes
 from vibro_sweep.engine.impulses.free_modes import checked_cells
@@ -34,7 +34,7 @@ class EventEquations:
         self.planes[0]["numbers"] = self.planes[0]["exact"][-NUMBERS:] = _contact_of(q)
         resting = np.isin(np.arange(self.K), rests)
         self.problem = Problem(ORBIT, 0, np.array(sides, float), resting, float(sigma), 0, np.ones(2), False, False)
-        self.place, self.bench = new_place(self.K, self.n), new_bench(self.K, self.n)
+        self.place, self.workspace = new_place(self.K, self.n), new_workspace(self.K, self.n)
 
     @classmethod
     def of(cls, solution) -> "EventEquations":
@@ -59,7 +59,7 @@ class EventEquations:
     def do(self, task: int) -> float:
         """A task of engine/continuation/stepper.py."""
         row = np.zeros(2 * self.K + 3)
-        return stepper.at(task, self.planes, self.problem, self._path, self.place, row, self.bench)
+        return stepper.at(task, self.planes, self.problem, self._path, self.place, row, self.workspace)
 
     def newton(self, starts, oscillators=()) -> tuple[np.ndarray, np.ndarray]:
         """Newton's method from guesses (m, 2K) of times and jumps, without rests: solutions, and the last change, NaN:
@@ -73,8 +73,8 @@ class EventEquations:
         gap = contacts[:, HIGH if self.problem.sides[0] > 0 else LOW] - steady
         guess = np.column_stack([phases, starts[:, K:] / q.omega, gap])
         ends, changes = np.empty_like(guess), np.empty(len(guess))
-        room = self.place, self.closing, self.bench
-        guesses.settle_all(self.planes, self.problem, *room, contacts, guess, ends, changes)
+        room = self.place, self.closing, self.workspace
+        guesses.converge_all(self.planes, self.problem, *room, contacts, guess, ends, changes)
         return np.hstack([(ends[:, :K] - q.tau) / q.omega, ends[:, K : 2 * K] * q.omega]), changes
 
 

@@ -176,7 +176,7 @@ def _passes_a_stop(s: Solution) -> bool:
     start, begin, f = s.states[k : k + 1].copy(), s.times[k : k + 1], flow(q)
     start[0, len(q.normal)] += s.jumps[k]
     moments, out = begin + lengths[k] / 2 + T * np.arange(MOMENTS) / MOMENTS, np.empty((MOMENTS, start.shape[1]))
-    flights.sample_flights(f, start, begin, np.zeros(MOMENTS, int), moments, out, flights.new_room(start.shape[1]))
+    flights.sample_flights(f, start, begin, np.zeros(MOMENTS, int), moments, out, flights.new_workspace(start.shape[1]))
     size = abs(steady_gap(q).swing) + np.abs(q.stop(s.sides)).max() + np.abs(s.jumps).max() / q.omega
     return bool(max(out[:, 0].max() - q.high, q.low - out[:, 0].min()) > 1e-9 * size)
 

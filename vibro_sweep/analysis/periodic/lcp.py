@@ -128,7 +128,7 @@ def _gamma(q: Linear, n: int, count: int) -> np.ndarray:
     """(count,) the gap's response at 0, P/count, 2 P/count, ... to a unit impulse repeated every P = n T."""
     states, f, P = 2 * len(q.normal), flow(q), n * forcing_period(q)
     E = np.empty((count, states, states))
-    flights.flight_matrices(f, P / count * np.arange(1, count + 1), E, flights.new_room(states + 3))
+    flights.flight_matrices(f, P / count * np.arange(1, count + 1), E, flights.new_workspace(states + 3))
     before = closing(q, 1, 2 * n)[:, :states] @ E[-1, :, states // 2]
     after = before + np.eye(states)[states // 2]
     return np.append(before[0], E[:-1, 0] @ after)

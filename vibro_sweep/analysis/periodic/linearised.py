@@ -52,7 +52,7 @@ class Linearised:
     def _assembled(self):
         if not self.equations.do(stepper.ASSEMBLE):
             raise np.linalg.LinAlgError("the equations are singular")
-        return self.equations.bench.work[0]
+        return self.equations.workspace.work[0]
 
     def tangent(self) -> np.ndarray:
         """(K, n + 2) change of the orbit with the number. LinAlgError at a fold.
@@ -67,7 +67,7 @@ class Linearised:
         work["null"][n:] = 0.0
         work["null"][n] = 1.0
         e.do(stepper.TAKE_APART)
-        return e.bench.events["changes"][:, 1].copy()
+        return e.workspace.events["changes"][:, 1].copy()
 
     def slopes(self) -> np.ndarray:
         """(2K + rests,) du/dp."""
@@ -77,7 +77,7 @@ class Linearised:
         """(2K + rests,) changes of times, jumps and ends of rests, from those of phases and states."""
         e, n, q, rests = self.equations, self.equations.n, self.q, self.equations.problem.rests
         phases, ends = moved[:, n].copy(), (moved[:, n] + moved[:, n + 1])[rests]
-        speeds = moved[:, n // 2] + e.bench.events["motion"][:, 1] * phases
+        speeds = moved[:, n // 2] + e.workspace.events["motion"][:, 1] * phases
         if slope is not None:
             speeds += (e.planes[0]["Z_slopes"][0, n // 2] * np.exp(1j * self.phases)).real
             phases -= slope.omega * self.solution.times + slope.tau
@@ -102,7 +102,7 @@ class Linearised:
         e.problem, e.place.p[THETA] = e.problem._replace(kind=kind), theta
         for _ in range(2):  # first across any direction, which may lie badly, then across the one that is found
             self._assembled()
-            for here, found in ((e.place.v, e.bench.events["v"]), (e.place.w, e.bench.trial)):
+            for here, found in ((e.place.v, e.workspace.events["v"]), (e.place.w, e.workspace.trial)):
                 here[:] = found / np.linalg.norm(found)
 
     def closure(self, mu: int) -> np.ndarray:

@@ -14,9 +14,9 @@ def fly(q: Linear, sigma: int, half_periods: int, sides, u) -> tuple[np.ndarray,
     point of the gap nearest to its stop, inf where there is none."""
     f, close = flow(q), closing(q, sigma, half_periods)
     m, K = f.B.shape[0], len(sides)
-    states, nearest, room = np.empty((max(K, 1) + 1, m)), np.empty(3), flights.new_room(m)
+    states, nearest, workspace = np.empty((max(K, 1) + 1, m)), np.empty(3), flights.new_workspace(m)
     P = forcing_period(q) / 2 * half_periods
-    flights.fly_orbit(f, close, contacts_of(q, sides), u, P, q.low, q.high, states, nearest, room)
+    flights.fly_orbit(f, close, contacts_of(q, sides), u, P, q.low, q.high, states, nearest, workspace)
     return states[:-1], nearest
 
 
@@ -34,11 +34,11 @@ def multipliers_of(f: Flow, sigma: int, P: float, contacts: np.ndarray, u, motio
     if not (np.all(t[1:] - t[:-1] > -UNORDERED * P) and t[-1] - t[0] < (1 + UNORDERED) * P):  # no orbit
         return np.full(n, np.nan, complex)
     product, columns, couplings = np.empty((n, n)), np.empty((n, n)), np.zeros(n)
-    order, work, room = np.empty(n, np.int64), np.empty((3, n, n)), flights.new_room(n + 3)
+    order, work, workspace = np.empty(n, np.int64), np.empty((3, n, n)), flights.new_workspace(n + 3)
     pieces = int((1 + len(t) * UNORDERED) * P * f.spread / graded_product.STRETCH)
     factors = np.empty((len(t) + pieces + 1, n, n))  # a piece more than the flights need but for rounding
     motion = np.ascontiguousarray(motion)
-    graded_product.multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work, room)
+    graded_product.multiply(f, contacts, u, P, motion, product, columns, couplings, order, factors, work, workspace)
     values = sigma * graded_product.eigenvalues(product, columns, couplings)
     return values[np.lexsort((-values.imag, -np.abs(values)))]
 

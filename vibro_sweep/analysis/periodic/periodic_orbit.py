@@ -187,13 +187,13 @@ class PeriodicOrbit(Result):
         wrapped = np.where(wrapped > begins[0] + length, wrapped - length, wrapped)
         which = np.searchsorted(begins, wrapped, side="left") - 1
         out = np.empty((len(times), starts.shape[1]))
-        room = flights.new_room(starts.shape[1])
+        workspace = flights.new_workspace(starts.shape[1])
         for rests in (False, True):
             chosen = np.flatnonzero(held[which] == rests)
             if len(chosen):
                 part = np.empty((len(chosen), starts.shape[1]))
                 f = held_flow(q) if rests else flow(q)
-                flights.sample_flights(f, starts, begins, which[chosen], wrapped[chosen], part, room)
+                flights.sample_flights(f, starts, begins, which[chosen], wrapped[chosen], part, workspace)
                 out[chosen] = part
         return self._masses(out[:, : 2 * len(q.normal)])
 

@@ -19,7 +19,12 @@ class RestingOrbit:
     def __init__(self, solution):
         e = self.equations = EventEquations.of(solution)
         self.q, self.sigma, self.length, self.n = e.q, solution.sigma, np.pi * solution.half_periods, e.n
-        self.rests, self.place, self.events, self.Z = list(solution.rests), e.place, e.bench.events, e.planes[0]["Z"]
+        self.rests, self.place, self.events, self.Z = (
+            list(solution.rests),
+            e.place,
+            e.workspace.events,
+            e.planes[0]["Z"],
+        )
         e.move()
         e.take(solution)
         self._close()
@@ -89,14 +94,14 @@ class RestingOrbit:
         """(distance, t, side) of the turning point nearest to its stop, inf where there is none; and the least free
         acceleration into the stop, where a rest begins, or where it turns within."""
         self.equations.do(stepper.EXAMINE)
-        distance, phase, side = self.equations.bench.work[0]["nearest"]
+        distance, phase, side = self.equations.workspace.work[0]["nearest"]
         time = (phase - self.q.tau) / self.q.omega if distance < np.inf else 0.0
         hold = self.events["hold"][self.rests].min() * self.q.omega**2
         return np.array([distance, time, side]), float(hold)
 
     def multipliers(self) -> np.ndarray:
         """(2N,) of the map over P, with the mirror for sigma = -1; two of them are 0."""
-        last, n = self.equations.bench.work[0]["last"], self.n
+        last, n = self.equations.workspace.work[0]["last"], self.n
         ahead, behind = last[:, :n], last[:, 2 * n + 2 : 3 * n + 2]
         values = np.linalg.eigvals(-self.sigma * np.linalg.solve(ahead, behind)).astype(complex)
         values = values[np.lexsort((-values.imag, -np.abs(values)))]

@@ -7,7 +7,7 @@ import numpy as np
 from vibro_sweep.engine.continuation.chatter_sum import NEXT
 from vibro_sweep.engine.continuation.flight_tables import polynomial
 from vibro_sweep.engine.continuation.held_gap import press
-from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
@@ -72,7 +72,7 @@ def look(f, c, place, b):
     aside = ASIDE / omega
     for i in range(K):
         begin, length = place.x[i, n], b.events[i].length
-        gain = GAIN_HIGH if c.sides[i] > 0 else GAIN_LOW
+        one_plus_R = ONE_PLUS_R_HIGH if c.sides[i] > 0 else ONE_PLUS_R_LOW
         for r in range(n):
             y[r] = b.events[i].after[r]
         if c.kind >= GRAZE:
@@ -96,7 +96,9 @@ def look(f, c, place, b):
             if width > 0.0 and may_turn(f, y, e, f.numbers[LOW], f.numbers[HIGH], nearest[0]):
                 e = cmath.exp(1j * (begin + omega * k * f.width))  # products have rounded from cell to cell
                 expand_gap(f, y, e, work.cell)
-                if k == 0 and f.numbers[gain] == 1.0 and not c.rests[i]:  # not even rounding is left of the velocity
+                if (
+                    k == 0 and f.numbers[one_plus_R] == 1.0 and not c.rests[i]
+                ):  # not even rounding is left of the velocity
                     work.cell[1] = 0.0
                 if extremes_of_cell(work.cell, width, f.numbers[LOW], f.numbers[HIGH], nearest, work.waiting):
                     nearest[1] = begin + omega * (nearest[1] + k * f.width)

@@ -24,7 +24,7 @@ from functools import cache
 
 import numpy as np
 
-from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW
+from vibro_sweep.engine.continuation.moving_flow import ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.memory import record
 
@@ -65,9 +65,9 @@ def tail_of(masses: int) -> np.dtype:
 @jit
 def start(f, side, tail):
     """phi, its powers, d_0 and nu_m,0, and their derivatives."""
-    gain = GAIN_HIGH if side > 0 else GAIN_LOW
+    one_plus_R = ONE_PLUS_R_HIGH if side > 0 else ONE_PLUS_R_LOW
     n, power, nu, d = f.A.shape[0], tail.power, tail.nu, tail.d
-    W, R, phi = n + 3, f.numbers[gain] - 1.0, 1.0
+    W, R, phi = n + 3, f.numbers[one_plus_R] - 1.0, 1.0
     for _ in range(60):
         step = (phi * phi * (2.0 + phi) - R * (1.0 + 2.0 * phi)) / (3.0 * phi * phi + 4.0 * phi - 2.0 * R)
         phi -= step
@@ -82,9 +82,9 @@ def start(f, side, tail):
     for m in range(ORDERS + 1):
         nu[0, m] = d[0] * power[0, m + 2] / (1.0 - power[0, m + 2])
     for v in range(W):
-        by_R = f.number_slopes[v - n - 1, gain] if v > n else 0.0
+        by_R = f.number_slopes[v - n - 1, one_plus_R] if v > n else 0.0
         by_phi = by_R * (1.0 + 2.0 * phi) / (3.0 * phi * phi + 4.0 * phi - 2.0 * R)
-        tail.kept_slopes[v] = by_R / f.numbers[gain] ** 2
+        tail.kept_slopes[v] = by_R / f.numbers[one_plus_R] ** 2
         for k in range(1, SLOPES + 3):
             tail.power_slopes[0, k, v] = k * power[0, k - 1] * by_phi
         change = 2.0 * phi * by_phi / (1.0 - power[0, 2]) ** 2 - 3.0 * power[0, 2] * by_phi / (1.0 - power[0, 3]) ** 2

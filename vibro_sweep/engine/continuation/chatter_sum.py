@@ -12,7 +12,7 @@ with the power series mu_m(s) of chatter_series.py.
 import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_series import FACTORIAL, ORDERS, SLOPES, next_order, next_slopes, start
-from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, OMEGA
+from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.simd.jit import jit
 
 REACH, NEXT = range(2)  # of `numbers`: the largest s of the series; s of the impact that follows
@@ -123,7 +123,7 @@ def sum_chatter(f, side, t, rate, h, turn, s, tail):
     multiply_out(f, tail)
     differentiate(f, t, h, rate, turn, tail)
     start(f, side, tail)
-    kept = 1.0 - 1.0 / f.numbers[GAIN_HIGH if side > 0 else GAIN_LOW]
+    kept = 1.0 - 1.0 / f.numbers[ONE_PLUS_R_HIGH if side > 0 else ONE_PLUS_R_LOW]
     for l in range(1, ORDERS):  # noqa: E741
         next_order(kept, l, tail)
         if l < SLOPES:

@@ -158,7 +158,7 @@ def put_conditions(f, c, place, b):
     turn *= c.sigma * 1j * mu
     for k in range(conditions(c)):
         unit = 1.0 + 0j if k == 0 else -1j  # the imaginary part is the real one of -1j g
-        work.row_left[k] = (unit * (g - work.missed)).real
+        work.row_left[k] = (unit * (g - work.defect)).real
         for i in range(K):
             e = b.events[i]
             for r in range(n + 2):

@@ -19,7 +19,7 @@ import numpy as np
 from vibro_sweep.engine.continuation.corrector import in_order
 from vibro_sweep.engine.continuation.factors import factorise, substitute
 from vibro_sweep.engine.continuation.flight_tables import flight
-from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, NUMBERS, OMEGA
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, NUMBERS, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.reflections import put_last, take_apart
 from vibro_sweep.engine.continuation.residual import approach, eliminate, grown, is_short, land, leave
 from vibro_sweep.engine.simd.jit import exported, jit
@@ -74,9 +74,9 @@ def close(f, c, place, closing, b):
         leave(f, c, i, x, e, work)
         land(f, e)
         for r in range(n):
-            e.missed[r] = 0.0
+            e.defect[r] = 0.0
             if last:
-                e.missed[r] = c.sigma * place.x[0, r] - e.landing[r]
+                e.defect[r] = c.sigma * place.x[0, r] - e.landing[r]
             else:
                 place.x[i + 1, r] = e.landing[r]
 
@@ -100,7 +100,7 @@ def solve(f, c, place, b):
 
 
 @jit
-def settle(f, c, place, closing, b):
+def converge(f, c, place, closing, b):
     """Newton's method from phases, jumps and the gap at the first impact. Relative size of the last step; NaN: none.
 
     Steps longer than a quarter of the least distance between impacts are shortened. It has converged where steps grow
@@ -129,7 +129,7 @@ def settle(f, c, place, closing, b):
             e, D = b.events[i], place.x[i, n + 1]
             high = c.sides[i] > 0
             off = e.gap - f.numbers[HIGH if high else LOW]
-            lost = D + f.numbers[GAIN_HIGH if high else GAIN_LOW] * e.motion[0]
+            lost = D + f.numbers[ONE_PLUS_R_HIGH if high else ONE_PLUS_R_LOW] * e.motion[0]
             left = max(left, abs(off), abs(lost) / omega)
             longest, reach, speed = max(longest, abs(e.changes[0, n])), min(reach, e.length * omega), max(speed, abs(D))
         for i in range(K):
@@ -158,8 +158,8 @@ def settle(f, c, place, closing, b):
 
 
 @exported
-def settle_all(planes, c, place, closing, b, contacts, starts, ends, changes):
-    """`settle` from many guesses, of oscillators that differ in their contact alone.
+def converge_all(planes, c, place, closing, b, contacts, starts, ends, changes):
+    """`converge` from many guesses, of oscillators that differ in their contact alone.
 
     contacts : (m, NUMBERS); starts, ends : (m, 2 K + 1): phases, jumps, the gap at the first impact less the steady
     motion; changes : (m,)
@@ -171,7 +171,7 @@ def settle_all(planes, c, place, closing, b, contacts, starts, ends, changes):
         for i in range(K):
             place.x[i, n], place.x[i, n + 1] = starts[m, i], starts[m, K + i]
         place.x[0, 0] = starts[m, 2 * K]
-        changes[m] = settle(f, c, place, closing, b)
+        changes[m] = converge(f, c, place, closing, b)
         for i in range(K):
             ends[m, i], ends[m, K + i] = place.x[i, n], place.x[i, n + 1]
         ends[m, 2 * K] = place.x[0, 0]

@@ -19,7 +19,7 @@ from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.memory import record
 
-LOW, HIGH, GAIN_LOW, GAIN_HIGH, OMEGA = range(5)  # of `numbers`; gain: 1 + R
+LOW, HIGH, ONE_PLUS_R_LOW, ONE_PLUS_R_HIGH, OMEGA = range(5)  # of `numbers`
 NUMBERS = 5
 DEGREE = 12  # of the polynomials in each parameter, at most
 BITS = 18

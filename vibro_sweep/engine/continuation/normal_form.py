@@ -17,7 +17,7 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.conditions import expand, multiplier, put_matrix
 from vibro_sweep.engine.continuation.factors import factorise, square, substitute
-from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, OMEGA
+from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import FLIP
 from vibro_sweep.engine.continuation.reflections import take_down
 from vibro_sweep.engine.continuation.workspace import TERMS
@@ -56,9 +56,9 @@ def factor_of(mu, m):
 
 
 @jit
-def meet(f, gain, e, D, series, y, power, other, left):
+def meet(f, one_plus_R, e, D, series, y, power, other, left):
     """left (2, TERMS): rows 1 and 2 of an impact, for the state y (n, TERMS) before it at its own phase."""
-    N, R1 = f.A.shape[0] // 2, f.numbers[gain]
+    N, R1 = f.A.shape[0] // 2, f.numbers[one_plus_R]
     shift, jump = series[0], series[1]
     for m in range(TERMS):
         power[m], left[0, m], left[1, m] = 0.0, y[0, m], jump[m] + R1 * y[N, m]
@@ -133,8 +133,8 @@ def residuals(f, c, place, b, mu):
         y[r, 0] = place.x[0, r]
     for i in range(K):
         e, following = b.events[i], b.events[i + 1 if i + 1 < K else 0]
-        gain, D = GAIN_HIGH if c.sides[i] > 0 else GAIN_LOW, place.x[i, n + 1]
-        meet(f, gain, e, D, e.series, y, power, other, e.left)
+        one_plus_R, D = ONE_PLUS_R_HIGH if c.sides[i] > 0 else ONE_PLUS_R_LOW, place.x[i, n + 1]
+        meet(f, one_plus_R, e, D, e.series, y, power, other, e.left)
         for m in range(TERMS):
             delay[m] = following.series[0, m] * (1.0 if i + 1 < K else factor_of(mu, m)) - e.series[0, m]
             y[N, m] += e.series[1, m]

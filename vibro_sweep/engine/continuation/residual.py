@@ -23,7 +23,7 @@ import math
 from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
 from vibro_sweep.engine.continuation.flight_tables import flight
 from vibro_sweep.engine.continuation.held_gap import put_rest, rest
-from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, HIGH, LOW, OMEGA
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
@@ -53,7 +53,7 @@ def put_rows(f, law, side, x, e, panel):
     """Rows n and n + 1 of the panel: those of the event itself."""
     n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
     p, F, first, second = 3 * n + 2, 3 * n + 2 + f.parameters, n, n + 1
-    stop, gain = (HIGH, GAIN_HIGH) if side > 0 else (LOW, GAIN_LOW)
+    stop, one_plus_R = (HIGH, ONE_PLUS_R_HIGH) if side > 0 else (LOW, ONE_PLUS_R_LOW)
     v, a = e.motion[0], e.motion[1]
     if law == IMPACT or law == REST:
         panel[first, 0], panel[first, n] = 1.0, v / omega
@@ -63,7 +63,7 @@ def put_rows(f, law, side, x, e, panel):
         if law == REST:
             return
     speed = second if law != WATCHED else first  # the row that knows the velocity, and how much of it
-    weight = f.numbers[gain] if law != WATCHED else 1.0
+    weight = f.numbers[one_plus_R] if law != WATCHED else 1.0
     panel[speed, N], panel[speed, n] = weight, weight * a / omega
     panel[speed, F] = weight * v
     panel[second, n + 1] = 1.0  # D
@@ -71,7 +71,7 @@ def put_rows(f, law, side, x, e, panel):
     for j in range(f.parameters):
         panel[speed, p + j] = weight * (f.Z_slopes[j, N] * e.turn).real
         if law != WATCHED:
-            panel[speed, p + j] += f.number_slopes[j, gain] * v
+            panel[speed, p + j] += f.number_slopes[j, one_plus_R] * v
     if law == END:
         end_of_chatter(f, x, e, panel)
 
@@ -126,7 +126,7 @@ def put_flight(f, law, e, panel):
                 panel[i, c] = -e.E[0, r, c]
                 by_phase += e.E[0, r, c] * e.bend[c]
             panel[i, n], panel[i, n + 1] = by_phase, -e.E[0, r, N]
-        panel[i, n + 2 + r], panel[i, F] = 1.0, e.missed[r]
+        panel[i, n + 2 + r], panel[i, F] = 1.0, e.defect[r]
         for j in range(f.parameters):
             panel[i, p + j] = e.length * e.landing_rate[r] * f.number_slopes[j, OMEGA]
             if f.moves[j] > 0:
@@ -173,12 +173,12 @@ def fly_through(f, c, place, b):
         approach(f, x, e)
         fly(f, c, i, length, x, e, b.work[0])
         for r in range(n):
-            e.missed[r] = (c.sigma if last else 1.0) * following[r] - e.landing[r]
+            e.defect[r] = (c.sigma if last else 1.0) * following[r] - e.landing[r]
     for i in range(K - 1):
         if is_short(f, c, b, i):
             e, following = b.events[i], b.events[i + 1]
-            e.missed[0] = following.gap - e.gap - grown(f, e, 0)
-            e.missed[n // 2] = following.motion[0] - e.motion[0] - place.x[i, n + 1] - grown(f, e, n // 2)
+            e.defect[0] = following.gap - e.gap - grown(f, e, 0)
+            e.defect[n // 2] = following.motion[0] - e.motion[0] - place.x[i, n + 1] - grown(f, e, n // 2)
 
 
 @jit

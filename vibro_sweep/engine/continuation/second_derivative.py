@@ -9,7 +9,7 @@ kappa = Delta/omega, and ds = (dphi_i+1 - dphi_i)/omega - s d omega/omega,
     - kappa lambda.(A (E (dy + e_v dD) + y1. ds + E_p (y + D e_v, 1)) + A_p (y1, 1))
 """
 
-from vibro_sweep.engine.continuation.moving_flow import GAIN_HIGH, GAIN_LOW, OMEGA
+from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.simd.jit import jit
 
 
@@ -29,7 +29,7 @@ def differentiate(f, c, place, b, mu):
             slopes[r] = 0.0
     for j in range(3):
         b.work[0].slopes_p[j] = 0.0
-    b.work[0].missed = 0.0
+    b.work[0].defect = 0.0
     for i in range(K):
         differentiate_event(f, c, place, b, i)
         differentiate_flight(f, place, b, i, mu)
@@ -39,13 +39,13 @@ def differentiate(f, c, place, b, mu):
 def differentiate_event(f, c, place, b, i):
     """What rows 1 and 2 of an impact add."""
     n, N, e, slopes_p = f.A.shape[0], f.A.shape[0] // 2, b.events[i], b.work[0].slopes_p
-    gain = GAIN_HIGH if c.sides[i] > 0 else GAIN_LOW
-    R1, alpha, beta, phi_v = f.numbers[gain], e.w[0], e.w[1], e.v[n]
+    one_plus_R = ONE_PLUS_R_HIGH if c.sides[i] > 0 else ONE_PLUS_R_LOW
+    R1, alpha, beta, phi_v = f.numbers[one_plus_R], e.w[0], e.w[1], e.v[n]
     e.slopes[n] -= phi_v * (alpha * (f.Z[0] * e.turn).real + beta * R1 * (f.Z[N] * e.turn).real)
     speed_v = e.v[N] + phi_v * (e.rate[N] + (1j * f.Z[N] * e.turn).real)
     for j in range(f.parameters):
         gap, speed = (1j * f.Z_slopes[j, 0] * e.turn).real, (1j * f.Z_slopes[j, N] * e.turn).real
-        slopes_p[j] += phi_v * (alpha * gap + beta * R1 * speed) + beta * f.number_slopes[j, gain] * speed_v
+        slopes_p[j] += phi_v * (alpha * gap + beta * R1 * speed) + beta * f.number_slopes[j, one_plus_R] * speed_v
 
 
 @jit
@@ -59,7 +59,7 @@ def differentiate_flight(f, place, b, i, mu):
     y[N] += e.v[n + 1]
     delta = (following.v[n] if i + 1 < K else mu * following.v[n]) - e.v[n]
     kappa = delta / omega
-    by_length, landing, missed = 0j, 0j, 0j
+    by_length, landing, defect = 0j, 0j, 0j
     for r in range(n):
         Ey[r] = 0.0
         for k in range(n):
@@ -70,8 +70,8 @@ def differentiate_flight(f, place, b, i, mu):
             by_state[k] += e.w[2 + r] * f.A[r, k]
         by_length -= by_state[k] * (Ey[k] + delta * e.landing_rate[k])
         landing += e.w[2 + k] * omega * e.landing_rate[k]
-        missed += by_state[k] * e.missed[k]
-    work.missed += missed * (delta + e.v[n]) / omega
+        defect += by_state[k] * e.defect[k]
+    work.defect += defect * (delta + e.v[n]) / omega
     by_phase = 0j
     for k in range(n):
         through[k] = 0.0

@@ -102,7 +102,7 @@ def hides(path, a, b, length):
 
 
 @jit
-def walk(f, c, path, place, row, b):
+def take_steps(f, c, path, place, row, b):
     """Steps from `path.a` until something happens, and why the call ends.
 
     Recorded are the points before the step in which it happens; path.a and place are the two points of this step.
@@ -174,7 +174,7 @@ def take_states(f, c, path, b):
 
 
 # what `at` is to do
-MOVE, ASSEMBLE, CORRECT, EXAMINE, NEAR, SOLVE, WALK, STATES, FOLLOW, TAKE_APART, TAKE_UP = range(11)
+MOVE, ASSEMBLE, CORRECT, EXAMINE, NEAR, SOLVE, STEPS, STATES, FOLLOW, TAKE_APART, TAKE_UP = range(11)
 
 
 @exported
@@ -184,7 +184,7 @@ def at(task, planes, c, path, place, row, b):
     MOVE: to the parameters of `place`, with the values `exact` of the plane; CORRECT, one step of Newton's method (its
     size is returned), and EXAMINE, tests, do that first. ASSEMBLE: equations, and null vectors. NEAR: all steps of
     Newton's method, with the polynomials of the plane, and tests. SOLVE: the same as far as rounding allows, with the
-    polynomials shifted so that they pass through `exact` at `place`. WALK: why it ends. STATES:
+    polynomials shifted so that they pass through `exact` at `place`. STEPS: why they end. STATES:
     of the recorded points, at `record.phase`. FOLLOW: states before all events
     from that before the first. TAKE_APART: the change of all events, `events.changes[1]`, for xi_1 and parameters in
     `work.null`. TAKE_UP: the left vector, in `trial`, for those of the last and of the eliminated equations.
@@ -198,8 +198,8 @@ def at(task, planes, c, path, place, row, b):
     if task == CORRECT:
         change = newton_step(f, c, place, row, b)
         return change if in_order(f, c, place) else np.nan
-    if task == WALK:
-        return float(walk(f, c, path, place, row, b))
+    if task == STEPS:
+        return float(take_steps(f, c, path, place, row, b))
     if task == STATES:
         return take_states(f, c, path, b)
     if task == FOLLOW:

@@ -1,4 +1,4 @@
-"""Points of a solution set, and the room in which kernels work on them.
+"""Points of a solution set, and the arrays in which kernels work on them.
 
 Lengths are in units of the gap's size and times in units of 1/omega of the start, so that all numbers are of size 1.
 The unknowns of an event are its state y before it, its phase phi and its velocity jump D: a row (n + 2), n = 2N.
@@ -95,7 +95,7 @@ def event_of(masses: int) -> np.dtype:
         ("after", float, n + 1),  # y after it, and 1
         ("landing", float, n),  # y at the end of the flight
         ("landing_rate", float, n),  # y' there
-        ("missed", float, n),  # by which it misses the next state
+        ("defect", float, n),  # its difference from the next state
         ("bend", float, n),  # rho: the jump of y' at it
         ("carry", float, (n, n + 2 + PARAMETERS)),  # xi after a rest by xi, dphi, ds and the parameters
         ("pull", float),  # free acceleration of the gap at the end of a rest
@@ -120,7 +120,7 @@ def event_of(masses: int) -> np.dtype:
 
 @cache
 def work_of(masses: int) -> np.dtype:
-    """Room for one elimination."""
+    """Arrays of one elimination."""
     n = 2 * masses
     wide = width_of(n, PARAMETERS)
     return record([
@@ -156,7 +156,7 @@ def work_of(masses: int) -> np.dtype:
         ("rate", float, n),  # y' before the first event, by time
         ("along", complex, (4, n)),  # of a flight: v at its begin, at its end, w A, w A E (second_derivative.py)
         ("slopes_p", complex, ROWS),  # of a condition by the parameters
-        ("missed", complex),  # see second_derivative.py
+        ("defect", complex),  # see second_derivative.py
         ("first", complex, (n, TERMS)),  # power series of y_1, see normal_form.py
         ("closing", complex, (n, TERMS)),  # and of the last rows
         ("states", complex, (3, n, TERMS)),
@@ -164,8 +164,8 @@ def work_of(masses: int) -> np.dtype:
     ])  # fmt: skip
 
 
-class Bench(NamedTuple):
-    """Room to work in: few arrays, since each is unpacked at every call from Python."""
+class Workspace(NamedTuple):
+    """Arrays in which kernels work: few, since each is unpacked at every call from Python."""
 
     work: np.ndarray  # (1,) `work_of`
     events: np.ndarray  # (K,) `event_of`
@@ -173,7 +173,7 @@ class Bench(NamedTuple):
     trial: np.ndarray  # (K + 1, n + 2) complex: a vector over all rows, as `Place.w`, that is not kept yet
 
 
-def new_bench(K: int, n: int) -> Bench:
+def new_workspace(K: int, n: int) -> Workspace:
     N = n // 2
     room = new_lines(1, work_of(N)), new_lines(K, event_of(N)), new_lines(1, tail_of(N))
-    return Bench(*room, np.zeros((K + 1, n + 2), complex))
+    return Workspace(*room, np.zeros((K + 1, n + 2), complex))

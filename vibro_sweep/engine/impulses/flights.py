@@ -13,8 +13,8 @@ from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import exported, jit
 
 
-class Room(NamedTuple):
-    """Scratch of flights."""
+class Workspace(NamedTuple):
+    """Arrays in which flights are computed."""
 
     E: np.ndarray  # (m^2,)
     state: np.ndarray  # (m,)
@@ -23,8 +23,8 @@ class Room(NamedTuple):
     waiting: np.ndarray  # (PIECES, 2)
 
 
-def new_room(m: int) -> Room:
-    return Room(*(np.empty(shape) for shape in (m * m, m, m, ORDER + 1, (PIECES, 2))))
+def new_workspace(m: int) -> Workspace:
+    return Workspace(*(np.empty(shape) for shape in (m * m, m, m, ORDER + 1, (PIECES, 2))))
 
 
 @jit
@@ -50,24 +50,24 @@ def within_cell(f, u, E):
 
 
 @jit
-def over_cells(f, z, cells, room):
+def over_cells(f, z, cells, workspace):
     """z over so many cells, in place."""
     j = 0
     while cells > 0:
         last = j == len(f.powers) - 1
         for _ in range(cells if last else cells & 1):
-            multiply(f.powers[j], z, room.column)
+            multiply(f.powers[j], z, workspace.column)
         cells = 0 if last else cells >> 1
         j += 1
 
 
 @jit
-def advance(f, z, length, room):
+def advance(f, z, length, workspace):
     """zeta over a time `length` >= 0, in place."""
     cells = int(length / f.width)
-    over_cells(f, z, cells, room)
-    within_cell(f, length - cells * f.width, room.E)
-    multiply(room.E.reshape(f.B.shape), z, room.column)
+    over_cells(f, z, cells, workspace)
+    within_cell(f, length - cells * f.width, workspace.E)
+    multiply(workspace.E.reshape(f.B.shape), z, workspace.column)
 
 
 @jit
@@ -91,9 +91,9 @@ def set_phase(f, z, t):
 
 
 @jit
-def extremes(f, z, length, low, high, nearest, room):
+def extremes(f, z, length, low, high, nearest, workspace):
     """Fly `length` from zeta in place; lower `nearest` (distance, time from the start, side) to its turning points'."""
-    m, c = len(z), room.c
+    m, c = len(z), workspace.c
     cells = int(length / f.width)
     for k in range(cells + 1):
         start = k * f.width
@@ -105,16 +105,16 @@ def extremes(f, z, length, low, high, nearest, room):
                 c[n] = 0.0
                 for i in range(m):
                     c[n] += f.rows[n, i] * z[i]
-            if extremes_of_cell(c, width, low, high, nearest, room.waiting):
+            if extremes_of_cell(c, width, low, high, nearest, workspace.waiting):
                 nearest[1] += start
         if k < cells:
-            multiply(f.powers[0], z, room.column)
+            multiply(f.powers[0], z, workspace.column)
         else:
-            advance(f, z, width, room)
+            advance(f, z, width, workspace)
 
 
 @jit
-def start_of_orbit(f, close, u, K, P, gap, z, room):
+def start_of_orbit(f, close, u, K, P, gap, z, workspace):
     """zeta before the first impact (at t = 0 without impacts) of the orbit with these times and impulses."""
     m = len(z)
     n, N = m - 3, (m - 3) // 2
@@ -124,21 +124,21 @@ def start_of_orbit(f, close, u, K, P, gap, z, room):
     set_phase(f, z, first)
     for k in range(K):
         z[N] += u[K + k]
-        advance(f, z, (u[k + 1] if k + 1 < K else first + P) - u[k], room)
+        advance(f, z, (u[k + 1] if k + 1 < K else first + P) - u[k], workspace)
     if K == 0:
-        advance(f, z, P, room)
+        advance(f, z, P, workspace)
     for i in range(n):
-        room.column[i] = z[i]
+        workspace.column[i] = z[i]
     for i in range(n):
         total = close[i, n] * gap
         for j in range(n):
-            total += close[i, j] * room.column[j]
+            total += close[i, j] * workspace.column[j]
         z[i] = total
     set_phase(f, z, first)
 
 
 @exported
-def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, room):
+def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, workspace):
     """States before each impact, (max(K, 1), m), and the turning point nearest to its stop: (distance, t, side).
 
     Without impacts: the state at t = 0.
@@ -146,7 +146,7 @@ def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, room):
     K = len(contacts)
     z = states[0]
     m = len(z)
-    start_of_orbit(f, close, u, K, P, contacts[0, 0] if K > 0 else 0.0, z, room)
+    start_of_orbit(f, close, u, K, P, contacts[0, 0] if K > 0 else 0.0, z, workspace)
     nearest[0], nearest[1], nearest[2] = np.inf, 0.0, 0.0
     N = (m - 3) // 2
     flying = states[max(K, 1)]
@@ -165,64 +165,64 @@ def fly_orbit(f, close, contacts, u, P, low, high, states, nearest, room):
         distance = nearest[0]
         if K == 0:  # a turning point at t = 0 must not be lost between the ends
             end += 0.5 * f.width
-        extremes(f, flying, end - begin, low, high, nearest, room)
+        extremes(f, flying, end - begin, low, high, nearest, workspace)
         if nearest[0] < distance:
             nearest[1] += begin
 
 
 @exported
-def free_part(f, h, t, D, P, moment, room):
+def free_part(f, h, t, D, P, moment, workspace):
     """room.state becomes the free part of zeta, without the harmonic force, at `moment` in [t_1, t_1 + P], before an
     impact there. h (n,): before the first impact; t, D: times and impulses (K,)."""
-    K, n, z = len(t), len(h), room.state
+    K, n, z = len(t), len(h), workspace.state
     for i in range(n):
         z[i] = h[i]
     z[n], z[n + 1], z[n + 2] = 0.0, 0.0, 1.0
     k = 0
     while k < K and t[k] < moment:
         z[n // 2] += D[k]
-        advance(f, z, min(t[k + 1] if k + 1 < K else t[0] + P, moment) - t[k], room)
+        advance(f, z, min(t[k + 1] if k + 1 < K else t[0] + P, moment) - t[k], workspace)
         k += 1
 
 
 @exported
-def fly_once(f, z, begin, length, low, high, nearest, room):
+def fly_once(f, z, begin, length, low, high, nearest, workspace):
     """Fly `length` from z in place; lower `nearest` (distance, t, side) to the turning points of the gap."""
     distance = nearest[0]
     set_phase(f, z, begin)
-    extremes(f, z, length, low, high, nearest, room)
+    extremes(f, z, length, low, high, nearest, workspace)
     if nearest[0] < distance:
         nearest[1] += begin
 
 
 @jit
-def flight_matrix(f, length, E, room):
+def flight_matrix(f, length, E, workspace):
     """E (n, n) = exp(A length) of the free motion, without the force."""
-    n, z = len(E), room.state
+    n, z = len(E), workspace.state
     cells = int(length / f.width)
-    within_cell(f, length - cells * f.width, room.E)
+    within_cell(f, length - cells * f.width, workspace.E)
     for j in range(n):
         for i in range(len(z)):
             z[i] = 1.0 if i == j else 0.0
-        over_cells(f, z, cells, room)
-        multiply(room.E.reshape(f.B.shape), z, room.column)
+        over_cells(f, z, cells, workspace)
+        multiply(workspace.E.reshape(f.B.shape), z, workspace.column)
         for i in range(n):
             E[i, j] = z[i]
 
 
 @exported
-def flight_matrices(f, lengths, out, room):
+def flight_matrices(f, lengths, out, workspace):
     """`flight_matrix` of each flight: out (flights, n, n)."""
     for k in range(len(lengths)):
-        flight_matrix(f, lengths[k], out[k], room)
+        flight_matrix(f, lengths[k], out[k], workspace)
 
 
 @exported
-def sample_flights(f, starts, begins, which, times, out, room):
+def sample_flights(f, starts, begins, which, times, out, workspace):
     """zeta at `times` of the flights that start with starts[which] at begins[which]: out (samples, m)."""
     for i in range(len(times)):
         k = which[i]
         for j in range(out.shape[1]):
             out[i, j] = starts[k, j]
         set_phase(f, out[i], begins[k])
-        advance(f, out[i], times[i] - begins[k], room)
+        advance(f, out[i], times[i] - begins[k], workspace)

@@ -77,20 +77,20 @@ def turn(Y, i, j, c, s):
 
 
 @jit
-def shear_of(gain, v, a):
+def shear_of(one_plus_R, v, a):
     """The shear that is split off the saltation matrix, and its larger singular value; 0 and 1 where R = 0."""
-    beta = -gain * a / (v * (gain - 1.0)) if gain > 1.0 else 0.0
+    beta = -one_plus_R * a / (v * (one_plus_R - 1.0)) if one_plus_R > 1.0 else 0.0
     return beta, 0.5 * (abs(beta) + math.hypot(beta, 2.0))
 
 
 @jit
-def salt(f, gain, v, a, split, Y, order, T, product, columns):
-    """Y <- S Y for one impact; split: with the shear by itself, and factorised. gain: 1 + R."""
+def salt(f, one_plus_R, v, a, split, Y, order, T, product, columns):
+    """Y <- S Y for one impact; split: with the shear by itself, and factorised. one_plus_R: 1 + R."""
     n = len(order)
     N = n // 2
-    shear = gain * a / v
+    shear = one_plus_R * a / v
     if split:
-        beta, size = shear_of(gain, v, a)
+        beta, size = shear_of(one_plus_R, v, a)
         c, s = 1.0 / math.hypot(1.0, 1.0 / size), math.copysign(1.0 / math.hypot(1.0, size), beta)
         turn(Y, 0, N, c, s)  # V^T: the right singular vector of the large singular value first
         for k in range(n):
@@ -104,14 +104,14 @@ def salt(f, gain, v, a, split, Y, order, T, product, columns):
             order[i] = i
         turn(Y, 0, N, abs(s), -math.copysign(c, beta))  # U
         shear = 0.0
-    R = gain - 1.0  # as differences of g and (1 + R) g rows would lose the digits of a small R
+    R = one_plus_R - 1.0  # as differences of g and (1 + R) g rows would lose the digits of a small R
     for k in range(n):
         g, speed = Y[0, k], Y[N, k]
         for i in range(1, n):
             if i != N:
-                Y[i, k] -= gain * f.B[i, N] * g
+                Y[i, k] -= one_plus_R * f.B[i, N] * g
         Y[0, k] = -R * g  # A e_v has the gap component 1
-        Y[N, k] = (shear - gain * f.B[N, N]) * g - R * speed
+        Y[N, k] = (shear - one_plus_R * f.B[N, N]) * g - R * speed
 
 
 @jit
@@ -157,13 +157,13 @@ def multiply(f, contacts, u, P, motion, product, columns, couplings, order, fact
                 start[i, j], product[i, j] = Y[i, j], 1.0 if i == j else 0.0
         count, stretched = 0, 0.0  # the logarithm of how far Y may be stretched since it was factorised
         for k in range(K):
-            gain, v, a = contacts[k, 1], motion[k, 0], motion[k, 1]
-            sheared = 2.0 * math.log(shear_of(gain, v, a)[1])
+            one_plus_R, v, a = contacts[k, 1], motion[k, 0], motion[k, 1]
+            sheared = 2.0 * math.log(shear_of(one_plus_R, v, a)[1])
             split = stretched + sheared > STRETCH
             if split and stretched > 0.0:
                 factorise(Y, order, T, product, columns)
-            salt(f, gain, v, a, split, Y, order, T, product, columns)
-            stretched = (0.0 if split else stretched + sheared) - math.log(gain - 1.0)  # S_0 has 1 and R
+            salt(f, one_plus_R, v, a, split, Y, order, T, product, columns)
+            stretched = (0.0 if split else stretched + sheared) - math.log(one_plus_R - 1.0)  # S_0 has 1 and R
             length = flight_length(u, P, K, k)
             pieces = flight_pieces(f.spread, length)
             for _ in range(pieces):

@@ -13,7 +13,7 @@ from vibro_sweep.engine.tables.stiff import rate_of
 
 
 @exported
-def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, tau):
+def build(f, workspace, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, tau):
     """Fill the tables of an oscillator with modes psi (2, 2), omega_squared (2,), and phase tau (radians) at node 0.
 
     scratch: `series.Scratch`.
@@ -24,8 +24,8 @@ def build(f, scratch, cells, psi, omega_squared, mu_m, mu_k, zeta, f2, omega, ta
     fill_phases(q, f.nodes, cells, tau)
     set_grid(q, cells, omega, rate)
     q.exact = False
-    fill_equations(q, scratch, mu_m, mu_k, f2)
-    fill_series(q, scratch)
+    fill_equations(q, workspace, mu_m, mu_k, f2)
+    fill_series(q, workspace)
     fill_rest(q, mu_m, mu_k, f2)
     fill_impulse(q)
     fill_flight(q, f.nodes, psi, omega_squared, mu_m)

@@ -14,7 +14,7 @@ from vibro_sweep.engine.tables.products import fill_forced_motion, fill_products
 from vibro_sweep.engine.tables.series import clear, derive, set_grid
 
 
-class Scratch(NamedTuple):
+class Workspace(NamedTuple):
     """What the tables are computed in."""
 
     A: np.ndarray  # (inputs, inputs)
@@ -23,9 +23,9 @@ class Scratch(NamedTuple):
     twofold: np.ndarray | None  # (4, 2, inputs, inputs); None where no point needs it, and kernels leave it out
 
 
-def new_scratch(masses: int, constant: bool, own: bool = True) -> Scratch:
+def new_workspace(masses: int, constant: bool, own: bool = True) -> Workspace:
     inputs = inputs_of(masses, constant)
-    return Scratch(
+    return Workspace(
         np.empty((inputs, inputs)),
         np.empty(inputs),
         np.empty((2, 2 * masses + 3)),

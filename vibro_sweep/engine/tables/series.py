@@ -47,15 +47,15 @@ def set_grid(q, cells, omega, rate):
         power *= q.step
 
 
-class Scratch(NamedTuple):
+class Workspace(NamedTuple):
     """The matrices A of z' = A z for z = (x1, v1, x2, v2, sin(omega t + tau), cos(omega t + tau)), eq. (3), padded."""
 
     free: np.ndarray  # (6, LANES)
     held: np.ndarray  # (6, LANES), while M1 rests: v1 = 0
 
 
-def new_scratch() -> Scratch:
-    return Scratch(new_lines((6, LANES), float), new_lines((6, LANES), float))
+def new_workspace() -> Workspace:
+    return Workspace(new_lines((6, LANES), float), new_lines((6, LANES), float))
 
 
 @jit

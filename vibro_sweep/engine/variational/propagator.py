@@ -15,7 +15,7 @@ TERMS = 24  # of the series: what is left out is below 2^-80 times the condition
 SHORT = 0.5  # rate times flight for the series
 
 
-class Scratch(NamedTuple):
+class Workspace(NamedTuple):
     """The matrices of a flight, and what they are computed in."""
 
     E: np.ndarray  # (k, k)
@@ -26,10 +26,10 @@ class Scratch(NamedTuple):
     column: np.ndarray  # (k,)
 
 
-def new_scratch(size: int, parameters: int) -> Scratch:
+def new_workspace(size: int, parameters: int) -> Workspace:
     """For z of so many numbers, and derivatives by so many parameters."""
     one, many = (size, size), (parameters, size, size)
-    return Scratch(np.empty(one), np.empty(many), np.empty(one), np.empty(many), np.empty(one), np.empty(size))
+    return Workspace(np.empty(one), np.empty(many), np.empty(one), np.empty(many), np.empty(one), np.empty(size))
 
 
 @jit
