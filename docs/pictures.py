@@ -82,7 +82,7 @@ def compute(file: str, folder: Path) -> None:
 
 
 def command(*words: str, folder: Path) -> None:
-    """vibro-sweep with these words; 1, a remark on some points, is no failure."""
+    """vibro-sweep with these words; 1, a remark on some points, is not a failure."""
     done = subprocess.run([sys.executable, "-m", "vibro_sweep", *words], cwd=folder, check=False)
     if done.returncode not in (0, 1):
         sys.exit(done.returncode)

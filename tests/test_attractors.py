@@ -172,7 +172,8 @@ def test_too_short_a_transient_is_said(tmp_path):
 
 
 def test_an_orbit_that_arrives_within_the_record_has_not_settled(tmp_path):
-    """At b = 6.7524 chaos ends in free motion after some 10^4 periods: such an orbit is on neither, and is no third."""
+    """At b = 6.7524 chaos ends in free motion after some 10^4 periods: such an orbit is on neither, and is not a
+    third."""
     text = """
 start: {random: 32, seed: 1}
 orbit: {transient: 0, record: 40000}

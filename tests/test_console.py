@@ -240,4 +240,4 @@ def test_a_scene_whose_name_is_no_text(folder):
 def test_a_scene_that_is_no_file(folder, capsys, name, command):
     os.mkfifo(folder / "pipe.yaml")
     assert main([command, name]) == 2
-    assert "is no regular file" in capsys.readouterr().err
+    assert "is not a regular file" in capsys.readouterr().err

@@ -150,7 +150,7 @@ LAST = "the key of the last piece"
 BYTE = [["a", "|u1", [1]]]
 ODD = {
     "no piece": ({"note": "x"}, b""),
-    "a key that is no text": ({"piece": [1], "arrays": []}, b""),
+    "a key that is not a text": ({"piece": [1], "arrays": []}, b""),
     "no arrays": ({"piece": "0:0"}, b""),
     "too short": ({"piece": "0:0", "arrays": [["a", "<f8", [1000]]]}, b"12345678"),
     "too long": ({"piece": "0:0", "arrays": [["a", "<f8", [1]]]}, b"1234567812345678"),
@@ -188,7 +188,7 @@ def edited_part(part: Path, records) -> None:
 
 
 def test_a_part_with_records_of_somebody_else(kinds, tmp_path, monkeypatch):
-    """They are no pieces, and the run goes on without them."""
+    """They are not pieces, and the run goes on without them."""
     monkeypatch.chdir(tmp_path)
     shutil.copy(kinds("sweep"), "sweep.h5")
     words, part = KINDS["windows"].command("windows"), Path("windows.h5.part")

@@ -1,4 +1,4 @@
-"""Oscillators that have no tables or no isolated orbits, and multipliers of what is no orbit."""
+"""Oscillators that have no tables or no isolated orbits, and multipliers of what is not an orbit."""
 
 import math
 

@@ -64,7 +64,7 @@ def test_one_option_of_python_and_the_command_line(kinds, tmp_path, monkeypatch,
     assert main(["plot", str(kinds("orbit")), "--width", "85", "--dpi", "100"]) == 0
     content = (tmp_path / "orbit.png").read_bytes()
     assert int.from_bytes(content[16:20]) == round(85 / MM * 100 - 0.5)
-    for words, told in ((["--width", "x"], "'x' is no number"), (["--width", "3"], "width: 3.0 is not allowed")):
+    for words, told in ((["--width", "x"], "'x' is not a number"), (["--width", "3"], "width: 3.0 is not allowed")):
         assert main(["plot", str(kinds("orbit")), *words]) == 2
         assert told in capsys.readouterr().err
     with pytest.raises(vs.PlotError, match="width and size exclude each other"):

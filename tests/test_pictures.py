@@ -32,7 +32,9 @@ def test_a_picture_of_ours_is_drawn_anew_until_somebody_changes_it(folder, suffi
         changes.append(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
     for changed in changes:
         path.write_bytes(changed)
-        with pytest.raises(PlotError, match="exists, and is no picture that vibro-sweep drew; --overwrite replaces it"):
+        with pytest.raises(
+            PlotError, match="exists, and is not a picture that vibro-sweep drew; --overwrite replaces it"
+        ):
             plotting.plot("x.h5", path)
         assert path.read_bytes() == changed
     plotting.plot("x.h5", path, overwrite=True)
@@ -108,7 +110,7 @@ def test_a_picture_that_appears_meanwhile(folder, monkeypatch):
 
     figure = plotting._draw
     monkeypatch.setattr(plotting, "_draw", drawn)
-    with pytest.raises(PlotError, match="exists, and is no picture"):
+    with pytest.raises(PlotError, match="exists, and is not a picture"):
         plotting.plot("x.h5")
     assert Path("x.png").read_text() == "years of work"
 

@@ -132,7 +132,8 @@ def test_orbits_of_a_window_beside_its_birth_are_its_own(tmp_path):
 
 
 def test_an_own_pitchfork_of_an_orbit_with_a_free_mode_is_the_orbit(tmp_path):
-    """Its whole period was corrected by Newton's method where that is singular, and was no symmetric orbit any more."""
+    """Its whole period was corrected by Newton's method where that is singular, and was not a symmetric orbit any
+    more."""
     damper = vs.Oscillator.named("ball_in_cavity", **DAMPER, R=0.9277676484139388, b=1.3055893820201745)
     values, start = {"R": np.linspace(0.6494373538897571, 1.0, 17)[10:13]}, {"random": 2, "seed": 1}
     vs.sweep(damper, values, start=start, transient=600, record=100, output=tmp_path / "R.h5", workers=1).close()

@@ -109,7 +109,8 @@ def test_a_plane_row_by_row(tmp_path):
 
 
 def test_a_rest_after_one_impact_is_no_window_in_the_restitution(tmp_path):
-    """At R = 0 the mass rests at once, at any other R after infinitely many impacts: the branch in R is no motion."""
+    """At R = 0 the mass rests at once, at any other R after infinitely many impacts: the branch in R is not a
+    motion."""
     axes = {"R": [0.0, 0.02, 0.2, 0.4]}
     vs.sweep(SYSTEM.replace(b=1.2), axes, transient=600, record=60, output=tmp_path / "R.h5", workers=1)
     windows = vs.windows(tmp_path / "R.h5")

@@ -65,7 +65,7 @@ def _scene() -> Iterator[str]:
 
 
 def _paths(form: dict, definitions: dict, path: str = "") -> dict[str, str]:
-    """Where in a scene each definition stands, in order; one that several keys share, at KEY."""
+    """The place in a scene of each definition, in order; one that several keys share, at KEY."""
     found = {}
     for key, schema in form["properties"].items():
         for name in _references(schema):

@@ -107,7 +107,7 @@ def test_flipped_bits_are_never_silent(scene, path, whole, count):
 
 
 def test_one_orbit_is_checked_too(path):
-    """A number that is no chunk lies in a header with a checksum."""
+    """A number that is not a chunk lies in a header with a checksum."""
     scene = parse_scene(TEXT.replace("sweep: {b: {start: 6.5, stop: 6.9, num: 400}}", ""))
     vs.run(scene, path)
     with h5py.File(path) as file:

@@ -169,7 +169,8 @@ def plot_command(
         bool, typer.Option("--relative", help="Of curves and planes: b in parts of the grazing clearance b*.")
     ] = False,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace an existing file, also one that is no picture of this program.")
+        bool,
+        typer.Option("--overwrite", help="Replace an existing file, also one that is not a picture of this program."),
     ] = False,
 ):
     """Draw what a file holds."""

@@ -62,4 +62,4 @@ def number_in(option: str, text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise InputError(f"{option}: {text!r} is no number") from None
+        raise InputError(f"{option}: {text!r} is not a number") from None

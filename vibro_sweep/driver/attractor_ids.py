@@ -62,7 +62,7 @@ def _curve(shape: tuple[int, ...], size: int) -> Iterator[tuple[Box, np.ndarray]
 
 
 def _order(part: Box) -> np.ndarray:
-    """Of the points of a part of the curve: their places in it."""
+    """The places in a part of the curve of its points."""
     order = np.arange(math.prod(one.stop - one.start for one in part))
     if len(part) == 2:
         order = order.reshape(-1, part[1].stop - part[1].start)
@@ -83,7 +83,7 @@ def _number_points(
     points, back = len(curve), np.argsort(curve)
 
     def rows(values):
-        """From the box to (points, orbits, ...), in the order of the curve."""
+        """The values of a box as (points, orbits, ...), in the order of the curve."""
         values = np.moveaxis(values, keys, range(len(keys)))
         return values.reshape(points, -1, *values.shape[len(box) :])[curve]
 

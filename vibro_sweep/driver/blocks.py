@@ -181,7 +181,7 @@ def boxes(shape: tuple[int, ...], size: int) -> Iterator[tuple[slice, ...]]:
 
 
 def _directions(scene: Scene) -> list[tuple[tuple[slice, ...], bool]]:
-    """Of a `follow`, for each direction its place along `start`, and whether it is along falling index."""
+    """The directions of a `follow`: for each its place along `start`, and whether it is along falling index."""
     if scene.start.kind != "follow":
         return [((), False)]
     first = next(iter(scene.sweep.values()))

@@ -62,7 +62,7 @@ def _is_news(record: logging.LogRecord) -> bool:
 
 @contextlib.contextmanager
 def _callbacks_filtered() -> Iterator[None]:
-    """These log what callbacks raise, with a traceback; here without what is no news."""
+    """These log what callbacks raise, with a traceback; here without what is not news."""
     loggers = [logging.getLogger(name) for name in ("concurrent.futures", "tornado.application")]
     for logger in loggers:
         logger.addFilter(_is_news)

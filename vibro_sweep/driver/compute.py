@@ -111,12 +111,12 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
 
 
 def _ends(last: np.ndarray, anew: np.ndarray) -> np.ndarray:
-    """From where chains go on; anew: from there after a point that failed."""
+    """The states from which chains go on; anew: those after a point that failed."""
     return np.where(status.is_valid(last["status"])[:, None], last["end"], anew)
 
 
 def _drop_without_exponents(arrays: dict[str, np.ndarray]) -> None:
-    """Where tangent vectors, but not the orbit, have left the range of the floats: the point is not finite."""
+    """Mark points as not finite where tangent vectors, but not the orbit, have left the range of the floats."""
     results = arrays["results"]
     lost = status.is_valid(results["status"]) & np.isnan(results["lyapunov"]).any(-1)
     if lost.any():

@@ -77,7 +77,7 @@ def _contents(scene: Continuation, of_plane, workers, executor, file, progress) 
 
 
 def _starts(scene: Continuation, names, bounds, pool, file, progress) -> list[Seed]:
-    """Where curves begin, within the bounds."""
+    """The seeds of curves within the bounds."""
     on_branches = scene.origin in BY_BRANCHES
     specials = _on_branches(scene, pool, file, progress) if on_branches else specials_of(scene, file, pool)
     found = [seed_at(special, names) for special in specials if special.type in scene.of]

@@ -17,7 +17,7 @@ ROOM = 64  # impacts of a period there is room for at first
 def energies_of(
     block: Block, steps: np.ndarray, kind: Kind, results: np.ndarray, starts: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """By dataset name, each of the shape of `steps` (n, m). starts: (2, m, 2 N), as of `run_points`."""
+    """The energies by dataset name, each of the shape of `steps` (n, m). starts: (2, m, 2 N), as of `run_points`."""
     from vibro_sweep.engine.energy import new_workspace, run_energy
 
     shape, states = steps.shape, starts.shape[-1]
@@ -68,7 +68,7 @@ def energies_of(
 
 
 def _parts(flat: np.ndarray) -> int:
-    """At most so many parts of a period resolve every rate."""
+    """A number of parts of a period that resolves every rate."""
     rate = flat["rate"] if "rate" in flat.dtype.names else _fastest(flat)
     least = np.maximum(rate, flat["omega"]) * 2 * np.pi / flat["omega"] / WIDTH
     return int(np.max(flat["cells"] + least) + 1)

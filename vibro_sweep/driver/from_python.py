@@ -68,7 +68,7 @@ def sweep(
     output : a file, which is kept and read when numbers are used; needed where the results take more than 1 GB
     mode : as of `run`: "resume" continues an interrupted `output`, "overwrite" replaces it
 
-    Outcomes of points are in `status`. Raises TypeError where `system` is no System, `SceneError` for what is no
+    Outcomes of points are in `status`. Raises TypeError where `system` is not a System, `SceneError` for what is no
     scene, ValueError for more results than go without a file, and what `run` raises.
     """
     built, first = None, {}

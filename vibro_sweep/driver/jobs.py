@@ -31,7 +31,7 @@ def workers_of(workers: int | None, executor: Executor | None) -> Iterator[Execu
 
 
 def _begin() -> None:
-    """Of a worker: Ctrl-C is answered by the parent; where the parent is killed, the worker ends as well."""
+    """Begin a worker: Ctrl-C is answered by the parent; where the parent is killed, the worker ends as well."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 

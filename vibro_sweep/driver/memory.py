@@ -45,7 +45,7 @@ def _allowed() -> float:
 
 
 def _workspace_bytes(scene: Scene, orbits: int) -> int:
-    """Of one thread: tables for as many cells as any point of the sweep needs, records of the orbits side by side."""
+    """Bytes of one thread: tables for the most cells of any point of the sweep, records of the orbits side by side."""
     axes = {}
     for key, values in scene.sweep.items():
         axes[key] = values[np.unique(np.linspace(0, len(values) - 1, LOOKS).astype(int))]

@@ -69,7 +69,7 @@ def source_of(scene: Continuation) -> Source:
 def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
     """What the file says of the oscillator: all its numbers but those along which it is followed.
 
-    A phase `grazing` that changes with what is followed is none of them.
+    A phase `grazing` that changes with what is followed is not one of them.
     """
     found = {name: value for name, value in source.system.parameters().items() if name not in scene.parameter}
     ends = [source.system.replace(**{name: end}) for name, limits in scene.parameter.items() for end in limits]
@@ -170,7 +170,7 @@ def _from_branches(scene: Continuation, key: str) -> list[PeriodicOrbit]:
 
 
 def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[SpecialPoint]:
-    """Where curves begin: at the ends of a sweep's windows, or at a special point of a file.
+    """The special points at which curves begin: the ends of a sweep's windows, or one of a file.
 
     `file` keeps what it takes to find them. Raises ValueError where the point is of a type that has no curve.
     """

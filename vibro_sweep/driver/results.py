@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 Saved = Branch | BifurcationCurve | Windows
 HDF5 = b"\x89HDF"  # with which such a file begins
-ONE = "saved"  # attribute of a file with a single branch or curve, which is no list
+ONE = "saved"  # attribute of a file with a single branch or curve, which is not a list
 
 
 class Held(NamedTuple):

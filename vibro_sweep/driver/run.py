@@ -63,7 +63,7 @@ def run(
 
 
 def _report(path: Path, computed: bool) -> RunReport:
-    """Of a file of branches or curves; `failed` are those that could not be followed to both ends."""
+    """The report on a file of branches or curves; `failed` counts those that could not be followed to both ends."""
     with opened(path, content=False) as (file, _):
         types = CODIMENSION_TWO if text(file, "kind") == CHART else TYPES
         names = np.array([one.name for one in types])[file["special_type"][()]]

@@ -42,8 +42,8 @@ def contents_of(data: "str | Path | xarray.Dataset") -> Iterator[Contents]:
 
 
 class DatasetContents:
-    """As `Contents` of a file (store/arrays.py), of a Dataset or of a part of one that `sel` and the like have cut
-    out. A part has a run id of its own: windows of another part, or of the whole, are not taken for its windows."""
+    """The same as `Contents` of a file (store/arrays.py), of a Dataset or of a part of one that `sel` and the like have
+    cut out. A part has a run id of its own: windows of another part, or of the whole, are not taken for its windows."""
 
     def __init__(self, data: "xarray.Dataset"):
         self._data = data
@@ -77,6 +77,6 @@ class DatasetContents:
         return [str(dim) for dim in self._data[name].dims]
 
     def values(self, name: str, first: Sequence[str] = ()) -> np.ndarray:
-        """Of a quantity or a dimension; these dimensions first, in their order."""
+        """The values of a quantity or a dimension, with these dimensions first, in their order."""
         variable = self._data[name].variable
         return np.asarray((variable.transpose(*first, ...) if first else variable).values)

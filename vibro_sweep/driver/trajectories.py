@@ -14,7 +14,8 @@ ROOM = 4096  # impacts there is room for at first
 def trajectories_of(
     block: Block, table: np.ndarray, results: np.ndarray, workspace: Workspace, lead: tuple[int, ...]
 ) -> dict[str, np.ndarray]:
-    """By dataset name; compiled only for scenes that ask for it. table, results: as of `_compute`."""
+    """The trajectories by dataset name; compiled only for scenes that ask for them. table, results: as of
+    `_compute`."""
     from vibro_sweep.engine.trajectory import new_trajectories, run_trajectories
 
     states, shape = 2 * block.system.masses, results.shape

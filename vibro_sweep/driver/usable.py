@@ -1,6 +1,6 @@
 """Whether a piece that an interrupted run has kept is what a worker returns: others can edit a part, checksums and all.
 
-A piece that is none is computed again.
+A piece that is not usable is computed again.
 """
 
 from collections.abc import Iterable, Mapping
@@ -18,27 +18,27 @@ Arrays = Mapping[str, np.ndarray]
 
 
 def is_window(piece: Arrays) -> bool:
-    """Of `window_of`: a branch, or the reason why there is none."""
+    """Whether a piece is a result of `window_of`: a branch, or the reason why there is none."""
     if set(piece) == {"reason"}:
         return piece["reason"].shape == () and 0 <= piece["reason"] < len(REASONS)
     return _fits(piece, branches.SHAPES, columns(WINDOWS, [], 0))
 
 
 def is_branch(piece: Arrays) -> bool:
-    """Of `compute_branch`."""
+    """Whether a piece is a result of `compute_branch`."""
     shapes = branches.SHAPES | seeds.SHAPES | {"n m 2N": "section"}
     return _fits(piece, shapes, columns(WINDOWS, [], 0)) and seeds.fit_together(piece)
 
 
 def is_curve(piece: Arrays) -> bool:
-    """Of `compute_curve`: nothing, where there is no curve."""
+    """Whether a piece is a result of `compute_curve`; it is empty where there is no curve."""
     return not piece or (
         _fits(piece, curves.SHAPES | seeds.SHAPES, columns(CHART, [], 0)) and seeds.fit_together(piece)
     )
 
 
 def is_probe(piece: Arrays) -> bool:
-    """Of `probe`."""
+    """Whether a piece is a result of `probe`."""
     shapes = seeds.SHAPES | {"": "reason"}
     return _fits(piece, shapes, []) and 0 <= piece["reason"] < len(EDGES) and seeds.fit_together(piece)
 

@@ -109,7 +109,7 @@ def run_windows(
 
 
 class NothingKept:
-    """Of a run without a file."""
+    """The pieces of a run without a file."""
 
     def get(self, _key: str, _usable: Callable[[Arrays], bool]) -> None:
         """Nothing is known already."""

@@ -47,7 +47,8 @@ def keep_averages(section, T, repeat, o, result):
 
 @jit
 def standard_error(section, i, mean):
-    """Of the mean of coordinate i, from the scatter over parts of several lengths; NaN of a short record."""
+    """The standard error of the mean of coordinate i, from the scatter of parts of several lengths; NaN: a short
+    record."""
     largest, parts = np.nan, COARSEST
     while parts <= min(FINEST, len(section)):
         size, scatter = len(section) // parts, 0.0

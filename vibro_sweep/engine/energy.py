@@ -39,7 +39,7 @@ class Workspace(NamedTuple):
 
 
 def new_workspace(parts: int, room: int, masses: int) -> Workspace:
-    """For periods of at most so many parts, impacts and rests."""
+    """Arrays for periods of at most so many parts, impacts and rests."""
     longest, states = parts + 1 + 2 * room, 2 * masses
     return Workspace(
         np.empty((1, room, 3 + states)),
@@ -54,7 +54,7 @@ def new_workspace(parts: int, room: int, masses: int) -> Workspace:
 
 @jit
 def parts_of(q):
-    """Of a cell, so that each resolves every rate."""
+    """The number of parts of a cell in each of which every rate is resolved."""
     return int(math.ceil(q.width / q.step - 1e-3))  # noqa: RUF046  # compiled it is a float
 
 

@@ -24,7 +24,7 @@ IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float)
 
 
 def impact_of(masses: int) -> np.dtype:
-    """Of oscillators that are no System."""
+    """The record of impacts of oscillators that are not a System."""
     return np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x", float, masses), ("xdot", float, masses)])
 
 
@@ -150,7 +150,7 @@ class Engine:
         )  # fmt: skip
 
     def checked(self, state) -> np.ndarray:
-        """The state in contact coordinates. ValueError where it is none, or behind a stop."""
+        """The state in contact coordinates. Raises ValueError where it is not a state, or behind a stop."""
         values = self.to_contact(checked_state(state, self.kind.masses))
         if not self.stops.left <= values[0] <= self.stops.right:
             low, high, gap = (float(one + self.middle) for one in (self.stops.left, self.stops.right, values[0]))

@@ -112,7 +112,7 @@ class PeriodMap:
         return self.system.family.derivative(name, self._linear)
 
     def _equations(self, parameters: bool) -> Equations:
-        """In the order of kernels; the phase is that of the engine that carries the orbits."""
+        """The equations in the order of kernels; the phase is that of the engine that carries the orbits."""
         q, slopes = self._linear, self._slopes(parameters)
         here, moved = motion(q), [motion_slopes(q, slope) for slope in slopes]
         size, states = len(here.A), self._engine.states
@@ -167,7 +167,7 @@ class PeriodMap:
                 on_stop = np.isin(contact[chosen, 0], [engine.stops.left, engine.stops.right])
                 events = np.concatenate([records.impacts[..., :5], engine.impact_states(records.impacts)], -1)
                 found = np.empty((len(chosen), states, columns))
-                # copies: fields of several records are no contiguous arrays, of one they are, and kernels are compiled
+                # copies: fields of several records are not contiguous arrays, of one they are, and kernels are compiled
                 # for each of the two
                 hits, rests = orbits["impacts_logged"].copy(), orbits["rests_logged"].copy()
                 differentiate(

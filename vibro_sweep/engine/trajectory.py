@@ -81,7 +81,8 @@ def count_faster(hits, speed):
 
 @jit
 def keep_fastest(hits, impacts, q, stops):
-    """Of the logged impacts, (n, 7), as many as there is room for: those that are left out end chatter sequences."""
+    """Keep as many of the logged impacts, (n, 7), as there is room for; those that are left out end chatter
+    sequences."""
     slow = -1.0
     if len(hits) > len(impacts):
         below, slow = 0.0, 0.0

@@ -11,7 +11,7 @@ SINGULAR = 1e-12  # of the largest eigenvalue of K: a smaller one may be roundin
 
 
 class Confinement(NamedTuple):
-    """In contact coordinates; states are interleaved."""
+    """A confining motion in contact coordinates; states are interleaved."""
 
     steady: np.ndarray  # (2 N,): the steady motion at t = 0
     middle: float  # of its gap, and

@@ -47,7 +47,7 @@ class ExistingFileError(FileError, FileExistsError):
 
 
 def checked_path(name: str, value: str | Path) -> Path:
-    """The path of a file. Raises TypeError for what is no path, ValueError for one that no file can have."""
+    """The path of a file. Raises TypeError for what is not a path, ValueError for one that no file can have."""
     check_type(name, value, (str, Path), WHAT)
     _check_name(name, value, str(value))
     return Path(value)
@@ -77,11 +77,11 @@ def _check_name(name: str, value: object, path: str) -> None:
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """What is in a file, or its first bytes. Raises FileError where it is none, or cannot be read."""
+    """What is in a file, or its first bytes. Raises FileError where it is not a file, or cannot be read."""
     try:
         with open(path, "rb", opener=_without_waiting) as file:
             if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                raise FileError(path, "is no regular file")
+                raise FileError(path, "is not a regular file")
             return file.read(most)
     except FileError:
         raise

@@ -24,10 +24,10 @@ CLASSICAL = 1e-13  # of the matrices: what may couple modes and be neglected
 ROUNDING = 2.0**-48  # of the terms of a sum: what rounding may leave of it, for each mass
 NO_PLANES = 1e10  # condition from which on coordinates that part what is not coupled are tried
 NO_PART = 1e-14  # of the terms of the gap: what is rounding
-UNVISITED = 1e-10  # share of the gap in a plane, in the metric of the masses, that is none
+UNVISITED = 1e-10  # share of the gap in a plane, in the metric of the masses, that counts as zero
 NO_EASE = 1e6  # condition from which on planes of real roots are tried whose e2 has a part in y1
 MAY_BE_NONE = 1e-6  # of the largest root: one that may be 0
-NO_ROOT = 1e-12  # of the largest root: length of the first vector of a plane that is none
+NO_ROOT = 1e-12  # of the largest root: length of the first vector below which there is no plane
 SLOWEST = 1e-5  # of omega: a plane that turns more slowly has the scale of omega
 LEAST_SCALE = 1e-3  # of the rate of a plane: near critical damping it shears instead of turning, and any scale serves
 

@@ -72,7 +72,7 @@ class Oscillator(AnyOscillator):
             return self.given[name]
         if name in self.described:
             return self.numbers[name]
-        raise AttributeError(f"{name!r} is no number of the model {self.model.name}")
+        raise AttributeError(f"{name!r} is not a number of the model {self.model.name}")
 
     def __dir__(self) -> list[str]:
         """Its numbers too, those of lists one by one, for a prompt that completes names."""
@@ -132,7 +132,7 @@ class Oscillator(AnyOscillator):
         return self.family.linear
 
     def replace(self, **changes: Any) -> Oscillator:
-        """A copy with other numbers. Raises ParameterError, also for a name that is none of them."""
+        """A copy with other numbers. Raises ParameterError, also for a name that is not one of them."""
         given = dict(self.given)
         for name, value in changes.items():
             if name in given:
@@ -213,7 +213,7 @@ def _entries(one: Parameter, value: Any) -> list:
     if number_of(value) is not None:
         return [value]  # of one mass
     numbers = array_of(value, 1)
-    if numbers is None and not isinstance(value, (list, tuple)):  # of which the entry is named that is no number
+    if numbers is None and not isinstance(value, (list, tuple)):  # of which the entry is named that is not a number
         raise ParameterError(one.name, value, f"a list of numbers, one for each {one.each}")
     return list(value) if numbers is None else numbers.tolist()
 

@@ -42,7 +42,8 @@ def steady_response(mu_m, mu_k, zeta, f2, omega, mu_c=None) -> tuple[np.ndarray,
 
 
 def _without_modes(mu_m, mu_k, zeta, f2, omega, mu_c) -> tuple[np.ndarray, np.ndarray]:
-    """As `steady_response`, by Cramer's rule: x = Im(X e^{i(omega t + tau)}), (K - omega^2 M + i omega C) X = P."""
+    """The same as `steady_response`, by Cramer's rule: x = Im(X e^{i(omega t + tau)}), (K - omega^2 M + i omega C) X =
+    P."""
     mu_m, mu_k, zeta, f2, omega, mu_c = (np.asarray(value, float) for value in (mu_m, mu_k, zeta, f2, omega, mu_c))
     between = 1 + 2j * zeta * omega
     upper, lower = between - omega**2, between + mu_k + 2j * zeta * mu_c * omega - omega**2 * mu_m
@@ -106,7 +107,7 @@ ROUNDING = 1e-13  # of a static state, relative to it; of 1 - multiplier
 
 
 class Grazing(NamedTuple):
-    """Where the free motion of period T touches the stops.
+    """The touch of the free motion of period T at the stops.
 
     `satisfied`: it exists and is the only one, so that at clearance `b` and phase `tau` there is a double grazing orbit
     (condition 19). `b_right`, `b_left`: clearances at which it touches that stop; NaN where there is no such motion.
@@ -148,7 +149,7 @@ def grazing(system: AnyOscillator) -> Grazing:
 
 
 def _of_the_paper(system) -> Grazing:
-    """For stops on both sides at the same distance."""
+    """The grazing free motion between stops on both sides at the same distance."""
     (d1, d2), (e1, e2) = steady_response(*free_motion(vars(system)))
     # (18), (19)
     b = float(grazing_clearance(vars(system)))
@@ -168,7 +169,7 @@ def _of_the_paper(system) -> Grazing:
 
 
 def _of_any(system: AnyOscillator) -> Grazing:
-    """As `_of_the_paper`, from the complex response: g = g_s + Re(G e^{i(omega t + tau)})."""
+    """The same as `_of_the_paper`, from the complex response: g = g_s + Re(G e^{i(omega t + tau)})."""
     q = system.linear
     left_over = -np.expm1(rates(q) * system.period)  # 1 - multiplier
     unique = not _free(q) and bool((np.abs(left_over) > ROUNDING).all())

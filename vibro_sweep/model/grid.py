@@ -36,7 +36,7 @@ def grid(system: AnyOscillator, axes: dict[str, np.ndarray]) -> dict[str, np.nda
 
 
 def _everywhere(value, shape: tuple[int, ...]) -> np.ndarray:
-    """As np.broadcast_to, which takes six times as long of a number: each block has a dozen of them."""
+    """The same as np.broadcast_to, which takes six times as long for a number: each block has a dozen of them."""
     if isinstance(value, np.ndarray):
         return np.broadcast_to(value, shape)
     number = np.array(value)

@@ -100,7 +100,8 @@ class System(AnyOscillator):
         tau: float | Literal["grazing"] = "grazing",
         stops: Stops = "both",
     ) -> "System":
-        """From physical quantities in SI units: kg, m, s, N (section 2 of the paper). Raises `ParameterError`.
+        """The system with these physical quantities in SI units: kg, m, s, N (section 2 of the paper). Raises
+        `ParameterError`.
 
         Its `units` say what its own, nondimensional numbers are measured in.
         The stops stand at B0 - B and B0 + B; R_left, of the left one, is R where it is left out.
@@ -139,7 +140,7 @@ class System(AnyOscillator):
         return system.replace(mu_c=C2 / C1)
 
     def replace(self, **changes: Any) -> "System":
-        """A copy with other parameters. Raises ParameterError, also for a name that is none of them."""
+        """A copy with other parameters. Raises ParameterError, also for a name that is not one of them."""
         for name in changes:
             if name not in (known := [one.name for one in fields(self)]):
                 raise ParameterError(name, changes[name], f"one of {', '.join(known)}")

@@ -25,7 +25,7 @@ class Range(NamedTuple):
     bounds: dict[str, float]
 
     def holds(self, numbers: np.ndarray) -> np.ndarray:
-        """Where finite numbers are in the range; of the shape of `numbers`."""
+        """Whether finite numbers are in the range; of the shape of `numbers`."""
         good = np.isfinite(numbers)
         for bound, value in self.bounds.items():
             good = good & _HOLDS[bound](numbers, value)

@@ -27,7 +27,7 @@ def number_of(value: object) -> float | None:
 
 
 def array_of(value: object, dimensions: int) -> np.ndarray | None:
-    """Real numbers as an array of floats with so many dimensions, a copy; None where it is none.
+    """Real numbers as an array of floats with so many dimensions, a copy; None where it is not one.
 
     So for rows of different lengths, truth values, complex numbers, words, bytes, masked entries.
     """

@@ -11,7 +11,7 @@ UNMASK = "; of masked data the entries must be filled (`filled`) or left out (`c
 
 
 class _Short(reprlib.Repr):
-    """Of containers the beginning, whatever is in them; of an object that cannot be shown its type."""
+    """A short repr: of containers the beginning, of an object that cannot be shown its type."""
 
     known = (list, tuple, dict, set, frozenset, str, int)
 

@@ -12,7 +12,7 @@ def sentence(text: str) -> str:
 
 
 def arguments(given: Mapping[str, object]) -> tuple[str, bool]:
-    """As they are given in Python, and whether these are all of them."""
+    """The arguments as they are given in Python, and whether these are all of them."""
     known = {name: value for name, value in given.items() if value is not None}
     full = ", ".join(f"{name}={plain(value)!r}" for name, value in known.items())
     if len(full) <= LONGEST:
@@ -39,7 +39,7 @@ def _entries(entries: dict[str, object]) -> str:
 
 
 def _brief(value: object, text=repr) -> str:
-    """Of a matrix its size, of a list of many numbers the first ones."""
+    """A short text: of a matrix its size, of a list of many numbers the first ones."""
     if not isinstance(value, tuple) or len(value) <= FEW:
         return text(plain(value))
     if isinstance(value[0], tuple):
@@ -50,5 +50,5 @@ def _brief(value: object, text=repr) -> str:
 
 
 def plain(value: object) -> object:
-    """As it is given: lists in place of tuples, but of those with a text of their own."""
+    """The value as it is given: lists in place of tuples, but of those with a text of their own."""
     return [plain(one) for one in value] if type(value) in (tuple, list) else value

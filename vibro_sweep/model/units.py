@@ -38,7 +38,7 @@ ALLOWED = "SI, or three positive numbers: what a mass, a length and a time of 1 
 
 
 def units_from(value: Any) -> Units | None:
-    """None for what is none: neither the word SI nor three positive numbers."""
+    """None for values that are not units: neither the word SI nor three positive numbers."""
     if isinstance(value, str):
         return SI if value == "SI" else None
     found = array_of(value, 1)
@@ -67,7 +67,7 @@ def unit_in(declared: str, units: Units | None) -> str:
 
 
 def _powers(unit: str) -> Counter:
-    """The powers of kg, m and s; of rad, and of 1, which is none."""
+    """The powers of kg, m and s; of rad, and of 1, which are zero."""
     found: Counter = Counter()
     for word in unit.split():
         name, power = re.fullmatch(r"(\D+?|1)(-?\d*)", word).groups()

@@ -63,7 +63,7 @@ KINDS = {name: _DRAWN[name] for name in PICTURES}
 def kinds(data: "str | Path | xarray.Dataset") -> list[str]:
     """Kinds of picture that a file, or a Dataset, can show, the default one first; empty where it has nothing to show.
 
-    Raises `PlotError` where it is none of vibro-sweep's.
+    Raises `PlotError` where it is not one of vibro-sweep's.
     """
     with Result(data) as result:
         return _kinds(result)
@@ -192,5 +192,5 @@ def _draw(result: Result, kind: str) -> Figure | Panel:
 
 
 def default_name(path: Path) -> str:
-    """Of the picture of a file, FILE.png."""
+    """The default name of the picture of a file, FILE.png."""
     return path.name.removesuffix(".part").removesuffix(".h5") + ".png"

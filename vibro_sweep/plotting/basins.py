@@ -56,7 +56,7 @@ def basins(result: Result):
 
 
 def _mark(ax, result, members, marker, stored):
-    """Where an attractor lies in the plane: section points of one orbit on it, or their mean."""
+    """Mark an attractor in the plane: section points of one orbit on it, or their mean."""
     place = tuple(map(int, np.argwhere(members)[0]))
     names = [key.removeprefix("start_") for key in result.sweep]
     if stored:
@@ -95,7 +95,7 @@ def _attractors(result):
 
 
 def _kinds(result):
-    """As `_attractors`, for kinds of them."""
+    """The same as `_attractors`, for kinds of attractors."""
     names = list(KINDS)
     which = kind(result.array("period")[:, :, 0], result.array("average")[:, :, 0])
     label = np.select([which == name for name in names], range(len(names)), np.nan)

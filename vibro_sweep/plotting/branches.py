@@ -113,7 +113,8 @@ def _lines(ax, file: FlatFile, values: list[np.ndarray], together: np.ndarray) -
 
 
 def _drawn(file: FlatFile, name: str, values: np.ndarray, all_sections: bool) -> list[np.ndarray]:
-    """Of each branch what is drawn, (lines, its points): over a sweep all section states, mirror images among them."""
+    """The lines that are drawn of each branch, (lines, its points): over a sweep all section states, mirror images
+    among them."""
     ends = np.cumsum(file["branch_row_size"])[:-1]
     if not all_sections:
         return [part.reshape(len(part), -1).T for part in np.split(values, ends)]
@@ -139,7 +140,8 @@ def _marks(ax, file: FlatFile, values: np.ndarray) -> list[tuple[str, tuple[floa
 
 
 def _places(file: FlatFile) -> np.ndarray:
-    """Points of the special points; of a sticking onset, which is none, the end of the branch before it."""
+    """Points of the special points; of a sticking onset, which is not a point of a branch, the end of the branch before
+    it."""
     point, branch = file["special_point"].copy(), file["special_branch"]
     for at in np.flatnonzero(point < 0):
         begins, ends = (int(file[name][branch[at]]) for name in ("branch_begins", "branch_ends"))
@@ -163,7 +165,7 @@ def _sweep(ax, options: PlotOptions, file: FlatFile, name: str) -> None:
     """The section points of a sweep, below everything."""
     with Result(sweep_below(options.over), PlotOptions(variable=name, xlim=options.xlim, ylim=options.ylim)) as result:
         if list(result.sweep) != file.parameters or name not in sweeps.section_variables(result):
-            raise PlotError(f"over: {result.path} is no sweep over {file.parameters[0]} with section points {name}")
+            raise PlotError(f"over: {result.path} is not a sweep over {file.parameters[0]} with section points {name}")
         ((_, values),) = result.sweep.items()
         order = sweeps.in_range(result)
         sweeps.section(ax, result, values[order], order)

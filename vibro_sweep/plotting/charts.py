@@ -78,7 +78,7 @@ def _over(file: FlatFile, options: PlotOptions, ax):
     """Over the plane of a sweep in the same two numbers."""
     with Result(sweep_below(options.over), replace(options, over=None), ax) as result:
         if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
-            raise PlotError(f"over: {result.path} is no plane over {' and '.join(file.parameters)}")
+            raise PlotError(f"over: {result.path} is not a plane over {' and '.join(file.parameters)}")
         if options.variable is not None and options.variable not in planes.variables(result):
             told = ", ".join(planes.variables(result))
             raise PlotError(f"variable {shown(options.variable)} is not allowed; there are {told}")

@@ -17,7 +17,7 @@ COLOURS = {one.name: one.curve_colour for one in TYPES if one.condition}
 # of orbits of different periods, beside the colours of the types but for the graze's
 ORBITS = ("#8a8a96", "#5ce4ff", "#521433", "#9aca91", "#425a8a", "#ff5c5c", "#8a425a", "#660099", "#ff00d5")
 MOSTLY, DIFFERENT = 0.6, 3  # from this part of the curves on, and so many periods, one type is told apart by periods
-VIRTUAL = (0, (1, 1.5))  # dots of what is no motion
+VIRTUAL = (0, (1, 1.5))  # dots of what is not a motion
 MANY = 100  # curves
 SHORT = {one.name: one.label for one in CODIMENSION_TWO if one.label}
 
@@ -76,7 +76,7 @@ def draw(ax, curves: list[Drawn], halo: bool = False) -> None:
 
 
 def _joined(shown: np.ndarray) -> np.ndarray:
-    """With the points beside, so that parts of a line touch."""
+    """The mask with the points beside, so that parts of a line touch."""
     result = shown.copy()
     result[1:] |= shown[:-1]
     return result
@@ -107,7 +107,7 @@ def _filled(curve: Drawn, pieces: int = 8) -> np.ndarray:
 
 
 def handles(curves: list[Drawn], frame=None) -> list[Line2D]:
-    """Of a legend: the types, what thin and dotted lines mean where there are any, and the names of points.
+    """The handles of a legend: the types, what thin and dotted lines mean where there are any, and the names of points.
 
     frame : ((left, right), (low, high)) of the picture, where that is not all
     """

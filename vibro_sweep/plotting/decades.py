@@ -37,7 +37,7 @@ def scale_axis(ax, values) -> None:
 
 
 def norm(values) -> Normalize | None:
-    """Of a colour scale for these values, None for an even one."""
+    """The norm of a colour scale for these values, None for an even one."""
     if not spans(values):
         return None
     least, most, zero = _ends(values)

@@ -107,7 +107,7 @@ def _grid(ax, values):
 
 
 def _repeated(repeats, group) -> np.ndarray:
-    """For each column, (columns, starts): after how many points all of its orbits repeat; 0 where they differ."""
+    """The number of points, (columns, starts), after which all orbits of a column repeat; 0 where they differ."""
     missing = -len(repeats) % group
     columns = np.pad(repeats, ((0, missing), (0, 0)), mode="edge").reshape(-1, group, repeats.shape[1])
     return np.where((columns == columns[:, :1]).all(axis=1), columns[:, 0], 0)
@@ -146,7 +146,7 @@ def _orbit(cloud: Cloud, rows, start, n) -> tuple[np.ndarray, float]:
 
 
 def _same_orbit(cloud: Cloud, lines, group, tolerance) -> np.ndarray:
-    """In which columns both starts end on one periodic orbit."""
+    """The columns in which both starts end on one periodic orbit."""
     same = (lines[:, 0] == lines[:, 1]) & (lines[:, 0] > 0)
     for n in np.unique(lines[same, 0]):
         columns = np.flatnonzero(same & (lines[:, 0] == n))

@@ -66,7 +66,7 @@ class FlatFile:
         return shown_unit(self._units.get(name))
 
     def types(self) -> list[str]:
-        """Of all special points; of a graze with its kind: graze or nonsmooth_fold."""
+        """The types of all special points; of a graze with its kind: graze or nonsmooth_fold."""
         names = [TYPES[code].name for code in self["special_type"].tolist()]
         kinds = [KINDS[code] for code in self["special_kind"].tolist()]
         return [kind if kind == "nonsmooth_fold" else name for name, kind in zip(names, kinds, strict=True)]

@@ -28,7 +28,7 @@ def multipliers(file: FlatFile) -> np.ndarray:
 
 
 def at_circle(moduli: np.ndarray, bifurcates: bool) -> float:
-    """Of the moduli at a special point the one that is drawn: where a multiplier is on the unit circle, this one."""
+    """The modulus at a special point that is drawn: where a multiplier is on the unit circle, this one."""
     return moduli[np.argmin(np.abs(moduli - 1))] if bifurcates else moduli.max()
 
 

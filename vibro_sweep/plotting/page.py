@@ -48,8 +48,8 @@ class Picture(Figure):
         return content.getvalue(), {"width": round(width), "height": round(height)}
 
     def subplots(self, nrows: int = 1, ncols: int = 1, *, squeeze: bool = True, **options):
-        """As of any figure; on a narrow page all in one column, the rows of each column one after the other where these
-        share their ordinates, else row after row."""
+        """The subplots as of any figure; on a narrow page all in one column, the rows of each column one after the
+        other where these share their ordinates, else row after row."""
         if self.narrow and self.grows:
             self.set_figheight(self.get_figheight() * ncols * (STACKED if nrows > 1 else 1))
         if not (self.narrow and ncols > 1):
@@ -74,7 +74,7 @@ class Picture(Figure):
         self.suptitle(title)
 
     def _wrapped(self, line: str) -> list[str]:
-        """In lines that are as wide as the page, broken behind commas and semicolons, else between words."""
+        """The text in lines as wide as the page, broken behind commas and semicolons, else between words."""
         found = [""]
         for part in re.split(r"(?<=[,;]) (?=\S)", line):
             for piece in [part] if self._fits(part) else part.split(" "):

@@ -22,7 +22,7 @@ class Panel:
         return self.ax if squeeze else np.array([[self.ax]])
 
     def legend(self, *handles, **options) -> None:
-        """In a box inside the axes: the figure around them is not ours. One that the axes have stays."""
+        """Draw the legend inside the axes, since the figure around them is not ours. One that the axes have stays."""
         if old := self.ax.get_legend():
             self.ax.add_artist(old)
         self.ax.legend(*handles, **options | {"loc": "best", "ncols": 1, "frameon": True})

@@ -28,7 +28,7 @@ class Path(NamedTuple):
 
     @property
     def rests(self) -> np.ndarray:
-        """Where the mass rests on a stop, bool (n,)."""
+        """Whether the mass rests on a stop, bool (n,)."""
         gap, rate = ("gap", "gap_velocity") if "gap" in self.states else ("x1", "v1")
         return np.isin(self[gap], self.stops) & (self[rate] == 0)
 

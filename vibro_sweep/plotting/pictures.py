@@ -63,7 +63,7 @@ def _replaceable(output: Path, overwrite: bool, inputs: Collection[Path]) -> nam
         raise PlotError(f"output {output} {why}")
     found = names.stamp(output)
     if found and not overwrite and not unchanged(output):
-        raise PlotError(f"output {output} exists, and is no picture that vibro-sweep drew; --overwrite replaces it")
+        raise PlotError(f"output {output} exists, and is not a picture that vibro-sweep drew; --overwrite replaces it")
     return found
 
 

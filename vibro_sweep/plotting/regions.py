@@ -49,7 +49,7 @@ _STYLE = {
 
 
 def _numbers(ax, pixels, axis) -> np.ndarray:
-    """Where pixels (n,) along an axis, 0 or 1, lie in its numbers."""
+    """The values along an axis, 0 or 1, at pixels (n,)."""
     places = np.zeros((len(pixels), 2))
     places[:, axis] = pixels
     return ax.transData.inverted().transform(places)[:, axis]
@@ -70,7 +70,7 @@ def _at(X, Y, x, y, values) -> np.ndarray:
 
 
 def _cell(places, borders) -> np.ndarray:
-    """Of each place the number of the cell between rising borders (k + 1,) that it lies in; -1: in none."""
+    """The index of the cell between rising borders (k + 1,) in which each place lies; -1: in none."""
     found = np.searchsorted(borders, places, side="right") - 1
     return np.where((found >= 0) & (found < len(borders) - 1), found, -1)
 

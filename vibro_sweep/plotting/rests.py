@@ -39,7 +39,7 @@ def cells(ax, result, columns, rows, corners) -> None:
 
 
 def patch() -> Patch:
-    """Of marked cells, for a legend."""
+    """The patch of marked cells for a legend."""
     return Patch(**_HATCHED | {"linewidth": 1.0}, label=NAME)
 
 
@@ -63,5 +63,5 @@ def along(ax, way: Path, x: str, y: str) -> None:
 
 
 def handle() -> Patch:
-    """Of the tint, for a legend."""
+    """The handle of the tint for a legend."""
     return Patch(color=TINT, label=NAME)

@@ -58,7 +58,7 @@ class Result:
         self.sweep = {name: self.coordinate(name).astype(float) for name in names}
         for name, values in self.sweep.items():
             if not np.isfinite(values).all():
-                raise PlotError(f"{self.path} is damaged: the axis {name} has values that are no numbers")
+                raise PlotError(f"{self.path} is damaged: the axis {name} has values that are not numbers")
         self._one_start = self._source.number_of_dimensions("status") == len(names)
         starts = [""] if self._one_start else self.coordinate("start")
         self.starts = [start.decode() if isinstance(start, bytes) else str(start) for start in starts]
@@ -156,7 +156,7 @@ class Result:
         return None if value is None else float(value)
 
     def stops(self, place) -> dict[int, float]:
-        """Where the stops are at a place in the sweep: side (+1 right, -1 left) -> the gap there."""
+        """The stops at a place in the sweep: side (+1 right, -1 left) -> the gap there."""
         b, offset = self.number("b", place), self.number("offset", place) or 0.0
         return {} if b is None else {side: offset + side * b for side in self.sides}
 
@@ -167,7 +167,7 @@ class Result:
 
     @property
     def masses(self) -> int:
-        """As many as have a displacement in the file; two where it has none."""
+        """The number of masses that have a displacement in the file; two where it has none."""
         names = (f"{of}x{n}" for n in range(1, MOST_MASSES + 1) for of in ("", "trajectory_"))
         return max((int(name.partition("x")[2]) for name in names if name in self), default=2)
 
@@ -194,7 +194,7 @@ class Result:
         return self.significant * np.asarray(error)
 
     def is_chaotic(self) -> np.ndarray:
-        """Where lambda_1 > 0 beyond its errors, if they are stored; bool, shape (*sweep, starts)."""
+        """Whether lambda_1 > 0 beyond its errors, if they are stored; bool, shape (*sweep, starts)."""
         return self._sign_of(self.array("lyapunov", 0)) > 0
 
     def largest_exponent(self) -> np.ndarray:
@@ -233,7 +233,7 @@ class Result:
         return ", ".join([*values, *([name if self.follow else f"start {name}"] if name else [])])
 
     def page(self, height: float, title: str) -> Figure | Panel:
-        """Where a picture is drawn."""
+        """The page on which a picture is drawn."""
         return self.options.page(height, title) if self.ax is None else Panel(self.ax, title)
 
     def title(self, what="") -> str:

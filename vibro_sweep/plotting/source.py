@@ -72,11 +72,11 @@ class FileSource:
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Of the file, texts as `str`."""
+        """The attributes of the file, texts as `str`."""
         return {key: _told(value) for key, value in self._file.attrs.items()}
 
     def attribute(self, name: str, key: str) -> Any:
-        """Of a dataset; None where it has no such."""
+        """An attribute of a dataset; None where it has no such."""
         return _told(self._file[name].attrs.get(key))
 
     def __contains__(self, name: str) -> bool:
@@ -102,7 +102,7 @@ class DatasetSource:
         if not hasattr(data, "data_vars"):
             raise ArgumentTypeError(not_allowed("data", data, "the path of a file, or a Dataset"))
         if "status" not in data or "sweep_dimensions" not in data.attrs:
-            raise PlotError("this dataset is none of `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
+            raise PlotError("this dataset is not from `vibro_sweep.open` or `vibro_sweep.sweep`: it has no status")
         self._data, self.name = data, name_of(data)
 
     def close(self) -> None:

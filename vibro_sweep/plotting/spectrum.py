@@ -47,7 +47,7 @@ def _keep_the_leading_ones_legible(ax, exponents):
 
 
 def _strips(ax, values, lost, colours):
-    """At the bottom, which exponents are -infinity: their directions are lost. lost : (values, exponents)"""
+    """Draw at the bottom which exponents are -infinity: their directions are lost. lost : (values, exponents)"""
     rows = np.flatnonzero(lost.any(axis=0))
     if not len(rows):
         return

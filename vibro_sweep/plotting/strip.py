@@ -74,7 +74,8 @@ def ends_over(ax, result: Result) -> None:
 
 
 def lanes_of(lo: np.ndarray, hi: np.ndarray, apart: float) -> list[int]:
-    """For each interval the first lane in which the one before it has ended; the last lane takes what is left."""
+    """The lane of each interval: the first in which the interval before it has ended; the last lane takes what is
+    left."""
     ends, result = [-np.inf] * LANES, [0] * len(lo)
     for i in np.argsort(lo, kind="stable"):
         lane = next((n for n, end in enumerate(ends) if end + apart <= lo[i]), LANES - 1)

@@ -125,7 +125,7 @@ def stop_name(result, side) -> str:
 
 
 def exponent_colour(i) -> str:
-    """Of the i-th exponent, from 0; the fifth and all below have one."""
+    """The colour of the i-th exponent, from 0; the fifth and all below share one."""
     return EXPONENTS[i] if i < len(EXPONENTS) else FAINT
 
 

@@ -109,7 +109,7 @@ def _stack(result, panels, what):
 
 
 def reach(values) -> tuple[float, float]:
-    """From where to where an axis over rising values leads: half a step beyond them, but not far."""
+    """The limits of an axis over rising values: half a step beyond them, but not far."""
     borders = edges(values)
     most = 0.02 * (values[-1] - values[0]) or np.inf
     return max(borders[0], values[0] - most), min(borders[-1], values[-1] + most)
@@ -128,7 +128,7 @@ def in_range(result) -> np.ndarray:
 
 
 def mark_grazing(axes, result, low, high):
-    """In each panel over b from low to high: where the free motion touches the stops, and where else the map was
+    """Mark in each panel over b from low to high where the free motion touches the stops, and where else the map was
     expanded."""
     marks = [("b_star", f"grazing, {symbol('b_star')}", (0, (4, 2)))]
     marks += [

@@ -62,7 +62,7 @@ class Continuation:
 
         What belongs to another `origin`, as `periods`, `special` and `largest` may, is left out.
 
-        Raises SceneError for what is no scene.
+        Raises SceneError for what is not a scene.
         """
         known = [field.name for field in fields(self) if field.name not in _ABOUT]
         for key in changes:

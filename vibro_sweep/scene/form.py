@@ -115,7 +115,7 @@ class OrbitForm(Form):
 
 
 class SectionForm(Form):
-    """Where an orbit becomes points."""
+    """The section, on which an orbit becomes points."""
 
     kind: Literal["phase", "impact"] = Field(
         description="phase: the state at t = 0 mod T; impact: the state just before each impact on one stop"

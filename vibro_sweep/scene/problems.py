@@ -51,7 +51,7 @@ def problem(path: str, value: object, text: str) -> str:
 
 
 def _told(value: object, levels: int = LONGEST):
-    """As much of a value as a message shows, for JSON."""
+    """The part of a value that a message shows, for JSON."""
     if isinstance(value, list) and levels:
         return [_told(item, levels - 1) for item in value[:LONGEST]]
     if isinstance(value, dict) and levels:
@@ -121,7 +121,7 @@ def _line(item, form, data) -> str:
 
 
 def _unknown(loc, keys: list[str], given, data) -> str:
-    """What is wrong with a key that is none, and what it may stand for."""
+    """The message for a word that is not a key, and the key that may be meant."""
     key, place = str(loc[-1]), loc[0]
     if given is None and (hint := slips.key_without_value(cut(key))):
         return hint

@@ -12,7 +12,7 @@ HDF5 = b"\x89HDF\r\n\x1a\n"  # how such files begin
 
 
 def text_of(path: str | Path) -> tuple[str, str]:
-    """The text of a YAML file, and its name. Raises SceneError for what is no text, and as `read_bytes` does."""
+    """The text of a YAML file, and its name. Raises SceneError for what is not a text, and as `read_bytes` does."""
     path = checked_path("path", path)
     name = os.fsencode(path.name).decode(errors="replace")  # the name of a file need not be text
     data = read_bytes(path, MAX_BYTES + 1)

@@ -88,7 +88,7 @@ class Scene:
 
         Each is given as in YAML or as a Scene has it; None: the default.
 
-        Raises SceneError for what is no scene.
+        Raises SceneError for what is not a scene.
         """
         known = [field.name for field in fields(self) if field.name not in _ABOUT]
         for key in changes:

@@ -15,7 +15,7 @@ from .problems import problem
 
 @dataclass(frozen=True)
 class Start:
-    """Where orbits begin at t = 0. `kind`: "state" | "random" | "follow"."""
+    """The states of orbits at t = 0. `kind`: "state" | "random" | "follow"."""
 
     kind: str = "state"
     state: tuple[float, ...] = ()  # (x1, v1, ..., xN, vN); of a `follow`: of its first point

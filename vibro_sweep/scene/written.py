@@ -147,7 +147,7 @@ def _system(system: AnyOscillator, swept) -> dict[str, Any]:
 
 
 def _axis(values: np.ndarray) -> dict[str, Any]:
-    """By its ends where these give the same values, bit for bit."""
+    """The axis as data, by its ends where these give the same values, bit for bit."""
     if len(values) >= SHORTEST_PROGRESSION:
         ends = {"start": float(values[0]), "stop": float(values[-1]), "num": len(values)}
         found, _ = axis_values("", CountAxis(**ends))

@@ -99,7 +99,8 @@ def make(path: Path) -> HeldPart:
 
 
 def hold(path: Path) -> HeldPart:
-    """The part that is there. Raises FileNotFoundError, PartError for what is no file of its own, BlockingIOError."""
+    """The part that is there. Raises FileNotFoundError, PartError for what is not a file of its own,
+    BlockingIOError."""
     return _held(path, os.O_RDWR)
 
 

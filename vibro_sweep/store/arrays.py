@@ -32,14 +32,14 @@ class Contents:
 
     @cached_property
     def sizes(self) -> dict[str, int]:
-        """Of all dimensions."""
+        """The sizes of all dimensions."""
         found = {axis: len(self._file[axis]) for axis in axes_of(self._file)}
         for name in self.names:
             found |= zip(self.dims(name), self._file[name].shape, strict=True)
         return found
 
     def values(self, name: str, first: Sequence[str] = ()) -> np.ndarray:
-        """Of a quantity or a dimension; these dimensions first, in their order."""
+        """The values of a quantity or a dimension, with these dimensions first, in their order."""
         values = self._file[name][()]
         if not first:
             return values

@@ -40,7 +40,7 @@ def text(of: h5py.File | h5py.Dataset, name: str) -> str:
     if isinstance(value, bytes):
         value = value.decode()
     if not isinstance(value, str):
-        raise ValueError(f"its attribute `{name}` is no text")
+        raise ValueError(f"its attribute `{name}` is not a text")
     return value
 
 
@@ -73,10 +73,10 @@ def check_numbers(file: h5py.File) -> None:
     for name in NUMBERS:
         value = np.asarray(file.attrs.get(name, 0))
         if value.ndim or value.dtype.kind not in "if":
-            raise ValueError(f"its attribute `{name}` is no number")
+            raise ValueError(f"its attribute `{name}` is not a number")
     along = np.asarray(file.attrs.get("contact_normal", [1.0]))
     if along.ndim != 1 or along.dtype.kind not in "if" or not np.isfinite(along).all():
-        raise ValueError("its attribute `contact_normal` is no list of numbers")
+        raise ValueError("its attribute `contact_normal` is not a list of numbers")
     found = {name: text(file, name) for name in WORDS if name in file.attrs}
     if found.get("dynamics") == "map":
         file.attrs["order"]  # without which nobody can tell what was iterated
@@ -95,6 +95,6 @@ def check_dataset(file: h5py.File, name: str) -> None:
         raise ValueError(f"`{cut(name)}` is missing, or is a link")
     dataset = file[name]
     if not isinstance(dataset, h5py.Dataset):
-        raise ValueError(f"`{cut(name)}` is no dataset")
+        raise ValueError(f"`{cut(name)}` is not a dataset")
     if dataset.is_virtual or dataset.external:
         raise ValueError(f"the numbers of `{name}` are in another file")

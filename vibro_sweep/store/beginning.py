@@ -89,7 +89,7 @@ def check_places(path: Path, mode: str, inputs: Collection[Path]) -> Path:
 
 
 def check_mode(mode: object) -> None:
-    """Raise StoreError for a word that is none of `MODES`."""
+    """Raise StoreError for a word that is not one of `MODES`."""
     if not (isinstance(mode, str) and mode in MODES):
         raise StoreError(not_allowed("mode", mode, f"one of {', '.join(map(repr, MODES))}"))
 
@@ -150,7 +150,7 @@ def _of_complete(scene: Scene, path: Path, part: Path, stack: contextlib.ExitSta
 
 
 def _begun(scene: Scene, held: HeldPart, path: Path, replaces: Stamp | None) -> Writer:
-    """With nothing computed yet, in place of what is in the part."""
+    """Begin the part with nothing computed yet, in place of what is in it."""
     with contextlib.suppress(PartError):  # overwritten
         unfinished(path, parts.read_head(held.file).run_id).unlink(missing_ok=True)
     try:
@@ -167,7 +167,7 @@ def _begun(scene: Scene, held: HeldPart, path: Path, replaces: Stamp | None) -> 
 
 
 def _continued(scene: Scene, held: HeldPart, path: Path) -> Writer | Complete:
-    """With what was computed until a run was interrupted."""
+    """Continue the part with what was computed until its run was interrupted."""
     head = parts.read_head(held.file)
     with skeleton(held.file, held.path) as file:
         check_scene(file, held.path, scene)

@@ -53,5 +53,5 @@ def units(file: h5py.File, frame: Frame) -> Iterator[Piece]:
 
 
 def now() -> str:
-    """As the history of a file has it."""
+    """The time as the history of a file has it."""
     return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")

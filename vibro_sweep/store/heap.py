@@ -21,7 +21,7 @@ class HeapError(ValueError):
 
 
 def collections(file: BinaryIO) -> list[int]:
-    """Where the collections of a file begin."""
+    """The places where the collections of a file begin."""
     found, at = [], 0
     while (at := parts.find(file, START, at)) < parts.size(file):
         found.append(at)

@@ -40,7 +40,7 @@ def frame_of(file: h5py.File, names: Collection[str]) -> Frame:
 
 
 class Index:
-    """Where the blocks of a part are, and the notes of its runs.
+    """The index of the blocks of a part, with the notes of its runs.
 
     `damaged` counts what is not whole; a note means that all before it is known and computed again. `end` is the end
     of the last whole record.
@@ -113,7 +113,7 @@ def _continues(one: Box, other: Box) -> int | None:
 
 
 def _box(record: Record, frame: Frame) -> Box | None:
-    """Of a record, if that is one of such a file."""
+    """The box of a record, if it is one of such a file."""
     spans = record.text.get("box")
     if not isinstance(spans, list) or len(spans) != len(frame.shape):
         return None

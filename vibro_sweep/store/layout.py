@@ -34,7 +34,7 @@ def coordinates(scene: Scene) -> dict[str, np.ndarray]:
 
 
 def _own_axis(scene: Scene, name: str) -> np.ndarray:
-    """The coordinate of a dimension that is no key of the sweep."""
+    """The coordinate of a dimension that is not a key of the sweep."""
     trajectory, extent = scene.trajectory, dimensions_of(scene.system.masses)[name].extent
     if name == "sample":
         return np.arange(scene.record)

@@ -33,7 +33,7 @@ TEXTS = ("title", "history", "scene", "provenance")
 
 
 class StoreError(VibroSweepError, ValueError):
-    """A file that is in the way, is none of ours, is damaged or does not fit the scene; or a disk that fails."""
+    """A file that is in the way, is not one of ours, is damaged or does not fit the scene; or a disk that fails."""
 
 
 class MissingError(StoreError, MissingFileError):
@@ -73,7 +73,7 @@ def opened(path: Path, names: Collection[str] | None = None, content: bool = Tru
 
 
 def open_file(path: Path, names: Collection[str] | None = None, content: bool = True) -> Opened:
-    """As `opened`, for those who close it themselves."""
+    """The same as `opened`, for callers that close the file themselves."""
     try:
         with parts.open_regular(path) as raw:
             if parts.is_part(raw):
@@ -156,7 +156,7 @@ def format_of(file: h5py.File) -> int:
     """1 for files of version 0.1, which did not say it. Raises ValueError."""
     found = np.asarray(file.attrs.get("format", 1))
     if found.ndim or found.dtype.kind not in "iu":
-        raise ValueError("its attribute `format` is no whole number")
+        raise ValueError("its attribute `format` is not a whole number")
     return int(found)
 
 
@@ -177,7 +177,7 @@ def _check(file: h5py.File) -> None:
         text(file, name)
     provenance = json.loads(text(file, "provenance"))
     if not isinstance(provenance, dict):
-        raise ValueError("its provenance is no JSON object")
+        raise ValueError("its provenance is not a JSON object")
     check_numbers(file)
     if is_flat(file):
         return

@@ -36,7 +36,7 @@ _CHECKSUM = struct.Struct(">I")
 
 
 class PartError(ValueError):
-    """A file that is no part, or whose head or skeleton is damaged; the message goes on "FILE ..."."""
+    """A file that is not a part, or whose head or skeleton is damaged; the message goes on "FILE ..."."""
 
 
 class Head(NamedTuple):
@@ -48,7 +48,7 @@ class Head(NamedTuple):
 
     @property
     def start(self) -> int:
-        """Where the skeleton begins."""
+        """The offset at which the skeleton begins."""
         return _HEAD.size + _CHECKSUM.size
 
     def packed(self) -> bytes:
@@ -80,7 +80,7 @@ def record(run_id: bytes, text: dict, data: list[memoryview]) -> list[bytes | me
 
 
 def open_regular(path: Path, flags: int = os.O_RDONLY) -> BinaryIO:
-    """A file, unbuffered; a pipe is not waited for. Raises PartError for what is no file."""
+    """A file, unbuffered; a pipe is not waited for. Raises PartError for what is not a file."""
     extra = sum(getattr(os, name, 0) for name in ("O_NONBLOCK", "O_BINARY", "O_CLOEXEC"))
     descriptor = os.open(path, flags | extra, 0o666)
     try:
@@ -113,7 +113,7 @@ def read_head(file: BinaryIO) -> Head:
     file.seek(0)
     raw = file.read(_HEAD.size + _CHECKSUM.size)
     if not raw.startswith(MAGIC):
-        raise PartError("is no file of vibro-sweep")
+        raise PartError("is not a file of vibro-sweep")
     if not _holds(raw, _HEAD):
         raise PartError("is damaged (its head); overwrite it")
     _, version, run_id, inode, length, changed, skeleton, checksum = _HEAD.unpack_from(raw)
@@ -166,7 +166,7 @@ class Scan:
         self.damaged += lost
 
     def _text(self, begin: int, texts: int, length: int, checksum: int) -> dict | None:
-        """Of a record whose checksum holds."""
+        """The text of a record whose checksum holds."""
         self._file.seek(begin)
         told, left = self._file.read(texts), length
         found = zlib.crc32(told)
@@ -180,7 +180,7 @@ class Scan:
 
 
 def find(file: BinaryIO, mark: bytes, at: int) -> int:
-    """Where the mark stands next, or the end of the file; holes in it are skipped."""
+    """The next place of the mark, or the end of the file; holes in it are skipped."""
     end = size(file)
     while at < end:
         try:

@@ -58,7 +58,7 @@ def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray
 
 @contextlib.contextmanager
 def contents(path: str | Path) -> Iterator[Contents]:
-    """As `open`, for what computes with the numbers: from files without checksums nothing is computed."""
+    """The same as `open`, for code that computes with the numbers: files without checksums are refused."""
     try:
         file = _whole(path, lambda file: file)
     except ForeignError as found:
@@ -99,7 +99,7 @@ def tables(path: str | Path) -> list[str]:
 
 
 def examine(path: str | Path) -> Description:
-    """As `describe`, and whether the file is damaged."""
+    """The same as `describe`, and whether the file is damaged."""
     path = Path(path)
     try:
         return _examined_file(path)

@@ -71,7 +71,7 @@ class Writer:
         return statuses
 
     def _make(self, new: BinaryIO, provenance: dict, last: Callable[[h5py.File], None]) -> dict[int, int]:
-        """In a thread of its own: Ctrl-C must not end HDF5 in the middle of a call."""
+        """Make the file in a thread of its own: Ctrl-C must not end HDF5 in the middle of a call."""
         index = Index(self._part.file, self._part.head, self._frame)
         if index.damaged:
             raise StoreError(f"{self._part.path} was damaged during the run; `resume` computes again what is lost")
@@ -133,7 +133,7 @@ def _bytes(values: np.ndarray) -> memoryview:
 
 
 def unfinished(path: Path, run_id: bytes) -> Path:
-    """Where the file of a run grows at the end of the run, before it gets its name."""
+    """The path at which the file of a run grows at the end of the run, before it gets its name."""
     return path.with_name(f".vibro_sweep-{run_id.hex()}.h5")
 
 

@@ -2,7 +2,7 @@
 
 Attractors of neighbouring points are matched as in the continuation of Attractors.jl: those with the least distance
 between what is known of them first, and none with two others. What finds no partner at the neighbour is compared with
-attractors that were lost before; what is none of these either gets the next number.
+attractors that were lost before; an attractor that is not one of these either gets the next number.
 
 Periodic attractors can be the same only with the same impacts in a forcing period on each stop, so a number goes on
 through period doublings and ends at a graze or in chaos. docs/files.md says what that means for splits and births.
@@ -87,7 +87,7 @@ def distance(one: Attractors, other: Attractors) -> np.ndarray:
 
 
 def partners(apart: np.ndarray) -> np.ndarray:
-    """For distances (points, m, n) the partner among m of each of n, (points, n), nearest pairs first; -1: none."""
+    """The partner among m of each of n by distances (points, m, n), nearest pairs first: (points, n); -1: none."""
     apart = apart.copy()
     points, m, n = apart.shape
     result = np.full((points, n), -1)

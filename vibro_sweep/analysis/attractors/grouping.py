@@ -46,7 +46,7 @@ def group(period, average, error) -> np.ndarray:
 
 
 def ranges(period, average, error) -> tuple[np.ndarray, np.ndarray]:
-    """Where the averages of an orbit may be, (..., 2 N + 3): least and greatest."""
+    """The range of the averages of an orbit, (..., 2 N + 3): least and greatest."""
     low, high = average - ERRORS * error, average + ERRORS * error
     low[period > 0, -1], high[period > 0, -1] = -np.inf, np.inf  # a periodic orbit is known better by the rest
     return low, high

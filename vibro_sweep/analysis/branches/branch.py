@@ -2,7 +2,7 @@
 
 A branch has one itinerary. It ends where an impact appears or vanishes (graze), where a doubled or asymmetric orbit is
 born (flip, pitchfork), or at the end of the range. Of several events within a step the earliest counts: what follows
-the end of a branch is no motion any more.
+the end of a branch is not a motion any more.
 """
 
 from dataclasses import dataclass
@@ -84,8 +84,8 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     A branch that comes to where the number is not allowed any more ends there, with the type "boundary". What fails is
     told by `.status`.
 
-    Raises ValueError for an orbit that is not ok, a name that is no number of the system, bounds that do not hold its
-    value, or the restitution of a stop on which the mass rests.
+    Raises ValueError for an orbit that is not ok, a name that is not a number of the system, bounds that do not hold
+    its value, or the restitution of a stop on which the mass rests.
     """
     check_type("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit, as `periodic_orbit` returns it")
     check_call("progress", progress, "progress(points, value)", 0, 0.0)

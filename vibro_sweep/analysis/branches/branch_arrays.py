@@ -36,7 +36,7 @@ SHAPES = {
 
 
 def outline(branch: Branch) -> Arrays:
-    """Of the arrays of a branch those that say which orbits lie on it."""
+    """The arrays of a branch by which orbits on it are recognised."""
     start = branch._start
     t, sides, v = impacts(start, branch.parameter, branch._frame, branch._rows)
     return {
@@ -99,7 +99,9 @@ def common(of, start: Solution, names: tuple[str, ...], p: np.ndarray, codes: Ma
     points are. p : (n,) or (n, 2); codes : of their types"""
     places = np.array([[one.parameters[name] for name in names] for one in of.special])
     points, least, values = [], 0, p.reshape(len(p), -1)
-    for place in places:  # special points are among the points, in the same order; a sticking onset is no orbit of it
+    for (
+        place
+    ) in places:  # special points are among the points, in the same order; a sticking onset is not an orbit of it
         there = np.flatnonzero(np.all(values[least:] == place, axis=1))
         least += int(there[0]) if len(there) else 0
         points.append(least if len(there) else -1)

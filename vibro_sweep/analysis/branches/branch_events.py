@@ -56,7 +56,8 @@ def first_end(curve: SolutionCurve, events: list[Event], a: Point, b: Point) -> 
 
 
 def earliest(located: list[LocatedEvent]) -> LocatedEvent:
-    """Of ends at the same place the impact that vanishes: behind it the motion passes the stop, which looks alike."""
+    """The first of located ends; of several at one place the impact that vanishes: behind it the motion passes the
+    stop, which looks alike."""
     first = min(found.share for found in located)
     same = [found for found in located if found.share <= first + 1e-7]
     return min(same, key=lambda found: (found.event.impact is None, found.share))
@@ -122,7 +123,7 @@ def tests_between(curve: SolutionCurve, a: Point, b: Point, scaled: bool = False
 
 
 def test_of(name: str) -> Test:
-    """As the engine computes it at each point (engine/continuation/branch_tests.py)."""
+    """The test as the engine computes it at each point (engine/continuation/branch_tests.py)."""
     index = NAMES.index(name)
     return lambda point: float(point.tests[index])
 

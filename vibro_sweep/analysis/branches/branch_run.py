@@ -55,7 +55,7 @@ class BranchRun:
         return join(self.rows)
 
     def go(self) -> None:
-        """To the branch's end."""
+        """Follow the branch to its end."""
         self._add(self.first)
         compiled = CompiledStepper(self.first, self.frame[1], self.first_step)
         a, count, looked = self.first, 1, 0
@@ -153,7 +153,7 @@ class BranchRun:
         """`_pass`, in as many parts as it takes until tests at their ends tell what lies in them."""
         ends = ends_between(self.curve, self.bounds, a, b)
         end = first_end(self.curve, ends, a, b)
-        if ends and end is None:  # what follows is no motion
+        if ends and end is None:  # what follows is not a motion
             self.special.append(self._at("failed", a, math.nan))
             return True
         last = end.place if end else b

@@ -16,7 +16,7 @@ from vibro_sweep.engine.impulses.flow import contact_coordinates
 
 
 def row_of(p: float, s: Solution, frame: tuple[int, int]) -> Rows:
-    """A point alone."""
+    """A single point as `Rows`."""
     state = PeriodicOrbit(s.family, "ok", s, frame).state
     t, D, motion = s.times, s.jumps, s.motion[:, :2] if s.K else np.zeros((0, 2))
     values = p, t, D, s.ends, motion, s.stop_distance, s.change, state
@@ -37,7 +37,7 @@ class CompiledStepper:
 
     @property
     def a(self) -> Place:
-        """Where the last step began."""
+        """The place where the last step began."""
         return self.path.a
 
     def record_steps(self, passed: int) -> tuple[int, int, int]:

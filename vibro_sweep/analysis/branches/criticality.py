@@ -21,7 +21,7 @@ ROUNDED = 1e-8  # part of its terms below which Re c is rounding
 
 
 def critical_angle(solution: Solution) -> float:
-    """Of the complex multiplier nearest to the unit circle."""
+    """The angle of the complex multiplier nearest to the unit circle."""
     mu = solution.multipliers
     return float(np.angle(mu[np.argmin(np.where(mu.imag > 0, np.abs(np.abs(mu) - 1), np.inf))]))
 

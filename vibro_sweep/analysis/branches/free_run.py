@@ -69,7 +69,7 @@ class FreeRun(BranchRun):
     """A run along a branch without impacts in one direction."""
 
     def go(self) -> None:
-        """To the branch's end."""
+        """Follow the branch to its end."""
         a, count, length = self.first, 1, self.first_step
         self._add(a)
         while count < MOST_POINTS and length >= SHORTEST_STEP:
@@ -101,7 +101,7 @@ def run_from(first: Point | FreePoint, system, progress=None, stable: bool = Fal
 
 
 def longest_step(point: FreePoint) -> float:
-    """In which Z changes by `SHARE`, in the units of the branch."""
+    """The step in which Z changes by `SHARE`, in the units of the branch."""
     name, unit, q = point.curve.names[0], point.curve.unit, point.solution.family.linear
     slope = point.solution.family.derivative(name, q)
     turned = slope.omega * (1j * q.C - 2 * q.omega * q.M)

@@ -119,7 +119,7 @@ def _touched(curve: SolutionCurve, beside: tuple, places: list[Point], found: li
 
 
 def _least(a: Point, b: Point, i: int) -> float:
-    """Where between two points, as a share, the cubic of one unknown has its extremum; its slopes differ in sign."""
+    """The share between two points at which the cubic of one unknown has its extremum; its slopes differ in sign."""
     change = a.curve.difference(a, b)
     length, rise = float(np.linalg.norm(change)), change[i]
     p, q = a.direction[i] * length, b.direction[i] * length
@@ -154,8 +154,9 @@ def _beyond_extremum(curve: SolutionCurve, test: Test, a: Point, b: Point, tripl
 
 
 def extremum(before: float, behind: float, x: float, y: float, z: float) -> float | None:
-    """Where the parabola through three values is nearest to zero, from the middle one; None where it comes no nearer by
-    a quarter, and the middle one is not much nearer than the others (`dips` of engine/continuation/branch_tests.py)."""
+    """The place where the parabola through three values is nearest to zero, from the middle one; None where it comes no
+    nearer by a quarter, and the middle one is not much nearer than the others (`dips` of
+    engine/continuation/branch_tests.py)."""
     if y < 0:
         x, y, z = -x, -y, -z
     if not (0 < y <= x and y <= z and math.isfinite(x + z) and before > 0 < behind):

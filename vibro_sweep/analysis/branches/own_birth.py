@@ -34,7 +34,8 @@ def own_birth(curve: SolutionCurve, a: Point, b: Point) -> LocatedEvent | None:
 
 
 def turns(one: Solution, other: Solution) -> Iterator[tuple[int, float]]:
-    """Where between two solutions what tells the halves apart turns round: sigma of the parent, share of the way."""
+    """The births between two solutions: sigma of the parent, and the share at which the difference of the halves turns
+    round."""
     for sigma in (1, -1):
         parts = [halves_apart(solution, sigma) for solution in (one, other)]
         if any(part is None for part in parts):

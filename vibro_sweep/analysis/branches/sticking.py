@@ -48,7 +48,7 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
 
 
 def _guesses(touching: Solution, index: int) -> list[Chatter]:
-    """Of the onset, from the orbit at which a chatter sequence gains impact `index`; none where it does not.
+    """Guesses of the onset from the orbit at which a chatter sequence gains impact `index`; none where it does not.
 
     At the end of the sequence the acceleration vanishes. The last impacts are unlike those of the onset: the second
     half of the sequence is left out.

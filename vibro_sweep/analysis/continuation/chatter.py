@@ -71,7 +71,8 @@ def _resized(curve: SolutionCurve, place: Place, K: int) -> tuple[SolutionCurve,
 
 
 def chatter_at(curve: SolutionCurve, place: Place, touches: bool) -> Chatter:
-    """To start from, at a point of a curve; touches: with the nearest turning point as an impact without speed."""
+    """The chatter to start from at a point of a curve; touches: with the nearest turning point as an impact without
+    speed."""
     solution = curve.solution(place)
     steady = (curve.planes[0]["Z"] * np.exp(1j * place.phases[0])).real
     state = (place.x[0, : curve.n] + steady) * curve.state_units

@@ -24,14 +24,14 @@ ASIDE = 0.37  # of the reach: where degrees are read off, so that products of bo
 
 
 class Units(NamedTuple):
-    """In which kernels compute: all numbers are of size 1."""
+    """Units in which kernels compute, so that all numbers are of size 1."""
 
     length: float  # the gap's size
     rate: float  # omega of the start
 
     @property
     def speed(self) -> float:
-        """Of velocities."""
+        """The unit of velocities."""
         return self.length * self.rate
 
 
@@ -53,7 +53,8 @@ def numbers_of(q: Linear, units: Units) -> list[float]:
 
 
 class Oscillators:
-    """Of a family, along two of its parameters, or fewer, over so many half forcing periods. Raises TooStiffError."""
+    """The oscillators of a family along up to two of its parameters, over so many half periods. Raises
+    TooStiffError."""
 
     def __init__(self, family: Family, names: tuple[str, ...], half_periods: int, units: Units):
         checked_cells(family.linear, half_periods)

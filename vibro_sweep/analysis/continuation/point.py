@@ -47,7 +47,7 @@ class Point(Place):
 
     @property
     def rate(self) -> float:
-        """Of the parameter, in its unit."""
+        """The rate of the parameter along the tangent, in its unit."""
         return float(self.tangent_p[0])
 
     @cached_property

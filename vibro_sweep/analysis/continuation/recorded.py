@@ -38,7 +38,7 @@ def join(parts: list[Rows]) -> Rows:
 
 
 def both_directions(down: Rows, up: Rows) -> Rows:
-    """From the end of the one to that of the other; they begin at the same point."""
+    """The rows of two runs from one point, from the end of the first run to that of the second."""
     return join([down.taken(np.s_[:0:-1]), up])
 
 

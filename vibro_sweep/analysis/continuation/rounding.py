@@ -16,12 +16,12 @@ ROWS = 2 * np.finfo(float).eps  # of the size of each row
 
 
 def rounding_error(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
-    """Of the parameters of a point on the plane across `row`."""
+    """The error by rounding of the parameters of a point on the plane across `row`."""
     return float(DIGITS * np.abs(place.p[:2]).max() + ROWS * sensitivity(curve, place, row))
 
 
 def sensitivity(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
-    """By how much a parameter moves, on the plane across `row`, where each equation is off by its own size."""
+    """The change of the parameters, on the plane across `row`, if each equation is off by its own size."""
     if not curve.assemble(place, row):
         return 0.0
     c, n, work, events = curve.problem, curve.n, curve.workspace.work[0], curve.workspace.events

@@ -38,7 +38,7 @@ def root(curve: SolutionCurve, a: Place, b: Place, test: Callable[[Point], float
 
 
 class Secant:
-    """A test along the line between a and b, over shares of the secant. ArithmeticError where there is no point."""
+    """A test along the secant through a and b, by shares of it. Raises ArithmeticError where there is no point."""
 
     def __init__(self, curve: SolutionCurve, a: Place, b: Place, test: Callable[[Point], float]):
         self.curve, self.a, self.b, self.test = curve, a, b, test
@@ -103,7 +103,7 @@ class Secant:
 def error_of(
     curve: SolutionCurve, a: Place, b: Place, test: Callable[[Point], float], share: float, point: Point
 ) -> float | None:
-    """Of the parameters of a zero at a share of the secant from a to b; None: there are no points beside it.
+    """The error of the parameters of a zero at a share of the secant; None: there are no points beside it.
 
     Rounding of the equations moves the line, and rounding of the test moves its zero along the line. The second is seen
     in what points beside it say, which round differently: p - test dp/dtest, without the straight line that a wrong

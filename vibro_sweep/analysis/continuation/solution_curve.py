@@ -47,7 +47,7 @@ class SolutionCurve:
         self.planes = self._around([s.family.numbers[name] for name in names]) if planes is None else planes
 
     def _take_sides(self, which: tuple[int, ...]) -> None:
-        """Of the impacts."""
+        """Set the stops of the impacts, and what follows from them."""
         start, s = self.start, self.orbit
         q, K, kind = s.family.linear, len(which), self.start.kind
         self.K = K
@@ -63,7 +63,7 @@ class SolutionCurve:
         self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.bounds)
 
     def resized(self, K: int) -> "SolutionCurve":
-        """For the same curve with K impacts: without the last, or with more on the same stop."""
+        """The same curve with K impacts: without the last, or with more on the same stop."""
         other, sides = copy_object(self), tuple(map(int, self.problem.sides))
         other._take_sides(sides[:K] + sides[-1:] * (K - len(sides)))
         return other
@@ -76,11 +76,13 @@ class SolutionCurve:
     def _around(self, centre) -> np.ndarray:
         found = self.oscillators.around(centre, self.unit / len(self.names))
         if found is None:
-            raise NoPlaneError(f"bounds: around {tuple(map(float, centre))} the oscillator is no smooth function of it")
+            raise NoPlaneError(
+                f"bounds: around {tuple(map(float, centre))} the oscillator is not a smooth function of it"
+            )
         return found
 
     def recentre(self, place: Place) -> None:
-        """Polynomials around this place."""
+        """Set the polynomials anew, around this place."""
         self.planes = self._around(place.p)
 
     def do(self, task: int, place: Place, row: np.ndarray | None = None) -> float:
@@ -128,7 +130,7 @@ class SolutionCurve:
         return float((phase - self.tau) / self.omega(place)), int(side)
 
     def omega(self, place: Place) -> float:
-        """Of the force."""
+        """The angular frequency of the force."""
         return float(self.family(place).linear.omega)
 
     def times(self, place: Place) -> np.ndarray:
@@ -191,7 +193,7 @@ class SolutionCurve:
         return np.concatenate([changes[:, self.n], changes[:, self.n + 1], null[self.n :]])
 
     def unit_row(self, change: np.ndarray) -> np.ndarray:
-        """The plane across a change."""
+        """The row of the plane across a change."""
         return change / np.linalg.norm(change)
 
     def correct(self, guess: Place, row: np.ndarray, exact: bool = True) -> Point | None:
@@ -207,11 +209,11 @@ class SolutionCurve:
         return place if self.take(place) and self.do(stepper.SOLVE, place, row) else None
 
     def parameters(self, place: Place) -> np.ndarray:
-        """(1,) or (2,)."""
+        """The free parameters of a place, (1,) or (2,)."""
         return place.p[: len(self.names)]
 
     def between(self, a: Place, b: Place, share: float) -> Point:
-        """On the secant."""
+        """The point at a share of the secant from a to b, as a guess."""
         return self.shifted(a, a, b, share)
 
     def shifted(self, place: Place, a: Place, b: Place, share: float) -> Point:
@@ -222,7 +224,7 @@ class SolutionCurve:
         return result
 
     def difference(self, a: Place, b: Place) -> np.ndarray:
-        """From a to b, as `direction`."""
+        """The change from a to b, with the entries of `direction`."""
         moved = (b.p - a.p) / [*self.problem.unit, 1.0]
         moved[unknowns(self.problem) :] = 0.0
         return np.concatenate([b.phases - a.phases, b.jumps - a.jumps, moved])

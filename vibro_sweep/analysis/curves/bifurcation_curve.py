@@ -1,7 +1,7 @@
 """`bifurcation_curve`: where a bifurcation happens in the plane of two parameters, from one point of it.
 
-The curve goes on where an impact of its orbit grazes: behind that point the orbit is no motion any more, and the points
-say so (`virtual`).
+The curve goes on where an impact of its orbit grazes: behind that point the orbit is not a motion any more, and the
+points say so (`virtual`).
 """
 
 from dataclasses import dataclass
@@ -97,10 +97,10 @@ def bifurcation_curve(
     special : a fold, flip, pitchfork, neimark_sacker, graze or sticking onset of a branch or of another curve
     bounds : ((lo, hi), (lo, hi)) of both parameters, around the point
     progress(points, (p, q)) is called now and then.
-    virtual : whether the curve goes on where its orbit is no motion any more; otherwise it ends there, at a point of
+    virtual : whether the curve goes on where its orbit is not a motion any more; otherwise it ends there, at a point of
         codimension two
 
-    Raises ValueError for a special point of another type, names that are no numbers of the system, bounds that do not
+    Raises ValueError for a special point of another type, names that are not numbers of the system, bounds that do not
     hold the point, where the point does not belong to a single curve, and without virtual points where there is no
     motion beside it.
     """

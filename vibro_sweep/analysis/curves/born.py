@@ -89,7 +89,8 @@ def _leads_to(special: CurvePoint, one: SpecialPoint, nearer: SpecialPoint, rati
 
 
 def entry(special: CurvePoint, name: str, parent: Start, count: int, amplitude: float, sign: int) -> Entry | None:
-    """For orbits with `count` times the period at this amplitude; sign: which of two folds. None: there are none."""
+    """The guess for orbits with `count` times the period at this amplitude; sign: which of two folds. None: none
+    exist."""
     names, values = tuple(special.parameters), np.array(list(special.parameters.values()))
     curve = SolutionCurve(parent, names, box_around(special))
     place = first_place(curve)
@@ -163,7 +164,7 @@ def box_around(special: CurvePoint) -> np.ndarray:
 
 
 def _bent(child: Solution, curve: SolutionCurve, place: Place, z: complex, moved) -> Solution:
-    """To second order in z: the multipliers of the child, near 1, differ from 1 by as much as this changes them."""
+    """The child moved to second order in z: its multipliers, near 1, differ from 1 by as much as this changes them."""
     bend, mean = second_order(curve, place)
     K, s, count = curve.K, float(curve.orbit.sigma), child.K // curve.K
     turns, signs = (-1.0) ** np.arange(count)[:, None], s ** np.arange(count)[:, None]

@@ -73,6 +73,6 @@ def crossed(curve: SolutionCurve, a: Place, b: Place, impact: int) -> tuple[floa
 
 
 def _weights(tests: np.ndarray) -> np.ndarray:
-    """Of values at points with these tests: their sum is that of the polynomial where the test is zero (Lagrange)."""
+    """Weights of values at points with these tests, for the polynomial through them at test zero (Lagrange)."""
     ratios = tests / (tests - tests[:, None] + np.diag(tests))  # 1 on the diagonal
     return np.prod(ratios, axis=1)

@@ -85,7 +85,8 @@ def found_between(curve: SolutionCurve, a: Place, b: Place) -> list[LocatedEvent
 
 
 def found_to_edge(curve: SolutionCurve, a: Place, b: Place) -> list[LocatedEvent]:
-    """All events from a, which is real, to the one after which the orbit is no motion any more, which is the last one.
+    """All events from a, which is real, to the one after which the orbit is not a motion any more, which is the last
+    one.
 
     Where an impact vanishes, other tests have poles and the motion behind passes the stop: so what lies before it is
     looked at by itself. Empty where the end cannot be located.
@@ -109,7 +110,7 @@ def _located(curve: SolutionCurve, a: Place, b: Place) -> list[LocatedEvent]:
 
 
 def without_echoes(curve: SolutionCurve, found: list[LocatedEvent]) -> list[LocatedEvent]:
-    """In order, each place once.
+    """The events in order, each place once.
 
     Where an impact vanishes, the motion behind passes the stop, which looks like another graze there; and with one mass
     M(mu) is singular for all mu at a resonant graze.

@@ -97,7 +97,7 @@ def _state(q: Linear, f: Flow, sigma: int, P: float, t: np.ndarray, D: np.ndarra
 
 
 def _flows(oscillators: list[Linear]) -> list[Flow]:
-    """Of each point; where only force and stops change along the curve, one for all."""
+    """The flow of each point; one for all where only force and stops change along the curve."""
     first = oscillators[0]
     if all(np.array_equal(getattr(q, name), getattr(first, name)) for q in oscillators for name in FREE):
         return [flow(first)] * len(oscillators)

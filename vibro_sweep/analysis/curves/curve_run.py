@@ -63,7 +63,7 @@ class CurveRun:
         return join(self.rows)
 
     def go(self) -> None:
-        """To the curve's end."""
+        """Follow the curve to its end."""
         w, passed = self.curve, 1
         path, b = w.path, new_place(w.K, w.n)
         a = path.a
@@ -187,7 +187,8 @@ class CurveRun:
             self.special.append(self._at("boundary", place, 0.0))
 
     def _at_boundary(self, a: Place, b: Place, j: int, boundary: float) -> Place | None:
-        """Where a parameter is at its boundary; the curve may be nearly parallel to that side of the bounds."""
+        """The point where a parameter is at its boundary; the curve may be nearly parallel to that side of the
+        bounds."""
         w = self.curve
         place = w.at_value(a, b, j, boundary)
         if place is None:

@@ -61,7 +61,7 @@ class Curves(Search):
     at_once: int | None = 8
 
     def passes(self, arrays: Arrays, seed: Seed) -> bool:
-        """By Newton's method from the points beside it, on a curve of orbits like its own."""
+        """Whether a seed lies on the curve, by Newton's method from the points of the curve beside it."""
         if seed.type != type_of(arrays) or not _may_pass(arrays, seed, self.names):
             return False
         solution, place, size = seed.solution, seed.place(self.names), np.ptp(self.bounds, axis=1)

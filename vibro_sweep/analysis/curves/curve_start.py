@@ -16,7 +16,7 @@ SLOW = 1e-9  # impulse, in parts of the gap's size times omega, below which an i
 
 
 def start_at(special: SpecialPoint, names: tuple[str, ...] = ()) -> Start:
-    """For curves in the parameters `names`: in whole periods where one of them breaks the symmetry of the orbit.
+    """The start of a curve in the parameters `names`, in whole periods where one of them breaks the orbit's symmetry.
 
     A pitchfork is then a fold, and its point a cusp. Raises ValueError for a type without curves, and for orbits that
     rest.
@@ -84,7 +84,7 @@ def _start(special: SpecialPoint, solution: Solution, symmetric: bool) -> Start:
 
 
 def _grazing(solution: Solution, index: int, symmetric: bool) -> Start:
-    """Where impacts vanish together because they are one graze of a simpler orbit (or the free motion), in its periods:
+    """The start where impacts vanish together as one graze of a simpler orbit (or the free motion), in its periods:
     that one alone. The others have no speed all along the curve.
 
     symmetric : whether the oscillator remains so along the curve; else both halves of a symmetric orbit graze by

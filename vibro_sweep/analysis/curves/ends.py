@@ -117,7 +117,7 @@ def struck(curve: SolutionCurve, solution: Solution) -> Solution:
 
 
 def _apart(curve: SolutionCurve, place: Place) -> float:
-    """By how much the halves of an orbit differ; inf where it cannot be a simpler one, taken twice."""
+    """The difference of the halves of an orbit; inf where it cannot be a simpler one, taken twice."""
     if not (curve.problem.repeats or curve.problem.mirrors):
         return math.inf
     solution = struck(curve, curve.solution(place))
@@ -132,7 +132,7 @@ def _is_repeated(end: End) -> bool:
 
 
 def birth(curve: SolutionCurve, a: Place, b: Place) -> End | None:
-    """Where the orbit of the curve is born between a and b, on the curve of its parent."""
+    """The end where the orbit of the curve is born between a and b, on the curve of its parent."""
     for sigma, share in turns(*(struck(curve, curve.solution(place)) for place in (a, b))):
         aim = curve.between(a, b, share)
         end = _first_found(curve, aim, sigma, (np.linalg.norm(curve.difference(a, b)),))

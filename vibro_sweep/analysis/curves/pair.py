@@ -9,7 +9,7 @@ from vibro_sweep.engine.continuation.workspace import Place
 
 
 def second_order(curve: SolutionCurve, place: Place) -> tuple[np.ndarray, np.ndarray]:
-    """Of the times and impulses (2K,) on the plane z w + conj(z w): coefficients of z^2 and |z|^2."""
+    """Coefficients of z^2 and |z|^2 of the times and impulses (2K,) on the plane z w + conj(z w)."""
     curve.take(place)
     curve.do(stepper.EXAMINE, place)
     series = (

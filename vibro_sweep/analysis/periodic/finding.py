@@ -109,7 +109,7 @@ def _from_state(system, family, state, periods) -> PeriodicOrbit:
 
 
 def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
-    """From a simulation over two periods, in which the mass rests after impacts with R = 0."""
+    """The orbit from a simulation over two periods, in which the mass rests after impacts with R = 0."""
     impacts, P, R = simulated.impacts, periods * system.period, family.linear.restitution
     if np.any(R(simulated.sticking["side"]) != 0) or str(simulated.status) != "ok" or not len(impacts):
         return PeriodicOrbit(system, "sticking")

@@ -56,7 +56,7 @@ class Born:
 
 
 class _Graze(NamedTuple):
-    """Where the steady motion touches the stops."""
+    """The touches of the steady motion at the stops."""
 
     b: float
     amplitude: float  # of the gap

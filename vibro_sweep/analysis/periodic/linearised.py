@@ -86,7 +86,7 @@ class Linearised:
         return np.concatenate([phases / q.omega, jumps * q.omega, ends / q.omega])
 
     def distance_slope(self, index: int) -> float:
-        """Of a watched turning point: how fast its distance from its stop grows with the number."""
+        """The slope, by the number, of the distance of a watched turning point from its stop."""
         moved, side = self.tangent()[index], self.solution.sides[index]
         steady = (self.equations.planes[0]["Z_slopes"][0, 0] * np.exp(1j * self.phases[index])).real
         return float(side * (self.slope.stop([side])[0] - moved[0] - steady))

@@ -37,7 +37,7 @@ def save_orbit(orbit: PeriodicOrbit, path) -> Path:
     elif isinstance(system, Oscillator):
         numbers = {"type": system.model.name, **system.given}
     else:
-        raise ArgumentError("an orbit of a Family cannot be saved: its function is no text")
+        raise ArgumentError("an orbit of a Family cannot be saved: its function is not a text")
     record = {
         "format": FORMAT,
         "system": numbers,
@@ -86,7 +86,7 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
         sides, rests = _whole("sides", record["sides"]), _whole("rests", record.get("rests", []))
         u, change = array_of(record["unknowns"], 1), number_of(record["residual"])
         if u is None or change is None:
-            raise ValueError("its unknowns and its residual are no numbers")
+            raise ValueError("its unknowns and its residual are not numbers")
         family = family_of(system)
         odd = sigma == -1 and half_periods % 2 == 1 and family.linear.symmetric
         even = sigma == 1 and half_periods % 2 == 0
@@ -113,7 +113,7 @@ def load_orbit(path: str | Path) -> PeriodicOrbit:
 
 
 def checksum_of(record: dict) -> str:
-    """Of all else that is in it."""
+    """The checksum of all other entries of a record."""
     rest = {key: value for key, value in record.items() if key != "checksum"}
     return f"{zlib.crc32(json.dumps(rest, sort_keys=True).encode()):08x}"
 

@@ -30,7 +30,7 @@ STATUS = {
     "ok": "a periodic orbit, certified",
     "not_converged": "Newton's method found no orbit near the guess",
     "inadmissible": "a solution of the equations that passes a stop, or whose impulse pulls",
-    "sticking": "the orbit rests on a stop after infinitely many impacts: they are no finite list",
+    "sticking": "the orbit rests on a stop after infinitely many impacts: they are not a finite list",
     "resonance": "an undamped mode repeats itself after the period: such orbits do not exist, or are not isolated",
     "too_stiff": "the rates of the oscillator are too far apart",
 }

@@ -74,7 +74,7 @@ class RestingOrbit:
 
     @property
     def u(self) -> np.ndarray:
-        """As of `Solution`."""
+        """The unknowns, as `Solution.u`."""
         times, ends = ((phases - self.q.tau) / self.q.omega for phases in (self.place.phases, self._ends))
         jumps = np.where(self.equations.problem.rests, -self.events["motion"][:, 0], self.place.jumps)
         return np.concatenate([times, jumps * self.q.omega, ends[self.rests]])

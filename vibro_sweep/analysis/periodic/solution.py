@@ -20,7 +20,7 @@ from vibro_sweep.model.linear import Family, Keyed, forcing_period
 # flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not tell the two orbits apart.
 ALIKE = 1e-6
 tables = attrgetter(*TABLES)  # of an oscillator
-NO_SPEED = 1e-9  # impulse, relative to omega times the gap, of an impact that is none
+NO_SPEED = 1e-9  # impulse, relative to omega times the gap, below which an impact is not counted as one
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Solution:
 
     @property
     def ends(self) -> np.ndarray:
-        """Of the rests."""
+        """The ends of the rests."""
         return self.u[2 * self.K : 2 * self.K + len(self.rests)]
 
     @cached_property
@@ -106,7 +106,7 @@ class Solution:
 
     @cached_property
     def multipliers(self) -> np.ndarray:
-        """Of the map over P, with the mirror for sigma = -1."""
+        """Multipliers of the map over P, with the mirror for sigma = -1."""
         if self.rests:
             return self.resting.multipliers()
         q = self.family.linear
@@ -157,7 +157,7 @@ class Solution:
         return np.repeat([1 / omega, omega * self.size_of_gap, 1 / omega], [self.K, self.K, len(self.rests)])
 
     def corrected(self) -> "Solution | None":
-        """By Newton's method from here; None without convergence."""
+        """The solution that Newton's method finds from this one; None without convergence."""
         if self.K == 0:
             return self
         if self.rests:
@@ -211,7 +211,7 @@ class Solution:
         return found
 
     def reduced(self) -> "Solution":
-        """With its least period, and as half an orbit where it is symmetric."""
+        """The solution with its least period, and as half an orbit where it is symmetric."""
         family = self.family
         if self.K == 0:
             symmetric = family.linear.symmetric

@@ -24,8 +24,8 @@ def dataset_of(orbit: Any, times: np.ndarray, section: np.ndarray, about: dict[s
     """Of an Orbit or a PeriodicOrbit: states x1 .. vN over `section` at these times (m,), its coordinate t; impacts
     over `impact`, rests over `rest`.
 
-    These are named as the fields of `Orbit`: `impact_t`, .., `rest_t_on`, ..; where the oscillator is no System also of
-    all masses, `impact_x1`, `impact_xdot1`, .. Attributes: numbers and options of the oscillator, and `about`.
+    These are named as the fields of `Orbit`: `impact_t`, .., `rest_t_on`, ..; where the oscillator is not a System also
+    of all masses, `impact_x1`, `impact_xdot1`, .. Attributes: numbers and options of the oscillator, and `about`.
     """
     import xarray
 

@@ -48,6 +48,6 @@ def discontinuity_map(system: AnyOscillator, order: int = 1, expand_at: float | 
     expand_at : clearance at which it is expanded, by default the exact b*
 
     Raises ValueError for a system that is not symmetric so, or whose gap has no steady motion, for another order, or a
-    clearance that is no number > 0. The map itself raises it for a state that is not 2 N finite numbers.
+    clearance that is not a number > 0. The map itself raises it for a state that is not 2 N finite numbers.
     """
     return DiscontinuityMap(system, order, expand_at)

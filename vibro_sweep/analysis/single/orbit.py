@@ -100,7 +100,7 @@ class Orbit(Result):
     def plot(self, periods: int = 4, width: float | None = None) -> Figure:
         """Phase portrait and time history of the last forcing periods, impacts marked; so many mm wide.
 
-        Raises ValueError where that is no whole number >= 1, or nothing is simulated.
+        Raises ValueError where that is not a whole number >= 1, or nothing is simulated.
         """
         from vibro_sweep.analysis.single.dataset import figure_of
 
@@ -143,8 +143,8 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
     state : (x1, v1, x2, v2) at `start_time`
     periods : forcing periods, counted from the first section t = 0 mod T at or after `start_time`
 
-    Raises TypeError where `system` is no System; ValueError for a state that is no state or is behind a stop, for fewer
-    than 0 periods, or for a start beyond 10^9 of them. What goes wrong on the way is told by `Orbit.status`.
+    Raises TypeError where `system` is not a System; ValueError for a state that is not a state or is behind a stop, for
+    fewer than 0 periods, or for a start beyond 10^9 of them. What goes wrong on the way is told by `Orbit.status`.
     """
     checked_system(system)
     state, periods = checked_state(state, system.masses), checked_count("periods", periods, 0, MOST_PERIODS)

@@ -24,7 +24,7 @@ AT_ONCE = 256  # orbits
 
 
 class Continued(NamedTuple):
-    """Of n orbits: period (0: none), state at the end, code of the reason where there is no period."""
+    """Results of n orbits: period (0: none), state at the end, code of the reason where there is no period."""
 
     period: np.ndarray  # (n,)
     state: np.ndarray  # (n, 2N)

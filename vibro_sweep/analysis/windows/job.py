@@ -38,7 +38,7 @@ def window_of(job: Job) -> Arrays:
 def _found(job: Job) -> Arrays | str:
     try:
         orbit = periodic_orbit(job.system, job.state, job.period)
-    except ValueError:  # impacts of the recorded orbit that are none of a period
+    except ValueError:  # impacts of the recorded orbit that are not those of a period
         return "failed"
     if not orbit.ok:
         return WITHOUT.get(str(orbit.status), "failed")

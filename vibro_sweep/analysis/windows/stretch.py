@@ -36,7 +36,7 @@ def stable_end(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float]
 
 
 def representative(orbit: PeriodicOrbit, parameter: str) -> PeriodicOrbit:
-    """Of an orbit and its mirror image the one that gives a window its name: with more impacts on the right.
+    """The orbit, or its mirror image, that gives a window its name: the one with more impacts on the right.
 
     Where both have as many, the one whose itinerary comes first; of the same itinerary, whose first impact does. Where
     the parameter breaks the symmetry of the oscillator, the orbit itself.

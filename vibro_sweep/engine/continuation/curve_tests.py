@@ -23,7 +23,7 @@ TOUCHING = 1e-12  # stop_distance, in parts of the size of the gap, that counts 
 
 @jit
 def determinant(c, b, n, mu):
-    """Of G(mu), with the sign of what was eliminated."""
+    """The determinant of G(mu), with the sign of what was eliminated."""
     work, X = b.work[0], 2 * n + 2
     for r in range(n):
         for j in range(n):
@@ -111,7 +111,7 @@ def examine_curve(f, c, place, b):
 
 @jit
 def examine_null_vectors(c, place, b, n):
-    """Where mu is double, and of a fold where it is a cusp."""
+    """Tests for a double mu, and of a fold for a cusp."""
     K, double, cusp = len(b.events), 0j, 0j
     scale_v, scale_w = keep_null_vectors(place, b, n)
     for i in range(K):
@@ -128,7 +128,7 @@ def examine_null_vectors(c, place, b, n):
 
 @jit
 def changes_sign(x, y):
-    """Of two numbers whose product may underflow."""
+    """Whether two numbers differ in sign; their product may underflow."""
     return (x > 0.0 > y) or (x < 0.0 < y)
 
 

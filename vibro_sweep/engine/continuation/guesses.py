@@ -33,7 +33,7 @@ ROUNDING = 1e-13  # of the gap's size
 
 @jit
 def length_after(f, place, i):
-    """Of the flight after event i."""
+    """The length of the flight after event i."""
     n, x, omega = f.A.shape[0], place.x, f.numbers[OMEGA]
     following = x[i + 1, n] if i + 1 < len(x) else x[0, n] + math.pi * f.half_turns
     return (following - x[i, n]) / omega
@@ -105,8 +105,8 @@ def converge(f, c, place, closing, b):
 
     Steps longer than a quarter of the least distance between impacts are shortened. It has converged where steps grow
     no smaller; steps up to 1e-7, as slow impacts leave them, count if the equations hold to rounding. Near a fold each
-    step is half of the one before: that is no end yet. Of many impacts rounding leaves more, beside a fold most: where
-    the last steps of all are small and shrink no more, the largest of them says how much.
+    step is half of the one before: that is not an end yet. Of many impacts rounding leaves more, beside a fold most:
+    where the last steps of all are small and shrink no more, the largest of them says how much.
     """
     K, n, omega, earlier, last, before = len(place.x), f.A.shape[0], f.numbers[OMEGA], 0.0, 0.0, np.inf
     swing, period = abs(f.Z[0]), math.pi * f.half_turns

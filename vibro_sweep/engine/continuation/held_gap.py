@@ -64,7 +64,7 @@ def begin_rest(f, side, x, e, state):
 
 @jit
 def cells_of(f, length):
-    """In how many parts a rest is computed."""
+    """The number of parts in which a rest is computed."""
     return int(abs(length) / (f.numbers[OMEGA] * f.width)) + 1
 
 
@@ -147,7 +147,8 @@ def next_term(f, order, step, swing, before, term):
 
 @jit
 def free_acceleration(f, state, turn):
-    """Of the gap: of the whole motion z, as in `begin_rest`, since steady motions may be much larger."""
+    """The free acceleration of the gap by the whole motion z, as in `begin_rest`, since steady motions may be much
+    larger."""
     n, N = f.A.shape[0], f.A.shape[0] // 2
     total = f.A[N, n] + f.values[n * (n + 1)] * turn.real + f.values[n * (n + 1) + N] * turn.imag
     for k in range(n):

@@ -113,7 +113,8 @@ def take_shift(f, p, q, exact):
 
 @jit
 def move_exactly(f, p, q):
-    """To the parameters (p, q) with the values `exact`, and slopes of the polynomials. False as of `spread`."""
+    """Move the oscillator to the parameters (p, q) with the values `exact`, and slopes of the polynomials. False as of
+    `spread`."""
     fit_at(f, p, q)
     for i in range(len(f.values)):
         f.values[i] = f.exact[i]

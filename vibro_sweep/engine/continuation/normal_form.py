@@ -189,7 +189,7 @@ def set_order(f, b, m):
 
 @jit
 def clear_mirror(f, b, m):
-    """Of a flip, power series are of z alone."""
+    """Clear the terms of conj(z): for a flip, power series are of z alone."""
     for i in range(len(b.events)):
         b.events[i].series[0, MIRROR[m]] = b.events[i].series[1, MIRROR[m]] = 0.0
     for r in range(f.A.shape[0]):
@@ -198,7 +198,7 @@ def clear_mirror(f, b, m):
 
 @jit
 def coefficient(f, c, place, b):
-    """For the v and w of `place`, with z = w.(closing rows of v); NaN where it is not defined.
+    """The coefficient for the v and w of `place`, with z = w.(closing rows of v); NaN where it is not defined.
 
     Flip: c z, which stays finite at the resonance 1:2. Neimark-Sacker: Re(c mu*) |z|^2.
     """

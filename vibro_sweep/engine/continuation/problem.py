@@ -49,7 +49,7 @@ def conditions(c):
 
 @jit
 def index_of(c, k):
-    """Where unknown k of the free numbers, with theta, stands in `Place.p`."""
+    """The index in `Place.p` of unknown k of the free numbers and theta."""
     return k if k < c.parameters else 2
 
 

@@ -91,7 +91,7 @@ def leave(f, c, i, x, e, work):
 
 @jit
 def fly(f, c, i, length, x, e, work):
-    """From event i on, for this time, to the next one."""
+    """Fly from event i for this time to the next event."""
     leave(f, c, i, x, e, work)
     e.length = length - x[f.A.shape[0] + 1] / f.numbers[OMEGA] if c.rests[i] else length
     flight(f, e.length, e.E, work.other)
@@ -152,7 +152,7 @@ def is_short(f, c, b, i):
 
 @jit
 def grown(f, e, r):
-    """By how much coordinate r grows in the flight after an event, all of its motion: not a difference."""
+    """The growth of coordinate r in the flight after an event, of all of its motion, not formed as a difference."""
     n, turned, power, total = f.A.shape[0], f.numbers[OMEGA] * e.length, 1.0, 0.0
     for k in range(1, ORDER + 1):
         power *= e.length

@@ -110,7 +110,7 @@ class Twofold:
         return result
 
     def __matmul__(self, other):
-        """Of a matrix with a matrix or a vector, or of a vector with either."""
+        """The product of a matrix with a matrix or a vector, or of a vector with either."""
         other = other if isinstance(other, Twofold) else Twofold(other)
         columns, rows = self if self.high.ndim > 1 else self[None], other if other.high.ndim > 1 else other[:, None]
         total = Twofold(np.zeros((columns.shape[0], rows.shape[1])))

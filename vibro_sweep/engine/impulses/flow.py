@@ -190,7 +190,8 @@ def closing(q: Linear, sigma: int, half_periods: int) -> np.ndarray:
 
 
 def _free_motion(q: Linear) -> tuple[np.ndarray, np.ndarray]:
-    """Of the free modes, that which the contact sees first: momenta (n, count) and places (count, n) by the state."""
+    """Momenta (n, count) and places (count, n), by the state, of the free modes; first the one that the contact
+    sees."""
     to, (shapes, _) = contact_coordinates(q), free_modes(q)
     momentum = np.block([[to.P_back.T @ q.C @ shapes], [to.U_back.T @ q.M @ shapes]])
     return momentum, np.concatenate([to.P @ shapes, np.zeros_like(shapes)]).T

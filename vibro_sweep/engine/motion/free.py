@@ -52,7 +52,8 @@ def load_series(f, o):
 
 @jit
 def go_on(f, o, length, last, from_node):
-    """To the end of the series. from_node: the flight since node `base` is the closed form. Returns it for the next."""
+    """Go on to the end of the series. from_node: the flight since node `base` is the closed form. Returns it for the
+    next."""
     q = f.oscillator[0]
     if q.exact:
         advance_exactly(o, length)
@@ -125,7 +126,8 @@ def sign_of_gap(o, side, wall):
 
 @exported
 def find_contacts(f, o, stops, cells, offsets, states, durations, found, sides, statuses):
-    """For each flight the time until x1 first is at a stop again, infinite if later than its duration, and the side."""
+    """Find for each flight the time until x1 first is at a stop again, infinite if later than its duration, and the
+    side."""
     q = f.oscillator[0]
     for i in range(len(states)):
         from_node = start(f, o, stops, cells[i], offsets[i], states[i])

@@ -230,7 +230,7 @@ def cross_cell(f, stops, o, records, t, k, s):
             return status.BEYOND_STOP
         o.miss = max(o.miss, miss)
         X[0] = wall
-        if side * X[1] <= 0.0:  # it touched the stop without speed: a graze is no impact
+        if side * X[1] <= 0.0:  # it touched the stop without speed: a graze is not an impact
             X[1] = 0.0
             o.events += 1
     return status.EVENT_LIMIT

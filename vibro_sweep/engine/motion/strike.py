@@ -141,7 +141,7 @@ def derivatives(c, u, last):
 
 @inline
 def nearest_root(gap, rate, curve, width):
-    """Where gap + rate d + curve d^2/2 = 0, or is least; no further than `width`."""
+    """The d at which gap + rate d + curve d^2/2 = 0, or is least; no further than `width`."""
     square = rate * rate - 2.0 * curve * gap
     u = 2.0 * gap / (math.sqrt(select(square > 0.0, square, 0.0)) - rate)
     return select(u <= width, u, width)

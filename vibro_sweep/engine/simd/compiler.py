@@ -148,7 +148,7 @@ class _Flags(Flags):
 
 
 class WholeCompiler(Compiler):
-    """For an exported kernel."""
+    """The compiler of an exported kernel."""
 
     library = _Whole
 
@@ -185,7 +185,7 @@ class WholeCompiler(Compiler):
 
 
 class PartCompiler(WholeCompiler):
-    """For a kernel that only kernels call."""
+    """The compiler of a kernel that only kernels call."""
 
     library = _Part
 
@@ -196,6 +196,6 @@ class PartCompiler(WholeCompiler):
 
 
 class NoInlineCompiler(PartCompiler):
-    """For a kernel that only kernels call and that is never inlined."""
+    """The compiler of a kernel that only kernels call and that is never inlined."""
 
     library = _NoInline

@@ -59,7 +59,7 @@ def source_hash() -> str:
 
 
 def _cache_folder() -> str | None:
-    """Where compiled kernels are kept; None where there is no such place."""
+    """The folder in which compiled kernels are kept; None where there is no such place."""
     home = os.environ.get("XDG_CACHE_HOME", "")
     if not os.path.isabs(home):  # to be ignored, says the XDG base directory specification
         home = os.path.expanduser("~/.cache")
@@ -137,7 +137,7 @@ class _Part:
         self._make = functools.partial(_compiled, function, compiler, no_cpython_wrapper=True, **options)
 
     def __call__(self, *args):
-        """From Python, where that compiles nothing: the function as it is written."""
+        """Call the function as Python runs it; nothing is compiled."""
         return self.__wrapped__(*args)
 
     @functools.cached_property

@@ -14,7 +14,7 @@ from vibro_sweep.engine.simd.memory import address
 
 
 def _places(context, builder, kinds, args, n):
-    """Where the n vectors of a column are; kinds, args: of the matrices and the number of the column."""
+    """Addresses of the n vectors of a column; kinds, args: of the matrices and the number of the column."""
     first = address(context, builder, kinds, args, LANES, LANES)
     return [builder.gep(first, [ir.Constant(INDEX, n * m)]) for m in range(n)]
 

@@ -35,7 +35,7 @@ def width_of_row(array):
 
 
 def address(context, builder, kinds, args, scale, count, element=DOUBLE):
-    """Of `count` numbers, from number `scale` args[1] of the array args[0] on."""
+    """The address of `count` numbers, from number `scale` args[1] of the array args[0] on."""
     data = context.data_model_manager[kinds[0]].get(builder, args[0], "data")
     place = context.cast(builder, args[1], kinds[1], types.intp)
     place = builder.mul(place, ir.Constant(place.type, scale)) if scale > 1 else place
@@ -70,7 +70,7 @@ def head(typingctx, array, n, like):
 
 @intrinsic
 def widened(typingctx, x, array):
-    """As many numbers as a row of the array has: x, and zeros."""
+    """x and zeros, as many numbers as a row of the array has."""
     if isinstance(x, LanesType) and isinstance(array, types.Array):
         like = LanesType(width_of_row(array))
         chosen = ir.Constant(ir.VectorType(INDEX, like.count), [min(i, x.count) for i in range(like.count)])

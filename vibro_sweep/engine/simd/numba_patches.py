@@ -77,7 +77,7 @@ def _rewrite_where_named(blocks, states, handler):
 
 
 def _names(block):
-    """Of all variables in a block, kept with its body."""
+    """The names of all variables in a block, kept with its body."""
     body, names = getattr(block, "names_in", (None, None))
     if body is not block.body:
         names = {variable.name for step in block.body for variable in step.list_vars()}

@@ -28,6 +28,6 @@ def cells_needed(omega_squared: np.ndarray, zeta: np.ndarray, omega: np.ndarray)
 def cells_for(rate: np.ndarray, omega: np.ndarray) -> np.ndarray:
     """The same for systems with these fastest rates."""
     turns = 2 * math.pi * np.maximum(rate / omega, 1.0)
-    turns = np.where(turns <= LONGEST, turns, np.inf)  # also where they are no number
+    turns = np.where(turns <= LONGEST, turns, np.inf)  # also where they are not a number
     cells = np.maximum(LEAST_CELLS, 8 * np.ceil(np.minimum(turns, LONGEST) / WIDTH / 8)).astype(np.int64)
     return np.where(turns > LONGEST, 0, np.where(cells > MOST_CELLS, STIFF_CELLS, cells))

@@ -22,7 +22,7 @@ from vibro_sweep.engine.variational.sensitivity import gap_of, place_of
 
 
 class Expansion(NamedTuple):
-    """Where the map is expanded, and to which order."""
+    """The orbit about which the map is expanded, and the order."""
 
     order: int
     right: bool  # which stops there are

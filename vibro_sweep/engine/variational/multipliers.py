@@ -128,7 +128,7 @@ def product(t, i, axes, row, column):
 
 @jit
 def end_of_group(logs, first):
-    """Where the directions end that one matrix holds; none for a lost one.
+    """The end of the directions that one matrix holds; none for a lost one.
 
     Past a gap of `APART` nothing of the one side is left in the other: a period ago they have found their directions.
     """
@@ -250,7 +250,7 @@ def widen_group(t, i, logs, first, last, axes, matrix, result, beside, off):
 
 @jit
 def sort_moduli(re, im, count):
-    """By falling modulus; conjugates stay together."""
+    """Sort multipliers by falling modulus; conjugates stay together."""
     for i in range(1, count):
         x, y, j = re[i], im[i], i
         while j > 0 and math.hypot(re[j - 1], im[j - 1]) < math.hypot(x, y):
@@ -261,7 +261,8 @@ def sort_moduli(re, im, count):
 
 @jit
 def condition(re, im, count, j):
-    """Of multiplier j relative to itself, for a matrix whose rows are of like size once its grading is taken out."""
+    """The condition number of multiplier j relative to itself, for a matrix whose rows are of like size once its
+    grading is taken out."""
     result, own = 1.0, math.hypot(re[j], im[j])
     for k in range(count):
         if k != j:

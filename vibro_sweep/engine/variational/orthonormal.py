@@ -51,7 +51,7 @@ def orthonormalise(t, who):
 
 @inline
 def place_of(size, i, j):
-    """Where entry (i, j) of a strict upper triangle stands, row by row."""
+    """The index of entry (i, j) of a strict upper triangle, row by row."""
     return i * (2 * size - i - 1) // 2 + j - i - 1
 
 

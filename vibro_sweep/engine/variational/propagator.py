@@ -27,7 +27,7 @@ class Workspace(NamedTuple):
 
 
 def new_workspace(size: int, parameters: int) -> Workspace:
-    """For z of so many numbers, and derivatives by so many parameters."""
+    """Arrays for z of so many numbers, and derivatives by so many parameters."""
     one, many = (size, size), (parameters, size, size)
     return Workspace(np.empty(one), np.empty(many), np.empty(one), np.empty(many), np.empty(one), np.empty(size))
 

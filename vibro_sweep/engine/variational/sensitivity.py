@@ -12,7 +12,7 @@ with g' the speed of the gap before, dg' = n.dv - n.a- d/g' its change at the co
 about it: the saltation matrix, with the motion of the stop, of R and of p. At a rest the others receive through the
 dampers what moves the gap to the stop at once. The same holds where a chatter sequence that was summed up ends in a
 rest, at the last impact that was listed: the sum of these terms over all that follow is what brings d to 0, whenever
-the rest begins. A release changes nothing, since all is continuous there; neither does a graze that is no impact.
+the rest begins. A release changes nothing, since all is continuous there; neither does a graze that is not an impact.
 """
 
 from typing import NamedTuple
@@ -61,7 +61,7 @@ def set_phase(e, cell, offset, z, dz):
 
 @jit
 def place_of(side):
-    """Of a stop among the two."""
+    """The index of a stop among the two."""
     return 1 if side > 0.0 else 0
 
 

@@ -48,7 +48,7 @@ def end_warm_up(e, count):
 
 @jit
 def keep_at_rest(e, i):
-    """Where M1 rests on a stop, two of the four directions are lost already."""
+    """Keep the vectors while M1 rests on a stop: two of the four directions are lost already."""
     if e.orbits[i].resting != 0.0:
         q = e.flights.oscillator[e.orbits[i].table, 0]
         held.rest(e.tangent[0], i, q.kappa, q.push)

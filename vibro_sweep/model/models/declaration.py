@@ -18,7 +18,7 @@ from vibro_sweep.model.parameters import (
 
 
 class Option(NamedTuple):
-    """What is no number that could be swept. `kind`: "word" | "flag" | "whole" | "matrix" | "vector" | "units"."""
+    """What is not a number that could be swept. `kind`: "word" | "flag" | "whole" | "matrix" | "vector" | "units"."""
 
     name: str
     kind: str

@@ -91,7 +91,7 @@ def _check_symmetric(name: str, matrix: np.ndarray) -> None:
 
 
 def _depending(given) -> dict[str, str]:
-    """Of forces that grow like a power of omega, and of the two numbers of `rayleigh`, alpha and beta."""
+    """The parameters of forces that grow like a power of omega, and alpha and beta of `rayleigh`."""
     power = given["force_power"]
     force = f"kg m s{power - 2:.0f}" if power not in (0, 2) else "N" if power == 0 else "kg m"
     if power != int(power):
