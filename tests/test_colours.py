@@ -1,4 +1,4 @@
-"""Colours that stand side by side in a legend are told apart by readers with any colour vision."""
+"""Colours that stand side by side in a legend are distinct to readers with any colour vision."""
 
 import itertools
 

@@ -20,9 +20,9 @@ from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.observables import VARIABLES, WORDS, asked_for
 from vibro_sweep.model.parameters import BY_NAME, NAMES
 from vibro_sweep.model.state import state
-from vibro_sweep.model.told import sentence
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.model.units import unit_in
+from vibro_sweep.model.wording import sentence
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.creating import skeleton_of
 

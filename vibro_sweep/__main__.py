@@ -20,7 +20,7 @@ def program() -> None:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)
-    gc.freeze()  # else Python looks through all objects on its way out, which takes half a second
+    gc.freeze()  # else Python looks through all objects at its exit, which takes half a second
     sys.exit(status)
 
 

@@ -1,4 +1,4 @@
-"""The progress bar: orbits done, their rate and the time left, whoever computes them."""
+"""The progress bar: orbits done, their rate and the time left, whatever computes them."""
 
 import contextlib
 import importlib.util
@@ -10,7 +10,7 @@ from vibro_sweep import notices
 
 @contextlib.contextmanager
 def progress_bar(total: int, quiet: bool):
-    """A callable (done, total) that draws on a terminal or in a notebook; None where nobody looks."""
+    """A callable (done, total) that draws on a terminal or in a notebook; None where neither is there."""
     if quiet or not (sys.stderr.isatty() or _in_notebook()):
         yield None
         return

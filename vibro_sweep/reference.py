@@ -13,8 +13,8 @@ from vibro_sweep.model.observables import VARIABLES, WORDS
 from vibro_sweep.model.parameters import FOLLOWING, PARAMETERS
 from vibro_sweep.model.state import INITIAL
 from vibro_sweep.model.status import STATUSES
-from vibro_sweep.model.told import sentence
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
+from vibro_sweep.model.wording import sentence
 from vibro_sweep.plotting import KINDS
 from vibro_sweep.scene import json_schema
 

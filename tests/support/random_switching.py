@@ -180,7 +180,7 @@ def _switched(report: Report, where: str, special, name: str, bounds) -> None:
 def _simulated(report: Report, where: str, orbit) -> None:
     """That the motion comes back after the period and not before, and is its own mirror image if it is said to be.
 
-    Masses may swing far beyond the stops together: motions are told apart by the size of the gap, not of the state.
+    Masses may swing far beyond the stops together: motions are distinguished by the size of the gap, not of the state.
     """
     system, n = orbit.system, orbit.period
     largest = max(1.0, float(np.abs(orbit.multipliers).max()))

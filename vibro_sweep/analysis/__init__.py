@@ -1,1 +1,1 @@
-"""What is computed of single systems at a prompt, standing on the engine."""
+"""Analyses of single systems, on top of the engine."""

@@ -50,7 +50,7 @@ class Computation:
         if self.resume and self.overwrite:
             raise InputError("--resume and --overwrite exclude each other: continue the old file or replace it")
         # until the run has begun, what is to be overwritten is there, and would be taken for its result
-        interrupt.tells(self.advice("--overwrite" if self.overwrite else "--resume"))
+        interrupt.advise(self.advice("--overwrite" if self.overwrite else "--resume"))
 
     def check_places(self, inputs: Collection[Path]) -> None:
         """Raises InputError where something is in the way. inputs : files that are read, and must not be written."""
@@ -72,7 +72,7 @@ class Computation:
         workers_of_a_cluster = executor_of(self.scheduler)
         with input_errors(StoreError, *errors), interrupt.tidied_up():
             to_continue = self.advice("--resume")
-            interrupt.tells(to_continue)
+            interrupt.advise(to_continue)
             try:
                 bar = progress_bar(total, self.quiet)
                 with messages(self.quiet), workers_of_a_cluster as executor, bar as progress:

@@ -56,7 +56,7 @@ def install() -> None:
         sys.unraisablehook = _handler.lost
 
 
-def tells(advice: str) -> None:
+def advise(advice: str) -> None:
     """What an interrupt says from now on."""
     _handler.text = f"interrupted; {advice}"
 

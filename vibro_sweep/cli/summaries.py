@@ -63,9 +63,9 @@ def grazing_text(touch: Grazing, system: AnyOscillator) -> str:
     where = {"right": "   (right stop, t = 0)", "left": "   (left stop, t = T/2)"}.get(stops, "   (right stop, t = 0)")
     where = "   (right stop; left stop: its negative)" if stops == "both" and alike else where
     values = zip(names(system.masses), state.tolist(), strict=True)
-    told = ", ".join(f"{name}: {0 if value == 0 else value!r}" for name, value in values)
+    named = ", ".join(f"{name}: {0 if value == 0 else value!r}" for name, value in values)
     holds = "holds" if touch.satisfied or (not alike and touch.determinant) else "does not hold"
-    lines += [f"tau*  = {touch.tau!r}", f"state = {told}{where}"]
+    lines += [f"tau*  = {touch.tau!r}", f"state = {named}{where}"]
     return "\n".join([*lines, f"the existence condition (19) {holds}; determinant (15): {touch.determinant:.6g}"])
 
 

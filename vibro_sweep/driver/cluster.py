@@ -84,7 +84,7 @@ def cluster(address: str) -> Iterator[Executor]:
     for name in ("distributed", "distributed.client"):  # what they would say in many lines, errors say in one
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        host, _ = get_address_host_port(address)  # a client that is told nonsense takes long to go away
+        host, _ = get_address_host_port(address)  # a client with a wrong address takes long to give up
         client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError) as error:
         raise ClusterError(f"no dask scheduler answers there: {error}") from None
@@ -122,7 +122,7 @@ def _is_loopback(host: str) -> bool:
     try:
         found = {entry[4][0] for entry in socket.getaddrinfo(host, None)}
         return all(ipaddress.ip_address(address.partition("%")[0]).is_loopback for address in found)
-    except (OSError, ValueError):  # a name that nobody knows, or no address of a network
+    except (OSError, ValueError):  # an unknown name, or not an address of a network
         return False
 
 
@@ -133,7 +133,7 @@ def _check(client: Client) -> None:
     except GONE as error:
         raise ClusterError(f"the scheduler has died ({error})") from None
     wrong = [
-        f"{address} has {_told(answer)}"
+        f"{address} has {_described(answer)}"
         for address, answer in answers.items()
         if answer != version() and not isinstance(answer, OSError)  # of a worker that has died meanwhile
     ]
@@ -141,7 +141,7 @@ def _check(client: Client) -> None:
         raise ClusterError(f"worker {'; worker '.join(wrong)}. This program is {version()}: install the same on all")
 
 
-def _told(answer: str | Exception) -> str:
+def _described(answer: str | Exception) -> str:
     if isinstance(answer, str):
         return answer
     missing = "ModuleNotFoundError" in repr(answer)

@@ -112,8 +112,8 @@ def _check_same(scene: Continuation, own: AnyOscillator, asked: AnyOscillator) -
     ours, theirs = ({"type": one.model.name, **one.numbers, **one.options} for one in (asked, own))
     for name in [*ours, *theirs]:
         if ours.get(name) != theirs.get(name):
-            told = f"{name} = {shown(ours.get(name))} in system, and {shown(theirs.get(name))} in {scene.begin}"
-            raise SourceError(f"continue.from.{scene.origin}: {told}; branches belong to one oscillator")
+            named = f"{name} = {shown(ours.get(name))} in system, and {shown(theirs.get(name))} in {scene.begin}"
+            raise SourceError(f"continue.from.{scene.origin}: {named}; branches belong to one oscillator")
 
 
 def _rows(scene: Continuation, data: Contents) -> list[Row]:
@@ -179,8 +179,8 @@ def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> lis
         if isinstance(special, CurvePoint):
             return curves_through(special)
         if special.type not in CURVES:
-            told = f"{scene.special} is a {special.type!r} in {scene.begin}"
-            raise SourceError(f"continue.from.special: {told}; it must be one of {', '.join(CURVES)}")
+            named = f"{scene.special} is a {special.type!r} in {scene.begin}"
+            raise SourceError(f"continue.from.special: {named}; it must be one of {', '.join(CURVES)}")
         return [special]
     with store.contents(Path(scene.begin)) as data:
         rows = _rows(scene, data)

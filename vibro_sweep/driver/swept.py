@@ -66,8 +66,8 @@ class DatasetContents:
         }
         if all(name in values and len(values[name]) == len(axis) for name, axis in axes.items()):
             return None
-        told = repr([self.attrs.get("identity", ""), *((name, one.tolist()) for name, one in values.items())])
-        return hashlib.sha256(told.encode()).hexdigest()[:32]
+        named = repr([self.attrs.get("identity", ""), *((name, one.tolist()) for name, one in values.items())])
+        return hashlib.sha256(named.encode()).hexdigest()[:32]
 
     def __contains__(self, name: str) -> bool:
         return name in self._data.data_vars

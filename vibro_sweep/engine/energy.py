@@ -27,7 +27,7 @@ TO_POWERS = np.ascontiguousarray(np.linalg.inv(np.vander(PLACES, NODES)))  # fro
 
 
 class Workspace(NamedTuple):
-    """What one orbit needs on its way."""
+    """Arrays that one orbit needs."""
 
     hits: np.ndarray  # (1, room, 3 + 2 N)
     rests: np.ndarray  # (1, room, 4)

@@ -1,4 +1,4 @@
-"""The tables of one system, and eight of its orbits on their way: what `simulate` and `PeriodMap` stand on."""
+"""The tables of one system, and the motion of eight of its orbits: the base of `simulate` and `PeriodMap`."""
 
 import numpy as np
 
@@ -106,7 +106,7 @@ def point_of_one(system, later: float) -> tuple[np.ndarray, Kind]:
 
 
 class Engine:
-    """The tables of one system, and eight orbits on their way, of which `orbit` is the first.
+    """The tables of one system, and the motion of eight orbits, of which `orbit` is the first.
 
     system : a System, or an oscillator with `linear`, `omega` and `period`. States are those of the masses; the orbits
         themselves move in contact coordinates (`to_contact`, `to_masses`).

@@ -133,7 +133,7 @@ def set_orbits(points, starts, results, n, first, w, plan):
 
 @exported
 def run_points(points, starts, results, sections, phases, running, w, plan, mapping):
-    """Compute a block. n = steps, m = orbits; observations that nobody wants have no samples.
+    """Compute a block. n = steps, m = orbits; observations that are not asked for have no samples.
 
     points: (n, m) of `point_of`. starts: (2, m, 2 N), at the first step, and at a step after one that failed; at the
     others an orbit goes on from where it ended, with the next point's numbers. results: (n, m) of `result_of`.

@@ -41,9 +41,9 @@ class Built(AnyOscillator):
     def _linear(self, **numbers) -> Linear:
         made = self._made(numbers)
         if made.masses != self.base.masses:
-            told = ", ".join(f"{name}={value!r}" for name, value in numbers.items())
+            named = ", ".join(f"{name}={value!r}" for name, value in numbers.items())
             allowed = f"as many as at the first point, {self.base.masses}"
-            raise ArgumentError(f"{self.name}({told}): {made.masses} masses are not allowed; there must be {allowed}")
+            raise ArgumentError(f"{self.name}({named}): {made.masses} masses are not allowed; there must be {allowed}")
         return made.linear
 
     def _made(self, numbers: Mapping[str, float]) -> AnyOscillator:

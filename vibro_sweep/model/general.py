@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from vibro_sweep.model import told
+from vibro_sweep.model import wording
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models import MODELS, model_named
@@ -88,7 +88,7 @@ class Oscillator(AnyOscillator):
         return hash((self.model.name, tuple(self.given.values())))
 
     def __repr__(self) -> str:
-        arguments, complete = told.arguments(self.given)
+        arguments, complete = wording.arguments(self.given)
         by_call = complete and self.model.name == "linear"
         return f"Oscillator({arguments})" if by_call else f"<{self.model.name}: {arguments}>"
 
@@ -189,7 +189,7 @@ def checked(model: Model, given: Mapping[str, Any]) -> dict[str, Any]:
     masses = model.masses(result)
     if not 1 <= masses <= MOST_MASSES:
         name = "M" if "M" in result else lists[0].name
-        raise ParameterError(name, told.plain(result[name]), f"of 1 to {MOST_MASSES} masses")
+        raise ParameterError(name, wording.plain(result[name]), f"of 1 to {MOST_MASSES} masses")
     model.check(result)
     for one in model.numbers:
         if not one.each:

@@ -168,8 +168,8 @@ def _chosen(result: Result, kind: str | None) -> list[str]:
         choices = {name: KINDS[name].variables(result) for name in fitting}
         fitting = [name for name in fitting if variable in choices[name]]
         if not fitting:
-            told = "; ".join(f"{name}: {', '.join(names)}" for name, names in choices.items() if names)
-            raise PlotError(f"variable {shown(variable)} is not allowed; there are {told or 'none to choose among'}")
+            named = "; ".join(f"{name}: {', '.join(names)}" for name, names in choices.items() if names)
+            raise PlotError(f"variable {shown(variable)} is not allowed; there are {named or 'none to choose among'}")
     return fitting if kind == "all" else fitting[:1]
 
 

@@ -80,8 +80,8 @@ def _over(file: FlatFile, options: PlotOptions, ax):
         if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):
             raise PlotError(f"over: {result.path} is not a plane over {' and '.join(file.parameters)}")
         if options.variable is not None and options.variable not in planes.variables(result):
-            told = ", ".join(planes.variables(result))
-            raise PlotError(f"variable {shown(options.variable)} is not allowed; there are {told}")
+            variables = ", ".join(planes.variables(result))
+            raise PlotError(f"variable {shown(options.variable)} is not allowed; there are {variables}")
         curves = drawn(file, list(result.sweep), options.relative)
 
         def over(panel):

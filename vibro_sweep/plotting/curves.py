@@ -16,7 +16,7 @@ from vibro_sweep.plotting.style import INK, axis_name, with_unit
 COLOURS = {one.name: one.curve_colour for one in TYPES if one.condition}
 # of orbits of different periods, beside the colours of the types but for the graze's
 ORBITS = ("#8a8a96", "#5ce4ff", "#521433", "#9aca91", "#425a8a", "#ff5c5c", "#8a425a", "#660099", "#ff00d5")
-MOSTLY, DIFFERENT = 0.6, 3  # from this part of the curves on, and so many periods, one type is told apart by periods
+MOSTLY, DIFFERENT = 0.6, 3  # from this part of the curves on, and so many periods, one type is distinguished by periods
 VIRTUAL = (0, (1, 1.5))  # dots of what is not a motion
 MANY = 100  # curves
 SHORT = {one.name: one.label for one in CODIMENSION_TWO if one.label}
@@ -157,7 +157,7 @@ def _within(curve: Drawn, across, up) -> Drawn:
 
 
 def _by_period(curves: list[Drawn]) -> dict[int, str]:
-    """period -> colour, where most curves have one type and a legend of types would tell nothing apart; else none.
+    """period -> colour, where most curves have one type and a legend of types would distinguish nothing; else none.
 
     The shortest periods have a colour each, all others the one of their type.
     """

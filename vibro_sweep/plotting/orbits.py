@@ -162,7 +162,7 @@ def poincare(result: Result):
 
 
 def _different(values) -> int:
-    """How many points one can tell apart, at least 1."""
+    """How many points one can distinguish, at least 1."""
     known = values[np.isfinite(values)]
     return len(np.unique(np.round(known / (np.ptp(known) or 1.0), 3))) if len(known) else 1
 

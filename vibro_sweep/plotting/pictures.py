@@ -1,4 +1,4 @@
-"""Pictures as files: each carries a seal, a checksum of itself, by which one that nobody has changed is known.
+"""Pictures as files: each carries a seal, a checksum of itself, by which an unchanged one is recognised.
 
 Such a picture is drawn anew without a question. Everything else that exists is replaced only when asked for.
 """

@@ -48,10 +48,10 @@ class PlotOptions:
     def __post_init__(self):
         for name, limits in (("xlim", self.xlim), ("ylim", self.ylim)):
             if limits and not (np.isfinite(limits).all() and limits[0] < limits[1]):
-                raise PlotError(f"{name}: {_told(limits)} is not allowed; it must be two numbers, the lower one first")
+                raise PlotError(f"{name}: {_text(limits)} is not allowed; it must be two numbers, the lower one first")
         if self.size and not all(SIZES[0] <= length <= SIZES[1] for length in self.size):
             raise PlotError(
-                f"size: {_told(self.size)} is not allowed; width and height must be {SIZES[0]:g} to {SIZES[1]:g} inches"
+                f"size: {_text(self.size)} is not allowed; width and height must be {SIZES[0]:g} to {SIZES[1]:g} inches"
             )
         if self.width is not None:
             self._check_width()
@@ -98,5 +98,5 @@ class PlotOptions:
                 ax.set_ylim(self.ylim)
 
 
-def _told(numbers) -> str:
+def _text(numbers) -> str:
     return " ".join(f"{number:g}" for number in numbers)

@@ -1,4 +1,4 @@
-"""b in parts of the grazing clearance b* (Theorem 1): it tells apart what hugs it."""
+"""b in parts of the grazing clearance b* (Theorem 1): it separates what lies close to it."""
 
 import numpy as np
 

@@ -146,7 +146,7 @@ class Result:
         return np.where(known >= period, period, 0).astype(int)
 
     def number(self, name, place=()) -> float | None:
-        """A number of the system, or b*, at a place in the sweep; None where the file does not tell."""
+        """A number of the system, or b*, at a place in the sweep; None where the file does not say."""
         if name in self.sweep:
             return float(self.sweep[name][place[list(self.sweep).index(name)]])
         if name in self._along:

@@ -73,11 +73,11 @@ class FileSource:
     @property
     def attributes(self) -> dict[str, Any]:
         """The attributes of the file, texts as `str`."""
-        return {key: _told(value) for key, value in self._file.attrs.items()}
+        return {key: _decoded(value) for key, value in self._file.attrs.items()}
 
     def attribute(self, name: str, key: str) -> Any:
         """An attribute of a dataset; None where it has no such."""
-        return _told(self._file[name].attrs.get(key))
+        return _decoded(self._file[name].attrs.get(key))
 
     def __contains__(self, name: str) -> bool:
         return is_dataset(self._file, name)
@@ -157,5 +157,5 @@ def source_of(given) -> FileSource | DatasetSource:
         raise PlotError(str(error)) from error
 
 
-def _told(value):
+def _decoded(value):
     return value.decode() if isinstance(value, bytes) else value

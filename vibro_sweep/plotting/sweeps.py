@@ -210,7 +210,7 @@ def section(ax, result, values, order):
 
 
 def _distinct(points, there, repeats) -> float:
-    """How many points one can tell apart of those that are there, bool (values, starts, samples): of a periodic orbit
+    """How many points one can distinguish of those that are there, bool (values, starts, samples): of a periodic orbit
     those of one period."""
     known = np.maximum(np.isfinite(points).sum(axis=-1), 1)
     return float((there.sum(axis=-1) * np.where(repeats > 0, repeats / known, 1)).sum())

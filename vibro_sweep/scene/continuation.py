@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from vibro_sweep.model import told
+from vibro_sweep.model import wording
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.model.parameters import ParameterError
@@ -88,7 +88,7 @@ class Continuation:
     def __str__(self) -> str:
         """What is followed, in a few lines."""
         numbers = {name: value for name, value in self.system.numbers.items() if value is not None}
-        system = told.numbers({name: value for name, value in numbers.items() if name not in self.parameter})
+        system = wording.numbers({name: value for name, value in numbers.items() if name not in self.parameter})
         ranges = ", ".join(f"{key} = {lo:g} .. {hi:g}" for key, (lo, hi) in self.parameter.items())
         begin = "the free motion" if self.origin == "free" else f"{self.origin} {self.begin}"
         begin += f", special point {self.special}" if self.special is not None else ""
@@ -162,8 +162,8 @@ def _origin(origin: Form) -> tuple[tuple[str, Any], list[str]]:
     """The key of `from` that is given and its value, and what is wrong."""
     found = [key for key in ORIGINS if key in origin.model_fields_set]
     if len(found) != 1:
-        told = f"has {', '.join(found)}" if found else "says nothing"
-        return ("free", None), [f"continue.from: {told}; it must have one of {', '.join(ORIGINS)}"]
+        named = f"has {', '.join(found)}" if found else "says nothing"
+        return ("free", None), [f"continue.from: {named}; it must have one of {', '.join(ORIGINS)}"]
     problems = [
         f"continue.from.{key}: belongs to {' or '.join(others)}; leave it out"
         for key, others in _WITH.items()

@@ -15,10 +15,10 @@ class Foreign:
     """Stands for a value that no YAML holds, until the form of the scene refuses it."""
 
     def __init__(self, value: object):
-        self._told, self.hint = shown(value), hint_for(value)
+        self._shown, self.hint = shown(value), hint_for(value)
 
     def __repr__(self) -> str:
-        return self._told
+        return self._shown
 
 
 def data_from(value: object, levels: int = DEEPEST) -> object:

@@ -231,7 +231,7 @@ def _system(value) -> str:
 
 
 def tagged(form: type[Form]) -> dict[str, type[Form]]:
-    """The forms that a key of a scene may have, by the words that tell them apart in errors."""
+    """The forms that a key of a scene may have, by the words that distinguish them in errors."""
     found = {"axis by step": StepAxis, "axis by number": CountAxis, "axis of values": ListAxis}
     for key in ("system", "start"):
         for one in get_args(form.model_fields[key].annotation) if key in form.model_fields else ():
@@ -255,9 +255,9 @@ def _add_branches(schema: dict, numbers: Iterable[Parameter], masses: int) -> No
     body = _draft_7(continue_form(numbers, masses).model_json_schema())
     schema["definitions"] |= body.pop("definitions")
     origin = body["properties"]["from"]
-    told = {"description": origin.pop("description")} if "description" in origin else {}
+    named = {"description": origin.pop("description")} if "description" in origin else {}
     reference = origin["allOf"][0] if "allOf" in origin else origin
-    body["properties"]["from"] = {"anyOf": [{"const": "free"}, reference]} | told
+    body["properties"]["from"] = {"anyOf": [{"const": "free"}, reference]} | named
     schema["definitions"]["ContinueForm"] = body
     text = "branches of periodic orbits, in place of a sweep and its orbits"
     schema["properties"]["continue"] = {

@@ -44,18 +44,18 @@ class SceneError(VibroSweepError, ValueError):
 
 def problem(path: str, value: object, text: str) -> str:
     """One line: the key path, the value as the user would write it, what is wrong and what is allowed."""
-    shown = json.dumps(_told(value), ensure_ascii=False)
+    shown = json.dumps(_shortened(value), ensure_ascii=False)
     shown = _YAML_WORDS.get(shown, shown)
     hint = value.hint if isinstance(value, Foreign) else ""
     return f"{cut(path)} = {cut(shown)}: {text}{hint}"
 
 
-def _told(value: object, levels: int = LONGEST):
+def _shortened(value: object, levels: int = LONGEST):
     """The part of a value that a message shows, for JSON."""
     if isinstance(value, list) and levels:
-        return [_told(item, levels - 1) for item in value[:LONGEST]]
+        return [_shortened(item, levels - 1) for item in value[:LONGEST]]
     if isinstance(value, dict) and levels:
-        return {cut(str(key)): _told(item, levels - 1) for key, item in islice(value.items(), LONGEST)}
+        return {cut(str(key)): _shortened(item, levels - 1) for key, item in islice(value.items(), LONGEST)}
     if isinstance(value, float):
         return int(value) if value.is_integer() and abs(value) < 1e16 else value
     if isinstance(value, str):

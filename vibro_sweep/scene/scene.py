@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pydantic import ValidationError
 
-from vibro_sweep.model import told
+from vibro_sweep.model import wording
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import BUILD, Built
 from vibro_sweep.model.grid import digest, grid
@@ -154,7 +154,7 @@ class Scene:
             name: value for name, value in self.system.numbers.items() if value not in (None, _default(self, name))
         }
         known |= {name: value for name, value in self.system.options.items() if value is not None}
-        system = told.numbers({name: value for name, value in known.items() if name not in self.sweep})
+        system = wording.numbers({name: value for name, value in known.items() if name not in self.sweep})
         kind = "" if self.system.model.name == DEFAULT else f"{self.system.model.name}: "
         axes = [f"{key} = {v[0]:g} .. {v[-1]:g} ({len(v):,} values)" for key, v in self.sweep.items()]
         state = dict(zip(start(self.system.masses), self.start.state, strict=self.start.kind != "random"))
@@ -188,7 +188,7 @@ class Scene:
 
 
 def _default(scene: Scene, name: str):
-    """The value of a number that need not be told: that of an offset, which most have not."""
+    """The value of a number that need not be shown: an offset of 0, which most systems have."""
     return 0.0 if name == "offset" else None
 
 

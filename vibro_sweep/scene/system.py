@@ -19,7 +19,7 @@ from .systems import PhysicalSystemForm
 
 
 def kind_of(data: object, name: str) -> tuple[str, int]:
-    """The model of a scene and its number of masses, as far as its data tell. Raises SceneError for no model."""
+    """The model of a scene and its number of masses, as far as its data say. Raises SceneError for no model."""
     system = data.get("system") if isinstance(data, dict) else None
     kind = system.get("type", DEFAULT) if isinstance(system, dict) else DEFAULT
     if not (isinstance(kind, str) and kind in MODELS):

@@ -137,7 +137,7 @@ def _system(system: AnyOscillator, swept) -> dict[str, Any]:
     kind = {} if system.model.name == DEFAULT else {"type": system.model.name}
     given = {one.name: getattr(system, one.name) for one in system.model.numbers if one.name not in swept}
     left_out = {one.name: one.default for one in system.model.numbers if one.default is not None}
-    left_out["tau"] = None  # always told
+    left_out["tau"] = None  # always written
     numbers = {
         name: data_from(value)
         for name, value in given.items()

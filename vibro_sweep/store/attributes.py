@@ -6,8 +6,8 @@ import numpy as np
 
 from vibro_sweep.model import catalogue
 from vibro_sweep.model.refusals import cut
-from vibro_sweep.model.told import sentence
 from vibro_sweep.model.variable import Variable
+from vibro_sweep.model.wording import sentence
 
 # the attributes of a file that hold a number, or a word, for all points (`numbers.attributes`)
 NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "record")
@@ -53,10 +53,10 @@ def texts(of: h5py.File | h5py.Dataset, name: str) -> list[str]:
 
 def attributes(of: h5py.File | h5py.Dataset) -> dict:
     """All but those by which HDF5 joins datasets, as xarray has them."""
-    return {name: _told(of.attrs[name]) for name in of.attrs if name not in SCALES}
+    return {name: _decoded(of.attrs[name]) for name in of.attrs if name not in SCALES}
 
 
-def _told(value):
+def _decoded(value):
     """Texts as texts, a number as one."""
     if isinstance(value, h5py.Empty):
         return []
@@ -79,7 +79,7 @@ def check_numbers(file: h5py.File) -> None:
         raise ValueError("its attribute `contact_normal` is not a list of numbers")
     found = {name: text(file, name) for name in WORDS if name in file.attrs}
     if found.get("dynamics") == "map":
-        file.attrs["order"]  # without which nobody can tell what was iterated
+        file.attrs["order"]  # without which it is unknown what was iterated
 
 
 def check_own_dimensions(name: str, own: int) -> None:

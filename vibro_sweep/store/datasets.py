@@ -20,7 +20,7 @@ from vibro_sweep.store.attributes import MATRIX, describe, set_text
 from vibro_sweep.store.layout import chunk_shape, coordinates, dimensions, quantities
 
 # To Fletcher-32 two zero bytes are the same as two bytes of ones, so that 0 could become -65536 unseen. Adler-32, which
-# comes with gzip, tells them apart; level 0 compresses nothing, and costs no time.
+# comes with gzip, distinguishes them; level 0 compresses nothing, and costs no time.
 CHECKSUMS = {"fletcher32": True, "compression": "gzip", "compression_opts": 0}
 
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"  # how netCDF names a mere length
@@ -38,8 +38,8 @@ def create(file: h5py.File, scene: Scene) -> None:
         file[name].make_scale(name)
         _describe(file[name], scene.system.described.get(name, AXES.get(name)), scene)
     following = _create_following(file, scene)
-    if told := (*following, *_create_matrices(file, scene)):
-        set_text(file, "coordinates", " ".join(told))
+    if named := (*following, *_create_matrices(file, scene)):
+        set_text(file, "coordinates", " ".join(named))
     for name, quantity in quantities(scene).items():
         lead = dimensions(scene, quantity)
         shape = tuple(len(axes[dimension]) for dimension in lead)

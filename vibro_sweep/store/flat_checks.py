@@ -43,7 +43,7 @@ def damage_of(file: h5py.File) -> str:
 
 
 def check(kind: str, parameters: list[str], found: Mapping[str, Stored]) -> None:
-    """Raise ValueError for branches, windows or curves that nobody could read."""
+    """Raise ValueError for branches, windows or curves that cannot be read."""
     if kind not in KINDS:
         raise ValueError(f"its kind {shown(kind)} is unknown")
     lengths = {}

@@ -2,7 +2,7 @@
 
 A number that is the same at all points is an attribute of the file; one that is swept is a coordinate; and one that
 follows from swept ones (b*, and tau where it is `grazing`) is a dataset over the keys that it depends on. What has its
-default (no offset, R_left as R, mu_c as mu_k) is not told.
+default (no offset, R_left as R, mu_c as mu_k) is not stored.
 """
 
 import math

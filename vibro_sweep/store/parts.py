@@ -72,11 +72,11 @@ def new_run_id() -> bytes:
 
 def record(run_id: bytes, text: dict, data: list[memoryview]) -> list[bytes | memoryview]:
     """A record as the pieces that are written one after the other."""
-    told = json.dumps(text).encode()
-    checksum = zlib.crc32(told)
+    encoded = json.dumps(text).encode()
+    checksum = zlib.crc32(encoded)
     for piece in data:
         checksum = zlib.crc32(piece, checksum)
-    return [_sealed(_RECORD.pack(run_id, len(told), sum(map(len, data)), checksum)), told, *data]
+    return [_sealed(_RECORD.pack(run_id, len(encoded), sum(map(len, data)), checksum)), encoded, *data]
 
 
 def open_regular(path: Path, flags: int = os.O_RDONLY) -> BinaryIO:
@@ -168,12 +168,12 @@ class Scan:
     def _text(self, begin: int, texts: int, length: int, checksum: int) -> dict | None:
         """The text of a record whose checksum holds."""
         self._file.seek(begin)
-        told, left = self._file.read(texts), length
-        found = zlib.crc32(told)
+        encoded, left = self._file.read(texts), length
+        found = zlib.crc32(encoded)
         while left and (piece := self._file.read(min(left, PIECE))):
             found, left = zlib.crc32(piece, found), left - len(piece)
         with contextlib.suppress(ValueError, RecursionError):
-            text = json.loads(told)
+            text = json.loads(encoded)
             if not left and found == checksum and isinstance(text, dict):
                 return text
         return None

@@ -1,4 +1,4 @@
-"""Runs whose results are of sizes that nobody knows before: windows and branches. Pieces are kept in FILE.h5.part.
+"""Runs whose results have sizes that are not known before: windows and branches. Pieces are kept in FILE.h5.part.
 
 A piece is what one worker returns: arrays by name, kept under a key. The file is made of all pieces at the end.
 """
@@ -44,10 +44,10 @@ class Pieces:
 
     def write(self, key: str, arrays: Arrays) -> None:
         """Keep a piece: once this returns, a kill does not lose it."""
-        told = [[name, values.dtype.str, list(values.shape)] for name, values in arrays.items()]
+        layout = [[name, values.dtype.str, list(values.shape)] for name, values in arrays.items()]
         data = [memoryview(np.ascontiguousarray(values).reshape(-1).view(np.uint8)) for values in arrays.values()]
         with said(self._part):
-            self._part.append({"piece": key, "arrays": told}, data)
+            self._part.append({"piece": key, "arrays": layout}, data)
         self._known[key] = arrays
 
     def drop(self) -> None:
@@ -141,14 +141,14 @@ def _continued(held: HeldPart, subject: Subject, path: Path) -> dict[str, Arrays
 
 
 def _piece(file: BinaryIO, record: parts.Record) -> dict[str, Arrays] | None:
-    """A piece as `write` keeps it, under its key; None for any other record, which somebody else has put there."""
-    key, told = record.text.get("piece"), record.text.get("arrays")
-    if not (isinstance(key, str) and isinstance(told, list)):
+    """A piece as `write` keeps it, under its key; None for any other record."""
+    key, layout = record.text.get("piece"), record.text.get("arrays")
+    if not (isinstance(key, str) and isinstance(layout, list)):
         return None
     file.seek(record.at)
     raw, at, result = file.read(record.length), 0, {}
     try:
-        for name, dtype, shape in told:
+        for name, dtype, shape in layout:
             kind, count = np.dtype(dtype), math.prod(shape)
             if kind.kind not in "biuf" or count < 0:
                 return None

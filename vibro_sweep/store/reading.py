@@ -186,11 +186,11 @@ def _exponents(file: h5py.File) -> list[str]:
         return []
     certain, counts = float(file["lyapunov_error"].attrs.get("significant", CERTAIN)), Counter()
     for piece, exponents in checks.readable(file["lyapunov"]):
-        with contextlib.suppress(OSError):  # a damaged chunk, which is told of elsewhere
+        with contextlib.suppress(OSError):  # a damaged chunk, which is reported elsewhere
             largest, error = exponents[..., 0], file["lyapunov_error"][piece][..., 0]
             counts.update(sign_of(largest, error, certain)[~np.isnan(largest)].tolist())
-    told = f"{counts[1]:,} of {counts.total():,} orbits; not told from zero: {counts[0]:,}"
-    return [f"lambda_1     above zero by more than {certain:g} errors: {told}"] if counts else []
+    words = f"{counts[1]:,} of {counts.total():,} orbits; not told from zero: {counts[0]:,}"
+    return [f"lambda_1     above zero by more than {certain:g} errors: {words}"] if counts else []
 
 
 def _accuracy(file: h5py.File) -> list[str]:

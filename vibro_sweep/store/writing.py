@@ -25,7 +25,7 @@ from vibro_sweep.store.sink import Sink, changing
 
 
 class Writer:
-    """The file of a run. All methods raise StoreError where the disk, or somebody on it, does not let them."""
+    """The file of a run. All methods raise StoreError where the disk, or another program, prevents them."""
 
     def __init__(self, part: HeldPart, frame: Frame, done: Done, path: Path):
         self._part, self._frame, self._done, self._path = part, frame, done, path

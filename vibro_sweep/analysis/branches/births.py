@@ -20,7 +20,7 @@ def born(parent: Solution, name: str, sign: int) -> Solution | None:
 
     The critical direction w has J(-1) w = 0. The parameter is found with the solution: it moves like the square of the
     amplitude. Where it hardly moves, the born orbit is next to a fold, and rounding does not tell it from its
-    neighbours: the amplitude is then larger. None where no orbit can be told.
+    neighbours: the amplitude is then larger. None where no orbit can be distinguished.
     """
     twice = parent.repeated(2)
     curve = branch_through(twice, name, size_of(parent, name))

@@ -38,7 +38,7 @@ class Branch(FileResult):
 
     special : all special points in order, `begins` and `ends` among them. Beyond an end at which a chatter sequence
         gains an impact follows the onset of sticking, where such grazes accumulate; it is the end itself where rounding
-        does not tell the two apart
+        does not distinguish the two
     closed : whether it comes back to itself; then both ends are the orbit it started from, of type "closed"
     status : "ok", or "failed" where it could not be followed to an end, or not at all: then its orbit is its only point
     """

@@ -65,7 +65,7 @@ class Branches(Search):
         return passes(arrays, self.names[0], seed.system, seed.solution)
 
     def is_known(self, known: list[Node], arrays: Arrays, seed: Seed) -> bool:
-        """Also where that could not be told from the seed, which lies next to a birth or a fold."""
+        """Also where the seed could not decide that, which lies next to a birth or a fold."""
         i = clearest(arrays)
         system = seed.system.replace(**{self.names[0]: float(arrays["value"][i])})
         return self.lies_on(known, seed_of(system, Start("orbit", point_of(arrays, i, system))))

@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibro_sweep.analysis.periodic.orbit_text import itinerary_of, motion, multipliers_text, span, system_text, told
+from vibro_sweep.analysis.periodic.orbit_text import (
+    itinerary_of,
+    motion,
+    multipliers_text,
+    repr_text,
+    span,
+    system_text,
+)
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 
 if TYPE_CHECKING:
@@ -19,7 +26,7 @@ def of_special_point(point: "SpecialPoint") -> str:
     lines = [f"<{type(point).__name__} {event(point)}"]
     if len(point.multipliers):
         lines.append(f"multipliers {multipliers_text(point.multipliers)}")
-    return told([*lines, f"of {motion(point.orbit)}", system_text(point.orbit.system)])
+    return repr_text([*lines, f"of {motion(point.orbit)}", system_text(point.orbit.system)])
 
 
 def of_branch(branch: "Branch") -> str:
@@ -33,7 +40,7 @@ def of_branch(branch: "Branch") -> str:
         f"stable at {stable:,} of {len(p):,} points; largest modulus of multipliers {span(largest)}",
         *way_of(branch.begins, branch.special, branch.ends, branch.closed),
     ]
-    return told(lines)
+    return repr_text(lines)
 
 
 def _orbit_on(branch: "Branch") -> PeriodicOrbit:

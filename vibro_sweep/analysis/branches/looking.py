@@ -22,7 +22,7 @@ MOST_LOOKS = 8  # for one extremum
 def hidden_between(
     curve: SolutionCurve, bounds, a: Point, b: Point, found: list[LocatedEvent], beside: tuple
 ) -> Point | None:
-    """A point between a and b that divides what their tests do not tell apart; None if nothing is hidden.
+    """A point between a and b that divides what their tests do not distinguish; None if nothing is hidden.
 
     found : bifurcations between a and b, in order
     beside : the points before a and behind b, None where they are not known

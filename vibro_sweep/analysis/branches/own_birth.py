@@ -1,6 +1,6 @@
 """Where the branch of a doubled or asymmetric orbit is born: there it turns into itself.
 
-What tells the two halves of its orbits apart changes its sign as a whole, and the simpler orbit has a flip or a
+The difference of the two halves of its orbits changes its sign as a whole, and the simpler orbit has a flip or a
 pitchfork. On the branch itself that point is singular, so it is located on the parent's.
 """
 
@@ -20,8 +20,8 @@ from vibro_sweep.model.bifurcations import name_of
 
 BEFORE = 0.02, 0.1, 0.4  # of the way to a birth, beside which a multiplier is 1 to rounding
 NEAR = 0.1  # in scaled units: a birth that rounding beside it may hide
-LANDS = 0.3  # of what tells the halves apart before a step, at its end
-APART = 4.0  # times its rounding: so far a point lies from a birth at least, to be told from it
+LANDS = 0.3  # of the difference of the halves before a step, at its end
+APART = 4.0  # times its rounding: so far a point lies from a birth at least, to be distinguished from it
 
 
 def own_birth(curve: SolutionCurve, a: Point, b: Point) -> LocatedEvent | None:
@@ -46,7 +46,7 @@ def turns(one: Solution, other: Solution) -> Iterator[tuple[int, float]]:
 
 
 def before_birth(curve: SolutionCurve, a: Point, distance: float, parent: Point) -> Point | None:
-    """A point on the way to a birth at which fewer multipliers are 1; None where a is too near to the birth.
+    """A point before a birth at which fewer multipliers are 1; None where a is too near to the birth.
 
     Beside the birth rounding moves a point along its branch. The tangent turns with the multipliers above 1: where it
     does not, its sign is rounding.
@@ -109,8 +109,8 @@ def _on_parent(curve: SolutionCurve, whole: Solution, sigma: int) -> LocatedEven
 
 
 def halves_apart(solution: Solution, sigma: int) -> np.ndarray | None:
-    """What tells the halves apart, as repetitions (sigma = 1) or mirror images (-1); None: their itineraries do, or the
-    oscillator does, which may be symmetric at one value of the parameter only."""
+    """The difference of the halves, as repetitions (sigma = 1) or mirror images (-1); None: their itineraries do, or
+    the oscillator does, which may be symmetric at one value of the parameter only."""
     if not may_be_born(solution, sigma):
         return None
     half, t, D, P = solution.K // 2, solution.times, solution.jumps, solution.P

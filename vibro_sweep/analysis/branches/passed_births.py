@@ -21,7 +21,7 @@ BACK = 16  # points, at most, to one that lies before what rounding does beside 
 
 
 def passed(curve: SolutionCurve, rows: list[Rows], behind: Point | None) -> list[int]:
-    """How many of these points lie before each place where what tells the halves apart turns round.
+    """How many of these points lie before each place where the difference of the halves turns round.
 
     behind : the point to which steps have led; None where there is none
     """

@@ -28,7 +28,7 @@ class SpecialPoint:
     direction : of a graze +1 where the orbit without that impact exists at a larger parameter, -1 at a smaller one
     criticality : of a flip or pitchfork "super": the born orbit exists where its parent has the multiplier outside the
         unit circle; "sub": where it is inside. Of a neimark_sacker point "super": the circle that is born attracts the
-        orbits near it in its plane. None where it cannot be told, and for other types
+        orbits near it in its plane. None where it cannot be decided, and for other types
     """
 
     type: str

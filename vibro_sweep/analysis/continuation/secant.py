@@ -73,7 +73,7 @@ class Secant:
             return None
 
     def _refined(self, begin: float, slope: float) -> float | None:
-        """The zero near `begin`, as far as rounding of the test lets it be told."""
+        """The zero near `begin`, as accurately as rounding of the test allows."""
         zero = begin
         for _ in range(STEPS):
             left = self.value(zero)

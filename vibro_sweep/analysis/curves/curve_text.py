@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.analysis.branches.branch_text import way_of
-from vibro_sweep.analysis.periodic.orbit_text import itinerary_of, span, told
+from vibro_sweep.analysis.periodic.orbit_text import itinerary_of, repr_text, span
 
 if TYPE_CHECKING:
     from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
@@ -20,4 +20,4 @@ def of_curve(curve: "BifurcationCurve") -> str:
         f"{points.sizes['point']:,} points, {real:,} of them a motion; of {itinerary_of(curve.begins.orbit)}",
         *way_of(curve.begins, curve.special, curve.ends, curve.closed),
     ]
-    return told(lines)
+    return repr_text(lines)

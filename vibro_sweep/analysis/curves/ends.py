@@ -29,9 +29,9 @@ SHORTEST = 1e-6
 NEARER = 0.7  # of the angle of a, that of b, so that both tell where the angle vanishes
 AIMED = 0.5  # distance of a strong resonance from where it is expected, of that which the last two steps have left
 BEFORE = (1e-3, 1e-2, 0.1)  # of the step to a singular end: how near to it the curve is still looked at
-ALIKE = 1e-6  # what tells the halves apart, of one orbit taken twice
+ALIKE = 1e-6  # the difference of the halves, of one orbit taken twice
 LEAST = 1e-4  # the same, where tests, which vanish like its square, still have their signs
-NEARLY = 0.05  # what tells the halves apart, in 1/omega and the fastest impulse, next to a birth
+NEARLY = 0.05  # the difference of the halves, in 1/omega and the fastest impulse, next to a birth
 LENGTHS = (1e-6, 1e-5, 1e-4, 1e-3)  # in which the end is looked for there
 ENDS = {
     kind: tuple(one.name for one in CODIMENSION_TWO if condition in one.ends) for condition, kind in CONDITIONS.items()

@@ -43,7 +43,7 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
         velocity before.
         Without a guess fixed seeds are tried; the first real orbit with this itinerary counts.
 
-    Raises ValueError for arguments that say nothing or contradict each other. What fails is told by `.status`.
+    Raises ValueError for arguments that say nothing or contradict each other. `.status` says what fails.
     """
     family = family_of(system)
     periods = checked_count("periods", periods, 1, MOST_PERIODS)

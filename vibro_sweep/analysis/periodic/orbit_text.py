@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 
 LINES = 10
-LONGEST_WORD = 24  # impacts of an itinerary that is told in full
+LONGEST_WORD = 24  # impacts of an itinerary that is written in full
 MULTIPLIERS = 4  # of largest modulus
 LONGEST_SYSTEM = 400  # letters
 
@@ -17,10 +17,11 @@ def of_orbit(orbit: "PeriodicOrbit") -> str:
     lines = [f"<PeriodicOrbit {motion(orbit)}"]
     if len(orbit.multipliers):
         lines.append(f"multipliers {multipliers_text(orbit.multipliers)}")
-    return told([*lines, system_text(orbit.system)])
+    return repr_text([*lines, system_text(orbit.system)])
 
 
-def told(lines: list[str]) -> str:
+def repr_text(lines: list[str]) -> str:
+    """The text of `repr` from its lines, empty ones left out; the first opens with "<"."""
     return "\n  ".join(line for line in lines if line) + ">"
 
 
@@ -47,8 +48,8 @@ def shortened(word: str) -> str:
 
 def multipliers_text(values: np.ndarray) -> str:
     """Those of largest modulus."""
-    told = [complex_text(value) for value in values[:MULTIPLIERS]]
-    return ", ".join([*told, *(["..."] if len(values) > MULTIPLIERS else [])])
+    texts = [complex_text(value) for value in values[:MULTIPLIERS]]
+    return ", ".join([*texts, *(["..."] if len(values) > MULTIPLIERS else [])])
 
 
 def complex_text(value: complex) -> str:
@@ -61,5 +62,5 @@ def span(values: np.ndarray) -> str:
 
 
 def system_text(system: object) -> str:
-    told = repr(system)
-    return told if len(told) <= LONGEST_SYSTEM else f"{told[: LONGEST_SYSTEM - 3]}..."
+    text = repr(system)
+    return text if len(text) <= LONGEST_SYSTEM else f"{text[: LONGEST_SYSTEM - 3]}..."

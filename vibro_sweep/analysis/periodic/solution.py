@@ -17,7 +17,7 @@ from vibro_sweep.engine.impulses.free_modes import has_free_gap
 from vibro_sweep.model.linear import Family, Keyed, forcing_period
 
 # Relative difference below which two halves (periods) of an orbit are the same. An orbit that is born at a pitchfork or
-# flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not tell the two orbits apart.
+# flip differs by so much at a distance of some 1e-12; nearer to it Newton's method does not distinguish the two orbits.
 ALIKE = 1e-6
 tables = attrgetter(*TABLES)  # of an oscillator
 NO_SPEED = 1e-9  # impulse, relative to omega times the gap, below which an impact is not counted as one

@@ -144,7 +144,7 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
     periods : forcing periods, counted from the first section t = 0 mod T at or after `start_time`
 
     Raises TypeError where `system` is not a System; ValueError for a state that is not a state or is behind a stop, for
-    fewer than 0 periods, or for a start beyond 10^9 of them. What goes wrong on the way is told by `Orbit.status`.
+    fewer than 0 periods, or for a start beyond 10^9 of them. `Orbit.status` says what goes wrong later.
     """
     checked_system(system)
     state, periods = checked_state(state, system.masses), checked_count("periods", periods, 0, MOST_PERIODS)

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from vibro_sweep.analysis.branches.branch_text import event
-from vibro_sweep.analysis.periodic.orbit_text import LINES, shortened, told
+from vibro_sweep.analysis.periodic.orbit_text import LINES, repr_text, shortened
 
 if TYPE_CHECKING:
     from vibro_sweep.analysis.windows.window import Window, Windows
@@ -17,14 +17,14 @@ def of_window(window: "Window") -> str:
         f"begins with {event(window.lower)}",
         f"ends with {event(window.upper)}",
     ]
-    return told(lines)
+    return repr_text(lines)
 
 
 def of_windows(windows: "Windows") -> str:
     head = f"<Windows in {windows.parameter}: {len(windows)}; {len(windows.unvisited)} stretches that the sweep missed"
     lines = [_window(one) for one in windows[: LINES - 2]]
     more = len(windows) - len(lines)
-    return told([head, *lines, *([f"and {more:,} more"] if more else [])])
+    return repr_text([head, *lines, *([f"and {more:,} more"] if more else [])])
 
 
 def _window(window: "Window") -> str:

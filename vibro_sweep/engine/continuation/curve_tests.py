@@ -140,7 +140,7 @@ def passes(a, b):
 
 @jit
 def is_born(c, sign, a, b):
-    """Whether what tells the two halves of the orbit apart (sign -1: a half from the other's mirror) changes its sign.
+    """Whether the difference of the two halves of the orbit (sign -1: a half from the other's mirror) changes its sign.
 
     A necessary condition, from the jumps alone; analysis/curves/ends.py looks closer.
     """

@@ -41,7 +41,7 @@ SHIFTED = 0.8  # of a step, where its end lies on a bifurcation by chance
 MOST_SHIFTS = 5  # of one step
 BEYOND = 1.2  # times the reach of the plane, up to where its polynomials hold
 EARLY = 10  # points before which a curve is not yet taken to be closed
-COARSE = 0.03  # of the longest step: to that they are shortened where they do not tell pairs of multipliers apart
+COARSE = 0.03  # of the longest step: to that they are shortened where they do not distinguish pairs of multipliers
 
 
 @jit

@@ -92,8 +92,8 @@ def extremes_of_cell(c, length, low, high, nearest, waiting):
     """Lower `nearest` (distance, u, side) to the least distance of a turning point of p on (0, length) from its stop.
 
     A maximum is compared with `high`, a minimum with `low`. Certified: an interval is left only where |p'| or |p''|
-    exceeds a bound of what its change can be. An inflection that cannot be told from a turning point counts as one.
-    True if `nearest` was lowered.
+    exceeds a bound of what its change can be. An inflection that cannot be distinguished from a turning point counts as
+    one. True if `nearest` was lowered.
     """
     bound, third, power = 0.0, 0.0, 1.0
     for n in range(1, ORDER + 1):

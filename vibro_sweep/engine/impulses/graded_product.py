@@ -25,7 +25,7 @@ from vibro_sweep.engine.simd.jit import exported, jit
 PASSES = 40
 STRETCH = 4.0  # logarithm: so far directions may be stretched against each other before they are factorised
 TINY = 1e-280  # squares that are smaller may have lost digits
-EARLIEST = 12  # pass after which moduli closer than 0.01^(1/12) = 0.68 need not be told apart
+EARLIEST = 12  # pass after which moduli closer than 0.01^(1/12) = 0.68 need not be distinguished
 
 
 @jit

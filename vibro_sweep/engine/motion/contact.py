@@ -11,7 +11,7 @@ decides in a few steps. (Faster, where g is known to fall all the way to the roo
 
 Claim. Let m = ROUNDING * (g(0) + sum |c_n| u^n) be the rounding of the evaluation of g at u. A contact after which g
 falls below -m is never missed; where g stays above m no contact is reported. In between the flight is within rounding
-of a graze, and either answer is right. NaN, "it cannot be told", takes two near grazes that all but merge within a
+of a graze, and either answer is right. NaN, "it cannot be decided", takes two near grazes that all but merge within a
 cell; no flight of an oscillator has been seen to do that. Along an orbit g itself is known to rounding only: from one
 section to the next, to 8 units in the last place of the largest term of x1.
 """

@@ -1,4 +1,4 @@
-"""Eight orbits on their way, with the tables of their oscillators, and what is read of them."""
+"""The motion of eight orbits, with the tables of their oscillators, and what is read of them."""
 
 from typing import NamedTuple
 
@@ -16,14 +16,14 @@ from vibro_sweep.engine.variational.tangent import tangents_of
 
 
 class Ensemble(NamedTuple):
-    """Eight orbits on their way."""
+    """The motion of eight orbits."""
 
     flights: Flight  # with a first axis: the tables of each oscillator
     orbits: np.ndarray  # (LANES,) `orbit_of`
     strike: np.ndarray  # (1,) `strikes_of`
     tangent: np.ndarray  # (1,) `tangents_of`
     records: Records  # with a first axis: one for each orbit
-    halt: np.ndarray  # (1,): not 0 where nobody waits for them any more (engine/halting.py)
+    halt: np.ndarray  # (1,): not 0 where their results are not awaited any more (engine/halting.py)
 
 
 class Readings(NamedTuple):

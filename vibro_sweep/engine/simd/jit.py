@@ -71,15 +71,15 @@ def _cache_folder() -> str | None:
         with tempfile.TemporaryFile(dir=folder):
             return folder
     except OSError as error:
-        _tell(folder, error)
+        _warn_once(folder, error)
         return None
 
 
-def _tell(folder: str, error: Exception) -> None:
+def _warn_once(folder: str, error: Exception) -> None:
     """Log once why compiled kernels cannot be kept in a folder."""
-    global _told
-    if not _told:
-        _told = True
+    global _warned
+    if not _warned:
+        _warned = True
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
         _log.warning("compiled kernels cannot be kept in %s (%s): they are compiled anew", folder, reason)
 
@@ -92,7 +92,7 @@ class _Cache(FunctionCache):
         try:
             found = self._load_overload(sig, target_context)
         except Exception as error:  # of pickle, any: the cached kernel is empty or cut off
-            _tell(self.cache_path, error)
+            _warn_once(self.cache_path, error)
             with contextlib.suppress(OSError):
                 self.flush()
             found = None
@@ -108,7 +108,7 @@ class _Cache(FunctionCache):
         try:
             super().save_overload(sig, data)
         except OSError as error:
-            _tell(self.cache_path, error)
+            _warn_once(self.cache_path, error)
 
 
 def _announce(folder: str) -> None:
@@ -121,7 +121,7 @@ def _announce(folder: str) -> None:
 
 WORTH_SAYING = 1.0  # seconds
 _log = logging.getLogger("vibro_sweep")
-_told = _announced = False
+_warned = _announced = False
 _FOLDER = _cache_folder()
 
 

@@ -31,7 +31,7 @@ from vibro_sweep.model import status
 
 RANGE = 350.0  # of the logarithms of growths that one matrix of floats can hold, and products of two of its entries
 APART = 37.0  # logarithm of what is beyond rounding
-NEAREST = 1e-6  # to 1, that r is taken to be at most: REPEAT tells no slower approach apart
+NEAREST = 1e-6  # to 1, that r is taken to be at most: REPEAT distinguishes no slower approach
 FIRST, AGAIN, BESIDE = range(3)  # the periods
 ASIDE = 1e4  # units of rounding of the state by which the third begins beside the orbit, and
 OFF = 16.0  # by how many of them rounding at one impact moves the orbit; that at others has nothing to do with it

@@ -17,7 +17,7 @@ from vibro_sweep.engine.tables.flight import ORDER
 from vibro_sweep.engine.variational.orthonormal import watch
 from vibro_sweep.engine.variational.tangent_flight import apply_flight, catch_up, fly_to, only
 
-ALIKE = 10.0  # difference of the logarithms of two growths that need not be told apart
+ALIKE = 10.0  # difference of the logarithms of two growths that need not be distinguished
 
 
 def tangents_of(masses: int, paper: bool) -> np.dtype:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibro_sweep.model import told
+from vibro_sweep.model import wording
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import CONTACT, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter, ParameterError
@@ -57,29 +57,29 @@ def _check(given) -> None:
                 if name != "contact_normal"
                 else f"a list of {masses} numbers"
             )
-            raise ParameterError(name, told.plain(given[name]), f"{what}, as there are {masses} masses in M")
+            raise ParameterError(name, wording.plain(given[name]), f"{what}, as there are {masses} masses in M")
         if name != "contact_normal":
             _check_symmetric(name, np.array(given[name]))
     if np.linalg.eigvalsh(given["M"]).min() <= 0:
-        raise ParameterError("M", told.plain(given["M"]), "positive definite: every motion must have kinetic energy")
+        raise ParameterError("M", wording.plain(given["M"]), "positive definite: every motion must have kinetic energy")
     for name in ("K", "C"):
         if given[name] is not None:
             values = np.linalg.eigvalsh(given[name])
             if values.min() < -ROUNDING * np.abs(values).max():
                 raise ParameterError(
-                    name, told.plain(given[name]), "positive semidefinite: no motion may gain energy by it"
+                    name, wording.plain(given[name]), "positive semidefinite: no motion may gain energy by it"
                 )
     if not np.any(given["contact_normal"]):
         raise ParameterError(
-            "contact_normal", told.plain(given["contact_normal"]), "other than zero: it is n of the gap n . x"
+            "contact_normal", wording.plain(given["contact_normal"]), "other than zero: it is n of the gap n . x"
         )
     if not SMALLEST < np.abs(given["contact_normal"]).max() < 1 / SMALLEST:  # its square counts
         raise ParameterError(
-            "contact_normal", told.plain(given["contact_normal"]), f"of a size from {SMALLEST:g} to {1 / SMALLEST:g}"
+            "contact_normal", wording.plain(given["contact_normal"]), f"of a size from {SMALLEST:g} to {1 / SMALLEST:g}"
         )
     several = [name for name in DAMPING if given[name] is not None]
     if len(several) > 1:
-        raise ParameterError(several[1], told.plain(given[several[1]]), f"left out where {several[0]} is given")
+        raise ParameterError(several[1], wording.plain(given[several[1]]), f"left out where {several[0]} is given")
 
 
 def _check_symmetric(name: str, matrix: np.ndarray) -> None:

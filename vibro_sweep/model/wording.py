@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-LONGEST = 600  # letters of what is told in full
-FEW = 3  # entries of a list that are told otherwise
+LONGEST = 600  # letters of a text that is written in full
+FEW = 3  # entries of a list of which only some are written
 
 
 def sentence(text: str) -> str:
