@@ -15,11 +15,11 @@ from vibro_sweep.plotting import kinds as kinds_of
 pytestmark = pytest.mark.slow  # one file of each kind is made
 
 MM, WIDTH = 25.4, 85
-FLAT = ("branches", "curves")
+RAGGED = ("branches", "curves")
 
 
 def pictures(path, name):
-    if name in FLAT:
+    if name in RAGGED:
         return [figure(path, options=PlotOptions(width=WIDTH))]
     return [figure(path, kind, PlotOptions(width=WIDTH)) for kind in kinds_of(path)]
 

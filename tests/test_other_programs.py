@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from support.kinds_of_files import FLAT, KINDS
+from support.kinds_of_files import KINDS, RAGGED
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
@@ -49,7 +49,7 @@ def test_rules_of_cf_and_netcdf(kinds, name):
             if "flag_values" in one.attrs:  # CF 3.5
                 values, words = one.attrs["flag_values"], one.attrs["flag_meanings"].decode().split()
                 assert values.dtype == one.dtype and len(values) == len(words) == len(set(values.tolist()))
-        if name in FLAT:  # CF 9.3.3
+        if name in RAGGED:  # CF 9.3.3
             counted = {
                 one.attrs["sample_dimension"]: one for one in variables.values() if "sample_dimension" in one.attrs
             }

@@ -66,7 +66,7 @@ def test_killed_while_a_block_is_written(path):
         whole = int(np.searchsorted(ends, cut, "right"))
         assert read(content[:cut]) == (blocks[:whole], 0)
     path.write_bytes(content[:-1])
-    part = appending.hold(path)
+    part = appending.lock(path)
     part.go_on(parts.read_head(part.file), ends[-2])
     part.append({"box": [[9, 10]]}, [memoryview(b"more")])
     part.close()
@@ -92,11 +92,11 @@ def test_every_flipped_bit_is_found(path):
 def test_one_holder(path):
     first = begun(path)
     with pytest.raises(BlockingIOError):
-        appending.hold(path)
+        appending.lock(path)
     with pytest.raises(FileExistsError):
         appending.make(path)
     first.close()
-    appending.hold(path).close()
+    appending.lock(path).close()
 
 
 def test_without_locks_the_first_finds_out(path, monkeypatch):
@@ -104,7 +104,7 @@ def test_without_locks_the_first_finds_out(path, monkeypatch):
         raise portalocker.LockException("no locks here")
 
     monkeypatch.setattr(appending.portalocker, "lock", unsupported)
-    first, second = begun(path), appending.hold(path)
+    first, second = begun(path), appending.lock(path)
     second.go_on(parts.read_head(second.file), path.stat().st_size)
     second.append({"box": [[0, 1]]}, [memoryview(b"kept")])
     with pytest.raises(ChangedError):

@@ -197,7 +197,7 @@ class Branches(dict):
 
 def test_branches(monkeypatch):
     """Each point is named once, the onset of sticking has a line; of a part the axis and the legend are those of it."""
-    monkeypatch.setattr(branches, "FlatFile", lambda *_: Branches())
+    monkeypatch.setattr(branches, "RaggedFile", lambda *_: Branches())
     fig = branches.branches("made up", PlotOptions())
     (ax,) = fig.axes
     assert sorted(text.get_text() for text in ax.texts) == ["GR", "LP", "PD", "ST"]

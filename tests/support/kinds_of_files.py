@@ -71,7 +71,7 @@ KINDS = {
         (("branches: branches.h5, special: 1", "sweep: sweep.h5, largest: 4"), ("start: 5.85", "start: 5.4")),
     ),
 }
-FLAT = ("windows", "branches", "curves")
+RAGGED = ("windows", "branches", "curves")
 PERIODIC = "periodic"  # `PeriodicOrbit.save`
 BOTH_SIDES = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=1)
 

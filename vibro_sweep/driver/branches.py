@@ -18,9 +18,9 @@ from vibro_sweep.model.branch_file import BRANCHES, columns_of
 from vibro_sweep.model.files import file_to_write
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
-from vibro_sweep.store.flat_files import Subject
 from vibro_sweep.store.joining import joined
 from vibro_sweep.store.pieces import pieces
+from vibro_sweep.store.ragged_files import Subject
 
 
 def run_branches(

@@ -25,41 +25,41 @@ def energies_of(
     begins[0] = starts[0]
     going_on = status.is_valid(results["status"][:-1])[..., None]
     begins[1:] = np.where(going_on, results["end"][:-1], begins[1:])  # where chains go on
-    flat, begins, resting = steps.reshape(-1), begins.reshape(-1, states), np.zeros(steps.size)
+    systems, begins, resting = steps.reshape(-1), begins.reshape(-1, states), np.zeros(steps.size)
     outcome = np.where(status.is_valid(results["status"]), status.NOT_COMPUTED, results["status"]).reshape(-1)
     plan = block.plan._replace(states=False, lyapunov=False, impacts=False, attractors=False, section_side=0.0)
     plan = plan._replace(warm_up=0, parts=0, periods=0, record=1, transient=block.plan.transient - 1)
     workspace = points.new_workspace(plan, int(steps["cells"].max()), 0, LANES, kind)
     if plan.transient >= 0:
-        passed = new_results((1, len(flat)), kind.masses)
-        nothing = np.empty((1, len(flat), 0))
+        passed = new_results((1, len(systems)), kind.masses)
+        nothing = np.empty((1, len(systems), 0))
         points.run_points(
-            flat.reshape(1, -1), np.stack([begins, begins]), passed, nothing[..., None], nothing, nothing[..., None],
+            systems.reshape(1, -1), np.stack([begins, begins]), passed, nothing[..., None], nothing, nothing[..., None],
             workspace, plan, None,
         )  # fmt: skip
         begins, resting = passed["end"][0], passed["resting"][0].copy()  # as laid out as the other
-    begins = at_contact(flat, begins, resting)
+    begins = at_contact(systems, begins, resting)
     wanted = {
-        "loss": np.empty(len(flat)),
-        "squares": np.empty((len(flat), states)),
-        "peaks": np.empty((len(flat), states)),
+        "loss": np.empty(len(systems)),
+        "squares": np.empty((len(systems), states)),
+        "peaks": np.empty((len(systems), states)),
     }
-    back = flat["back"] if "back" in flat.dtype.names else np.tile(np.eye(kind.masses), (len(flat), 1, 1))
+    back = systems["back"] if "back" in systems.dtype.names else np.tile(np.eye(kind.masses), (len(systems), 1, 1))
     # contiguous, whether they are the fields of one record, of several, or in reverse: for each the kernel would be
     # compiled anew
-    origin = np.ascontiguousarray(flat["origin"]) if "origin" in flat.dtype.names else np.zeros(back.shape[:2])
+    origin = np.ascontiguousarray(systems["origin"]) if "origin" in systems.dtype.names else np.zeros(back.shape[:2])
     back, masses = np.ascontiguousarray(back), np.ascontiguousarray(_contact_masses(block, shape).reshape(-1))
-    parts, room = _parts(flat), ROOM
+    parts, room = _parts(systems), ROOM
     while True:  # once in any case: what a scene needs is compiled with its first point, however that goes
         run_energy(
-            flat, begins, resting, masses, back, origin, block.plan.record, workspace, plan,
+            systems, begins, resting, masses, back, origin, block.plan.record, workspace, plan,
             new_workspace(parts, room, kind.masses), *wanted.values(), outcome,
         )  # fmt: skip
         room *= 8
         if workspace.ensemble.halt[0] != 0 or not (outcome == status.NOT_COMPUTED).any():
             break
     known = np.where(status.is_valid(outcome), 1.0, np.nan)
-    time = block.plan.record * 2 * np.pi / flat["omega"]
+    time = block.plan.record * 2 * np.pi / systems["omega"]
     named = {"impact_power": known * wanted["loss"] / time}
     for i, name in enumerate(state(kind.masses)):
         named[f"rms_{name}"] = known * np.sqrt(wanted["squares"][:, i] / time)
@@ -67,18 +67,18 @@ def energies_of(
     return {name: values.reshape(shape) for name, values in named.items()}
 
 
-def _parts(flat: np.ndarray) -> int:
+def _parts(systems: np.ndarray) -> int:
     """A number of parts of a period that resolves every rate."""
-    rate = flat["rate"] if "rate" in flat.dtype.names else _fastest(flat)
-    least = np.maximum(rate, flat["omega"]) * 2 * np.pi / flat["omega"] / WIDTH
-    return int(np.max(flat["cells"] + least) + 1)
+    rate = systems["rate"] if "rate" in systems.dtype.names else _fastest(systems)
+    least = np.maximum(rate, systems["omega"]) * 2 * np.pi / systems["omega"] / WIDTH
+    return int(np.max(systems["cells"] + least) + 1)
 
 
-def _fastest(flat: np.ndarray) -> np.ndarray:
+def _fastest(systems: np.ndarray) -> np.ndarray:
     """The largest modulus of the roots of the paper's oscillators."""
-    eta = flat["zeta"][:, None] * flat["omega_squared"]
-    beyond = np.sqrt(np.maximum(eta**2 - flat["omega_squared"], 0))
-    return np.maximum(np.sqrt(flat["omega_squared"]), eta + beyond).max(axis=-1)
+    eta = systems["zeta"][:, None] * systems["omega_squared"]
+    beyond = np.sqrt(np.maximum(eta**2 - systems["omega_squared"], 0))
+    return np.maximum(np.sqrt(systems["omega_squared"]), eta + beyond).max(axis=-1)
 
 
 def _contact_masses(block: Block, shape: tuple[int, int]) -> np.ndarray:

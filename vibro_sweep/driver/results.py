@@ -32,10 +32,10 @@ from vibro_sweep.model.linear import Family
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.store.arrays import Contents
-from vibro_sweep.store.flat_files import Subject, image_of
 from vibro_sweep.store.joining import joined, part_of
 from vibro_sweep.store.parts import new_run_id
 from vibro_sweep.store.pieces import pieces
+from vibro_sweep.store.ragged_files import Subject, image_of
 
 if TYPE_CHECKING:
     import xarray

@@ -28,9 +28,9 @@ from vibro_sweep.model.state import state
 from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.progress import given_or_bar
 from vibro_sweep.scene import parse_scene
-from vibro_sweep.store.flat_files import Subject
 from vibro_sweep.store.joining import joined
 from vibro_sweep.store.pieces import Pieces, pieces
+from vibro_sweep.store.ragged_files import Subject
 
 if TYPE_CHECKING:
     import xarray

@@ -86,7 +86,7 @@ def figure(
         raise ArgumentTypeError(not_allowed("ax", ax, "matplotlib axes"))
     data, of = readable(data)
     if of is not None:
-        _check_flat(data, of, kind, options or PlotOptions())
+        _check_ragged(data, of, kind, options or PlotOptions())
         with matplotlib.rc_context((options or PlotOptions()).style):
             drawn = (charts.chart if of == CHART else branches.branches)(data, options or PlotOptions(), ax)
             if ax is None and options is not None:
@@ -126,7 +126,7 @@ def plot(
         return [save(_draw(result, one), place, overwrite, inputs) for one, place in zip(chosen, places, strict=True)]
 
 
-def _check_flat(path, of: str, kind: str | None, options: PlotOptions) -> None:
+def _check_ragged(path, of: str, kind: str | None, options: PlotOptions) -> None:
     """Refuse what belongs to pictures of sweeps."""
     chosen = {"kind": kind not in (None, "all"), "at": options.at, "windows": options.windows}
     chosen |= {} if of == CHART else {"relative": options.relative}

@@ -10,9 +10,9 @@ from vibro_sweep.model.branch_file import BRANCHES
 from vibro_sweep.model.refusals import shown
 from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import joined, sweeps
-from vibro_sweep.plotting.flat import FlatFile, sweep_below
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.plot_options import PlotOptions
+from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, SPECIAL, axis_name, limits, special_mark, symbol
 
@@ -20,14 +20,14 @@ LINES = (LEFT, "#c26a00", "#446644", "#7b3294", "#77541f", "#1a1a2e")  # of bran
 MOST = 3.0  # modulus of a multiplier that is shown: at a graze it is infinite
 
 
-def variables(file: FlatFile) -> tuple[str, ...]:
+def variables(file: RaggedFile) -> tuple[str, ...]:
     """What may be drawn over the parameter."""
     return (*_sections(file), "impact_speed", "multiplier", "stop_distance")
 
 
 def branches(path, options: PlotOptions, ax=None):
     """The diagram of a file of branches; over a sweep where the options name one. Raises PlotError."""
-    file = FlatFile(path, BRANCHES)
+    file = RaggedFile(path, BRANCHES)
     name = options.variable or "x1"
     if name not in variables(file):
         raise PlotError(f"variable {shown(name)} is not allowed; there are {', '.join(variables(file))}")
@@ -69,7 +69,7 @@ def _inside(values, limits):
     return (limits[0] <= values) & (values <= limits[1]) if limits else np.ones(np.shape(values), bool)
 
 
-def values_of(file: FlatFile, name: str) -> np.ndarray:
+def values_of(file: RaggedFile, name: str) -> np.ndarray:
     """(points,) or (points, lines) what is drawn, of each point; NaN where it is not there."""
     if name == "multiplier":
         return joined.multipliers(file)
@@ -88,11 +88,11 @@ def _label(name: str) -> str:
     return labels.get(name) or f"{symbol(name)} at $t = 0$"
 
 
-def _sections(file: FlatFile) -> list[str]:
+def _sections(file: RaggedFile) -> list[str]:
     return [name for name in state(MOST_MASSES) if name in file.arrays]
 
 
-def _lines(ax, file: FlatFile, values: list[np.ndarray], together: np.ndarray) -> None:
+def _lines(ax, file: RaggedFile, values: list[np.ndarray], together: np.ndarray) -> None:
     """Each branch between its special points, where alone its stability changes.
 
     together : (points,) whether a point is joined with the next one
@@ -112,7 +112,7 @@ def _lines(ax, file: FlatFile, values: list[np.ndarray], together: np.ndarray) -
         begin += size
 
 
-def _drawn(file: FlatFile, name: str, values: np.ndarray, all_sections: bool) -> list[np.ndarray]:
+def _drawn(file: RaggedFile, name: str, values: np.ndarray, all_sections: bool) -> list[np.ndarray]:
     """The lines that are drawn of each branch, (lines, its points): over a sweep all section states, mirror images
     among them."""
     ends = np.cumsum(file["branch_row_size"])[:-1]
@@ -123,7 +123,7 @@ def _drawn(file: FlatFile, name: str, values: np.ndarray, all_sections: bool) ->
     return [part.reshape(-1, count).T for part, count in zip(parts, counts, strict=True)]
 
 
-def _marks(ax, file: FlatFile, values: np.ndarray) -> list[tuple[str, tuple[float, float]]]:
+def _marks(ax, file: RaggedFile, values: np.ndarray) -> list[tuple[str, tuple[float, float]]]:
     """Special points: (type, place). A line at the onset of sticking, where points accumulate."""
     x, y = file["special_value"][:, 0], values[_places(file)]
     if y.ndim == 2:
@@ -139,7 +139,7 @@ def _marks(ax, file: FlatFile, values: np.ndarray) -> list[tuple[str, tuple[floa
     return found
 
 
-def _places(file: FlatFile) -> np.ndarray:
+def _places(file: RaggedFile) -> np.ndarray:
     """Points of the special points; of a sticking onset, which is not a point of a branch, the end of the branch before
     it."""
     point, branch = file["special_point"].copy(), file["special_branch"]
@@ -161,7 +161,7 @@ def _legend(where, ax, there: set[str]) -> None:
         legend_below(where, handles, 5)
 
 
-def _sweep(ax, options: PlotOptions, file: FlatFile, name: str) -> None:
+def _sweep(ax, options: PlotOptions, file: RaggedFile, name: str) -> None:
     """The section points of a sweep, below everything."""
     with Result(sweep_below(options.over), PlotOptions(variable=name, xlim=options.xlim, ylim=options.ylim)) as result:
         if list(result.sweep) != file.parameters or name not in sweeps.section_variables(result):

@@ -10,9 +10,9 @@ from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.model.refusals import shown
 from vibro_sweep.plotting import planes
 from vibro_sweep.plotting.curves import Drawn, draw, handles, name_points
-from vibro_sweep.plotting.flat import FlatFile, sweep_below
 from vibro_sweep.plotting.labels import arrange, legend_below
 from vibro_sweep.plotting.plot_options import PlotOptions
+from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
 from vibro_sweep.plotting.relative import axis_label, check_relative
 from vibro_sweep.plotting.result import PlotError, Result
 
@@ -21,7 +21,7 @@ NAMED = 14  # points of codimension two that are named over a plane
 
 def chart(path: str | Path, options: PlotOptions, ax=None):
     """The chart of a file of curves, over a plane where the options name one. Raises PlotError."""
-    file = FlatFile(path, CHART)
+    file = RaggedFile(path, CHART)
     if not len(file["branch_type"]):
         raise PlotError(f"{file.name}: nothing to show, it has no curves")
     if options.over is not None:
@@ -50,7 +50,7 @@ def chart(path: str | Path, options: PlotOptions, ax=None):
     return fig or ax.figure
 
 
-def drawn(file: FlatFile, names: list[str], relative: bool = False) -> list[Drawn]:
+def drawn(file: RaggedFile, names: list[str], relative: bool = False) -> list[Drawn]:
     """The curves of a file with these parameters as axes. relative: b in parts of the grazing clearance b*."""
     if relative:
         check_relative(file.name, names, file["b_star"])
@@ -74,7 +74,7 @@ def drawn(file: FlatFile, names: list[str], relative: bool = False) -> list[Draw
     return result
 
 
-def _over(file: FlatFile, options: PlotOptions, ax):
+def _over(file: RaggedFile, options: PlotOptions, ax):
     """Over the plane of a sweep in the same two numbers."""
     with Result(sweep_below(options.over), replace(options, over=None), ax) as result:
         if sorted(result.sweep) != sorted(file.parameters) or not planes.shows(result):

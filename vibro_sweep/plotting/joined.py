@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from vibro_sweep.plotting.flat import FlatFile
+from vibro_sweep.plotting.ragged import RaggedFile
 
 JUMP = 3.0  # times steeper than the steps before and behind it a step is where another turning point is the nearest
 SMALL = 0.02  # of the range: smaller changes are joined however steep they are
 
 
-def multipliers(file: FlatFile) -> np.ndarray:
+def multipliers(file: RaggedFile) -> np.ndarray:
     """(points, 2N) moduli of the multipliers: each column is one multiplier along the whole of a branch.
 
     Files have multipliers by falling modulus. From point to point each goes on as the one that has changed least,
@@ -32,7 +32,7 @@ def at_circle(moduli: np.ndarray, bifurcates: bool) -> float:
     return moduli[np.argmin(np.abs(moduli - 1))] if bifurcates else moduli.max()
 
 
-def margins(file: FlatFile, states: list[str]) -> np.ndarray:
+def margins(file: RaggedFile, states: list[str]) -> np.ndarray:
     """(points,) which points may be joined with the next one of their branch: where both margins are of one turning
     point.
 

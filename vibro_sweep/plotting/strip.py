@@ -7,7 +7,7 @@ from matplotlib.patches import Patch
 
 from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.branch_file import WINDOWS
-from vibro_sweep.plotting.flat import FlatFile
+from vibro_sweep.plotting.ragged import RaggedFile
 from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark, type_size
 
@@ -51,8 +51,8 @@ def windows(ax, result: Result, values, order):
     _legend(ax, file, shown, unvisited, (left, right), reasons)
 
 
-def _windows_of(result: Result) -> FlatFile:
-    file = FlatFile(result.options.windows, WINDOWS)
+def _windows_of(result: Result) -> RaggedFile:
+    file = RaggedFile(result.options.windows, WINDOWS)
     if file.sweep != str(result.settings.get("identity", "")) or sorted(file.parameters) != sorted(result.sweep):
         raise PlotError(f"windows: {file.name} has the windows of another sweep than {result.path}")
     return file

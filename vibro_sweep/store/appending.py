@@ -28,7 +28,7 @@ class ChangedError(OSError):
     """Another program has made the part longer or shorter."""
 
 
-class HeldPart:
+class LockedPart:
     """A part that this program has made or goes on with. Raises OSError where the disk does not take a block."""
 
     def __init__(self, path: Path, file: BinaryIO):
@@ -93,21 +93,21 @@ class HeldPart:
         self.file.close()
 
 
-def make(path: Path) -> HeldPart:
+def make(path: Path) -> LockedPart:
     """A new and empty part. Raises FileExistsError, and BlockingIOError where another run was quicker."""
-    return _held(path, os.O_RDWR | os.O_CREAT | os.O_EXCL)
+    return _locked(path, os.O_RDWR | os.O_CREAT | os.O_EXCL)
 
 
-def hold(path: Path) -> HeldPart:
+def lock(path: Path) -> LockedPart:
     """The part that is there. Raises FileNotFoundError, PartError for what is not a file of its own,
     BlockingIOError."""
-    return _held(path, os.O_RDWR)
+    return _locked(path, os.O_RDWR)
 
 
 def is_held(path: Path) -> bool:
     """Whether a run is writing this part now."""
     try:
-        hold(path).close()
+        lock(path).close()
     except BlockingIOError:
         return True
     except (OSError, PartError):
@@ -115,7 +115,7 @@ def is_held(path: Path) -> bool:
     return False
 
 
-def _held(path: Path, flags: int) -> HeldPart:
+def _locked(path: Path, flags: int) -> LockedPart:
     while True:
         file = parts.open_regular(path, flags | getattr(os, "O_NOFOLLOW", 0))
         try:
@@ -123,7 +123,7 @@ def _held(path: Path, flags: int) -> HeldPart:
                 raise PartError("has a second name, so that another file would be written too; remove one of them")
             _lock(file)
             if _stands(path, file):
-                return HeldPart(path, file)
+                return LockedPart(path, file)
         except BaseException:
             file.close()
             raise

@@ -11,7 +11,7 @@ import h5py
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import appending, checks, layout, names, parts
-from vibro_sweep.store.appending import HeldPart
+from vibro_sweep.store.appending import LockedPart
 from vibro_sweep.store.attributes import text
 from vibro_sweep.store.creating import skeleton_of
 from vibro_sweep.store.done import Done, in_order_of_blocks
@@ -44,11 +44,11 @@ def writer(scene: Scene, path: Path, mode: str) -> Iterator[Writer | Complete]:
             elif mode == "resume" and names.stamp(path) and not names.stamp(part):
                 result = _of_complete(scene, path, part, stack)
             else:
-                held = stack.enter_context(contextlib.closing(_held(part)))
-                if mode == "resume" and parts.is_begun(held.file):
-                    result = _continued(scene, held, path)
+                locked = stack.enter_context(contextlib.closing(_locked(part)))
+                if mode == "resume" and parts.is_begun(locked.file):
+                    result = _continued(scene, locked, path)
                 else:
-                    result = _begun(scene, held, path, names.stamp(path) if mode == "overwrite" else None)
+                    result = _begun(scene, locked, path, names.stamp(path) if mode == "overwrite" else None)
         except BlockingIOError:
             raise StoreError(f"{part} is being written by another run") from None
         except FileExistsError:
@@ -125,8 +125,8 @@ def _complete(file: h5py.File) -> Complete:
     return Complete(checks.statuses(file), json.loads(text(file, "provenance")).get("wall_time_s", 0.0))
 
 
-def _held(part: Path) -> HeldPart:
-    return appending.hold(part) if names.stamp(part) else appending.make(part)
+def _locked(part: Path) -> LockedPart:
+    return appending.lock(part) if names.stamp(part) else appending.make(part)
 
 
 def _of_complete(scene: Scene, path: Path, part: Path, stack: contextlib.ExitStack) -> Writer | Complete:
@@ -143,81 +143,81 @@ def _of_complete(scene: Scene, path: Path, part: Path, stack: contextlib.ExitSta
         if not found and not result.missing(()):
             return result
         check_version(file, path)
-        held = stack.enter_context(contextlib.closing(appending.make(part)))
-        result = _begun(scene, held, path, names.stamp(path))
+        locked = stack.enter_context(contextlib.closing(appending.make(part)))
+        result = _begun(scene, locked, path, names.stamp(path))
         result.take_over(file, found)
         return result
 
 
-def _begun(scene: Scene, held: HeldPart, path: Path, replaces: Stamp | None) -> Writer:
+def _begun(scene: Scene, locked: LockedPart, path: Path, replaces: Stamp | None) -> Writer:
     """Begin the part with nothing computed yet, in place of what is in it."""
     with contextlib.suppress(PartError):  # overwritten
-        unfinished(path, parts.read_head(held.file).run_id).unlink(missing_ok=True)
+        unfinished(path, parts.read_head(locked.file).run_id).unlink(missing_ok=True)
     try:
-        _check_space(scene, held)
+        _check_space(scene, locked)
         run_id = parts.new_run_id()
         content = skeleton_of(scene, run_id)
-        with said(held):
-            held.begin(parts.new_head(content, replaces, run_id), content)
+        with said(locked):
+            locked.begin(parts.new_head(content, replaces, run_id), content)
     except BaseException:
-        if parts.size(held.file) == 0:
-            held.remove()
+        if parts.size(locked.file) == 0:
+            locked.remove()
         raise
-    return _writer(scene, held, path)[0]
+    return _writer(scene, locked, path)[0]
 
 
-def _continued(scene: Scene, held: HeldPart, path: Path) -> Writer | Complete:
+def _continued(scene: Scene, locked: LockedPart, path: Path) -> Writer | Complete:
     """Continue the part with what was computed until its run was interrupted."""
-    head = parts.read_head(held.file)
-    with skeleton(held.file, held.path) as file:
-        check_scene(file, held.path, scene)
-        check_version(file, held.path)
-    if finished := _published(path, held, head):
+    head = parts.read_head(locked.file)
+    with skeleton(locked.file, locked.path) as file:
+        check_scene(file, locked.path, scene)
+        check_version(file, locked.path)
+    if finished := _published(path, locked, head):
         return finished
     if (found := names.stamp(path)) and found != head.replaces:
         raise StoreError(
-            f"{path} stands beside the interrupted run {held.path}, which was not told to replace it; move one of them "
+            f"{path} stands beside the interrupted run {locked.path}, which is not to replace it; move one of them "
             "away, or `overwrite` both"
         )
-    result, index = _writer(scene, held, path)
-    held.go_on(head, index.end)
+    result, index = _writer(scene, locked, path)
+    locked.go_on(head, index.end)
     if index.damaged:
         result.remark(f"damage found, to be computed again: {blocks_lost(index.damaged)}")
     return result
 
 
-def _writer(scene: Scene, held: HeldPart, path: Path) -> tuple[Writer, Index]:
-    head = parts.read_head(held.file)
-    with skeleton(held.file, held.path) as file:
+def _writer(scene: Scene, locked: LockedPart, path: Path) -> tuple[Writer, Index]:
+    head = parts.read_head(locked.file)
+    with skeleton(locked.file, locked.path) as file:
         frame = frame_of(file, quantities_of(file))
-    index = Index(held.file, head, frame)
+    index = Index(locked.file, head, frame)
     order = in_order_of_blocks(len(frame.shape), len(scene.sweep), scene.start.kind == "follow")
     done = Done(frame.shape, order)
     for box, _ in index:
         done.add(box)
-    return Writer(held, frame, done, path), index
+    return Writer(locked, frame, done, path), index
 
 
-def _published(path: Path, held: HeldPart, head: Head) -> Complete | None:
+def _published(path: Path, locked: LockedPart, head: Head) -> Complete | None:
     """The file, if it is what was made of this part before its run was killed; the part then goes."""
     if names.stamp(path) is None:
         return None
     with contextlib.suppress(StoreError, KeyError), opened(path) as (file, _):
         if text(file, "identity") == head.run_id.hex():
             unfinished(path, head.run_id).unlink(missing_ok=True)
-            held.remove()
+            locked.remove()
             return _complete(file)
     return None
 
 
-def _check_space(scene: Scene, held: HeldPart) -> None:
+def _check_space(scene: Scene, locked: LockedPart) -> None:
     """A run that will not fit is not begun; other programs may still fill the disk later on.
 
     At its end its part and its file are both there.
     """
-    folder = held.path.parent
-    need, free = 2 * layout.size(scene), shutil.disk_usage(folder).free + parts.size(held.file)
+    folder = locked.path.parent
+    need, free = 2 * layout.size(scene), shutil.disk_usage(folder).free + parts.size(locked.file)
     if need > free:
         unit, name = (1e6, "MB") if need > 1e6 else (1e3, "kB")
         enough = f"{need / unit:,.0f} {name}, and only {free / unit:,.0f} {name}"
-        raise StoreError(f"{held.path} needs {enough} are free in {folder}")
+        raise StoreError(f"{locked.path} needs {enough} are free in {folder}")

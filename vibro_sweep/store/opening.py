@@ -18,9 +18,9 @@ from vibro_sweep.model.refusals import cut
 from vibro_sweep.store import heap, parts
 from vibro_sweep.store.attributes import MATRIX, check_dataset, check_numbers, check_own_dimensions, text, texts
 from vibro_sweep.store.differences import differences
-from vibro_sweep.store.flat_checks import damage_of
 from vibro_sweep.store.image import Index, frame_of
 from vibro_sweep.store.parts import FORMAT, PartError
+from vibro_sweep.store.ragged_checks import damage_of
 from vibro_sweep.store.sink import Sink, changing
 
 if TYPE_CHECKING:

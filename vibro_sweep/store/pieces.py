@@ -16,13 +16,13 @@ import numpy as np
 
 from vibro_sweep.model.column import Column
 from vibro_sweep.store import appending, names, parts
-from vibro_sweep.store.appending import HeldPart
+from vibro_sweep.store.appending import LockedPart
 from vibro_sweep.store.attributes import text
 from vibro_sweep.store.beginning import check_places
-from vibro_sweep.store.flat_checks import damage_of
-from vibro_sweep.store.flat_files import Subject, image_of
 from vibro_sweep.store.opening import StoreError, check_version, made_by, opened, skeleton
 from vibro_sweep.store.parts import PartError, Scan
+from vibro_sweep.store.ragged_checks import damage_of
+from vibro_sweep.store.ragged_files import Subject, image_of
 from vibro_sweep.store.writing import said, unfinished
 
 Arrays = dict[str, np.ndarray]
@@ -33,7 +33,7 @@ class Pieces:
 
     complete = False
 
-    def __init__(self, part: HeldPart, path: Path, subject: Subject, known: dict[str, Arrays]):
+    def __init__(self, part: LockedPart, path: Path, subject: Subject, known: dict[str, Arrays]):
         self._part, self._path, self._subject, self._known = part, path, subject, known
         self._began = time.perf_counter()
 
@@ -102,41 +102,41 @@ def pieces(subject: Subject, path: Path, mode: str, inputs: Collection[Path]) ->
             raise StoreError(f"{path} exists, and is damaged: {damage}; `resume` computes it again")
         replaces = names.stamp(path)
     try:
-        held = appending.hold(part) if names.stamp(part) else appending.make(part)
+        locked = appending.lock(part) if names.stamp(part) else appending.make(part)
     except (BlockingIOError, FileExistsError):
         raise StoreError(f"{part} is being written by another run") from None
-    with contextlib.closing(held):
+    with contextlib.closing(locked):
         try:
-            if mode == "resume" and parts.is_begun(held.file):
-                known = _continued(held, subject, path)
+            if mode == "resume" and parts.is_begun(locked.file):
+                known = _continued(locked, subject, path)
             else:
                 known = {}
-                _begin(held, subject, replaces)
+                _begin(locked, subject, replaces)
         except PartError as error:
             raise StoreError(f"{part} {error}") from None
-        yield Pieces(held, path, subject, known)
+        yield Pieces(locked, path, subject, known)
 
 
-def _begin(held: HeldPart, subject: Subject, replaces: names.Stamp | None) -> None:
+def _begin(locked: LockedPart, subject: Subject, replaces: names.Stamp | None) -> None:
     run_id = parts.new_run_id()
     content = image_of(subject, run_id, json.dumps(made_by()), [], {})
-    with said(held):
-        held.begin(parts.new_head(content, replaces, run_id), content)
+    with said(locked):
+        locked.begin(parts.new_head(content, replaces, run_id), content)
 
 
-def _continued(held: HeldPart, subject: Subject, path: Path) -> dict[str, Arrays]:
+def _continued(locked: LockedPart, subject: Subject, path: Path) -> dict[str, Arrays]:
     """The pieces of an interrupted run."""
-    head = parts.read_head(held.file)
-    with skeleton(held.file, held.path) as file:
-        _check_subject(file, subject, held.path)
-        check_version(file, held.path)
+    head = parts.read_head(locked.file)
+    with skeleton(locked.file, locked.path) as file:
+        _check_subject(file, subject, locked.path)
+        check_version(file, locked.path)
     if (found := names.stamp(path)) and found != head.replaces:
-        raise StoreError(f"{path} stands beside the interrupted run {held.path}; move one of them away")
-    scan, known = Scan(held.file, head), {}
+        raise StoreError(f"{path} stands beside the interrupted run {locked.path}; move one of them away")
+    scan, known = Scan(locked.file, head), {}
     for record in scan:
-        if (found := _piece(held.file, record)) is not None:
+        if (found := _piece(locked.file, record)) is not None:
             known |= found
-    held.go_on(head, scan.end)
+    locked.go_on(head, scan.end)
     return known
 
 

@@ -17,8 +17,6 @@ from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, VALID, meaning
 from vibro_sweep.store import checks
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.attributes import text, texts
-from vibro_sweep.store.flat_checks import damage_of
-from vibro_sweep.store.flat_tables import curves_table, special_table, windows_table
 from vibro_sweep.store.opening import (
     REMEDY,
     ForeignError,
@@ -29,6 +27,8 @@ from vibro_sweep.store.opening import (
     opened,
     quantities_of,
 )
+from vibro_sweep.store.ragged_checks import damage_of
+from vibro_sweep.store.ragged_tables import curves_table, special_table, windows_table
 
 if TYPE_CHECKING:
     import xarray

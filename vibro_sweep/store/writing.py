@@ -14,7 +14,7 @@ import numpy as np
 
 from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.store import checks, names, parts
-from vibro_sweep.store.appending import ChangedError, HeldPart, RemovedError
+from vibro_sweep.store.appending import ChangedError, LockedPart, RemovedError
 from vibro_sweep.store.attributes import set_text, text
 from vibro_sweep.store.creating import now, units
 from vibro_sweep.store.done import Done
@@ -27,7 +27,7 @@ from vibro_sweep.store.sink import Sink, changing
 class Writer:
     """The file of a run. All methods raise StoreError where the disk, or another program, prevents them."""
 
-    def __init__(self, part: HeldPart, frame: Frame, done: Done, path: Path):
+    def __init__(self, part: LockedPart, frame: Frame, done: Done, path: Path):
         self._part, self._frame, self._done, self._path = part, frame, done, path
 
     def missing(self, box: tuple[slice, ...]) -> bool:
@@ -143,7 +143,7 @@ def _meet(one: checks.Piece, other: checks.Piece) -> bool:
 
 
 @contextlib.contextmanager
-def said(part: HeldPart) -> Iterator[None]:
+def said(part: LockedPart) -> Iterator[None]:
     """Faults of the disk, in words, and that nothing is lost."""
     try:
         yield

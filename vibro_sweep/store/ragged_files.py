@@ -1,4 +1,5 @@
-"""Files of branches and of windows: flat arrays over dimensions that are nothing but lengths."""
+"""Files of branches, windows and curves: ragged arrays, laid out one after another over dimensions without
+coordinates."""
 
 import io
 from typing import Any, NamedTuple

@@ -11,14 +11,14 @@ from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.units import shown_unit
 from vibro_sweep.plotting.source import PlotError, name_of, readable
 from vibro_sweep.store.attributes import attributes, text, texts
-from vibro_sweep.store.flat_checks import Stored, check
 from vibro_sweep.store.opening import StoreError, opened, quantities_of
+from vibro_sweep.store.ragged_checks import Stored, check
 
 if TYPE_CHECKING:
     import xarray
 
 
-class FlatFile:
+class RaggedFile:
     """A file of branches, curves or windows, or a Dataset that `vibro_sweep.open` made of one.
 
     `arrays`: name -> values; `parameters`: names, that along which branches lead first; `sweep`: run id of the
