@@ -171,7 +171,9 @@ def test_overwrite_replaces_what_it_was_told_to_also_after_a_kill(folder):
 def test_killed_at_the_very_end(folder, monkeypatch, at):
     """While the file is made, or when it has its name and its part is still there: nothing is computed again."""
     whole = arrays_of("x.h5")
-    name = "vibro_sweep.store.writing.names.publish" if at == "made" else "vibro_sweep.store.appending.HeldPart.remove"
+    name = (
+        "vibro_sweep.store.writing.names.publish" if at == "made" else "vibro_sweep.store.appending.LockedPart.remove"
+    )
     with monkeypatch.context() as patch:
         patch.setattr(name, lambda *_: os._exit(9))
         if (child := os.fork()) == 0:
