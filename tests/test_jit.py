@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import pytest
 from support import path_with, slow_cases
@@ -39,9 +38,8 @@ def save(path):
     np.savez(path, **arrays(), code_hash=code_hash.code_hash())
 
 
-known = pytest.mark.skipif(
-    numba.version_info.full < (0, 68), reason="an older numba compiles kernel by kernel, which takes longer"
-)
+known = pytest.mark.skipif(not jit.IS_TESTED, reason="this numba compiles kernel by kernel, which takes longer")
+UNTESTED = "import numba; numba.version_info = numba.version_info._replace(short=(0, 99));"
 
 
 @known
@@ -82,6 +80,16 @@ def test_a_small_kernel_tells_whether_numba_is_as_expected_inside(change, outcom
     assert kept.read_text() == outcome
     kept.write_text("no")
     assert start() == "False"  # what is kept is not tried again
+
+
+def test_an_untested_numba_compiles_plainly_and_says_so(tmp_path):
+    program = UNTESTED + "import logging; logging.basicConfig(level=logging.INFO);"
+    program += "import numpy as np; from vibro_sweep.engine.simd import jit, self_test;"
+    program += "k = jit.exported(self_test.kernel); print(self_test.works(k), jit.AS_ONE, jit.IS_TESTED)"
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, check=True, capture_output=True, text=True)
+    assert done.stdout.split() == ["True", "False", "False"]
+    assert done.stderr.count("as long: tried were 0.64") == 1
 
 
 @known

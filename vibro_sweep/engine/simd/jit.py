@@ -15,15 +15,16 @@ from pathlib import Path
 
 import llvmlite
 import numba
-import numpy as np
 from numba.core import config, types
 from numba.core.caching import FunctionCache
 from numba.core.cpu import CPUTargetOptions
 
-try:
-    from vibro_sweep.engine.simd.compiler import NoInlineCompiler, PartCompiler, WholeCompiler
-except Exception:  # another version of numba: kernels compile without compiler.py, in twice the time
-    NoInlineCompiler = PartCompiler = WholeCompiler = None
+TESTED = ("0.64", "0.65", "0.66", "0.67", "0.68")  # versions of numba with which compiler.py was tried
+IS_TESTED = ".".join(map(str, numba.version_info.short)) in TESTED
+NoInlineCompiler = PartCompiler = WholeCompiler = None
+if IS_TESTED:
+    with contextlib.suppress(Exception):  # internals that are missing: kernels compile plainly
+        from vibro_sweep.engine.simd.compiler import NoInlineCompiler, PartCompiler, WholeCompiler
 
 
 @property
@@ -32,7 +33,8 @@ def _mangling(kind: types.Type) -> tuple[str, tuple[int]]:
 
     For records numba takes a number that they get as they come up in a process. So two processes can give kernels of
     different records one name, and where a third one loads both from the cache, one of them is called in place of the
-    other. For tuples with names it takes all that they hold, field by field: 20 kB, wherever a kernel is named.
+    other (numba issue 7654). For tuples with names it takes all that they hold, field by field: 20 kB, wherever a
+    kernel is named.
     """
     return type(kind).__name__, (_digest(kind.name),)
 
@@ -117,9 +119,17 @@ def _announce(folder: str) -> None:
     if not _announced:
         _announced = True
         _log.info("compiling kernels, once: they are kept in %s", folder)
+        if not AS_ONE:
+            _log.info("with numba %s this takes about %s as long: %s", numba.__version__, SLOWER, _why_plainly())
+
+
+def _why_plainly() -> str:
+    """Why kernels do not compile as one."""
+    return "it compiles them otherwise than expected" if IS_TESTED else f"tried were {', '.join(TESTED)}"
 
 
 WORTH_SAYING = 1.0  # seconds
+SLOWER = "five times"
 _log = logging.getLogger("vibro_sweep")
 _warned = _announced = False
 _FOLDER = _cache_folder()
@@ -210,25 +220,11 @@ def _compiled(function, compiler, forceinline=False, **options):
 
 
 def _works() -> bool:
-    """Whether exported, plain and noinline kernels compile as one and are right with this numba."""
-
-    def double(record):
-        return 2.0 * record.numbers[1]
-
-    def half(x):
-        return 0.5 * x
-
-    double, half = jit(double), noinline(half)
-
-    def both(records):
-        total = 0.0
-        for i in range(len(records)):
-            total += double(records[i]) - half(3.0)
-        return total
+    """Whether kernels compile as one, and compute what they should, with this numba."""
+    from vibro_sweep.engine.simd import self_test  # whose kernels are made by this module
 
     try:
-        records = np.array([([1.0, 3.0],), ([2.0, 4.0],)], [("numbers", float, 2)])
-        return _compiled(both, WholeCompiler)(records) == 11.0
+        return self_test.works(_compiled(self_test.kernel, WholeCompiler))
     except Exception:  # whatever numba's internals raise
         return False
 
