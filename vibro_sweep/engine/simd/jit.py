@@ -19,7 +19,7 @@ from numba.core import config, types
 from numba.core.caching import FunctionCache
 from numba.core.cpu import CPUTargetOptions
 
-TESTED = ("0.64", "0.65", "0.66", "0.67", "0.68")  # versions of numba with which compiler.py was tried
+TESTED = ("0.62", "0.63", "0.64", "0.65", "0.66", "0.67", "0.68")  # versions of numba with which compiler.py was tried
 IS_TESTED = ".".join(map(str, numba.version_info.short)) in TESTED
 NoInlineCompiler = PartCompiler = WholeCompiler = None
 if IS_TESTED:
