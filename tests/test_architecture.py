@@ -18,7 +18,7 @@ ALLOWED = {
 }
 # of analysis/: in this order
 FLOORS = ["single", "attractors", "periodic", "continuation", "branches", "curves", "windows"]
-EVERYWHERE = {"code_hash", "progress", "__version__"}  # what numbers depend on, the progress bar, and the version
+EVERYWHERE = {"code_hash", "__version__"}  # what numbers depend on, and the version
 TABLES = {
     "arguments",
     "bifurcations",

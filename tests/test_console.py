@@ -116,7 +116,7 @@ ADVICE = "; to continue: vibro-sweep run good.yaml -o good.h5 --resume"
         ("typer", ""),
         ("numba", ADVICE),
         ("a destructor", ADVICE),
-        *slow_cases(("yaml", ADVICE), ("h5py", ADVICE), ("vibro_sweep.progress", ADVICE), ("a handler", ADVICE)),
+        *slow_cases(("yaml", ADVICE), ("h5py", ADVICE), ("vibro_sweep.driver.progress", ADVICE), ("a handler", ADVICE)),
     ],
 )
 def test_ctrl_c_is_never_lost(folder, where, advice):
@@ -132,7 +132,7 @@ def test_ctrl_c_is_never_lost(folder, where, advice):
 )
 def test_after_ctrl_c_the_advice_leads_to_what_was_asked_for(folder, options, advice):
     """Before a run has begun, `--resume` would take the file that is to be overwritten for its result."""
-    command = [sys.executable, "-c", INTERRUPTING, "vibro_sweep.progress", "run", "good.yaml", options]
+    command = [sys.executable, "-c", INTERRUPTING, "vibro_sweep.driver.progress", "run", "good.yaml", options]
     done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT, check=False)
     assert done.stderr == f"vibro-sweep: interrupted; to continue: vibro-sweep run good.yaml -o good.h5 {advice}\n"
 

@@ -10,7 +10,7 @@ import pytest
 from support import ROOT
 
 import vibro_sweep as vs
-from vibro_sweep import reference
+from vibro_sweep.cli import reference
 from vibro_sweep.driver.blocks import plan_of
 from vibro_sweep.engine.records import POINT, new_results, result_of
 from vibro_sweep.engine.simd.jit import ENGINE, SHARED
@@ -90,7 +90,7 @@ class TestWhatFollows:
 
     def test_the_reference_page_is_up_to_date(self):
         text = (ROOT / "docs" / "reference.md").read_text()
-        assert text == reference.page(), "python -m vibro_sweep.reference > docs/reference.md"
+        assert text == reference.page(), "python -m vibro_sweep.cli.reference > docs/reference.md"
 
     def test_the_reference_page_has_everything(self):
         page = reference.page()

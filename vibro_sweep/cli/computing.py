@@ -65,7 +65,7 @@ class Computation:
     def under_way(self, total: int, *errors: type[Exception]) -> Iterator[tuple]:
         """Executor and progress, while the file is computed; what fails then has a message of its own."""
         from vibro_sweep.driver.compute import RunError
-        from vibro_sweep.progress import progress_bar
+        from vibro_sweep.driver.progress import progress_bar
         from vibro_sweep.store import StoreError
 
         all_is_imported()

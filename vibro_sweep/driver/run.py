@@ -10,12 +10,12 @@ import numpy as np
 
 from vibro_sweep.driver.branches import run_branches
 from vibro_sweep.driver.curves import run_curves
+from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.sweep import RunReport, check_how, run_sweep
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, TYPES
 from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.model.files import file_to_write
-from vibro_sweep.progress import given_or_bar
 from vibro_sweep.scene import Continuation, Scene
 from vibro_sweep.store.attributes import text
 from vibro_sweep.store.opening import opened

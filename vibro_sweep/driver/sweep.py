@@ -28,13 +28,13 @@ from vibro_sweep.driver.cost import (
 )
 from vibro_sweep.driver.memory import available_cores, blocks_under_way, orbits_per_block
 from vibro_sweep.driver.pool import as_computed
+from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.engine.halting import heed, interruptible, new_halt
 from vibro_sweep.model.arguments import check_call
 from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.status import VALID, meaning
-from vibro_sweep.progress import given_or_bar
 from vibro_sweep.scene import Scene
 from vibro_sweep.store.beginning import check_mode
 from vibro_sweep.store.datasets import write_following

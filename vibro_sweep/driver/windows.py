@@ -15,6 +15,7 @@ from vibro_sweep.analysis.windows.unvisited import unvisited_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.analysis.windows.window_search import WindowSearch
 from vibro_sweep.driver.jobs import computed, workers_of
+from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.sweep import check_how
 from vibro_sweep.driver.swept import contents_of
@@ -26,7 +27,6 @@ from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.state import state
 from vibro_sweep.model.window_columns import UNVISITED
-from vibro_sweep.progress import given_or_bar
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.joining import joined
 from vibro_sweep.store.pieces import Pieces, pieces

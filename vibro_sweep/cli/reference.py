@@ -1,4 +1,4 @@
-"""The reference page, made from the declarations:  python -m vibro_sweep.reference > docs/reference.md"""
+"""The reference page, made from the declarations:  python -m vibro_sweep.cli.reference > docs/reference.md"""
 
 import inspect
 import re
@@ -20,7 +20,7 @@ from vibro_sweep.scene import json_schema
 
 HEAD = """# Reference
 
-Made from the tables of `vibro_sweep/model/` by `python -m vibro_sweep.reference > docs/reference.md`; not edited by
+Made from the tables of `vibro_sweep/model/` by `python -m vibro_sweep.cli.reference > docs/reference.md`; not edited by
 hand. What a number in a file allows to conclude is said in [accuracy.md](accuracy.md), how files are laid out in
 [files.md](files.md).
 """
