@@ -11,6 +11,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.branches.branch_points import columns, impacts
 from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.free_modes import checked_cells
@@ -149,9 +150,15 @@ def branch_of(arrays: Arrays, parameter: str, system) -> Branch:
 
 
 def sections_of(arrays: Arrays, parameter: str, system) -> np.ndarray:
-    """(n, m, 2N) all section states of each point: those at t = 0 mod T of the orbit and of its mirror image."""
+    """(n, m, 2N) all section states of each point: those at t = 0 mod T of the orbit and of its mirror image.
+
+    Where the parameter breaks the symmetry of the oscillator there are no mirror images, not at the one value either at
+    which it is symmetric: m is the same for all points.
+    """
+    family = family_of(system)
+    mirrors = family.linear.symmetric and keeps_symmetry(family, parameter)
     systems = [system.replace(**{parameter: value}) for value in arrays["value"].tolist()]
-    return np.array([section_states(orbit_at(arrays, i, one)) for i, one in enumerate(systems)])
+    return np.array([section_states(orbit_at(arrays, i, one), mirrors) for i, one in enumerate(systems)])
 
 
 def special_point(arrays: Arrays, index: int, parameter: str, system) -> SpecialPoint:
@@ -173,11 +180,14 @@ def special_point(arrays: Arrays, index: int, parameter: str, system) -> Special
     )  # fmt: skip
 
 
-def section_states(orbit: PeriodicOrbit) -> np.ndarray:
-    """(m, 2N) at t = 0 mod T, of an orbit and, behind these, of its mirror image where that is another one."""
+def section_states(orbit: PeriodicOrbit, mirrors: bool = True) -> np.ndarray:
+    """(m, 2N) at t = 0 mod T, of an orbit and, behind these, of its mirror image where that is another one.
+
+    mirrors : whether mirror images are asked for
+    """
     T = forcing_period(orbit._solution.family.linear)
     times, mirrored = T * np.arange(orbit.period), np.zeros(0)
-    if orbit._solution.family.linear.symmetric and not orbit.symmetric:  # x(t) -> -x(t + T/2)
+    if mirrors and orbit._solution.family.linear.symmetric and not orbit.symmetric:  # x(t) -> -x(t + T/2)
         mirrored = times + T / 2
     states = orbit.sample(np.append(times, mirrored))
     states[orbit.period :] *= -1

@@ -246,13 +246,12 @@ class PeriodicOrbit(Result):
         if q is None:
             raise ArgumentError(f"this orbit has no motion: {STATUS[self.status]}")
         length = self.period * forcing_period(q)
-        times = np.unique(np.concatenate([np.linspace(0, length, 400 * self.period + 1), self._whole[0] % length]))
+        t, sides, v = self.impacts["t"] % length, self.impacts["side"], self.impacts["v1"]
+        times = np.unique(np.concatenate([np.linspace(0, length, 400 * self.period + 1), t]))
         states = self.sample(times)
         gap, rate = states[:, ::2] @ q.normal, states[:, 1::2] @ q.normal
-        R = q.restitution(self._whole[1])
-        t, v = self._whole[0] % length, self._whole[3][:, len(q.normal)]
         title = f"{self.itinerary or 'free'}, period {self.period}, {'stable' if self.stable else 'unstable'}"
-        jumps, stops = (t, self._whole[1], v, -R * v), (q.low, q.high)
+        jumps, stops = (t, sides, v, -q.restitution(sides) * v), (q.low, q.high)
         return plot_periodic(times, gap, rate, *jumps, stops, title, self.system, width=width)
 
     def save(self, path) -> Path:
