@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vibro_sweep import store
-from vibro_sweep.model.files import checked_path
+from vibro_sweep.model.files import FileError, checked_path, read_bytes
 
 if TYPE_CHECKING:
     import xarray
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray expect
     """A file of this program as an `xarray.Dataset` with coordinates; numbers of an HDF5 file are read when used.
 
-    `.attrs["kind"]` says what it holds: branches, windows, curves or periodic_orbit; a sweep has no such attribute.
+    `.attrs["kind"]` says what it holds: sweep, branches, windows, curves or periodic_orbit.
     A file is read through once, for its checksums. Raises StoreError for a file that is none of ours, and for a damaged
     one: it names the datasets. Of a missing file the StoreError is a FileNotFoundError too. A file that xarray or
     another program wrote from one of this program is opened too, with a warning in the log: it has no checksums.
@@ -31,7 +31,6 @@ def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray
 def first_bytes(path: Path) -> bytes:
     """With which a file begins; none where it cannot be read."""
     try:
-        with path.open("rb") as file:
-            return file.read(16)
-    except OSError:
+        return read_bytes(path, 16)
+    except FileError:
         return b""

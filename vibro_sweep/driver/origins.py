@@ -27,7 +27,7 @@ from vibro_sweep.driver.source_file import SourceError
 from vibro_sweep.driver.windows import rows_in, search_of
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.bifurcations import CURVES, WAYS
-from vibro_sweep.model.branch_file import CHART, WINDOWS
+from vibro_sweep.model.branch_file import CHART, SWEEP, WINDOWS
 from vibro_sweep.model.refusals import cut, shown
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.store.arrays import Contents
@@ -51,7 +51,7 @@ def source_of(scene: Continuation) -> Source:
     free = {name: lo for name, (lo, _) in scene.parameter.items()}
     if scene.origin == "sweep":
         with store.contents(Path(scene.begin)) as data:
-            if "kind" in data.attrs:
+            if data.attrs.get("kind", SWEEP) != SWEEP:
                 raise SourceError(f"continue.from.sweep: {scene.begin} holds {cut(str(data.attrs['kind']))}, no sweep")
             own = _rows(scene, data)[0].system
             run_id = data.attrs.get("identity", "")
@@ -204,7 +204,7 @@ def _special(scene: Continuation) -> tuple[SpecialPoint, list[str]]:
 
 def _at_special(scene: Continuation, data: Contents) -> tuple[AnyOscillator, list[str]]:
     """The oscillator at the scene's special point, and the numbers that vary in the file. Raises ValueError."""
-    if "kind" not in data.attrs:
+    if data.attrs.get("kind", SWEEP) == SWEEP:
         raise SourceError(f"continue.from.branches: {scene.begin} holds no branches")
     count = data.sizes["special"]
     if scene.special >= count:

@@ -2,6 +2,7 @@
 
 import io
 import json
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -22,15 +23,18 @@ from vibro_sweep.analysis.windows.window import Window, Windows
 from vibro_sweep.driver.opening import first_bytes
 from vibro_sweep.driver.origins import Source, attributes_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.driver.source_file import computed_from
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.bifurcations import CURVES
-from vibro_sweep.model.branch_file import BRANCHES, CHART, WINDOWS, columns_of
+from vibro_sweep.model.branch_file import BRANCHES, CHART, SWEEP, WINDOWS, columns_of
 from vibro_sweep.model.column import Column
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import ExistingFileError, checked_path, file_to_write
 from vibro_sweep.model.linear import Family
+from vibro_sweep.model.parameters import ParameterError
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
+from vibro_sweep.store import StoreError
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.joining import joined, part_of
 from vibro_sweep.store.parts import new_run_id
@@ -41,7 +45,7 @@ if TYPE_CHECKING:
     import xarray
 
 Saved = Branch | BifurcationCurve | Windows
-HDF5 = b"\x89HDF"  # with which such a file begins
+HDF5 = (b"\x89HDF", b"\x89vibro_sweep")  # with which such files, and the parts of runs, begin
 ONE = "saved"  # attribute of a file with a single branch or curve, which is not a list
 
 
@@ -103,10 +107,23 @@ def _scene_of(arrays: dict[str, np.ndarray], names: Sequence[str], system: AnyOs
     value = np.reshape(arrays["value"], (-1, len(names)))
     at = int(arrays.get("branch_origin", len(value) // 2))
     there = system.replace(**dict(zip(names, value[at].tolist(), strict=True)))
-    bounds = {name: (float(one.min()), float(one.max())) for name, one in zip(names, value.T, strict=True)}
+    bounds = {name: _range(there, name, one) for name, one in zip(names, value.T, strict=True)}
     begin = tuple(arrays["state"][at].tolist())
     period = int(arrays["branch_period"])
     return Continuation("result", "", there, "state", begin, period, None, None, bounds, CURVES, (), 0)
+
+
+def _range(system: AnyOscillator, name: str, values: np.ndarray) -> tuple[float, float]:
+    """The least and the largest value, which a scene has apart: of equal ones a neighbour that is allowed is added."""
+    lo, hi = float(values.min()), float(values.max())
+    if lo < hi:
+        return lo, hi
+    below, above = math.nextafter(lo, -math.inf), math.nextafter(hi, math.inf)
+    try:
+        system.replace(**{name: below})
+    except ParameterError:
+        return lo, above
+    return below, hi
 
 
 def load(path: str | Path) -> PeriodicOrbit | Saved | list[Branch] | list[BifurcationCurve]:
@@ -114,23 +131,38 @@ def load(path: str | Path) -> PeriodicOrbit | Saved | list[Branch] | list[Bifurc
     curves a list of these.
 
     Raises ValueError for a sweep, which `open` gives, and for a file that is none of these; StoreError for one that
-    cannot be read.
+    cannot be read, or is damaged.
     """
     path = checked_path("path", path)
     if not first_bytes(path).startswith(HDF5):
         return load_orbit(path)
-    with store.contents(path) as data:
-        kind = data.attrs.get("kind")
-        if kind is None:
-            raise ArgumentError(f"{path} holds a sweep, which `vibro_sweep.open` gives")
-        arrays = {name: data.values(name) for name in data.names}
-        names = np.atleast_1d(data.attrs["parameters"]).tolist()
-        if kind == WINDOWS:
-            return _windows(data, arrays, names)
-        system = parse_continuation(data.attrs["scene"]).system
-        numbers = {name: value for name, value in system.numbers.items() if isinstance(value, float)}
-        known = {name: data.attrs.get(name, value) for name, value in numbers.items()}  # of the point it began at
-        one = ONE in data.attrs
+    with computed_from(path), store.contents(path) as data:
+        try:
+            return _object_in(data)
+        except (KeyError, IndexError, TypeError, ArithmeticError) as error:  # an edited file, whose checksums hold
+            raise StoreError(f"{path} is damaged ({error})") from None
+
+
+def _object_in(data: Contents) -> Saved | list[Branch] | list[BifurcationCurve]:
+    """What a file of branches, curves or windows holds, all of it computed: what is wrong with a file is told now."""
+    kind = data.attrs.get("kind", SWEEP)
+    if kind == SWEEP:
+        raise ArgumentError("it holds a sweep, which `vibro_sweep.open` gives")
+    arrays = {name: data.values(name) for name in data.names}
+    if not np.isin(arrays["impact_side"], (1, -1)).all():
+        raise ArgumentError("it is damaged: `impact_side` has other stops than 1 and -1")
+    names = np.atleast_1d(data.attrs["parameters"]).tolist()
+    if kind == WINDOWS:
+        return _windows(data, arrays, names)
+    found = _each(data, arrays, names)
+    return found[0] if ONE in data.attrs and found else found
+
+
+def _each(data: Contents, arrays: dict[str, np.ndarray], names: list[str]) -> list[Any]:
+    """The branches or curves of a file."""
+    kind, system = data.attrs["kind"], parse_continuation(data.attrs["scene"]).system
+    numbers = {name: value for name, value in system.numbers.items() if isinstance(value, float)}
+    known = {name: data.attrs.get(name, value) for name, value in numbers.items()}  # of the point it began at
     found: list[Any] = []
     for i in range(len(arrays["branch_period"])):
         shapes = curve_arrays.SHAPES if kind == CHART else branch_arrays.SHAPES
@@ -142,7 +174,7 @@ def load(path: str | Path) -> PeriodicOrbit | Saved | list[Branch] | list[Bifurc
         found.append(
             curve_arrays.curve_of(own, parameters, there) if curve else branch_arrays.branch_of(own, names[0], there)
         )
-    return found[0] if one else found
+    return found
 
 
 def _windows(data: Contents, arrays: dict[str, np.ndarray], names: list[str]) -> Windows:
@@ -158,11 +190,13 @@ def _windows(data: Contents, arrays: dict[str, np.ndarray], names: list[str]) ->
         system = scene.system.replace(**held | {names[0]: at})
         ends = (float(arrays[name][w]) for name in ("window_lo", "window_hi"))
         counts = (int(arrays[name][w]) for name in ("window_orbits", "window_other_attractor"))
-        result.append(Window(names[0], *ends, held, *counts, own, system))
+        window = Window(names[0], *ends, held, *counts, own, system)
+        _ = window.lower, window.upper, window.orbit
+        result.append(window)
     shape = (*scene.shape, scene.n_starts)
     result.window, result.reason = (arrays[name].reshape(shape) for name in ("orbit_window", "orbit_reason"))
     result.unvisited = []
-    for u, w in enumerate(arrays["unvisited_window"].tolist()):
+    for u, w in enumerate(arrays.get("unvisited_window", np.zeros(0, int)).tolist()):
         numbers = [arrays[f"unvisited_{name}"][u] for name in ("lo", "hi", "values", "at")]
         lo, hi, values, at = (one.item() for one in numbers)
         system = result[w]._system.replace(**{names[0]: at})
@@ -170,7 +204,7 @@ def _windows(data: Contents, arrays: dict[str, np.ndarray], names: list[str]) ->
         found = orbit_of(system, solution_in(result[w]._arrays, at, system)) if known else None
         result.unvisited.append(Unvisited(w, lo, hi, values, at, found or PeriodicOrbit(system, "not_converged")))
     title = str(data.attrs["title"]).removeprefix("vibro_sweep: ")
-    attributes = {"sweep": data.attrs["sweep"], "parameter": names[0], "parameters": names}
+    attributes = {"sweep": data.attrs.get("sweep", ""), "parameter": names[0], "parameters": names}
     subject = Subject(WINDOWS, title, data.attrs["scene"], attributes)
     result._held = subject, columns_of(WINDOWS, names, scene.system), arrays
     return result

@@ -12,6 +12,7 @@ from vibro_sweep import store
 from vibro_sweep.analysis.windows.rows import Contents
 from vibro_sweep.driver.source_file import SourceError, computed_from
 from vibro_sweep.model.arguments import check_type
+from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.files import checked_path
 from vibro_sweep.scene import parse_scene
@@ -57,7 +58,7 @@ class DatasetContents:
     def _part(self, swept: list[str]) -> str | None:
         """The run id of a part: of its run, and of the values that it has; None of the whole, and of what has no
         windows (`check_data`)."""
-        if "kind" in self.attrs or self.attrs.get("type") == BUILD:
+        if self.attrs.get("kind", SWEEP) != SWEEP or self.attrs.get("type") == BUILD:
             return None
         scene = parse_scene(self.attrs["scene"])
         axes = {**scene.sweep, **({"start": range(scene.n_starts)} if scene.n_starts > 1 else {})}

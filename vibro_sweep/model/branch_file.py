@@ -9,6 +9,7 @@ from vibro_sweep.model.units import unit_in
 from vibro_sweep.model.window_columns import OF_WINDOWS, UNVISITED
 
 BRANCHES, WINDOWS, CHART = "branches", "windows", "curves"  # the kinds of such files
+SWEEP = "sweep"  # the kind of other HDF5 files
 
 
 def columns(kind: str, parameters: list[str], masses: int) -> list[Column]:

@@ -11,3 +11,7 @@ class ArgumentError(VibroSweepError, ValueError):
 
 class ArgumentTypeError(VibroSweepError, TypeError):
     """A value of a kind that is not allowed."""
+
+
+class MissingPackageError(VibroSweepError, ImportError):
+    """A package that is needed is not installed."""

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.errors import ArgumentTypeError, VibroSweepError
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.store.attributes import text, texts
@@ -25,7 +26,7 @@ def readable(given: "str | Path | xarray.Dataset") -> tuple["str | Path | xarray
     """
     if not isinstance(given, (str, Path)):
         kind = getattr(given, "attrs", {}).get("kind")
-        return given, None if kind is None else str(kind)
+        return given, None if kind in (None, SWEEP) else str(kind)
     try:
         with opened(Path(given), (), content=False) as (file, _):
             return given, text(file, "kind") if is_flat(file) else None

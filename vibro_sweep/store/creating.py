@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from vibro_sweep import __version__
+from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import datasets, heap, layout, numbers, parts
 from vibro_sweep.store.attributes import set_text, set_texts
@@ -25,6 +26,7 @@ def skeleton_of(scene: Scene, run_id: bytes) -> memoryview:
         file.attrs["format"] = parts.FORMAT
         set_text(file, "identity", run_id.hex())
         set_text(file, "Conventions", "CF-1.11")
+        set_text(file, "kind", SWEEP)
         set_text(file, "title", f"vibro_sweep: {scene.name}")
         set_text(file, "history", f"{now()} begun by vibro_sweep {__version__}")
         set_text(file, "scene", scene.text)

@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 
 from vibro_sweep import __version__
+from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.files import MissingFileError
 from vibro_sweep.model.refusals import cut
@@ -207,7 +208,7 @@ def _check(file: h5py.File) -> None:
 
 def is_flat(file: h5py.File) -> bool:
     """Whether it holds branches or windows, and no sweep."""
-    return "kind" in file.attrs
+    return "kind" in file.attrs and text(file, "kind") != SWEEP
 
 
 def dimensions_of(file: h5py.File, name: str) -> list[str]:

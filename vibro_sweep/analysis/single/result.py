@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vibro_sweep.model.errors import MissingPackageError
+
 if TYPE_CHECKING:
     import pandas
     import xarray
@@ -22,9 +24,14 @@ class Result:
         raise NotImplementedError
 
     def to_dataframe(self) -> "pandas.DataFrame":
-        """The table: impacts of an orbit, special points of a branch or a curve, or windows."""
-        import pandas
+        """The table: impacts of an orbit, special points of a branch or a curve, or windows.
 
+        Raises MissingPackageError where pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise MissingPackageError("to_dataframe: needs the package pandas, which is not installed") from None
         return pandas.DataFrame(self._table())
 
     def _repr_html_(self) -> str:

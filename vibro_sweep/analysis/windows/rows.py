@@ -9,6 +9,7 @@ import numpy as np
 
 from vibro_sweep.model.arguments import checked_word
 from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.parameters import range_of
@@ -91,7 +92,7 @@ def chosen_key(data: Contents, system, parameter: str | None) -> str:
 
 def check_data(data: Contents) -> None:
     """Raise ValueError for what is not a sweep, or has no section states at t = 0 mod T of the oscillator itself."""
-    if "kind" in data.attrs:
+    if data.attrs.get("kind", SWEEP) != SWEEP:
         raise ArgumentError(f"holds {cut(str(data.attrs['kind']))}, not a sweep")
     if data.attrs.get("type") == BUILD:
         raise ArgumentError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
