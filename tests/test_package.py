@@ -22,10 +22,11 @@ USER_SCRIPT = '''
 """Touches every public name, as a script of a careful user would."""
 
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import vibro_sweep as vs
+from vibro_sweep.types import Branch, PeriodicOrbit
 
 system: vs.System = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.6, tau="grazing", stops="both")
 physical = vs.System.physical(
@@ -60,7 +61,11 @@ print(found.lyapunov)
 periodic = vs.periodic_orbit(system.replace(b=6.9), state=(0, 0, 0, 0))
 periodic.save("orbit.json")
 again = vs.load("orbit.json")
+assert isinstance(again, PeriodicOrbit)
+print(vs.open("orbit.json").attrs["kind"], again.to_xarray(), again.to_dataframe().t.max())
 branch = vs.continue_orbit(again, "b", (6.6, 7.0))
+loaded = vs.load(branch.save("branch.h5"))
+print(isinstance(loaded, Branch), branch.to_dataframe(), vs.plot(branch, variable="multiplier"))
 for special in branch.special:
     if special.type == "graze":
         print(vs.switch(special), vs.sticking_onset(special))
@@ -68,7 +73,7 @@ for special in branch.special:
         print(curve.points.b, curve.closed, curve.begins.type, [one.parameters["omega"] for one in curve.special])
 print([one.itinerary for one in vs.born_at_grazing(system, periods=1)])
 print(len(vs.follow_branches(again, "b", (6.6, 7.0), depth=1)))
-given = dict(rayleigh=(0.1, 0), force=[1, 0], contact_normal=[1, -1], omega=0.8, b=1, R=0.7)
+given: dict[str, Any] = dict(rayleigh=(0.1, 0), force=[1, 0], contact_normal=[1, -1], omega=0.8, b=1, R=0.7)
 pair = vs.Oscillator([[1, 0], [0, 2]], np.eye(2), **given)
 print(vs.grazing(pair).b_right, vs.simulate(pair.replace(b=0.5), (0, 0, 0, 0), periods=2).impacts["xdot"])
 try:

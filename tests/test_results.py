@@ -1,11 +1,14 @@
 """Results of Python as tables, Datasets, pictures and files, and read again: the same numbers, bit for bit."""
 
 import json
+import os
+import sys
 
 import numpy as np
 import pytest
 
 import vibro_sweep as vs
+from vibro_sweep.analysis.branches.branch import not_followed
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4.0)
 BALL = vs.Oscillator.named("one_mass", k=0, zeta=0.0, F=1.0, omega=1.0, R=0.5, b=0.0, constant=-0.5, stops="left")
@@ -150,12 +153,57 @@ def test_the_file_of_a_scene_gives_a_list(tmp_path):
         same_specials(other.branch.special, one.special)
 
 
+def test_a_branch_that_could_not_be_followed(orbit, tmp_path):
+    """It has one point, at a value that may be the last one that is allowed."""
+    elastic = vs.periodic_orbit(SYSTEM.replace(R=1.0), itinerary="R")
+    for one, name in ((orbit, "b"), (elastic, "R")):
+        branch = not_followed(one, name)
+        branch.save(tmp_path / f"{name}.h5")
+        again = vs.load(tmp_path / f"{name}.h5")
+        assert again.status == "failed" and again.points.identical(branch.points) and repr(again) == repr(branch)
+
+
+def test_a_number_that_breaks_the_symmetry(tmp_path):
+    """At one value of the branch the oscillator is symmetric: there mirror images are not told either."""
+    orbit = vs.periodic_orbit(SYSTEM.replace(b=2.0), itinerary="LR")
+    branch = vs.continue_orbit(orbit, "offset", (-0.2, 0.2))
+    branch.save(tmp_path / "b.h5")
+    assert vs.load(tmp_path / "b.h5").points.identical(branch.points)
+    (tmp_path / "s.yaml").write_text(
+        "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 2, offset: 0}\n"
+        "continue: {from: {itinerary: LR}, parameter: {offset: [-0.2, 0.2]}, depth: 0}\n"
+    )
+    vs.run(vs.load_scene(tmp_path / "s.yaml"), tmp_path / "s.h5")
+    (again,) = vs.load(tmp_path / "s.h5")
+    assert again.points.identical(branch.points)
+    with vs.open(tmp_path / "s.h5") as data:
+        assert data.branch_sections.values.tolist() == [1]
+
+
+def test_an_orbit_without_impacts_is_drawn():
+    gap = vs.periodic_orbit(SYSTEM.replace(b=7.0), itinerary="").plot().axes[1].lines[0].get_ydata()
+    assert 6.7 < np.nanmax(gap) < 7
+
+
+def test_a_sweep_says_its_kind(tmp_path):
+    with vs.sweep(SYSTEM, {"b": [6.4, 6.5]}, transient=5, record=5, workers=1, output=tmp_path / "s.h5") as data:
+        assert data.attrs["kind"] == "sweep" and vs.plot(data).axes
+
+
+def test_without_pandas(orbit, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(vs.VibroSweepError, match="pandas") as caught:
+        orbit.to_dataframe()
+    assert isinstance(caught.value, ImportError)
+
+
 def test_what_is_refused(branch, tmp_path):
     vs.sweep(SYSTEM, {"b": [6.4, 6.5]}, transient=5, record=5, workers=1, output=tmp_path / "sweep.h5").close()
-    with pytest.raises(ValueError, match=r"holds a sweep, which `vibro_sweep\.open` gives"):
+    with pytest.raises(ValueError, match=r"sweep\.h5: it holds a sweep, which `vibro_sweep\.open` gives"):
         vs.load(tmp_path / "sweep.h5")
     (tmp_path / "other.json").write_text(json.dumps({"format": "of somebody else"}))
-    for path in ("other.json", "none.h5"):
+    os.mkfifo(tmp_path / "pipe")  # nobody writes into it
+    for path in ("other.json", "none.h5", "pipe"):
         for read in (vs.load, vs.open):
             with pytest.raises(vs.VibroSweepError, match=path):
                 read(tmp_path / path)

@@ -7,11 +7,12 @@ import typing
 import matplotlib.axes
 import matplotlib.figure
 import numpy as np
+import pandas
 import xarray
 
 import vibro_sweep as vs
 
-KNOWN = {"xarray": xarray, "np": np, "Axes": matplotlib.axes.Axes, "Figure": matplotlib.figure.Figure}
+KNOWN = {"pandas": pandas, "xarray": xarray, "np": np, "Axes": matplotlib.axes.Axes, "Figure": matplotlib.figure.Figure}
 DESCRIBED = {"Model", "Option", "Parameter", "Range"}  # how models describe themselves: nothing that functions take
 
 

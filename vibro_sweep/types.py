@@ -21,6 +21,7 @@ from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.grazing import Grazing
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.modes import Modes
+from vibro_sweep.model.pictures import Plottable
 from vibro_sweep.model.window_families import Family as WindowFamily
 from vibro_sweep.scene import Continuation, Scene, Section, Start, Trajectory
 
@@ -41,6 +42,7 @@ __all__ = [
     "Modes",
     "Orbit",
     "PeriodicOrbit",
+    "Plottable",
     "RunReport",
     "Scene",
     "Section",

@@ -20,7 +20,7 @@ import numpy as np
 
 import vibro_sweep as vs
 from support.changed_files import LONG, Case, damages, edits
-from support.kinds_of_files import KINDS, PERIODIC, SYSTEM, WrittenKinds, write_scenes
+from support.kinds_of_files import KINDS, PERIODIC, RAGGED, SYSTEM, WrittenKinds, write_scenes
 from vibro_sweep.cli.commands import main
 
 HARMLESS, REFUSED, TOLD, DRAWN = "as the whole file", "refused", "told damaged", "another result"
@@ -42,7 +42,9 @@ def commands(name: str) -> dict[str, Callable[[str], Said]]:
     """What reads a file of a kind, by its words; each is called with the file's name."""
     found = {"info": lambda file: said(["info", file]), "plot": lambda file: _drawn(["plot", file])}
     if name == PERIODIC:
-        return found | {"vs.load": _loaded}
+        return found | {"vs.load": _loaded_orbit, "open": _opened}
+    if name in RAGGED:
+        found["vs.load"] = _loaded
     found |= {"open": _opened, "vs.plot": _plotted, "vs.plot of the dataset": _plotted_dataset}
     found["run --resume" if KINDS[name].scene else "windows --resume"] = lambda file: _resumed(name, file)
     found["again"] = lambda file: said(_of(name, file))
@@ -172,6 +174,20 @@ def _plotted_dataset(file: str) -> Said:
 
 
 def _loaded(file: str) -> Said:
+    """With the tables of what is loaded, and the points of branches and curves."""
+
+    def read() -> str:
+        found = vs.load(file)
+        each = found if type(found) is list else [found]
+        points = [one.points for one in each if hasattr(one, "points")]
+        numbers = [repr(one.to_dataframe().to_dict()) for one in each]
+        numbers += [repr((name, data[name].values.tobytes())) for data in points for name in data]
+        return hashlib.sha256("".join(numbers).encode()).hexdigest()
+
+    return _python(read)
+
+
+def _loaded_orbit(file: str) -> Said:
     def read() -> str:
         orbit = vs.load(file)
         return repr((orbit.status, orbit.system, orbit.impacts.tobytes(), orbit.multipliers.tobytes()))

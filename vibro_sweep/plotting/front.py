@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from vibro_sweep.model.arguments import check_type, checked_flag
 from vibro_sweep.model.files import checked_path, file_to_write
+from vibro_sweep.model.pictures import Plottable
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.plotting import SUFFIXES, PlotError, PlotOptions, figure
@@ -23,17 +24,19 @@ A_FILE = "the path of a file, a Dataset, a branch, a curve or windows"
 
 
 @overload
-def plot(data: "str | Path | xarray.Dataset", kind: str | None = None, ax: None = None, **options: Any) -> Figure: ...
+def plot(
+    data: "str | Path | xarray.Dataset | Plottable", kind: str | None = None, ax: None = None, **options: Any
+) -> Figure: ...
 
 
 @overload
 def plot(
-    data: "str | Path | xarray.Dataset", kind: str | None = None, ax: Axes = ..., **options: Any
+    data: "str | Path | xarray.Dataset | Plottable", kind: str | None = None, ax: Axes = ..., **options: Any
 ) -> Figure | None: ...
 
 
 def plot(
-    data: "str | Path | xarray.Dataset",
+    data: "str | Path | xarray.Dataset | Plottable",
     kind: str | None = None,
     ax: Axes | None = None,
     at: Mapping[str, float] | None = None,
@@ -44,7 +47,7 @@ def plot(
     ylim: tuple[float, float] | None = None,
     size: tuple[float, float] | None = None,
     dpi: float | None = None,
-    windows: "str | Path | xarray.Dataset | None" = None,
+    windows: "str | Path | xarray.Dataset | Plottable | None" = None,
     over: "str | Path | xarray.Dataset | None" = None,
     relative: bool = False,
     output: str | Path | None = None,
