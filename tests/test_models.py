@@ -15,7 +15,7 @@ import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
 from vibro_sweep.cli.summaries import model_text
 from vibro_sweep.model.catalogue import OF_A_SYSTEM
-from vibro_sweep.model.linear import held_state
+from vibro_sweep.model.linear import rest_state
 from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.scene import parse_scene
@@ -211,16 +211,16 @@ def test_numbers_of_a_list_that_is_not_given():
 
 def test_rest_held_by_a_stop():
     """Zero between the stops; else the gap at the nearer stop, and no force but that of the stop."""
-    assert held_state(oscillator("chain").linear).tolist() == [0, 0, 0]
+    assert rest_state(oscillator("chain").linear).tolist() == [0, 0, 0]
     preloaded = oscillator("chain", offset=5.0, constant=[0.3, 0, -0.2])
     q = preloaded.linear
-    x = held_state(q)
+    x = rest_state(q)
     assert q.normal @ x == pytest.approx(q.low, rel=1e-14)
     left_over = q.K @ x - q.constant
     assert np.abs(left_over - q.normal * (left_over @ q.normal)).max() < 1e-13
     assert left_over @ q.normal > 0  # the left stop pushes to the right
     ball = oscillator("one_mass", k=0.0, offset=2.0, stops="left", b=-1)
-    assert held_state(ball.linear).tolist() == [3.0]
+    assert rest_state(ball.linear).tolist() == [3.0]
 
 
 @pytest.mark.slow

@@ -94,8 +94,8 @@ def test_thousands_of_series_in_a_rest(seed):
     assert rest["t_on"] == 0
 
     def zero(q, x, _):
-        held = Flight(q, held=True)
-        return first_zero(held, held.pull, 0, [*x[0::2], *x[1::2]], 0, rest["t_off"])
+        constrained = Flight(q, constrained=True)
+        return first_zero(constrained, constrained.pull, 0, [*x[0::2], *x[1::2]], 0, rest["t_off"])
 
     assert time_in_units(system, state, 0, rest["t_off"], zero) < 1.5
 

@@ -51,10 +51,12 @@ class Oscillator:
                 free[2 * i + 1][2 * n + j] = to_gmp(f[i, j])
         free[2 * n][2 * n + 1], free[2 * n + 1][2 * n] = self.omega, -self.omega
         self.acceleration = [dot(self.normal, [free[2 * i + 1][j] for i in range(n)]) for j in range(size)]
-        held = [list(row) for row in free]
+        constrained = [list(row) for row in free]
         for i in range(n):
-            held[2 * i + 1] = [a - self.push[i] * g for a, g in zip(free[2 * i + 1], self.acceleration, strict=True)]
-        self.free, self.held = LinearFlow(free), LinearFlow(held)
+            constrained[2 * i + 1] = [
+                a - self.push[i] * g for a, g in zip(free[2 * i + 1], self.acceleration, strict=True)
+            ]
+        self.free, self.constrained = LinearFlow(free), LinearFlow(constrained)
 
     def position(self, y):
         return dot(self.normal, y[0 : 2 * self.N : 2])
@@ -109,11 +111,11 @@ class Oscillator:
         return u, evaluate(terms, u), side, terms
 
     def rest(self, y, side, leading):
-        terms = self.held.taylor(y)
+        terms = self.constrained.taylor(y)
         pull = [side * dot(self.acceleration, term) for term in terms]
-        u = falling_root(pull[leading:], ZERO, self.held.h)
+        u = falling_root(pull[leading:], ZERO, self.constrained.h)
         if u is None:
-            return self.held.h, self.held.step(y), False, terms
+            return self.constrained.h, self.constrained.step(y), False, terms
         return u, evaluate(terms, u), True, terms
 
 

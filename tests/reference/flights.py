@@ -26,7 +26,7 @@ class Oscillator:
             norm = 1 + self.mu_m * r**2
             push = self.force * (1 - self.f2 + r * self.f2) / norm
             self.modes.append((r, norm, *self.response(self.zeta * square, square, push)))
-        self.held = self.response(
+        self.constrained = self.response(
             self.zeta * (1 + self.mu_k) / self.mu_m, (1 + self.mu_k) / self.mu_m, self.force * self.f2 / self.mu_m
         )
 
@@ -100,7 +100,7 @@ class Rest:
     """M1 held at x1, M2 from (x2, v2) at the time t; `pull` is the free acceleration of M1."""
 
     def __init__(self, o, t, x1, x2, v2):
-        roots, H = o.held
+        roots, H = o.constrained
         steady, still = H * o.turn(t), x1 / (1 + o.mu_k)
         amplitudes = free(roots, x2 - still - steady.imag, v2 - o.omega * steady.real)
         rates = [mpf(0), *roots, mpc(0, o.omega)]

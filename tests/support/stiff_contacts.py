@@ -28,7 +28,7 @@ SAMPLES = 2000  # of a flight, at which the reference says that it stays between
 class Flight:
     """All flights of one oscillator, of mpf: sums of exponentials. held: while a stop holds the gap."""
 
-    def __init__(self, q, held=False):
+    def __init__(self, q, constrained=False):
         n = len(q.normal)
         self.n, self.normal = n, [mpf(a) for a in q.normal]
         M, rows = mp.matrix(q.M.tolist()), np.hstack([-q.K, -q.C, np.stack([q.sine, q.cosine, q.constant], -1)])
@@ -36,7 +36,7 @@ class Flight:
         self.push = push / mp.fdot(self.normal, push)
         rows = mp.inverse(M) * mp.matrix(rows.tolist())
         self.pull = [mp.fdot(self.normal, rows.column(j)) for j in range(2 * n + 3)]  # acceleration of the gap
-        if held:
+        if constrained:
             rows -= self.push * mp.matrix([self.pull])
         A = mp.zeros(2 * n + 3)
         for i in range(n):

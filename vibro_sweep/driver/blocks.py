@@ -32,7 +32,7 @@ class Block(NamedTuple):
     system: AnyOscillator
     axes: dict[str, np.ndarray]  # values of the swept numbers in the box, those of the start among them
     starts: np.ndarray | tuple[int, int]  # (s, 4) for all points; or (count, seed), drawn at each
-    held: bool  # at rest, and where zero is behind a stop, held by that
+    from_rest: bool  # at rest, and where zero is behind a stop, held by that
     part: slice  # of the starts
     begun: np.ndarray | None  # (chains, 4): where chains go on that another block has begun
     follow: bool
@@ -113,7 +113,7 @@ def blocks(scene: Scene, points_per_block: int, most_orbits: int | None = None) 
         "plan": plan_of(scene),
         "system": scene.system,
         "starts": starts,
-        "held": scene.held,
+        "from_rest": scene.from_rest,
         "begun": None,
         "follow": follow,
         "wanted": frozenset(quantities(scene)),

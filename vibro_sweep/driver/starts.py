@@ -4,7 +4,7 @@ import numpy as np
 
 from vibro_sweep.driver.blocks import Block
 from vibro_sweep.model.grid import linears
-from vibro_sweep.model.linear import held_state
+from vibro_sweep.model.linear import rest_state
 from vibro_sweep.model.state import start
 
 ATTEMPTS = 100  # at a state with the gap between the stops
@@ -21,9 +21,9 @@ def starts_of(block: Block) -> np.ndarray:
     for i, name in enumerate(start(masses)):
         if name in block.axes:
             result[..., i] = block.parameters[name].reshape(-1, 1)
-    if block.held:
+    if block.from_rest:
         for n, q in enumerate(linears(block.system, block.axes).flat):
-            result[n, :, 0::2] = held_state(q)
+            result[n, :, 0::2] = rest_state(q)
     return result
 
 

@@ -13,8 +13,8 @@ from vibro_sweep.model.contact import (
     coordinates,
     distance,
     fastest_rate,
-    held_least,
     is_own,
+    least_restrained,
     natural_coordinates,
     origin_of,
 )
@@ -58,7 +58,7 @@ def grazing_points(linears: np.ndarray, expand_at: float | None) -> np.ndarray:
     for place in np.ndindex(linears.shape):
         q = linears[place]
         if gap_response(q):
-            state = np.kron(coordinates(q.normal, held_least(q))[0], np.eye(2)) @ grazing_state(q)
+            state = np.kron(coordinates(q.normal, least_restrained(q))[0], np.eye(2)) @ grazing_state(q)
             state[0] = state[0] if expand_at is None else expand_at
             result[place] = state
     return result
@@ -75,11 +75,11 @@ def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
         contact.turned,
     )
     point["stiffness"], point["damping"], point["force"] = contact.stiffness, contact.damping, contact.force
-    point["held"], point["push"] = contact.held, contact.push
+    point["constrained"], point["push"] = contact.constrained, contact.push
     point["divergence"] = -np.trace(contact.damping)
     point["rate"] = fastest_rate(contact.stiffness, contact.damping)
     n = len(contact.push)
-    point["held_rate"] = fastest_rate(-contact.held[1:, 1:n], -contact.held[1:, n + 1 : 2 * n])
+    point["constrained_rate"] = fastest_rate(-contact.constrained[1:, 1:n], -contact.constrained[1:, n + 1 : 2 * n])
     point["apart"] = not is_own(q) and np.isfinite(point["rate"]) and point["rate"] > APART * q.omega
     if point["apart"]:
         rounded, point["low"] = exact_motion(q, contact)

@@ -119,11 +119,11 @@ class PeriodMap:
         moving = np.array([p for p, one in enumerate(moved) if np.any(one.A)], np.int64)
         in_columns = lambda values: np.array([*[np.zeros_like(values[0])] * states, *values[1:]]).T.copy()  # noqa: E731
         across = np.linalg.solve(q.M, q.C @ here.push)
-        rate = max(abs(np.linalg.eigvals(matrix)).max() for matrix in (here.A, here.held))
+        rate = max(abs(np.linalg.eigvals(matrix)).max() for matrix in (here.A, here.constrained))
         stops, restitution = np.array([q.low, q.high]), np.array([q.R_low, q.R_high])
         return Equations(
             here.A, np.array([moved[p].A for p in moving]).reshape(-1, size, size),
-            here.held, np.array([moved[p].held for p in moving]).reshape(-1, size, size), states + moving,
+            here.constrained, np.array([moved[p].constrained for p in moving]).reshape(-1, size, size), states + moving,
             float(rate), q.omega, np.array(q.normal, float), here.push, across - here.push * (q.normal @ across),
             stops, restitution,
             in_columns([here.push, *(one.push for one in moved)]),

@@ -42,14 +42,18 @@ def point_of(kind: Kind) -> np.dtype:
             ("tau", float),
             ("cells", np.int64),  # 0: its rates are too far apart
             ("rate", float),  # the fastest of free flight, and
-            ("held_rate", float),  # while a stop holds the gap
+            ("constrained_rate", float),  # while a stop holds the gap
             ("divergence", float),  # trace of -damping
             ("stiffness", float, (n, n)),  # q'' + damping q' + stiffness q = force (sin, cos, 1)
             ("damping", float, (n, n)),
             ("force", float, (n, 3)),
             ("apart", np.bool_),  # its flights are computed in twice the digits (engine/tables/twofold.py), with
             ("low", float, (n, 2 * n + 3)),  # what rounding left of -stiffness, -damping and force, side by side
-            ("held", float, (n, 2 * n + 3)),  # q'' as a function of (q, q', sin, cos, 1) while a stop holds the gap
+            (
+                "constrained",
+                float,
+                (n, 2 * n + 3),
+            ),  # q'' as a function of (q, q', sin, cos, 1) while a stop holds the gap
             ("push", float, n),  # what an impulse on the gap does to q'
             ("turned", np.bool_),  # states are others than those of the masses
             ("P", float, (n, n)),

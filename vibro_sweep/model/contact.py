@@ -42,7 +42,7 @@ class Contact(NamedTuple):
     stiffness: np.ndarray  # (N, N)
     damping: np.ndarray  # (N, N)
     force: np.ndarray  # (N, 3)
-    held: np.ndarray  # (N, 2 N + 3): q'' as a function of (q, q', sin, cos, 1) while a stop holds the gap
+    constrained: np.ndarray  # (N, 2 N + 3): q'' as a function of (q, q', sin, cos, 1) while a stop holds the gap
 
     @property
     def turned(self) -> bool:
@@ -57,17 +57,17 @@ def contact_coordinates(q: Linear) -> Contact:
         eye, masses = np.eye(n), q.M.diagonal()[:, None]
         stiffness, damping = q.K / masses, q.C / masses
         force = np.stack([q.sine, q.cosine, rest_force(q, origin)], -1) / masses
-        held = np.concatenate([-stiffness, -damping, force], -1)
-        held[0] = 0.0
-        return Contact(eye, eye, origin, eye[0], stiffness, damping, force, held)
-    P, back = coordinates(q.normal, held_least(q))
+        constrained = np.concatenate([-stiffness, -damping, force], -1)
+        constrained[0] = 0.0
+        return Contact(eye, eye, origin, eye[0], stiffness, damping, force, constrained)
+    P, back = coordinates(q.normal, least_restrained(q))
     push = push_of(q, P)
     stiffness, damping = (P @ by_mass(q.M, matrix @ back) for matrix in (q.K, q.C))
     forces = np.stack([q.sine, q.cosine, rest_force(q, origin)], -1)
-    held = np.zeros((len(P), 2 * len(P) + 3))
+    constrained = np.zeros((len(P), 2 * len(P) + 3))
     others = back[:, 1:].T
-    held[1:] = by_mass(others @ q.M @ others.T, others @ np.hstack([-q.K @ back, -q.C @ back, forces]))
-    return Contact(P, back, origin, push, stiffness, damping, P @ by_mass(q.M, forces), held)
+    constrained[1:] = by_mass(others @ q.M @ others.T, others @ np.hstack([-q.K @ back, -q.C @ back, forces]))
+    return Contact(P, back, origin, push, stiffness, damping, P @ by_mass(q.M, forces), constrained)
 
 
 def is_own(q: Linear) -> bool:
@@ -88,7 +88,7 @@ def is_diagonal(M: np.ndarray) -> bool:
     return np.count_nonzero(M) == np.count_nonzero(M.diagonal())
 
 
-def held_least(q: Linear) -> int:
+def least_restrained(q: Linear) -> int:
     """The mass that the gap moves with the least force, by its own spring, damper and mass alone."""
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         size = np.abs(np.diag(q.K)) + q.omega * np.abs(np.diag(q.C)) + q.omega * q.omega * np.abs(np.diag(q.M))

@@ -205,7 +205,7 @@ def static_state(q: Linear) -> np.ndarray | None:
     return found if left_over <= 1e-9 * np.abs(q.constant).max() else None
 
 
-def held_state(q: Linear) -> np.ndarray:
+def rest_state(q: Linear) -> np.ndarray:
     """Positions (N,) from which to start at rest: zero, or the static equilibrium held on the nearer stop.
 
     Held: the gap is zero's where that is between the stops; else that of the stop, and no other force acts along n.

@@ -15,7 +15,7 @@ class Motion(NamedTuple):
     """One oscillator in the coordinates of its masses; or, with the same fields, its derivatives by a parameter."""
 
     A: np.ndarray  # (2 N + 3, 2 N + 3), in flight
-    held: np.ndarray  # the same while a stop holds the gap
+    constrained: np.ndarray  # the same while a stop holds the gap
     push: np.ndarray  # (N,): what an impulse that changes the gap's velocity by 1 does to the masses, p
 
 
@@ -34,9 +34,11 @@ def motion_slopes(q: Linear, slope: Linear) -> Motion:
     moved = np.linalg.solve(q.M, _forces(slope) - slope.M @ acceleration)
     across = np.linalg.solve(q.M, slope.M @ push)
     d_push = push * (q.normal @ across) - across
-    held = acceleration - np.outer(push, q.normal @ acceleration)
-    d_held = moved - np.outer(push, q.normal @ moved) - np.outer(d_push, q.normal @ acceleration)
-    return Motion(_by_phase_slope(q, slope, acceleration, moved), _by_phase_slope(q, slope, held, d_held), d_push)
+    constrained = acceleration - np.outer(push, q.normal @ acceleration)
+    d_constrained = moved - np.outer(push, q.normal @ moved) - np.outer(d_push, q.normal @ acceleration)
+    return Motion(
+        _by_phase_slope(q, slope, acceleration, moved), _by_phase_slope(q, slope, constrained, d_constrained), d_push
+    )
 
 
 def _forces(q: Linear) -> np.ndarray:

@@ -130,7 +130,7 @@ class Scene:
         return self.sweep_shape + ((self.n_starts,) if self.n_starts > 1 else ())
 
     @property
-    def held(self) -> bool:
+    def from_rest(self) -> bool:
         """Whether orbits start at rest and zero is behind a stop somewhere: it holds them there."""
         if not self.start.rest or any(key in START.values() for key in self.sweep):
             return False

@@ -104,7 +104,7 @@ def lock(path: Path) -> LockedPart:
     return _locked(path, os.O_RDWR)
 
 
-def is_held(path: Path) -> bool:
+def is_locked(path: Path) -> bool:
     """Whether a run is writing this part now."""
     try:
         lock(path).close()

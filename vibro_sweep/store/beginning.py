@@ -82,7 +82,7 @@ def check_places(path: Path, mode: str, inputs: Collection[Path]) -> Path:
         except PartError as error:
             raise StoreError(f"{part} {error}") from None
     if mode == "new" and names.stamp(part):
-        if appending.is_held(part):
+        if appending.is_locked(part):
             raise StoreError(f"{part} is being written by another run")
         raise StoreError(f"{part} is an interrupted run; `resume` continues it, `overwrite` replaces it")
     return part

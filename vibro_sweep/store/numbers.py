@@ -50,7 +50,7 @@ def attributes(scene: Scene) -> dict[str, Any]:
     result |= {"dynamics": scene.dynamics}
     if scene.dynamics == "map":
         result |= {"order": scene.order} | ({} if scene.expand_at is None else {"expand_at": scene.expand_at})
-    if scene.start.kind != "random" and not scene.held:
+    if scene.start.kind != "random" and not scene.from_rest:
         state = dict(zip(start(system.masses), scene.start.state, strict=True))
         result |= {name: value for name, value in state.items() if name not in scene.sweep}
     result |= {"transient": scene.transient, "record": scene.record, "section": scene.section.kind}

@@ -111,6 +111,6 @@ def _tables(q: Linear, sigma: int, half_periods: int, rests: bool) -> tuple[np.n
     if rests:
         return result, None
     if sigma == 1:
-        r["held"] = unseen_modes(q) / np.outer(units, units)
-        r["is_held"] = bool(np.any(r["held"]))
+        r["unseen"] = unseen_modes(q) / np.outer(units, units)
+        r["has_unseen"] = bool(np.any(r["unseen"]))
     return result, closing(q, sigma, half_periods) * np.append(units, 1.0) / units[:, None]

@@ -14,7 +14,7 @@ from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.result import Result, impact_table
 from vibro_sweep.engine.impulses import flights
-from vibro_sweep.engine.impulses.flow import contact_coordinates, flow, held_flow
+from vibro_sweep.engine.impulses.flow import constrained_flow, contact_coordinates, flow
 from vibro_sweep.engine.impulses.free_modes import ResonanceError
 from vibro_sweep.engine.one_system import IMPACT, STICKING, impact_of
 from vibro_sweep.model.arguments import LATEST, checked_times
@@ -192,7 +192,7 @@ class PeriodicOrbit(Result):
             chosen = np.flatnonzero(held[which] == rests)
             if len(chosen):
                 part = np.empty((len(chosen), starts.shape[1]))
-                f = held_flow(q) if rests else flow(q)
+                f = constrained_flow(q) if rests else flow(q)
                 flights.sample_flights(f, starts, begins, which[chosen], wrapped[chosen], part, workspace)
                 out[chosen] = part
         return self._masses(out[:, : 2 * len(q.normal)])

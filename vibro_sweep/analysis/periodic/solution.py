@@ -139,9 +139,9 @@ class Solution:
         """Whether every impulse pushes and every flight stays inside, to rounding."""
         rounding = 1e-13 * self.size_of_gap
         speed = self.family.linear.omega * rounding
-        held = self.hold > -self.family.linear.omega * speed and np.all(self.ends >= self.times[list(self.rests)])
-        held = held and not np.any(self.family.linear.restitution(np.array(self.sides)[list(self.rests)]))
-        return bool(np.all(self.pushes > -speed) and self.stop_distance > -rounding and held)
+        sticks = self.hold > -self.family.linear.omega * speed and np.all(self.ends >= self.times[list(self.rests)])
+        sticks = sticks and not np.any(self.family.linear.restitution(np.array(self.sides)[list(self.rests)]))
+        return bool(np.all(self.pushes > -speed) and self.stop_distance > -rounding and sticks)
 
     @cached_property
     def size_of_gap(self) -> float:

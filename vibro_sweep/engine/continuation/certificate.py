@@ -5,8 +5,8 @@ import cmath
 import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_sum import NEXT
+from vibro_sweep.engine.continuation.constrained_gap import press
 from vibro_sweep.engine.continuation.flight_tables import polynomial
-from vibro_sweep.engine.continuation.held_gap import press
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near

@@ -46,8 +46,8 @@ def plane_of(masses: int) -> np.dtype:
         ("width", float),  # of a cell
         ("bits", np.int64),  # of the number of cells of the longest flight
         ("half_turns", float),  # of the force in a period
-        ("is_held", np.int64),  # 1 where there are free modes that the contact does not see
-        ("held", float, (n, n)),  # of these the momenta times the places, which the closure keeps by this
+        ("has_unseen", np.int64),  # 1 where there are free modes that the contact does not see
+        ("unseen", float, (n, n)),  # of these the momenta times the places, which the closure keeps by this
         ("fit", float, (DEGREE + 1, DEGREE + 1, count)),  # coefficients of the powers of (p - centre)/reach
         ("exact", float, count),  # what `values` are at a point, of the oscillator itself
         ("shift", float, count),  # of the polynomials, so that they pass through `exact`

@@ -21,8 +21,8 @@ import cmath
 import math
 
 from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
+from vibro_sweep.engine.continuation.constrained_gap import put_rest, rest
 from vibro_sweep.engine.continuation.flight_tables import flight
-from vibro_sweep.engine.continuation.held_gap import put_rest, rest
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
@@ -140,7 +140,7 @@ def hold(f, panel):
     n = f.A.shape[0]
     for r in range(n):
         for k in range(n):
-            panel[n + 2 + r, 2 * n + 2 + k] += f.held[r, k]
+            panel[n + 2 + r, 2 * n + 2 + k] += f.unseen[r, k]
 
 
 @jit
@@ -205,7 +205,7 @@ def eliminate(f, c, place, b, watched):
         put_flight(f, law, e, panel)
         if law == REST:
             put_rest(f, e, panel)
-        if last and f.is_held > 0:
+        if last and f.has_unseen > 0:
             hold(f, panel)
         if c.kind == STICK and last:
             put_tail(f, c, place, b, panel)

@@ -122,13 +122,13 @@ def flow(q: Linear) -> Flow:
 
 
 @remembered(*TABLES, most=16)
-def held_flow(q: Linear) -> Flow:
+def constrained_flow(q: Linear) -> Flow:
     """Tables of the motion while the gap stays as it is; rows: of what the gap's free acceleration is then."""
     B = rates(q)
     N = len(q.normal)
-    held = B.copy()
-    held[0], held[N] = 0.0, 0.0
-    return _flow(q, held, B[N])
+    constrained = B.copy()
+    constrained[0], constrained[N] = 0.0, 0.0
+    return _flow(q, constrained, B[N])
 
 
 def _flow(q: Linear, B: np.ndarray, row: np.ndarray) -> Flow:

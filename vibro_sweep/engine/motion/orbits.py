@@ -72,7 +72,7 @@ def orbit_of(masses: int, constant: bool = False) -> np.dtype:
         ("stops", float, 4),  # left, right, and the restitution of each
         ("resting", float),  # side of the stop that M1 rests on, or 0
         ("c", float, (masses, ORDER)),  # Taylor coefficients of x1, x2, ...; of M1 at rest the free acceleration
-        ("held", float, width),  # what series begin with while M1 rests: x1, x2, v2, x3, ..., sin, cos
+        ("series_start", float, width),  # what series begin with while M1 rests: x1, x2, v2, x3, ..., sin, cos
         ("gap", float, ORDER),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
         ("finer", float, 2 * masses),  # what rounding left of X, from series to series (`advance_exactly`)
     ]

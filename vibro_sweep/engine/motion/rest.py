@@ -10,7 +10,7 @@ from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, evaluate
 from vibro_sweep.engine.tables.resting import bound_third_over, carry_over_rest, state_after
 from vibro_sweep.engine.tables.twofold import add
-from vibro_sweep.engine.variational import held, tangent_flight
+from vibro_sweep.engine.variational import tangent_at_rest, tangent_flight
 
 CHATTER = 2.0**-53  # of a period: the error allowed in time when the rest of a chatter sequence is summed up
 
@@ -47,7 +47,7 @@ def begin_rest(f, o, records, t, k, s, side, w):
     if t.wanted:
         q = f.oscillator[0]
         tangent_flight.fly_to(t, o.lane, q, f.nodes, k, s - w)
-        held.rest(t, o.lane, q.kappa, q.push)
+        tangent_at_rest.rest(t, o.lane, q.kappa, q.push)
         carry_tangent(t, o.lane, q, w)
         t.cell[o.lane], t.offset[o.lane] = k, s
 
@@ -55,33 +55,33 @@ def begin_rest(f, o, records, t, k, s, side, w):
 @jit
 def load_rest(q, o, sin, cos):
     """Series of the free acceleration of M1 in c[0], and of x2, ... in the other rows."""
-    states, count, held, w = 2 * len(o.c), len(q.force) - 1, o.held, q.resting
-    held[0] = o.X[0]
+    states, count, start, w = 2 * len(o.c), len(q.force) - 1, o.series_start, q.resting
+    start[0] = o.X[0]
     for j in range(2, states):
-        held[j - 1] = o.X[j]
-    held[states - 1], held[states], held[states + 1] = sin, cos, 1.0
+        start[j - 1] = o.X[j]
+    start[states - 1], start[states], start[states + 1] = sin, cos, 1.0
     for i in range(len(o.c)):
         for n in range(ORDER):
-            total = w[i, 0, n] * held[0] + w[i, 1, n] * held[1]
+            total = w[i, 0, n] * start[0] + w[i, 1, n] * start[1]
             for j in range(2, count - 1, 2):
-                total += w[i, j, n] * held[j] + w[i, j + 1, n] * held[j + 1]
-            o.c[i, n] = total + w[i, count - 1, n] * held[count - 1] if count % 2 == 1 else total
+                total += w[i, j, n] * start[j] + w[i, j + 1, n] * start[j + 1]
+            o.c[i, n] = total + w[i, count - 1, n] * start[count - 1] if count % 2 == 1 else total
 
 
 @jit
 def carry_tangent(t, i, q, w):
     """Tangent vectors over a rest of the time w within a cell."""
     if q.rest_square > 0.0:
-        t.held[2, 2], t.held[2, 3], t.held[3, 2], t.held[3, 3] = carry_over_rest(q, w)
-        held.release(t, i)
+        t.constrained[2, 2], t.constrained[2, 3], t.constrained[3, 2], t.constrained[3, 3] = carry_over_rest(q, w)
+        tangent_at_rest.release(t, i)
         return
     while w > 0.0:
         step = min(w, q.rest_step)
         w -= step
         for m in range(1, len(q.series)):
             for j in range(2, len(t.growth)):
-                t.held[2 * m, j], t.held[2 * m + 1, j] = evaluate(q.resting[m, j - 1], step)
-        held.release(t, i)
+                t.constrained[2 * m, j], t.constrained[2 * m + 1, j] = evaluate(q.resting[m, j - 1], step)
+        tangent_at_rest.release(t, i)
 
 
 @jit

@@ -86,18 +86,18 @@ class _KnownMembers(cgutils.ValueStructProxy):
 
 
 @functools.cache
-def _held(fe_type):
+def _with_known_members(fe_type):
     return type(f"Held_{type(fe_type).__name__}", (_KnownMembers,), {"_fe_type": fe_type})
 
 
 def create_struct_proxy(fe_type, kind="value"):
     """`cgutils.create_struct_proxy`, where kind is "value" or "data": values of the type, or what is stored of it."""
-    return _held(fe_type) if kind == "value" else _create_struct_proxy(fe_type, kind)
+    return _with_known_members(fe_type) if kind == "value" else _create_struct_proxy(fe_type, kind)
 
 
 def make_array(array_type):
     """`arrayobj.make_array`; numba's own arrays need no search for what makes an array of a user's type."""
-    return _held(array_type) if isinstance(array_type, types.Array) else _make_array(array_type)
+    return _with_known_members(array_type) if isinstance(array_type, types.Array) else _make_array(array_type)
 
 
 def extract_value(self, whole, place, name=""):

@@ -42,7 +42,7 @@ def build_any(f, w, point):
     fill_equations(w.A, point, len(q.force))
     fill_flight_series(q, w)
     fill_impulse(q, point)
-    fill_rest_series(q, w, point, max(point.omega, point.held_rate))
+    fill_rest_series(q, w, point, max(point.omega, point.constrained_rate))
     fill_products(q, f.nodes, point, w.twofold)
     fill_forced_motion(q, f.nodes, point.tau, point.begin)
     q.exact = q.stiff and point.apart
@@ -111,21 +111,21 @@ def fill_impulse(q, point):
 
 
 @jit
-def fill_held(A, point, inputs):
+def fill_constrained(A, point, inputs):
     """z' = A z while a stop holds the gap."""
     masses = len(point.damping)
     for i in range(1, masses):
         for j in range(masses):
-            A[2 * i + 1, 2 * j], A[2 * i + 1, 2 * j + 1] = point.held[i, j], point.held[i, masses + j]
+            A[2 * i + 1, 2 * j], A[2 * i + 1, 2 * j + 1] = point.constrained[i, j], point.constrained[i, masses + j]
         for j in range(2 * masses, inputs):
-            A[2 * i + 1, j] = point.held[i, j]
+            A[2 * i + 1, j] = point.constrained[i, j]
 
 
 @jit
 def fill_rest_series(q, w, point, rate):
     """The same while a stop holds the gap: without v1 among the inputs. Takes A apart. rate: the fastest meanwhile."""
     A, row, count = w.A, w.row, len(q.force) - 1
-    fill_held(A, point, len(q.force))
+    fill_constrained(A, point, len(q.force))
     for j in range(count):
         row[j] = A[1, j + 1 if j > 0 else 0]
     for i in range(count):

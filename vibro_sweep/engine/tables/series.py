@@ -51,7 +51,7 @@ class Workspace(NamedTuple):
     """The matrices A of z' = A z for z = (x1, v1, x2, v2, sin(omega t + tau), cos(omega t + tau)), eq. (3), padded."""
 
     free: np.ndarray  # (6, LANES)
-    held: np.ndarray  # (6, LANES), while M1 rests: v1 = 0
+    constrained: np.ndarray  # (6, LANES), while M1 rests: v1 = 0
 
 
 def new_workspace() -> Workspace:
@@ -61,7 +61,7 @@ def new_workspace() -> Workspace:
 @jit
 def fill_equations(q, w, mu_m, mu_k, f2):
     """Both matrices, and the acceleration of M1 as a function of z. What is zero in every A stays as it was made."""
-    A, held, zeta, omega = w.free, w.held, q.zeta, q.omega
+    A, constrained, zeta, omega = w.free, w.constrained, q.zeta, q.omega
     A[0, 1] = A[2, 3] = 1.0
     A[1, 0], A[1, 1], A[1, 2], A[1, 3], A[1, 4] = -1.0, -2.0 * zeta, 1.0, 2.0 * zeta, 1.0 - f2
     A[3, 0], A[3, 1] = 1.0 / mu_m, 2.0 * zeta / mu_m
@@ -70,8 +70,8 @@ def fill_equations(q, w, mu_m, mu_k, f2):
     for i in range(6):
         q.force[i] = A[1, i]
     for i in range(2, 6):
-        put(held, i, row(A, i))
-    held[3, 1] = 0.0
+        put(constrained, i, row(A, i))
+    constrained[3, 1] = 0.0
 
 
 @inline
@@ -90,16 +90,16 @@ def fill_series(q, w):
     Each term is the one before it times A/n. All four go side by side: none waits for the last step of another.
     """
     x1, x2 = select(lanes_of(0b000001), 1.0, 0.0), select(lanes_of(0b000100), 1.0, 0.0)
-    pull, held_x2 = select(lanes_of(0b000010), 0.0, row(w.free, 1)), x2
+    pull, constrained_x2 = select(lanes_of(0b000010), 0.0, row(w.free, 1)), x2
     for n in range(ORDER):
         if n > 0:
             x1, x2 = times(x1, w.free) / n, times(x2, w.free) / n
-            pull, held_x2 = times(pull, w.held) / n, times(held_x2, w.held) / n
+            pull, constrained_x2 = times(pull, w.constrained) / n, times(constrained_x2, w.constrained) / n
         for i in range(6):
             q.series[0, i, n], q.series[1, i, n] = number(x1, i), number(x2, i)
         for i in range(5):  # without v1
             j = i + 1 if i > 0 else 0
-            q.resting[0, i, n], q.resting[1, i, n] = number(pull, j), number(held_x2, j)
+            q.resting[0, i, n], q.resting[1, i, n] = number(pull, j), number(constrained_x2, j)
 
 
 @jit

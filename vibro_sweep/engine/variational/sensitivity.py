@@ -29,10 +29,10 @@ class Equations(NamedTuple):
 
     A: np.ndarray  # (k, k) with k = 2 N + 3, in flight
     A_p: np.ndarray  # (m, k, k): derivatives by the parameters that change the motion,
-    held: np.ndarray  # while a stop holds the gap
-    held_p: np.ndarray
+    constrained: np.ndarray  # while a stop holds the gap
+    constrained_p: np.ndarray
     columns: np.ndarray  # (m,): which stand in these columns of dz
-    rate: float  # the fastest of A and `held`
+    rate: float  # the fastest of A and `constrained`
     omega: float
     normal: np.ndarray  # (N,): n
     push: np.ndarray  # (N,): p
@@ -135,7 +135,7 @@ def fly_to(e, resting, now, there, z, dz, w):
     cells = (there[0] - now[0]) * e.cells + (there[1] - now[1])
     angle = 2.0 * np.pi * (cells / e.cells) + e.omega * (there[2] - now[2])
     if resting != 0.0:
-        advance(e.held, e.held_p, e.rate, angle, z, dz, e.columns, w)
+        advance(e.constrained, e.constrained_p, e.rate, angle, z, dz, e.columns, w)
     else:
         advance(e.A, e.A_p, e.rate, angle, z, dz, e.columns, w)
     set_phase(e, there[1], there[2], z, dz)

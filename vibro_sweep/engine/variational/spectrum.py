@@ -10,7 +10,7 @@ import numpy as np
 
 from vibro_sweep.engine.point_tables import divergence_of
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.variational import held, tangent, tangent_flight
+from vibro_sweep.engine.variational import tangent, tangent_at_rest, tangent_flight
 from vibro_sweep.engine.variational.orthonormal import CONDITION
 from vibro_sweep.model import exponents, status
 
@@ -51,7 +51,7 @@ def keep_at_rest(e, i):
     """Keep the vectors while M1 rests on a stop: two of the four directions are lost already."""
     if e.orbits[i].resting != 0.0:
         q = e.flights.oscillator[e.orbits[i].table, 0]
-        held.rest(e.tangent[0], i, q.kappa, q.push)
+        tangent_at_rest.rest(e.tangent[0], i, q.kappa, q.push)
 
 
 @jit

@@ -47,7 +47,7 @@ def tangents_of(masses: int, paper: bool) -> np.dtype:
         ("mixed", float, LANES),  # 0: each vector lies in the plane of one mode, where free flight turns it
         ("Z", float, (n * n, LANES)),  # columns of Z (n, n) are vectors
         # what a rest multiplies (dx2, dv2, dx3, ...) by, from row and column 2 on; and one of them before it and after
-        ("held", float, (n, n)),
+        ("constrained", float, (n, n)),
         ("before", float, n),
         ("after", float, n),
         ("volume", float, LANES),  # |det Z|, from the identity det S = R^2

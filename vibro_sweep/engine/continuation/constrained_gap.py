@@ -27,7 +27,7 @@ from vibro_sweep.engine.simd.jit import jit
 def rest(f, side, x, e, room):
     """`after`, `carry`, `pull` and `release` of a rest, after `approach`."""
     n, N, omega, v = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA], e.motion[0]
-    hold_gap(f, side, x, x[n + 1], e, room)
+    constrain_gap(f, side, x, x[n + 1], e, room)
     state, turn = room[0], e.turn * cmath.exp(1j * x[n + 1])
     for r in range(n):
         e.after[r] = state[r, n] - (f.Z[r] * turn).real
@@ -69,7 +69,7 @@ def cells_of(f, length):
 
 
 @jit
-def hold_gap(f, side, x, length, e, room):
+def constrain_gap(f, side, x, length, e, room):
     """room[0]: as of `begin_rest`, but this length in phase, which may be negative, after the impact."""
     begin_rest(f, side, x, e, room[0])
     cells = cells_of(f, length)

@@ -27,7 +27,7 @@ def rest(t, i, kappa, p):
                 Z[size * m + j, i] -= to[size * m + 2 * k + 1, i] * push
     for m in range(size):
         for j in range(size):
-            t.held[m, j] = 1.0 if m == j else 0.0
+            t.constrained[m, j] = 1.0 if m == j else 0.0
     release(t, i)
 
 
@@ -49,16 +49,16 @@ def motion_in(t, i, mass, j):
 
 @jit
 def release(t, i):
-    """Z after a rest on the stop during which (dx2, dv2, dx3, ...) is multiplied by `held`."""
-    Z, to, held, size, before, after = t.Z, t.to_frame, t.held, len(t.growth), t.before, t.after
+    """Z after a rest on the stop during which (dx2, dv2, dx3, ...) is multiplied by `constrained`."""
+    Z, to, constrained, size, before, after = t.Z, t.to_frame, t.constrained, len(t.growth), t.before, t.after
     t.mixed[i] = 1.0
     for j in range(size):
         for mass in range(1, len(t.scale)):
             before[2 * mass], before[2 * mass + 1] = motion_in(t, i, mass, j)
         for a in range(2, size):
-            after[a] = held[a, 2] * before[2] + held[a, 3] * before[3]
+            after[a] = constrained[a, 2] * before[2] + constrained[a, 3] * before[3]
             for b in range(4, size, 2):
-                after[a] += held[a, b] * before[b] + held[a, b + 1] * before[b + 1]
+                after[a] += constrained[a, b] * before[b] + constrained[a, b + 1] * before[b + 1]
         for m in range(size):
             z = 0.0
             if size > 2:
