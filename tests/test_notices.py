@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from vibro_sweep import progress
+from vibro_sweep.driver import progress
 
 COMPILE = "from vibro_sweep.engine.simd import jit; jit._announce('FOLDER')"
 MESSAGE = "compiling kernels, once: they are kept in FOLDER\n"
