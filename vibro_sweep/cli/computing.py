@@ -39,7 +39,7 @@ class Computation:
         return self.output.with_name(default_name(self.output))
 
     def advice(self, option: str) -> str:
-        """What to type after an interruption."""
+        """The advice on what to type after an interruption."""
         again = ["vibro-sweep", *self.command, "-o", str(self.output)]
         again += ["--scheduler", self.scheduler] if self.scheduler else []
         again += ["--workers", str(self.workers)] if self.workers and not self.scheduler else []

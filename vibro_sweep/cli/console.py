@@ -69,7 +69,7 @@ def ended(command: Callable[[], None]) -> int:
 
 @contextlib.contextmanager
 def input_errors(*kinds: type[Exception]) -> Iterator[None]:
-    """What the user can mend ends in one message and status 2; the rest is a bug."""
+    """End errors that the user can mend in one message and status 2; others are bugs."""
     try:
         yield
     except (InputError, OSError, MemoryError, *kinds) as error:

@@ -57,7 +57,7 @@ def install() -> None:
 
 
 def advise(advice: str) -> None:
-    """What an interrupt says from now on."""
+    """Set the advice that an interrupt prints from now on."""
     _handler.text = f"interrupted; {advice}"
 
 

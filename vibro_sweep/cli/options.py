@@ -30,7 +30,7 @@ def output(metavar: str, default: str) -> OptionInfo:
 
 
 def executor_of(scheduler: str | None) -> contextlib.AbstractContextManager:
-    """That of a Dask scheduler, or None for threads."""
+    """The executor of a Dask scheduler, or None for threads."""
     if scheduler is None:
         return contextlib.nullcontext()
     try:

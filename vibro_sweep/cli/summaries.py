@@ -23,7 +23,7 @@ BUSY = 1.3  # times longer than alone, from which on it is said what else runs
 
 
 def grazing_of(scene: "Scene | Continuation") -> str:
-    """What `grazing` prints: of a sweep of one number on which the graze depends the curve."""
+    """The output of `grazing`: of a sweep of one number on which the graze depends the curve."""
     from vibro_sweep.scene import Scene
     from vibro_sweep.store.numbers import depends_on
 
@@ -48,7 +48,7 @@ def _grazing_curve(system: AnyOscillator, key: str, values: list[float]) -> str:
 
 
 def grazing_text(touch: Grazing, system: AnyOscillator) -> str:
-    """What `grazing` prints of Theorem 1, with the stops that there are."""
+    """The text of Theorem 1 that `grazing` prints, with the stops that there are."""
     stops = system.options.get("stops", "both")
     alike = touch.b_right == touch.b_left
     if alike:
@@ -70,7 +70,7 @@ def grazing_text(touch: Grazing, system: AnyOscillator) -> str:
 
 
 def cost_text(cost: "Estimate") -> str:
-    """What `check` prints of the work that a scene is."""
+    """The cost of a scene as `check` prints it."""
     from vibro_sweep.driver.cost import duration
 
     busy = f" beside what else runs now, {duration(cost.alone)} alone" if cost.seconds > BUSY * cost.alone else ""
@@ -85,12 +85,12 @@ def cost_text(cost: "Estimate") -> str:
 
 
 def model_list() -> str:
-    """What `models` prints: a line each."""
+    """The output of `models`: a line for each model."""
     return "\n".join(f"{name:<16} {one.title}" for name, one in MODELS.items())
 
 
 def model_text(model: Model) -> str:
-    """What `models NAME` prints: equations, sketch, numbers with their ranges, options, source."""
+    """The output of `models NAME`: equations, sketch, numbers with their ranges, options, source."""
     numbers = [(one.name, one.range.text, one) for one in model.numbers]
     options = [(one.name, _allowed(one), one) for one in model.options]
     wide = [max(len(row[column]) for row in numbers + options) for column in (0, 1)]
@@ -122,7 +122,7 @@ def _default(one: Parameter | Option) -> str:
 
 
 def summary(output: Path, report: "RunReport") -> str:
-    """What `run` prints at its end."""
+    """The summary that `run` prints at its end."""
     from vibro_sweep.driver.cost import duration
 
     unsettled = report.statuses.get("not_settled", 0)

@@ -139,7 +139,7 @@ def _number_point(file: Arrays, box: Box, system: list, follower: Follower, room
 
 
 def _read(file: Arrays, box: Box, shaped) -> Orbits:
-    """What the file holds of the orbits of a box; averages are NaN where an orbit is on no attractor."""
+    """The data in the file of the orbits of a box; averages are NaN where an orbit is on no attractor."""
     rank, period, average, error = (
         shaped(np.asarray(file[name][box])) for name in ("attractor", "period", "average", "average_error")
     )

@@ -77,7 +77,7 @@ def version() -> str:
 
 
 def plan_of(scene: Scene) -> points.Plan:
-    """What the kernels need to know of a scene."""
+    """The plan of a scene, for the kernels."""
     side = {"right": 1.0, "left": -1.0}[scene.section.stop]
     lyapunov = any(WORDS[word].tangents for word in scene.observe)
     return points.Plan(

@@ -56,7 +56,8 @@ class ClusterExecutor(ClientExecutor):
 
 
 def _is_news(record: logging.LogRecord) -> bool:
-    """Not that blocks cannot be cancelled, since the scheduler that had them has died: the run says so in one line."""
+    """Whether a log record is news. That blocks of a dead scheduler cannot be cancelled is not: the run says so in one
+    line."""
     return not (record.exc_info and isinstance(record.exc_info[1], GONE))
 
 

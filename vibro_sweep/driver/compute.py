@@ -127,7 +127,7 @@ def _drop_without_exponents(arrays: dict[str, np.ndarray]) -> None:
 
 
 def _workspace(block: Block, kind: Kind, cells: int, orbits: int) -> points.Workspace:
-    """That of the block before, if it serves."""
+    """The workspace of the block before, if it fits."""
     key = (block.plan, block.samples, kind)
     if getattr(_local, "key", None) != key or _local.cells < cells or _local.orbits < orbits:
         _local.key = _local.workspace = None  # so that there are never two
@@ -137,7 +137,7 @@ def _workspace(block: Block, kind: Kind, cells: int, orbits: int) -> points.Work
 
 
 def _attractors(results: np.ndarray, lead: tuple[int, ...]) -> dict[str, np.ndarray]:
-    """Which starts of a point end on the same attractor."""
+    """The number of the attractor on which each start of a point ends."""
     label = grouping.group(results["period"], results["average"], results["average_error"])
     label[~status.is_valid(results["status"])] = grouping.BAD
     share = grouping.share(label)

@@ -30,7 +30,7 @@ BLOCK_SECONDS = 1.0  # of a thread's block: long enough for its overhead not to 
 
 @dataclass
 class Estimate:
-    """What `run` would do; measured on a few points, for this machine's cores.
+    """The estimated cost of `run`, measured on a few points, for this machine's cores.
 
     seconds : of the run beside what else the machine does now. Part of them is what each run begins with, loading
         kernels and measuring orbits, and the writing of its file
@@ -48,7 +48,7 @@ class Estimate:
 
 
 def estimate(scene: Scene, workers: int | None = None) -> Estimate:
-    """What `run` would do with so many threads, by default one for each core. ValueError for such a number."""
+    """The estimated cost of `run` with so many threads, by default one for each core. ValueError for such a number."""
     if workers is not None:
         workers = checked_count("workers", workers, 1, MOST_WORKERS)
     count, orbits, size = workers or available_cores(), scene.n_points, store.size(scene)
@@ -66,7 +66,7 @@ def estimate(scene: Scene, workers: int | None = None) -> Estimate:
 
 
 def writing_seconds(size: int) -> float:
-    """What a file of so many bytes takes, with its checksums, by the time of a temporary one in the current folder."""
+    """Seconds for a file of so many bytes with its checksums, by the time of a temporary one in the current folder."""
     if size < FEW_BYTES:
         return 0.0
     some = os.urandom(FEW_BYTES) * (min(size, WRITTEN) // FEW_BYTES)
@@ -90,7 +90,7 @@ def _written(some: bytes) -> float:
 
 
 def orbit_cost(scene: Scene, workers: int) -> OrbitCost:
-    """What an orbit takes, in blocks as large as those of the scene's run; compiles what the scene needs."""
+    """The cost of an orbit, in blocks as large as those of the scene's run; compiles what the scene needs."""
     measuring.compile_for(scene)
     width = max(1, min(LANES, int(_fair(scene, workers))))
     cost = measuring.orbit_cost(scene, width)
@@ -109,7 +109,7 @@ def threads_of(scene: Scene, workers: int) -> int:
 
 
 def crowding(cost: OrbitCost, threads: int) -> float:
-    """How many times longer orbits take if so many threads compute them, beside what else the machine does now."""
+    """The factor by which orbits take longer if so many threads compute them, beside what else the machine does now."""
     rounds = math.ceil(CROWDED / max(cost.sample_seconds, CROWDED / 1000))
 
     def work(_: int) -> None:

@@ -66,7 +66,7 @@ def compile_for(scene: Scene) -> None:
 
 
 def orbit_cost(scene: Scene, width: int) -> OrbitCost:
-    """What an orbit of the scene takes where so many neighbouring points of the sweep make a block."""
+    """The cost of an orbit of the scene where so many neighbouring points of the sweep make a block."""
     total = scene.transient + scene.record
     sample = _affordable(scene, width)
     before, now = None, _measured(scene, sample)
@@ -128,7 +128,7 @@ def _again(one: _Measured) -> _Measured:
 
 
 def _timed(made: list[Block]) -> tuple[int, float]:
-    """How many orbits blocks are, and their seconds."""
+    """The number of orbits of blocks, and their seconds."""
     began = time.thread_time()
     orbits = sum(compute(block)[1]["status"].size for block in made)
     return orbits, time.thread_time() - began

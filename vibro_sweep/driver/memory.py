@@ -25,7 +25,8 @@ def orbits_per_block(scene: Scene, workers: int) -> int:
 
 
 def blocks_under_way(scene: Scene, most_orbits: int, here: bool) -> int:
-    """How many blocks may be computed at a time; here: by threads of this process, which hold workspaces too."""
+    """The number of blocks that may be computed at a time; here: by threads of this process, which hold workspaces
+    too."""
     orbits = min(most_orbits, scene.n_points)
     if "attractors" in scene.observe:
         orbits = max(orbits, scene.n_starts)

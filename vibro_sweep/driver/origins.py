@@ -67,7 +67,7 @@ def source_of(scene: Continuation) -> Source:
 
 
 def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
-    """What the file says of the oscillator: all its numbers but those along which it is followed.
+    """Attributes of the file about the oscillator: all its numbers but those along which it is followed.
 
     A phase `grazing` that changes with what is followed is not one of them.
     """

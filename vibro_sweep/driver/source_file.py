@@ -11,7 +11,7 @@ from vibro_sweep.store import StoreError
 
 
 class SourceError(VibroSweepError, ValueError):
-    """Nothing can be computed from a file or a scene's `continue: from`; the message says from which."""
+    """A file or scene cannot be computed from: a file, or a scene's `continue: from`; the message says from which."""
 
 
 @contextmanager

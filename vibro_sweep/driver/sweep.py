@@ -47,7 +47,7 @@ SECONDS = 4.0  # of a block that an executor computes
 
 @dataclass
 class RunReport:
-    """What is in a file that `run` has made.
+    """The report on a file that `run` has made.
 
     points : orbits; of branches and curves, so many of these
     bad : how many of them have a bad status; `not_settled` is a remark and no bad status: the numbers stand
@@ -107,7 +107,7 @@ def check_how(workers, executor, progress, mode) -> None:
 
 
 def _complete(scene: Scene, file: h5py.File) -> None:
-    """What a file holds besides the results of blocks."""
+    """Write what a file holds besides the results of blocks."""
     write_following(file, scene)
     if "attractors" in scene.observe:
         number_attractors(scene, file)
@@ -155,7 +155,7 @@ def _worker_count(pool: Executor, default: int) -> int:
 
 
 def _made(scene: Scene, threads: int | None, executor: Executor | None, seconds: float) -> dict:
-    """How the file was made, as one JSON record."""
+    """The provenance of the file, as one JSON record."""
     seed = scene.start.seed if scene.start.kind == "random" else None
     here = "threads" if executor is None else type(executor).__name__
     return provenance() | {"executor": here, "threads": threads, "seed": seed, "wall_time_s": seconds}

@@ -28,7 +28,7 @@ APART = 8.0  # a rate over that of the force from which on tables are computed i
 
 
 def kind_of(linears: Iterable[Linear]) -> Kind:
-    """What kernels must be compiled for: oscillators with the same number of masses."""
+    """The kind for which kernels must be compiled: oscillators with the same number of masses."""
     linears = list(linears)
     constant = any(np.any(q.constant) or np.any(origin_of(q)) for q in linears)
     return Kind(len(linears[0].normal), constant, False, all(is_own(q) for q in linears))

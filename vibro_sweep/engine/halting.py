@@ -27,7 +27,7 @@ def new_halt() -> np.ndarray:
 
 
 def heed(halt: np.ndarray) -> None:
-    """This thread's kernels, and the compiler, end where `halt` (1,) is not 0."""
+    """Let this thread's kernels, and the compiler, end where `halt` (1,) is not 0."""
     _thread.halt = halt
 
 

@@ -77,7 +77,7 @@ def end_phase(e, w, plan, phase, points, results, sections, phases, running):
 
 @noinline
 def keep_record(e, w, plan, point, result, section, phase, running, o):
-    """What the record of an orbit shows."""
+    """Keep the results of the record of an orbit."""
     result.impacts_right, result.impacts_left = o.impacts_right, o.impacts_left
     result.min_impact_speed = o.slowest if o.slowest < np.inf else np.nan
     result.contact_error = o.miss if o.slowest < np.inf else np.nan
@@ -107,7 +107,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
 
 @jit
 def rounding_of(o, plan):
-    """How far from each other rounding may leave points that repeat themselves.
+    """The distance that rounding may leave between points that repeat themselves.
 
     Motion without impacts is linear: what repeats itself has no other period, and a free mode that keeps its energy
     adds up what rounding gives it, and drifts.
@@ -131,7 +131,7 @@ def turn_states(point, states, o, other):
 
 @noinline
 def close(e, w, plan, points, results):
-    """What remains to be said of the orbits after all phases, and how they went."""
+    """Fill the results of the orbits that follow after all phases, and their statuses."""
     for i in range(len(results)):
         o, result = e.orbits[i], results[i]
         if plan.lyapunov:

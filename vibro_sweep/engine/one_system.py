@@ -63,7 +63,7 @@ def points_of(parameters: dict[str, np.ndarray], stops: str = "both", frames: bo
 
 
 def plan_of(transient: int = 0, record: int = 0, lyapunov: bool = False) -> points.Plan:
-    """What the kernels are asked for."""
+    """The plan of what the kernels compute."""
     return points.Plan(
         transient=transient,
         record=record,

@@ -35,7 +35,7 @@ from vibro_sweep.model.sensitivity import grazing_state, grazing_state_slopes, m
 
 @dataclass(frozen=True)
 class Mapped:
-    """What a `PeriodMap` returns for n states.
+    """The result of a `PeriodMap` for n states.
 
     states : (n, 2 N) where they are mapped to; NaN where the status is not 0
     status : (n,) int8, codes of model/status.py; a state behind a stop has BEYOND_STOP
@@ -230,7 +230,7 @@ def _scratch(e: Equations, columns: int) -> tuple:
 
 
 def _check_symmetric(system: AnyOscillator) -> None:
-    """What the discontinuity mapping needs: the two halves of a period are mirror images, and a steady motion."""
+    """Check what the discontinuity mapping needs: the two halves of a period are mirror images, and a steady motion."""
     q = system.linear
     if getattr(system, "offset", 0.0) != 0 or q.R_low != q.R_high or np.any(q.constant):
         allowed = "one with equal stops about 0 and without a constant force, for the discontinuity mapping"

@@ -25,7 +25,7 @@ ALL, TABLES, MOTION = range(
 
 
 class Plan(NamedTuple):
-    """What is asked of every orbit of a sweep."""
+    """The plan of every orbit of a sweep."""
 
     transient: int
     record: int
@@ -42,7 +42,7 @@ class Plan(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """What one thread needs besides its points; allocated once for many blocks."""
+    """The arrays that one thread needs besides its points, allocated once for many blocks."""
 
     ensemble: Ensemble
     built: np.ndarray  # (LANES,) POINT: whose tables these are

@@ -11,7 +11,7 @@ from vibro_sweep.model.parameters import NAMES
 
 
 class Kind(NamedTuple):
-    """What kernels are compiled for."""
+    """The kind of oscillators for which kernels are compiled."""
 
     masses: int
     constant: bool  # whether a constant force acts

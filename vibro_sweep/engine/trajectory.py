@@ -18,7 +18,7 @@ from vibro_sweep.model import status
 
 
 class Trajectories(NamedTuple):
-    """What is kept of p points with s starts each. Times are in forcing periods since the last recorded section."""
+    """The samples of p points with s starts each. Times are in forcing periods since the last recorded section."""
 
     samples: np.ndarray  # (p, s, samples, 2 N)
     sections: np.ndarray  # (p, s, periods + 1, 2 N), the last recorded section first

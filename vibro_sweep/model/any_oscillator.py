@@ -24,7 +24,7 @@ class AnyOscillator:
 
     @property
     def linear(self) -> Linear:
-        """Its matrices, forces and stops, the phase resolved."""
+        """The matrices, forces and stops, with the phase resolved."""
         return self.family.linear
 
     @property

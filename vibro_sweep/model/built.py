@@ -21,7 +21,7 @@ STORED = {  # of a Linear, with the symbol that it has in files
 
 
 class Built(AnyOscillator):
-    """What `function(**numbers)` returns, a System or an Oscillator. Raises TypeError where it is neither."""
+    """The System or Oscillator that `function(**numbers)` returns. Raises TypeError where it is neither."""
 
     def __init__(self, function: Callable[..., AnyOscillator], numbers: Mapping[str, float]):
         self.function, self.given = function, dict(numbers)
@@ -92,7 +92,7 @@ class Built(AnyOscillator):
 
 
 def sizes_of(q: Linear) -> dict[str, float]:
-    """What random starts and comparisons need of it, by the names that they have for all oscillators."""
+    """The sizes that random starts and comparisons need, by the names that they have for all oscillators."""
     two = np.isfinite(q.low) and np.isfinite(q.high)
     b = (q.high - q.low) / 2 if two else q.high if np.isfinite(q.high) else -q.low
     return {"omega": q.omega, "tau": q.tau, "b": b, "offset": (q.high + q.low) / 2 if two else 0.0}

@@ -153,7 +153,7 @@ def exact_sum(a, b) -> float:
 
 
 def natural_coordinates(q: Linear, contact: Contact) -> Natural:
-    """Those of the masses where M is diagonal; else w = L^T x, with M = L L^T."""
+    """The coordinates of the masses where M is diagonal; else w = L^T x, with M = L L^T."""
     if is_diagonal(q.M):
         masses = np.diag(q.M).astype(float)
         to_contact = None if np.array_equal(contact.P, np.eye(len(masses))) else contact.P

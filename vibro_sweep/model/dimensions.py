@@ -20,7 +20,7 @@ class Dimension(NamedTuple):
 
 
 def averaged(masses: int) -> tuple[str, ...]:
-    """What all orbits of an attractor have in common."""
+    """The dimensions of what all orbits of an attractor have in common."""
     return (*state(masses), "impacts_right", "impacts_left", "lyapunov")
 
 

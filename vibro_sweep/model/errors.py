@@ -2,7 +2,7 @@
 
 
 class VibroSweepError(Exception):
-    """What was asked for cannot be done: an argument, a scene or a file is wrong, or a run cannot go on."""
+    """A request cannot be met: an argument, a scene or a file is wrong, or a run cannot go on."""
 
 
 class ArgumentError(VibroSweepError, ValueError):

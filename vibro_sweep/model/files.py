@@ -31,7 +31,7 @@ class FileError(VibroSweepError, ValueError, OSError):
 
 
 class MissingFileError(FileError, FileNotFoundError):
-    """There is no such file."""
+    """A file does not exist."""
 
     def __init__(self, path: str | Path, reason: str = "there is no such file"):
         super().__init__(path, reason)
@@ -39,7 +39,7 @@ class MissingFileError(FileError, FileNotFoundError):
 
 
 class ExistingFileError(FileError, FileExistsError):
-    """There is a file already, which is left alone."""
+    """A file exists already and is left as it is."""
 
     def __init__(self, path: str | Path, reason: str = "there is a file already"):
         super().__init__(path, reason)
@@ -77,7 +77,7 @@ def _check_name(name: str, value: object, path: str) -> None:
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """What is in a file, or its first bytes. Raises FileError where it is not a file, or cannot be read."""
+    """The bytes of a file, or its first bytes. Raises FileError where it is not a file, or cannot be read."""
     try:
         with open(path, "rb", opener=_without_waiting) as file:
             if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):

@@ -93,7 +93,7 @@ def _in_the_metric(natural: Natural, matrix: np.ndarray) -> _Matrix:
 
 
 def _parts(vectors: np.ndarray, matrix: _Matrix) -> tuple[np.ndarray, np.ndarray]:
-    """What K or C does in each of the modes `vectors` (N, m), 0 where it is below its rounding; and its error."""
+    """The values of K or C in each of the modes `vectors` (N, m), 0 where it is below its rounding; and its error."""
     found = np.diag(vectors.T @ matrix.values @ vectors)
     # vectors of length 1 have errors too
     rounding = ROUNDING * len(vectors) * (_forms(np.abs(vectors), matrix.terms) + ROUNDING * matrix.terms.max())
@@ -127,7 +127,8 @@ def _modes(root: np.ndarray, stiffness: _Matrix, damping: _Matrix) -> _Planes | 
 
 
 def moved(eta: np.ndarray, square: np.ndarray, of_eta: np.ndarray, of_product: np.ndarray) -> np.ndarray:
-    """How far rounding of eta and of eta^2 + square moves the roots -eta +- sqrt(-square) along the real axis."""
+    """The distance by which rounding of eta and of eta^2 + square moves the roots -eta +- sqrt(-square) along the real
+    axis."""
     apart = np.sqrt(np.maximum(-square, 0.0))
     more = np.maximum(2 * eta * of_eta + of_product - np.maximum(square, 0.0), 0.0)  # of apart^2
     return of_eta + np.divide(more, apart + np.sqrt(apart**2 + more), where=more > 0, out=np.zeros(more.shape))
@@ -157,7 +158,7 @@ def _planes(A: np.ndarray, root: np.ndarray, K: _Matrix, C: _Matrix, along: np.n
 
 
 def _moved(roots: np.ndarray, x: np.ndarray, K: _Matrix, C: _Matrix) -> np.ndarray:
-    """How far rounding may have moved each of the roots r with these shapes x (N, m).
+    """The distance by which rounding may have moved each of the roots r with these shapes x (N, m).
 
     From (r^2 + C r + K) x = 0: x.(2 r + C)x dr = -x.(dC r + dK)x, and dr^2 in place of 2 r dr where two roots meet.
     """

@@ -75,7 +75,7 @@ class Oscillator(AnyOscillator):
         raise AttributeError(f"{name!r} is not a number of the model {self.model.name}")
 
     def __dir__(self) -> list[str]:
-        """Its numbers too, those of lists one by one, for a prompt that completes names."""
+        """The attributes and the numbers, those of lists one by one, for a prompt that completes names."""
         return [*super().__dir__(), *self.given, *self.described]
 
     def __reduce__(self):
@@ -94,7 +94,7 @@ class Oscillator(AnyOscillator):
 
     @cached_property
     def described(self) -> dict[str, Parameter]:
-        """Its numbers, those of lists one by one: m1, m2, ..."""
+        """The numbers, those of lists one by one: m1, m2, ..."""
         numbers, units = self.numbers, self.model.depending(self.given)
         flat = self.model.flat(self.masses)
         return {name: one._replace(units=units.get(name, one.units)) for name, one in flat.items() if name in numbers}

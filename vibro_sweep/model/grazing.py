@@ -60,7 +60,7 @@ def steady_gap(numbers: dict) -> tuple[np.ndarray, np.ndarray]:
 
 
 def free_motion(numbers: dict) -> list:
-    """Those of a system's numbers by name that the non-impacting motion depends on, in order."""
+    """The numbers of a system, by name, on which the non-impacting motion depends, in order."""
     return [numbers[name] for name in FREE_MOTION]
 
 

@@ -57,7 +57,7 @@ def linears(system: AnyOscillator, axes: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def digest(system: Built, axes: dict[str, np.ndarray]) -> str:
-    """What the function makes at the points of such a grid, as a word: at no more than `MOST_COMPARED`, spread evenly.
+    """A digest of what the function makes at the points of such a grid: at no more than `MOST_COMPARED`, spread evenly.
 
     Two functions of one name are distinguished by it, and a file of one is not continued by the other.
     """

@@ -146,7 +146,7 @@ _STATUS = Variable(
 
 
 def _energies(masses: int) -> tuple[Variable, ...]:
-    """What the designer of a damper looks at."""
+    """The variables that the designer of a damper looks at."""
     sizes = (("rms", "rms of", "root mean square of the {}"), ("peak", "peak of", "largest size of the {}"))
     return (
         Variable(
@@ -169,7 +169,7 @@ OF_AN_ORBIT = tuple(variable for variable in VARIABLES if variable.in_kernel)  #
 
 
 def of_an_impact(masses: int, gap: bool = False) -> tuple[str, ...]:
-    """What is stored of an impact along a trajectory, in the order in which kernels keep it."""
+    """The numbers that are stored of an impact along a trajectory, in the order in which kernels keep it."""
     return tuple(one.name for one in variables(masses, gap) if one.dimensions == ("trajectory_impact",))
 
 

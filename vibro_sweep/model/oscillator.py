@@ -65,7 +65,7 @@ class System(AnyOscillator):
 
     @property
     def described(self) -> dict[str, Parameter]:
-        """Its numbers."""
+        """The numbers of the system by name."""
         return {one.name: one for one in PARAMETERS}
 
     @property

@@ -19,7 +19,7 @@ _HOLDS = {
 
 
 class Range(NamedTuple):
-    """What a number may be, in words and as JSON Schema says it."""
+    """The range of a number, in words and as JSON Schema says it."""
 
     text: str
     bounds: dict[str, float]
@@ -189,7 +189,7 @@ class ParameterError(VibroSweepError, ValueError):
 
 
 def range_of(parameter: Parameter, stops: str) -> Range:
-    """What a number may be where there are these stops: one alone may stand anywhere."""
+    """The range of a number where there are these stops: one alone may stand anywhere."""
     if parameter.name not in (CLEARANCE.name, "B"):
         return parameter.range
     return POSITIVE if stops == "both" else NUMBER
@@ -223,6 +223,6 @@ def checked_number(parameter: Parameter, value: object, stops: str = "both", key
 
 
 def physical_range(name: str, stops: str) -> Range:
-    """That of a physical quantity, which must be finite."""
+    """The range of a physical quantity, which must be finite."""
     found = range_of(next(quantity for quantity in PHYSICAL if quantity.name == name), stops)
     return found._replace(text=found.text.replace("a number", "a finite number"))

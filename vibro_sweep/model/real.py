@@ -49,7 +49,7 @@ def array_of(value: object, dimensions: int) -> np.ndarray | None:
 
 
 def as_array(value: object) -> np.ndarray | None:
-    """What has `__array__` as an array; None for others, and where entries are masked."""
+    """An object that has `__array__` as an array; None for others, and where entries are masked."""
     if not hasattr(type(value), "__array__"):
         return None
     try:

@@ -47,5 +47,5 @@ def not_allowed(name: str, value: object, allowed: str) -> str:
 
 
 def hint_for(value: object) -> str:
-    """What to do with masked data."""
+    """The hint for masked data."""
     return UNMASK if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value) else ""

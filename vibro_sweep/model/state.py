@@ -18,7 +18,7 @@ class Coordinate(NamedTuple):
 
 @functools.cache
 def coordinates(masses: int) -> tuple[Coordinate, ...]:
-    """Those of so many masses, in order."""
+    """The coordinates of so many masses, in order."""
     return tuple(
         Coordinate(
             f"{letter}{mass}",

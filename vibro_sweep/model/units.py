@@ -20,7 +20,7 @@ _PLAIN = re.compile(r"[\w.+ -]{1,60}")  # of what others write, what can stand i
 
 
 class Units(NamedTuple):
-    """What a mass, a length and a time of 1 are."""
+    """The units of mass, length and time."""
 
     kg: float
     m: float
@@ -77,7 +77,7 @@ def _powers(unit: str) -> Counter:
 
 
 def shown_unit(unit: str | None) -> str:
-    """After the name of an axis: " [m/s]"; nothing where numbers have no unit, or angles."""
+    """The unit after the name of an axis: " [m/s]"; nothing where numbers have no unit, or angles."""
     if not unit or unit in (NONE, "rad", "nondimensional") or not _PLAIN.fullmatch(unit):
         return ""
     first, *others = unit.split()

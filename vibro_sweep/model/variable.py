@@ -27,7 +27,7 @@ class Variable(NamedTuple):
 
     @property
     def fill(self) -> float:
-        """Its value where nothing is computed."""
+        """The value where nothing is computed."""
         if self.missing is not None:
             return self.missing
         return np.nan if np.dtype(self.dtype).kind == "f" else -1

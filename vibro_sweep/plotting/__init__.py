@@ -136,7 +136,7 @@ def _check_ragged(path, of: str, kind: str | None, options: PlotOptions) -> None
 
 
 def _kinds(result: Result) -> list[str]:
-    """What the data can show, the picture that the scene names first."""
+    """The kinds that the data can show, first the picture that the scene names."""
     if not result.done.any():
         return []
     able = [name for name, kind in KINDS.items() if kind.shows(result)]

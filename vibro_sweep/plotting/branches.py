@@ -21,7 +21,7 @@ MOST = 3.0  # modulus of a multiplier that is shown: at a graze it is infinite
 
 
 def variables(file: RaggedFile) -> tuple[str, ...]:
-    """What may be drawn over the parameter."""
+    """The variables that may be drawn over the parameter."""
     return (*_sections(file), "impact_speed", "multiplier", "stop_distance")
 
 
@@ -65,7 +65,7 @@ def branches(path, options: PlotOptions, ax=None):
 
 
 def _inside(values, limits):
-    """Which numbers lie between two limits; all, where there are none."""
+    """Whether numbers lie between two limits; all do where there are none."""
     return (limits[0] <= values) & (values <= limits[1]) if limits else np.ones(np.shape(values), bool)
 
 

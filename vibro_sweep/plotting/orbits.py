@@ -133,7 +133,7 @@ def shows_poincare(result: Result) -> bool:
 
 
 def abscissae(result: Result) -> tuple[str, ...]:
-    """What stands along the axis of a Poincare plot, the default first; its velocity stands upwards."""
+    """The abscissae of a Poincare plot, the default first; the ordinate is the velocity."""
     if "phase" in result:
         return ("phase",) if "v1" in result and not result.model() else ()  # the map has one phase
     return tuple(f"x{n}" for n in range(1, MOST_MASSES + 1) if f"x{n}" in result and f"v{n}" in result)
@@ -162,7 +162,7 @@ def poincare(result: Result):
 
 
 def _different(values) -> int:
-    """How many points one can distinguish, at least 1."""
+    """The number of points that one can distinguish, at least 1."""
     known = values[np.isfinite(values)]
     return len(np.unique(np.round(known / (np.ptp(known) or 1.0), 3))) if len(known) else 1
 
@@ -199,7 +199,7 @@ def _at_section(name: str) -> str:
 
 
 def coordinates(result: Result) -> tuple[str, ...]:
-    """What a trajectory of the file has."""
+    """The coordinates that a trajectory of the file has."""
     return tuple(name for name in state(MOST_MASSES) if f"trajectory_{name}" in result)
 
 

@@ -40,7 +40,7 @@ class Picture(Figure):
     narrow = False  # whether it was asked for by a width at which panels do not stand side by side
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
-        """What IPython asks of any object; the picture, and how many pixels of the screen it takes."""
+        """The picture as IPython asks for it, and the number of pixels of the screen that it takes."""
         content = io.BytesIO()
         with matplotlib.rc_context(STYLE):
             self.savefig(content, format="png", dpi=self.dpi)

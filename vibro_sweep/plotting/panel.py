@@ -7,7 +7,8 @@ from vibro_sweep.plotting.source import PlotError
 
 
 class Panel:
-    """What drawing functions use of a page, for a picture of one panel, which these axes hold."""
+    """The part of the interface of a page that drawing functions use, for a picture of one panel, which these axes
+    hold."""
 
     def __init__(self, ax: Axes, title: str):
         self.ax, self.axes = ax, [ax]
@@ -28,4 +29,4 @@ class Panel:
         self.ax.legend(*handles, **options | {"loc": "best", "ncols": 1, "frameon": True})
 
     def align_ylabels(self, _) -> None:
-        """There is one."""
+        """Do nothing: there is one label."""

@@ -39,7 +39,7 @@ CURVES = {"b_star": DASHES, "b_right": DASHES, "b_left": ":"}
 
 
 class Overlay(NamedTuple):
-    """What lies over a plane: `draw(ax)`; `handles(ax)` for the legend; and `name(ax)`, which writes its names when the
+    """An overlay of a plane: `draw(ax)`; `handles(ax)` for the legend; and `name(ax)`, which writes its names when the
     axes have their places, and returns the boxes (2, 2), in pixels, in which they stand."""
 
     draw: Callable
@@ -151,7 +151,7 @@ def _grazing_curve(ax, result):
 
 
 def _within_errors(result) -> Patch:
-    """What the neutral colour of exponents means."""
+    """The patch of a legend for the neutral colour of exponents."""
     text = f"{exponent(1)} within {result.significant:.2g} standard errors of 0"
     return Patch(facecolor=NEUTRAL, edgecolor=FAINT, label=text)
 

@@ -62,7 +62,7 @@ class RaggedFile:
         return self.arrays[name]
 
     def unit(self, name: str) -> str:
-        """That of a variable, for the name of an axis."""
+        """The unit of a variable, for the name of an axis."""
         return shown_unit(self._units.get(name))
 
     def types(self) -> list[str]:
@@ -73,7 +73,8 @@ class RaggedFile:
 
 
 def sweep_below(path: str | Path) -> "str | Path | xarray.Dataset":
-    """What branches or curves are drawn over. Raises PlotError where it holds branches, curves or windows."""
+    """The sweep over which branches or curves are drawn. Raises PlotError where it holds branches, curves or
+    windows."""
     given, kind = readable(path)
     if kind is not None:
         raise PlotError(f"over: {path} holds {cut(kind)}, and no sweep")

@@ -99,7 +99,7 @@ class Result:
         return ", ".join(sorted(self._source.quantities))
 
     def unit(self, name) -> str:
-        """That of a quantity, for the name of an axis; of the gap along a trajectory that of the states."""
+        """The unit of a quantity, for the name of an axis; of the gap along a trajectory that of the states."""
         letter = {"gap": "x1", "gap_velocity": "v1"}.get(name, name)
         there = next((one for one in (name, letter, f"trajectory_{letter}") if one in self._source), None)
         return "" if there is None else shown_unit(self._source.attribute(there, "units"))
@@ -133,7 +133,7 @@ class Result:
         return np.expand_dims(values, len(self.sweep)) if self._one_start else values
 
     def repeats(self, points, order) -> np.ndarray:
-        """After how many points those of a periodic orbit repeat, (values, starts); 0 where they do not.
+        """The number of points after which those of a periodic orbit repeat, (values, starts); 0 where they do not.
 
         points : of the section, (values, starts, samples); order : the places of the values in the sweep
         """
@@ -190,7 +190,7 @@ class Result:
         return found
 
     def interval(self, error) -> np.ndarray:
-        """How far an exponent with this standard error must be from zero to differ from it."""
+        """The distance from zero at which an exponent with this standard error differs from zero."""
         return self.significant * np.asarray(error)
 
     def is_chaotic(self) -> np.ndarray:
@@ -208,7 +208,7 @@ class Result:
         return sign_of(largest, error, certain)
 
     def model(self) -> str:
-        """What was iterated, for a title: nothing where it is the oscillator itself."""
+        """The text on what was iterated, for a title: nothing where it is the oscillator itself."""
         if self.settings.get("dynamics") != "map":
             return ""
         at = self.settings.get("expand_at")
@@ -237,7 +237,7 @@ class Result:
         return self.options.page(height, title) if self.ax is None else Panel(self.ax, title)
 
     def title(self, what="") -> str:
-        """What is shown, the numbers that are the same at every point, and how much is there if not all."""
+        """The title: what is shown, the numbers that are the same at every point, and how much is there if not all."""
         numbers = self._numbers()
         stops = self.settings.get("stops")
         if stops in ("right", "left"):
@@ -249,7 +249,7 @@ class Result:
         )
 
     def _numbers(self) -> list[str]:
-        """Those of the system as equations; without what has its default, and lists as one."""
+        """The numbers of the system as equations; without what has its default, and lists as one."""
         found, lists = [], {}
         incomplete = {_list_of(key) for key in self.sweep}
         for key, one in OF_A_SYSTEM.items():

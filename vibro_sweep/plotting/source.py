@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class PlotError(VibroSweepError, ValueError):
-    """What was asked for cannot be drawn; the message says what can."""
+    """A picture cannot be drawn; the message says what can."""
 
 
 def readable(given: "str | Path | xarray.Dataset") -> tuple["str | Path | xarray.Dataset", str | None]:
@@ -46,7 +46,7 @@ def _dataset_of(found: ForeignError) -> "xarray.Dataset":
 
 
 def name_of(given: "str | Path | xarray.Dataset") -> str:
-    """What messages call it."""
+    """The name of the data in messages."""
     if isinstance(given, (str, Path)):
         return str(given)
     return getattr(given, "encoding", {}).get("source", "this dataset")
@@ -107,7 +107,7 @@ class DatasetSource:
         self._data, self.name = data, name_of(data)
 
     def close(self) -> None:
-        """It stays open for its owner."""
+        """Do nothing: it stays open for its owner."""
 
     @property
     def sweep(self) -> list[str]:

@@ -59,7 +59,7 @@ def _strips(ax, values, lost, colours):
 
 
 def _error_band(ax, values, ordinates, reach, colour):
-    """How far the errors reach to each side, where that is wider than the line."""
+    """Draw the errors to each side, where that is wider than the line."""
     low, high = ax.get_ylim()
     if np.nanmax(reach, initial=0) > 2e-3 * (high - low):
         style = {"color": colour, "alpha": 0.3, "lw": 0, "zorder": 1.5, "rasterized": True, "gid": "error"}

@@ -59,7 +59,7 @@ def _windows_of(result: Result) -> RaggedFile:
 
 
 def ends_over(ax, result: Result) -> None:
-    """What ends the windows of a plane, row by row, on the picture of the plane."""
+    """Draw what ends the windows of a plane, row by row, on the picture of the plane."""
     file = _windows_of(result)
     types, frame = np.array(file.types()), (ax.get_xlim(), ax.get_ylim())
     ends = np.append(file["window_lower"], file["window_upper"])

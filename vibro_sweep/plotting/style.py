@@ -77,7 +77,7 @@ def type_size(usual: float) -> float:
 
 
 def special_mark(kind: str, size: float = 4.0) -> dict:
-    """How a special point is drawn, for `plot`."""
+    """The style in which `plot` draws a special point."""
     _, _, marker, colour, filled = SPECIAL[kind]
     return {
         "ls": "none", "marker": marker, "color": colour, "markerfacecolor": colour if filled else "white",
@@ -111,7 +111,7 @@ def with_unit(label: str, declared: str, system) -> str:
 
 
 def grazing_of(name) -> str:
-    """What a grazing clearance is, for a legend."""
+    """The text on a grazing clearance, for a legend."""
     of = {"b_right": " at the right stop", "b_left": " at the left stop"}.get(name, "")
     return f"grazing of the free motion{of}, {symbol(name)}"
 
@@ -154,7 +154,7 @@ def in_formula(value: float, digits: int = 6) -> str:
 
 
 def marked(colour, marker):
-    """What a legend shows of a colour and a marker together."""
+    """The handle of a legend for a colour and a marker together."""
     style = {"ls": "none", "markersize": 5, "markeredgewidth": 0.6}
     dot = Line2D([], [], color=INK, marker=marker, markerfacecolor="white", **style)
     return Patch(facecolor=colour, edgecolor=FAINT, linewidth=0.4), dot

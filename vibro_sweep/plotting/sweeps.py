@@ -143,7 +143,7 @@ def mark_grazing(axes, result, low, high):
 
 
 def _key(ax, result):
-    """What the colours mean, above the panel, where it hides no point."""
+    """Draw the key of the colours above the panel, where it hides no point."""
     handles = [line for line in ax.lines if line.get_gid() == "stop"]
     handles += [line for line in ax.lines if line.get_gid() == "grazing"]
     if result.follow:
@@ -156,7 +156,7 @@ def _key(ax, result):
 
 
 def _explanations(fig, axes, result):
-    """What tints, bands and lines mean, below the panels."""
+    """Draw the key of tints, bands and lines below the panels."""
     found = {artist.get_gid() for ax in axes for artist in (*ax.collections, *ax.lines)}
     errors = f"{result.significant:.2g} standard errors"
     certain = f" by more than {errors}" if "lyapunov_error" in result else ""
@@ -210,8 +210,8 @@ def section(ax, result, values, order):
 
 
 def _distinct(points, there, repeats) -> float:
-    """How many points one can distinguish of those that are there, bool (values, starts, samples): of a periodic orbit
-    those of one period."""
+    """The number of points that one can distinguish of those that are there, bool (values, starts, samples): of a
+    periodic orbit those of one period."""
     known = np.maximum(np.isfinite(points).sum(axis=-1), 1)
     return float((there.sum(axis=-1) * np.where(repeats > 0, repeats / known, 1)).sum())
 

@@ -7,7 +7,7 @@ from .problems import problem
 
 
 def combination_problems(form: Form, data: dict) -> list[str]:
-    """What is wrong with a scene of the right form; data: as it was read."""
+    """The problems of a scene of the right form; data: as it was read."""
     section, stops = form.section, getattr(form.system, "stops", "both")
     problems = _map_problems(form)
     for name in sorted(form.observe):

@@ -54,7 +54,7 @@ class Continuation:
     source: Path | None = None  # the file that it was read from
 
     def to_yaml(self) -> str:
-        """This scene as YAML, from its numbers; `text` is what it was read from."""
+        """The scene as YAML, from its numbers; `text` is what it was read from."""
         return yaml_of(continuation_data(self))
 
     def replace(self, **changes) -> "Continuation":
@@ -86,7 +86,7 @@ class Continuation:
         return [*([self.source] if self.source else []), *given]
 
     def __str__(self) -> str:
-        """What is followed, in a few lines."""
+        """A few lines on what is followed."""
         numbers = {name: value for name, value in self.system.numbers.items() if value is not None}
         system = wording.numbers({name: value for name, value in numbers.items() if name not in self.parameter})
         ranges = ", ".join(f"{key} = {lo:g} .. {hi:g}" for key, (lo, hi) in self.parameter.items())

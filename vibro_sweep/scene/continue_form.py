@@ -24,7 +24,7 @@ CurveWords = Annotated[tuple[Literal[CURVES], ...], Strict(False)]
 
 
 def continue_form(numbers: Iterable[Parameter], masses: int) -> type[Form]:
-    """What `continue` holds, for oscillators with these numbers and so many masses."""
+    """The form of `continue` for oscillators with these numbers and so many masses."""
     state = create_model(
         "OrbitState",
         __base__=Form,

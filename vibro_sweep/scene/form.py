@@ -108,7 +108,7 @@ def _start(value):
 
 
 class OrbitForm(Form):
-    """How long every orbit is, in forcing periods T = 2 pi/omega."""
+    """The length of every orbit in forcing periods T = 2 pi/omega."""
 
     transient: Whole = Field(ge=0, le=MAX_COUNT, description="periods that are computed first and not recorded")
     record: Whole = Field(ge=1, le=MAX_COUNT, description="periods that are recorded")
@@ -143,7 +143,7 @@ def scene_form(name: str, masses: int) -> type[Form]:
 
 
 def built_form(built: Built) -> type[Form]:
-    """That of a sweep whose oscillators a function makes; its `system` names the function."""
+    """The form of a sweep whose oscillators a function makes; its `system` names the function."""
     system = create_model("BuiltForm", __base__=Form, build=(str, ...), stops=WHICH)
     return _scene_form(system, built.described.values(), built.masses)
 

@@ -51,7 +51,7 @@ class Trajectory:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Scene:
-    """What to compute. `system` is the base; at each point of the sweep the swept numbers replace its own."""
+    """A scene: what to compute. `system` is the base; at each point of the sweep the swept numbers replace its own."""
 
     name: str
     given: str | None  # the YAML text that it was read from
@@ -80,7 +80,7 @@ class Scene:
         return parse_scene(self.to_yaml(), self.name).given
 
     def to_yaml(self) -> str:
-        """This scene as YAML, from its numbers; `text` is what it was read from."""
+        """The scene as YAML, from its numbers; `text` is what it was read from."""
         return yaml_of(data_of(self))
 
     def replace(self, **changes) -> "Scene":
@@ -149,7 +149,7 @@ class Scene:
         return f"<Scene {name!r}: {axes or 'one point'}; {periods}; {', '.join(sorted(self.observe)) or 'nothing'}>"
 
     def __str__(self) -> str:
-        """What is computed, in a few lines."""
+        """A few lines on what is computed."""
         known = {
             name: value for name, value in self.system.numbers.items() if value not in (None, _default(self, name))
         }

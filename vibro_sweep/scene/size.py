@@ -73,7 +73,7 @@ def numbers_at_once(scene: "Scene") -> int:
 
 
 def size_problems(scene: "Scene") -> list[str]:
-    """What is too large, by the key that makes it so; nothing of that size is allocated to find out."""
+    """The problems of what is too large, by the key that makes it so; nothing of that size is allocated to find out."""
     if scene.n_points > MAX_POINTS:
         size = " x ".join(str(length) for length in scene.shape)
         text = f"{size} = {scene.n_points:.6g} points; at most {MAX_POINTS:.0e} are allowed"

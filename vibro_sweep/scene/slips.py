@@ -61,7 +61,7 @@ AXIS = "{start: 6.5, stop: 6.9, num: 401}"
 
 
 def meant(word: object, options: Iterable[str]) -> str | None:
-    """Which of the options a word stands for, if any: by spelling, or as a synonym."""
+    """The option for which a word stands, if any: by spelling, or as a synonym."""
     text, options = cut(str(word)), list(options)
     by_lower = {option.lower(): option for option in reversed(options)}
     if text.lower() in by_lower:
@@ -74,7 +74,7 @@ def meant(word: object, options: Iterable[str]) -> str | None:
 
 
 def key_without_value(key: str) -> str | None:
-    """What is wrong with a key that has no value, in words: YAML has made it of a missing space, or of a comma."""
+    """The message for a key that has no value: YAML has made it of a missing space, or of a comma."""
     if found := re.fullmatch(r"(\w+)\s*[:=]\s*(.+)", key):
         return f"write `{found[1]}: {found[2]}`, with a colon and a space after it"
     if re.fullmatch(r"\d+", key):
@@ -83,7 +83,7 @@ def key_without_value(key: str) -> str | None:
 
 
 def number_in_text(text: str) -> str | None:
-    """What to write in place of a text that means a number, in words."""
+    """The hint for a text that means a number."""
     stripped = text.strip()
     for pattern, write in (
         (r"[-+]?\d*,\d+([eE][-+]?\d+)?", lambda: f"a decimal number has a point: {stripped.replace(',', '.')}"),
@@ -108,7 +108,7 @@ def _ratio(text: str) -> float:
 
 
 def other_form(path: str, given: object, words: Iterable[str] = ()) -> str | None:
-    """What to write in place of a value of another form than its key needs, by the key."""
+    """The hint for a value of another form than its key needs, by the key."""
     key = path.rpartition(".")[2]
     if path == "start":
         return _start(given)
@@ -172,7 +172,7 @@ def of_physical(key: str, system: object) -> str | None:
 
 
 def of_frequency(key: str, given: object) -> str | None:
-    """What to write for a frequency among physical quantities; None for another key."""
+    """The hint for a frequency among physical quantities; None for another key."""
     if key.lower() not in ("f", "freq", "frequency", "hz") or not isinstance(given, (int, float)):
         return None
     return f"if it is in Hz write Omega: {2 * math.pi * given:.10g}, which is 2 pi times as much"

@@ -39,7 +39,7 @@ def start_of(form: Form, masses: int) -> Start:
 
 
 def start_problems(form: Form, sweep, system: AnyOscillator | None, masses: int) -> list[str]:
-    """What is wrong with the start, given or swept, in this system (None: it is wrong itself)."""
+    """The problems of the start, given or swept, in this system (None: it is wrong itself)."""
     if isinstance(form.start, FollowStart) and form.sweep is None:
         return [problem("start.follow", form.start.follow, "there is no sweep to follow")]
     names = state(masses)

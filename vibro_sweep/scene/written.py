@@ -32,7 +32,7 @@ LONGEST = 100  # entries of what a scene of branches or curves holds
 
 
 def data_of(scene: "Scene") -> dict[str, Any]:
-    """What the YAML text of a scene holds; numbers that are the default are left out."""
+    """The data of the YAML text of a scene; numbers that are the default are left out."""
     data = {
         "system": _system(scene.system, scene.sweep),
         "sweep": {_KEYS.get(key, key): _axis(values) for key, values in scene.sweep.items()},
@@ -54,7 +54,7 @@ def data_of(scene: "Scene") -> dict[str, Any]:
 
 
 def continuation_data(scene: "Continuation", changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """What the YAML text of a scene of branches or curves holds, with other values as the scene has them."""
+    """The data of the YAML text of a scene of branches or curves, with other values as the scene has them."""
     has = {field.name: getattr(scene, field.name) for field in fields(scene)}
     for key, value in (changes or {}).items():
         data = _as_data(key, value)

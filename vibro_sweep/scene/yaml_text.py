@@ -48,7 +48,7 @@ def read_yaml(text: str) -> object:
 
 
 def _hint(error: MarkedYAMLError, lines: list[str]) -> str:
-    """What is likely to be meant, by the lines up to the one where reading stopped."""
+    """The hint on what is likely to be meant, by the lines up to the one where reading stopped."""
     if "\\t" in (error.problem or ""):
         return "; lines are indented with spaces, not with tabs"
     for number, line in enumerate(lines, 1):

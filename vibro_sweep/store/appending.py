@@ -83,7 +83,7 @@ class LockedPart:
             os.fsync(copy.fileno())
 
     def remove(self) -> None:
-        """What is in it has become a file."""
+        """Remove the part, whose contents have become a file."""
         if _stands(self.path, self.file):
             os.unlink(self.path)
 

@@ -11,7 +11,7 @@ from vibro_sweep.store.opening import axes_of, dimensions_of, quantities_of
 
 
 class Contents:
-    """What an `xarray.Dataset` of the file would say by the same words; numbers are read when asked for."""
+    """The contents of a file by the words of an `xarray.Dataset`; numbers are read when asked for."""
 
     def __init__(self, file: h5py.File):
         self._file = file
@@ -20,7 +20,7 @@ class Contents:
 
     @cached_property
     def names(self) -> list[str]:
-        """What is computed."""
+        """The names of what is computed."""
         return quantities_of(self._file)
 
     def __contains__(self, name: str) -> bool:

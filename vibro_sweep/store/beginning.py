@@ -130,7 +130,7 @@ def _locked(part: Path) -> LockedPart:
 
 
 def _of_complete(scene: Scene, path: Path, part: Path, stack: contextlib.ExitStack) -> Writer | Complete:
-    """What is computed and not damaged in a file is kept, the rest is computed; mostly there is nothing to do."""
+    """Keep what is computed and not damaged in a file, and compute the rest; mostly there is nothing to do."""
     with opened(path) as (file, _):
         check_scene(file, path, scene)
         lacking = [name for name in layout.quantities(scene) if name not in quantities_of(file)]

@@ -27,7 +27,7 @@ def pieces(dataset: h5py.Dataset) -> list[Piece]:
 
 
 def statuses(file: h5py.File) -> Counter:
-    """How many orbits have which status; those whose status cannot be read count as not computed."""
+    """The number of orbits with each status; those whose status cannot be read count as not computed."""
     counts = Counter()
     for _, values in readable(file["status"]):
         codes, numbers = np.unique(values, return_counts=True)
@@ -63,6 +63,6 @@ def _read(dataset: h5py.Dataset) -> Iterator[tuple[Piece, np.ndarray | None]]:
 
 
 def summary(found: list[tuple[str, Piece]]) -> str:
-    """Which datasets are damaged, for a message."""
+    """The damaged datasets, for a message."""
     chunks = Counter(name for name, _ in found)
     return ", ".join(f"{name} ({count} chunk{'s' if count > 1 else ''})" for name, count in chunks.items())

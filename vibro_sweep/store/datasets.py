@@ -77,7 +77,7 @@ def _create_following(file: h5py.File, scene: Scene) -> tuple[str, ...]:
 
 
 def _create_matrices(file: h5py.File, scene: Scene) -> tuple[str, ...]:
-    """Those of a system that is given by matrices. Returns their names."""
+    """Create the matrices of a system that is given by them. Returns their names."""
     found = numbers.matrices(scene)
     for name, values in found.items():
         _create_compact(file, name, values.dtype, values.shape)

@@ -14,7 +14,8 @@ from vibro_sweep.store.opening import ForeignError, StoreError
 
 
 def dataset_of(found: ForeignError) -> xarray.Dataset:
-    """What xarray reads in such a file; `written_by` among its attributes says whose it is. Raises StoreError."""
+    """The Dataset that xarray reads in such a file; `written_by` among its attributes says whose it is. Raises
+    StoreError."""
     data = _read(found)
     data.attrs["written_by"] = found.program
     logging.getLogger("vibro_sweep").warning("%s", found)
@@ -29,7 +30,7 @@ def _read(found: ForeignError) -> xarray.Dataset:
 
 
 def described(found: ForeignError) -> str:
-    """What `info` says of it."""
+    """The lines of `info` about it."""
     with _read(found) as data:
         lines = [f"{found.path}: {data.attrs.get('title', '')}"]
         lines += [f"  {name:<10} ({size:,} values)" for name, size in data.sizes.items()]
@@ -42,7 +43,7 @@ def described(found: ForeignError) -> str:
 
 
 def _made_by(data: xarray.Dataset) -> list[str]:
-    """What is said of the file that it was made from."""
+    """The lines about the file that it was made from."""
     try:
         provenance = json.loads(data.attrs.get("provenance", "{}"))
     except (TypeError, ValueError):

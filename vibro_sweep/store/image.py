@@ -16,7 +16,7 @@ GROUP_BYTES = 2**24  # of blocks that are put into the file together
 
 
 class Frame(NamedTuple):
-    """What blocks fill: dtype and shape of each dataset, in the order in which a block holds them."""
+    """The datasets that blocks fill: dtype and shape of each dataset, in the order in which a block holds them."""
 
     datasets: dict[str, tuple[np.dtype, tuple[int, ...]]]
     shape: tuple[int, ...]  # of the orbits, which is that of `status` and the first axes of all others

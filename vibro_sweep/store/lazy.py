@@ -23,7 +23,7 @@ class _Numbers(BackendArray):
         return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.OUTER_1VECTOR, self._read)
 
     def __reduce__(self):
-        """What goes to another process are the numbers themselves."""
+        """Pickle the numbers themselves."""
         return indexing.NumpyIndexingAdapter, (self._read(()),)
 
     def _read(self, key):

@@ -17,7 +17,7 @@ class Stamp(NamedTuple):
 
 
 def stamp(path: Path) -> Stamp | None:
-    """That of what stands at a name, a link itself and not its target; None where nothing does."""
+    """The stamp of what stands at a name, a link itself and not its target; None where nothing does."""
     try:
         found = os.lstat(path)
     except (FileNotFoundError, NotADirectoryError):

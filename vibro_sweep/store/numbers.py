@@ -59,7 +59,8 @@ def attributes(scene: Scene) -> dict[str, Any]:
 
 
 def matrices(scene: Scene) -> dict[str, np.ndarray]:
-    """Those among the system's options: netCDF has no attributes of two dimensions, so they are variables of a file."""
+    """The matrices among the system's options: netCDF has no attributes of two dimensions, so they are variables of a
+    file."""
     found = {name: np.array(value) for name, value in scene.system.options.items() if isinstance(value, tuple)}
     return {name: value for name, value in found.items() if value.ndim == 2}
 
@@ -96,7 +97,8 @@ def dimensions(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 
 def following(scene: Scene, box: tuple[slice, ...]) -> dict[str, np.ndarray]:
-    """What follows over a box of the keys of `depends_on`, each of the box's shape: tau, and where both stops graze."""
+    """Numbers that follow over a box of the keys of `depends_on`, each of the box's shape: tau, and where both stops
+    graze."""
     axes = {key: scene.sweep[key][part] for key, part in zip(depends_on(scene), box, strict=True)}
     if isinstance(scene.system, Built):
         return _of_built(linears(scene.system, axes))

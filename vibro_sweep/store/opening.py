@@ -38,7 +38,7 @@ class StoreError(VibroSweepError, ValueError):
 
 
 class MissingError(StoreError, MissingFileError):
-    """There is no such file."""
+    """A file does not exist."""
 
 
 class ForeignError(StoreError):
@@ -276,7 +276,7 @@ def check_version(file: h5py.File, path: Path) -> None:
 
 
 def made_by() -> dict:
-    """What must be the same for a run to be continued."""
+    """The versions that must be the same for a run to be continued."""
     from vibro_sweep.code_hash import code_hash  # drawing a file must not wait for the engine
 
     return {"vibro_sweep": __version__, "code": code_hash()}

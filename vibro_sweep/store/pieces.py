@@ -160,7 +160,7 @@ def _piece(file: BinaryIO, record: parts.Record) -> dict[str, Arrays] | None:
 
 
 def _damage_of_made(subject: Subject, path: Path) -> str:
-    """What is damaged in a file that exists already, in words. Raises StoreError where it is of another subject."""
+    """The damage of a file that exists already, in words. Raises StoreError where it is of another subject."""
     try:
         with opened(path, content=False) as (file, _):
             _check_subject(file, subject, path)

@@ -28,7 +28,7 @@ class Stored(NamedTuple):
 
 
 def damage_of(file: h5py.File) -> str:
-    """What is wrong with the datasets of a file, in words; nothing where all of it can be read."""
+    """The damage of the datasets of a file, in words; empty where all of it can be read."""
     if "status" not in file:  # a run that has not ended has no datasets
         return ""
     try:

@@ -20,7 +20,7 @@ CHUNK = 2**14  # numbers
 
 
 class Subject(NamedTuple):
-    """What a file is about. Runs of equal subjects make equal files.
+    """The subject of a file. Runs of equal subjects make equal files.
 
     kind : "branches" or "windows"
     scene : the YAML text that was computed; of windows that of the sweep

@@ -38,7 +38,7 @@ ACCURACY = ("status", "lyapunov", "lyapunov_error", "lyapunov_residual", "contac
 
 
 class Description(NamedTuple):
-    """What `describe` says, and whether it says `damaged`."""
+    """The lines of `describe`, and whether they say `damaged`."""
 
     text: str
     damaged: bool
@@ -68,7 +68,7 @@ def contents(path: str | Path) -> Iterator[Contents]:
 
 
 def _whole(path: str | Path, made: Callable[[h5py.File], Any]) -> Any:
-    """What is made of a file, if it is not damaged."""
+    """The result made of a file, if it is not damaged."""
     path = checked_path("path", path)
     file, lost = open_file(path)
     try:
@@ -81,19 +81,19 @@ def _whole(path: str | Path, made: Callable[[h5py.File], Any]) -> Any:
 
 
 def _damage(file: h5py.File, lost: int) -> str:
-    """What is damaged, in words; of a part, blocks."""
+    """The damage in words; of a part, its blocks."""
     if is_flat(file):
         return damage_of(file)
     return blocks_lost(lost) if lost else checks.summary(checks.damaged(file))
 
 
 def describe(path: str | Path) -> str:
-    """What is in a file, how it was made, how far it is, and how accurate it says it is. Raises StoreError."""
+    """A description: what is in a file, how it was made, how far it is, and its stated accuracy. Raises StoreError."""
     return examine(path).text
 
 
 def tables(path: str | Path) -> list[str]:
-    """What a file of branches or windows holds, line by line. Raises StoreError."""
+    """The tables of a file of branches or windows, line by line. Raises StoreError."""
     with opened(Path(path)) as (file, _):
         return _tables(file)
 
@@ -145,7 +145,7 @@ def _made_by(file: h5py.File) -> list[str]:
 
 
 def _tables(file: h5py.File) -> list[str]:
-    """What a file of branches or windows holds."""
+    """The tables of a file of branches or windows."""
     arrays = {name: file[name][()] for name in quantities_of(file)}
     parameters = texts(file, "parameters")
     if text(file, "kind") == WINDOWS:
@@ -181,7 +181,7 @@ def _progress(file: h5py.File) -> list[str]:
 
 
 def _exponents(file: h5py.File) -> list[str]:
-    """How many orbits are chaotic."""
+    """The line on how many orbits are chaotic."""
     if not {"lyapunov", "lyapunov_error"} <= set(quantities_of(file)):
         return []
     certain, counts = float(file["lyapunov_error"].attrs.get("significant", CERTAIN)), Counter()

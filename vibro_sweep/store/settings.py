@@ -23,7 +23,7 @@ class Source(Protocol):
 
 
 class Settings(NamedTuple):
-    """What holds for a run.
+    """The settings of a run.
 
     `constant`: numbers and words that are the same at all points. `along`: numbers that follow from swept ones.
     `significant`: standard errors that tell an exponent from zero; NaN where the file has none. `valid`: codes of
@@ -37,7 +37,7 @@ class Settings(NamedTuple):
 
 
 def settings_of(source: Source) -> Settings:
-    """What a file, or a Dataset of one, says of its run."""
+    """The settings of a run as a file, or a Dataset of one, states them."""
     along = {
         name: (source.dimensions(name), source.read(name))
         for name in FOLLOWING

@@ -22,7 +22,7 @@ class Sink:
         self._fault: BaseException | None = None
 
     def stop(self, why: BaseException) -> None:
-        """Nothing more is written; `check` raises this."""
+        """Stop writing; `check` raises this error."""
         self._fault = self._fault or why
 
     def check(self) -> None:

@@ -21,7 +21,7 @@ REMEMBERED = 256  # lost attractors; the one that was lost first is forgotten fi
 
 
 class Attractors(NamedTuple):
-    """What is known of attractors, (..., attractors): those of a point along the last axis, in any order."""
+    """Known attractors, (..., attractors): those of a point along the last axis, in any order."""
 
     period: np.ndarray  # forcing periods; 0: none; -1: there is no attractor
     # (..., attractors, 2 N + 2): x1, v1/omega, ... at the section, impacts right and left
@@ -65,7 +65,7 @@ def none(points: int, most: int, means: int = 6) -> Attractors:
 
 
 def distance(one: Attractors, other: Attractors) -> np.ndarray:
-    """How far each attractor (..., m) is from each other (..., n) of the same point: (..., m, n).
+    """The distance of each attractor (..., m) from each other (..., n) of the same point: (..., m, n).
 
     The greatest change of a mean beyond its errors, relative to the size of the motion, or to the greatest rate of
     impacts; infinite where the two cannot be the same.

@@ -11,7 +11,7 @@ ROOM = 300_000  # orbits that are held at once
 
 
 class Orbits(NamedTuple):
-    """What is known of some orbits, as `attractors.group` takes it."""
+    """The data of some orbits, as `attractors.group` takes them."""
 
     period: np.ndarray  # (orbits,)
     average: np.ndarray  # (orbits, 2 N + 3)

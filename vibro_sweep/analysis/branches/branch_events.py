@@ -19,7 +19,7 @@ ROUNDED = 1e-9  # of a step, by which rounding may put an event behind its end
 
 
 def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event]:
-    """What may end the branch from a, which is real, to b."""
+    """The events that may end the branch from a, which is real, to b."""
     events = []
     for boundary, side in zip(bounds, (-1, 1), strict=True):
         if (b.value - boundary) * side > 0:
@@ -69,7 +69,7 @@ def _passes(point: Point) -> bool:
 
 
 def bifurcations(curve: SolutionCurve, a: Point, b: Point) -> list[LocatedEvent]:
-    """What lies between a and b and ends no branch, as far as tests differ, in order."""
+    """The events between a and b that do not end the branch, as far as tests differ, in order."""
     found = []
     for name, test in tests_between(curve, a, b):
         if np.sign(test(a)) * np.sign(test(b)) < 0 and (place := locate(curve, Event(name, test), a, b)) is not None:
@@ -78,7 +78,7 @@ def bifurcations(curve: SolutionCurve, a: Point, b: Point) -> list[LocatedEvent]
 
 
 def locate(curve: SolutionCurve, event: Event, a: Point, b: Point) -> LocatedEvent | None:
-    """Where the event lies between a and b; None if it cannot be found."""
+    """The event located between a and b; None if it cannot be found."""
     point = None if event.boundary is None else curve.at_value(a, b, 0, event.boundary)
     if point is not None and 0 <= along(a, point) <= (1 + ROUNDED) * along(a, b):
         point.hold(event.boundary)
@@ -141,7 +141,7 @@ def _positive_at(inside: Point, value):
 
 
 def _beyond(boundary: float, side: int, inside: Point):
-    """How far a point is beyond a boundary; `inside` counts as inside where rounding puts it beyond."""
+    """The distance of a point beyond a boundary; `inside` counts as inside where rounding puts it beyond."""
 
     def test(point: Point) -> float:
         distance = side * (point.value - boundary)

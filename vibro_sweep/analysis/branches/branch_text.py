@@ -49,7 +49,7 @@ def _orbit_on(branch: "Branch") -> PeriodicOrbit:
 
 
 def way_of(begins: "SpecialPoint", special: "Sequence[SpecialPoint]", ends: "SpecialPoint", closed: bool) -> list[str]:
-    """Where a branch or a curve begins and ends, and what lies between."""
+    """The lines that say where a branch or a curve begins and ends, and what lies between."""
     inner = [point for point in special if point is not begins and point is not ends]
     return [
         f"begins with {event(begins)}",

@@ -21,7 +21,7 @@ BACK = 16  # points, at most, to one that lies before what rounding does beside 
 
 
 def passed(curve: SolutionCurve, rows: list[Rows], behind: Point | None) -> list[int]:
-    """How many of these points lie before each place where the difference of the halves turns round.
+    """The number of these points before each place where the difference of the halves turns round.
 
     behind : the point to which steps have led; None where there is none
     """
@@ -61,7 +61,7 @@ def before_passed(curve: SolutionCurve, compiled: CompiledStepper, rows: Rows, c
 
 
 def how_many_on(rows: Rows, special: list[SpecialPoint]) -> int:
-    """How many special points, which come in order, lie on this part of a branch."""
+    """The number of special points, given in order, that lie on this part of a branch."""
     least = 0
     for count, one in enumerate(special):
         (value,) = one.parameters.values()

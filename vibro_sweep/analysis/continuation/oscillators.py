@@ -198,7 +198,7 @@ def _to_powers(degree: int) -> np.ndarray:
 
 
 def _sizes(values: np.ndarray, n: int) -> np.ndarray:
-    """What is small beside what, of `sampled`: rates, and numbers one by one."""
+    """The sizes beside which changes of `sampled` count as small: of rates together, of numbers one by one."""
     size = np.abs(values).max(axis=0)
     forces = np.zeros(len(size) - NUMBERS, bool)
     forces[n : n * (n + 1) : n + 1] = forces[n * (n + 1) :] = True

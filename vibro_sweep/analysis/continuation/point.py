@@ -56,7 +56,7 @@ class Point(Place):
 
     @property
     def rounding(self) -> float:
-        """What rounding of the equations does to the parameters, on the plane across the tangent."""
+        """The error of the parameters by rounding of the equations, on the plane across the tangent."""
         return rounding_error(self.curve, self, self.direction)
 
     @property
@@ -76,5 +76,5 @@ class Point(Place):
 
 
 def along(a: Point, b: Point) -> float:
-    """How far b lies ahead of a, along the tangent there."""
+    """The distance of b ahead of a, along the tangent at a."""
     return float(a.curve.difference(a, b) @ a.direction)

@@ -69,8 +69,8 @@ class BifurcationCurve(FileResult):
         return table_of(self.special) | {"touches": [one.touches for one in self.special]}
 
     def plot(self, *others: "BifurcationCurve", width: float | None = None):
-        """This curve and `others` in the same parameters, with their points of codimension two: a matplotlib Figure,
-        `width` mm wide.
+        """Plot this curve and `others` in the same parameters, with their points of codimension two: a matplotlib
+        Figure, `width` mm wide.
 
         Raises ValueError for curves in other parameters.
         """

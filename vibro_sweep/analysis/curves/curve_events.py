@@ -39,7 +39,7 @@ SAME = 1e-3  # of a step: a stop_distance that vanishes with an impact does so l
 
 
 def events_between(curve: SolutionCurve, a: Place, b: Place) -> list[Event]:
-    """What changes its sign from a to b."""
+    """The events whose tests change sign from a to b."""
     kind, events = curve.problem.kind, []
     for i in CURVE_TESTS:
         if np.sign(a.tests[i]) * np.sign(b.tests[i]) < 0:

@@ -39,7 +39,7 @@ def switch(special: SpecialPoint) -> list[PeriodicOrbit]: ...
 
 
 def switch(special):
-    """What begins at a special point.
+    """The orbits or bifurcations that begin at a special point.
 
     Of a branch: the orbits just beyond a pitchfork (two mirror images), a flip (the doubled one) or a graze (with, or
     without, the impact that has no speed there; at the graze of the free motion those that hit one stop or both).

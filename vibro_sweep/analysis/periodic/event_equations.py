@@ -38,7 +38,7 @@ class EventEquations:
 
     @classmethod
     def of(cls, solution) -> "EventEquations":
-        """Those of a `Solution`."""
+        """The equations of a `Solution`."""
         return cls(solution.family.linear, solution.sigma, solution.half_periods, solution.sides, solution.rests)
 
     @cached_property

@@ -47,7 +47,7 @@ def shortened(word: str) -> str:
 
 
 def multipliers_text(values: np.ndarray) -> str:
-    """Those of largest modulus."""
+    """The text of the multipliers of largest modulus."""
     texts = [complex_text(value) for value in values[:MULTIPLIERS]]
     return ", ".join([*texts, *(["..."] if len(values) > MULTIPLIERS else [])])
 

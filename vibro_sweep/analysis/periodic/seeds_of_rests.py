@@ -39,7 +39,8 @@ def evenly(start: Solution):
 
 
 def _patterns(solution: Solution) -> list[tuple[int, ...]]:
-    """After which impacts it may rest: those that would press into the stop, all with R = 0, the last ones in a row."""
+    """The impacts after which it may rest: those that would press into the stop, all with R = 0, the last ones in a
+    row."""
     q, sides = solution.family.linear, np.array(solution.sides, float)
     dead = q.restitution(sides) == 0
     N = len(q.normal)

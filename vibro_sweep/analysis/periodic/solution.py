@@ -91,7 +91,7 @@ class Solution:
 
     @property
     def states(self) -> np.ndarray:
-        """Before each impact, in contact coordinates."""
+        """The states before each impact, in contact coordinates."""
         return self._flights[0]
 
     @property

@@ -46,12 +46,12 @@ class Status(str):
         return status_name
 
     def __getnewargs__(self) -> tuple[int, int]:
-        """What a copy is made of."""
+        """The arguments from which a copy is made."""
         return self.code, self.chatters
 
     @property
     def note(self) -> str:
-        """How many chatter sequences ended in a closed-form sum."""
+        """The note on how many chatter sequences ended in a closed-form sum."""
         if not self.chatters:
             return ""
         return f"{self.chatters} chatter sequences end in a closed-form sum of impacts that are not listed"
@@ -59,7 +59,7 @@ class Status(str):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Orbit(Result):
-    """What `simulate` returns. Times are absolute and nondimensional, sides +1 (right, A) and -1 (left, C).
+    """The result of `simulate`. Times are absolute and nondimensional, sides +1 (right, A) and -1 (left, C).
 
     impacts : structured, fields t, side, v1 (before), x2, v2; in order. Of chatter, those computed one by one.
     sticking : structured, fields t_on, t_off, side; t_off is the end of the simulation for a rest that outlasts it.

@@ -40,7 +40,7 @@ class Probe(NamedTuple):
 
 @one_thread()
 def probe(task: Probe) -> Arrays:
-    """What ends the stability of an orbit on its way across an edge: `reason`, a code of EDGES, and, as `packed`
+    """The end of the stability of an orbit that is followed across an edge: `reason`, a code of EDGES, and, as `packed`
     has it, a start of a curve or none."""
     reason, seed = _probed(task)
     return {"reason": np.int8(_CODES[reason])} | packed([] if seed is None else [seed], task.names)

@@ -25,7 +25,8 @@ def stable_stretch(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
 
 
 def stable_end(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float], forwards: float) -> SpecialPoint:
-    """What ends the stability of an orbit in one direction, +1.0 or -1.0; type boundary: it is stable up to the bound.
+    """The special point that ends the stability of an orbit in one direction, +1.0 or -1.0; type boundary: it is stable
+    up to the bound.
 
     Raises ValueError for an orbit that cannot be corrected.
     """

@@ -60,12 +60,12 @@ class Window:
 
     @cached_property
     def lower(self) -> SpecialPoint:
-        """What ends the window at `lo`."""
+        """The special point that ends the window at `lo`."""
         return special_point(self._arrays, 0, self.parameter, self._system)
 
     @cached_property
     def upper(self) -> SpecialPoint:
-        """What ends the window at `hi`."""
+        """The special point that ends the window at `hi`."""
         return special_point(self._arrays, 1, self.parameter, self._system)
 
 

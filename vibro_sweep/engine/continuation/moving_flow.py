@@ -179,7 +179,7 @@ def spread(f):
 
 @jit
 def build_middle(f):
-    """What the gap does over a cell, from its Taylor coefficients."""
+    """Build the motion of the gap over a cell from its Taylor coefficients."""
     for r in range(f.A.shape[0] + 1):
         f.rest[r] = 0.0
         for k in range(MIDDLE):

@@ -30,7 +30,7 @@ class Record(NamedTuple):
 
 
 class Path(NamedTuple):
-    """How to step, in the units of the problem, and what is passed."""
+    """The parameters of stepping, in the units of the problem, and the points that are passed."""
 
     longest: float
     shortest: float
@@ -156,7 +156,7 @@ def rate(c, a, k):
 
 @jit
 def measured(c, a):
-    """How many unknowns that are."""
+    """The number of unknowns by which distances are measured."""
     return 2 * len(a.x) + unknowns(c)
 
 

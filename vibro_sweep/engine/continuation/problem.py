@@ -16,7 +16,7 @@ ORBIT, FOLD, FLIP, TORUS, GRAZE, STICK = range(6)
 
 
 class Problem(NamedTuple):
-    """What all points of a solution set share; K events."""
+    """The data that all points of a solution set share; K events."""
 
     kind: int  # of the condition
     index: int  # of the impact that grazes; 0 of an onset of sticking, where event 0 is the end of a chatter sequence

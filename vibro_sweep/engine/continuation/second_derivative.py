@@ -37,7 +37,7 @@ def differentiate(f, c, place, b, mu):
 
 @jit
 def differentiate_event(f, c, place, b, i):
-    """What rows 1 and 2 of an impact add."""
+    """Add the terms of rows 1 and 2 of an impact."""
     n, N, e, slopes_p = f.A.shape[0], f.A.shape[0] // 2, b.events[i], b.work[0].slopes_p
     one_plus_R = ONE_PLUS_R_HIGH if c.sides[i] > 0 else ONE_PLUS_R_LOW
     R1, alpha, beta, phi_v = f.numbers[one_plus_R], e.w[0], e.w[1], e.v[n]
@@ -50,7 +50,7 @@ def differentiate_event(f, c, place, b, i):
 
 @jit
 def differentiate_flight(f, place, b, i, mu):
-    """What the rows of a flight add."""
+    """Add the terms of the rows of a flight."""
     K, n, N, omega = len(b.events), f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
     e, following, work = b.events[i], b.events[i + 1 if i + 1 < K else 0], b.work[0]
     y, Ey, by_state, through = work.along[0], work.along[1], work.along[2], work.along[3]

@@ -84,7 +84,7 @@ def new_place(K: int, n: int) -> Place:
 
 @cache
 def event_of(masses: int) -> np.dtype:
-    """What is kept of each event."""
+    """The record of an event."""
     n = 2 * masses
     return record([
         ("kept", float, (n + 2, width_of(n, PARAMETERS))),  # what was eliminated, a triangle in front

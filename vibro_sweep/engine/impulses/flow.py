@@ -54,8 +54,8 @@ class Coordinates(NamedTuple):
 
 @remembered("M", "normal")
 def contact_coordinates(q: Linear) -> Coordinates:
-    """Those of the masses where n = e_1 and M is diagonal. Which mass is left out depends on n alone: what follows from
-    the coordinates stays smooth along branches."""
+    """The coordinates of the masses where n = e_1 and M is diagonal. Which mass is left out depends on n alone: what
+    follows from the coordinates stays smooth along branches."""
     P, back = coordinates(q.normal, int(np.argmax(np.abs(q.normal))))
     push = push_of(q, P)
     W, inverse = (np.eye(len(P), dtype=push.dtype) for _ in range(2))

@@ -27,7 +27,7 @@ class Ensemble(NamedTuple):
 
 
 class Readings(NamedTuple):
-    """What is read of eight orbits at the ends of their periods, and where it is kept."""
+    """The readings of eight orbits at the ends of their periods, and where they are kept."""
 
     states: np.ndarray  # (LANES, periods, 2 N): the states there
     keep: bool  # whether they are kept
@@ -65,6 +65,6 @@ def stops_of(o):
 
 @inline
 def records_of(e, o):
-    """What is kept of an orbit."""
+    """The records of an orbit."""
     n = o.lane
     return Records(e.records.impacts[n], e.records.rests[n], e.records.times, e.records.samples)

@@ -23,7 +23,7 @@ def _transpose(builder, rows):
 
 
 def _blocks(array):
-    """How many eights a row has."""
+    """The number of blocks of eight in a row."""
     return width_of_row(array) // LANES
 
 

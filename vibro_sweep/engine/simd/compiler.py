@@ -86,7 +86,7 @@ class _Whole(JITCodeLibrary):
                 self.add_linking_library(other)
 
     def _optimize_final_module(self):
-        """What is not used, or only where it was inlined, need not stay."""
+        """Optimise the module without functions that are unused, or used only where they were inlined."""
         _relinked(self._final_module, Linkage.weak_odr, "linkonce_odr")
         super()._optimize_final_module()
         lost = [f.name for f in self._final_module.functions if f.is_declaration and f.name.startswith("_ZN")]
@@ -113,7 +113,8 @@ class _Whole(JITCodeLibrary):
 
 
 def _keep_what_is_there() -> None:
-    """Or the search for garbage takes as long again: what compiling leaves goes where it looks last, or never."""
+    """Move what compiling leaves to where the garbage collector looks last or never; else collecting takes as long
+    again."""
     if simd.OWN_PROCESS:
         gc.freeze()
     elif gc.get_freeze_count() == 0:  # else what others have frozen would be so no more

@@ -29,7 +29,7 @@ if IS_TESTED:
 
 @property
 def _mangling(kind: types.Type) -> tuple[str, tuple[int]]:
-    """What stands for a record, or a tuple with names, in the names of kernels in machine code.
+    """The mangled form of a record, or of a tuple with names, in the names of kernels in machine code.
 
     For records numba takes a number that they get as they come up in a process. So two processes can give kernels of
     different records one name, and where a third one loads both from the cache, one of them is called in place of the
@@ -192,7 +192,7 @@ class exported:  # noqa: N801  # a decorator
 
     @property
     def compiled(self) -> int:
-        """How many kernels this process has compiled of it, not having found them."""
+        """The number of its kernels that this process has compiled because they were not in the cache."""
         return sum(self._whole.stats.cache_misses.values())
 
     @property

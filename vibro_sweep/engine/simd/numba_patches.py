@@ -59,7 +59,7 @@ def _call_type_once(self, context, args, kws):
 
 
 def _pack_once(self, kinds):
-    """How arguments of these types are passed, remembered."""
+    """The packer of arguments of these types, remembered."""
     key = tuple(kind._code for kind in kinds)
     if key not in _packers:
         _packers[key] = _pack(self, kinds)

@@ -131,7 +131,7 @@ def mul(self, x, y, name="", flags=()):
 
 
 def _members(whole):
-    """Those of a constant."""
+    """The members of a constant."""
     if isinstance(whole.constant, list):
         return list(whole.constant)
     return [kind(whole.constant) for kind in whole.type.elements]  # all of them zero, or undefined

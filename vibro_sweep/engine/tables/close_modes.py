@@ -33,7 +33,7 @@ def series_difference(z1, apart):
 
 @jit
 def difference(zeta, first, gap, u):
-    """What `decaying` gives for omega_j^2 = first + gap minus what it gives for `first`, eta_j = zeta omega_j^2.
+    """The difference of `decaying` between omega_j^2 = first + gap and `first`, eta_j = zeta omega_j^2.
 
     (s, c + eta s, c - eta s, omega_j^2 s), each with the decay; u: time of flight.
     """

@@ -14,7 +14,7 @@ from vibro_sweep.engine.tables.flight import ORDER
 
 
 def economy(terms: int) -> np.ndarray:
-    """What each power of s from s^terms on adds to the powers below it, (ORDER - terms, terms)."""
+    """The terms that each power of s from s^terms on adds to the powers below it, (ORDER - terms, terms)."""
     powers, polynomials = np.eye(ORDER), shifted_chebyshev(ORDER)
     for n in range(ORDER - 1, terms - 1, -1):
         powers -= np.outer(powers[:, n], polynomials[n] / polynomials[n, n])

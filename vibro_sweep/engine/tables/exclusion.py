@@ -11,7 +11,8 @@ SMALLEST = 2.0**-100  # of x1: what is lost below the range of single precision 
 
 @jit
 def rounding(q, i, size):
-    """What rounding may change of a control point, for unit X - r in state i, or for r; size: of the largest one there.
+    """The largest change of a control point by rounding, for unit X - r in state i, or for r; size: of the largest one
+    there.
 
     Each of its `states` + 1 terms is rounded when it is tabulated, its factor is, and so are the product and each sum;
     the last one is for what the point is held against, which matters only where that is no larger than these terms.

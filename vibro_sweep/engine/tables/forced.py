@@ -81,7 +81,8 @@ def fill_motion(q, nodes, psi, omega_squared, f2):
 
 @jit
 def begin_modes(q, nodes, omega_squared):
-    """What sin and cos at node 0 do to both modes from rest, at nodes 0 and 1. (Of a fast mode it is not used.)"""
+    """Begin the response of both modes from rest to sin and cos at node 0, at nodes 0 and 1. (Of a fast mode it is not
+    used.)"""
     slower, of_sin = lanes_of(0b0011), lanes_of(0b0101)
     square = select(slower, omega_squared[0], omega_squared[1])
     sin, cos = select(of_sin, 1.0, 0.0), select(of_sin, 0.0, 1.0)
@@ -95,7 +96,7 @@ def begin_modes(q, nodes, omega_squared):
 
 @jit
 def fill_mode(q, nodes, j, eta, square):
-    """What sin and cos at node 0 do to mode j from rest, at each node."""
+    """Fill the response of mode j from rest to sin and cos at node 0, at each node."""
     for k in range(2, q.cells + 1):
         step = k & -k if k & (k - 1) else k // 2
         before, after, out = nodes[k - step].forced[j], nodes[step].forced[j], nodes[k].forced[j]
@@ -112,7 +113,8 @@ def fill_mode(q, nodes, j, eta, square):
 
 @jit
 def add_fast_response(q, E, psi, j, omega_squared, a, b, k):
-    """What sin and cos of the force do to a fast mode in k cells, from rest: a sin - b cos less what it begins with."""
+    """Add the response of a fast mode from rest to sin and cos of the force in k cells: a sin - b cos less what it
+    begins with."""
     angle = 2.0 * math.pi * (k / q.cells)
     sin, cos = math.sin(angle), math.cos(angle)
     _, s, xi, rate = decaying(q.zeta * omega_squared, omega_squared, k * q.width)

@@ -15,7 +15,7 @@ from vibro_sweep.engine.tables.series import clear, derive, set_grid
 
 
 class Workspace(NamedTuple):
-    """What the tables are computed in."""
+    """The arrays in which the tables are computed."""
 
     A: np.ndarray  # (inputs, inputs)
     row: np.ndarray  # (inputs,)
@@ -86,7 +86,8 @@ def fill_flight_series(q, w):
 
 @jit
 def fill_impulse(q, point):
-    """What an impulse on the gap does: to all velocities at once, and to the positions in the flight that follows.
+    """Fill the response to an impulse on the gap: of all velocities at once, and to the positions in the flight that
+    follows.
 
     An impact leaves qj - p_j q1 as it is. Its derivative changes by -kappa_j where dampers feel a step of q1 by 1.
     """

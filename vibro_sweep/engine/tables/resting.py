@@ -17,7 +17,7 @@ from vibro_sweep.engine.tables.stiff import rate_of
 
 @jit
 def fill_rest(q, mu_m, mu_k, f2):
-    """How far the series of M2 alone reach, and its closed form."""
+    """Fill the step of the series of M2 alone, and its closed form."""
     zeta, omega = q.zeta, q.omega
     square = (1.0 + mu_k) / mu_m
     rate = max(omega, rate_of(square, zeta))

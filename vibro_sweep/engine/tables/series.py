@@ -60,7 +60,8 @@ def new_workspace() -> Workspace:
 
 @jit
 def fill_equations(q, w, mu_m, mu_k, f2):
-    """Both matrices, and the acceleration of M1 as a function of z. What is zero in every A stays as it was made."""
+    """Fill both matrices, and the acceleration of M1 as a function of z. What is zero in every A stays as it was
+    made."""
     A, constrained, zeta, omega = w.free, w.constrained, q.zeta, q.omega
     A[0, 1] = A[2, 3] = 1.0
     A[1, 0], A[1, 1], A[1, 2], A[1, 3], A[1, 4] = -1.0, -2.0 * zeta, 1.0, 2.0 * zeta, 1.0 - f2
@@ -104,7 +105,7 @@ def fill_series(q, w):
 
 @jit
 def fill_impulse(q):
-    """What an impulse on M1 does: it moves no other mass at once."""
+    """Fill the response to an impulse on M1, which moves no other mass at once."""
     q.push[0], q.push[1], q.drag = 1.0, 0.0, q.force[1]
     q.impulse_third = 0.0
     for n in range(ORDER):

@@ -105,7 +105,8 @@ def fly_half(e, x, side, X, dX, w):
 
 @exported
 def iterate(e, x, half_periods, states, ends, derivatives, impacts, counts, w):
-    """So many half periods from each of `states` (n, 2 N), the first from the phase of the right graze.
+    """Iterate the map over so many half periods from each of `states` (n, 2 N), the first from the phase of the right
+    graze.
 
     ends (n, 2 N), derivatives (n, 2 N, columns), impacts (n, half_periods + 1, 5 + 2 N), counts (n,) get results.
     """

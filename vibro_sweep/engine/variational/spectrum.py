@@ -128,7 +128,7 @@ def keeps_energy(q):
 
 @jit
 def real_parts(q, spectrum):
-    """Those of the roots -eta +- sqrt(-square) of free motion."""
+    """The real parts of the roots -eta +- sqrt(-square) of free motion."""
     for j in range(len(q.frame_square)):
         eta, square = -q.frame_series[1, 2 * j], q.frame_square[j]
         apart = math.sqrt(max(-square, 0.0))

@@ -165,7 +165,7 @@ def strike_vector(t, who, j, dx, dv, steepness, R):
 
 @noinline
 def saltate_by_both(t, who, steepness, R):
-    """What an impact does to the vectors, where both numbers of a mode move the gap."""
+    """Apply the saltation matrix of an impact where both numbers of a mode move the gap."""
     Z, back, size = t.Z, t.from_frame, len(t.growth)
     for j in range(size):
         dx, dv = motion_of(t, 0, j)

@@ -118,7 +118,7 @@ def aim_far(t, i, q, nodes, cells, u):
 
 @inline
 def aim(t, i, q, nodes, k, s):
-    """What `fly` is to do to bring the collected flight of orbit i to offset s of cell k of this period."""
+    """Set what `fly` has to do to bring the collected flight of orbit i to offset s of cell k of this period."""
     cells, u = k - t.cell[i], s - t.offset[i]
     if u < 0.0:
         cells -= 1

@@ -17,7 +17,7 @@ from vibro_sweep.model.parameters import (
 
 
 def ball_in_cavity(*, mass_ratio, zeta, F, omega, R, b, tau) -> Linear:
-    """Also for complex numbers."""
+    """The oscillator; numbers may be complex."""
     return Linear(
         M=np.array([[1, 0], [0, mass_ratio]]),
         K=np.diag([1.0, 0.0]),

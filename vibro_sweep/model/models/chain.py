@@ -8,7 +8,7 @@ from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, POSITIVE, Paramet
 
 
 def chain(*, m, k, c, force, constant, stop_at, omega, R, R_left, b, offset, tau, stops) -> Linear:
-    """Also for complex numbers."""
+    """The oscillator; numbers may be complex."""
     n = len(m)
     return Linear(
         M=np.diag(m),

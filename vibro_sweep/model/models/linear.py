@@ -16,7 +16,7 @@ def linear(
     *, M, K, C, modal_damping, rayleigh, force, force_cos, constant, force_power, contact_normal, omega, R, R_left, b,
     offset, tau, stops,
 ) -> Linear:  # fmt: skip
-    """Also for complex numbers, but in the matrices."""
+    """The oscillator; numbers may be complex, but not the matrices."""
     M, K = np.array(M, float), np.array(K, float)
     with np.errstate(all="ignore"):
         power = np.power(omega, force_power) if force_power else 1.0

@@ -8,7 +8,7 @@ from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter
 
 
 def one_mass(*, k, zeta, F, constant, base, omega, R, R_left, b, offset, tau, stops) -> Linear:
-    """Also for complex numbers."""
+    """The oscillator; numbers may be complex."""
     return Linear(
         M=np.ones((1, 1)),
         K=np.array([[k]]),

@@ -8,7 +8,7 @@ from vibro_sweep.model.parameters import PARAMETERS
 
 
 def two_mass(*, mu_m, mu_k, zeta, f2, omega, R, b, tau, stops, offset=0.0, R_left=None, mu_c=None) -> Linear:
-    """Also for complex numbers."""
+    """The oscillator; numbers may be complex."""
     return Linear(
         M=np.array([[1, 0], [0, mu_m]]),
         K=np.array([[1, -1], [-1, 1 + mu_k]]),
