@@ -21,7 +21,7 @@ from timing import spent
 import vibro_sweep as vs
 from vibro_sweep.driver.blocks import Block
 from vibro_sweep.driver.compute import compute
-from vibro_sweep.driver.memory import BLOCK_BYTES
+from vibro_sweep.driver.memory_needed import BLOCK_BYTES
 from vibro_sweep.plotting.page import page
 from vibro_sweep.plotting.style import DASHES, FAINT
 from vibro_sweep.scene import scene

@@ -30,7 +30,7 @@ TABLES = {
     "files",
     "observables",
     "parameters",
-    "pictures",
+    "picture_kinds",
     "real",
     "refusals",
     "state",
@@ -93,3 +93,8 @@ def test_every_room_is_in_the_table():
     assert rooms == ALLOWED.keys()
     text = (ROOT / "docs" / "architecture.md").read_text()
     assert all(f"`{room}/`" in text for room in rooms)
+
+
+def test_a_files_name_tells_it_apart_from_all_others():
+    names = [path.name for path in HOME.rglob("*.py") if path.name != "__init__.py"]
+    assert len(names) == len({*names}) > 300

@@ -8,7 +8,7 @@ from support.scenes import OSCILLATOR, run, scene_of
 import vibro_sweep as vs
 from vibro_sweep.analysis.attractors import grouping
 from vibro_sweep.driver import blocks
-from vibro_sweep.driver.starts import starts_of
+from vibro_sweep.driver.drawn_starts import starts_of
 from vibro_sweep.scene import SceneError
 from vibro_sweep.scene import scene_of as scene_from
 from vibro_sweep.scene.written import changed

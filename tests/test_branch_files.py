@@ -10,7 +10,7 @@ from support.windows import SYSTEM
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
-from vibro_sweep.driver.branches import run_branches
+from vibro_sweep.driver.run_branches import run_branches
 from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.scene import SceneError, json_schema, parse_continuation, parse_scene
 from vibro_sweep.scene.yaml_text import read_yaml

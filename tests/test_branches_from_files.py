@@ -5,7 +5,7 @@ import pytest
 from support.windows import SYSTEM, few  # noqa: F401
 
 import vibro_sweep as vs
-from vibro_sweep.driver.branches import run_branches
+from vibro_sweep.driver.run_branches import run_branches
 from vibro_sweep.driver.windows import run_windows
 from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.plotting import PlotOptions, figure

@@ -11,7 +11,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.curve_search import Curves, compute_curve, seed_at
 from vibro_sweep.analysis.windows.edges import Plane, edges_of, passing
 from vibro_sweep.cli.commands import main
-from vibro_sweep.driver.curves import run_curves
+from vibro_sweep.driver.run_curves import run_curves
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES, EDGES
 from vibro_sweep.scene import parse_continuation
 

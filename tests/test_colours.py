@@ -7,7 +7,7 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from vibro_sweep.model.bifurcations import REASONS
-from vibro_sweep.plotting import curves, families, strip, style
+from vibro_sweep.plotting import drawn_curves, families, strip, style
 
 # Machado, Oliveira, Fernandes, IEEE Trans. Vis. Comput. Graph. 15 (2009) 1291, table 1: severity 1.0, on linear sRGB
 VISIONS = {
@@ -29,7 +29,7 @@ XYZ = np.array(
 
 PERIODS = (style.NO_PERIOD, *style.PERIODS, style.LONGER)
 
-_TYPES = [colour for name, colour in curves.COLOURS.items() if name != "graze"]
+_TYPES = [colour for name, colour in drawn_curves.COLOURS.items() if name != "graze"]
 
 # Pairs of colours, and the least distance of all in CIE Lab (2.3 is just noticeable where areas touch).
 LEGENDS = {
@@ -38,8 +38,8 @@ LEGENDS = {
     "exponents": (itertools.combinations(style.EXPONENTS, 2), 39),
     "kinds of attractors": (itertools.combinations([colour for _, colour in families.KINDS.values()], 2), 32),
     "branches": (itertools.combinations((*style.BRANCHES.values(), style.INK), 2), 45),
-    "curves": (itertools.combinations(curves.COLOURS.values(), 2), 26),
-    "curves by period": (itertools.combinations((*curves.ORBITS, *_TYPES), 2), 18),
+    "curves": (itertools.combinations(drawn_curves.COLOURS.values(), 2), 26),
+    "curves by period": (itertools.combinations((*drawn_curves.ORBITS, *_TYPES), 2), 18),
     "orbits without a window": (itertools.combinations(strip.REASON_COLOURS.values(), 2), 11),
     "sides": ([(style.RIGHT, style.LEFT)], 82),
     "portrait": (itertools.combinations((style.INK, style.SECTION, style.IMPACT, style.FAINT), 2), 32),

@@ -1,4 +1,4 @@
-"""First contacts of polynomials, by `contact.first_contact` and by eights, against the certified reference.
+"""First contacts of polynomials, by `first_contact.first_contact` and by eights, against the certified reference.
 
 The gap is built about an extremum whose distance from the stop is prescribed, 10^-1 .. 10^-15 of the amplitude before
 or behind it. The reference then judges it as it is in floats: none beyond the stated rounding is missed, none invented.
@@ -14,7 +14,7 @@ from reference.certified import POSITIVE, REAL
 from support import slow_cases
 from support.decades import DECADES, EPS, show
 
-from vibro_sweep.engine.motion import contact
+from vibro_sweep.engine.motion import first_contact
 from vibro_sweep.engine.motion.strike import TAIL, strike, strikes_of
 from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.simd.lanes import LANES, lanes_of
@@ -25,8 +25,8 @@ from vibro_sweep.engine.tables.flight import ORDER
 @exported
 def searched(g, c, gap, side, third, rest, out):
     for i in range(len(gap)):
-        contact.set_gap(g, c[i], gap[i], side[i], 0 if gap[i] > 0.0 else 1)
-        out[i] = contact.first_contact(g, third[i], rest[i])
+        first_contact.set_gap(g, c[i], gap[i], side[i], 0 if gap[i] > 0.0 else 1)
+        out[i] = first_contact.first_contact(g, third[i], rest[i])
 
 
 def first_contacts(c, gap, side, third, rest, out):
@@ -139,7 +139,7 @@ def judge_polynomials(search, kind, decade, missing, count, rng):
     at_once = search(c, gap, side, third, h, found)
     exact = (-side[:, None] * c).T.astype(REAL)
     exact[0] = gap
-    m = contact.ROUNDING * np.abs(exact)
+    m = first_contact.ROUNDING * np.abs(exact)
     told, hit = ~np.isnan(found), np.isfinite(found)
     last = np.where(hit, found * (1 - 2 * EPS), h).astype(REAL)
     above = exact + m

@@ -9,7 +9,7 @@ import pytest
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
-from vibro_sweep.driver.branches import run_branches
+from vibro_sweep.driver.run_branches import run_branches
 from vibro_sweep.driver.windows import run_windows
 
 SYSTEM = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}\n"

@@ -10,8 +10,8 @@ from support.pictures import exponents, write
 
 import vibro_sweep as vs
 from vibro_sweep import plotting
-from vibro_sweep.plotting import PlotOptions, curves, labels
-from vibro_sweep.plotting.curves import Drawn, plot_curves
+from vibro_sweep.plotting import PlotOptions, drawn_curves, labels
+from vibro_sweep.plotting.drawn_curves import Drawn, plot_curves
 from vibro_sweep.plotting.style import STYLE, edges
 
 
@@ -190,13 +190,13 @@ def test_curves_of_one_type_are_told_apart_by_their_periods():
     grazes = [circle("graze", radius, period) for radius, period in ((1, 8), (2, 8), (3, 1), (4, 13))]
     fig = plot_curves([*grazes, circle("neimark_sacker", 5)], ("b", "omega"))
     colours = [line.get_color() for line in fig.axes[0].lines if line.get_gid() == "curve"]
-    assert colours[0] == colours[1] and len(set(colours)) == 4 and colours[-1] == curves.COLOURS["neimark_sacker"]
+    assert colours[0] == colours[1] and len(set(colours)) == 4 and colours[-1] == drawn_curves.COLOURS["neimark_sacker"]
     assert set(entries(fig)) == {"graze, period 1", "graze, period 8", "graze, period 13", "Neimark-Sacker"}
     mixed = [circle("graze", 1, 1), circle("fold", 2, 8), circle("flip", 3, 13)]
     assert entries(plot_curves(mixed, ("b", "omega"))) == ["fold", "flip", "graze"]
     many = [circle("graze", radius, radius) for radius in range(1, 31)]
     told = entries(plot_curves(many, ("b", "omega")))
-    assert len(told) == len(curves.ORBITS) + 1 and told[-1] == "graze, longer periods"
+    assert len(told) == len(drawn_curves.ORBITS) + 1 and told[-1] == "graze, longer periods"
 
 
 def test_a_plane_says_what_its_hatching_means(tmp_path):

@@ -9,7 +9,7 @@ import pytest
 from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, computed, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.driver import cost, memory, sweep
+from vibro_sweep.driver import cost, memory_needed, sweep
 from vibro_sweep.driver.measuring import OrbitCost
 from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.scene import SceneError, parse_scene
@@ -121,9 +121,9 @@ def test_few_large_blocks_at_a_time():
     )
     small, large = (scene_of(text.replace("RECORD", str(record))) for record in (100, 2_400_000))
     assert numbers_at_once(large) <= MAX_AT_ONCE
-    assert memory.orbits_per_block(large, 2) == 1
-    assert memory.blocks_under_way(large, 1, here=True) == 1
-    assert memory.blocks_under_way(small, memory.orbits_per_block(small, 2), here=True) > 8
+    assert memory_needed.orbits_per_block(large, 2) == 1
+    assert memory_needed.blocks_under_way(large, 1, here=True) == 1
+    assert memory_needed.blocks_under_way(small, memory_needed.orbits_per_block(small, 2), here=True) > 8
 
 
 def test_an_estimate_knows_what_runs_side_by_side(monkeypatch):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vibro_sweep.plotting.curves import Drawn, plot_curves
+from vibro_sweep.plotting.drawn_curves import Drawn, plot_curves
 
 
 def chart(points):

@@ -14,7 +14,7 @@ from support.quotients import DIGITS, STEP, quotient
 import vibro_sweep as vs
 from vibro_sweep.engine.free_flight import FreeFlight
 from vibro_sweep.engine.period_map import PeriodMap
-from vibro_sweep.engine.variational.sensitivity import differentiate
+from vibro_sweep.engine.variational.parameter_sensitivity import differentiate
 from vibro_sweep.model import status
 from vibro_sweep.model.parameters import NAMES
 

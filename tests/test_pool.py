@@ -16,7 +16,7 @@ import pytest
 from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.driver import blocks, cost, jobs, memory, pool, sweep
+from vibro_sweep.driver import blocks, cost, jobs, memory_needed, pool, sweep
 from vibro_sweep.driver.compute import BlockError, RunError, compute
 from vibro_sweep.engine.records import result_of
 from vibro_sweep.engine.simd.lanes import LANES
@@ -211,9 +211,9 @@ def test_size_of_a_block(monkeypatch):
     assert cost.points_per_block(scene, 1e-3, 2, 4.0) == 4000
     assert cost.points_per_block(scene, 10.0, 2, 4.0) == 1
     each = 32 * scene.record + result_of(2).itemsize
-    assert 0.7 < cost.points_per_block(scene, 1e-9, 2, 4.0) * each / memory.BLOCK_BYTES < 1
-    monkeypatch.setattr(memory, "available_cores", lambda: 2)
-    assert 0.7 < cost.points_per_block(scene, 1e-9, 1000, 4.0) * each / (memory.BYTES_UNDER_WAY / 1000) < 1
+    assert 0.7 < cost.points_per_block(scene, 1e-9, 2, 4.0) * each / memory_needed.BLOCK_BYTES < 1
+    monkeypatch.setattr(memory_needed, "available_cores", lambda: 2)
+    assert 0.7 < cost.points_per_block(scene, 1e-9, 1000, 4.0) * each / (memory_needed.BYTES_UNDER_WAY / 1000) < 1
     small = scene_of(SCENES["plane"])
     assert cost.points_per_block(small, 1e-9, 1, 4.0) == 35 // cost.BLOCKS_PER_WORKER
 

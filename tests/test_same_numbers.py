@@ -16,7 +16,7 @@ from support.scenes import ALL, PAPER, SCENES, arrays_of, assert_same_bits, done
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks, compute
 from vibro_sweep.driver.attractor_ids import number_attractors
-from vibro_sweep.driver.starts import starts_of
+from vibro_sweep.driver.drawn_starts import starts_of
 from vibro_sweep.scene import parse_scene
 
 

@@ -7,7 +7,7 @@ import pytest
 from support.pictures import SETTINGS, drawn, exponents, write
 
 from vibro_sweep import plotting
-from vibro_sweep.plotting import PlotOptions, branches, decades, style
+from vibro_sweep.plotting import PlotOptions, branch_diagram, decades, style
 
 
 def entries(fig):
@@ -197,14 +197,14 @@ class Branches(dict):
 
 def test_branches(monkeypatch):
     """Each point is named once, the onset of sticking has a line; of a part the axis and the legend are those of it."""
-    monkeypatch.setattr(branches, "RaggedFile", lambda *_: Branches())
-    fig = branches.branches("made up", PlotOptions())
+    monkeypatch.setattr(branch_diagram, "RaggedFile", lambda *_: Branches())
+    fig = branch_diagram.branches("made up", PlotOptions())
     (ax,) = fig.axes
     assert sorted(text.get_text() for text in ax.texts) == ["GR", "LP", "PD", "ST"]
     (line,) = (line for line in ax.lines if line.get_gid() == "sticking")
     assert set(line.get_xdata()) == {10.0}
     assert len(entries(fig)) == 6
-    fig = branches.branches("made up", PlotOptions(xlim=(-0.1, 3)))
+    fig = branch_diagram.branches("made up", PlotOptions(xlim=(-0.1, 3)))
     (ax,) = fig.axes
     assert 2.5 < ax.get_ylim()[1] < 3.5 and sorted(text.get_text() for text in ax.texts) == ["LP", "PD"]
     assert entries(fig)[2:] == ["LP fold", "PD flip"]

@@ -57,11 +57,11 @@ if TYPE_CHECKING:
     from vibro_sweep.analysis.curves.curve_switching import switch
     from vibro_sweep.analysis.periodic.finding import periodic_orbit
     from vibro_sweep.analysis.periodic.lcp import born_at_grazing
-    from vibro_sweep.analysis.single.discontinuity import discontinuity_map
+    from vibro_sweep.analysis.single.discontinuity_map import discontinuity_map
     from vibro_sweep.analysis.single.orbit import lyapunov, simulate
+    from vibro_sweep.driver.any_file import open
     from vibro_sweep.driver.compute import RunError
     from vibro_sweep.driver.from_python import sweep
-    from vibro_sweep.driver.opening import open
     from vibro_sweep.driver.results import load
     from vibro_sweep.driver.run import run
     from vibro_sweep.driver.windows import windows
@@ -87,13 +87,13 @@ else:
         "bifurcation_curve": "analysis.curves.bifurcation_curve",
         "born_at_grazing": "analysis.periodic.lcp",
         "continue_orbit": "analysis.branches.branch",
-        "discontinuity_map": "analysis.single.discontinuity",
+        "discontinuity_map": "analysis.single.discontinuity_map",
         "follow_branches": "analysis.branches.generations",
         "grazing": "model.grazing",
         "load": "driver.results",
         "load_scene": "scene",
         "lyapunov": "analysis.single.orbit",
-        "open": "driver.opening",
+        "open": "driver.any_file",
         "periodic_orbit": "analysis.periodic.finding",
         "plot": "plotting.front",
         "run": "driver.run",

@@ -10,8 +10,8 @@ from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 from vibro_sweep.analysis.curves.curve_run import CurvePoint
 from vibro_sweep.analysis.periodic.lcp import Born
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
-from vibro_sweep.analysis.single.discontinuity import DiscontinuityMap
-from vibro_sweep.analysis.single.exponents import Exponents
+from vibro_sweep.analysis.single.discontinuity_map import DiscontinuityMap
+from vibro_sweep.analysis.single.exponent_array import Exponents
 from vibro_sweep.analysis.single.orbit import Orbit, Status
 from vibro_sweep.analysis.windows.unvisited import Unvisited
 from vibro_sweep.analysis.windows.window import Window, Windows
@@ -21,7 +21,7 @@ from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.grazing import Grazing
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.modes import Modes
-from vibro_sweep.model.pictures import Plottable
+from vibro_sweep.model.picture_kinds import Plottable
 from vibro_sweep.model.window_families import Family as WindowFamily
 from vibro_sweep.scene import Continuation, Scene, Section, Start, Trajectory
 

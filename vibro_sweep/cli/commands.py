@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from vibro_sweep.model.pictures import PICTURES
+from vibro_sweep.model.picture_kinds import PICTURES
 
 from . import interrupt
 from .computing import Computation, compute, compute_windows

@@ -9,8 +9,8 @@ import numpy as np
 from vibro_sweep.analysis.attractors import grouping
 from vibro_sweep.analysis.single.tables import table_of
 from vibro_sweep.driver.blocks import Block, version
-from vibro_sweep.driver.energy import energies_of
-from vibro_sweep.driver.starts import starts_of
+from vibro_sweep.driver.drawn_starts import starts_of
+from vibro_sweep.driver.energy_columns import energies_of
 from vibro_sweep.driver.trajectories import trajectories_of
 from vibro_sweep.engine import points
 from vibro_sweep.engine.any_points import grazing_points

@@ -15,7 +15,7 @@ from vibro_sweep.driver import MOST_WORKERS, measuring
 from vibro_sweep.driver.blocks import Block
 from vibro_sweep.driver.compute import compute
 from vibro_sweep.driver.measuring import OrbitCost
-from vibro_sweep.driver.memory import available_cores, orbits_per_block
+from vibro_sweep.driver.memory_needed import available_cores, orbits_per_block
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.scene import Scene

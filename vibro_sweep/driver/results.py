@@ -20,7 +20,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.unvisited import Unvisited
 from vibro_sweep.analysis.windows.window import Window, Windows
-from vibro_sweep.driver.opening import first_bytes
+from vibro_sweep.driver.any_file import first_bytes
 from vibro_sweep.driver.origins import Source, attributes_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.source_file import computed_from

@@ -8,9 +8,9 @@ from typing import Literal
 
 import numpy as np
 
-from vibro_sweep.driver.branches import run_branches
-from vibro_sweep.driver.curves import run_curves
 from vibro_sweep.driver.progress import given_or_bar
+from vibro_sweep.driver.run_branches import run_branches
+from vibro_sweep.driver.run_curves import run_curves
 from vibro_sweep.driver.sweep import RunReport, check_how, run_sweep
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, TYPES

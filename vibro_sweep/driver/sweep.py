@@ -26,7 +26,7 @@ from vibro_sweep.driver.cost import (
     side_by_side,
     threads_of,
 )
-from vibro_sweep.driver.memory import available_cores, blocks_under_way, orbits_per_block
+from vibro_sweep.driver.memory_needed import available_cores, blocks_under_way, orbits_per_block
 from vibro_sweep.driver.pool import as_computed
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance

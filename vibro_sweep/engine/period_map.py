@@ -20,8 +20,8 @@ import numpy as np
 from vibro_sweep.engine.one_system import Engine
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.grazing_map import Expansion, iterate
+from vibro_sweep.engine.variational.parameter_sensitivity import Equations, differentiate
 from vibro_sweep.engine.variational.propagator import new_workspace
-from vibro_sweep.engine.variational.sensitivity import Equations, differentiate
 from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import is_number

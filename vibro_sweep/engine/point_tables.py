@@ -10,7 +10,7 @@ import numpy as np
 
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.build import build
-from vibro_sweep.engine.tables.general import build_any
+from vibro_sweep.engine.tables.general_tables import build_any
 
 ON_STOP = 2.0**-50  # of the terms of the gap: a distance from a stop, and a speed, that are rounding
 

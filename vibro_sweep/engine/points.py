@@ -13,7 +13,7 @@ from vibro_sweep.engine.point_tables import fill_tables, same_tables, set_graze,
 from vibro_sweep.engine.records import PAPER, Kind, point_of
 from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.simd.lanes import LANES
-from vibro_sweep.engine.tables import general, series
+from vibro_sweep.engine.tables import general_tables, series
 from vibro_sweep.engine.variational import tangent
 from vibro_sweep.model import status
 
@@ -54,7 +54,7 @@ class Workspace(NamedTuple):
     beside: np.ndarray  # (LANES, 3, 2 N): of multipliers.py
     matrix: np.ndarray  # (2 N, 2 N)
     paper: series.Workspace | None  # or
-    other: general.Workspace | None  # as in point_tables.py
+    other: general_tables.Workspace | None  # as in point_tables.py
 
 
 def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kind: Kind = PAPER) -> Workspace:
@@ -72,7 +72,7 @@ def new_workspace(plan: Plan, cells: int, samples: int, orbits: int = LANES, kin
         np.empty((LANES, 3, states)),
         np.empty((states, states)),
         series.new_workspace() if kind.paper else None,
-        None if kind.paper else general.new_workspace(kind.masses, kind.constant, kind.own),
+        None if kind.paper else general_tables.new_workspace(kind.masses, kind.constant, kind.own),
     )
 
 

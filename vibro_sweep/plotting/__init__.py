@@ -14,14 +14,24 @@ from matplotlib.figure import Figure
 
 from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.model.errors import ArgumentTypeError
-from vibro_sweep.model.pictures import PICTURES
+from vibro_sweep.model.picture_kinds import PICTURES
 from vibro_sweep.model.refusals import not_allowed, shown
-from vibro_sweep.plotting import basins, branches, charts, coexistence, convergence, energy, orbits, planes, sweeps
+from vibro_sweep.plotting import (
+    basins,
+    branch_diagram,
+    charts,
+    coexistence,
+    convergence,
+    energy_picture,
+    orbit_pictures,
+    planes,
+    sweeps,
+)
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.pictures import check_output, save
 from vibro_sweep.plotting.plot_options import PlotOptions
-from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.source import name_of, readable
+from vibro_sweep.plotting.sweep_result import PlotError, Result
 
 if TYPE_CHECKING:
     import xarray
@@ -49,12 +59,14 @@ _DRAWN = {
     "bifurcation": Kind(sweeps.shows_bifurcation, sweeps.bifurcation, sweeps.section_variables),
     "lyapunov": Kind(sweeps.shows_lyapunov, sweeps.lyapunov),
     "impacts": Kind(sweeps.shows_impacts, sweeps.impacts),
-    "energy": Kind(energy.shows, energy.energy, energy.variables),
-    "phase-portrait": Kind(orbits.shows_trajectory, orbits.phase_portrait, orbits.displacements, True),
-    "configuration": Kind(orbits.shows_both_masses, orbits.configuration, of_orbits=True),
-    "history": Kind(orbits.shows_trajectory, orbits.history, orbits.coordinates, True),
-    "poincare": Kind(orbits.shows_poincare, orbits.poincare, orbits.abscissae, True),
-    "iteration": Kind(orbits.shows_section, orbits.iteration, sweeps.section_variables, True),
+    "energy": Kind(energy_picture.shows, energy_picture.energy, energy_picture.variables),
+    "phase-portrait": Kind(
+        orbit_pictures.shows_trajectory, orbit_pictures.phase_portrait, orbit_pictures.displacements, True
+    ),
+    "configuration": Kind(orbit_pictures.shows_both_masses, orbit_pictures.configuration, of_orbits=True),
+    "history": Kind(orbit_pictures.shows_trajectory, orbit_pictures.history, orbit_pictures.coordinates, True),
+    "poincare": Kind(orbit_pictures.shows_poincare, orbit_pictures.poincare, orbit_pictures.abscissae, True),
+    "iteration": Kind(orbit_pictures.shows_section, orbit_pictures.iteration, sweeps.section_variables, True),
     "convergence": Kind(convergence.shows_convergence, convergence.convergence, of_orbits=True),
 }
 KINDS = {name: _DRAWN[name] for name in PICTURES}
@@ -88,7 +100,7 @@ def figure(
     if of is not None:
         _check_ragged(data, of, kind, options or PlotOptions())
         with matplotlib.rc_context((options or PlotOptions()).style):
-            drawn = (charts.chart if of == CHART else branches.branches)(data, options or PlotOptions(), ax)
+            drawn = (charts.chart if of == CHART else branch_diagram.branches)(data, options or PlotOptions(), ax)
             if ax is None and options is not None:
                 options.applied(drawn)
             return drawn

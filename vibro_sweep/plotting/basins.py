@@ -7,8 +7,8 @@ from matplotlib.patches import Patch
 from vibro_sweep.model.state import MOST_MASSES, START, state
 from vibro_sweep.plotting.families import KINDS, describe, kind
 from vibro_sweep.plotting.labels import legend_below
-from vibro_sweep.plotting.result import Point, Result
 from vibro_sweep.plotting.style import INK, NOT_COMPUTED, edges, equation, marked
+from vibro_sweep.plotting.sweep_result import Point, Result
 
 NAMED = 11  # attractors that the legend has room for
 NEAR = 0.52  # of the plane's width or height, from its middle

@@ -9,12 +9,12 @@ from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
 from vibro_sweep.model.branch_file import CHART
 from vibro_sweep.model.refusals import shown
 from vibro_sweep.plotting import planes
-from vibro_sweep.plotting.curves import Drawn, draw, handles, name_points
+from vibro_sweep.plotting.drawn_curves import Drawn, draw, handles, name_points
 from vibro_sweep.plotting.labels import arrange, legend_below
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
 from vibro_sweep.plotting.relative import axis_label, check_relative
-from vibro_sweep.plotting.result import PlotError, Result
+from vibro_sweep.plotting.sweep_result import PlotError, Result
 
 NAMED = 14  # points of codimension two that are named over a plane
 

@@ -9,8 +9,8 @@ from matplotlib.collections import LineCollection, PolyCollection
 from vibro_sweep.model.catalogue import BY_NAME
 from vibro_sweep.plotting.families import KINDS, MARKERS, kind
 from vibro_sweep.plotting.labels import arrange, legend_below, overlap
-from vibro_sweep.plotting.result import Point, Result
 from vibro_sweep.plotting.style import at_section, edges, marked, type_size
+from vibro_sweep.plotting.sweep_result import Point, Result
 from vibro_sweep.plotting.sweeps import mark_grazing
 
 NARROW = 0.012  # of the axis; the period of a window is written over it where it is wider

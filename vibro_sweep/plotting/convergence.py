@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from vibro_sweep.plotting.orbits import legend
-from vibro_sweep.plotting.result import Result
+from vibro_sweep.plotting.orbit_pictures import legend
 from vibro_sweep.plotting.style import DASHES, INK, exponent, exponent_colour, exponents_name, limits
+from vibro_sweep.plotting.sweep_result import Result
 
 
 def shows_convergence(result: Result) -> bool:

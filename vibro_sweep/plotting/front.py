@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from vibro_sweep.model.arguments import check_type, checked_flag
 from vibro_sweep.model.files import checked_path, file_to_write
-from vibro_sweep.model.pictures import Plottable
+from vibro_sweep.model.picture_kinds import Plottable
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.plotting import SUFFIXES, PlotError, PlotOptions, figure

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.model.state import state
 from vibro_sweep.model.trajectory_variables import before
-from vibro_sweep.plotting.result import Point, Result
+from vibro_sweep.plotting.sweep_result import Point, Result
 
 GAP = {"gap": "x", "gap_velocity": "v"}  # what is formed of the positions, and of the velocities
 

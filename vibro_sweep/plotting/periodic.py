@@ -3,7 +3,7 @@
 import matplotlib as mpl
 import numpy as np
 
-from vibro_sweep.plotting.orbits import ARROWS_AT, arrows, legend
+from vibro_sweep.plotting.orbit_pictures import ARROWS_AT, arrows, legend
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.style import DASHES, FAINT, IMPACT, INK, LEFT, RIGHT, with_unit
 

@@ -15,8 +15,8 @@ from pathlib import Path
 import matplotlib
 from matplotlib.figure import Figure
 
-from vibro_sweep.plotting.result import PlotError
 from vibro_sweep.plotting.style import STYLE
+from vibro_sweep.plotting.sweep_result import PlotError
 from vibro_sweep.store import names, parts
 
 MOST = 2**28  # bytes of a picture that is looked at

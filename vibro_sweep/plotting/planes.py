@@ -15,7 +15,6 @@ from vibro_sweep.plotting import decades, rests, strip
 from vibro_sweep.plotting.labels import arrange, legend_below, thin_ticks
 from vibro_sweep.plotting.regions import name_regions
 from vibro_sweep.plotting.relative import axis_label, check_relative
-from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import (
     DASHES,
     DIVERGING,
@@ -32,6 +31,7 @@ from vibro_sweep.plotting.style import (
     exponents_name,
     grazing_of,
 )
+from vibro_sweep.plotting.sweep_result import PlotError, Result
 
 _OF_A_POINT = {one.name: one.label for one in VARIABLES if not one.dimensions}
 

@@ -5,7 +5,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Patch
 
 from vibro_sweep.plotting.paths import Path
-from vibro_sweep.plotting.spectrum import spans
+from vibro_sweep.plotting.spectrum_panel import spans
 from vibro_sweep.plotting.style import SPECIAL
 
 COLOUR, TINT = SPECIAL["sticking"][3], "#d3e6cf"

@@ -8,8 +8,8 @@ from matplotlib.patches import Patch
 from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.branch_file import WINDOWS
 from vibro_sweep.plotting.ragged import RaggedFile
-from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark, type_size
+from vibro_sweep.plotting.sweep_result import PlotError, Result
 
 HEIGHT = 1.5  # inches
 LANES = 6  # bars of windows that overlap lie above each other

@@ -6,10 +6,9 @@ from matplotlib.patches import Patch
 
 from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import density, rests, strip
-from vibro_sweep.plotting.impacts import NONE, impact_counts, there_are
+from vibro_sweep.plotting.impact_panel import NONE, impact_counts, there_are
 from vibro_sweep.plotting.labels import legend_below
-from vibro_sweep.plotting.result import PlotError, Result
-from vibro_sweep.plotting.spectrum import spectrum
+from vibro_sweep.plotting.spectrum_panel import spectrum
 from vibro_sweep.plotting.style import (
     ARROWS,
     BRANCHES,
@@ -26,6 +25,7 @@ from vibro_sweep.plotting.style import (
     stop_name,
     symbol,
 )
+from vibro_sweep.plotting.sweep_result import PlotError, Result
 
 MANY = 100_000  # from here on single points make a blot, and are counted instead,
 COLUMN = 400  # points (1/72 inch): the width of a diagram, which its values share

@@ -16,7 +16,7 @@ from vibro_sweep.model.models import DEFAULT, MODELS
 from vibro_sweep.model.models.declaration import Model
 from vibro_sweep.model.observables import WORDS
 from vibro_sweep.model.parameters import Parameter
-from vibro_sweep.model.pictures import PICTURES
+from vibro_sweep.model.picture_kinds import PICTURES
 from vibro_sweep.model.state import coordinates
 
 from .continue_form import continue_form

@@ -4,8 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from .continuation import Continuation, is_continuation, parse_continuation
-from .reading import text_of
 from .scene import Scene, parse_scene
+from .yaml_reading import text_of
 from .yaml_text import YAMLTextError, read_yaml
 
 

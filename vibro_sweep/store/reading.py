@@ -45,7 +45,7 @@ class Description(NamedTuple):
 
 
 def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray expect
-    """An HDF5 file, or what is computed in a part, as a Dataset; `vibro_sweep.open` (driver/opening.py) says more."""
+    """An HDF5 file, or what is computed in a part, as a Dataset; `vibro_sweep.open` (driver/any_file.py) says more."""
     from vibro_sweep.store import foreign, lazy
 
     try:

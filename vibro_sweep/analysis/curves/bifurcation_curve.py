@@ -74,7 +74,7 @@ class BifurcationCurve(FileResult):
 
         Raises ValueError for curves in other parameters.
         """
-        from vibro_sweep.plotting.curves import Drawn, plot_curves
+        from vibro_sweep.plotting.drawn_curves import Drawn, plot_curves
 
         for curve in others:
             check_type("others", curve, BifurcationCurve, "curves, as `bifurcation_curve` returns them")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from vibro_sweep.analysis.single.exponents import Exponents
+from vibro_sweep.analysis.single.exponent_array import Exponents
 from vibro_sweep.analysis.single.result import Result, impact_table
 from vibro_sweep.engine import points
 from vibro_sweep.engine.halting import interruptible

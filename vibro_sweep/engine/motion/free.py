@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.motion.contact import ROUNDING, first_contact, set_gap
+from vibro_sweep.engine.motion.first_contact import ROUNDING, first_contact, set_gap
 from vibro_sweep.engine.motion.orbits import (
     advance,
     advance_exactly,

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.motion.contact import first_contact, set_gap
+from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
 from vibro_sweep.engine.motion.orbits import add_change, restitution_of, take_samples
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, evaluate

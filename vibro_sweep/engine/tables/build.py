@@ -5,8 +5,8 @@ from vibro_sweep.engine.simd.jit import exported
 from vibro_sweep.engine.tables.close_modes import CLOSE
 from vibro_sweep.engine.tables.control_points import fill_scan
 from vibro_sweep.engine.tables.forced import fill_motion, fill_phases
-from vibro_sweep.engine.tables.frame import fill_frame
-from vibro_sweep.engine.tables.free import fill_coupling, fill_flight, gap_of
+from vibro_sweep.engine.tables.frame_tables import fill_frame
+from vibro_sweep.engine.tables.free_tables import fill_coupling, fill_flight, gap_of
 from vibro_sweep.engine.tables.resting import fill_rest
 from vibro_sweep.engine.tables.series import fill_equations, fill_impulse, fill_series, set_grid
 from vibro_sweep.engine.tables.stiff import rate_of

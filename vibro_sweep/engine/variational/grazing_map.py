@@ -17,8 +17,8 @@ import numpy as np
 
 from vibro_sweep.engine.graze import impact_near_graze, impact_slopes
 from vibro_sweep.engine.simd.jit import exported, jit
+from vibro_sweep.engine.variational.parameter_sensitivity import gap_of, place_of
 from vibro_sweep.engine.variational.propagator import propagate
-from vibro_sweep.engine.variational.sensitivity import gap_of, place_of
 
 
 class Expansion(NamedTuple):

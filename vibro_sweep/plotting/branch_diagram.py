@@ -13,8 +13,8 @@ from vibro_sweep.plotting import joined, sweeps
 from vibro_sweep.plotting.labels import arrange, legend_below, name_beside
 from vibro_sweep.plotting.plot_options import PlotOptions
 from vibro_sweep.plotting.ragged import RaggedFile, sweep_below
-from vibro_sweep.plotting.result import PlotError, Result
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, LEFT, SPECIAL, axis_name, limits, special_mark, symbol
+from vibro_sweep.plotting.sweep_result import PlotError, Result
 
 LINES = (LEFT, "#c26a00", "#446644", "#7b3294", "#77541f", "#1a1a2e")  # of branches, in turn
 MOST = 3.0  # modulus of a multiplier that is shown: at a graze it is infinite

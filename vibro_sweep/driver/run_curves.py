@@ -13,12 +13,12 @@ from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.curves.curve_arrays import SHAPES
 from vibro_sweep.analysis.curves.curve_search import Curves, compute_curve, seed_at
 from vibro_sweep.analysis.windows.explained import explain, probe
-from vibro_sweep.driver.branches import where_met
 from vibro_sweep.driver.jobs import computed, workers_of
 from vibro_sweep.driver.origins import NoOrbitError, attributes_of, seeds_of, source_of, specials_of
-from vibro_sweep.driver.planes import edges_in_file, plane_of
 from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.driver.run_branches import where_met
 from vibro_sweep.driver.source_file import computed_from_source
+from vibro_sweep.driver.swept_plane import edges_in_file, plane_of
 from vibro_sweep.driver.usable import is_branch, is_curve, is_probe
 from vibro_sweep.model.branch_file import CHART, columns_of
 from vibro_sweep.model.curve_columns import OF_EDGES

@@ -8,7 +8,6 @@ from vibro_sweep.model.state import MOST_MASSES, state
 from vibro_sweep.plotting import rests
 from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.paths import GAP, gap_of, path
-from vibro_sweep.plotting.result import Result
 from vibro_sweep.plotting.style import (
     DASHES,
     FAINT,
@@ -23,6 +22,7 @@ from vibro_sweep.plotting.style import (
     stop_name,
     symbol,
 )
+from vibro_sweep.plotting.sweep_result import Result
 from vibro_sweep.plotting.sweeps import section_variables
 
 ARROWS_AT = (0.06, 0.36, 0.66, 0.91)  # of the first forcing period, or of the whole way

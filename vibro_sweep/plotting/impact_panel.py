@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.plotting import decades, rests
-from vibro_sweep.plotting.spectrum import branches, curve, margin_note
+from vibro_sweep.plotting.spectrum_panel import branches, curve, margin_note
 from vibro_sweep.plotting.style import FAINT, INK, LEFT, RIGHT
 
 NONE = "no impacts"

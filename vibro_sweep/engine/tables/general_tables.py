@@ -9,7 +9,7 @@ from vibro_sweep.engine.simd.jit import exported, jit
 from vibro_sweep.engine.tables.exclusion import fill_exclusion
 from vibro_sweep.engine.tables.fast_roots import fill_stiff_exclusion
 from vibro_sweep.engine.tables.flight import ORDER, WIDTH, decaying, inputs_of
-from vibro_sweep.engine.tables.frame import LOST, MOST_CELLS, SEPARATION, VANISHED
+from vibro_sweep.engine.tables.frame_tables import LOST, MOST_CELLS, SEPARATION, VANISHED
 from vibro_sweep.engine.tables.products import fill_forced_motion, fill_products
 from vibro_sweep.engine.tables.series import clear, derive, set_grid
 

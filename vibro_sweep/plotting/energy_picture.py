@@ -3,10 +3,10 @@
 import numpy as np
 
 from vibro_sweep.model.state import MOST_MASSES
-from vibro_sweep.plotting.impacts import NONE
-from vibro_sweep.plotting.result import Result
-from vibro_sweep.plotting.spectrum import curve
+from vibro_sweep.plotting.impact_panel import NONE
+from vibro_sweep.plotting.spectrum_panel import curve
 from vibro_sweep.plotting.style import BRANCHES, FAINT, INK, LEFT, RIGHT, symbol
+from vibro_sweep.plotting.sweep_result import Result
 from vibro_sweep.plotting.sweeps import reach
 
 COLOURS = (INK, RIGHT, LEFT, FAINT)
