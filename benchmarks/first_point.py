@@ -38,10 +38,10 @@ def first_point(path: str) -> dict:
     event.register("numba:compile", clock)
     from vibro_sweep.cli.console import all_is_imported
     from vibro_sweep.driver import blocks, compute
-    from vibro_sweep.scene import scene
+    from vibro_sweep.scene import load_scene
 
     all_is_imported()
-    block = next(blocks.blocks(scene.load_scene(path), points_per_block=1))
+    block = next(blocks.blocks(load_scene(path), points_per_block=1))
     loaded = time.time()
     compute.compute(block)
     return {"loaded": loaded, "done": time.time(), "own": clock.own}

@@ -144,7 +144,7 @@ def test_cells_left_out_have_no_turning_point_of_interest(system, itinerary, nam
     """Against 400 samples of each cell, by matrix exponentials: 4000 random flights, both bounds have work to do."""
     rng, count, samples = np.random.default_rng(5), 4000, 400
     curve = branch_through(orbit_of(system, itinerary)._solution, name, 0.1)
-    curve.go_to(guess_of(curve))
+    curve.move_to(guess_of(curve))
     plane = curve.planes[0]
     A, width, omega, swing = plane["A"], float(plane["width"]), float(plane["numbers"][OMEGA]), plane["Z"][0]
     n = len(A)

@@ -59,7 +59,7 @@ def test_newtons_method_converges_quadratically(curve):
     guess.x[:] += 1e-4 * np.random.default_rng(1).normal(size=guess.x.shape)
     changes = []
     while not changes or changes[-1] > ROUNDED:
-        assert solution_curve.take(guess) and len(changes) < 5
-        changes.append(solution_curve.do(stepper.CORRECT, guess, row))
+        assert solution_curve.take_numbers(guess) and len(changes) < 5
+        changes.append(solution_curve.run_task(stepper.CORRECT, guess, row))
     constant = max(changes[1] / changes[0] ** 2, 1.0)
     assert changes[0] > 1e-6 and all(b < 30 * constant * a * a + ROUNDED for a, b in pairwise(changes))

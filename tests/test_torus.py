@@ -26,7 +26,7 @@ def test_coefficient_agrees_with_differences_of_the_map_in_50_digits(omega):
     linearised, theta = Linearised(s), critical_angle(s)
     linearised.take_null_vectors(TORUS, theta)
     e = linearised.equations
-    e.do(stepper.EXAMINE)
+    e.run_task(stepper.EXAMINE)
     (found, _), _ = cubic_terms(e.workspace, e.problem, e.place)
     back = expm(-flow(s.family.linear).B * s.P / 2)[:4, :4]
     size = np.linalg.norm(back @ (e.place.v[0, :4] * [1, 1, s.family.linear.omega, s.family.linear.omega]))

@@ -83,7 +83,7 @@ def run(
 
     with input_errors(SceneError):
         scene = load_scene(scene_file)
-    computation.check_places(scene.inputs)
+    computation.check_outputs(scene.inputs)
     bad = compute(computation, scene)
     if plot:
         _draw(output, computation.picture, None, overwrite, quiet)
@@ -115,7 +115,7 @@ def windows_command(
     command = ("windows", str(file), *(("--parameter", parameter) if parameter else ()))
     computation = Computation(output, workers, scheduler, resume, overwrite, plot, quiet, command)
     computation.announce()
-    computation.check_places([file])
+    computation.check_outputs([file])
     compute_windows(computation, file, parameter)
     if plot:
         _draw(file, computation.picture, None, overwrite, quiet, windows=output)

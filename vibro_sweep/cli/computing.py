@@ -52,7 +52,7 @@ class Computation:
         # until the run has begun, what is to be overwritten is there, and would be taken for its result
         interrupt.advise(self.advice("--overwrite" if self.overwrite else "--resume"))
 
-    def check_places(self, inputs: Collection[Path]) -> None:
+    def check_outputs(self, inputs: Collection[Path]) -> None:
         """Raises InputError where something is in the way. inputs : files that are read, and must not be written."""
         from vibro_sweep.store import StoreError
 

@@ -10,7 +10,7 @@ from .console import InputError, input_errors
 def check_output(output: Path, inputs: Collection[Path], picture: Path | None, mode: str) -> None:
     """Raise InputError or StoreError, before anything is computed, where results could not be written in the end."""
     from vibro_sweep.model.files import file_to_write
-    from vibro_sweep.store.beginning import check_places
+    from vibro_sweep.store.beginning import check_outputs
     from vibro_sweep.store.opening import StoreError
 
     try:
@@ -18,7 +18,7 @@ def check_output(output: Path, inputs: Collection[Path], picture: Path | None, m
     except ValueError as error:
         raise InputError(str(error)) from None
     try:
-        check_places(output, mode, inputs)
+        check_outputs(output, mode, inputs)
     except StoreError as error:
         from vibro_sweep.plotting import SUFFIXES
 

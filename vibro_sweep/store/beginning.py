@@ -36,7 +36,7 @@ NO_DATA = (".png", ".svg", ".pdf", ".yaml", ".yml")  # endings of other files of
 @contextlib.contextmanager
 def writer(scene: Scene, path: Path, mode: str) -> Iterator[Writer | Complete]:
     """The `Writer` of a scene's file; `mode` is "new", "resume" or "overwrite". Raises StoreError."""
-    part = check_places(path, mode, scene.inputs)
+    part = check_outputs(path, mode, scene.inputs)
     with contextlib.ExitStack() as stack:
         try:
             if mode == "new" and names.stamp(path):
@@ -58,7 +58,7 @@ def writer(scene: Scene, path: Path, mode: str) -> Iterator[Writer | Complete]:
         yield result
 
 
-def check_places(path: Path, mode: str, inputs: Collection[Path]) -> Path:
+def check_outputs(path: Path, mode: str, inputs: Collection[Path]) -> Path:
     """Raise StoreError where a run must not write, before anything is touched. Returns the name of the part.
 
     inputs : files that the run reads; none of them is written, by whatever name or link

@@ -18,7 +18,7 @@ from vibro_sweep.model.column import Column
 from vibro_sweep.store import appending, names, parts
 from vibro_sweep.store.appending import LockedPart
 from vibro_sweep.store.attributes import text
-from vibro_sweep.store.beginning import check_places
+from vibro_sweep.store.beginning import check_outputs
 from vibro_sweep.store.opening import StoreError, check_version, made_by, opened, skeleton
 from vibro_sweep.store.parts import PartError, Scan
 from vibro_sweep.store.ragged_checks import damage_of
@@ -91,7 +91,7 @@ def pieces(subject: Subject, path: Path, mode: str, inputs: Collection[Path]) ->
 
     inputs : files that the run reads, which it must not write
     """
-    part = check_places(path, mode, inputs)
+    part = check_outputs(path, mode, inputs)
     replaces = names.stamp(path) if mode == "overwrite" else None
     if mode != "overwrite" and names.stamp(path) and not names.stamp(part):
         damage = _damage_of_made(subject, path)

@@ -105,12 +105,12 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     except NoStartError:
         return not_followed(orbit, parameter)
     start, down = first.curve.orbit, run_from(first.backwards(), orbit.system, progress)
-    down.go()
+    down.follow()
     if down.closed:
         closed = down.special
         return Branch(parameter, closed, closed[-1], closed[-1], True, start, down.frame, down.points)
     up = run_from(first, orbit.system, progress)
-    up.go()
+    up.follow()
     (begins, before), (ends, after) = (_accumulation(run.special[-1], lo, hi) for run in (down, up))
     special = [*before, begins, *reversed(down.special[:-1]), *up.special[:-1], ends, *after]
     rows = both_directions(down.points, up.points)

@@ -54,7 +54,7 @@ class BranchRun:
     def points(self) -> Rows:
         return join(self.rows)
 
-    def go(self) -> None:
+    def follow(self) -> None:
         """Follow the branch to its end."""
         self._add(self.first)
         compiled = CompiledStepper(self.first, self.frame[1], self.first_step)
@@ -65,7 +65,7 @@ class BranchRun:
             if len(rows.p):
                 self.rows.append(rows)
                 self._passed = None
-            self._tell(count, compiled.a.p[0])
+            self._show_progress(count, compiled.a.p[0])
             if reason in (stepper.FULL, stepper.FAR):
                 continue
             a, b = compiled.point(compiled.a), compiled.point(compiled.b)
@@ -123,7 +123,7 @@ class BranchRun:
             del self.rows[rows:], self.special[special:]
         return self._pass(before, a, beside=(None, b))
 
-    def _tell(self, passed: int, value: float) -> None:
+    def _show_progress(self, passed: int, value: float) -> None:
         if self.progress is not None:
             self.progress(passed, float(value))
 

@@ -52,7 +52,7 @@ class CompiledStepper:
         r, w = type(self.path.record)(*(values[:count] for values in self.path.record)), self.curve
         tau = np.array([w.tau_at(value) for value in r.p[:, 0].tolist()])
         r.phase[:] = 2 * np.pi * self.origin + tau
-        w.do(stepper.STATES, self.b)
+        w.run_task(stepper.STATES, self.b)
         if reason == stepper.FAR:
             try:
                 w.recentre(self.a)

@@ -48,7 +48,7 @@ def criticality(solution: Solution, kind: int, name: str) -> str | None:
     except np.linalg.LinAlgError:
         return None
     e = linearised.equations
-    e.do(stepper.EXAMINE)
+    e.run_task(stepper.EXAMINE)
     (c, _), (size, _) = cubic_terms(e.workspace, e.problem, e.place)
     return None if not abs(c.real) > ROUNDED * size else "super" if c.real < 0 else "sub"
 

@@ -68,7 +68,7 @@ class FreePoint:
 class FreeRun(BranchRun):
     """A run along a branch without impacts in one direction."""
 
-    def go(self) -> None:
+    def follow(self) -> None:
         """Follow the branch to its end."""
         a, count, length = self.first, 1, self.first_step
         self._add(a)
@@ -91,7 +91,7 @@ class FreeRun(BranchRun):
                 self.special.append(self._at("boundary", b, 0.0))
                 return
             a, count, length = b, count + 1, min(1.5 * length, LONGEST_STEP)
-            self._tell(count, a.value)
+            self._show_progress(count, a.value)
         self.special.append(self._at("failed", a, math.nan))
 
 

@@ -64,19 +64,19 @@ def guess_of(curve: SolutionCurve, solution: Solution | None = None) -> Point | 
     place.jumps[rests] = q.omega * (s.ends - s.times[rests])
     place.p[: len(curve.names)] = [s.family.numbers[name] for name in curve.names]
     place.p[THETA] = curve.start.theta
-    if not curve.go_to(place):
+    if not curve.move_to(place):
         return None
     states = s.states[: curve.K, : curve.n] if curve.start.state is None else curve.start.state[None]
     steady = (curve.planes[0]["Z"] * np.exp(1j * place.phases[:, None])).real
     place.x[:, : curve.n] = states / curve.state_units - steady
     if curve.start.state is not None:
-        curve.do(stepper.FOLLOW, place)
+        curve.run_task(stepper.FOLLOW, place)
     return place
 
 
 def converge(curve: SolutionCurve, place: Place, row: np.ndarray | None = None) -> Point | None:
     """The point of the curve near a guess without a tangent."""
-    if not curve.go_to(place):
+    if not curve.move_to(place):
         return None
     if is_critical(curve.problem):
         _take_null_vectors(curve, place)
@@ -90,14 +90,14 @@ def _take_null_vectors(curve: SolutionCurve, place: Place) -> None:
     """v and w of the critical multiplier, at a place that has none."""
     place.v[:], place.w[:] = 0.0, 0.0
     for _ in range(2):  # with any border, then with what that gives
-        curve.do(stepper.ASSEMBLE, place)
+        curve.run_task(stepper.ASSEMBLE, place)
         for here, found in ((place.v, curve.workspace.events["v"]), (place.w, curve.workspace.trial)):
             here[:] = found / np.linalg.norm(found)
 
 
 def first_direction(curve: SolutionCurve, place: Place) -> np.ndarray | None:
     """The tangent at a place to which the oscillator was moved; it is kept there."""
-    if not curve.do(stepper.ASSEMBLE, place):
+    if not curve.run_task(stepper.ASSEMBLE, place):
         return None
     n, size = curve.n, curve.n + unknowns(curve.problem)
     null = np.linalg.svd(curve.workspace.work[0]["ends"][: size - 1, :size])[2][-1]

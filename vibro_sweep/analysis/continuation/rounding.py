@@ -34,7 +34,7 @@ def sensitivity(curve: "SolutionCurve", place: Place, row: np.ndarray) -> float:
         by_last, by_rows = inverse[n + j, :n], inverse[n + j, n:]
         work["left"][:] = by_last
         events["sides"][:] = -np.einsum("ikr,k->ir", events["factors"][:, :free], by_rows)
-        curve.do(stepper.TAKE_UP, place)
+        curve.run_task(stepper.TAKE_UP, place)
         if c.kind == STICK:
             curve.workspace.trial[0, 0] -= curve.workspace.trial[-2, 2:] @ curve.workspace.tail[0]["by_end"]
         rows = np.abs(curve.workspace.trial)

@@ -85,12 +85,12 @@ class SolutionCurve:
         """Set the polynomials anew, around this place."""
         self.planes = self._around(place.p)
 
-    def do(self, task: int, place: Place, row: np.ndarray | None = None) -> float:
-        """One task of `stepper.at`; what it leaves is in `workspace`."""
+    def run_task(self, task: int, place: Place, row: np.ndarray | None = None) -> float:
+        """Run one task of `stepper.at`, which leaves its results in `workspace`."""
         row = place.direction if row is None else row
         return stepper.at(task, self.planes, self.problem, self.path, Place._make(place), row, self.workspace)
 
-    def take(self, place: Place) -> bool:
+    def take_numbers(self, place: Place) -> bool:
         """Take the oscillator's numbers at the parameters of `place`. False where there is none."""
         try:
             if np.any(np.abs(place.p[:2] - self.planes[0]["centre"]) > self.planes[0]["reach"]):
@@ -100,17 +100,17 @@ class SolutionCurve:
             return False
         return bool(np.isfinite(place.p).all())
 
-    def go_to(self, place: Place) -> bool:
+    def move_to(self, place: Place) -> bool:
         """Move the oscillator exactly to the parameters of `place`. False where it has no forced motion."""
-        return self.take(place) and bool(self.do(stepper.MOVE, place))
+        return self.take_numbers(place) and bool(self.run_task(stepper.MOVE, place))
 
     def assemble(self, place: Place, row: np.ndarray | None = None) -> bool:
         """Leave the equations at `place` in `workspace`. False where they are singular."""
-        return self.go_to(place) and bool(self.do(stepper.ASSEMBLE, place, row))
+        return self.move_to(place) and bool(self.run_task(stepper.ASSEMBLE, place, row))
 
     def take_steps(self, place: Place) -> int:
         """Compiled steps from `path.a` until something happens, and why they end (engine/continuation/stepper.py)."""
-        return int(self.do(stepper.STEPS, place, np.zeros(2 * self.K + 3)))
+        return int(self.run_task(stepper.STEPS, place, np.zeros(2 * self.K + 3)))
 
     def motion(self, place: Place) -> np.ndarray:
         """(K, 2) gap velocity and acceleration before each impact."""
@@ -124,8 +124,8 @@ class SolutionCurve:
 
     def nearest(self, place: Place) -> tuple[float, int]:
         """Time and side of the turning point nearest to its stop."""
-        self.take(place)
-        self.do(stepper.EXAMINE, place)
+        self.take_numbers(place)
+        self.run_task(stepper.EXAMINE, place)
         _, phase, side = self.workspace.work[0]["nearest"]
         return float((phase - self.tau) / self.omega(place)), int(side)
 
@@ -188,7 +188,7 @@ class SolutionCurve:
         null = self.workspace.work[0]["null"]
         null[:] = 0.0
         null[: self.n], null[self.n : self.n + len(parameters)] = first, parameters
-        self.do(stepper.TAKE_APART, place)
+        self.run_task(stepper.TAKE_APART, place)
         changes = self.workspace.events["changes"][:, 1]
         return np.concatenate([changes[:, self.n], changes[:, self.n + 1], null[self.n :]])
 
@@ -202,11 +202,11 @@ class SolutionCurve:
         exact : of the oscillator itself, or of its polynomials, which is ten times as fast and nearly the same
         """
         place = self.copied(guess)
-        near = self.do(stepper.NEAR, place, row)
+        near = self.run_task(stepper.NEAR, place, row)
         if not exact:
             return place if near else None
         place = place if near else self.copied(guess)
-        return place if self.take(place) and self.do(stepper.SOLVE, place, row) else None
+        return place if self.take_numbers(place) and self.run_task(stepper.SOLVE, place, row) else None
 
     def parameters(self, place: Place) -> np.ndarray:
         """The free parameters of a place, (1,) or (2,)."""
@@ -273,7 +273,7 @@ class SolutionCurve:
 
     def speeds(self, place: Place) -> np.ndarray:
         """(K,) velocities of the gap before the impacts, in units of the curve."""
-        self.go_to(place)
+        self.move_to(place)
         N = self.n // 2
         return place.x[:, N] + (self.planes[0]["Z"][N] * np.exp(1j * place.phases)).real
 

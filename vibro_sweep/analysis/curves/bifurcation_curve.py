@@ -132,12 +132,12 @@ def bifurcation_curve(
     rates = first.tangent_p[:2]
     sign = -1 if rates[np.argmax(np.abs(rates) > LEVEL)] > 0 else 1  # down in the first parameter that changes
     down = CurveRun(curve, first, sign, special.orbit.system, progress, virtual)
-    down.go()
+    down.follow()
     if down.closed:
         ends = down.special
         return BifurcationCurve(start.type, names, ends, ends[-1], ends[-1], True, curve, down.points)
     up = CurveRun(curve, first, -sign, special.orbit.system, progress, virtual)
-    up.go()
+    up.follow()
     ends = [*reversed(down.special), *up.special]
     rows = both_directions(down.points, up.points)
     return BifurcationCurve(start.type, names, ends, down.special[-1], up.special[-1], False, curve, rows)

@@ -175,8 +175,8 @@ def _bent(child: Solution, curve: SolutionCurve, place: Place, z: complex, moved
 
 def _quarter(curve: SolutionCurve, place: Place, size: float, name: str, sign: int):
     """z, in units of w with |z| = size, the parameters' change, and theta (0 of a fold); None: there are none."""
-    curve.take(place)
-    curve.do(stepper.EXAMINE, place)
+    curve.take_numbers(place)
+    curve.run_task(stepper.EXAMINE, place)
     (c, d), _ = cubic_terms(curve.workspace, curve.problem, place)
     A = c / abs(d)
     u = _turn(A, name, sign)

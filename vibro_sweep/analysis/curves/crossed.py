@@ -66,7 +66,7 @@ def crossed(curve: SolutionCurve, a: Place, b: Place, impact: int) -> tuple[floa
     for name in ("x", "p", "tangent", "tangent_p", "v", "w"):
         getattr(place, name)[:] = np.tensordot(weights, [getattr(one, name) for one in places], 1)
     place.jumps[impact], place.tests[TEST.residual] = 0.0, 0.0
-    if not (curve.take(place) and curve.do(EXAMINE, place)):
+    if not (curve.take_numbers(place) and curve.run_task(EXAMINE, place)):
         return None
     lost = np.abs(weights) @ [sensitivity(curve, one, secant.row) for one in places]
     return zero, place, float(apart.max() + DIGITS * np.abs(p).max() + ROWS * lost)

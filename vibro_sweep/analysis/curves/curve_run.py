@@ -62,7 +62,7 @@ class CurveRun:
     def points(self) -> Rows:
         return join(self.rows)
 
-    def go(self) -> None:
+    def follow(self) -> None:
         """Follow the curve to its end."""
         w, passed = self.curve, 1
         path, b = w.path, new_place(w.K, w.n)

@@ -10,8 +10,8 @@ from vibro_sweep.engine.continuation.workspace import Place
 
 def second_order(curve: SolutionCurve, place: Place) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients of z^2 and |z|^2 of the times and impulses (2K,) on the plane z w + conj(z w)."""
-    curve.take(place)
-    curve.do(stepper.EXAMINE, place)
+    curve.take_numbers(place)
+    curve.run_task(stepper.EXAMINE, place)
     series = (
         curve.workspace.events["series"].transpose(1, 0, 2).reshape(2 * curve.K, -1) * in_time(curve, place)[:, None]
     )

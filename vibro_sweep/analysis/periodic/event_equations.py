@@ -45,7 +45,7 @@ class EventEquations:
     def _path(self) -> path.Path:
         return path.new_path(1, self.K, self.n, 1.0, 1.0, 1.0, np.zeros((2, 2)))
 
-    def take(self, solution) -> None:
+    def take_solution(self, solution) -> None:
         """The events of a `Solution`, without the states before them."""
         place, omega, rests = self.place, self.q.omega, self.problem.rests
         place.phases[:], place.jumps[:] = omega * solution.times + self.q.tau, solution.jumps / omega
@@ -54,9 +54,9 @@ class EventEquations:
     def move(self) -> None:
         """Leave in `planes` what tasks need beyond Newton's method."""
         self.planes["is_known"] = 0
-        self.do(stepper.MOVE)
+        self.run_task(stepper.MOVE)
 
-    def do(self, task: int) -> float:
+    def run_task(self, task: int) -> float:
         """A task of engine/continuation/stepper.py."""
         row = np.zeros(2 * self.K + 3)
         return stepper.at(task, self.planes, self.problem, self._path, self.place, row, self.workspace)

@@ -27,7 +27,7 @@ class Linearised:
         e.problem = e.problem._replace(parameters=int(slope is not None))
         e.problem.sides[list(watched)] = 0.0
         self._take_oscillator()
-        e.take(solution)
+        e.take_solution(solution)
         self.phases, units = e.place.phases, np.repeat([1.0, self.q.omega], e.n // 2)
         steady = (e.planes[0]["Z"] * np.exp(1j * self.phases[:, None])).real
         e.place.x[:, : e.n] = solution.states[: e.K, : e.n] / units - steady
@@ -50,7 +50,7 @@ class Linearised:
         self.equations.move()
 
     def _assembled(self):
-        if not self.equations.do(stepper.ASSEMBLE):
+        if not self.equations.run_task(stepper.ASSEMBLE):
             raise np.linalg.LinAlgError("the equations are singular")
         return self.equations.workspace.work[0]
 
@@ -66,7 +66,7 @@ class Linearised:
         work["null"][:n] = np.linalg.lstsq(G, right)[0] if alone else np.linalg.solve(G, right)
         work["null"][n:] = 0.0
         work["null"][n] = 1.0
-        e.do(stepper.TAKE_APART)
+        e.run_task(stepper.TAKE_APART)
         return e.workspace.events["changes"][:, 1].copy()
 
     def slopes(self) -> np.ndarray:

@@ -26,21 +26,21 @@ class RestingOrbit:
             e.planes[0]["Z"],
         )
         e.move()
-        e.take(solution)
+        e.take_solution(solution)
         self._close()
 
     def _close(self) -> None:
         """The states that follow from phases, jumps and lengths, and the equations there."""
         x, e, n = self.place.x, self.events, self.n
         x[:, :n] = 0.0
-        self.equations.do(stepper.FOLLOW)
-        self.equations.do(stepper.ASSEMBLE)
+        self.equations.run_task(stepper.FOLLOW)
+        self.equations.run_task(stepper.ASSEMBLE)
         through = np.eye(n)
         for k in range(len(x)):
             through = e["E"][k, 0, :, :n] @ (e["carry"][k, :, :n] @ through if k in self.rests else through)
         x[0, :n] = np.linalg.solve(self.sigma * np.eye(n) - through, e["landing"][-1])
-        self.equations.do(stepper.FOLLOW)
-        self.equations.do(stepper.ASSEMBLE)
+        self.equations.run_task(stepper.FOLLOW)
+        self.equations.run_task(stepper.ASSEMBLE)
 
     def newton(self) -> tuple[np.ndarray, float]:
         """Newton's method from here: u, and the last relative change, NaN: no orbit was found. Raises LinAlgError."""
@@ -49,7 +49,7 @@ class RestingOrbit:
         for _ in range(MOST_STEPS):
             start = x.copy()
             e["changes"] = np.nan
-            self.equations.do(stepper.CORRECT)
+            self.equations.run_task(stepper.CORRECT)
             step = e["changes"][:, 0, n:]
             fastest = max(swing, np.abs(start[struck, n + 1]).max(initial=0.0), np.abs(e["motion"][:, 0]).max())
             turned = np.append(np.abs(step[:, 0]), np.abs(step[self.rests].sum(axis=1))).max()
@@ -93,7 +93,7 @@ class RestingOrbit:
     def certificate(self) -> tuple[np.ndarray, float]:
         """(distance, t, side) of the turning point nearest to its stop, inf where there is none; and the least free
         acceleration into the stop, where a rest begins, or where it turns within."""
-        self.equations.do(stepper.EXAMINE)
+        self.equations.run_task(stepper.EXAMINE)
         distance, phase, side = self.equations.workspace.work[0]["nearest"]
         time = (phase - self.q.tau) / self.q.omega if distance < np.inf else 0.0
         hold = self.events["hold"][self.rests].min() * self.q.omega**2

@@ -17,8 +17,8 @@ def stable_stretch(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
     """
     first = start_of_run(orbit._solution, parameter, *bounds, stable=True)
     down, up = (run_from(point, orbit.system, stable=True) for point in (first.backwards(), first))
-    down.go()
-    up.go()
+    down.follow()
+    up.follow()
     rows = both_directions(down.points, up.points)
     special = [down.special[0], up.special[0]]
     return Branch(parameter, special, *special, down.closed, first.curve.orbit, down.frame, rows)
@@ -32,7 +32,7 @@ def stable_end(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, float]
     """
     first = start_of_run(orbit._solution, parameter, *bounds, stable=True)
     run = run_from(first if forwards > 0 else first.backwards(), orbit.system, stable=True)
-    run.go()
+    run.follow()
     return run.special[0]
 
 
