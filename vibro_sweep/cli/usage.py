@@ -1,4 +1,4 @@
-"""Commands and options that there are not: one message, and what was probably meant."""
+"""Commands and options that do not exist: one message, and what was probably meant."""
 
 import difflib
 import re

@@ -1,4 +1,4 @@
-"""What a scene costs, from what its orbits take (measuring.py): the time of a run, and the size of a block."""
+"""The cost of a scene from that of its orbits (measuring.py): the time of a run, and the size of a block."""
 
 import math
 import os

@@ -1,4 +1,4 @@
-"""What an orbit of a scene takes, measured on a few of its orbits.
+"""The cost of an orbit of a scene, measured on a few of its orbits.
 
 It does not grow with the periods alone: an orbit has tables to be filled, and a record to be looked through. So orbits
 are computed from beginning to end where that takes a moment, and otherwise over two lengths, of which only the

@@ -1,4 +1,4 @@
-"""What the package has to say at a prompt or in a notebook: warnings, and that it compiles, which takes a while.
+"""Notices at a prompt or in a notebook: warnings, and that it compiles, which takes a while.
 
 They are records of the logger `vibro_sweep`, which the command line prints as its own. In Python they go to stderr,
 unless the user's logging takes them; `logging.getLogger("vibro_sweep").setLevel(logging.WARNING)` silences the rest,

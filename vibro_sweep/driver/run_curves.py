@@ -1,4 +1,4 @@
-"""From a scene with two numbers in `along` to its file: bifurcation curves."""
+"""From a scene with two numbers in `parameter` to its file: bifurcation curves."""
 
 from collections.abc import Callable
 from concurrent.futures import Executor

@@ -1,4 +1,5 @@
-"""The plane of a sweep whose edges a scene of curves explains: `from: {sweep: PLANE.h5}`, `along` its keys."""
+"""The plane of a sweep whose edges a scene of curves explains: `from: {sweep: PLANE.h5}`, with its keys as
+`parameter`."""
 
 from typing import Any
 

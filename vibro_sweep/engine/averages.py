@@ -1,4 +1,4 @@
-"""What an attractor is known by: averages that every orbit on it has, and how well they are known."""
+"""Averages that every orbit on an attractor has, by which it is recognised, and their errors."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""How a point went: numerical outcomes travel with the data, as codes with a meaning."""
+"""The status of a point: numerical outcomes travel with the data, as codes with a meaning."""
 
 import functools
 import operator

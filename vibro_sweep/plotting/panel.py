@@ -1,4 +1,4 @@
-"""Axes of the caller's in place of a page."""
+"""The caller's axes in place of a page."""
 
 import numpy as np
 from matplotlib.axes import Axes

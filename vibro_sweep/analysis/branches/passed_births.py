@@ -1,4 +1,4 @@
-"""Births that steps along a branch went over unseen.
+"""Births that the steps along a branch have passed without an event.
 
 Beside its birth a branch is singular: multipliers, tangents and places of points are rounding there. So steps may go on
 behind it, on the mirror image of the branch, or on the branch of its parent, and no test says so. Then what tells the

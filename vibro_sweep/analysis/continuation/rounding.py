@@ -1,4 +1,4 @@
-"""By how much rounding moves the parameters of a point: what the inverse of the Jacobian makes of that of each row."""
+"""The error by rounding of the parameters of a point, from that of each row through the inverse of the Jacobian."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""What is known of a periodic orbit: impacts, itinerary, multipliers, stability, certified distance from the stops."""
+"""A periodic orbit: impacts, itinerary, multipliers, stability, certified distance from the stops."""
 
 import math
 from dataclasses import dataclass, field

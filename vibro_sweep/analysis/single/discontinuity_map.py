@@ -1,4 +1,4 @@
-"""The discontinuity mapping of the double grazing orbit, for a person at a prompt; its formulas are in the engine."""
+"""The discontinuity mapping of the double grazing orbit, for interactive use; its formulas are in the engine."""
 
 import numpy as np
 from numpy.typing import ArrayLike

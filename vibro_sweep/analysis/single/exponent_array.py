@@ -1,4 +1,4 @@
-"""Lyapunov exponents as an array that knows how far to trust it."""
+"""Lyapunov exponents as an array with their standard errors."""
 
 import numpy as np
 

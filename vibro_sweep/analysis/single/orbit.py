@@ -1,4 +1,4 @@
-"""One orbit, for a person at a prompt: `simulate` and `lyapunov`."""
+"""One orbit, for interactive use: `simulate` and `lyapunov`."""
 
 from __future__ import annotations  # help() says ArrayLike, and not all that this may be
 
