@@ -20,7 +20,7 @@ def folder(path):
 
 @pytest.fixture
 def scene(monkeypatch):
-    monkeypatch.setattr("vibro_sweep.driver.memory.BLOCK_BYTES", 100_000)  # some ten blocks
+    monkeypatch.setattr("vibro_sweep.driver.memory_needed.BLOCK_BYTES", 100_000)  # some ten blocks
     return parse_scene(TEXT, "the_scene.yaml")
 
 

@@ -39,7 +39,7 @@ def test_readers_of_a_running_run(scene, path):
         first, second, *_ = blocks.blocks(scene, 40)
         file.write(*compute.compute(first))
         before = part.read_bytes(), part.stat().st_mtime_ns
-        with vs.open(part) as data, plotting.result.Result(part) as result:
+        with vs.open(part) as data, plotting.sweep_result.Result(part) as result:
             assert np.count_nonzero(data["status"] != -1) == result.done.sum() == 40
             assert np.all(np.isnan(data["x1"][40:])) and np.all(data["status"][40:] == -1)
             file.write(*compute.compute(second))
