@@ -142,7 +142,7 @@ def test_a_curve_that_leaves_the_box_within_a_step_ends_there(symmetric_branch):
 
 
 def test_polynomials_stop_before_a_frequency_of_zero():
-    """There is no forcing period; a curve in a wide bounds ended with an error where they were fitted anew."""
+    """There is no forcing period; a curve in wide bounds ended with an error where they were fitted anew."""
     (plane,) = Oscillators(family_of(PAPER), NAMES, 2, Units(1.0, 1.0)).around((3.0, 0.55), (30.0, 1.0))
     assert 0 < BEYOND * plane["reach"][1] < 0.55
 
@@ -155,5 +155,5 @@ def test_an_impact_that_vanishes_on_a_virtual_stretch_is_left_out(monkeypatch):
     monkeypatch.setattr(solution_curve, "LONGEST_STEP", 2 * solution_curve.LONGEST_STEP)
     monkeypatch.setattr(solution_curve, "STRAIGHT", 2 * solution_curve.STRAIGHT)
     monkeypatch.setattr(curve_run, "FIRST_STEP", 2 * curve_run.FIRST_STEP)
-    curve = vs.bifurcation_curve(special, tuple(record["names"]), record["bounds"])
+    curve = vs.bifurcation_curve(special, tuple(record["names"]), record["box"])
     assert [one.type for one in curve.special] == ["boundary", "resonant_graze", "resonance_1_4"]

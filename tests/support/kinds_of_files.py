@@ -68,7 +68,7 @@ KINDS = {
     "curves": Kind(
         SYSTEM + CURVES,
         "branches",
-        (("branches: branches.h5, special: 1", "sweep: sweep.h5, largest: 4"), ("start: 5.85", "start: 5.4")),
+        (("branches: branches.h5, special: 1", "sweep: sweep.h5, largest: 4"), ("b: [5.85,", "b: [5.4,")),
     ),
 }
 RAGGED = ("windows", "branches", "curves")
