@@ -214,3 +214,15 @@ def test_what_is_refused(branch, tmp_path):
         vs.continue_orbit(family, "b", (3.9, 4.1)).save(tmp_path / "f.h5")
     with pytest.raises(ValueError, match="Family"):
         family.to_xarray()
+
+
+def test_a_sweep_without_windows(tmp_path):
+    """Its orbits rest on a stop after infinitely many impacts."""
+    swept = vs.sweep(SYSTEM, {"b": [0.03, 0.04]}, observe=["section"], transient=200, record=20, workers=1)
+    windows = vs.windows(swept, output=tmp_path / "w.h5")
+    windows.save(tmp_path / "saved.h5")
+    for name in ("w.h5", "saved.h5"):
+        again = vs.load(tmp_path / name)
+        assert len(again) == len(windows) == len(again.to_dataframe()) == 0
+        assert (again.reason == windows.reason).all() and again.reason.all()
+    check_html(windows)

@@ -16,7 +16,7 @@ For annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from vibro_sweep.driver import notices
+from vibro_sweep.model import notices
 
 __version__ = "0.2.0.dev0"
 

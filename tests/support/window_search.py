@@ -42,7 +42,7 @@ def swept(system, name, values, seed, folder):
 def at(window, value):
     """The orbit of a window at a value within it."""
     system = window._system.replace(**{window.parameter: float(value)})
-    return orbit_of(system, solution_in(window._flat, float(value), system))
+    return orbit_of(system, solution_in(window._arrays, float(value), system))
 
 
 def study(seed: int) -> Report:

@@ -5,7 +5,7 @@ import importlib.util
 import sys
 from collections.abc import Callable, Iterator
 
-from vibro_sweep.driver import notices
+from vibro_sweep.model import notices
 
 
 @contextlib.contextmanager

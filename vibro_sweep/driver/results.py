@@ -4,6 +4,7 @@ import io
 import json
 import math
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -80,7 +81,7 @@ def save(result: Saved, path: str | Path) -> Path:
 def held_by(result: Saved) -> Held:
     """Raises ValueError for what no file can hold."""
     if isinstance(result, Windows):
-        return Held(*result._held)
+        return Held(*result._held())
     system = result.special[0].orbit.system
     if isinstance(system, Family):
         raise ArgumentError("a result of a Family has no file: its numbers are those of a function")
@@ -206,5 +207,5 @@ def _windows(data: Contents, arrays: dict[str, np.ndarray], names: list[str]) ->
     title = str(data.attrs["title"]).removeprefix("vibro_sweep: ")
     attributes = {"sweep": data.attrs.get("sweep", ""), "parameter": names[0], "parameters": names}
     subject = Subject(WINDOWS, title, data.attrs["scene"], attributes)
-    result._held = subject, columns_of(WINDOWS, names, scene.system), arrays
+    result._held = partial(tuple, (subject, columns_of(WINDOWS, names, scene.system), arrays))
     return result

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import Executor
+from functools import partial
 from pathlib import Path
 from types import NoneType
 from typing import TYPE_CHECKING, Literal
@@ -78,7 +79,7 @@ def windows(
                 with workers_of(workers, None) as pool:
                     search = search_of(rows, NothingKept(), pool, tell)
             result = windows_of(search)
-            result._held = _subject(found, rows[0].parameter), *_contents(search)
+            result._held = partial(_held, _subject(found, rows[0].parameter), search)
             return result
 
 
@@ -144,6 +145,11 @@ def _subject(data: Contents, parameter: str) -> Subject:
     names = [parameter, *(str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"]) if name != parameter)]
     attributes = {"sweep": data.attrs.get("identity", ""), "parameter": parameter, "parameters": names}
     return Subject(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)
+
+
+def _held(subject: Subject, search: WindowSearch) -> tuple:
+    """What the file of the windows of a search holds."""
+    return subject, *_contents(search)
 
 
 def _contents(search: WindowSearch) -> tuple:

@@ -40,7 +40,8 @@ def joined(
     places = result["special_point"]
     result["special_point"] = np.where(places >= 0, places + np.repeat(first_point, specials), -1)
     result["special_branch"] = np.repeat(np.arange(len(all_arrays)), specials)
-    held = np.zeros((len(all_arrays), 0)) if others is None else np.reshape(others, (len(all_arrays), -1))
+    count = 0 if others is None else len(parameters) - 1
+    held = np.array(others or [], float).reshape(len(all_arrays), count)
     result["special_value"] = np.column_stack([result["special_value"], np.repeat(held, specials, axis=0)])
     values = np.column_stack([result.pop("value"), np.repeat(held, points, axis=0)])
     result |= dict(zip(parameters, values.T, strict=True))

@@ -1,5 +1,6 @@
 """`Window`, and the list of all windows of a sweep."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -83,7 +84,7 @@ class Windows(FileResult, list[Window]):
     unvisited: list[Unvisited]
     window: np.ndarray
     reason: np.ndarray
-    _held: tuple  # what its file holds (driver/results.py)
+    _held: Callable[[], tuple]  # gives what its file holds (driver/results.py)
 
     def __repr__(self) -> str:
         return window_text.of_windows(self)
