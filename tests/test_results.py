@@ -226,3 +226,20 @@ def test_a_sweep_without_windows(tmp_path):
         assert len(again) == len(windows) == len(again.to_dataframe()) == 0
         assert (again.reason == windows.reason).all() and again.reason.all()
     check_html(windows)
+
+
+@pytest.mark.parametrize("cut", [{"b": slice(6.4, 6.5)}, {"omega": 0.63}])
+def test_windows_of_a_part_of_a_sweep(cut, tmp_path):
+    """Of other shape than the sweep; a swept number of which one value is left is that of the windows."""
+    axes = {"b": [6.4, 6.45, 6.5, 6.55], "omega": [0.6, 0.63]}
+    swept = vs.sweep(SYSTEM, axes, observe=["section"], transient=800, record=200, workers=1)
+    windows = vs.windows(swept.sel(cut))
+    windows.save(tmp_path / "w.h5")
+    again = vs.load(tmp_path / "w.h5")
+    assert len(again) == len(windows) > 1 and (again.window == windows.window).all()
+    for one, other in zip(windows, again, strict=True):
+        assert one.orbit.system.omega == other.orbit.system.omega
+        same_specials([one.lower, one.upper], [other.lower, other.upper])
+        np.testing.assert_array_equal(one.orbit.multipliers, other.orbit.multipliers)
+    again.save(tmp_path / "again.h5")
+    assert vs.load(tmp_path / "again.h5").to_dataframe().equals(windows.to_dataframe())

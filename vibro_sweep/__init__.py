@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     from vibro_sweep.driver.any_file import open
     from vibro_sweep.driver.compute import RunError
     from vibro_sweep.driver.from_python import sweep
-    from vibro_sweep.driver.results import load
+    from vibro_sweep.driver.loaded_results import load
     from vibro_sweep.driver.run import run
     from vibro_sweep.driver.windows import windows
     from vibro_sweep.model.errors import VibroSweepError
@@ -90,7 +90,7 @@ else:
         "discontinuity_map": "analysis.single.discontinuity_map",
         "follow_branches": "analysis.branches.generations",
         "grazing": "model.grazing",
-        "load": "driver.results",
+        "load": "driver.loaded_results",
         "load_scene": "scene",
         "lyapunov": "analysis.single.orbit",
         "open": "driver.any_file",

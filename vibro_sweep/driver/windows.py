@@ -11,7 +11,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Arrays
 from vibro_sweep.analysis.windows.job import window_of
-from vibro_sweep.analysis.windows.rows import Contents, Row, check_data, chosen_key, rows_of
+from vibro_sweep.analysis.windows.rows import Contents, Row, check_data, chosen_key, rows_of, swept_in
 from vibro_sweep.analysis.windows.unvisited import unvisited_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.analysis.windows.window_search import WindowSearch
@@ -31,7 +31,7 @@ from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.joining import joined
 from vibro_sweep.store.pieces import Pieces, pieces
-from vibro_sweep.store.ragged_files import Subject
+from vibro_sweep.store.ragged_files import RaggedContents, Subject
 
 if TYPE_CHECKING:
     import xarray
@@ -79,7 +79,7 @@ def windows(
                 with workers_of(workers, None) as pool:
                     search = search_of(rows, NothingKept(), pool, tell)
             result = windows_of(search)
-            result._held = partial(_held, _subject(found, rows[0].parameter), search)
+            result._contents_of_file = partial(_contents_of_file, _subject(found, rows[0].parameter), search)
             return result
 
 
@@ -142,14 +142,16 @@ def rows_in(data: Contents, parameter: str | None) -> list[Row]:
 
 def _subject(data: Contents, parameter: str) -> Subject:
     title = str(data.attrs["title"]).removeprefix("vibro_sweep: ")
-    names = [parameter, *(str(name) for name in np.atleast_1d(data.attrs["sweep_dimensions"]) if name != parameter)]
+    swept = swept_in(data)
+    names = [parameter, *(name for name in swept if name != parameter)]
     attributes = {"sweep": data.attrs.get("identity", ""), "parameter": parameter, "parameters": names}
+    attributes["sweep_shape"] = np.array([*(data.sizes[name] for name in swept), data.sizes.get("start", 1)])
+    attributes |= data.chosen  # of a part of a Dataset: the values of numbers that were swept
     return Subject(WINDOWS, f"windows of {title}", data.attrs["scene"], attributes)
 
 
-def _held(subject: Subject, search: WindowSearch) -> tuple:
-    """What the file of the windows of a search holds."""
-    return subject, *_contents(search)
+def _contents_of_file(subject: Subject, search: WindowSearch) -> RaggedContents:
+    return RaggedContents(subject, *_contents(search))
 
 
 def _contents(search: WindowSearch) -> tuple:

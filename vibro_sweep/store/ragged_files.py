@@ -33,6 +33,14 @@ class Subject(NamedTuple):
     attributes: dict[str, Any]
 
 
+class RaggedContents(NamedTuple):
+    """All that a file holds."""
+
+    subject: Subject
+    columns: list[Column]
+    arrays: dict[str, np.ndarray]
+
+
 def image_of(
     subject: Subject, run_id: bytes, provenance: str, columns: list[Column], arrays: dict[str, np.ndarray]
 ) -> memoryview:

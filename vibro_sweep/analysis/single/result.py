@@ -45,7 +45,7 @@ class FileResult(Result):
 
     def to_xarray(self) -> "xarray.Dataset":
         """The Dataset that `vibro_sweep.open` gives of its file."""
-        from vibro_sweep.driver.results import dataset_of
+        from vibro_sweep.driver.saved_results import dataset_of
 
         return dataset_of(self)
 
@@ -61,7 +61,7 @@ class FileResult(Result):
         Raises ExistingFileError where there is a file, StoreError where none can be written, ValueError for what no
         file can hold: an orbit of a `Family`, and a curve of onsets of sticking.
         """
-        from vibro_sweep.driver.results import save
+        from vibro_sweep.driver.saved_results import save
 
         return save(self, path)
 

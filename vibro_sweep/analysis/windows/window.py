@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -84,7 +85,7 @@ class Windows(FileResult, list[Window]):
     unvisited: list[Unvisited]
     window: np.ndarray
     reason: np.ndarray
-    _held: Callable[[], tuple]  # gives what its file holds (driver/results.py)
+    _contents_of_file: Callable[[], Any]  # (driver/saved_results.py)
 
     def __repr__(self) -> str:
         return window_text.of_windows(self)

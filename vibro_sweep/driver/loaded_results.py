@@ -1,0 +1,119 @@
+"""`vibro_sweep.load`: what `.save` and scenes of branches and curves wrote, as objects again."""
+
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from vibro_sweep import store
+from vibro_sweep.analysis.branches import branch_arrays
+from vibro_sweep.analysis.branches.branch import Branch
+from vibro_sweep.analysis.curves import curve_arrays
+from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
+from vibro_sweep.analysis.periodic.orbit_file import load_orbit
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.windows.members import solution_in
+from vibro_sweep.analysis.windows.unvisited import Unvisited
+from vibro_sweep.analysis.windows.window import Window, Windows
+from vibro_sweep.driver.any_file import first_bytes
+from vibro_sweep.driver.saved_results import ONE, Saved
+from vibro_sweep.driver.source_file import computed_from
+from vibro_sweep.model.branch_file import CHART, SWEEP, WINDOWS, columns_of
+from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.model.files import checked_path
+from vibro_sweep.scene import parse_continuation, parse_scene
+from vibro_sweep.store import StoreError
+from vibro_sweep.store.arrays import Contents
+from vibro_sweep.store.joining import part_of
+from vibro_sweep.store.ragged_files import RaggedContents, Subject
+
+HDF5 = (b"\x89HDF", b"\x89vibro_sweep")  # with which such files, and the parts of runs, begin
+Arrays = dict[str, np.ndarray]
+Followed = Branch | BifurcationCurve
+
+
+def load(path: str | Path) -> PeriodicOrbit | Saved | list[Branch] | list[BifurcationCurve]:
+    """What `.save` wrote, a PeriodicOrbit, Branch, BifurcationCurve or Windows; of the file of a scene of branches or
+    curves a list of these.
+
+    Raises ValueError for a sweep, which `open` gives, and for a file that is none of these; StoreError for one that
+    cannot be read, or is damaged.
+    """
+    path = checked_path("path", path)
+    if not first_bytes(path).startswith(HDF5):
+        return load_orbit(path)
+    with computed_from(path), store.contents(path) as data:
+        try:
+            return _object_in(data)
+        except (KeyError, IndexError, TypeError, ArithmeticError) as error:  # an edited file, whose checksums hold
+            raise StoreError(f"{path} is damaged ({error})") from None
+
+
+def _object_in(data: Contents) -> Saved | list[Branch] | list[BifurcationCurve]:
+    """What a file of branches, curves or windows holds, all of it computed: what is wrong with a file is told now."""
+    kind = data.attrs.get("kind", SWEEP)
+    if kind == SWEEP:
+        raise ArgumentError("it holds a sweep, which `vibro_sweep.open` gives")
+    arrays = {name: data.values(name) for name in data.names}
+    if not np.isin(arrays["impact_side"], (1, -1)).all():
+        raise ArgumentError("it is damaged: `impact_side` has other stops than 1 and -1")
+    names = np.atleast_1d(data.attrs["parameters"]).tolist()
+    if kind == WINDOWS:
+        return _windows(data, arrays, names)
+    found = _each(data, arrays, names)
+    return found[0] if ONE in data.attrs and found else found
+
+
+def _each(data: Contents, arrays: Arrays, names: list[str]) -> list[Followed]:
+    """The branches or curves of a file."""
+    system = parse_continuation(data.attrs["scene"]).system
+    numbers = {name: value for name, value in system.numbers.items() if isinstance(value, float)}
+    system = system.replace(**{name: data.attrs.get(name, value) for name, value in numbers.items()})
+    of_curves = data.attrs["kind"] == CHART
+    result: list[Followed] = []
+    for i in range(len(arrays["branch_period"])):
+        own = part_of(arrays, (curve_arrays if of_curves else branch_arrays).SHAPES, names, i)
+        there = system.replace(**dict(zip(names, np.reshape(own["value"], (-1, len(names)))[0].tolist(), strict=True)))
+        if of_curves:
+            result.append(curve_arrays.curve_of(own, (names[0], names[1]), there))
+        else:
+            result.append(branch_arrays.branch_of(own, names[0], there))
+    return result
+
+
+def _windows(data: Contents, arrays: Arrays, names: list[str]) -> Windows:
+    """The windows of a file."""
+    system = parse_scene(data.attrs["scene"]).system
+    chosen = {name: data.attrs[name] for name in system.described if name in data.attrs and name not in names}
+    system, parameter = system.replace(**chosen), names[0]
+    result = Windows()
+    result.parameter = parameter
+    first = np.append(0, np.cumsum(arrays["branch_row_size"]))
+    for w, branch in enumerate(arrays["window_branch"].tolist()):
+        own = part_of(arrays, branch_arrays.SHAPES, names[:1], branch)
+        held = {name: float(arrays[name][first[branch]]) for name in names[1:]}
+        there = system.replace(**held | {parameter: float(own["value"][own["branch_origin"]])})
+        ends = (float(arrays[name][w]) for name in ("window_lo", "window_hi"))
+        counts = (int(arrays[name][w]) for name in ("window_orbits", "window_other_attractor"))
+        window = Window(parameter, *ends, held, *counts, own, there)
+        _ = window.lower, window.upper, window.orbit  # a damaged one is refused here
+        result.append(window)
+    shape = data.attrs["sweep_shape"]
+    result.window, result.reason = (arrays[name].reshape(shape) for name in ("orbit_window", "orbit_reason"))
+    result.unvisited = [_unvisited(arrays, u, result) for u in range(len(arrays["unvisited_window"]))]
+    about = ("sweep", "parameter", "sweep_shape", *chosen)
+    attributes = {name: data.attrs[name] for name in about} | {"parameters": names}
+    subject = Subject(WINDOWS, str(data.attrs["title"]).removeprefix("vibro_sweep: "), data.attrs["scene"], attributes)
+    result._contents_of_file = partial(RaggedContents, subject, columns_of(WINDOWS, names, system), arrays)
+    return result
+
+
+def _unvisited(arrays: Arrays, u: int, windows: Windows) -> Unvisited:
+    """A stretch of a window on which the sweep shows other attractors only."""
+    w = int(arrays["unvisited_window"][u])
+    lo, hi, values, at = (arrays[f"unvisited_{name}"][u].item() for name in ("lo", "hi", "values", "at"))
+    system = windows[w]._system.replace(**{windows.parameter: at})
+    orbit = PeriodicOrbit(system, "not_converged")
+    if np.isfinite(arrays["unvisited_x1"][u]):
+        orbit = orbit_of(system, solution_in(windows[w]._arrays, at, system))
+    return Unvisited(w, lo, hi, values, at, orbit)

@@ -1,0 +1,109 @@
+"""Branches, bifurcation curves and windows of Python as files: `.save` and `.to_xarray`."""
+
+import io
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import h5py
+import numpy as np
+
+from vibro_sweep.analysis.branches import branch_arrays
+from vibro_sweep.analysis.branches.branch import Branch
+from vibro_sweep.analysis.curves import curve_arrays
+from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
+from vibro_sweep.analysis.windows.window import Windows
+from vibro_sweep.driver.origins import Source, attributes_of
+from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.bifurcations import CURVES
+from vibro_sweep.model.branch_file import BRANCHES, CHART, columns_of
+from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.model.files import ExistingFileError, file_to_write
+from vibro_sweep.model.linear import Family
+from vibro_sweep.model.parameters import ParameterError
+from vibro_sweep.model.state import state
+from vibro_sweep.scene import Continuation
+from vibro_sweep.store.joining import joined
+from vibro_sweep.store.parts import new_run_id
+from vibro_sweep.store.pieces import pieces
+from vibro_sweep.store.ragged_files import RaggedContents, Subject, image_of
+
+if TYPE_CHECKING:
+    import xarray
+
+Saved = Branch | BifurcationCurve | Windows
+ONE = "saved"  # attribute of a file with a single branch or curve, which is not a list
+
+
+def dataset_of(result: Saved) -> "xarray.Dataset":
+    """The Dataset that `open` gives of the file of a result."""
+    from vibro_sweep.store import lazy
+
+    contents = contents_of_file(result)
+    image = image_of(contents.subject, new_run_id(), json.dumps(provenance()), contents.columns, contents.arrays)
+    with h5py.File(io.BytesIO(image)) as file:
+        return lazy.dataset_of(file).load()
+
+
+def save(result: Saved, path: str | Path) -> Path:
+    """Write the file of a result. Raises ExistingFileError, StoreError."""
+    path, contents = file_to_write("path", path), contents_of_file(result)
+    if path.exists():
+        raise ExistingFileError(path)
+    with pieces(contents.subject, path, "new", []) as file:
+        file.finish(provenance(), contents.columns, contents.arrays)
+    return path
+
+
+def contents_of_file(result: Saved) -> RaggedContents:
+    """Raises ValueError for what no file can hold."""
+    if isinstance(result, Windows):
+        return result._contents_of_file()
+    system = result.special[0].orbit.system
+    if isinstance(system, Family):
+        raise ArgumentError("a result of a Family has no file: its numbers are those of a function")
+    names = [result.parameter] if isinstance(result, Branch) else list(result.parameters)
+    none = {"branch_parent": np.array([-1]), "branch_parent_special": np.array([-1]), "branch_generation": np.zeros(1)}
+    if isinstance(result, BifurcationCurve):
+        if result.type not in CURVES:
+            raise ArgumentError("a curve of onsets of sticking has no file: its orbits have no finite list of impacts")
+        arrays, kind, shapes, more = curve_arrays.arrays_of(result), CHART, curve_arrays.SHAPES, {}
+    else:
+        arrays = branch_arrays.arrays_of(result, result._start.family.numbers[result.parameter])
+        kind, shapes = BRANCHES, branch_arrays.SHAPES
+        sections = branch_arrays.sections_of(arrays, result.parameter, system)
+        more = {f"section_{one}": sections[..., i].ravel() for i, one in enumerate(state(system.masses))}
+        more["branch_sections"] = np.array([sections.shape[1]])
+    scene = _scene_of(arrays, names, system)
+    attributes = attributes_of(scene, Source(scene.system, "")) | {ONE: type(result).__name__}
+    subject = Subject(kind, f"{type(result).__name__} in {', '.join(names)}", scene.to_yaml(), attributes)
+    return RaggedContents(
+        subject, columns_of(kind, names, system), joined([arrays], shapes, names, system.masses) | none | more
+    )
+
+
+def _scene_of(arrays: dict[str, np.ndarray], names: Sequence[str], system: AnyOscillator) -> Continuation:
+    """The scene that follows the same orbits from the state of one of them."""
+    value = np.reshape(arrays["value"], (-1, len(names)))
+    at = int(arrays.get("branch_origin", len(value) // 2))
+    there = system.replace(**dict(zip(names, value[at].tolist(), strict=True)))
+    bounds = {name: _range(there, name, one) for name, one in zip(names, value.T, strict=True)}
+    begin = tuple(arrays["state"][at].tolist())
+    period = int(arrays["branch_period"])
+    return Continuation("result", "", there, "state", begin, period, None, None, bounds, CURVES, (), 0)
+
+
+def _range(system: AnyOscillator, name: str, values: np.ndarray) -> tuple[float, float]:
+    """The least and the largest value, which a scene has apart: of equal ones a neighbour that is allowed is added."""
+    lo, hi = float(values.min()), float(values.max())
+    if lo < hi:
+        return lo, hi
+    below, above = math.nextafter(lo, -math.inf), math.nextafter(hi, math.inf)
+    try:
+        system.replace(**{name: below})
+    except ParameterError:
+        return lo, above
+    return below, hi
