@@ -17,6 +17,16 @@ def open(path: str | Path) -> "xarray.Dataset":  # the name that users of xarray
     A file is read through once, for its checksums. Raises StoreError for a file that is none of ours, and for a damaged
     one: it names the datasets. Of a missing file the StoreError is a FileNotFoundError too. A file that xarray or
     another program wrote from one of this program is opened too, with a warning in the log: it has no checksums.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> data = vs.sweep(system, {"b": [3.0, 4.0]}, transient=200, record=10, output="two.h5")
+    >>> data.close()
+    >>> with vs.open("two.h5") as data:
+    ...     print(data.attrs["kind"], data.period.values)
+    sweep [1 1]
     """
     place = checked_path("path", path)
     if first_bytes(place).lstrip()[:1] == b"{":  # the JSON of an orbit

@@ -60,7 +60,7 @@ class Block(NamedTuple):
         """Place of each point in the sweep, of the box's shape."""
         if not self.shape:
             return np.zeros((), np.int64)
-        ranges = (np.arange(part.start, part.stop) for part in self.box[: len(self.shape)])
+        ranges = (np.arange(part.start, part.stop, part.step or 1) for part in self.box[: len(self.shape)])
         return np.ravel_multi_index(np.ix_(*ranges), self.shape)
 
     def __str__(self) -> str:

@@ -94,7 +94,7 @@ def cluster(address: str) -> Iterator[Executor]:
     if not (address.startswith("tls://") or _is_loopback(host)):
         _log.warning(
             "the scheduler %s is reached without TLS: whoever can reach it or a worker can run programs there, "
-            "so the network must be closed (docs/cluster.md)",
+            "so the network must be closed (docs/how/cluster.md)",
             address,
         )
     with _callbacks_filtered(), _closing(client):

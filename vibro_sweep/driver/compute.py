@@ -26,7 +26,14 @@ from vibro_sweep.model.state import state
 
 
 class RunError(VibroSweepError, RuntimeError):
-    """A run that cannot go on. What it has computed is in the file, and `resume` continues it."""
+    """A run that cannot go on. What it has computed is in the file, and `resume` continues it.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> issubclass(vs.RunError, vs.VibroSweepError)
+    True
+    """
 
     internal = False
 
@@ -79,7 +86,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
         steps = table.reshape(1, -1)
         if n_starts > 1:
             steps = np.repeat(steps, n_starts, axis=1)
-    record = plan.record if "x1" in block.wanted else 0
+    record = plan.record if _has_sections(block) else 0
     arrays = {
         "results": new_results(steps.shape, kind.masses),
         "sections": np.full((*steps.shape, record, states), np.nan),
@@ -145,11 +152,15 @@ def _attractors(results: np.ndarray, lead: tuple[int, ...]) -> dict[str, np.ndar
     return {"attractor": label.reshape(lead), "share": share.reshape(lead), "attractor_id": unknown}
 
 
+def _has_sections(block: Block) -> bool:
+    return not block.wanted.isdisjoint({*state(block.system.masses), GAP})
+
+
 def _by_name(block: Block, arrays: dict[str, np.ndarray], lead: tuple[int, ...]) -> dict[str, np.ndarray]:
     """The kernels' arrays as the file's datasets; lead: shape of the box, and of its starts if there are several."""
     results, sections, phases, running = arrays.values()
     named = {name: results[name].reshape(lead + results[name].shape[2:]) for name in results.dtype.names}
-    if "x1" in block.wanted:
+    if _has_sections(block):
         named |= {
             name: sections[..., i].reshape(lead + sections.shape[2:3])
             for i, name in enumerate(state(block.system.masses))

@@ -36,6 +36,17 @@ class Estimate:
         kernels and measuring orbits, and the writing of its file
     alone : the same if the machine did nothing else
     compiling : seconds for which the estimate itself had to compile kernels; they are kept, and no run needs them again
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> text = "{system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}, "
+    >>> text += "sweep: {b: {start: 6.4, stop: 6.6, num: 3}}, orbit: {transient: 100, record: 50}}"
+    >>> with open("cost.yaml", "w") as file:
+    ...     _ = file.write(text)
+    >>> cost = vs.load_scene("cost.yaml").estimate()
+    >>> cost.orbits, cost.periods, cost.seconds > 0
+    (3, 450, True)
     """
 
     points: int

@@ -70,6 +70,17 @@ def sweep(
 
     Outcomes of points are in `status`. Raises TypeError where `system` is not a System, `SceneError` for what is no
     scene, ValueError for more results than go without a file, and what `run` raises.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> data = vs.sweep(system, {"b": np.linspace(3, 4.4, 8)}, transient=500, record=100)
+    >>> data.period.values
+    array([1, 1, 1, 1, 1, 1, 1, 0])
+    >>> bool(data.lyapunov.sel(b=4.2, exponent=1, method="nearest") < 0)
+    True
     """
     built, first = None, {}
     check_type("axes", axes, Mapping, "a mapping from names to values")

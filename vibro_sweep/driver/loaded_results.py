@@ -38,6 +38,14 @@ def load(path: str | Path) -> PeriodicOrbit | Saved | list[Branch] | list[Bifurc
 
     Raises ValueError for a sweep, which `open` gives, and for a file that is none of these; StoreError for one that
     cannot be read, or is damaged.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> path = vs.periodic_orbit(system, itinerary="R").save("orbit.json")
+    >>> vs.load(path).itinerary
+    'R'
     """
     path = checked_path("path", path)
     if not first_bytes(path).startswith(HDF5):

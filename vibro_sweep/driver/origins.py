@@ -19,7 +19,7 @@ from vibro_sweep.analysis.curves.curve_run import CurvePoint
 from vibro_sweep.analysis.curves.curve_switching import switch as curves_through
 from vibro_sweep.analysis.periodic.finding import periodic_orbit
 from vibro_sweep.analysis.periodic.lcp import born_at_grazing
-from vibro_sweep.analysis.periodic.periodic_orbit import STATUS, PeriodicOrbit, orbit_of
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.rows import Row
 from vibro_sweep.analysis.windows.window_search import RowWindow, WindowSearch
@@ -28,6 +28,7 @@ from vibro_sweep.driver.windows import rows_in, search_of
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.bifurcations import CURVES, WAYS
 from vibro_sweep.model.branch_file import CHART, SWEEP, WINDOWS
+from vibro_sweep.model.outcomes import ORBITS
 from vibro_sweep.model.refusals import cut, shown
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.store.arrays import Contents
@@ -156,7 +157,7 @@ def _chosen(scene: Continuation, search: WindowSearch) -> list[RowWindow]:
 
 def _one(orbit: PeriodicOrbit, scene: Continuation) -> PeriodicOrbit:
     if not orbit.ok:
-        raise NoOrbitError(f"continue.from.{scene.origin}: no orbit was found; {STATUS[orbit.status]}")
+        raise NoOrbitError(f"continue.from.{scene.origin}: no orbit was found; {ORBITS[orbit.status].text}")
     return orbit
 
 

@@ -1,17 +1,21 @@
 """The progress bar: orbits done, their rate and the time left, whatever computes them."""
 
 import contextlib
-import importlib.util
 import sys
 from collections.abc import Callable, Iterator
 
+from vibro_sweep.driver.notebook_bar import notebook_bar
 from vibro_sweep.model import notices
 
 
 @contextlib.contextmanager
 def progress_bar(total: int, quiet: bool):
     """A callable (done, total) that draws on a terminal or in a notebook; None where neither is there."""
-    if quiet or not (sys.stderr.isatty() or _in_notebook()):
+    if not quiet and _in_notebook():
+        with notebook_bar() as show:
+            yield show
+        return
+    if quiet or not sys.stderr.isatty():
         yield None
         return
     from rich.console import Console  # slow to import
@@ -37,9 +41,8 @@ def progress_bar(total: int, quiet: bool):
 
 
 def _in_notebook() -> bool:
-    """Whether this is one that can draw a bar: rich does it with ipywidgets."""
     shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
-    return type(shell).__name__ == "ZMQInteractiveShell" and importlib.util.find_spec("ipywidgets") is not None
+    return type(shell).__name__ == "ZMQInteractiveShell"
 
 
 @contextlib.contextmanager

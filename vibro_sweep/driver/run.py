@@ -9,8 +9,7 @@ from typing import Literal
 import numpy as np
 
 from vibro_sweep.driver.progress import given_or_bar
-from vibro_sweep.driver.run_branches import run_branches
-from vibro_sweep.driver.run_curves import run_curves
+from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.driver.sweep import RunReport, check_how, run_sweep
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.bifurcations import CODIMENSION_TWO, TYPES
@@ -42,7 +41,7 @@ def run(
         `executor` that does not say how many it has, its workers
     executor : any `concurrent.futures.Executor` instead
     progress : called as progress(done, total) in orbits, branches or curves, from this thread; left out: a bar on a
-        terminal, unless the level of the logger `vibro_sweep` is WARNING
+        terminal or in a notebook, unless the level of the logger `vibro_sweep` is WARNING
     mode : "new" (nothing that exists is replaced), "resume" (continue `output`.part where it stopped) or "overwrite"
 
     An `output` that is complete, and made by the same scene and code, is left as it is: the report is that of its run.
@@ -50,15 +49,25 @@ def run(
     under way, whatever the size of the sweep. Raises `StoreError` for a file that is in the way or does not fit the
     scene, ValueError for a number of workers that cannot be and where a scene's first orbit does not exist, TypeError
     for arguments of other kinds, RunError where workers fail, and lets KeyboardInterrupt through once the file is safe.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> text = "{system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}, "
+    >>> text += "sweep: {b: {values: [3, 4]}}, orbit: {transient: 300, record: 50}}"
+    >>> with open("run.yaml", "w") as file:
+    ...     _ = file.write(text)
+    >>> report = vs.run(vs.load_scene("run.yaml"), "run.h5")
+    >>> report.points, report.bad, report.statuses
+    (2, 0, {'ok': 2})
     """
     check_type("scene", scene, (Scene, Continuation), "a Scene or a Continuation, as `load_scene` returns it")
     output = file_to_write("output", output)
     check_how(workers, executor, progress, mode)
     if isinstance(scene, Scene):
         return run_sweep(scene, output, workers, executor, progress, mode)
-    follow = run_branches if len(scene.parameter) == 1 else run_curves
     with given_or_bar(progress, 0) as tell:
-        computed = follow(scene, output, workers, executor, tell, mode)
+        computed = run_continuation(scene, output, workers, executor, tell, mode)
     return _report(output, computed)
 
 

@@ -1,7 +1,6 @@
 """Branches, bifurcation curves and windows of Python as files: `.save` and `.to_xarray`."""
 
 import io
-import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -29,7 +28,7 @@ from vibro_sweep.scene import Continuation
 from vibro_sweep.store.joining import joined
 from vibro_sweep.store.parts import new_run_id
 from vibro_sweep.store.pieces import pieces
-from vibro_sweep.store.ragged_files import RaggedContents, Subject, image_of
+from vibro_sweep.store.ragged_files import RaggedContents, Subject, ragged_image
 
 if TYPE_CHECKING:
     import xarray
@@ -43,7 +42,7 @@ def dataset_of(result: Saved) -> "xarray.Dataset":
     from vibro_sweep.store import lazy
 
     contents = contents_of_file(result)
-    image = image_of(contents.subject, new_run_id(), json.dumps(provenance()), contents.columns, contents.arrays)
+    image = ragged_image(contents.subject, new_run_id(), provenance(), contents.columns, contents.arrays)
     with h5py.File(io.BytesIO(image)) as file:
         return lazy.dataset_of(file).load()
 

@@ -56,6 +56,18 @@ class RunReport:
     computed : points that this call has computed, 0 where the file was complete already
 
     Reports of equal files are equal.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> text = "{system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}, "
+    >>> text += "sweep: {b: {values: [3, 4]}}, orbit: {transient: 300, record: 50}}"
+    >>> with open("report.yaml", "w") as file:
+    ...     _ = file.write(text)
+    >>> scene = vs.load_scene("report.yaml")
+    >>> report, again = vs.run(scene, "report.h5"), vs.run(scene, "report.h5")
+    >>> report.computed, again.computed, report == again
+    (2, 0, True)
     """
 
     points: int
@@ -75,8 +87,13 @@ def run_sweep(
 ) -> RunReport:
     """Compute a sweep and write its file; arguments and errors as of `run`."""
     began = time.perf_counter()
+    total = scene.n_points
     with store.writer(scene, output, mode) as file:
-        total, done = scene.n_points, file.done()
+        if isinstance(file, store.Complete):
+            if progress:
+                progress(total, total)
+            return _report(total, *file, 0)
+        done = file.done()
         missing = total - done
         with given_or_bar(progress, total) as tell:
             if tell:
@@ -88,12 +105,16 @@ def run_sweep(
                         done += arrays["status"].size
                         if tell:
                             tell(min(done, total), total)
-        seconds = file.seconds if isinstance(file, store.Complete) else round(time.perf_counter() - began, 3)
+        seconds = round(time.perf_counter() - began, 3)
         threads = (workers or available_cores()) if executor is None else None
         statuses = file.finish(_made(scene, threads, executor, seconds), partial(_complete, scene))
+    return _report(total, statuses, seconds, missing)
+
+
+def _report(total: int, statuses: dict[int, int], seconds: float, computed: int) -> RunReport:
     bad = sum(number for code, number in statuses.items() if code not in VALID)
     named = {meaning(code): number for code, number in statuses.items()}
-    return RunReport(total, bad, named, seconds, missing)
+    return RunReport(total, bad, named, seconds, computed)
 
 
 def check_how(workers, executor, progress, mode) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from vibro_sweep import store
 from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Arrays
 from vibro_sweep.analysis.windows.job import window_of
 from vibro_sweep.analysis.windows.rows import Contents, Row, check_data, chosen_key, rows_of, swept_in
@@ -54,7 +55,7 @@ def windows(
         a plane each row by itself
     output : the HDF5 file of the windows, if there is to be one; it does not depend on workers or interruptions
     workers : processes, by default one
-    progress : called as progress(done, total) in orbits of the sweep; left out: a bar on a terminal
+    progress : called as progress(done, total) in orbits of the sweep; left out: a bar on a terminal or in a notebook
     mode : of `output`, as of `run`
 
     Returns a list of windows with .lo, .hi, .lower, .upper (special points), .period, .itinerary, .symmetric and
@@ -64,6 +65,15 @@ def windows(
 
     Raises StoreError for a file that cannot be read or is in the way, ValueError for a sweep that has no windows to
     look for, and what `run` raises.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> data = vs.sweep(system, {"b": np.linspace(3, 4.4, 8)}, transient=500, record=100)
+    >>> [(one.itinerary, round(one.hi, 6), one.upper.type) for one in vs.windows(data)]
+    [('LR', 3.892819, 'pitchfork'), ('R', 4.347418, 'neimark_sacker')]
     """
     check_type("parameter", parameter, (str, NoneType), "the name of a swept number, or None")
     check_how(workers, None, progress, mode)
@@ -99,7 +109,7 @@ def run_windows(
     with contents_of(data) as found:
         rows = rows_in(found, parameter)
         with pieces(_subject(found, rows[0].parameter), output, mode, inputs) as file:
-            if file.complete:
+            if isinstance(file, store.Complete):
                 return None
             with workers_of(workers, executor) as pool:
                 search = search_of(rows, file, pool, progress)

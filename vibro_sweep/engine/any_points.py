@@ -21,9 +21,10 @@ from vibro_sweep.model.contact import (
 from vibro_sweep.model.exact import exact_motion
 from vibro_sweep.model.exponentials import gap_exponentials
 from vibro_sweep.model.frame import frame_of
-from vibro_sweep.model.linear import Linear, gap_response
+from vibro_sweep.model.linear import Linear, gap_response, remembered
 from vibro_sweep.model.sensitivity import grazing_state
 
+MOTION = ("M", "K", "C", "normal", "sine", "cosine", "constant", "omega", "tau", "middle")  # all but the stops and R
 APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits
 
 
@@ -39,8 +40,7 @@ def any_points(linears: np.ndarray, kind: Kind, frames: bool = True) -> np.ndarr
     known, result = {}, np.zeros(linears.shape, point_of(kind))
     for place in np.ndindex(linears.shape):
         q = linears[place]
-        motion = (q.M, q.K, q.C, q.normal, q.sine, q.cosine, q.constant, q.omega, q.tau, q.middle)
-        key = b"".join(np.asarray(value, float).tobytes() for value in motion)
+        key = b"".join(np.asarray(getattr(q, name), float).tobytes() for name in MOTION)
         if key not in known:
             known[key] = _point(q, kind, frames)
         result[place] = known[key]
@@ -64,6 +64,7 @@ def grazing_points(linears: np.ndarray, expand_at: float | None) -> np.ndarray:
     return result
 
 
+@remembered(*MOTION, most=2048)  # a live page asks for the same points again while a stop or R moves
 def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
     point = np.zeros((), point_of(kind))
     contact = contact_coordinates(q)

@@ -25,7 +25,9 @@ IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float)
 
 def impact_of(masses: int) -> np.dtype:
     """The record of impacts of oscillators that are not a System."""
-    return np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x", float, masses), ("xdot", float, masses)])
+    return np.dtype(
+        [("t", float), ("side", np.int8), ("v1", float), ("x", float, (masses,)), ("xdot", float, (masses,))]
+    )
 
 
 STICKING = np.dtype([("t_on", float), ("t_off", float), ("side", np.int8)])

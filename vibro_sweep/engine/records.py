@@ -54,24 +54,24 @@ def point_of(kind: Kind) -> np.dtype:
                 float,
                 (n, 2 * n + 3),
             ),  # q'' as a function of (q, q', sin, cos, 1) while a stop holds the gap
-            ("push", float, n),  # what an impulse on the gap does to q'
+            ("push", float, (n,)),  # what an impulse on the gap does to q'
             ("turned", np.bool_),  # states are others than those of the masses
             ("P", float, (n, n)),
             ("back", float, (n, n)),
-            ("origin", float, n),  # x0
-            ("graze", float, 2 * n),  # the point at which the discontinuity mapping is expanded
-            ("steady", float, 2 * n),  # of model/confinement.py, as far as
+            ("origin", float, (n,)),  # x0
+            ("graze", float, (2 * n,)),  # the point at which the discontinuity mapping is expanded
+            ("steady", float, (2 * n,)),  # of model/confinement.py, as far as
             ("middle", float),
             ("swing", float),
             ("confining", float, (2 * n, 2 * n)),  # here
             ("valid", np.bool_),  # of model/exponentials.py, for a stiff system:
             ("root", float, (2 * n + 3, 2)),  # real and imaginary parts
             ("part", float, (2 * n + 1, 2 * n + 3, 2)),
-            ("begin", float, 2 * n),
+            ("begin", float, (2 * n,)),
             ("rounding", float),  # how far rounding may have moved the real part of a root
-            ("frame_eta", float, n),  # of tangent vectors (model/frame.py)
-            ("frame_square", float, n),
-            ("frame_scale", float, n),
+            ("frame_eta", float, (n,)),  # of tangent vectors (model/frame.py)
+            ("frame_square", float, (n,)),
+            ("frame_scale", float, (n,)),
             ("to_frame", float, (2 * n, 2 * n)),
             ("from_frame", float, (2 * n, 2 * n)),
         ]
@@ -87,9 +87,13 @@ def result_of(masses: int) -> np.dtype:
     return np.dtype(
         [
             *fields,
-            ("log_multiplier", float, 2 * masses),  # logarithm of the modulus: of multipliers that floats cannot hold
-            ("log_error", float, 2 * masses),  # too; and its error
-            ("end", float, 2 * masses),  # the state at the last section, and
+            (
+                "log_multiplier",
+                float,
+                (2 * masses,),
+            ),  # logarithm of the modulus: of multipliers that floats cannot hold
+            ("log_error", float, (2 * masses,)),  # too; and its error
+            ("end", float, (2 * masses,)),  # the state at the last section, and
             ("resting", float),  # the side of the stop that M1 rests on there, or 0
         ]
     )

@@ -37,6 +37,17 @@ class Continuation:
     parameter : name -> (lo, hi) of the number that changes, or of two in the order of the text
     of : types of the curves in two numbers
     follow, depth : special points from which other branches are followed, and how far
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> text = "{system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 4}, "
+    >>> text += "continue: {from: {itinerary: R}, parameter: {b: [3, 4.5]}}}"
+    >>> with open("branch.yaml", "w") as file:
+    ...     _ = file.write(text)
+    >>> scene = vs.load_scene("branch.yaml")
+    >>> scene.origin, scene.begin, scene.parameter
+    ('itinerary', 'R', {'b': (3.0, 4.5)})
     """
 
     name: str

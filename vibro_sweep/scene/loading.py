@@ -14,6 +14,17 @@ def load_scene(path: str | Path) -> Scene | Continuation:
 
     Raises SceneError for what is wrong with it, and an OSError that is a ValueError too where the file cannot be read;
     of a missing file it is a FileNotFoundError.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> text = "{system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}, "
+    >>> text += "sweep: {b: {start: 6.4, stop: 6.6, num: 3}}, orbit: {transient: 100, record: 50}}"
+    >>> with open("three.yaml", "w") as file:
+    ...     _ = file.write(text)
+    >>> scene = vs.load_scene("three.yaml")
+    >>> scene.sweep["b"].tolist(), scene.n_points
+    ([6.4, 6.5, 6.6], 3)
     """
     text, name = text_of(path)
     try:

@@ -27,7 +27,19 @@ _YAML_WORDS = {"NaN": ".nan", "Infinity": ".inf", "-Infinity": "-.inf"}
 
 
 class SceneError(VibroSweepError, ValueError):
-    """A scene that cannot be computed; `problems` holds one line for each thing that is wrong with it."""
+    """A scene that cannot be computed; `problems` holds one line for each thing that is wrong with it.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> with open("scene.yaml", "w") as file:
+    ...     _ = file.write("system: {mu_m: 10}")
+    >>> try:
+    ...     vs.load_scene("scene.yaml")
+    ... except vs.SceneError as error:
+    ...     print(error.problems)
+    ('orbit: missing; it must be given',)
+    """
 
     def __init__(self, name: str, problems: list[str]):
         self.name, self.problems = name, tuple(problems)

@@ -35,7 +35,17 @@ _ABOUT = ("name", "given", "source")  # fields that say nothing of what is compu
 
 @dataclass(frozen=True)
 class Section:
-    """`kind`: "phase" (t = 0 mod T) | "impact" (just before each impact on `stop`: "right" | "left")."""
+    """Where an orbit becomes points.
+
+    kind : "phase", at t = 0 mod T; or "impact", just before each impact on one stop
+    stop : of "impact", "right" or "left"
+
+    Examples
+    --------
+    >>> from vibro_sweep.types import Section
+    >>> Section("impact", "left")
+    Section(kind='impact', stop='left')
+    """
 
     kind: str = "phase"
     stop: str = "right"
@@ -43,7 +53,17 @@ class Section:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """The continuous orbit after the last section point: `samples` times over `periods` forcing periods."""
+    """The continuous orbit after the last section point: `samples` times over `periods` forcing periods.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> from vibro_sweep.types import Trajectory
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> data = vs.sweep(system, {"b": [4.0]}, trajectory=Trajectory(2, 201), transient=300, record=10)
+    >>> data.trajectory_x1.shape
+    (1, 201)
+    """
 
     periods: int
     samples: int
@@ -51,23 +71,43 @@ class Trajectory:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Scene:
-    """A scene: what to compute. `system` is the base; at each point of the sweep the swept numbers replace its own."""
+    """A scene: what to compute. `system` is the base; at each point of the sweep the swept numbers replace its own.
+
+    dynamics : "flow", or "map" with its `order` and the clearance `expand_at` at which it is expanded; None: b*
+    sweep : name -> (n,) values, of none, one or two numbers in the order of the file's dimensions
+    start, section, trajectory : as `Start`, `Section` and `Trajectory` say
+    transient, record : forcing periods
+    observe : words of what is computed
+    picture : kind that is drawn by default
+    source : the file that it was read from
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> text = "{system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}, "
+    >>> text += "sweep: {b: {values: [3, 4]}}, orbit: {transient: 300, record: 50}}"
+    >>> with open("scene.yaml", "w") as file:
+    ...     _ = file.write(text)
+    >>> scene = vs.load_scene("scene.yaml")
+    >>> scene.record, scene.shape, scene.replace(record=100).record
+    (50, (2,), 100)
+    """
 
     name: str
     given: str | None  # the YAML text that it was read from
     system: AnyOscillator
     dynamics: str
-    order: int  # of the map
-    expand_at: float | None  # clearance at which the map is expanded; None: b*
-    sweep: dict[str, np.ndarray]  # 0, 1 or 2 in the order of the file's dimensions; of the start: start_x1, ...
+    order: int
+    expand_at: float | None
+    sweep: dict[str, np.ndarray]  # of the start: start_x1, ...
     start: Start
-    transient: int  # forcing periods
-    record: int  # forcing periods
+    transient: int
+    record: int
     section: Section
     observe: frozenset[str]
     trajectory: Trajectory | None
-    picture: str | None = None  # kind that is drawn by default
-    source: Path | None = None  # the file that it was read from
+    picture: str | None = None
+    source: Path | None = None
 
     @cached_property
     def text(self) -> str:
@@ -122,6 +162,7 @@ class Scene:
 
     @property
     def sweep_shape(self) -> tuple[int, ...]:
+        """The number of values of each swept number; () for one orbit."""
         return tuple(len(values) for values in self.sweep.values())
 
     @property

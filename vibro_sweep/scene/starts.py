@@ -15,15 +15,30 @@ from .problems import problem
 
 @dataclass(frozen=True)
 class Start:
-    """The states of orbits at t = 0. `kind`: "state" | "random" | "follow"."""
+    """The states of orbits at t = 0.
+
+    kind : "state", "random" or "follow"
+    state : (2N,), x1 v1 .. xN vN; of a `follow` that of its first point
+    count, seed : of random starts, how many at each point, and the seed
+    direction : of a `follow`, "up", "down" or "both"
+    rest : nothing is said of the state: at rest, and where zero is behind a stop held by that. A state of zeros that is
+        said is never behind one
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> from vibro_sweep.types import Start
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> data = vs.sweep(system, {"b": [3.5, 3.8]}, start=Start("random", count=3), transient=300, record=20)
+    >>> dict(data.period.sizes)
+    {'b': 2, 'start': 3}
+    """
 
     kind: str = "state"
-    state: tuple[float, ...] = ()  # (x1, v1, ..., xN, vN); of a `follow`: of its first point
-    count: int = 1  # random starts at each point
+    state: tuple[float, ...] = ()
+    count: int = 1
     seed: int = 0
-    direction: str | None = None  # of a `follow`: "up" | "down" | "both"
-    # Nothing is said of the state: at rest, and where zero is behind a stop held by that. A state of zeros that is said
-    # is never behind one.
+    direction: str | None = None
     rest: bool = field(default=False, compare=False)
 
 

@@ -9,9 +9,11 @@ import errno
 import os
 import shutil
 import time
+from collections.abc import Mapping
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
+import numpy as np
 import portalocker
 
 from vibro_sweep.store import parts
@@ -49,13 +51,14 @@ class LockedPart:
         self.head, self._end = head, end
         self.file.truncate(end)
 
-    def append(self, text: dict, data: list[memoryview]) -> None:
+    def append(self, key: Any, arrays: Mapping[str, np.ndarray]) -> None:
         """A record: once this returns, a kill does not lose it."""
         if not _stands(self.path, self.file):
             raise RemovedError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(self.path))
         if parts.size(self.file) != self._end:
             raise ChangedError(errno.EBUSY, "another program has changed it", os.fspath(self.path))
-        self._write(parts.record(self.head.run_id, text, data))
+        data = [memoryview(np.ascontiguousarray(one).reshape(-1).view(np.uint8)) for one in arrays.values()]
+        self._write(parts.record(self.head.run_id, parts.text_of(key, arrays), data))
         if time.monotonic() - self._synced > SYNC_SECONDS:
             os.fsync(self.file.fileno())
             self._synced = time.monotonic()

@@ -1,20 +1,24 @@
-"""Beginning to write a file: anew, where a run was interrupted, or to mend what is damaged; one run at a time."""
+"""Beginning to write a file: anew, where a run was interrupted, or to mend what is damaged; one run at a time.
+
+All questions to whom a file or a part belongs are asked here, for files of every kind.
+"""
 
 import contextlib
 import json
 import shutil
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import h5py
 
 from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import appending, checks, layout, names, parts
 from vibro_sweep.store.appending import LockedPart
 from vibro_sweep.store.attributes import text
 from vibro_sweep.store.creating import skeleton_of
-from vibro_sweep.store.done import Done, in_order_of_blocks
 from vibro_sweep.store.image import Index, frame_of
 from vibro_sweep.store.names import Stamp
 from vibro_sweep.store.opening import (
@@ -26,35 +30,80 @@ from vibro_sweep.store.opening import (
     quantities_of,
     skeleton,
 )
-from vibro_sweep.store.parts import Head, PartError
+from vibro_sweep.store.parts import PartError
 from vibro_sweep.store.writing import Complete, Writer, said, unfinished
 
 MODES = ("new", "resume", "overwrite")
 NO_DATA = (".png", ".svg", ".pdf", ".yaml", ".yml")  # endings of other files of this program
 
 
+class Run(NamedTuple):
+    """A run of any kind.
+
+    check : check(file, path) raises StoreError for a file, or part, of another subject
+    lacking : lacking(file, path) is what `resume` computes again of a file, in words; empty where nothing is
+    skeleton : the bytes with which the part begins, of a run id
+    size : bytes of the file, as far as known before
+    inputs : files that the run reads, which it must not write
+    """
+
+    check: Callable[[h5py.File, Path], None]
+    lacking: Callable[[h5py.File, Path], str]
+    skeleton: Callable[[bytes], memoryview]
+    size: int
+    inputs: Collection[Path]
+
+
 @contextlib.contextmanager
-def writer(scene: Scene, path: Path, mode: str) -> Iterator[Writer | Complete]:
-    """The `Writer` of a scene's file; `mode` is "new", "resume" or "overwrite". Raises StoreError."""
-    part = check_outputs(path, mode, scene.inputs)
+def begun(run: Run, path: Path, mode: str) -> Iterator[LockedPart | Complete]:
+    """The part of a run, begun or ready to be continued; `Complete` where the file is there, and whole."""
+    part = check_outputs(path, mode, run.inputs)
     with contextlib.ExitStack() as stack:
         try:
-            if mode == "new" and names.stamp(path):
-                result = _finished(scene, path)
-            elif mode == "resume" and names.stamp(path) and not names.stamp(part):
-                result = _of_complete(scene, path, part, stack)
-            else:
-                locked = stack.enter_context(contextlib.closing(_locked(part)))
+            made = mode != "overwrite" and names.stamp(path) and not names.stamp(part)
+            result = _complete(run, path, mode) if made else None
+            if result is None:
+                locked = appending.lock(part) if names.stamp(part) else appending.make(part)
+                stack.enter_context(contextlib.closing(locked))
                 if mode == "resume" and parts.is_begun(locked.file):
-                    result = _continued(scene, locked, path)
+                    result = _continue(run, locked, path)
                 else:
-                    result = _begun(scene, locked, path, names.stamp(path) if mode == "overwrite" else None)
+                    _begin(run, locked, path, names.stamp(path) if made or mode == "overwrite" else None)
         except BlockingIOError:
             raise StoreError(f"{part} is being written by another run") from None
         except FileExistsError:
             raise StoreError(f"{part} has just been begun by another run") from None
         except PartError as error:
             raise StoreError(f"{part} {error}") from None
+        yield result or locked
+
+
+@contextlib.contextmanager
+def writer(scene: Scene, path: Path, mode: str) -> Iterator[Writer | Complete]:
+    """The `Writer` of a scene's file; `mode` is "new", "resume" or "overwrite". Raises StoreError."""
+
+    def check(file: h5py.File, where: Path) -> None:
+        check_scene(file, where, scene)
+        if absent := [name for name in layout.quantities(scene) if name not in quantities_of(file)]:
+            raise StoreError(f"{where} is damaged: it has no {', '.join(absent)}; overwrite it")
+
+    fresh = mode == "resume" and not names.stamp(part_of(path))
+    run = Run(check, _lacking, lambda run_id: skeleton_of(scene, run_id), layout.size(scene), scene.inputs)
+    with begun(run, path, mode) as part:
+        if isinstance(part, Complete):
+            yield part
+            return
+        head = parts.read_head(part.file)
+        with skeleton(part.file, part.path) as file:
+            frame = frame_of(file, quantities_of(file))
+        index = Index(part.file, head, frame)
+        part.go_on(head, index.end)
+        result = Writer(part, frame, index, path)
+        if index.damaged:
+            result.remark(f"damage found, to be computed again: {blocks_lost(index.damaged)}")
+        if fresh and head.replaces:
+            with opened(path) as (file, _):
+                result.take_over(file, checks.damaged(file))
         yield result
 
 
@@ -66,7 +115,7 @@ def check_outputs(path: Path, mode: str, inputs: Collection[Path]) -> Path:
     check_mode(mode)
     if path.suffix.lower() in NO_DATA:
         raise StoreError(f"`output` {path}: the name of a data file must not end in {path.suffix}")
-    part = Path(f"{path}.part")
+    part = part_of(path)
     for place in (path, part):
         for source in inputs:
             if names.same_file(place, source):
@@ -88,6 +137,11 @@ def check_outputs(path: Path, mode: str, inputs: Collection[Path]) -> Path:
     return part
 
 
+def part_of(path: Path) -> Path:
+    """The path at which a run is kept until it is complete."""
+    return Path(f"{path}.part")
+
+
 def check_mode(mode: object) -> None:
     """Raise StoreError for a word that is not one of `MODES`."""
     if not (isinstance(mode, str) and mode in MODES):
@@ -104,119 +158,92 @@ def _check_part(part: Path, path: Path, mode: str) -> None:
     raise StoreError(f"{part} is in the way: it is not an interrupted run of vibro-sweep; move it away")
 
 
-def _finished(scene: Scene, path: Path) -> Complete:
-    """A file that needs no run: whole, and made by the same scene and code. Raises StoreError for any other."""
+def _lacking(file: h5py.File, path: Path) -> str:
+    found = checks.damaged(file)
+    if not all(piece for _, piece in found):
+        raise StoreError(f"{path} is damaged beyond repair: {checks.summary(found)}; overwrite it")
+    if found:
+        return f"is damaged: {checks.summary(found)}"
+    return "has points that are not computed" if NOT_COMPUTED in checks.statuses(file) else ""
+
+
+def _complete(run: Run, path: Path, mode: str) -> Complete | None:
+    """A file that needs no run; None for one that `resume` mends. Raises StoreError for any other."""
     try:
-        with opened(path) as (file, _):
-            check_scene(file, path, scene)
-            check_version(file, path)
-            if found := checks.damaged(file):
-                raise StoreError(f"{path} is damaged: {checks.summary(found)}; `resume` computes that again")
-            result = _complete(file)
+        with opened(path, content=False) as (file, _):
+            run.check(file, path)
+            lacking = run.lacking(file, path)
+            if mode == "new" or lacking:
+                check_version(file, path)
+            if not lacking:
+                return _read(file)
+            if mode == "new":
+                raise StoreError(f"{path} {lacking}; `resume` computes that again")
     except StoreError as error:
-        text = f"{path} exists, and is not what this scene makes; `overwrite` replaces it, or name another file"
-        raise StoreError(f"{text}\n{error}") from None
-    if result.missing(()):
-        raise StoreError(f"{path} exists, and some of its points are not computed; `resume` computes them")
-    return result
+        if mode == "resume":
+            raise
+        told = f"{path} exists, and is not what this makes; `overwrite` replaces it, or name another file"
+        raise StoreError(f"{told}\n{error}") from None
+    except (OSError, RuntimeError, ValueError, KeyError, TypeError) as error:
+        raise StoreError(f"{path} is damaged ({error})") from None
+    return None
 
 
-def _complete(file: h5py.File) -> Complete:
+def _read(file: h5py.File) -> Complete:
     return Complete(checks.statuses(file), json.loads(text(file, "provenance")).get("wall_time_s", 0.0))
 
 
-def _locked(part: Path) -> LockedPart:
-    return appending.lock(part) if names.stamp(part) else appending.make(part)
-
-
-def _of_complete(scene: Scene, path: Path, part: Path, stack: contextlib.ExitStack) -> Writer | Complete:
-    """Keep what is computed and not damaged in a file, and compute the rest; mostly there is nothing to do."""
-    with opened(path) as (file, _):
-        check_scene(file, path, scene)
-        lacking = [name for name in layout.quantities(scene) if name not in quantities_of(file)]
-        if lacking:
-            raise StoreError(f"{path} is damaged: it has no {', '.join(lacking)}; overwrite it")
-        found = checks.damaged(file)
-        if not all(piece for _, piece in found):
-            raise StoreError(f"{path} is damaged beyond repair: {checks.summary(found)}; overwrite it")
-        result = _complete(file)
-        if not found and not result.missing(()):
-            return result
-        check_version(file, path)
-        locked = stack.enter_context(contextlib.closing(appending.make(part)))
-        result = _begun(scene, locked, path, names.stamp(path))
-        result.take_over(file, found)
-        return result
-
-
-def _begun(scene: Scene, locked: LockedPart, path: Path, replaces: Stamp | None) -> Writer:
+def _begin(run: Run, locked: LockedPart, path: Path, replaces: Stamp | None) -> None:
     """Begin the part with nothing computed yet, in place of what is in it."""
     with contextlib.suppress(PartError):  # overwritten
         unfinished(path, parts.read_head(locked.file).run_id).unlink(missing_ok=True)
     try:
-        _check_space(scene, locked)
+        _check_space(run.size, locked)
         run_id = parts.new_run_id()
-        content = skeleton_of(scene, run_id)
+        content = run.skeleton(run_id)
         with said(locked):
             locked.begin(parts.new_head(content, replaces, run_id), content)
     except BaseException:
         if parts.size(locked.file) == 0:
             locked.remove()
         raise
-    return _writer(scene, locked, path)[0]
 
 
-def _continued(scene: Scene, locked: LockedPart, path: Path) -> Writer | Complete:
-    """Continue the part with what was computed until its run was interrupted."""
+def _continue(run: Run, locked: LockedPart, path: Path) -> Complete | None:
+    """Check that the part is of this run; `Complete` where it became the file before its run was killed."""
     head = parts.read_head(locked.file)
     with skeleton(locked.file, locked.path) as file:
-        check_scene(file, locked.path, scene)
+        run.check(file, locked.path)
         check_version(file, locked.path)
-    if finished := _published(path, locked, head):
+    if finished := _published(path, locked, head.run_id):
         return finished
     if (found := names.stamp(path)) and found != head.replaces:
         raise StoreError(
             f"{path} stands beside the interrupted run {locked.path}, which is not to replace it; move one of them "
             "away, or `overwrite` both"
         )
-    result, index = _writer(scene, locked, path)
-    locked.go_on(head, index.end)
-    if index.damaged:
-        result.remark(f"damage found, to be computed again: {blocks_lost(index.damaged)}")
-    return result
+    return None
 
 
-def _writer(scene: Scene, locked: LockedPart, path: Path) -> tuple[Writer, Index]:
-    head = parts.read_head(locked.file)
-    with skeleton(locked.file, locked.path) as file:
-        frame = frame_of(file, quantities_of(file))
-    index = Index(locked.file, head, frame)
-    order = in_order_of_blocks(len(frame.shape), len(scene.sweep), scene.start.kind == "follow")
-    done = Done(frame.shape, order)
-    for box, _ in index:
-        done.add(box)
-    return Writer(locked, frame, done, path), index
-
-
-def _published(path: Path, locked: LockedPart, head: Head) -> Complete | None:
+def _published(path: Path, locked: LockedPart, run_id: bytes) -> Complete | None:
     """The file, if it is what was made of this part before its run was killed; the part then goes."""
     if names.stamp(path) is None:
         return None
     with contextlib.suppress(StoreError, KeyError), opened(path) as (file, _):
-        if text(file, "identity") == head.run_id.hex():
-            unfinished(path, head.run_id).unlink(missing_ok=True)
+        if text(file, "identity") == run_id.hex():
+            unfinished(path, run_id).unlink(missing_ok=True)
             locked.remove()
-            return _complete(file)
+            return _read(file)
     return None
 
 
-def _check_space(scene: Scene, locked: LockedPart) -> None:
+def _check_space(size: int, locked: LockedPart) -> None:
     """A run that will not fit is not begun; other programs may still fill the disk later on.
 
     At its end its part and its file are both there.
     """
     folder = locked.path.parent
-    need, free = 2 * layout.size(scene), shutil.disk_usage(folder).free + parts.size(locked.file)
+    need, free = 2 * size, shutil.disk_usage(folder).free + parts.size(locked.file)
     if need > free:
         unit, name = (1e6, "MB") if need > 1e6 else (1e3, "kB")
         enough = f"{need / unit:,.0f} {name}, and only {free / unit:,.0f} {name}"

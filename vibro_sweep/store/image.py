@@ -8,10 +8,10 @@ from typing import BinaryIO, NamedTuple
 import h5py
 import numpy as np
 
-from vibro_sweep.store.done import Box
 from vibro_sweep.store.parts import Head, Record, Scan
 from vibro_sweep.store.sink import Sink
 
+Box = tuple[slice, ...]
 GROUP_BYTES = 2**24  # of blocks that are put into the file together
 
 
@@ -21,13 +21,14 @@ class Frame(NamedTuple):
     datasets: dict[str, tuple[np.dtype, tuple[int, ...]]]
     shape: tuple[int, ...]  # of the orbits, which is that of `status` and the first axes of all others
 
-    def sizes(self, box: Box) -> dict[str, int]:
-        """Bytes of each dataset in a box of orbits."""
-        orbits = math.prod(part.stop - part.start for part in box)
-        return {
-            name: orbits * math.prod(shape[len(box) :]) * dtype.itemsize
-            for name, (dtype, shape) in self.datasets.items()
-        }
+    def layout(self, box: Box) -> list:
+        """Name, dtype and shape of each dataset in a box of orbits, as a record has them."""
+        lead = [part.stop - part.start for part in box]
+        return [(name, dtype, lead + list(shape[len(box) :])) for name, (dtype, shape) in self.datasets.items()]
+
+    def size(self, box: Box) -> int:
+        """Bytes of a box of orbits."""
+        return sum(math.prod(shape) * dtype.itemsize for _, dtype, shape in self.layout(box))
 
     def whole(self, box: Box) -> Box:
         """A box of the first axes as one of all axes, with its ends as numbers."""
@@ -54,8 +55,8 @@ class Index:
             box = _box(record, frame)
             if box is not None:
                 rows.extend([record.at, *(end for part in box for end in (part.start, part.stop))])
-            elif isinstance(record.text.get("note"), str):
-                self.notes.append(record.text["note"])
+            elif isinstance(record.key, dict) and isinstance(record.key.get("note"), str):
+                self.notes.append(record.key["note"])
                 known = scan.damaged
             else:
                 scan.damaged += 1
@@ -91,7 +92,7 @@ class Index:
         """Blocks that continue each other along an axis, as many as are quickly written as one."""
         group, along, size = [], None, 0
         for box, at in self:
-            axis, more = _continues(group[-1][0], box) if group else None, sum(self._frame.sizes(box).values())
+            axis, more = _continues(group[-1][0], box) if group else None, self._frame.size(box)
             if axis is None or along not in (None, axis) or size + more > GROUP_BYTES:
                 if group:
                     yield along, group
@@ -114,7 +115,7 @@ def _continues(one: Box, other: Box) -> int | None:
 
 def _box(record: Record, frame: Frame) -> Box | None:
     """The box of a record, if it is one of such a file."""
-    spans = record.text.get("box")
+    spans = record.key
     if not isinstance(spans, list) or len(spans) != len(frame.shape):
         return None
     for span, extent in zip(spans, frame.shape, strict=True):
@@ -123,4 +124,4 @@ def _box(record: Record, frame: Frame) -> Box | None:
         if not 0 <= span[0] < span[1] <= extent:
             return None
     box = tuple(slice(*span) for span in spans)
-    return box if record.length == sum(frame.sizes(box).values()) else None
+    return box if record.layout == frame.layout(box) else None

@@ -34,7 +34,17 @@ TEXTS = ("title", "history", "scene", "provenance")
 
 
 class StoreError(VibroSweepError, ValueError):
-    """A file that is in the way, is not one of ours, is damaged or does not fit the scene; or a disk that fails."""
+    """A file that is in the way, is not one of ours, is damaged or does not fit the scene; or a disk that fails.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> try:
+    ...     vs.open("nothing.h5")
+    ... except vs.StoreError as error:
+    ...     print(error)
+    nothing.h5: there is no such file
+    """
 
 
 class MissingError(StoreError, MissingFileError):

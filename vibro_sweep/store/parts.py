@@ -3,8 +3,11 @@
     head       magic, format, run id, what the run may replace, length and checksum of the skeleton; its checksum
     skeleton   the HDF5 file of the run with nothing computed in it
     record     run id, length of the text and of the data, their checksum; checksum of all that
-               text (JSON: {"box": [[first, end], ...]}), data (the arrays of the box, one after the other)
+               text (JSON: {"key": KEY, "arrays": [[name, dtype, shape], ...]}), the arrays one after the other
     record ...
+
+KEY is [[first, end], ...] of a block of a sweep, a text of a piece of branches, curves or windows, and {"note": TEXT}
+of a line for the history of the file.
 
 A record that a kill has cut off is the last one and is as if it had never been begun. `run_id` is 16 random bytes:
 they make the file known as this run's own, and find the next record behind one whose length is damaged.
@@ -14,14 +17,17 @@ import contextlib
 import errno
 import io
 import json
+import math
 import os
 import secrets
 import stat
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
+
+import numpy as np
 
 from vibro_sweep.store.names import Stamp
 
@@ -57,9 +63,14 @@ class Head(NamedTuple):
 
 
 class Record(NamedTuple):
-    text: dict
-    at: int  # where its data begin
-    length: int  # of its data
+    key: Any
+    layout: list  # name, dtype and shape of each array
+    at: int  # where the arrays begin
+
+    def arrays(self, file: BinaryIO) -> dict[str, np.ndarray]:
+        """The arrays by name."""
+        file.seek(self.at)
+        return {name: np.fromfile(file, dtype, math.prod(shape)).reshape(shape) for name, dtype, shape in self.layout}
 
 
 def new_head(skeleton: bytes | memoryview, replaces: Stamp | None, run_id: bytes) -> Head:
@@ -68,6 +79,11 @@ def new_head(skeleton: bytes | memoryview, replaces: Stamp | None, run_id: bytes
 
 def new_run_id() -> bytes:
     return secrets.token_bytes(16)
+
+
+def text_of(key: Any, arrays: Mapping[str, np.ndarray]) -> dict:
+    """The text of a record."""
+    return {"key": key, "arrays": [[name, one.dtype.str, list(one.shape)] for name, one in arrays.items()]}
 
 
 def record(run_id: bytes, text: dict, data: list[memoryview]) -> list[bytes | memoryview]:
@@ -158,24 +174,28 @@ class Scan:
             begin, end = at + len(raw), at + len(raw) + texts + length
             if end > size_now:  # it is being written, or its writer was killed
                 return
-            text = self._text(begin, texts, length, checksum)
-            self.damaged += text is None
+            found = self._record(begin, texts, length, checksum)
+            self.damaged += found is None
             at = self.end = end
-            if text is not None:
-                yield Record(text, begin + texts, length)
+            if found is not None:
+                yield found
         self.damaged += lost
 
-    def _text(self, begin: int, texts: int, length: int, checksum: int) -> dict | None:
-        """The text of a record whose checksum holds."""
+    def _record(self, begin: int, texts: int, length: int, checksum: int) -> Record | None:
+        """A record whose checksum holds, and whose arrays are numbers and fill its data."""
         self._file.seek(begin)
         encoded, left = self._file.read(texts), length
         found = zlib.crc32(encoded)
         while left and (piece := self._file.read(min(left, PIECE))):
             found, left = zlib.crc32(piece, found), left - len(piece)
-        with contextlib.suppress(ValueError, RecursionError):
+        if left or found != checksum:
+            return None
+        with contextlib.suppress(ValueError, RecursionError, KeyError, TypeError, OverflowError):
             text = json.loads(encoded)
-            if not left and found == checksum and isinstance(text, dict):
-                return text
+            layout = [(str(name), np.dtype(dtype), [int(n) for n in shape]) for name, dtype, shape in text["arrays"]]
+            sound = all(kind.kind in "biuf" and min(shape, default=0) >= 0 for _, kind, shape in layout)
+            if sound and sum(kind.itemsize * math.prod(shape) for _, kind, shape in layout) == length:
+                return Record(text["key"], layout, begin + texts)
         return None
 
 

@@ -1,7 +1,6 @@
 """Files of branches, windows and curves: ragged arrays, laid out one after another over dimensions without
 coordinates."""
 
-import io
 from typing import Any, NamedTuple
 
 import h5py
@@ -10,11 +9,9 @@ import numpy as np
 from vibro_sweep import __version__
 from vibro_sweep.model.branch_file import RAGGED
 from vibro_sweep.model.column import Column
-from vibro_sweep.store import heap, parts
 from vibro_sweep.store.attributes import describe, set_text, set_texts
-from vibro_sweep.store.creating import now
+from vibro_sweep.store.creating import image_of, now
 from vibro_sweep.store.datasets import CHECKSUMS, create_length
-from vibro_sweep.store.sink import LIBVER
 
 CHUNK = 2**14  # numbers
 
@@ -41,22 +38,15 @@ class RaggedContents(NamedTuple):
     arrays: dict[str, np.ndarray]
 
 
-def image_of(
-    subject: Subject, run_id: bytes, provenance: str, columns: list[Column], arrays: dict[str, np.ndarray]
+def ragged_image(
+    subject: Subject, run_id: bytes, provenance: dict, columns: list[Column], arrays: dict[str, np.ndarray]
 ) -> memoryview:
     """The bytes of an HDF5 file; without columns and arrays the skeleton of a run."""
-    image = io.BytesIO()
-    with h5py.File(image, "w", libver=LIBVER) as file:
-        file.attrs["format"] = parts.FORMAT
-        set_text(file, "identity", run_id.hex())
-        set_text(file, "Conventions", "CF-1.11")
-        set_text(file, "kind", subject.kind)
-        set_text(file, "title", f"vibro_sweep: {subject.title}")
-        set_text(file, "history", f"{now()} {'made' if columns else 'begun'} by vibro_sweep {__version__}")
-        set_text(file, "scene", subject.scene)
-        set_text(file, "provenance", provenance)
+
+    def fill(file: h5py.File) -> None:
+        if columns:
+            set_text(file, "history", f"{now()} made by vibro_sweep {__version__}")
         set_texts(file, "sweep_dimensions", [])
-        set_texts(file, "quantities", [column.name for column in columns if column.name != "status"])
         for name, value in subject.attributes.items():
             _set(file, name, value)
         lengths = {}
@@ -66,10 +56,9 @@ def image_of(
             create_length(file, name, length)
         for column in columns:
             _create(file, column, arrays[column.name])
-    found = [(at, *heap.measured(image, at)) for at in heap.collections(image)]
-    with h5py.File(image, "r+", libver=LIBVER) as file:
-        file.attrs["heap"] = np.array(found, np.uint64).reshape(-1)
-    return image.getbuffer()
+
+    names = [column.name for column in columns if column.name != "status"]
+    return image_of(subject.kind, subject.title, subject.scene, run_id, provenance, names, fill)
 
 
 def _create(file: h5py.File, column: Column, values: np.ndarray) -> None:

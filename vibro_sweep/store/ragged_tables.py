@@ -5,7 +5,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVES, EDGES, KINDS, REASONS, TYPES
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CRITICALITIES, CURVES, KINDS, TYPES
+from vibro_sweep.model.outcomes import EDGES, REASONS
 from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.model.window_families import families
 

@@ -13,7 +13,7 @@ import numpy as np
 from vibro_sweep.model.branch_file import CHART, WINDOWS
 from vibro_sweep.model.exponents import CERTAIN, sign_of
 from vibro_sweep.model.files import checked_path
-from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, VALID, meaning
+from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STATUSES, VALID, meaning
 from vibro_sweep.store import checks
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.attributes import text, texts
@@ -170,12 +170,13 @@ def _progress(file: h5py.File) -> list[str]:
     """Done, missing and failed."""
     counts, total = checks.statuses(file), file["status"].size
     done = counts.total() - counts[NOT_COMPUTED]
-    failed = {meaning(code): count for code, count in sorted(counts.items()) if code not in (*VALID, NOT_COMPUTED)}
+    failed = {code: count for code, count in sorted(counts.items()) if code not in (*VALID, NOT_COMPUTED)}
+    advice = {code: f"\n    {STATUSES[code].advice}" if code in STATUSES else "" for code in failed}
     return [
         f"computed     {done:,} of {total:,} orbits ({100 * done / total:.4g} %)",
         f"missing      {total - done:,}",
         f"failed       {sum(failed.values()):,}",
-        *(f"  {meaning}: {count:,}" for meaning, count in failed.items()),
+        *(f"  {meaning(code)}: {count:,}{advice[code]}" for code, count in failed.items()),
         *([f"not settled  {counts[NOT_SETTLED]:,}"] if counts[NOT_SETTLED] else []),
     ]
 

@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, NamedTuple, TypeVar
 
 import h5py
 import numpy as np
@@ -17,58 +17,47 @@ from vibro_sweep.store import checks, names, parts
 from vibro_sweep.store.appending import ChangedError, LockedPart, RemovedError
 from vibro_sweep.store.attributes import set_text, text
 from vibro_sweep.store.creating import now, units
-from vibro_sweep.store.done import Done
 from vibro_sweep.store.image import Frame, Index
 from vibro_sweep.store.opening import StoreError, made_by
 from vibro_sweep.store.parts import PartError
 from vibro_sweep.store.sink import Sink, changing
 
+T = TypeVar("T")
+
 
 class Writer:
     """The file of a run. All methods raise StoreError where the disk, or another program, prevents them."""
 
-    def __init__(self, part: LockedPart, frame: Frame, done: Done, path: Path):
-        self._part, self._frame, self._done, self._path = part, frame, done, path
+    def __init__(self, part: LockedPart, frame: Frame, index: Index, path: Path):
+        self._part, self._frame, self._path = part, frame, path
+        self._done = np.zeros(frame.shape, bool)
+        for box, _ in index:
+            self._done[box] = True
 
     def missing(self, box: tuple[slice, ...]) -> bool:
         """Whether an orbit in a box of the sweep is not computed yet."""
-        return not self._done.holds(box)
+        return not self._done[box].all()
 
     def done(self) -> int:
         """Orbits computed so far."""
-        return self._done.count()
+        return int(self._done.sum())
 
     def write(self, box: tuple[slice, ...], arrays: dict[str, np.ndarray]) -> None:
         """Keep a block: once this returns, a kill does not lose it."""
         box = self._frame.whole(box)
-        data = [_bytes(np.asarray(arrays[name], dtype)) for name, (dtype, _) in self._frame.datasets.items()]
-        if [len(raw) for raw in data] != list(self._frame.sizes(box).values()):
+        found = {name: np.asarray(arrays[name], dtype) for name, (dtype, _) in self._frame.datasets.items()}
+        if any(list(found[name].shape) != shape for name, _, shape in self._frame.layout(box)):
             raise ValueError(f"a block of the box {box} has arrays of other shapes")
         with said(self._part):
-            self._part.append({"box": [[part.start, part.stop] for part in box]}, data)
-        self._done.add(box)
+            self._part.append([[part.start, part.stop] for part in box], found)
+        self._done[box] = True
 
     def finish(self, provenance: dict, last: Callable[[h5py.File], None]) -> dict[int, int]:
         """Make the file of the part. Returns how many orbits have which status.
 
         last : writes what follows from the blocks, once all of them are in the file
         """
-        new = unfinished(self._path, self._part.head.run_id)
-        with said(self._part):
-            new.unlink(missing_ok=True)  # of a run that was killed here
-            try:
-                with open(new, "xb+") as file:
-                    statuses = self._make(file, provenance, last)
-                names.publish(new, self._path, self._part.head.replaces)
-            except FileExistsError:
-                raise StoreError(
-                    f"{self._path} has appeared during the run and is left alone; the result is complete in "
-                    f"{self._part.path}: move the other file away, then `resume` gives it its name"
-                ) from None
-            finally:
-                new.unlink(missing_ok=True)
-            self._part.remove()
-        return statuses
+        return publish(self._part, self._path, lambda new: self._make(new, provenance, last))
 
     def _make(self, new: BinaryIO, provenance: dict, last: Callable[[h5py.File], None]) -> dict[int, int]:
         """Make the file in a thread of its own: Ctrl-C must not end HDF5 in the middle of a call."""
@@ -79,13 +68,10 @@ class Writer:
         sink = Sink(new)
         with ThreadPoolExecutor(1) as thread:
             try:
-                statuses = thread.submit(self._fill, sink, index, provenance, last).result()
+                return thread.submit(self._fill, sink, index, provenance, last).result()
             except BaseException as error:
                 sink.stop(error)
                 raise
-        new.flush()
-        os.fsync(new.fileno())
-        return statuses
 
     def _fill(self, sink: Sink, index: Index, provenance: dict, last: Callable[[h5py.File], None]) -> dict[int, int]:
         with changing(sink) as file:
@@ -109,27 +95,36 @@ class Writer:
     def remark(self, what: str) -> None:
         """A line for the history of the file; damage that was found before it is known."""
         with said(self._part):
-            self._part.append({"note": f"{now()} {what}"}, [])
+            self._part.append({"note": f"{now()} {what}"}, {})
 
 
-class Complete:
-    """A `Writer` of a file to which nothing is to be added; `seconds` is the wall time of the run that made it."""
+class Complete(NamedTuple):
+    """A file to which nothing is to be added: how many orbits have which status, and how long its run took."""
 
-    def __init__(self, statuses: dict[int, int], seconds: float):
-        self._statuses, self.seconds = statuses, seconds
-
-    def missing(self, box: tuple[slice, ...]) -> bool:
-        return NOT_COMPUTED in self._statuses
-
-    def done(self) -> int:
-        return sum(self._statuses.values())
-
-    def finish(self, provenance: dict, last: Callable[[h5py.File], None]) -> dict[int, int]:
-        return self._statuses
+    statuses: dict[int, int]
+    seconds: float
 
 
-def _bytes(values: np.ndarray) -> memoryview:
-    return memoryview(np.ascontiguousarray(values).reshape(-1).view(np.uint8))
+def publish(part: LockedPart, path: Path, make: Callable[[BinaryIO], T]) -> T:
+    """Make the file of a part, give it its name and remove the part. Raises StoreError. Returns what `make` returns."""
+    new = unfinished(path, part.head.run_id)
+    with said(part):
+        new.unlink(missing_ok=True)  # of a run that was killed here
+        try:
+            with open(new, "xb+") as file:
+                result = make(file)
+                file.flush()
+                os.fsync(file.fileno())
+            names.publish(new, path, part.head.replaces)
+        except FileExistsError:
+            raise StoreError(
+                f"{path} has appeared during the run and is left alone; the result is complete in {part.path}: move "
+                "the other file away, then `resume` gives it its name"
+            ) from None
+        finally:
+            new.unlink(missing_ok=True)
+        part.remove()
+    return result
 
 
 def unfinished(path: Path, run_id: bytes) -> Path:

@@ -44,21 +44,21 @@ def tail_of(masses: int) -> np.dtype:
     return record([
         ("rows", float, (3, ORDERS + 3, n)),  # e_gap A^m, and its derivatives by the parameters
         ("columns", float, (3, ORDERS + 1, n)),  # A^m e_v
-        ("y", float, ORDERS + 3),
+        ("y", float, (ORDERS + 3,)),
         ("y_slopes", float, (ORDERS + 3, W)),
-        ("gamma", float, ORDERS + 2),
+        ("gamma", float, (ORDERS + 2,)),
         ("gamma_slopes", float, (ORDERS + 2, W)),
         ("power", float, (ORDERS, ORDERS + 3)),  # [l, k] is coefficient l of pi^k
         ("power_slopes", float, (SLOPES, ORDERS + 3, W)),
         ("nu", float, (ORDERS, ORDERS + 1)),  # [l, m] is coefficient l of nu_m
         ("nu_slopes", float, (SLOPES, ORDERS + 1, W)),
-        ("d", float, ORDERS),
+        ("d", float, (ORDERS,)),
         ("d_slopes", float, (SLOPES, W)),
-        ("kept_slopes", float, W),  # of R/(1 + R)
+        ("kept_slopes", float, (W,)),  # of R/(1 + R)
         ("sides", float, (3, W)),  # right sides
         ("Q", float, (n, W + 2)),  # the number, its derivatives, and that by s
         ("numbers", float, 2),  # see chatter_sum.py
-        ("by_end", float, n),  # see chatter_tail.py
+        ("by_end", float, (n,)),  # see chatter_tail.py
     ])  # fmt: skip
 
 

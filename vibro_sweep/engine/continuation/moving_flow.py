@@ -49,28 +49,28 @@ def plane_of(masses: int) -> np.dtype:
         ("has_unseen", np.int64),  # 1 where there are free modes that the contact does not see
         ("unseen", float, (n, n)),  # of these the momenta times the places, which the closure keeps by this
         ("fit", float, (DEGREE + 1, DEGREE + 1, count)),  # coefficients of the powers of (p - centre)/reach
-        ("exact", float, count),  # what `values` are at a point, of the oscillator itself
-        ("shift", float, count),  # of the polynomials, so that they pass through `exact`
-        ("values", float, count),
+        ("exact", float, (count,)),  # what `values` are at a point, of the oscillator itself
+        ("shift", float, (count,)),  # of the polynomials, so that they pass through `exact`
+        ("values", float, (count,)),
         ("slopes", float, (2, count)),
         ("A", float, (n, n + 1)),
         ("A_slopes", float, (2, n, n + 1)),
-        ("numbers", float, NUMBERS),
+        ("numbers", float, (NUMBERS,)),
         ("number_slopes", float, (2, NUMBERS)),
-        ("Z", complex, n),
+        ("Z", complex, (n,)),
         ("Z_slopes", complex, (2, n)),
         ("series", float, (ORDER + 1, n, columns_of(n))),  # first rows of B^k/k!, B = (A; 0)
         ("series_slopes", float, (2, ORDER + 1, n, columns_of(n))),
         ("powers", float, (BITS, n, columns_of(n))),  # exp(B width 2^j)
         ("power_slopes", float, (2, BITS, n, columns_of(n))),
         ("middle_weights", float, (ORDER + 1, MIDDLE)),  # see extremes.py
-        ("rest_weights", float, ORDER + 1),
+        ("rest_weights", float, (ORDER + 1,)),
         ("middle", float, (n + 1, MIDDLE)),  # of the gap over a cell, by each coordinate of the state, and the shift
-        ("rest", float, n + 1),
-        ("swing", complex, MIDDLE),  # the same of Re(Z e), times Z
+        ("rest", float, (n + 1,)),
+        ("swing", complex, (MIDDLE,)),  # the same of Re(Z e), times Z
         ("swing_rest", float),
         ("stiffness", complex, (masses, masses)),  # factors of what Z is solved from
-        ("order", np.int64, masses),
+        ("order", np.int64, (masses,)),
     ])  # fmt: skip
 
 

@@ -89,18 +89,18 @@ def event_of(masses: int) -> np.dtype:
     return record([
         ("kept", float, (n + 2, width_of(n, PARAMETERS))),  # what was eliminated, a triangle in front
         ("mirrors", float, (n + 2, 2 * n + 2)),  # m of the reflections 1 - s m m^T
-        ("scales", float, n + 2),  # s
+        ("scales", float, (n + 2,)),  # s
         ("E", float, (3, n, columns_of(n))),  # the flight after it, and its derivatives by the parameters
-        ("rate", float, n),  # y' = dy/dphi before it
-        ("after", float, n + 1),  # y after it, and 1
-        ("landing", float, n),  # y at the end of the flight
-        ("landing_rate", float, n),  # y' there
-        ("defect", float, n),  # its difference from the next state
-        ("bend", float, n),  # rho: the jump of y' at it
+        ("rate", float, (n,)),  # y' = dy/dphi before it
+        ("after", float, (n + 1,)),  # y after it, and 1
+        ("landing", float, (n,)),  # y at the end of the flight
+        ("landing_rate", float, (n,)),  # y' there
+        ("defect", float, (n,)),  # its difference from the next state
+        ("bend", float, (n,)),  # rho: the jump of y' at it
         ("carry", float, (n, n + 2 + PARAMETERS)),  # xi after a rest by xi, dphi, ds and the parameters
         ("pull", float),  # free acceleration of the gap at the end of a rest
-        ("release", float, n + 2 + PARAMETERS),  # its derivatives, as of `carry`
-        ("course", float, ORDER + 1),  # its Taylor coefficients in the last part of the rest
+        ("release", float, (n + 2 + PARAMETERS,)),  # its derivatives, as of `carry`
+        ("course", float, (ORDER + 1,)),  # its Taylor coefficients in the last part of the rest
         ("hold", float),  # the least of it during the rest, into the stop
         ("gap", float),  # before the event
         ("motion", float, 2),  # and its velocity and acceleration
@@ -109,10 +109,10 @@ def event_of(masses: int) -> np.dtype:
         ("changes", float, (2, n + 2)),  # Newton's change, and the tangent: xi, dphi, dD
         ("length", float),  # of the flight
         ("turn", complex),  # e^{i phi}
-        ("slopes", complex, n + 2),  # of a condition by xi, dphi, dD
-        ("v", complex, n + 2),  # as of `Place`, at this point
-        ("w", complex, n + 2),
-        ("sides", complex, n + 2),  # right sides of a system with the eliminated matrix
+        ("slopes", complex, (n + 2,)),  # of a condition by xi, dphi, dD
+        ("v", complex, (n + 2,)),  # as of `Place`, at this point
+        ("w", complex, (n + 2,)),
+        ("sides", complex, (n + 2,)),  # right sides of a system with the eliminated matrix
         ("series", complex, (2, TERMS)),  # of dphi and dD, see normal_form.py
         ("left", complex, (2, TERMS)),  # of rows 1 and 2
     ])  # fmt: skip
@@ -125,37 +125,37 @@ def work_of(masses: int) -> np.dtype:
     wide = width_of(n, PARAMETERS)
     return record([
         ("panel", float, (2 * n + 2, wide)),
-        ("line", float, wide),
+        ("line", float, (wide,)),
         ("last", float, (n, wide)),  # what is left: columns of xi_{K+1} (XI), xi_1, parameters, residual
         ("ends", float, (n + ROWS, n + ROWS + 2)),  # the last equations: xi_1, parameters | residual, 1 of the plane
         ("system", float, (n + ROWS, n + ROWS)),
         ("sign", float),  # of the determinant of what was eliminated
         ("step_p", float, (2, ROWS)),  # Newton's change of the parameters, and the tangent, in their units
-        ("null", float, n + ROWS),  # xi_1 and parameters of a vector that is taken apart
+        ("null", float, (n + ROWS,)),  # xi_1 and parameters of a vector that is taken apart
         ("row_p", float, (ROWS, ROWS)),  # scalar rows by the parameters
-        ("row_left", float, ROWS),  # and their residuals
+        ("row_left", float, (ROWS,)),  # and their residuals
         ("E", float, (3, n, columns_of(n))),  # of a flight, and room for one
         ("other", float, (3, n, columns_of(n))),
         ("image", float, (n, columns_of(2 * n - 1))),
         ("matrix", float, (n, n)),
         ("resting", float, (3, n, n + 1 + PARAMETERS)),  # see constrained_gap.py
-        ("re", float, n),
-        ("im", float, n),
-        ("cell", float, ORDER + 1),
+        ("re", float, (n,)),
+        ("im", float, (n,)),
+        ("cell", float, (ORDER + 1,)),
         ("nearest", float, 3),  # turning point nearest to its stop: distance, phase, side
         ("turning", float, 3),  # the same of the free acceleration during a rest
         ("waiting", float, (PIECES, 2)),
         ("flying", float, (2, n)),
-        ("order", np.int64, n + ROWS),
+        ("order", np.int64, (n + ROWS,)),
         ("border", complex, (n + 1, n + 1)),
-        ("left", complex, n),  # of the last equations: border, then null vector
-        ("right", complex, n),
-        ("side", complex, n + 1),
-        ("column", complex, 2 * n + 2),
-        ("closure", float, n),  # xi_{K+1}
-        ("rate", float, n),  # y' before the first event, by time
+        ("left", complex, (n,)),  # of the last equations: border, then null vector
+        ("right", complex, (n,)),
+        ("side", complex, (n + 1,)),
+        ("column", complex, (2 * n + 2,)),
+        ("closure", float, (n,)),  # xi_{K+1}
+        ("rate", float, (n,)),  # y' before the first event, by time
         ("along", complex, (4, n)),  # of a flight: v at its begin, at its end, w A, w A E (second_derivative.py)
-        ("slopes_p", complex, ROWS),  # of a condition by the parameters
+        ("slopes_p", complex, (ROWS,)),  # of a condition by the parameters
         ("defect", complex),  # see second_derivative.py
         ("first", complex, (n, TERMS)),  # power series of y_1, see normal_form.py
         ("closing", complex, (n, TERMS)),  # and of the last rows

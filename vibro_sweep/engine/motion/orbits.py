@@ -40,12 +40,12 @@ def orbit_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one orbit: its motion, what is counted of it, and what it has written into its `Records`."""
     width = width_of(masses, constant)
     motion = [
-        ("X", float, width),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
-        ("y", float, width),  # X - r at node `origin`, from which the exclusion test looks ahead
-        ("start", float, width),  # if `from_base`, and `origin` is no longer `base`: X, sin and cos at node `base`
-        ("largest", float, width),  # sizes of the section states that were kept
+        ("X", float, (width,)),  # x1, v1, x2, v2, at offset `offset` of cell `cell`; at a node then sin and cos
+        ("y", float, (width,)),  # X - r at node `origin`, from which the exclusion test looks ahead
+        ("start", float, (width,)),  # if `from_base`, and `origin` is no longer `base`: X, sin and cos at node `base`
+        ("largest", float, (width,)),  # sizes of the section states that were kept
         # of the oscillator, for the search: in its tables the processor would have to look for them
-        ("remainder", float, 2 * masses + 1),
+        ("remainder", float, (2 * masses + 1,)),
         ("cells", np.int64),
         ("crossed", np.int64),  # of these cells those that `strike` crosses: all, or none if the system is stiff
         ("limits", float, 2),  # the stops; FARTHEST where there is none that near
@@ -72,9 +72,9 @@ def orbit_of(masses: int, constant: bool = False) -> np.dtype:
         ("stops", float, 4),  # left, right, and the restitution of each
         ("resting", float),  # side of the stop that M1 rests on, or 0
         ("c", float, (masses, ORDER)),  # Taylor coefficients of x1, x2, ...; of M1 at rest the free acceleration
-        ("series_start", float, width),  # what series begin with while M1 rests: x1, x2, v2, x3, ..., sin, cos
-        ("gap", float, ORDER),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
-        ("finer", float, 2 * masses),  # what rounding left of X, from series to series (`advance_exactly`)
+        ("series_start", float, (width,)),  # what series begin with while M1 rests: x1, x2, v2, x3, ..., sin, cos
+        ("gap", float, (ORDER,)),  # of the gap to a stop, or of the free acceleration at rest (contact.py)
+        ("finer", float, (2 * masses,)),  # what rounding left of X, from series to series (`advance_exactly`)
     ]
     counts = [
         ("period", np.int64),

@@ -33,26 +33,26 @@ def strikes_of(masses: int, constant: bool = False) -> np.dtype:
         ("impulses", float, (masses * FEWER_TERMS, LANES)),  # series of x1, x2, ... after a unit impulse on M1
         ("third", float, (TAIL, LANES)),  # weights of |c_n| in a bound on the third derivative over the cell
         ("tail", float, (inputs, LANES)),  # bound on what the series from TAIL on adds to it, for unit z
-        ("width", float, LANES),
-        ("drag", float, LANES),  # 2 zeta
-        ("impulse_third", float, LANES),
-        ("left", float, LANES),
-        ("right", float, LANES),
+        ("width", float, (LANES,)),
+        ("drag", float, (LANES,)),  # 2 zeta
+        ("impulse_third", float, (LANES,)),
+        ("left", float, (LANES,)),
+        ("right", float, (LANES,)),
         ("restitution", float, (2, LANES)),  # of the left stop and of the right one
         ("z", float, (LANES, width)),  # one row for each orbit, at the beginning of its cell: x1, v1, ..., sin, cos
         ("c", float, (TERMS, LANES)),  # Taylor coefficients of x1, economised
         # of the impact
         ("landing", float, (states, LANES)),  # the states at the ends of the cells, and
         ("X", float, (LANES, width)),  # the same, one row for each orbit; padded with zeros
-        ("side", float, LANES),
-        ("R", float, LANES),  # of the stop that was hit
-        ("offset", float, LANES),
-        ("speed", float, LANES),  # v1 before it
-        ("impulse", float, LANES),  # -(1 + R) v1
-        ("jump", float, LANES),  # a+ + R a-, for the saltation matrix
+        ("side", float, (LANES,)),
+        ("R", float, (LANES,)),  # of the stop that was hit
+        ("offset", float, (LANES,)),
+        ("speed", float, (LANES,)),  # v1 before it
+        ("impulse", float, (LANES,)),  # -(1 + R) v1
+        ("jump", float, (LANES,)),  # a+ + R a-, for the saltation matrix
         ("hits", float, (2, LANES)),  # impacts since `clear_counts`, on the left and on the right
-        ("slowest", float, LANES),  # least |v1| before one
-        ("miss", float, LANES),  # how far from the stop one was found at most, where `measured`
+        ("slowest", float, (LANES,)),  # least |v1| before one
+        ("miss", float, (LANES,)),  # how far from the stop one was found at most, where `measured`
         ("measured", np.bool_),
     ]
     return record(fields)

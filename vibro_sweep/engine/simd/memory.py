@@ -18,7 +18,7 @@ LINE = 64  # bytes of a cache line, which is as much as eight floats: what lies 
 def record(fields: list) -> np.dtype:
     """A structured dtype that fills whole cache lines; fields of eight numbers should come first."""
     missing = -np.dtype(fields).itemsize % LINE
-    return np.dtype([*fields, ("padding", np.uint8, missing)])
+    return np.dtype([*fields, ("padding", np.uint8, (missing,))])
 
 
 def new_lines(shape: int | tuple[int, ...], dtype) -> np.ndarray:

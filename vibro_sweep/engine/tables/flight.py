@@ -46,9 +46,9 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         # while M1 rests, of (x1, x2, v2, x3, ..., sin, cos): its free acceleration, and x2, ...
         ("resting", float, (masses, inputs - 1, ORDER)),
         ("impulse", float, (masses, ORDER)),  # Taylor coefficients of x1, x2, ... after a unit impulse on M1
-        ("reach", float, ORDER),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
-        ("third", float, ORDER),  # weights of |c_n| in a bound on the third derivative over a cell, and
-        ("fourth", float, ORDER),  # on the fourth
+        ("reach", float, (ORDER,)),  # weights of |c_n| in a bound on |x1 - c_0| over a cell
+        ("third", float, (ORDER,)),  # weights of |c_n| in a bound on the third derivative over a cell, and
+        ("fourth", float, (ORDER,)),  # on the fourth
         ("frame_series", float, (ORDER, states)),  # of tangent.py
         ("cells", np.int64),
         ("width", float),  # of a cell
@@ -59,14 +59,14 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         (
             "kappa",
             float,
-            masses,
+            (masses,),
         ),  # what a step of x1 by 1 at once moves v1 (nothing), v2 (by 2 zeta/mu_m), ... by dampers
-        ("push", float, masses),  # what a unit impulse on M1 does to v1 (1), v2, ... at once (model/contact.py), and
+        ("push", float, (masses,)),  # what a unit impulse on M1 does to v1 (1), v2, ... at once (model/contact.py), and
         ("drag", float),  # to the acceleration of M1
-        ("graze", float, states),  # the point at which the discontinuity mapping is expanded
-        ("remainder", float, states + 1),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
-        ("slow", float, states),  # part of the slow modes in x1; of a stiff system
-        ("force", float, inputs),  # acceleration of M1 as a function of them
+        ("graze", float, (states,)),  # the point at which the discontinuity mapping is expanded
+        ("remainder", float, (states + 1,)),  # bound on |x1 - cubic| in any cell, for unit X - r and for r
+        ("slow", float, (states,)),  # part of the slow modes in x1; of a stiff system
+        ("force", float, (inputs,)),  # acceleration of M1 as a function of them
         ("rest_step", float),  # width of the series `resting`; of M2 alone, where there is a closed form (resting.py):
         ("rest_square", float),  # omega^2; 0: there is none
         ("rest_static", float),  # x2 in equilibrium, for x1 = 1
@@ -75,14 +75,14 @@ def oscillator_of(masses: int, constant: bool = False) -> np.dtype:
         ("vanishing", np.int64),  # of tangent.py: directions that a flight over a cell takes below the others' rounding
         ("most_cells_mixed", np.int64),  # cells that tangent vectors may fly between orthonormalisations, and
         ("most_cells_in_planes", np.int64),  # the same while each lies in the plane of one mode
-        ("frame_scale", float, masses),  # g_j
-        ("frame_square", float, masses),  # omega_dj^2
+        ("frame_scale", float, (masses,)),  # g_j
+        ("frame_square", float, (masses,)),  # omega_dj^2
         ("to_frame", float, (states, states)),
         ("from_frame", float, (states, states)),
         ("stiff", np.bool_),  # cells do not resolve every rate, and
         ("exact", np.bool_),  # what rounding leaves is kept from series to series (orbits.advance_exactly)
         ("largest", float),  # |x1| of the motion r
-        ("steady", float, states),  # of coast.py, like all that follow: the steady motion at node 0
+        ("steady", float, (states,)),  # of coast.py, like all that follow: the steady motion at node 0
         ("middle", float),  # of the gap of the steady motion, and
         ("swing", float),  # by how much it swings about that
         ("confining", float, (states, states)),  # quadratic form of X - steady: bound on the gap's motion, squared
@@ -96,14 +96,14 @@ def node_of(masses: int, constant: bool = False) -> np.dtype:
     """The record of one node of the grid."""
     states, width, inputs = 2 * masses, width_of(masses, constant), inputs_of(masses, constant)
     fields = [
-        ("z", float, width),  # r, a motion under the force: from rest at node 0; of a fast mode the steady one;
+        ("z", float, (width,)),  # r, a motion under the force: from rest at node 0; of a fast mode the steady one;
         # then sin and cos of omega t + tau, and perhaps 1
         # flight from node 0: row j is X here of the unit state j there, the others that of the force's sin and cos
         ("E", float, (inputs + inputs % 2, width)),  # there, and of the constant force, from rest; padded
         ("forced", float, (masses, 2, 2)),  # modal motion from rest at node 0: mode; xi, xi'; to sin, cos there
         ("angle", float),  # omega t, and
         ("turn", float, 2),  # its sin and cos
-        ("frame", float, states),  # c_1, s_1, c_2, s_2, ... of a flight from node 0
+        ("frame", float, (states,)),  # c_1, s_1, c_2, s_2, ... of a flight from node 0
     ]
     return record(fields)
 

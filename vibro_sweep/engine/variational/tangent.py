@@ -37,20 +37,20 @@ def tangents_of(masses: int, paper: bool) -> np.dtype:
         ("kick", float, (n, LANES)),  # to_frame of a step of x1 by 1, and of what it does to x2, ... and v2, ...
         ("push", float, (n, LANES)),  # to_frame of a unit impulse on M1
         # of the orbit
-        ("lost", float, LANES),  # dimensions: two by sticking, one by an impact without restitution
-        ("cell", np.int64, LANES),  # the cell, counted from the section, and
-        ("offset", float, LANES),  # the offset in it, up to which `flight` reaches
+        ("lost", float, (LANES,)),  # dimensions: two by sticking, one by an impact without restitution
+        ("cell", np.int64, (LANES,)),  # the cell, counted from the section, and
+        ("offset", float, (LANES,)),  # the offset in it, up to which `flight` reaches
         ("leap", float, (n, LANES)),  # c_1, s_1, c_2, s_2, ... of a flight over whole cells
-        ("part", float, LANES),  # of a cell, to fly after it
+        ("part", float, (LANES,)),  # of a cell, to fly after it
         ("flight", float, (n, LANES)),  # c_1, s_1, c_2, s_2, ... of the flight since Z was last touched
-        ("flown", np.int64, LANES),  # whole cells of that flight
-        ("mixed", float, LANES),  # 0: each vector lies in the plane of one mode, where free flight turns it
+        ("flown", np.int64, (LANES,)),  # whole cells of that flight
+        ("mixed", float, (LANES,)),  # 0: each vector lies in the plane of one mode, where free flight turns it
         ("Z", float, (n * n, LANES)),  # columns of Z (n, n) are vectors
         # what a rest multiplies (dx2, dv2, dx3, ...) by, from row and column 2 on; and one of them before it and after
         ("constrained", float, (n, n)),
-        ("before", float, n),
-        ("after", float, n),
-        ("volume", float, LANES),  # |det Z|, from the identity det S = R^2
+        ("before", float, (n,)),
+        ("after", float, (n,)),
+        ("volume", float, (LANES,)),  # |det Z|, from the identity det S = R^2
         ("growth", float, (n, LANES)),  # products of the diagonals of R in Z = Q R
         ("logs", float, (n, LANES)),  # their logarithms, taken before they leave the range of the floats
         ("square_length", float, (n, LANES)),  # squares of the diagonal of R in the last Z = Q R, and

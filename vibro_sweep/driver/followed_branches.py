@@ -1,0 +1,47 @@
+"""The branches of a scene, as the columns and arrays of its file."""
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Arrays
+from vibro_sweep.analysis.branches.branch_search import Branches, compute_branch
+from vibro_sweep.analysis.branches.search import Node
+from vibro_sweep.driver.jobs import computed
+from vibro_sweep.driver.origins import seeds_of
+from vibro_sweep.driver.usable import is_branch
+from vibro_sweep.model.branch_file import BRANCHES, columns_of
+from vibro_sweep.model.column import Column
+from vibro_sweep.model.state import state
+from vibro_sweep.scene import Continuation
+from vibro_sweep.store.joining import joined
+from vibro_sweep.store.pieces import Pieces
+
+
+def followed_branches(
+    scene: Continuation, pool: Executor | None, file: Pieces, progress: Callable[[int, int], None] | None
+) -> tuple[list[Column], Arrays]:
+    """Raises NoOrbitError where the scene's first orbit does not exist. progress(done, total) counts branches."""
+    names, masses = list(scene.parameter), scene.system.masses
+    evaluate = computed(compute_branch, is_branch, pool, file, progress)
+    search = Branches(tuple(names), tuple(scene.parameter.values()), scene.follow)
+    found = search.run(seeds_of(scene, file, pool), scene.depth, evaluate)
+    arrays = joined([node.arrays for node in found], SHAPES, names, masses)
+    sections = [node.arrays["section"].reshape(-1, 2 * masses) for node in found]
+    together = np.concatenate(sections) if sections else np.zeros((0, 2 * masses))
+    arrays |= {f"section_{name}": together[:, i] for i, name in enumerate(state(masses))}
+    arrays["branch_sections"] = np.array([node.arrays["section"].shape[1] for node in found], int)
+    return columns_of(BRANCHES, names, scene.system), arrays | where_met(found, arrays["branch_special"])
+
+
+def where_met(found: list[Node], counts: np.ndarray) -> dict[str, np.ndarray]:
+    """The columns that say from which special point each branch or curve was reached; counts : of those of each."""
+    parents = np.array([node.seed.parent for node in found], int)
+    own = np.array([node.seed.special for node in found], int)
+    first = np.append(0, np.cumsum(counts))
+    return {
+        "branch_parent": parents,
+        "branch_parent_special": np.where(parents >= 0, first[parents] + own, -1),
+        "branch_generation": np.array([node.generation for node in found], int),
+    }

@@ -1,0 +1,54 @@
+"""From a scene of branches or of curves to its file."""
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from pathlib import Path
+
+from vibro_sweep import store
+from vibro_sweep.driver.followed_branches import followed_branches
+from vibro_sweep.driver.followed_curves import followed_curves
+from vibro_sweep.driver.jobs import workers_of
+from vibro_sweep.driver.origins import NoOrbitError, attributes_of, source_of
+from vibro_sweep.driver.provenance import provenance
+from vibro_sweep.driver.source_file import computed_from_source
+from vibro_sweep.driver.swept_plane import plane_of
+from vibro_sweep.model.branch_file import BRANCHES, CHART
+from vibro_sweep.model.files import file_to_write
+from vibro_sweep.scene import Continuation
+from vibro_sweep.store.pieces import pieces
+from vibro_sweep.store.ragged_files import Subject
+
+
+def run_continuation(
+    scene: Continuation,
+    output: str | Path,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    mode: str = "new",
+) -> bool:
+    """Follow the branches or curves of a scene and write their file; arguments as of `run`. False: it is complete
+    already.
+
+    The file does not depend on workers, executor or interruptions. Raises StoreError as `run` does, ValueError where
+    the scene's first orbit does not exist, RunError where workers fail.
+    """
+    output, of_curves = file_to_write("output", output), len(scene.parameter) > 1
+    with computed_from_source(scene):
+        of_plane = plane_of(scene) if of_curves else None
+        attributes = attributes_of(scene, source_of(scene))
+        subject = Subject(CHART if of_curves else BRANCHES, scene.name, scene.text, attributes)
+        with pieces(subject, output, mode, scene.inputs) as file:
+            if isinstance(file, store.Complete):
+                return False
+            with workers_of(workers, executor) as pool:
+                try:
+                    if of_curves:
+                        found = followed_curves(scene, of_plane, pool, file, progress)
+                    else:
+                        found = followed_branches(scene, pool, file, progress)
+                except NoOrbitError:
+                    file.drop()
+                    raise
+            file.finish(provenance(), *found)
+            return True
