@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.plotting import drawn_curves, families, strip, style
 
 # Machado, Oliveira, Fernandes, IEEE Trans. Vis. Comput. Graph. 15 (2009) 1291, table 1: severity 1.0, on linear sRGB

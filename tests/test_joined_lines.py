@@ -5,6 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import vibro_sweep as vs
+from vibro_sweep.analysis.branches.branch_arrays import arrays_of, sections_of
 from vibro_sweep.plotting import joined
 
 
@@ -81,3 +83,14 @@ def test_an_impact_that_vanishes_is_no_turning_point():
         special_impact=np.array([1, -1]),
     )  # fmt: skip
     assert np.flatnonzero(~joined.margins(points, ["x1"])).tolist() == [0, 19]
+
+
+def test_section_states_are_continuous_along_a_branch():
+    """Near b = 5.68 another of the four impacts has the earliest phase, with which an orbit alone begins."""
+    system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=5.6)
+    settled = vs.simulate(system, (0, 0, 0, 0), 2000).section[-1]
+    branch = vs.continue_orbit(vs.periodic_orbit(system, settled, periods=8), "b", (5.55, 5.78))
+    b, drawn = branch.points.b.values, sections_of(arrays_of(branch, 5.6), "b", system)
+    assert drawn.shape[1] == 16 and len(b) > 10 and b[0] < 5.6 < 5.75 < b[-1]
+    slopes = np.abs(np.diff(drawn[..., 0], axis=0) / np.diff(b)[:, None])
+    assert slopes.max() < 15  # lines that changed places would have jumped by 1 in a step of 0.02

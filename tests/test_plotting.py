@@ -20,7 +20,7 @@ from vibro_sweep.plotting.style import edges, limits
 def test_kinds_follow_from_what_the_file_holds(tmp_path, sweep, branches, trajectory):
     assert plotting.kinds(sweep) == ["bifurcation", "lyapunov", "impacts", "iteration"]
     assert plotting.kinds(branches) == ["bifurcation", "lyapunov", "iteration"]
-    assert plotting.kinds(trajectory) == ["phase-portrait", "configuration", "history", "iteration"]
+    assert plotting.kinds(trajectory) == ["phase-portrait", "configuration", "history", "film", "iteration"]
     b = np.arange(1.0, 4)
     only = write(tmp_path / "only.h5", {"b": b}, {"lyapunov": exponents(3)})
     assert plotting.kinds(only) == ["lyapunov"]
@@ -52,6 +52,7 @@ def test_kind_all_writes_each_kind(trajectory, tmp_path):
         "fig-phase-portrait.svg",
         "fig-configuration.svg",
         "fig-history.svg",
+        "fig-film.svg",
         "fig-iteration.svg",
     ]
     assert all(path.stat().st_size > 1000 for path in written)

@@ -144,3 +144,13 @@ def test_a_plane_is_opened_twice_and_each_number_read_once(plane, tmp_path, monk
     assert len(opened) == 2
     assert len(read) == len({*read})
     assert [given for given in read if given[0] == "lyapunov"] == [("lyapunov", (..., 0))]
+
+
+def test_a_plane_of_energy_alone_shows_the_power():
+    system = vs.Oscillator.named("one_mass", zeta=0.02, base=True, F=0.5, omega=1, R=0.6, b=1, tau=0)
+    axes = {"omega": [1.2, 1.4, 1.6], "b": [0.5, 1.0]}
+    data = vs.sweep(system, axes, observe=["energy"], transient=50, record=20)
+    fig = vs.plot(data)
+    shown = image(fig.axes[0]).get_array()
+    assert np.allclose(np.ravel(shown), data.impact_power.transpose("b", "omega").values.ravel())
+    assert any("power" in text.get_text() for ax in fig.axes for text in (ax.xaxis.label, ax.yaxis.label))

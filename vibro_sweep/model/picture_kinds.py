@@ -10,7 +10,16 @@ if TYPE_CHECKING:
 
 
 class Plottable(Protocol):
-    """A result that `vibro_sweep.plot` draws: an orbit, a branch, a curve or windows."""
+    """A result that `vibro_sweep.plot` draws: an orbit, a branch, a curve or windows.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> orbit = vs.periodic_orbit(system, itinerary="R")  # is Plottable
+    >>> len(vs.plot(orbit).axes)
+    2
+    """
 
     def to_xarray(self) -> "xarray.Dataset":
         """All its numbers."""
@@ -27,6 +36,7 @@ PICTURES = (
     "phase-portrait",
     "configuration",
     "history",
+    "film",
     "iteration",
     "poincare",
     "convergence",

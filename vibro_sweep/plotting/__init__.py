@@ -23,6 +23,7 @@ from vibro_sweep.plotting import (
     coexistence,
     convergence,
     energy_picture,
+    film,
     orbit_pictures,
     planes,
     sweeps,
@@ -65,6 +66,7 @@ _DRAWN = {
     ),
     "configuration": Kind(orbit_pictures.shows_both_masses, orbit_pictures.configuration, of_orbits=True),
     "history": Kind(orbit_pictures.shows_trajectory, orbit_pictures.history, orbit_pictures.coordinates, True),
+    "film": Kind(orbit_pictures.shows_trajectory, film.film, of_orbits=True),
     "poincare": Kind(orbit_pictures.shows_poincare, orbit_pictures.poincare, orbit_pictures.abscissae, True),
     "iteration": Kind(orbit_pictures.shows_section, orbit_pictures.iteration, sweeps.section_variables, True),
     "convergence": Kind(convergence.shows_convergence, convergence.convergence, of_orbits=True),
@@ -121,8 +123,7 @@ def plot(
     """
     path = Path(path)
     output = Path(default_name(path)) if output is None else Path(output)
-    if output.suffix.lower() not in SUFFIXES:
-        raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
+    kind = check_suffix(output, kind)
     beside = (options.windows, options.over) if options else ()
     inputs = [path, *(one for one in beside if isinstance(one, Path))]
     data, of = readable(path)
@@ -136,6 +137,17 @@ def plot(
         for place in places:  # before the work of drawing
             check_output(place, overwrite, inputs)
         return [save(_draw(result, one), place, overwrite, inputs) for one, place in zip(chosen, places, strict=True)]
+
+
+def check_suffix(output: Path, kind: str | None) -> str | None:
+    """The kind of picture for an output: a film where its suffix is that of one. Raises PlotError for any other."""
+    suffix = output.suffix.lower()
+    if suffix in film.SUFFIXES and kind in (None, "film"):
+        return "film"
+    if suffix not in SUFFIXES:
+        allowed = (*SUFFIXES, *(f"{one} for a film" for one in film.SUFFIXES))
+        raise PlotError(f"output {output}: the suffix is the format and must be one of {', '.join(allowed)}")
+    return kind
 
 
 def _check_ragged(path, of: str, kind: str | None, options: PlotOptions) -> None:

@@ -14,7 +14,7 @@ from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.picture_kinds import Plottable
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.plotting import SUFFIXES, PlotError, PlotOptions, figure
+from vibro_sweep.plotting import PlotError, PlotOptions, check_suffix, figure
 from vibro_sweep.plotting.pictures import check_output, save
 
 if TYPE_CHECKING:
@@ -71,12 +71,26 @@ def plot(
     windows : windows of the sweep, to be shown with it
     over : the sweep over which branches or curves are drawn
     relative : of curves and planes: b in parts of the grazing clearance b*
-    output : FILE.png, .svg or .pdf, to which the picture is written as well
+    output : FILE.png, .svg or .pdf, to which the picture is written as well; .gif or .mp4 of a film
     overwrite : replace an `output` that exists, also one that is not a picture of this program
 
     Raises `PlotError` where the data cannot be read or cannot show that kind; it says which can be shown.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> data = vs.sweep(system, {"b": {"start": 6, "stop": 6.4, "num": 21}}, transient=100, record=50)
+    >>> figure = vs.plot(data, output="picture.png")
+    >>> figure.axes[0].get_ylabel()
+    '$x_1$ at $t = 0$ mod $T$'
     """
     if _is_result(data) and hasattr(data, "sample"):  # an orbit, whose motion is computed as it is drawn
+        given = {"kind": kind, "ax": ax, "at": at, "variable": variable, "xlim": xlim, "ylim": ylim, "size": size}
+        given |= {"dpi": dpi, "windows": windows, "over": over, "relative": relative or None, "output": output}
+        for name, value in given.items():
+            if value is not None:
+                raise PlotError(f"{name}: of an orbit `width` is the only option; the Figure has more")
         return data.plot(width=width)
     data = _data("data", data)
     check_type("kind", kind, (str, NoneType), "the name of a kind of picture, or None")
@@ -98,8 +112,7 @@ def plot(
     inputs = [Path(one) for one in (data, *beside) if isinstance(one, (str, Path))]
     place = None if output is None else file_to_write("output", output)
     if place is not None:
-        if place.suffix.lower() not in SUFFIXES:
-            raise PlotError(f"output {place}: the suffix is the format and must be one of {', '.join(SUFFIXES)}")
+        kind = check_suffix(place, kind)
         check_output(place, checked_flag("overwrite", overwrite), inputs)
     drawn = figure(data, kind, options, ax)
     if place is not None:

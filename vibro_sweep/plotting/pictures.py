@@ -15,6 +15,8 @@ from pathlib import Path
 import matplotlib
 from matplotlib.figure import Figure
 
+from vibro_sweep.plotting.film import SUFFIXES as FILMS
+from vibro_sweep.plotting.film import Film
 from vibro_sweep.plotting.style import STYLE
 from vibro_sweep.plotting.sweep_result import PlotError
 from vibro_sweep.store import names, parts
@@ -32,13 +34,12 @@ def save(fig: Figure, output: Path, overwrite: bool, inputs: Collection[Path]) -
     """
     old = _replaceable(output, overwrite, inputs)
     suffix = output.suffix.lower()
-    picture = io.BytesIO()
     with matplotlib.rc_context(STYLE):  # some settings are looked up only when the picture is written
-        fig.savefig(picture, format=suffix[1:], dpi=fig.dpi)
+        picture = _encoded(fig, suffix)
     new = output.with_name(f".vibro_sweep-{secrets.token_hex(16)}{suffix}")
     try:
         with open(new, "xb") as file:
-            file.write(_sealed(picture.getvalue(), suffix))
+            file.write(_sealed(picture, suffix))
         names.publish(new, output, old)
     except FileExistsError:
         raise PlotError(f"output {output}: it has just appeared; --overwrite replaces it") from None
@@ -48,6 +49,14 @@ def save(fig: Figure, output: Path, overwrite: bool, inputs: Collection[Path]) -
         with contextlib.suppress(OSError):
             new.unlink()
     return output
+
+
+def _encoded(fig: Figure, suffix: str) -> bytes:
+    if isinstance(fig, Film) and suffix in FILMS:
+        return fig.encoded(suffix)
+    picture = io.BytesIO()
+    fig.savefig(picture, format=suffix[1:], dpi=fig.dpi)
+    return picture.getvalue()
 
 
 def check_output(output: Path, overwrite: bool, inputs: Collection[Path]) -> None:
@@ -89,5 +98,8 @@ def _seal(digest: bytes, suffix: str) -> bytes:
     if suffix == ".png":
         chunk = b"tEXtvibro_sweep\0sha256:" + digest
         return (len(chunk) - 4).to_bytes(4) + chunk + zlib.crc32(chunk).to_bytes(4)
+    if suffix == ".mp4":  # a box that players skip
+        box = b"free vibro_sweep sha256:" + digest
+        return (len(box) + 4).to_bytes(4) + box
     first, last = (b"<!--", b"-->") if suffix == ".svg" else (b"%", b"")
     return first + b" vibro_sweep sha256:" + digest + b" " + last + b"\n"

@@ -48,8 +48,9 @@ class Overlay(NamedTuple):
 
 
 def shows(result: Result) -> bool:
-    """A sweep over two keys; lyapunov, section or impacts."""
-    return len(result.sweep) == 2 and any(name in result for name in ("lyapunov", "period", "impacts_right"))
+    """A sweep over two keys; lyapunov, section, impacts or energy."""
+    shown = ("lyapunov", "period", "impacts_right", "impact_power")
+    return len(result.sweep) == 2 and any(name in result for name in shown)
 
 
 def variables(result: Result) -> tuple[str, ...]:
@@ -58,7 +59,8 @@ def variables(result: Result) -> tuple[str, ...]:
 
 
 def plane(result: Result, overlay: Overlay | None = None):
-    """lambda_1 and the period over the two parameters, side by side; the impacts where neither is stored.
+    """lambda_1 and the period over the two parameters, side by side; where neither is stored the impacts, or their
+    power.
 
     Of several starts the one with the largest lambda_1 is shown, point by point; beside it how many attractors they
     reach, where that is stored. A variable that is chosen is shown alone. Raises PlotError where the options ask for b
@@ -202,9 +204,11 @@ def _maps(result):
         maps.append((_number, np.fmax.reduce(result.array("attractor"), axis=-1)))
     elif "period" in result:
         maps.append((_period, shown(result.array("period"))))
-    if not maps:
+    if not maps and "impacts_right" in result:
         impacts = result.array("impacts_right") + result.array("impacts_left")
         maps.append((_amount("impacts in the recorded periods"), impacts[..., 0]))
+    if not maps:
+        maps.append((_amount(_OF_A_POINT["impact_power"]), shown(result.array("impact_power"))))
     return [one for one in maps if np.isfinite(one[1]).any()] or maps[:1], note
 
 

@@ -16,7 +16,19 @@ if TYPE_CHECKING:
 
 
 class PlotError(VibroSweepError, ValueError):
-    """A picture cannot be drawn; the message says what can."""
+    """A picture cannot be drawn; the message says what can.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> data = vs.sweep(system, {"b": [6.4, 6.5]}, transient=100, record=50)
+    >>> try:
+    ...     vs.plot(data, "basins")
+    ... except vs.PlotError as error:
+    ...     print(error)
+    kind 'basins': this dataset can show bifurcation, lyapunov, iteration, poincare (or all)
+    """
 
 
 def readable(given: "str | Path | xarray.Dataset") -> tuple["str | Path | xarray.Dataset", str | None]:

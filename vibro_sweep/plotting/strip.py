@@ -5,8 +5,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.branch_file import WINDOWS
+from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.plotting.ragged import RaggedFile
 from vibro_sweep.plotting.style import FAINT, SPECIAL, edges, special_mark, type_size
 from vibro_sweep.plotting.sweep_result import PlotError, Result

@@ -15,9 +15,9 @@ from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.model.units import shown_unit
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.plot_options import PlotOptions
+from vibro_sweep.plotting.settings import settings_of
 from vibro_sweep.plotting.source import PlotError, source_of
 from vibro_sweep.plotting.style import axis_name, equation, in_formula
-from vibro_sweep.store.settings import settings_of
 
 LONGEST_LINE = 150  # letters of TeX
 

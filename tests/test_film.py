@@ -1,0 +1,73 @@
+"""Films of orbits: what a frame shows, the files, and what is refused."""
+
+import matplotlib
+import numpy as np
+import pytest
+from PIL import Image
+
+import vibro_sweep as vs
+from vibro_sweep.cli.commands import main
+from vibro_sweep.plotting import film
+
+SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+
+
+@pytest.fixture(scope="module")
+def data():
+    trajectory = {"periods": 2, "samples": 200}
+    return vs.sweep(SYSTEM, {"b": [3.9, 4.0]}, observe=["section"], transient=300, record=20, trajectory=trajectory)
+
+
+@pytest.fixture
+def few(monkeypatch):
+    monkeypatch.setattr(film, "FRAMES", 5)
+
+
+def test_a_frame_shows_the_masses_where_they_are(data):
+    shown = vs.plot(data, "film", at={"b": 4.0})
+    there = data.sel(b=4.0)
+    shown.show(film.FRAMES - 1)
+    (first, _), (second, _) = shown.boxes
+    for box, name in ((first, "trajectory_x1"), (second, "trajectory_x2")):
+        assert box.get_x() + box.get_width() / 2 == pytest.approx(float(there[name][-1]), abs=1e-12)
+    shown.show(0)
+    assert first.get_x() + first.get_width() / 2 == pytest.approx(float(there.trajectory_x1[0]), abs=1e-12)
+    assert [dot.get_xdata()[0] for dot in shown.dots] == pytest.approx([0.0, float(there.trajectory_x1[0])])
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".mp4"])
+def test_files(data, tmp_path, few, suffix):
+    """A file that nobody has changed is replaced; the suffix asks for a film."""
+    if suffix == ".mp4" and not film.FFMpegWriter.isAvailable():
+        with pytest.raises(vs.PlotError, match=r"ffmpeg.*\.gif"):
+            vs.plot(data, output=tmp_path / "film.mp4")
+        return
+    place = tmp_path / f"film{suffix}"
+    for _ in "twice":
+        vs.plot(data, output=place)
+    if suffix == ".gif":
+        with Image.open(place) as moving:
+            assert moving.n_frames == 5 and moving.size[0] > 400
+    place.write_bytes(place.read_bytes() + b"x")
+    with pytest.raises(vs.PlotError, match="exists"):
+        vs.plot(data, output=place)
+
+
+def test_from_the_command_line(tmp_path, few, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    vs.sweep(SYSTEM, {"b": [4.0]}, transient=50, record=10, trajectory={"periods": 1, "samples": 60}, output="one.h5")
+    assert main(["plot", "one.h5", "--kind", "film", "-o", "film.gif"]) == 0
+    assert (tmp_path / "film.gif").stat().st_size > 1000
+    assert main(["plot", "one.h5", "--kind", "history", "-o", "history.gif"]) == 2
+    assert "suffix" in capsys.readouterr().err
+
+
+def test_of_a_simulated_orbit(few):
+    ball = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.05, zeta=0.01, F=0.1, omega=1, R=0.7, b=2.2)
+    orbit = vs.simulate(ball, (0, 0.1, 0, 0), 30)
+    moving = orbit.animate(periods=2)
+    assert isinstance(moving, matplotlib.animation.FuncAnimation) and "<img" in moving.to_jshtml(fps=2)
+    for periods in (0, 1.5, None):
+        with pytest.raises(ValueError, match="periods"):
+            orbit.animate(periods)
+    assert np.isfinite(orbit.section).all()
