@@ -1,0 +1,138 @@
+"""The live page in a real browser: it follows a slider, zooms and comes back, shows orbits and why a window ends."""
+
+import shutil
+
+import numpy as np
+import pytest
+from support import ROOT
+from support.explorers import explorer
+
+import vibro_sweep as vs
+
+pytestmark = pytest.mark.slow
+MOST = 120_000  # ms, for kernels that are to be compiled
+
+
+@pytest.fixture(scope="module")
+def browser():
+    found = next((path for name in ("chromium", "chromium-browser") if (path := shutil.which(name))), None)
+    if found is None:
+        pytest.skip("no chromium here: apt-get install chromium")
+    api = pytest.importorskip("playwright.sync_api", reason="the browser is driven by playwright")
+    with api.sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="module")
+def program():
+    with explorer(ROOT / "configs" / "quickstart.yaml") as running:
+        yield running
+
+
+@pytest.fixture
+def page(browser, program):
+    """A page with its first final picture; errors of its scripts fail the test."""
+    tab, wrong = browser.new_page(viewport={"width": 1280, "height": 900}), []
+    tab.on("pageerror", lambda error: wrong.append(str(error)))
+    tab.on("console", lambda one: wrong.append(one.text) if one.type == "error" else None)
+    tab.goto(program.address)
+    settle(tab)
+    yield tab
+    tab.close()
+    assert not wrong
+
+
+def settle(tab):
+    tab.wait_for_selector("html[data-state=final]", timeout=MOST)
+
+
+def colours(tab):
+    """The pixels of the diagram."""
+    return tab.locator("#diagram").screenshot()
+
+
+def click(tab, across, down=0.5):
+    """Click into the diagram at parts of its width and height."""
+    box = tab.locator("#diagram").bounding_box()
+    tab.mouse.click(box["x"] + across * box["width"], box["y"] + down * box["height"])
+
+
+def test_the_diagram_follows_a_number_and_comes_back(page):
+    before, frame = colours(page), int(page.get_attribute("html", "data-frame"))
+    old = page.input_value("#field-R")
+    page.fill("#field-R", "0.6")
+    page.press("#field-R", "Enter")
+    page.wait_for_timeout(200)
+    settle(page)
+    assert int(page.get_attribute("html", "data-frame")) > frame
+    changed = colours(page)
+    assert changed != before
+    page.fill("#field-R", old)
+    page.press("#field-R", "Enter")
+    page.wait_for_timeout(200)
+    settle(page)
+    page.mouse.move(0, 0)
+    assert colours(page) == before
+
+
+def test_zoom_and_back(page):
+    page.mouse.move(0, 0)
+    before = colours(page)
+    box = page.locator("#diagram").bounding_box()
+    page.mouse.move(box["x"] + 0.55 * box["width"], box["y"] + 0.1 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.75 * box["width"], box["y"] + 0.4 * box["height"], steps=5)
+    page.mouse.up()
+    page.wait_for_timeout(200)
+    settle(page)
+    low, high = float(page.input_value("#low")), float(page.input_value("#high"))
+    assert 4.2 < low < high < 7
+    page.click("#back")
+    page.wait_for_timeout(200)
+    settle(page)
+    page.mouse.move(0, 0)
+    assert (page.input_value("#low"), page.input_value("#high")) == ("4.2", "7")
+    page.wait_for_timeout(200)
+    assert colours(page) == before
+
+
+def test_an_orbit_and_why_its_window_ends(page):
+    click(page, 0.5, 0.3)  # near b = 5.5, in the window of period 8
+    page.wait_for_selector("#orbit:not([hidden])", timeout=MOST)
+    page.locator("#facts", has_text="period 8").wait_for(timeout=MOST)
+    page.click("#why")
+    system = vs.load_scene(ROOT / "configs" / "quickstart.yaml").system.replace(b=5.5)
+    settled = vs.simulate(system, (0, 0, 0, 0), 2000).section[-1]
+    branch = vs.continue_orbit(vs.periodic_orbit(system, settled, periods=8), "b", (5.3, 6))
+    for special in (branch.begins, branch.ends):
+        assert special.type == "graze"
+        page.locator("#window", has_text=f"{special.parameters['b']:.8f}"[:9]).wait_for(timeout=MOST)
+
+
+def test_the_address_holds_the_view(page, browser, program):
+    page.fill("#field-omega", "0.7")
+    page.press("#field-omega", "Enter")
+    page.wait_for_timeout(200)
+    settle(page)
+    page.mouse.move(0, 0)
+    page.wait_for_timeout(600)  # the address is changed after a pause
+    other = browser.new_page(viewport={"width": 1280, "height": 900})
+    other.goto(program.address + page.evaluate("location.hash"))
+    settle(other)
+    other.wait_for_timeout(300)
+    assert other.input_value("#field-omega") == "0.7"
+    assert colours(other) == colours(page)
+    other.close()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_phone(browser, program, scheme):
+    context = browser.new_context(viewport={"width": 360, "height": 740}, color_scheme=scheme)
+    tab = context.new_page()
+    tab.goto(program.address)
+    settle(tab)
+    assert tab.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+    assert np.ptp(np.frombuffer(colours(tab), np.uint8)) > 100
+    context.close()

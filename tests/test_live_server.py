@@ -1,0 +1,291 @@
+"""`vibro-sweep explore` as a page meets it: what it answers, whom it refuses, and that nothing stops it."""
+
+import http.client
+import json
+import time
+from contextlib import ExitStack
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support import ROOT
+from support.explorers import answers, ask, decoded, explorer
+
+import vibro_sweep as vs
+from vibro_sweep.scene.scene import parse_scene
+
+pytest.importorskip("uvicorn")
+websockets = pytest.importorskip("websockets.sync.client")
+
+from websockets.exceptions import ConnectionClosed, InvalidStatus  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def program():
+    with explorer() as running:
+        yield running
+        status, errors = running.end()
+    assert status == 0 and "Traceback" not in errors and "warning" not in errors, errors
+
+
+@pytest.fixture
+def page(program):
+    with program.socket() as socket:
+        yield socket
+
+
+@pytest.fixture
+def view(page):
+    return answers(page, "open", 1)[0]["view"] | {"columns": 64, "transient": 100, "record": 20}
+
+
+def got(program, path="/", method="GET", **headers):
+    connection = http.client.HTTPConnection(program.host, timeout=10)
+    connection.request(method, path, headers=headers)
+    answer = connection.getresponse()
+    return answer.status, answer.read(), dict(answer.getheaders())
+
+
+def heights(frames, columns, starts, record):
+    """What stands on the vertical axis, (columns, starts, record), of a periodic orbit the last points; float32."""
+    result, seen = np.full((columns, starts, record), np.nan, "f4"), np.zeros((columns, starts), int)
+    for words, arrays in frames:
+        if words["kind"] == "preview":
+            continue
+        here = len(arrays["count"]) // words["length"]
+        parts = np.split(arrays["y"], np.cumsum(arrays["count"])[:-1])
+        for n, part in enumerate(parts):
+            column, start = words["first"] + n // here * words["step"], words["first_start"] + n % here
+            result[column, start, record - len(part) :] = part
+            seen[column, start] += 1
+    assert (seen == 1).all()
+    return result
+
+
+@pytest.mark.parametrize("start", [{}, {"random": 2, "seed": 7}, {"follow": "both"}], ids=["rest", "random", "follow"])
+def test_the_final_picture_has_the_bits_of_the_sweep(page, view, start):
+    view |= {"start": start, "low": 5.3, "high": 5.9}
+    frames = answers(page, "sweep", 2, view=view, middle=1.25)
+    scene = parse_scene(answers(page, "save", 3, view=view, form="yaml")[0]["text"])
+    data = vs.sweep(
+        scene.system, scene.sweep, start=start or None, transient=100, record=20, observe=["section", "lyapunov"]
+    )
+    whole = data["x1"].values.reshape(64, -1, 20)
+    expected = (whole - 1.25).astype("f4")
+    found = heights(frames, 64, whole.shape[1], 20)
+    period = data["period"].values.reshape(64, -1)
+    assert {*np.unique(period)} > {0}  # both kinds of orbits
+    shown = np.arange(20) >= 20 - np.where(period > 0, period, 20)[..., None]
+    assert np.array_equal(found[shown], expected[shown]) and np.isnan(found[~shown]).all()
+    assert frames[0][0]["kind"] == "preview" and frames[0][0]["exact"] is False
+    assert np.array_equal(frames[0][1]["axis"], scene.sweep["b"])
+    exponents = np.full((64, whole.shape[1], 4), np.nan, "f4")
+    for words, arrays in frames[1:]:
+        columns = words["first"] + words["step"] * np.arange(words["length"])
+        here = len(arrays["count"]) // words["length"]
+        exponents[columns, words["first_start"] : words["first_start"] + here] = arrays["lyapunov"].reshape(-1, here, 4)
+    assert np.array_equal(exponents, data["lyapunov"].values.reshape(64, -1, 4).astype("f4"))
+
+
+def test_only_the_newest_request_is_finished(page, view):
+    view |= {"columns": 1000, "transient": 1000, "record": 200}
+    for seq in range(10, 40):
+        ask(page, "sweep", seq, view=view | {"numbers": {"R": 0.8 - 0.001 * seq}})
+    finished = []
+    while 39 not in finished:
+        words, _ = decoded(page.recv(timeout=60))
+        finished += [words["seq"]] if words.get("last") else []
+    assert len(finished) <= 3  # the first may have been complete before the next one came
+
+
+def test_what_cannot_be_computed_is_said_in_words(page, view):
+    words, _ = answers(page, "sweep", 5, view=view | {"numbers": {"R": 2.0}})
+    assert words["type"] == "error" and "R" in words["text"] and "from 0 to 1" in words["text"]
+    words, _ = answers(page, "sweep", 6, view=view | {"low": 5.0, "high": 5.0 + 1e-15})
+    assert words["type"] == "error" and "double precision" in words["text"]
+    words, _ = answers(page, "sweep", 7, view=view | {"y": "x9"})
+    assert words["type"] == "error" and "x1" in words["text"]
+    words, _ = answers(page, "sweep", 8, view=view | {"system": {"type": "build", "build": "os.system"}})
+    assert words["type"] == "error"
+    assert answers(page, "sweep", 9, view=view)[-1][0]["last"]
+
+
+def test_an_orbit_is_that_of_simulate(page, view):
+    words, arrays = answers(page, "orbit", 2, view=view | {"transient": 1000, "record": 200}, value=4.9)
+    assert (words["period"], words["itinerary"], words["went_on"]) == (13, "LLLLRRRR", False)
+    system = vs.load_scene(ROOT / "configs" / "quickstart.yaml").system.replace(b=4.9)
+    whole = vs.simulate(system, [0, 0, 0, 0], 1212)
+    states = whole.sample(1200 * system.period + arrays["t"].astype(float))  # it is shown from the end of its record
+    assert np.allclose(arrays["states"].reshape(-1, 4)[:, 0::2], states[:, 0::2], atol=1e-4)
+    exponents = vs.lyapunov(system, [0, 0, 0, 0], 1000, 200)
+    assert np.allclose(arrays["exponents"], exponents, rtol=1e-12)
+
+
+def test_an_orbit_goes_on_from_the_end_of_its_column(page, view):
+    view |= {"start": {"follow": "up"}, "low": 6.66, "high": 6.8}
+    answers(page, "sweep", 2, view=view)
+    words, arrays = answers(page, "orbit", 3, view=view, value=6.8, column=63)
+    assert words["went_on"] and not words["alone"]
+    words, alone = answers(page, "orbit", 4, view=view, value=6.8)
+    assert words["alone"] and not np.array_equal(arrays["states"], alone["states"])
+
+
+def test_the_ends_of_a_window_are_where_its_orbit_ends(page, view):
+    view |= {"transient": 4000, "record": 200}
+    words, arrays = answers(page, "window", 2, view=view, value=4.9)
+    assert words["period"] == 13 and words["low"]["type"] == words["high"]["type"] == "graze"
+    system = vs.load_scene(ROOT / "configs" / "quickstart.yaml").system
+    for end, inwards, direction in ((words["low"]["value"], 1, "down"), (words["high"]["value"], -1, "up")):
+        values = np.sort(end + inwards * np.append(np.geomspace(0.1, 1e-5, 60), -1e-5))
+        start = {"follow": direction}  # across the end, with ever smaller steps
+        data = vs.sweep(system, {"b": values}, start=start, transient=2600, record=260, observe=["section", "impacts"])
+        strikes = (data["impacts_right"] + data["impacts_left"]).values[::-inwards]
+        assert (strikes[:-1] == 160).all() and strikes[-1] != 160  # 8 in 13 periods, until its end is passed
+    assert arrays["y"].size == 13 * arrays["value"].size and not arrays["unstable"].any()
+    words, _ = answers(page, "window", 3, view=view, value=4.45)
+    assert "Lyapunov exponent is positive" in words["reason"]
+
+
+def test_a_saved_view_is_computed_again(page, view, tmp_path, monkeypatch):
+    view |= {"numbers": {"R": 0.75}}
+    scene = parse_scene(answers(page, "save", 2, view=view, form="yaml")[0]["text"])
+    assert scene.system.R == 0.75 and len(scene.sweep["b"]) == 64 and scene.transient == 100
+    path = tmp_path / "explored.h5"
+    path.write_bytes(answers(page, "save", 3, view=view, form="hdf5")[1]["data"].tobytes())
+    monkeypatch.chdir(tmp_path)
+    program = answers(page, "save", 4, view=view, form="python")[0]["text"]
+    scope = {}
+    exec(program, scope)
+    with vs.open(path) as data:
+        assert np.array_equal(data["x1"], scope["data"]["x1"]) and data.attrs["R"] == 0.75
+    assert Path("explored.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    "headers, path",
+    [({}, "/"), ({}, "/?token=wrong"), ({"Host": "example.org"}, None), ({"Host": "127.0.0.1.example.org"}, None)],
+)
+def test_a_page_is_given_to_those_who_know_the_token_and_name_this_machine(program, headers, path):
+    status, body, _ = got(program, path or f"/?token={program.token}", **headers)
+    assert status == 403 and b"<html" not in body
+
+
+def test_the_page_and_its_policy(program):
+    for host in ("localhost:1234", program.host):
+        status, body, headers = got(program, f"/?token={program.token}", Host=host)
+        assert status == 200 and b"main.js" in body
+    policy = headers["content-security-policy"]
+    assert "default-src 'none'" in policy and "unsafe" not in policy and headers["referrer-policy"] == "no-referrer"
+    assert program.token.encode() not in body and b"http" not in got(program, "/main.js")[1]
+    for path in ("/../server.py", "/..%2fserver.py", "/page/main.js", "/etc/passwd"):
+        assert got(program, path)[0] == 404
+    assert got(program, f"/?token={program.token}", "POST")[0] == 405
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"token": "wrong"},
+        {"token": ""},
+        {"origin": "http://example.org"},
+        {"origin": None},
+    ],
+)
+def test_sockets_of_others_are_refused(program, options):
+    with pytest.raises(InvalidStatus) as refused, program.socket(**options):
+        pass
+    assert refused.value.response.status_code == 403
+
+
+def test_a_socket_to_another_name_of_this_machine_is_refused(program):
+    upgrade = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13"}
+    upgrade |= {"Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==", "Origin": "http://example.org", "Host": "example.org"}
+    assert got(program, f"/socket?token={program.token}", **upgrade)[0] == 403
+
+
+def test_it_listens_on_this_machine_alone(program):
+    rows = [line.split() for file in ("tcp", "tcp6") for line in Path("/proc/net", file).read_text().splitlines()[1:]]
+    local = [row[1].split(":") for row in rows if row[3] == "0A"]
+    assert [place for place, port in local if int(port, 16) == program.port] == ["0100007F"]
+
+
+@pytest.mark.parametrize(
+    "message, code",
+    [
+        ("x" * 20_000, 1009),
+        ("[" * 10_000, 1008),
+        ("no JSON", 1008),
+        ('{"type": "sweep", "seq": 1}', 1008),
+        ('{"type": "open", "seq": NaN}', 1008),
+        ('{"type": "open", "seq": 1, "path": "/etc/passwd"}', 1008),
+        (b"\x00\x01", 1008),
+    ],
+    ids=range(7),
+)
+def test_what_is_no_request_closes_the_socket(program, message, code):
+    with program.socket() as socket:
+        socket.send(message)
+        with pytest.raises(ConnectionClosed) as closed:
+            socket.recv(timeout=10)
+        assert closed.value.rcvd.code == code
+
+
+def test_sizes_are_bounded(program, view):
+    for key, value in {"columns": 10**6, "record": 10**9, "low": "x", "numbers": {"R": None}}.items():
+        with program.socket() as socket:
+            ask(socket, "sweep", 1, view=view | {key: value})
+            with pytest.raises(ConnectionClosed) as closed:
+                socket.recv(timeout=10)
+            assert closed.value.rcvd.code == 1008
+
+
+def memory(program):
+    status = Path("/proc", str(program.process.pid), "status").read_text()
+    return int(status.partition("VmRSS:")[2].split()[0]) / 1000  # MB
+
+
+def test_a_page_that_does_not_read_costs_others_nothing(program, page, view):
+    answers(page, "sweep", 2, view=view)
+    before = memory(program)
+    large = view | {"columns": 1000, "transient": 10, "record": 1000, "low": 4.4, "high": 4.6}
+    with program.socket(max_queue=1) as silent:
+        for seq in range(1000):
+            ask(silent, "sweep", seq, view=large)
+        time.sleep(1)
+        began = time.perf_counter()
+        answers(page, "sweep", 3, view=view)
+        assert time.perf_counter() - began < 2
+        assert memory(program) - before < 150
+
+
+def test_there_are_at_most_so_many_pages(program):
+    with ExitStack() as stack:
+        sockets = [stack.enter_context(program.socket()) for _ in range(16)]
+        with program.socket() as one, pytest.raises(ConnectionClosed) as closed:
+            one.recv(timeout=10)
+        assert closed.value.rcvd.code == 1013
+        assert answers(sockets[-1], "open", 1)[0]["type"] == "model"
+
+
+def test_every_example_is_drawn(program):
+    with program.socket() as page:
+        words, _ = answers(page, "open", 1)
+        assert {"quickstart", "chain", "bouncing_ball"} <= {*words["presets"]}
+        for seq, name in enumerate(["bouncing_ball", "physical_units"], 10):
+            words, _ = answers(page, "open", seq, name=name)
+            assert words["name"] == name and all(one["low"] < one["high"] for one in words["numbers"])
+            view = words["view"] | {"columns": 16, "transient": 20, "record": 10}
+            assert answers(page, "sweep", 100 + seq, view=view)[-1][0]["last"]
+            again, _ = answers(page, "open", 200 + seq, view=view)
+            assert again["view"] == view
+
+
+def test_the_scene_of_a_file_comes_first(tmp_path):
+    system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0.25, omega=0.63, R=0.6, b=6.6)
+    vs.sweep(system, {"omega": [0.6, 0.61, 0.62]}, transient=3, record=2, output=tmp_path / "mine.h5")
+    with explorer(tmp_path / "mine.h5") as running:
+        with running.socket() as page:
+            words, _ = answers(page, "open", 1)
+        assert words["name"] == "mine" and words["view"]["axis"] == "omega" and words["view"]["system"]["R"] == 0.6
+        assert json.loads(json.dumps(words["view"])) == words["view"]
+        assert running.end()[0] == 0

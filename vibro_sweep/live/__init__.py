@@ -1,0 +1,1 @@
+"""The live page: sweeps that are seen while they are computed."""

@@ -1,0 +1,93 @@
+"""The orbit at a value of the swept number: what a click shows of it."""
+
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
+from vibro_sweep.analysis.single.orbit import simulate
+from vibro_sweep.driver.block_columns import whole_block
+from vibro_sweep.driver.compute import compute
+from vibro_sweep.live.requests import View
+from vibro_sweep.live.views import scene_of_view
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.state import state
+from vibro_sweep.model.status import STATUSES, is_valid
+from vibro_sweep.scene import Scene, Section
+
+SAMPLES = 200  # in a forcing period
+MOST_SHOWN, UNSETTLED = 12, 8  # forcing periods: of a periodic orbit, of another one
+LONGEST = 500  # forcing periods of which impacts are counted
+
+
+class Settled(NamedTuple):
+    """An orbit after its transient: its oscillator, where it ends, its section points (record, 2 N), what is known."""
+
+    system: AnyOscillator
+    end: np.ndarray
+    section: np.ndarray
+    period: int
+    status: int
+    exponents: np.ndarray
+    errors: np.ndarray
+    alone: bool  # whether it was computed by itself, and not from where the points before it lead
+
+
+def settled(view: View, value: float, start: int, end: np.ndarray | None) -> Settled:
+    """The orbit at a value of the swept number; end: where its orbit in the diagram has ended, to go on from there."""
+    scene = replace(
+        scene_of_view(view.model_copy(update={"columns": 2, "y": "x1"})),
+        section=Section(),
+    )
+    system = scene.system.replace(**{view.axis: value})
+    if end is not None:
+        one = scene.replace(system=system, sweep=None, start=end, transient=0)
+    else:
+        alone = None if scene.start.kind != "follow" else scene.start.state
+        one = scene.replace(system=system, sweep=None, **({} if alone is None else {"start": alone}))
+    return _computed(one, system, start, scene.start.kind == "follow" and end is None)
+
+
+def _computed(scene: Scene, system: AnyOscillator, start: int, alone: bool) -> Settled:
+    names = state(system.masses)
+    _, arrays = compute(whole_block(scene, [*names, "period", "lyapunov", "lyapunov_error", "status", "end"]))
+    if scene.n_starts > 1:
+        arrays = {name: values[min(start, scene.n_starts - 1)] for name, values in arrays.items()}
+    section = np.stack([arrays[name] for name in names], axis=-1)
+    numbers = (int(arrays["period"]), int(arrays["status"]), arrays["lyapunov"], arrays["lyapunov_error"])
+    return Settled(system, arrays["end"], section, *numbers, alone)
+
+
+def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Arrays and words on an orbit: samples of its motion, impacts, section points, exponents."""
+    system, q = found.system, found.system.linear
+    words: dict[str, Any] = {"status": STATUSES[found.status].text, "period": found.period, "alone": found.alone}
+    words |= {"T": system.period, "low": _finite(q.low), "high": _finite(q.high), "masses": system.masses}
+    words["normal"] = q.normal.tolist()
+    arrays = {"exponents": found.exponents, "errors": found.errors, "section": found.section.astype("f4").ravel()}
+    if not is_valid(found.status):
+        return arrays, words | {"periods": 0}
+    T, periods = system.period, min(found.period, MOST_SHOWN) if found.period else UNSETTLED
+    orbit = simulate(system, found.end, max(periods, min(found.period, LONGEST)))
+    impacts = orbit.impacts
+    if found.period:  # an impact at t = 0 comes again at the end
+        impacts = impacts[impacts["t"] < found.period * T * (1 - 1e-9)]
+    shown = impacts[impacts["t"] <= periods * T]
+    times = np.unique(np.concatenate([np.linspace(0, periods * T, periods * SAMPLES + 1), shown["t"]]))
+    states = orbit.sample(times)
+    words |= {"periods": periods, "impacts": len(impacts), "rests": len(orbit.sticking)}
+    words |= {"itinerary": _itinerary(impacts, T, found.period), "orbit_status": str(orbit.status)}
+    arrays |= {"t": times.astype("f4"), "states": states.astype("f4").ravel()}
+    arrays |= {"impact_t": shown["t"].astype("f4"), "impact_side": shown["side"].astype("i1")}
+    return arrays, words | {"R_right": float(q.restitution(1)), "R_left": float(q.restitution(-1))}
+
+
+def _itinerary(impacts: np.ndarray, T: float, period: int) -> str:
+    """Of a periodic orbit, from its impacts."""
+    sides = impacts["side"]
+    return word(np.roll(sides, -canonical_start(sides, impacts["t"], T, period * T))) if 0 < period <= LONGEST else ""
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,85 @@
+"""What the page shows of an oscillator: its numbers with ranges for their sliders, and what can be looked at."""
+
+from typing import Any
+
+import numpy as np
+
+from vibro_sweep.live.requests import View
+from vibro_sweep.live.views import SPEEDS, heights
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.catalogue import BY_NAME
+from vibro_sweep.model.exponents import CERTAIN
+from vibro_sweep.model.models import MODELS
+from vibro_sweep.model.parameters import NUMBER, POSITIVE, Parameter, range_of
+from vibro_sweep.model.status import STATUSES
+from vibro_sweep.plotting.style import CHAOS, EXPONENTS, LONGER, LONGEST, NO_PERIOD, PERIODS, density_colours
+
+DECADE = 10.0
+_GREEK = {r"\mu": "μ", r"\zeta": "ζ", r"\omega": "ω", r"\tau": "τ", r"\bar f": "f̄"}
+_BELOW = str.maketrans("0123456789cmk", "₀₁₂₃₄₅₆₇₈₉cmₖ")
+
+
+def model_words(system: AnyOscillator, view: View) -> dict[str, Any]:
+    """All that a page needs to know of an oscillator."""
+    stops = system.options.get("stops", "both")
+    numbers = [
+        _slider(one, value, view, stops)
+        for name, one in system.described.items()
+        if isinstance(value := view.numbers.get(name, system.numbers[name]), (int, float))
+    ]
+    return {
+        "numbers": numbers,
+        "heights": [[name, _label(name)] for name in heights(system)],
+        "title": MODELS[system.model.name].title if system.model.name in MODELS else system.model.name,
+        "stops": [one if np.isfinite(one) else None for one in (system.linear.low, system.linear.high)],
+        "colours": _colours(),
+        "statuses": {str(code): one.text for code, one in STATUSES.items()},
+        "certain": CERTAIN,
+    }
+
+
+def _slider(one: Parameter, value: float, view: View, stops: str) -> dict[str, Any]:
+    """A number and the range of its slider: where its values can be at all, around the one that it has."""
+    allowed = range_of(one, stops)
+    logarithmic = allowed.bounds == POSITIVE.bounds
+    bounds = allowed.bounds
+    if "maximum" in bounds:
+        low, high = bounds["minimum"], bounds["maximum"]
+    elif logarithmic:
+        low, high = value / DECADE, value * DECADE
+    elif "minimum" in bounds:
+        low, high = bounds["minimum"], max(4 * value, 1.0)
+    else:
+        low, high = value - max(1.0, 2 * abs(value)), value + max(1.0, 2 * abs(value))
+    if one.name == view.axis:
+        low, high, logarithmic = view.low, view.high, False
+    words = {"name": one.name, "symbol": _plain(one.symbol), "label": one.label, "text": one.text, "value": value}
+    return words | {"low": low, "high": high, "log": logarithmic, "allowed": (allowed or NUMBER).text}
+
+
+def _label(name: str) -> str:
+    if name in SPEEDS:
+        return f"impact speed at the {SPEEDS[name]} stop"
+    return f"{BY_NAME[name].label}"
+
+
+def _plain(symbol: str) -> str:
+    """A symbol of TeX in letters."""
+    for word, letter in _GREEK.items():
+        symbol = symbol.replace(word, letter)
+    head, _, below = symbol.replace("{}", "").replace("{", "").replace("}", "").partition("_")
+    return head + below.translate(_BELOW)
+
+
+def _colours() -> dict[str, Any]:
+    """Those of the pictures."""
+    table = (255 * density_colours()(np.arange(256))[:, :3]).astype(int)
+    return {
+        "density": table.ravel().tolist(),
+        "exponents": list(EXPONENTS),
+        "exponents_dark": ["#ff7a85", "#6ab4f4", "#a9a9ff", "#e0a030"],
+        "chaos": CHAOS,
+        "periods": list(PERIODS[:LONGEST]),
+        "longer": LONGER,
+        "no_period": NO_PERIOD,
+    }

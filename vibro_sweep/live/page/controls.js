@@ -1,0 +1,94 @@
+// Sliders and fields for the numbers of an oscillator. A slider is an index; the exact number is in the field.
+
+import { shown } from "./axes.js";
+
+const STEPS = 1000;
+
+export class Controls {
+  // change: called with (name, value) for each event
+  constructor(box, change) {
+    this.box = box;
+    this.change = change;
+    this.rows = new Map();
+  }
+
+  build(numbers, axis) {
+    this.box.querySelectorAll(".number").forEach((row) => row.remove());
+    this.rows.clear();
+    for (const one of numbers) {
+      const row = document.createElement("div");
+      row.className = "number";
+      const name = document.createElement("span");
+      name.className = "name";
+      name.title = `${one.name}: ${one.text} (${one.allowed})`;
+      name.append(`${one.symbol} `);
+      const words = document.createElement("i");
+      words.textContent = one.label;
+      name.append(words);
+      const field = document.createElement("input");
+      field.type = "number";
+      field.step = "any";
+      field.id = `field-${one.name}`;
+      field.setAttribute("aria-label", `${one.label} ${one.name}`);
+      const slider = document.createElement("input");
+      slider.type = "range";
+      slider.min = 0;
+      slider.max = STEPS;
+      slider.step = 1;
+      slider.id = `slider-${one.name}`;
+      slider.setAttribute("aria-label", `${one.label} ${one.name}, slider`);
+      row.append(name, field, slider);
+      this.box.append(row);
+      const entry = { ...one, row, field, slider };
+      this.rows.set(one.name, entry);
+      slider.addEventListener("input", () => this.set(one.name, valueAt(entry, Number(slider.value)), true));
+      slider.addEventListener("wheel", (event) => {
+        if (document.activeElement !== slider) return;
+        event.preventDefault();
+        this.nudge(entry, event.deltaY < 0 ? 1 : -1);
+      }, { passive: false });
+      field.addEventListener("change", () => {
+        const value = Number(field.value);
+        if (field.value !== "" && Number.isFinite(value)) this.set(one.name, value, true);
+        else field.value = shown(entry.value);
+      });
+      this.set(one.name, one.value, false);
+    }
+    this.mark(axis);
+  }
+
+  nudge(entry, by) {
+    const index = Math.max(0, Math.min(STEPS, Number(entry.slider.value) + by * 5));
+    this.set(entry.name, valueAt(entry, index), true);
+  }
+
+  set(name, value, tell) {
+    const entry = this.rows.get(name);
+    if (!entry) return;
+    entry.value = value;
+    if (Number(entry.field.value) !== value || entry.field.value === "") entry.field.value = shown(value);
+    entry.slider.value = indexOf(entry, value);
+    entry.slider.setAttribute("aria-valuetext", shown(value));
+    if (tell) this.change(name, value);
+  }
+
+  // the swept number has no slider: it is along the axis
+  mark(axis) {
+    for (const [name, entry] of this.rows) {
+      const swept = name === axis;
+      entry.row.classList.toggle("swept", swept);
+      entry.slider.disabled = entry.field.disabled = swept;
+    }
+  }
+}
+
+function valueAt({ low, high, log }, index) {
+  const share = index / STEPS;
+  const value = log ? low * (high / low) ** share : low + (high - low) * share;
+  return Number(value.toPrecision(4 + Math.ceil(Math.max(0, Math.log10(Math.abs(value || 1) / (high - low))))));
+}
+
+function indexOf({ low, high, log }, value) {
+  const share = log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+  return Math.round(STEPS * Math.max(0, Math.min(1, share)));
+}

@@ -1,0 +1,401 @@
+// The page: it asks for a view with each event, and draws what has come once a display interval.
+
+import { short, shown } from "./axes.js";
+import { Controls } from "./controls.js";
+import { DiagramData } from "./diagram_data.js";
+import { Drawing } from "./drawing.js";
+import { Link } from "./link.js";
+import { OrbitPanel } from "./orbit_panel.js";
+import { saveAs } from "./saving.js";
+import { steer } from "./steering.js";
+import { fromAddress, ViewState } from "./view_state.js";
+
+const $ = (id) => document.getElementById(id);
+const root = document.documentElement;
+const LONG = 1500; // ms without an answer, after which the page says what may take so long
+const COMPILING = "Computing. The first use of a kind of oscillator compiles its kernels, once: that takes up to a minute.";
+
+const state = new ViewState();
+const drawing = new Drawing($("diagram"));
+const panel = new OrbitPanel($("orbit"));
+const controls = new Controls($("numbers"), (name, value) => {
+  state.view.numbers[name] = value;
+  request();
+});
+let model = null, data = null, asked = 0, dirty = false, fitNext = true, arrived = null, branch = null, why = null;
+let timer = null, askedWhy = 0, since = 0, lines = [null, null], starts = [0, 0], failed = false, rectangle = null;
+
+const link = new Link({ open: begin, answer, closed });
+
+function begin() {
+  const found = fromAddress();
+  if (state.view) {
+    open({ view: state.view }, { view: state.view, range: state.range, home: state.home, line: lines[0] });
+  } else if (found) open({ view: found.view }, found);
+  else open({}, null);
+}
+
+let restored = null, clickTimer = null;
+function open(what, found) {
+  restored = found;
+  say("Connected");
+  link.ask("open", what);
+}
+
+function closed(event, tries) {
+  set("computing");
+  if (event.code === 1008) return say(`The program refused a request: ${event.reason}`, true);
+  if (tries > 0 || !model) say("The connection is lost. If the program still runs, this page connects again by itself; if it was started again, open the address that it has printed.", true);
+}
+
+function answer(message) {
+  ({ model: opened, frame, orbit, window: windowFound, saved, error })[message.type](message);
+}
+
+function opened(message) {
+  model = message;
+  state.begin(message.view);
+  if (restored) {
+    state.range = restored.range ?? null;
+    state.home = restored.home ?? state.home;
+    lines = [restored.line ?? null, null];
+  } else lines = [null, null];
+  data = null;
+  since = link.seq;
+  fitNext = !state.range;
+  forgetWhy();
+  panel.clear();
+  fill();
+  request();
+  if (lines[0] !== null) askOrbit(0);
+}
+
+function fill() {
+  const { view } = state;
+  options($("presets"), ["", ...model.presets].map((name) => [name, name || "(this address)"]), model.name);
+  options($("axis"), model.numbers.map((one) => [one.name, `${one.symbol}  ${one.label}`]), view.axis);
+  options($("height"), model.heights, view.y);
+  $("start").value = view.start.follow ?? (view.start.random ? "random" : "state");
+  controls.build(model.numbers, view.axis);
+  fields();
+  $("masses").setAttribute("aria-label", `The masses between the stops: ${model.title}`);
+}
+
+function fields() {
+  const { view } = state;
+  $("low").value = shown(view.low);
+  $("high").value = shown(view.high);
+  $("transient").value = view.transient;
+  $("record").value = view.record;
+  $("back").disabled = !state.past.length;
+  $("forward").disabled = !state.coming.length;
+}
+
+// ask for the view as it is now
+function request() {
+  const { view } = state;
+  failed = false;
+  asked = link.ask("sweep", { view, middle: state.range ? (state.range[0] + state.range[1]) / 2 : 0 });
+  set("computing");
+  clearTimeout(timer);
+  timer = setTimeout(() => say(COMPILING), LONG);
+  forgetWhy();
+  state.write();
+  fields();
+  panel.slots.forEach((one, slot) => one && askOrbit(slot));
+}
+
+function frame(message) {
+  clearTimeout(timer);
+  if (!data || message.seq !== data.seq) {
+    const next = new DiagramData(message);
+    next.seq = message.seq;
+    next.inherit(data);
+    data = next;
+  }
+  data.take(message);
+  if (fitNext && (message.kind === "preview" || message.last)) {
+    state.range = data.range() ?? state.range;
+    if (message.last) fitNext = false;
+  }
+  data.stars = message.b_star ?? [];
+  arrived = message;
+  if (message.last && message.seq === asked) {
+    drawing.fitExponents(data);
+    summary();
+  }
+  redraw();
+}
+
+function summary() {
+  const counts = new Map();
+  for (const code of data.status) if (code !== 0) counts.set(code, (counts.get(code) ?? 0) + 1);
+  const words = [...counts].map(([code, n]) => `${n} ${n > 1 ? "orbits" : "orbit"}: ${model.statuses[code] ?? code}`);
+  say([`${data.columns} values of ${state.view.axis}`, ...words].join("; "));
+}
+
+function orbit(message) {
+  if (message.seq <= since) return; // of another oscillator
+  clearTimeout(clickTimer);
+  panel.show({ ...message, axis: state.view.axis, certain: model.certain });
+  redraw();
+}
+
+function windowFound(message) {
+  if (message.seq !== askedWhy) return;
+  clearTimeout(clickTimer);
+  why = message;
+  say(message.reason ? "No window was found" : "The window and its two ends");
+  const n = message.arrays?.value?.length ?? 0;
+  branch = n ? { ...message.arrays, m: message.arrays.y.length / n } : null;
+  showWhy();
+  redraw();
+}
+
+function forgetWhy() {
+  if (!branch && !why) return;
+  branch = why = null;
+  askedWhy = 0;
+  showWhy();
+}
+
+function showWhy() {
+  const box = $("window");
+  box.hidden = !why;
+  if (!why) return;
+  if (why.reason) return box.replaceChildren(text("p", `At ${state.view.axis} = ${shown(why.value)}: ${why.reason}.`));
+  const end = (one, side) => text("p", `${side} end ${shown(one.value)}${one.error ? ` ± ${short(one.error, 1)}` : ""}: ${one.type.replace("_", "-")}, ${one.text}`);
+  const kind = `${why.itinerary ? why.itinerary : "no impacts"}, period ${why.period}${why.symmetric ? ", symmetric" : ""}`;
+  const others = why.specials.filter((one) => one.type !== "boundary").map((one) => `${one.type.replace("_", "-")} at ${short(one.value, 8)}`);
+  box.replaceChildren(
+    text("p", `Window of the orbit ${kind}:`), end(why.low, "lower"), end(why.high, "upper"),
+    text("p", `On the branch, stable (solid) or not (dashed): ${others.join(", ") || "no special point"}.`),
+  );
+}
+
+function saved(message) {
+  saveAs(message, state);
+  say("Saved");
+}
+
+function error(message) {
+  clearTimeout(clickTimer);
+  if (message.of !== "sweep") return say(message.text, true);
+  if (message.seq !== asked) return;
+  clearTimeout(timer);
+  failed = true;
+  say(message.text, true);
+  set("final");
+}
+
+function set(value) {
+  root.dataset.state = value;
+}
+
+function say(words, bad = false) {
+  $("status").textContent = words;
+  $("status").classList.toggle("bad", bad);
+}
+
+function text(tag, words) {
+  const element = document.createElement(tag);
+  element.textContent = words;
+  return element;
+}
+
+function options(select, list, value) {
+  select.replaceChildren(...list.map(([name, words]) => {
+    const option = document.createElement("option");
+    option.value = name;
+    option.textContent = words;
+    return option;
+  }));
+  select.value = value;
+}
+
+export function redraw() {
+  if (dirty) return;
+  dirty = true;
+  requestAnimationFrame(paint);
+}
+
+function picture() {
+  const { view, range } = state, [bottom, top] = range ?? [-1, 1];
+  const height = model.heights.find(([name]) => name === view.y)?.[1] ?? view.y;
+  const number = model.numbers.find((one) => one.name === view.axis);
+  return {
+    data, certain: model.certain, colours: model.colours, view: { low: view.low, high: view.high, bottom, top },
+    names: { axis: number ? `${number.label} ${number.symbol}` : view.axis, height },
+    marks: {
+      grazing: view.axis === "b" ? data?.stars ?? [] : [], lines, branch, window: why && !why.reason ? why : null, stops: stopLines(), rectangle,
+    },
+  };
+}
+
+function stopLines() {
+  // where the stops stand, if the gap is on the vertical axis
+  const { view } = state, value = (name) => view.numbers[name] ?? view.system[name] ?? 0;
+  if (view.y !== "gap" && !(view.y === "x1" && !model.heights.some(([name]) => name === "gap"))) return [];
+  return model.stops.flatMap((stop, i) => {
+    const sign = i ? 1 : -1;
+    const at = (x) => (view.axis === "offset" ? x : value("offset")) + sign * (view.axis === "b" ? x : value("b"));
+    return stop === null ? [] : [[at(view.low), at(view.high)]];
+  });
+}
+
+function paint() {
+  dirty = false;
+  if (!model) return;
+  drawing.draw(picture());
+  if (!arrived) return;
+  if (arrived.seq === asked && !failed) {
+    if (arrived.last) set("final");
+    else {
+      if (state.view.start.follow && root.dataset.state === "computing") say("Preview: each point starts by itself; the final picture follows them.");
+      set("preview");
+    }
+  }
+  root.dataset.frame = Number(root.dataset.frame) + 1;
+  arrived = null;
+}
+
+function soon() {
+  clearTimeout(clickTimer);
+  clickTimer = setTimeout(() => say(COMPILING), LONG);
+}
+
+function askOrbit(slot) {
+  if (lines[slot] === null || !state.view) return;
+  soon();
+  const column = data && data.seq === asked && root.dataset.state === "final" ? data.column(lines[slot]) : -1;
+  const value = column >= 0 && data.axis ? data.axis[column] : lines[slot];
+  link.ask("orbit", { view: state.view, value, slot, start: starts[slot], column });
+}
+
+const actions = {
+  state, drawing, redraw, request,
+  data: () => data,
+  setRectangle(value) {
+    rectangle = value;
+    redraw();
+  },
+  go(low, high, range) {
+    if (!(high > low) || !range || !(range[1] > range[0])) return;
+    state.go(low, high, range);
+    fitNext = false;
+    request();
+    redraw();
+  },
+  back: () => state.back() && (request(), redraw()),
+  forward: () => state.forward() && (request(), redraw()),
+  home() {
+    state.go(state.home.low, state.home.high, null);
+    fitNext = true;
+    request();
+  },
+  fit() {
+    const range = data?.range();
+    if (range) state.go(state.view.low, state.view.high, range), request();
+    drawing.fitExponents(data);
+    redraw();
+  },
+  choose(value, slot, start = 0) {
+    const column = data?.column(value) ?? -1;
+    lines[slot] = column >= 0 && data.axis ? data.axis[column] : value;
+    starts[slot] = start;
+    if (slot === 0) state.line = lines[0];
+    if (slot === 0) forgetWhy();
+    askOrbit(slot);
+    state.write();
+    redraw();
+  },
+  move(by) {
+    const column = data?.column(lines[0] ?? (state.view.low + state.view.high) / 2) ?? 0;
+    if (data?.axis) actions.choose(data.axis[Math.max(0, Math.min(data.columns - 1, column + by))], 0);
+  },
+  why() {
+    if (lines[0] === null) return;
+    say("Following the periodic orbit of this window");
+    why = { reason: "its periodic orbit is being followed", value: lines[0] };
+    showWhy();
+    soon();
+    const column = data && data.seq === asked && root.dataset.state === "final" ? data.column(lines[0]) : -1;
+    askedWhy = link.ask("window", { view: state.view, value: lines[0], start: starts[0], column });
+  },
+};
+
+steer($("diagram"), actions);
+
+$("presets").addEventListener("change", (event) => event.target.value && open({ name: event.target.value }, null));
+$("axis").addEventListener("change", (event) => {
+  const number = model.numbers.find((one) => one.name === event.target.value);
+  let { low, high } = number;
+  if (number.log) [low, high] = [controls.rows.get(number.name).value * 0.7, controls.rows.get(number.name).value * 1.4];
+  state.begin({ ...state.view, axis: number.name, low, high });
+  fitNext = true;
+  lines = [null, null];
+  panel.clear();
+  controls.mark(number.name);
+  request();
+});
+$("height").addEventListener("change", (event) => {
+  state.begin({ ...state.view, y: event.target.value });
+  fitNext = true;
+  request();
+});
+$("start").addEventListener("change", (event) => {
+  const { follow, random, seed, ...rest } = state.view.start, value = event.target.value;
+  state.view.start = { state: rest, random: { random: 4, seed: seed ?? 0 } }[value] ?? { ...rest, follow: value };
+  starts = [0, 0];
+  request();
+});
+for (const id of ["low", "high"]) {
+  $(id).addEventListener("change", () => {
+    const low = Number($("low").value), high = Number($("high").value);
+    if ($("low").value === "" || $("high").value === "" || !(high > low)) return say("The range must rise: from a smaller to a greater number.", true);
+    state.go(low, high, state.range);
+    state.home = { low, high };
+    request();
+  });
+}
+for (const id of ["transient", "record"]) {
+  $(id).addEventListener("change", () => {
+    if (!$(id).checkValidity() || $(id).value === "") return say(`${id}: a whole number from ${$(id).min} to ${$(id).max}`, true);
+    state.view[id] = Number($(id).value);
+    request();
+  });
+}
+$("back").addEventListener("click", actions.back);
+$("forward").addEventListener("click", actions.forward);
+$("home").addEventListener("click", actions.home);
+$("fit").addEventListener("click", actions.fit);
+$("pan").addEventListener("click", () => $("pan").setAttribute("aria-pressed", String($("pan").getAttribute("aria-pressed") !== "true")));
+$("why").addEventListener("click", actions.why);
+$("close").addEventListener("click", () => {
+  panel.clear();
+  lines = [null, null];
+  state.line = null;
+  forgetWhy();
+  redraw();
+});
+$("play").addEventListener("click", () => {
+  const on = $("play").getAttribute("aria-pressed") !== "true";
+  $("play").setAttribute("aria-pressed", String(on));
+  $("play").textContent = on ? "Pause" : "Play";
+  panel.play(on);
+});
+$("controls").addEventListener("submit", (event) => event.preventDefault());
+$("save").addEventListener("click", (event) => {
+  const form = event.target.dataset?.form;
+  if (!form) return;
+  $("save").open = false;
+  if (form === "png") saveAs({ form, canvas: $("diagram") }, state);
+  else if (form === "link") saveAs({ form }, state).then(say, () => say("The browser did not allow copying", true));
+  else link.ask("save", { view: state.view, form });
+});
+const later = () => {
+  redraw();
+  if (!$("orbit").hidden) panel.draw();
+};
+new ResizeObserver(later).observe($("diagram"));
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", later);

@@ -1,0 +1,40 @@
+"""The scenes that a page can begin with."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.model.refusals import cut
+from vibro_sweep.scene import Scene, load_scene
+from vibro_sweep.scene.scene import parse_scene
+from vibro_sweep.store.attributes import text
+from vibro_sweep.store.opening import opened
+
+
+def presets_of(paths: Iterable[Path]) -> dict[str, Scene]:
+    """The scenes of these files that sweep a number of an oscillator, by name; others have no diagram."""
+    found = {path.stem: load_scene(path) for path in paths}
+    return {name: scene for name, scene in found.items() if isinstance(scene, Scene) and _has_axis(scene)}
+
+
+def scene_to_explore(path: Path) -> Scene:
+    """The scene of a file: of YAML, or that from which a sweep's HDF5 file was made.
+
+    Raises SceneError, StoreError, and ArgumentError for what is not a sweep of an oscillator with numbers.
+    """
+    if path.suffix.lower() in (".yaml", ".yml"):
+        scene = load_scene(path)
+        if not isinstance(scene, Scene):
+            raise ArgumentError(f"{path} follows branches; explore takes the scene of a sweep")
+    else:
+        with opened(path, names=(), content=False) as (file, _):
+            if (kind := text(file, "kind")) != "sweep":
+                raise ArgumentError(f"{path} holds {cut(kind)}; explore takes a sweep")
+            scene = parse_scene(text(file, "scene"), str(path))
+    if not scene.system.described or (scene.sweep and not _has_axis(scene)):
+        raise ArgumentError(f"{path} sweeps no number of an oscillator; explore moves along one")
+    return scene
+
+
+def _has_axis(scene: Scene) -> bool:
+    return any(key in scene.system.described for key in scene.sweep)

@@ -1,0 +1,52 @@
+"""A view to keep: as a program in Python, and as a file of its data. As a scene it is `scene.to_yaml()`."""
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from vibro_sweep.driver.sweep import run_sweep
+from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.scene import Scene
+from vibro_sweep.scene.written import data_of
+from vibro_sweep.store import size
+
+LARGEST = 64 * 10**6  # bytes of a file that goes to the page
+
+
+def python_of(scene: Scene) -> str:
+    """A program that computes and draws the same sweep."""
+    data = data_of(scene)
+    numbers = dict(data["system"])
+    kind = numbers.pop("type", None)
+    made = f"vs.Oscillator.named({kind!r}, " if kind else "vs.System("
+    ((name, axis),) = data["sweep"].items()
+    numbers[name] = scene.system.numbers[name]
+    system = made + ", ".join(f"{key}={value!r}" for key, value in numbers.items()) + ")"
+    lines = [
+        "import vibro_sweep as vs",
+        "",
+        f"system = {system}",
+        "data = vs.sweep(",
+        "    system,",
+        f"    {{{name!r}: {axis!r}}},",
+        *(f"    {key}={value!r}," for key, value in _options(data).items()),
+        ")",
+        'vs.plot(data).savefig("explored.png")',
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _options(data: dict[str, Any]) -> dict[str, Any]:
+    """The arguments of `vibro_sweep.sweep` beside system and axis."""
+    more = {key: data[key] for key in ("start", "section") if key in data}
+    return {"observe": data["observe"], **data["orbit"], **more}
+
+
+def hdf5_of(scene: Scene) -> bytes:
+    """The file of the sweep. Raises ArgumentError where it is too large for a page."""
+    if size(scene) > LARGEST:
+        raise ArgumentError(f"the file would have {size(scene) / 1e6:.0f} MB; save the scene, and run it")
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "explored.h5")
+        run_sweep(scene, path, workers=1, progress=lambda done, total: None)
+        return path.read_bytes()

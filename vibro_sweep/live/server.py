@@ -1,0 +1,166 @@
+"""The server of the page: its files, and a socket over which it asks and is answered."""
+
+import asyncio
+import contextlib
+import socket
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import uvicorn
+from starlette.responses import PlainTextResponse, Response
+from starlette.types import Receive, Scope, Send
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from vibro_sweep.live.access import HEADERS, host_is_here, knows_token, new_token, origin_is_here
+from vibro_sweep.live.answers import Answers, Message
+from vibro_sweep.live.engine_thread import EngineThreads, Page
+from vibro_sweep.live.pace import Pace
+from vibro_sweep.live.requests import LONGEST, RequestError, request_of
+from vibro_sweep.scene import Scene
+
+MOST_PAGES = 16
+SLOWEST = 20.0  # seconds in which a page takes a message
+PAUSE = 0.001  # seconds between two requests of a page
+BAD_REQUEST, TOO_MANY = 1008, 1013  # codes with which a socket is closed
+SWITCH = 0.0002  # seconds after which Python lets another thread run: answers leave at once
+TYPES = {".html": "text/html; charset=utf-8", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
+FILES = {path.name: path.read_bytes() for path in (Path(__file__).parent / "page").iterdir() if path.suffix in TYPES}
+NO_TOKEN = "403: this address lacks the token. Open the address that `vibro-sweep explore` has printed.\n"
+
+
+class Explorer:
+    """The application: an ASGI callable. presets : scenes by name; first : that which a page begins with."""
+
+    def __init__(self, presets: dict[str, Scene], first: str):
+        self.token = new_token()
+        self._presets, self._first = presets, first
+        self._engine, self._pace, self._open = EngineThreads(), Pace(), 0
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "http":
+            await self._file(scope)(scope, receive, send)
+        elif scope["type"] == "websocket":
+            await self._socket(WebSocket(scope, receive, send))
+
+    def close(self) -> None:
+        """End the threads of the engine."""
+        self._engine.close()
+
+    def _file(self, scope: Scope) -> Response:
+        if not host_is_here(scope):
+            return PlainTextResponse("403: another host\n", 403, HEADERS)
+        if scope["method"] not in ("GET", "HEAD"):
+            return PlainTextResponse("405\n", 405, HEADERS)
+        if scope["path"] == "/" and not knows_token(scope, self.token):
+            return PlainTextResponse(NO_TOKEN, 403, HEADERS)
+        name = scope["path"].removeprefix("/") or "index.html"
+        if name not in FILES:
+            return PlainTextResponse("404\n", 404, HEADERS)
+        return Response(FILES[name], 200, HEADERS, TYPES[Path(name).suffix])
+
+    async def _socket(self, ws: WebSocket) -> None:
+        allowed = host_is_here(ws.scope) and origin_is_here(ws.scope) and knows_token(ws.scope, self.token)
+        if not allowed or ws.scope["path"] != "/socket":
+            await ws.close()  # before it is accepted: 403
+            return
+        await ws.accept()
+        if self._open >= MOST_PAGES:
+            await ws.close(TOO_MANY, f"at most {MOST_PAGES} pages at a time")
+            return
+        self._open += 1
+        try:
+            await self._talk(ws)
+        finally:
+            self._open -= 1
+
+    async def _talk(self, ws: WebSocket) -> None:
+        """Read requests and send answers, until one of the two ends."""
+        loop, answers = asyncio.get_running_loop(), asyncio.Queue[Message]()
+
+        def put(message: Message) -> None:
+            with contextlib.suppress(RuntimeError):  # the loop is closed
+                loop.call_soon_threadsafe(answers.put_nowait, message)
+
+        page = Page(Answers(self._presets, self._first, self._pace), put)
+        self._engine.add(page)
+        both = [asyncio.ensure_future(one) for one in (self._read(ws, page), self._write(ws, page, answers))]
+        try:
+            await asyncio.wait(both, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._engine.remove(page)
+            for one in both:
+                one.cancel()
+            await asyncio.gather(*both, return_exceptions=True)
+
+    async def _read(self, ws: WebSocket, page: Page) -> None:
+        with contextlib.suppress(WebSocketDisconnect):
+            while True:
+                message = await ws.receive()
+                if message["type"] == "websocket.disconnect":
+                    return
+                try:
+                    request = request_of(message.get("text") or "")
+                except RequestError as error:
+                    await ws.close(BAD_REQUEST, str(error)[:100])
+                    return
+                self._engine.ask(page, request)
+                await asyncio.sleep(PAUSE)
+
+    async def _write(self, ws: WebSocket, page: Page, answers: "asyncio.Queue[Message]") -> None:
+        with contextlib.suppress(WebSocketDisconnect, TimeoutError):
+            while True:
+                message = await answers.get()
+                sending = ws.send_text(message) if isinstance(message, str) else ws.send_bytes(message)
+                await asyncio.wait_for(sending, SLOWEST)
+                self._engine.sent(page)
+
+
+class _Server(uvicorn.Server):
+    """Says when it can be reached."""
+
+    def __init__(self, config: uvicorn.Config, ready: Callable[[], None]):
+        super().__init__(config)
+        self._ready = ready
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        self._ready()
+
+
+def bound(port: int) -> socket.socket:
+    """A socket of this machine alone; port 0: any free one. Raises OSError."""
+    result = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    try:
+        result.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        result.bind(("127.0.0.1", port))
+    except OSError:
+        result.close()
+        raise
+    return result
+
+
+def serve(presets: dict[str, Scene], first: str, sock: socket.socket, ready: Callable[[str], None]) -> None:
+    """Serve pages until Ctrl-C. ready : called with the address once it can be opened."""
+    explorer = Explorer(presets, first)
+    address = f"http://127.0.0.1:{sock.getsockname()[1]}/?token={explorer.token}"
+    config = uvicorn.Config(
+        explorer,
+        ws="websockets-sansio",
+        ws_max_size=LONGEST,
+        ws_per_message_deflate=False,
+        access_log=False,  # it would hold the token
+        log_level="error",
+        server_header=False,
+        lifespan="off",
+        timeout_graceful_shutdown=1,
+    )
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(SWITCH)
+    try:
+        _Server(config, lambda: ready(address)).run(sockets=[sock])
+    except KeyboardInterrupt:
+        pass
+    finally:
+        sys.setswitchinterval(before)
+        explorer.close()

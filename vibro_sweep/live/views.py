@@ -1,0 +1,105 @@
+"""From a view of the page to the scene that computes it, and from scenes to views."""
+
+import json
+from collections import OrderedDict
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from vibro_sweep.live.requests import View
+from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.model.state import state
+from vibro_sweep.scene import Scene, scene_of
+from vibro_sweep.scene.written import data_of
+
+SPEEDS = {"speed_right": "right", "speed_left": "left"}
+OBSERVE = ("section", "lyapunov")
+KEPT = 8  # systems
+COLUMNS = 1000
+MOST_RECORDED, LONGEST_TRANSIENT = 400, 2000  # of a scene that is opened; the page can ask for more
+
+_bases: OrderedDict[str, Scene] = OrderedDict()
+
+
+def base_of(system: dict[str, Any]) -> Scene:
+    """The scene of one orbit of a system, from its YAML data. Raises SceneError."""
+    key = json.dumps(system, sort_keys=True)
+    if key not in _bases:
+        data = {"system": system, "orbit": {"transient": 1000, "record": 200}, "observe": [*OBSERVE]}
+        _bases[key] = scene_of(data, "view")
+        while len(_bases) > KEPT:
+            _bases.popitem(last=False)
+    return _bases[key]
+
+
+def system_of(view: View) -> AnyOscillator:
+    """The oscillator of a view. Raises SceneError, ParameterError."""
+    return base_of(view.system).system.replace(**view.numbers)
+
+
+def scene_of_view(view: View) -> Scene:
+    """The scene of a sweep that a view shows. Raises SceneError, ParameterError, ArgumentError."""
+    section = {"kind": "impact", "stop": SPEEDS[view.y]} if view.y in SPEEDS else {"kind": "phase"}
+    scene = base_of(view.system).replace(
+        system=system_of(view),
+        sweep={view.axis: {"start": view.low, "stop": view.high, "num": view.columns}},
+        start=view.start,
+        transient=view.transient,
+        record=view.record,
+        section=section,
+    )
+    if view.y not in heights(scene.system):
+        raise ArgumentError(f"y: must be one of {', '.join(heights(scene.system))}")
+    return scene
+
+
+def heights(system: AnyOscillator) -> list[str]:
+    """What can stand on the vertical axis."""
+    q = system.linear
+    speeds = [name for name, stop in zip(SPEEDS, (q.high, q.low), strict=True) if np.isfinite(stop)]
+    return [*state(system.masses), *([] if system.gap_is_x1 else ["gap"]), *speeds]
+
+
+def needed(system: AnyOscillator, y: str) -> list[str]:
+    """The variables of a sweep from which `y` follows."""
+    return [*state(system.masses)[1::2]] if y in SPEEDS else [y]
+
+
+def height_of(system: AnyOscillator, y: str, arrays: dict[str, np.ndarray]) -> np.ndarray:
+    """What stands on the vertical axis, from the variables of a sweep."""
+    if y not in SPEEDS:
+        return arrays[y]
+    rate = sum(n * arrays[name] for n, name in zip(system.linear.normal, needed(system, y), strict=True) if n)
+    return rate if SPEEDS[y] == "right" else -rate
+
+
+def view_of(scene: Scene) -> View:
+    """The view that shows a scene first: along its first swept number; without one along its clearance."""
+    axis = next((key for key in scene.sweep if key in scene.system.described), "b")
+    system = data_of(replace(scene, sweep={}))["system"]
+    if axis in scene.sweep:
+        values = scene.sweep[axis]
+        low, high = float(min(values)), float(max(values))
+    else:
+        low, high = span(float(scene.system.numbers[axis]))
+    start = data_of(scene).get("start", {}) if set(scene.sweep) == {axis} else {}
+    if scene.start.kind == "random":
+        start = start | {"random": min(scene.start.count, 4)}
+    return View(
+        system=json.loads(json.dumps(system)),
+        axis=axis,
+        low=low,
+        high=high,
+        columns=COLUMNS,
+        start=start,
+        transient=min(scene.transient, LONGEST_TRANSIENT),
+        record=min(scene.record, MOST_RECORDED),
+        y="speed_" + scene.section.stop if scene.section.kind == "impact" else "x1",
+    )
+
+
+def span(value: float) -> tuple[float, float]:
+    """A range around a number where nothing else is known."""
+    return (0.5 * value, 1.5 * value) if value > 0 else (value - 1.0, value + 1.0)

@@ -1,0 +1,101 @@
+"""Why a window ends: the periodic orbit of a column is followed along the swept number to where it is not stable."""
+
+from typing import Any
+
+import numpy as np
+
+from vibro_sweep.analysis.branches.branch import continue_orbit
+from vibro_sweep.analysis.branches.branch_arrays import Arrays, arrays_of, branch_of, sections_of
+from vibro_sweep.analysis.branches.special import SpecialPoint
+from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
+from vibro_sweep.analysis.windows.job import Job, window_of
+from vibro_sweep.live.clicked_orbit import Settled
+from vibro_sweep.live.requests import View
+from vibro_sweep.live.views import SPEEDS, height_of
+from vibro_sweep.model.bifurcations import BY_NAME
+from vibro_sweep.model.exponents import CERTAIN
+from vibro_sweep.model.outcomes import REASONS
+from vibro_sweep.model.parameters import range_of
+from vibro_sweep.model.state import state
+from vibro_sweep.model.status import STATUSES, is_valid
+
+MOST_POINTS = 300  # of a branch that is drawn
+_REASONS = list(REASONS)
+
+
+def window_message(view: View, value: float, found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Arrays and words on the window around a value: its ends, and the branch that it is a part of; or `reason`."""
+    if found.period == 0:
+        return {}, {"reason": _not_periodic(found)}
+    bounds = _bounds(view, found)
+    job = Job(found.system, found.end, found.period, view.axis, bounds)
+    arrays = window_of(job)
+    if "reason" in arrays:
+        found_out = REASONS[_REASONS[int(arrays["reason"])]]
+        return {}, {"reason": f"no window here: {found_out.text}. {found_out.advice}".strip()}
+    window = branch_of(arrays, view.axis, found.system)
+    orbit = window._start
+    words = {"low": _end(window.begins, -1, bounds), "high": _end(window.ends, 1, bounds)}
+    words |= {"period": int(arrays["branch_period"]), "symmetric": bool(arrays["branch_symmetric"])}
+    origin = found.system.replace(**{view.axis: float(arrays["value"][int(arrays["branch_origin"])])})
+    orbit = PeriodicOrbit(origin, "ok", orbit)
+    words["itinerary"] = orbit.itinerary
+    branch = continue_orbit(orbit, view.axis, bounds)
+    specials = [_end(one, 0, bounds) for one in branch.special]
+    return _drawn(view, found, _thinned(arrays_of(branch, value))), words | {"specials": specials}
+
+
+def _not_periodic(found: Settled) -> str:
+    if not is_valid(found.status):
+        return STATUSES[found.status].text
+    if found.exponents[0] > CERTAIN * found.errors[0]:
+        return "no window here: " + REASONS["chaos"].text
+    return "no window here: no period was found within the record; a longer transient or record may find one"
+
+
+def _bounds(view: View, found: Settled) -> tuple[float, float]:
+    """What is looked at: the view, and as much again on both sides where the number may be there."""
+    width = view.high - view.low
+    allowed = range_of(found.system.described[view.axis], found.system.options.get("stops", "both"))
+    low, high = (
+        wide if allowed.holds(np.array(wide)) else near
+        for wide, near in ((view.low - width, view.low), (view.high + width, view.high))
+    )
+    return float(low), float(high)
+
+
+def _end(point: SpecialPoint, side: int, bounds: tuple[float, float]) -> dict[str, Any]:
+    """What a special point is. side: -1, 1 of the lower and the upper end of a window; 0 of another point."""
+    (value,) = point.parameters.values()
+    beyond = point.type == "boundary"
+    text = "it is stable beyond what was looked at" if side and beyond else BY_NAME[point.type].text
+    if point.type == "graze":
+        stop = "right" if (point.stop or 1) > 0 else "left"
+        change = "an impact loses its speed" if point.impact is not None else "a flight touches a stop"
+        text = f"{stop} stop, {change}: {point.kind}"
+    elif point.criticality:
+        text += f" ({point.criticality}critical)"
+    error = float(point.error) if np.isfinite(point.error) else None
+    return {"value": value, "error": error, "type": point.type, "text": text}
+
+
+def _thinned(arrays: Arrays) -> Arrays:
+    """A branch with no more points than are drawn: those where its stability changes, and others evenly."""
+    n = len(arrays["value"])
+    changes = np.flatnonzero(np.diff(np.minimum(arrays["unstable"], 1)))
+    keep = np.unique(np.r_[np.linspace(0, n - 1, min(n, MOST_POINTS)).astype(int), changes, changes + 1])
+    of_points = ("value", "unstable", "impact_t", "impact_v", "impact_t_off")
+    return arrays | {name: arrays[name][keep] for name in of_points}
+
+
+def _drawn(view: View, found: Settled, arrays: Arrays) -> dict[str, np.ndarray]:
+    """Values (n,), whether unstable (n,), and what stands on the vertical axis (n, m) of the section points."""
+    if view.y in SPEEDS:
+        side = 1 if SPEEDS[view.y] == "right" else -1
+        points = np.abs(arrays["impact_v"][:, arrays["impact_side"] == side])
+    else:
+        states = sections_of(arrays, view.axis, found.system)
+        named = {name: states[..., i] for i, name in enumerate(state(found.system.masses))}
+        named["gap"] = states[..., 0::2] @ found.system.linear.normal
+        points = height_of(found.system, view.y, named)
+    return {"value": arrays["value"], "unstable": np.minimum(arrays["unstable"], 1).astype("i1"), "y": points.ravel()}
