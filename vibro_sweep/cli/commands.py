@@ -12,17 +12,14 @@ from vibro_sweep.model.picture_kinds import PICTURES
 
 from . import interrupt
 from .computing import Computation, compute, compute_windows
-from .console import BAD_INPUT, BAD_POINTS, all_is_imported, ended, input_errors, messages, say
+from .console import BAD_INPUT, BAD_POINTS, EXIT_STATUSES, all_is_imported, ended, input_errors, messages, say
 from .options import key_and_value, number_in, positive
 from .options import output as output_option
 from .usage import called
 
 app = typer.Typer(
     help="Parameter sweeps of linear oscillators with impacts, with Lyapunov exponents.",
-    epilog=(
-        "Exit status: 0 done; 1 done, but some points have a bad status; 2 the input is wrong; "
-        "70 an internal error, which is a bug; 130 interrupted."
-    ),
+    epilog=f"Exit status: {'; '.join(f'{code} {one.text}' for code, one in EXIT_STATUSES.items())}.",
     no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
@@ -124,10 +121,15 @@ def windows_command(
 @app.command("plot")
 def plot_command(
     file: DataFile,
-    output: Annotated[Path | None, output_option("FIGURE.png|.svg|.pdf", "FILE.png in the current folder")] = None,
+    output: Annotated[
+        Path | None, output_option("FIGURE.png|.svg|.pdf|.gif|.mp4", "FILE.png in the current folder")
+    ] = None,
     kind: Annotated[
         str | None,
-        typer.Option(help=f"One of {', '.join(PICTURES)} or all; by default the first that the file has data for."),
+        typer.Option(
+            metavar="KIND",
+            help=f"One of {', '.join(PICTURES)} or all; by default the first that the file has data for.",
+        ),
     ] = None,
     at: Annotated[
         list[str] | None,
@@ -271,6 +273,26 @@ def schema():
     from vibro_sweep.scene import json_schema
 
     say(json.dumps(json_schema(), indent=2))
+
+
+@app.command("explore")
+def explore_command(
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[SCENE.yaml | FILE.h5]", exists=True, dir_okay=False, help="By default the quickstart scene."
+        ),
+    ] = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, metavar="N", help="By default any that is free.")] = 0,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address only.")] = False,
+):
+    """Serve a page on which the diagram moves while you drag a slider.
+
+    For a browser on this machine; the address is printed. Ctrl-C ends it.
+    """
+    from .exploring import explore
+
+    explore(file, port, not no_browser)
 
 
 def _draw(file: Path, output: Path | None, kind: str | None, overwrite: bool, quiet: bool, *options, **beside):

@@ -1,7 +1,4 @@
-"""What holds for every command: its streams, messages of the package, and how the program ends.
-
-Exit status: 0 done; 1 done, but some points have a bad status; 2 the input is wrong; 70 a bug; 130 interrupted.
-"""
+"""What holds for every command: its streams, messages of the package, and how the program ends."""
 
 import contextlib
 import gc
@@ -13,10 +10,28 @@ import traceback
 from collections.abc import Callable, Iterator
 
 from vibro_sweep.engine import simd
+from vibro_sweep.model.outcomes import Outcome
 
 LONGEST_WORD = 300  # letters of what stands on a command line, in a message
 
 BAD_POINTS, BAD_INPUT, INTERNAL, INTERRUPTED = 1, 2, 70, 130
+
+EXIT_STATUSES = {
+    0: Outcome("done"),
+    BAD_POINTS: Outcome(
+        "done, but some points have a bad status",
+        "The summary counts them by status and says what to do. The other points are valid.",
+    ),
+    BAD_INPUT: Outcome(
+        "the input is wrong, or the machine cannot do what is needed",
+        "The message names the key or the file, the value and what is allowed.",
+    ),
+    INTERNAL: Outcome("an internal error, which is a bug", "Please report the traceback below the message."),
+    INTERRUPTED: Outcome(
+        "interrupted, also while the program is still loading or compiling",
+        "`--resume` continues. A second Ctrl-C changes nothing.",
+    ),
+}
 
 
 class InputError(ValueError):

@@ -12,6 +12,7 @@ from vibro_sweep.model.models import MODELS
 from vibro_sweep.model.models.declaration import Model, Option
 from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.model.state import state as names
+from vibro_sweep.model.status import STATUSES
 
 if TYPE_CHECKING:
     from vibro_sweep.driver.cost import Estimate
@@ -132,7 +133,8 @@ def summary(output: Path, report: "RunReport") -> str:
     state += f"; {unsettled:,} not settled yet: a longer transient or record may tell" if unsettled else ""
     if not report.computed:
         return f"{output} is complete already, from the same scene: {points(report.points)}, {state}"
-    return f"{output}: {points(report.points)} in {duration(report.seconds)}, {state}"
+    advice = [f"\n{one.name}: {one.advice}" for one in STATUSES.values() if one.name in bad]
+    return f"{output}: {points(report.points)} in {duration(report.seconds)}, {state}{''.join(advice)}"
 
 
 def points(count: int) -> str:

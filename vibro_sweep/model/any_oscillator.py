@@ -12,7 +12,16 @@ from vibro_sweep.model.units import Units
 
 
 class AnyOscillator:
-    """A System or an Oscillator; a subclass says what its numbers and options are, by the model that it is of."""
+    """A System or an Oscillator; a subclass says what its numbers and options are, by the model that it is of.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> from vibro_sweep.types import AnyOscillator
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> isinstance(system, AnyOscillator), system.masses, round(system.phase, 6)
+    (True, 2, 2.229307)
+    """
 
     model: Model
     family: Family

@@ -12,6 +12,7 @@ class Bifurcation(NamedTuple):
     sigma : of the orbits that have it; 0: all
     crosses : how many multipliers cross the circle there: one above 1, one below -1, a pair; all 0: the test is another
     beyond : what branches off, a key of `BEYOND` in analysis/branches/branch_switching.py; "": nothing
+    advice : what a user can do where a branch, or a window, ends there
     """
 
     name: str
@@ -26,25 +27,40 @@ class Bifurcation(NamedTuple):
     sigma: int = 0
     crosses: tuple[int, int, int] = (0, 0, 0)
     beyond: str = ""
+    advice: str = ""
 
 
 TYPES = (
     Bifurcation("fold", "two orbits meet and vanish", "LP", "fold", "s", "#b2182b", "#2f8fd8",
-                test="rate", condition="fold", crosses=(1, 0, 0)),
+                test="rate", condition="fold", crosses=(1, 0, 0),
+                advice="The branch turns back there and goes on. Beyond the end of a window the motion jumps to "
+                       "another attractor, often with hysteresis: sweep with `follow: both` to see both ways."),
     Bifurcation("flip", "period doubling, multiplier -1", "PD", "flip", "D", "#2f8fd8", "#e0a030",
-                test="minus", condition="flip", sigma=1, crosses=(0, 1, 0), beyond="doubled"),
+                test="minus", condition="flip", sigma=1, crosses=(0, 1, 0), beyond="doubled",
+                advice="The orbit goes on, unstable. `switch`, or `follow: [flip]`, gives that of twice the period."),
     Bifurcation("pitchfork", "a symmetric orbit loses its symmetry",
                 "BP", "pitchfork", "^", "#e0a030", "#b2182b",
-                test="minus", condition="flip", sigma=-1, crosses=(0, 1, 0), beyond="mirror images"),
+                test="minus", condition="flip", sigma=-1, crosses=(0, 1, 0), beyond="mirror images",
+                advice="The symmetric orbit goes on, unstable. `switch`, or `follow: [pitchfork]`, gives the two that "
+                       "are mirror images of each other."),
     Bifurcation("neimark_sacker", "a torus is born, a pair of multipliers of modulus 1",
-                "NS", "Neimark-Sacker", "p", "#7b3294", "#1a1a5e", test="pair", condition="torus", crosses=(0, 0, 1)),
+                "NS", "Neimark-Sacker", "p", "#7b3294", "#1a1a5e", test="pair", condition="torus", crosses=(0, 0, 1),
+                advice="The orbit goes on, unstable. Where the point is supercritical, a sweep beyond it "
+                       "shows the torus."),
     Bifurcation("graze", "an impact appears or vanishes", "GR", "graze", "o", "#1a1a2e", "#8a8a96",
-                condition="graze", beyond="graze"),
+                condition="graze", beyond="graze",
+                advice="Orbits with an impact more, or less, exist on one of the two sides: `switch`, or "
+                       "`follow: [graze]`, gives them. Of the kind `nonsmooth_fold` both lie on one side, "
+                       "and the motion jumps."),
     Bifurcation("sticking", "a rest on a stop begins, ends or is interrupted",
-                "ST", "sticking", "X", "#446644", "#9600fa", condition="stick"),
+                "ST", "sticking", "X", "#446644", "#9600fa", condition="stick",
+                advice="Orbits that rest have no finite list of impacts: `simulate` and `sweep` compute them."),
     Bifurcation("closed", "the branch comes back to itself"),
-    Bifurcation("boundary", "end of the bounds within which it was followed"),
-    Bifurcation("failed", "the branch could not be followed any further"),
+    Bifurcation("boundary", "end of the bounds within which it was followed",
+                advice="Widen `bounds`, of a window the range of the sweep, where the parameter allows it."),
+    Bifurcation("failed", "the branch could not be followed any further",
+                advice="What was computed is valid. Begin from an orbit beyond that place, or go round it in "
+                       "another parameter."),
 )  # fmt: skip
 BY_NAME = {one.name: one for one in TYPES}
 CODES = {one.name: code for code, one in enumerate(TYPES)}
@@ -117,26 +133,3 @@ CODES_OF_CURVES = {one.name: code for code, one in enumerate(CODIMENSION_TWO)}
 
 KINDS = ("none", "persistence", "nonsmooth_fold")  # of a graze
 CRITICALITIES = ("none", "super", "sub")
-STATUSES = ("ok", "inadmissible")  # of points of a branch
-BRANCH_STATUSES = ("ok", "failed")  # failed: it could not be followed to an end, or not at all
-
-EDGES = {  # of a plane between points of different periods: why; what says most comes first
-    "curve": "a curve passes between the two points on which one of their orbits ends or loses its stability",
-    "no_curve": "an orbit ends or loses its stability between the points, but no curve was followed from there",
-    "stable_at_both": "the periodic orbits are stable at both points; other starts, or a record that has not settled",
-    "not_settled": "the recorded orbit is not yet the periodic one that it approaches",
-    "failed": "the orbit could not be followed",
-    "open": "not looked at",
-}
-
-REASONS = {  # why a point of a sweep lies in no window; 0: it lies in one
-    "in_a_window": "in a window",
-    "chaos": "the largest Lyapunov exponent is positive",
-    "quasi_periodic": "the largest Lyapunov exponent is zero within its error, and the orbit not periodic",
-    "sticking": "the mass rests on a stop after infinitely many impacts: such orbits have no finite list of impacts",
-    "not_settled": "neither periodic within the record nor known to be anything else, or not yet where it attracts to",
-    "failed": "the orbit, or the equations of its impacts, could not be computed",
-    "not_computed": "the file has no orbit there",
-    "not_isolated": "one of a family of orbits: of a mass that nothing holds, or of a mode without losses in resonance",
-}
-ATTRACTORS = ("chaos", "quasi_periodic", "sticking")  # reasons that say where an orbit went to

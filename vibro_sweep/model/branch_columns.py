@@ -1,7 +1,8 @@
 """What files hold of branches, declared once: names, dimensions, types, units, texts, words."""
 
-from vibro_sweep.model.bifurcations import BRANCH_STATUSES, CRITICALITIES, KINDS, STATUSES, TYPES
+from vibro_sweep.model.bifurcations import CRITICALITIES, KINDS, TYPES
 from vibro_sweep.model.column import OF_PARAMETER, Column
+from vibro_sweep.model.outcomes import BRANCHES, POINTS
 
 OF_BRANCHES = (
     Column("branch_period", ("branch",), "i4", "period in T", "period of the orbits in forcing periods"),
@@ -25,7 +26,7 @@ OF_BRANCHES = (
         "status",
         "whether the branch was followed to both ends; one that could not be followed has its orbit as its only point",
         "1",
-        BRANCH_STATUSES,
+        tuple(BRANCHES),
     ),
     Column(
         "branch_begins",
@@ -108,7 +109,7 @@ OF_BRANCHES = (
     Column(
         "residual", ("point",), "f8", "residual", "largest jump of the gap between two flights, relative to its size"
     ),
-    Column("status", ("point",), "i1", "status", "whether the point is a motion", "1", STATUSES),
+    Column("status", ("point",), "i1", "status", "whether the point is a motion", "1", tuple(POINTS)),
     Column(
         "impact_t",
         ("impact",),

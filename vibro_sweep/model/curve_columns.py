@@ -1,8 +1,9 @@
 """What files hold of curves, along which orbits bifurcate, and of the edges of planes at which they begin."""
 
-from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES, EDGES
+from vibro_sweep.model.bifurcations import CODIMENSION_TWO, CURVES
 from vibro_sweep.model.branch_columns import OF_BRANCHES
 from vibro_sweep.model.column import OF_PARAMETER, Column
+from vibro_sweep.model.outcomes import EDGES
 
 _SHARED = {
     *("branch_period", "branch_symmetric", "branch_closed", "branch_row_size", "branch_impacts", "branch_special"),

@@ -2,7 +2,17 @@
 
 
 class VibroSweepError(Exception):
-    """A request cannot be met: an argument, a scene or a file is wrong, or a run cannot go on."""
+    """A request cannot be met: an argument, a scene or a file is wrong, or a run cannot go on.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> try:
+    ...     vs.System(mu_m=-1, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    ... except vs.VibroSweepError as error:
+    ...     print(error)
+    mu_m: -1 is not allowed; it must be a finite number > 0
+    """
 
 
 class ArgumentError(VibroSweepError, ValueError):

@@ -37,6 +37,15 @@ class Oscillator(AnyOscillator):
 
     Numbers are attributes: `force`, and `force1`, `force2`, ... too. Raises ParameterError for what cannot be.
     `Oscillator.named("chain", m=..., ...)` makes the other models (`vibro-sweep models`).
+
+    Examples
+    --------
+    A mass on a spring: its motion without stops has the amplitude 1/sqrt((1 - omega^2)^2 + (2 zeta omega)^2).
+
+    >>> import vibro_sweep as vs
+    >>> mass = vs.Oscillator([[1]], [[1]], modal_damping=0.05, force=[1], contact_normal=[1], omega=0.8, R=0.7, b=1.5)
+    >>> round(vs.grazing(mass).b, 6)
+    2.711631
     """
 
     def __init__(
@@ -52,7 +61,17 @@ class Oscillator(AnyOscillator):
 
     @classmethod
     def named(cls, name: str, **given: Any) -> AnyOscillator:
-        """A model by its name, as it is in a scene; of `two_mass` a System."""
+        """A model by its name, as it is in a scene; of `two_mass` a System.
+
+        Examples
+        --------
+        >>> import vibro_sweep as vs
+        >>> ball = vs.Oscillator.named(
+        ...     "one_mass", k=0, zeta=0, F=1, constant=-0.5, omega=1, R=0.5, b=0, stops="left"
+        ... )
+        >>> ball.masses, ball.replace(R=0.6).R
+        (1, 0.6)
+        """
         from vibro_sweep.model.oscillator import System
 
         model = model_named(name)

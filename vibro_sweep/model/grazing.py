@@ -109,8 +109,19 @@ ROUNDING = 1e-13  # of a static state, relative to it; of 1 - multiplier
 class Grazing(NamedTuple):
     """The touch of the free motion of period T at the stops.
 
-    `satisfied`: it exists and is the only one, so that at clearance `b` and phase `tau` there is a double grazing orbit
-    (condition 19). `b_right`, `b_left`: clearances at which it touches that stop; NaN where there is no such motion.
+    b, tau : clearance and phase (radians) of the touch, (16) and (18)
+    state : (2N,) state at t = 0, on the right stop
+    determinant : of (15); zero where the motion is not the only one
+    satisfied : it exists and is the only one, so that at `b` and `tau` there is a double grazing orbit (condition 19)
+    b_right, b_left : clearances at which it touches that stop; NaN where there is no such motion
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> touch = vs.grazing(system)
+    >>> touch.b_right == touch.b_left == touch.b, [round(one, 6) for one in touch.state]
+    (True, [6.705717, 0.0, 3.228562, 0.247513])
     """
 
     b: float  # where both are equal, else NaN
@@ -123,12 +134,20 @@ class Grazing(NamedTuple):
 
 
 def grazing(system: AnyOscillator) -> Grazing:
-    """Clearance and phase at which the steady motion of period T touches the stops: eqs. (16)-(19).
+    """Clearance and phase at which the steady motion of period T touches the stops, by (16)-(19).
 
     The clearance and phase of `system` itself play no part. For the paper's oscillator `determinant` is (15) without
     its factor omega_d1 omega_d2, which also vanishes at critical damping, where the orbit is as unique as elsewhere;
     for others, det(1 - Phi_T). With the erratum of (7) the paper's parameters give b* = 6.70571674097302; the paper
     prints 6.7107356.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> touch = vs.grazing(system)
+    >>> round(touch.b, 12), round(touch.tau, 12), touch.satisfied
+    (6.705716740973, 2.229306509033, True)
     """
     from vibro_sweep.model.oscillator import System, checked_system
 

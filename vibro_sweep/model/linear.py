@@ -23,22 +23,42 @@ STEP = 1e-100  # of the complex step: its square underflows, so that a derivativ
 
 
 class Linear(NamedTuple):
-    """The oscillator's numbers; and, with the same fields, their derivatives by one parameter."""
+    """The oscillator's numbers; and, with the same fields, their derivatives by one parameter.
 
-    M: np.ndarray  # (N, N)
-    K: np.ndarray  # (N, N)
-    C: np.ndarray  # (N, N)
-    normal: np.ndarray  # (N,): n of the gap n.x
-    constant: np.ndarray  # (N,)
-    sine: np.ndarray  # (N,)
-    cosine: np.ndarray  # (N,)
+    M, K, C : (N, N) matrices of masses, stiffnesses and dampers
+    normal : (N,) n of the gap n.x
+    constant, sine, cosine : (N,) constant force, amplitudes of sin(omega t + tau) and cos(omega t + tau)
+    omega, tau : frequency, and phase in radians; tau None: the steady gap is largest at t = 0
+    low, high : positions of the stops; infinite where there is none
+    R_low, R_high : their coefficients of restitution
+    middle : the offset about which the stops lie
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> matrices = system.linear
+    >>> matrices.K
+    array([[ 1., -1.],
+           [-1.,  6.]])
+    >>> float(matrices.low), float(matrices.high), bool(matrices.symmetric)
+    (-4.0, 4.0, True)
+    """
+
+    M: np.ndarray
+    K: np.ndarray
+    C: np.ndarray
+    normal: np.ndarray
+    constant: np.ndarray
+    sine: np.ndarray
+    cosine: np.ndarray
     omega: float
-    tau: float | None  # None: the phase at which the steady gap is largest at t = 0; 0 without a steady motion
+    tau: float | None
     low: float
     high: float
     R_low: float
     R_high: float
-    middle: float = 0.0  # the offset about which the stops lie
+    middle: float = 0.0
 
     @property
     def symmetric(self) -> bool:
@@ -50,6 +70,7 @@ class Linear(NamedTuple):
         return np.where(np.asarray(sides) > 0, self.high, self.low)
 
     def restitution(self, sides) -> np.ndarray:
+        """Coefficients of restitution of the stops on these sides (+1 high, -1 low)."""
         return np.where(np.asarray(sides) > 0, self.R_high, self.R_low)
 
 
@@ -58,12 +79,23 @@ class Family:
     """Oscillators with parameters that have names: `build(**numbers)` gives a `Linear`.
 
     `build` must accept complex numbers and be analytic in them: derivatives are taken by a complex step.
+
+    Examples
+    --------
+    A periodic orbit of a family has the derivatives that its `build` has.
+
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> family = system.family
+    >>> float(family.derivative("b").high), family.replace(b=5.0).numbers["b"]
+    (1.0, 5.0)
     """
 
     build: Callable[..., Linear]
     numbers: dict
 
     def replace(self, **changes) -> "Family":
+        """The same family with other numbers."""
         return Family(self.build, self.numbers | changes)
 
     @cached_property

@@ -10,7 +10,18 @@ import numpy as np
 
 
 class Modes(NamedTuple):
-    """Psi^T M Psi = 1 and Psi^T K Psi = diag(omega_j^2), the slower mode first; arrays broadcast over systems."""
+    """Psi^T M Psi = 1 and Psi^T K Psi = diag(omega_j^2), the slower mode first; arrays broadcast over systems.
+
+    psi : (N, N) mode shapes, one in each column
+    omega_squared : (N,) squares of the natural frequencies
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> system.modes.omega_squared.round(6)
+    array([0.425834, 1.174166])
+    """
 
     psi: np.ndarray  # (..., 2, 2): rows are masses, columns are modes
     omega_squared: np.ndarray  # (..., 2)

@@ -1,5 +1,6 @@
 """The impact oscillator (eqs. 3, 4) with its parameters, and from physical quantities."""
 
+import inspect
 import math
 from dataclasses import dataclass, fields
 from dataclasses import replace as dataclass_replace
@@ -31,7 +32,15 @@ Stops = Literal["both", "right", "left"]
 
 @dataclass(frozen=True)
 class System(AnyOscillator):
-    """The impact oscillator (3), (4). Raises ParameterError for a parameter outside its range."""
+    """The impact oscillator (3), (4). Raises ParameterError for a parameter outside its range.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> round(system.period, 6), round(system.divergence, 6)
+    (9.97331, -0.16)
+    """
 
     mu_m: float
     mu_k: float
@@ -61,6 +70,7 @@ class System(AnyOscillator):
 
     @property
     def family(self) -> Family:
+        """The same oscillator by its numbers, with their derivatives."""
         return Family(MODEL.build, self.numbers | {"stops": self.stops})
 
     @property
@@ -75,6 +85,7 @@ class System(AnyOscillator):
 
     @property
     def options(self) -> dict[str, Any]:
+        """What is not a number: which stops there are, and the units."""
         return {"stops": self.stops, "units": self.units}
 
     masses = 2
@@ -105,6 +116,15 @@ class System(AnyOscillator):
 
         Its `units` say what its own, nondimensional numbers are measured in.
         The stops stand at B0 - B and B0 + B; R_left, of the left one, is R where it is left out.
+
+        Examples
+        --------
+        >>> import vibro_sweep as vs
+        >>> system = vs.System.physical(
+        ...     M1=2, M2=20, K1=800, K2=4000, C1=4, C2=20, P1=10, P2=0, Omega=12.6, R=0.8, B=0.05
+        ... )
+        >>> round(system.omega, 6), round(system.b, 6), round(system.zeta, 6)
+        (0.63, 4.0, 0.05)
         """
         _check_stops(stops)
         given = dict(M1=M1, M2=M2, K1=K1, K2=K2, C1=C1, C2=C2, P1=P1, P2=P2, Omega=Omega, B=B, B0=B0)
@@ -140,7 +160,15 @@ class System(AnyOscillator):
         return system.replace(mu_c=C2 / C1)
 
     def replace(self, **changes: Any) -> "System":
-        """A copy with other parameters. Raises ParameterError, also for a name that is not one of them."""
+        """A copy with other parameters. Raises ParameterError, also for a name that is not one of them.
+
+        Examples
+        --------
+        >>> import vibro_sweep as vs
+        >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+        >>> system.replace(b=4.5).b
+        4.5
+        """
         for name in changes:
             if name not in (known := [one.name for one in fields(self)]):
                 raise ParameterError(name, changes[name], f"one of {', '.join(known)}")
@@ -153,6 +181,7 @@ class System(AnyOscillator):
 
     @property
     def modes(self) -> Modes:
+        """The modes of the motion between the stops (eq. 5)."""
         return modes(self.mu_m, self.mu_k)
 
     @property
@@ -184,7 +213,8 @@ def checked_system(system: object) -> None:
 
 
 # what `help` shows of the parameters; absent where docstrings are (python -OO)
-if System.__doc__:
-    System.__doc__ += "\n\nParameters\n----------\n"
-    System.__doc__ += "\n".join(f"{one.name} : {one.described}; {one.range.text}" for one in PARAMETERS)
-    System.__doc__ += f"\nstops : {', '.join(STOPS)}\nunits : for labels; {ALLOWED}; left out: none\n"
+_said, _, _examples = inspect.cleandoc(System.__doc__ or "").partition("\n\nExamples\n")
+if _examples:
+    _parameters = [f"{one.name} : {one.described}; {one.range.text}" for one in PARAMETERS]
+    _parameters += [f"stops : {', '.join(STOPS)}", f"units : for labels; {ALLOWED}; left out: none"]
+    System.__doc__ = "\n".join([_said, "\nParameters\n----------", *_parameters, "\nExamples", _examples])

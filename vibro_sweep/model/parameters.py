@@ -178,7 +178,20 @@ BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
 
 
 class ParameterError(VibroSweepError, ValueError):
-    """A parameter outside its range; carries `key`, `value` and `allowed`."""
+    """A parameter outside its range; carries `key`, `value` and `allowed`.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> try:
+    ...     system.replace(R=1.2)
+    ... except vs.ParameterError as error:
+    ...     print(error)
+    ...     print(error.key, error.value)
+    R: 1.2 is not allowed; it must be a finite number from 0 to 1
+    R 1.2
+    """
 
     def __init__(self, key: str, value: object, allowed: str):
         super().__init__(key, value, allowed)

@@ -17,18 +17,51 @@ NOT_SETTLED = 6  # a remark: the numbers stand
 class Status(NamedTuple):
     name: str  # one word for CF's `flag_meanings`
     text: str
+    advice: str = ""  # what a user can do
 
 
 STATUSES = {
-    NOT_COMPUTED: Status("not_computed", "not computed yet"),
+    NOT_COMPUTED: Status(
+        "not_computed",
+        "not computed yet",
+        "The run was interrupted, or still goes on. `vibro-sweep run SCENE.yaml --resume`, or `mode='resume'`, "
+        "completes its file.",
+    ),
     OK: Status("ok", "computed"),
-    EVENT_LIMIT: Status("too_many_impacts_in_a_period", "more impacts in a forcing period than are computed"),
-    NOT_FINITE: Status("not_finite", "the state left the range of floating-point numbers"),
-    TOO_STIFF: Status("rates_too_far_apart", "the fastest time constant is too short compared with the forcing period"),
-    UNRESOLVED: Status("contact_unresolved", "two grazes are too close together to be separated"),
-    BEYOND_STOP: Status("beyond_a_stop", "mass 1 was found behind a stop by more than rounding explains"),
+    EVENT_LIMIT: Status(
+        "too_many_impacts_in_a_period",
+        "more impacts in a forcing period than are computed",
+        "There are more than 100 000, as with R near 1 and a tiny clearance. Check the unit of "
+        "the clearance; a smaller R, or a larger clearance, has fewer impacts.",
+    ),
+    NOT_FINITE: Status(
+        "not_finite",
+        "the state left the range of floating-point numbers",
+        "The motion grows without bounds, or the start is too large. Check the size of the start, and the "
+        "damping: an undamped mode in resonance grows for ever.",
+    ),
+    TOO_STIFF: Status(
+        "rates_too_far_apart",
+        "the fastest time constant is too short compared with the forcing period",
+        "The fastest time constant is shorter than 10^-7 of a period. Check that all numbers are in one system of "
+        "units. Leave out modes as fast as that (modal truncation), or lower their damping.",
+    ),
+    UNRESOLVED: Status(
+        "contact_unresolved",
+        "two grazes are too close together to be separated",
+        "No oscillator is known in which this happens. A change of a parameter in its last digits may avoid it. Please "
+        "report the scene.",
+    ),
+    BEYOND_STOP: Status(
+        "beyond_a_stop",
+        "mass 1 was found behind a stop by more than rounding explains",
+        "This has not been seen and would be a bug. Please report the scene.",
+    ),
     NOT_SETTLED: Status(
-        "not_settled", "a remark, the numbers are valid: the record is neither periodic nor stationary"
+        "not_settled",
+        "a remark, the numbers are valid: the record is neither periodic nor stationary",
+        "Lengthen `transient`, and `record` where a long period is expected. Chaos that ends after the record cannot "
+        "be distinguished from chaos that lasts.",
     ),
 }
 

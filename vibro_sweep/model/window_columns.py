@@ -1,7 +1,7 @@
 """What files hold of windows beside their branches."""
 
-from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.column import OF_FIRST, Column
+from vibro_sweep.model.outcomes import REASONS
 
 OF_WINDOWS = (
     Column("window_lo", ("window",), "f8", "lower end", "value of the parameter at the lower end", OF_FIRST),

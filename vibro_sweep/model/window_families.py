@@ -8,7 +8,20 @@ LEAST = 3  # windows of a family
 
 
 class Family(NamedTuple):
-    """itinerary and symmetry that its windows share; their indices by rising period, the least period, the step."""
+    """itinerary and symmetry that its windows share; their indices by rising period, the least period, the step.
+
+    Examples
+    --------
+    Windows near the grazing clearance, whose period grows by the same step from window to window.
+
+    >>> import numpy as np
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> data = vs.sweep(system, {"b": np.linspace(6.4, 6.65, 51)}, observe=["section"], transient=800, record=200)
+    >>> windows = vs.windows(data)
+    >>> [(one.itinerary, one.period, one.step) for one in windows.families]
+    [('LLLLLLLLRRRRRRRR', 47, 2), ('RRRR', 11, 1), ('LLLLRRRR', 23, 2)]
+    """
 
     itinerary: str
     symmetric: bool

@@ -1,14 +1,22 @@
-"""An oscillator in words: all its numbers, or where it has many masses what fits in a few lines."""
+"""Oscillators and itineraries in words: in full, or where they are long what fits in a few lines."""
 
 from collections.abc import Mapping
 
 LONGEST = 600  # letters of a text that is written in full
+LONGEST_WORD = 24  # impacts of an itinerary that is written in full
 FEW = 3  # entries of a list of which only some are written
 
 
 def sentence(text: str) -> str:
     """A declared text, which begins small and ends without a full stop, as a sentence."""
     return text[:1].upper() + text[1:] + "."
+
+
+def itinerary_text(word: str) -> str:
+    """An itinerary, of a long one its beginning and the numbers of its impacts."""
+    if len(word) <= LONGEST_WORD:
+        return word or "no impacts"
+    return f"{word[: LONGEST_WORD - 3]}... ({word.count('R')} R, {word.count('L')} L)"
 
 
 def arguments(given: Mapping[str, object]) -> tuple[str, bool]:

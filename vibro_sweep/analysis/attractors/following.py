@@ -5,7 +5,8 @@ between what is known of them first, and none with two others. What finds no par
 attractors that were lost before; an attractor that is not one of these either gets the next number.
 
 Periodic attractors can be the same only with the same impacts in a forcing period on each stop, so a number goes on
-through period doublings and ends at a graze or in chaos. docs/files.md says what that means for splits and births.
+through period doublings and ends at a graze or in chaos. What that means for splits and births is said in
+docs/reference/files.md.
 """
 
 from typing import NamedTuple

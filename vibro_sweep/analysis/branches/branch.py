@@ -20,6 +20,7 @@ from vibro_sweep.analysis.branches.special import SpecialPoint, table_of
 from vibro_sweep.analysis.branches.sticking import sticking_onset
 from vibro_sweep.analysis.continuation.recorded import Rows, both_directions
 from vibro_sweep.analysis.periodic.one_thread import one_thread
+from vibro_sweep.analysis.periodic.orbit_portrait import portrait
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.result import FileResult
@@ -36,11 +37,21 @@ if TYPE_CHECKING:
 class Branch(FileResult):
     """A branch, from the end that is reached towards smaller parameters first to the other one.
 
+    parameter : the name of the number that changes along it
     special : all special points in order, `begins` and `ends` among them. Beyond an end at which a chatter sequence
         gains an impact follows the onset of sticking, where such grazes accumulate; it is the end itself where rounding
         does not distinguish the two
     closed : whether it comes back to itself; then both ends are the orbit it started from, of type "closed"
-    status : "ok", or "failed" where it could not be followed to an end, or not at all: then its orbit is its only point
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (3.0, 4.5))
+    >>> branch.status, branch.begins.type, branch.ends.type
+    ('ok', 'graze', 'boundary')
+    >>> int(branch.points.unstable[0]), int(branch.points.unstable[-1])
+    (0, 2)
     """
 
     parameter: str
@@ -58,10 +69,12 @@ class Branch(FileResult):
 
     @property
     def status(self) -> str:
+        """`ok`, or `failed` where it could not be followed to an end, or not at all: then it has one point."""
         return "failed" if "failed" in (self.begins.type, self.ends.type) else "ok"
 
     @property
     def ok(self) -> bool:
+        """Whether it was followed to both of its ends."""
         return self.status == "ok"
 
     @cached_property
@@ -73,6 +86,9 @@ class Branch(FileResult):
 
     def _table(self) -> dict[str, list]:
         return table_of(self.special)
+
+    def _picture_of(self, row: int) -> str:
+        return portrait(self.special[row].orbit)
 
 
 @one_thread()
@@ -86,6 +102,14 @@ def continue_orbit(orbit: PeriodicOrbit, parameter: str, bounds: tuple[float, fl
 
     Raises ValueError for an orbit that is not ok, a name that is not a number of the system, bounds that do not hold
     its value, or the restitution of a stop on which the mass rests.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (3.0, 4.5))
+    >>> [(one.type, round(one.parameters["b"], 8)) for one in branch.special]
+    [('graze', 3.22190388), ('neimark_sacker', 4.34741799), ('boundary', 4.5)]
     """
     check_type("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit, as `periodic_orbit` returns it")
     check_call("progress", progress, "progress(points, value)", 0, 0.0)

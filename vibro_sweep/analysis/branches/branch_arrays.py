@@ -1,10 +1,11 @@
 """A branch as plain arrays, with which it travels between processes and lies in files; and its orbits from these.
 
-The arrays, `SHAPES`, have the names that they have in files. Words are codes of model/bifurcations.py. An index that
-does not exist is -1.
+The arrays, `SHAPES`, have the names that they have in files. Words are codes of model/bifurcations.py
+and model/outcomes.py. An index that does not exist is -1.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,8 +16,9 @@ from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.free_modes import checked_cells
-from vibro_sweep.model.bifurcations import BIRTHS, BRANCH_STATUSES, CODES, CRITICALITIES, KINDS, TYPES
+from vibro_sweep.model.bifurcations import BIRTHS, CODES, CRITICALITIES, KINDS, TYPES
 from vibro_sweep.model.linear import family_of, forcing_period
+from vibro_sweep.model.outcomes import BRANCHES
 from vibro_sweep.model.state import state
 
 Arrays = dict[str, np.ndarray]
@@ -61,7 +63,7 @@ def arrays_of(branch: Branch, origin: float) -> Arrays:
     words = state(data["multiplier_re"].shape[1] // 2)
     result = outline(branch) | common(branch, start, (parameter,), p, CODES)
     result |= {
-        "branch_status": np.int8(BRANCH_STATUSES.index(branch.status)),
+        "branch_status": np.int8(list(BRANCHES).index(branch.status)),
         "branch_origin": np.int32(np.argmin(np.abs(p - origin))),
         "state": np.stack([data[name] for name in words], axis=-1),
         **{
@@ -152,13 +154,16 @@ def branch_of(arrays: Arrays, parameter: str, system) -> Branch:
 def sections_of(arrays: Arrays, parameter: str, system) -> np.ndarray:
     """(n, m, 2N) all section states of each point: those at t = 0 mod T of the orbit and of its mirror image.
 
-    Where the parameter breaks the symmetry of the oscillator there are no mirror images, not at the one value either at
-    which it is symmetric: m is the same for all points.
+    All points begin with the same impact, so that each row of states is continuous along the branch. Where the
+    parameter breaks the symmetry of the oscillator there are no mirror images, not at the one value either at which it
+    is symmetric: m is the same for all points.
     """
     family = family_of(system)
     mirrors = family.linear.symmetric and keeps_symmetry(family, parameter)
     systems = [system.replace(**{parameter: value}) for value in arrays["value"].tolist()]
-    return np.array([section_states(orbit_at(arrays, i, one), mirrors) for i, one in enumerate(systems)])
+    orbits = [orbit_at(arrays, i, one) for i, one in enumerate(systems)]
+    frame = orbits[int(arrays["branch_origin"])]._canonical_frame
+    return np.array([section_states(replace(one, _frame=frame), mirrors) for one in orbits])
 
 
 def special_point(arrays: Arrays, index: int, parameter: str, system) -> SpecialPoint:

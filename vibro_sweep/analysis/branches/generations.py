@@ -19,11 +19,19 @@ from vibro_sweep.model.refusals import not_allowed
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FollowedBranch:
-    """A branch, and how it was reached.
+    """A `branch`, and how it was reached.
 
     generation : 0 for the branch of the orbit given, 1 for those that are reached from its special points, ...
     parent : index of the branch from which it was reached; None for the first
     special : the special point of the parent at which it was reached; None for the first
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> first, second = vs.follow_branches(vs.periodic_orbit(system, itinerary="R"), "b", (3.0, 4.5))
+    >>> second.generation, second.parent, second.special.type
+    (1, 0, 'graze')
     """
 
     branch: Branch
@@ -47,6 +55,14 @@ def follow_branches(
 
     Raises ValueError for types that no branch leaves from, and as `continue_orbit` does for the orbit given. A branch
     that cannot be followed says so by its status.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> found = vs.follow_branches(vs.periodic_orbit(system, itinerary="R"), "b", (3.0, 4.5))
+    >>> [(one.generation, one.branch.begins.type, one.branch.ends.type) for one in found]
+    [(0, 'graze', 'boundary'), (1, 'graze', 'pitchfork')]
     """
     check_type("orbit", orbit, PeriodicOrbit, "a PeriodicOrbit, as `periodic_orbit` returns it")
     check_call("progress", progress, "progress(branches, points, value)", 0, 0, 0.0)

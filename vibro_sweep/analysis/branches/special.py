@@ -29,6 +29,15 @@ class SpecialPoint:
     criticality : of a flip or pitchfork "super": the born orbit exists where its parent has the multiplier outside the
         unit circle; "sub": where it is inside. Of a neimark_sacker point "super": the circle that is born attracts the
         orbits near it in its plane. None where it cannot be decided, and for other types
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (3.0, 4.5))
+    >>> graze = branch.begins
+    >>> graze.type, graze.kind, graze.stop, round(graze.parameters["b"], 8), graze.error < 1e-12
+    ('graze', 'nonsmooth fold', -1, 3.22190388, True)
     """
 
     type: str

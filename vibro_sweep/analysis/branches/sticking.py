@@ -28,6 +28,15 @@ def sticking_onset(special: SpecialPoint) -> SpecialPoint | None:
     A special point of type "sticking"; its orbit has no finite list of impacts, and the status "sticking". None where
     there is no such sequence, or no onset near it. An orbit that gains impacts at both ends of its branch has an onset
     beyond either: the nearest of those found is taken.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=0.08)
+    >>> orbit = vs.periodic_orbit(system, state=vs.simulate(system, (0, 0, 0, 0), 500).section[-1])
+    >>> branch = vs.continue_orbit(orbit, "b", (0.06, 0.09))
+    >>> round(vs.sticking_onset(branch.begins).parameters["b"], 10)
+    0.0646391434
     """
     check_type("special", special, SpecialPoint, "a special point of a branch")
     if special.type != "graze" or special.impact is not None or special.orbit._solution.rests:

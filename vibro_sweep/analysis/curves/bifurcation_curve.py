@@ -20,6 +20,7 @@ from vibro_sweep.analysis.curves.curve_points import dataset, dataset_from_file
 from vibro_sweep.analysis.curves.curve_run import CurvePoint, CurveRun
 from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.analysis.periodic.one_thread import one_thread
+from vibro_sweep.analysis.periodic.orbit_portrait import portrait
 from vibro_sweep.analysis.single.result import FileResult
 from vibro_sweep.engine.continuation.workspace import Place
 from vibro_sweep.model.arguments import check_call, check_type, checked_flag, checked_interval
@@ -43,6 +44,17 @@ class BifurcationCurve(FileResult):
     parameters : names of both
     special : its points of codimension two in order, `begins` and `ends` among them
     closed : whether it comes back to itself; then both ends are the point it started from, of type "closed"
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (3.0, 4.5))
+    >>> curve = vs.bifurcation_curve(branch.begins, ("b", "omega"), ((3.0, 3.5), (0.62, 0.64)))
+    >>> curve.type, curve.begins.type, curve.ends.type
+    ('graze', 'boundary', 'boundary')
+    >>> float(curve.points.omega.min()), float(curve.points.omega.max())
+    (0.62, 0.64)
     """
 
     type: str
@@ -67,6 +79,9 @@ class BifurcationCurve(FileResult):
 
     def _table(self) -> dict[str, list]:
         return table_of(self.special) | {"touches": [one.touches for one in self.special]}
+
+    def _picture_of(self, row: int) -> str:
+        return portrait(self.special[row].orbit)
 
     def plot(self, *others: "BifurcationCurve", width: float | None = None):
         """Plot this curve and `others` in the same parameters, with their points of codimension two: a matplotlib
@@ -103,6 +118,16 @@ def bifurcation_curve(
     Raises ValueError for a special point of another type, names that are not numbers of the system, bounds that do not
     hold the point, where the point does not belong to a single curve, and without virtual points where there is no
     motion beside it.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (3.0, 4.5))
+    >>> special = next(one for one in branch.special if one.type == "neimark_sacker")
+    >>> curve = vs.bifurcation_curve(special, ("b", "omega"), ((3.8, 4.5), (0.6, 0.66)))
+    >>> [one.type for one in curve.special]
+    ['boundary', 'degenerate_neimark_sacker', 'boundary']
     """
     check_type("special", special, SpecialPoint, "a special point of a branch or of a curve")
     family = family_of(special.orbit.system)

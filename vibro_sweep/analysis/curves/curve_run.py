@@ -32,13 +32,23 @@ MOST_POINTS = 50_000
 class CurvePoint(SpecialPoint):
     """A point of codimension two on a bifurcation curve, or the end of one.
 
-    type : two bifurcations at once: cusp, fold_flip, ... (docs/curves.md); closed, boundary or failed
+    type : two bifurcations at once: cusp, fold_flip, ... (docs/how/curves.md); closed, boundary or failed
     parameters : both, by their names
     multipliers : of the half map where the orbit is symmetric; of a graze, of the orbit without the grazing impact
     impact : index in `orbit.impacts` of one that has no speed there, or None
     error : own estimate of the error of the parameters
     curve : type of the curve that was followed
     touches : whether a flight of `orbit` touches a stop
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (3.0, 4.5))
+    >>> curve = vs.bifurcation_curve(branch.special[1], ("b", "omega"), ((3.8, 4.5), (0.6, 0.66)))
+    >>> point = curve.special[1]
+    >>> point.type, {name: round(value, 8) for name, value in point.parameters.items()}
+    ('degenerate_neimark_sacker', {'b': 4.40040895, 'omega': 0.63389548})
     """
 
     curve: str = ""

@@ -45,9 +45,17 @@ def switch(special):
     without, the impact that has no speed there; at the graze of the free motion those that hit one stop or both).
     Orbits that pass a stop are left out. Of a curve, at a point of codimension two: fold, flip (pitchfork),
     Neimark-Sacker, graze and sticking curves through it, and those of orbits with two or four times the period that
-    begin there (born.py), as special points from which `bifurcation_curve` can start.
+    begin there, as special points from which `bifurcation_curve` can start.
 
     Raises ValueError for a special point of another type.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (3.0, 4.5))
+    >>> [(one.itinerary, one.stable) for one in vs.switch(branch.begins)]
+    [('LR', False)]
     """
     check_type("special", special, SpecialPoint, "a special point of a branch or of a curve")
     if not isinstance(special, CurvePoint):

@@ -44,6 +44,14 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
         Without a guess fixed seeds are tried; the first real orbit with this itinerary counts.
 
     Raises ValueError for arguments that say nothing or contradict each other. `.status` says what fails.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> orbit = vs.periodic_orbit(system, itinerary="R")
+    >>> orbit.status, orbit.period, orbit.stable, round(float(abs(orbit.multipliers[0])), 6)
+    ('ok', 1, True, 0.903327)
     """
     family = family_of(system)
     periods = checked_count("periods", periods, 1, MOST_PERIODS)

@@ -40,6 +40,14 @@ class Born:
     orbit : at a small distance from b*, confirmed by Newton's method
     born : "below" or "above" b*
     speed_per_distance : (impacts,) impact speeds over |b - b*|, in the order of `orbit.impacts`
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> born = vs.born_at_grazing(system, periods=1)[0]
+    >>> born.itinerary, born.speed_per_distance.round(4)
+    ('R', array([0.9558]))
     """
 
     orbit: PeriodicOrbit
@@ -48,10 +56,12 @@ class Born:
 
     @property
     def period(self) -> int:
+        """Of `orbit`, in forcing periods."""
         return self.orbit.period
 
     @property
     def itinerary(self) -> str:
+        """Of `orbit`: the stops that it hits, as "LR"."""
         return self.orbit.itinerary
 
 
@@ -79,6 +89,13 @@ def born_at_grazing(system, periods: int = 6) -> list[Born]:
 
     Raises ValueError where no steady motion exists or the gap is at rest in it, and for more periods than 2^20 sets
     of impacts allow.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> [(one.itinerary, one.period, one.born) for one in vs.born_at_grazing(system, periods=1)]
+    [('R', 1, 'below'), ('LR', 1, 'below')]
     """
     family = family_of(system)
     periods = checked_count("periods", periods, 1)

@@ -4,11 +4,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibro_sweep.model.wording import itinerary_text
+
 if TYPE_CHECKING:
     from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 
 LINES = 10
-LONGEST_WORD = 24  # impacts of an itinerary that is written in full
 MULTIPLIERS = 4  # of largest modulus
 LONGEST_SYSTEM = 400  # letters
 
@@ -37,13 +38,7 @@ def motion(orbit: "PeriodicOrbit") -> str:
 def itinerary_of(orbit: "PeriodicOrbit") -> str:
     if not orbit.period:
         return f"an orbit with the status {orbit.status}"
-    return f"{shortened(orbit.itinerary)}, period {orbit.period}" + (", symmetric" if orbit.symmetric else "")
-
-
-def shortened(word: str) -> str:
-    if len(word) <= LONGEST_WORD:
-        return word or "no impacts"
-    return f"{word[: LONGEST_WORD - 3]}... ({word.count('R')} R, {word.count('L')} L)"
+    return f"{itinerary_text(orbit.itinerary)}, period {orbit.period}" + (", symmetric" if orbit.symmetric else "")
 
 
 def multipliers_text(values: np.ndarray) -> str:

@@ -22,28 +22,27 @@ from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.linear import Family, family_of, forcing_period
 from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.outcomes import ORBITS
 
 if TYPE_CHECKING:
     import xarray
-
-STATUS = {
-    "ok": "a periodic orbit, certified",
-    "not_converged": "Newton's method found no orbit near the guess",
-    "inadmissible": "a solution of the equations that passes a stop, or whose impulse pulls",
-    "sticking": "the orbit rests on a stop after infinitely many impacts: they are not a finite list",
-    "resonance": "an undamped mode repeats itself after the period: such orbits do not exist, or are not isolated",
-    "too_stiff": "the rates of the oscillator are too far apart",
-}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PeriodicOrbit(Result):
     """A periodic orbit of a linear oscillator between stops. Times are absolute and nondimensional.
 
-    status : "ok", or a key of `STATUS`; numbers of an orbit that is not ok are of the solution found, or empty
-    period : least period, in forcing periods
-    itinerary : sides of `impacts` in order, "R" and "L"; the least rotation with L < R
-    symmetric : x(t + period T/2) = -x(t)
+    status : "ok", or why it is not an orbit (`model.outcomes.ORBITS`); numbers then are those found, or empty
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> orbit = vs.periodic_orbit(system, itinerary="LR")
+    >>> orbit.status, orbit.itinerary, orbit.period, orbit.symmetric, orbit.stable
+    ('ok', 'LR', 1, True, False)
+    >>> orbit.state.round(4), orbit.impacts["side"].tolist()
+    (array([ 3.5283, -1.1417,  1.7403, -0.1755]), [-1, 1])
     """
 
     system: System | Oscillator | Family
@@ -56,16 +55,19 @@ class PeriodicOrbit(Result):
 
     @property
     def ok(self) -> bool:
+        """Whether this is a periodic orbit, certified."""
         return self.status == "ok"
 
     @property
     def period(self) -> int:
+        """The least period, in forcing periods; 0 without a motion."""
         if self._solution is None:
             return 0
         return self._solution.half_periods if self.symmetric else self._solution.half_periods // 2
 
     @property
     def symmetric(self) -> bool:
+        """Whether x(t + period T/2) = -x(t)."""
         return self._solution is not None and self._solution.sigma == -1
 
     @cached_property
@@ -111,6 +113,7 @@ class PeriodicOrbit(Result):
 
     @property
     def itinerary(self) -> str:
+        """Sides of `impacts` in order, "R" and "L"; the least rotation with L < R."""
         return "" if self._solution is None else word(self._whole[1])
 
     @property
@@ -176,7 +179,7 @@ class PeriodicOrbit(Result):
         Raises ValueError for no times, or for times beyond 10^9 forcing periods.
         """
         if self._solution is None:
-            raise ArgumentError(f"this orbit has no motion: {STATUS[self.status]}")
+            raise ArgumentError(f"this orbit has no motion: {ORBITS[self.status].text}")
         q = self._solution.family.linear
         length, latest = self.period * forcing_period(q), LATEST * forcing_period(q)
         allowed = f"within {LATEST} forcing periods of 0: beyond, times resolve no motion"
@@ -244,7 +247,7 @@ class PeriodicOrbit(Result):
 
         q = self._solution.family.linear if self._solution is not None else None
         if q is None:
-            raise ArgumentError(f"this orbit has no motion: {STATUS[self.status]}")
+            raise ArgumentError(f"this orbit has no motion: {ORBITS[self.status].text}")
         length = self.period * forcing_period(q)
         t, sides, v = self.impacts["t"] % length, self.impacts["side"], self.impacts["v1"]
         times = np.unique(np.concatenate([np.linspace(0, length, 400 * self.period + 1), t]))

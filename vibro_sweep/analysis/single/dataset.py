@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from vibro_sweep.analysis.single.orbit import Orbit
+    from vibro_sweep.plotting.film import Film
 
 _UNITS = {"t": "s", "xdot": "m s-1", "x": "m", "v": "m s-1"}  # in SI, of fields that begin so
 SAMPLES = 400  # of a picture, in a forcing period
@@ -46,17 +47,35 @@ def _unit(name: str) -> str:
     return next((unit for beginning, unit in _UNITS.items() if field.startswith(beginning)), "1")
 
 
-def figure_of(orbit: "Orbit", periods: int, width: float | None) -> "Figure":
-    """Phase portrait and time history of the gap over the last forcing periods that were simulated."""
-    from vibro_sweep.plotting.periodic import plot_periodic
-
+def _last(orbit: "Orbit", periods: int) -> tuple[float, float]:
+    """Begin and end of the last forcing periods that were simulated. Raises ArgumentError where there are none."""
     reached = orbit.section_times[np.isfinite(orbit.section[:, 0])]
     if not len(reached) or reached[-1] <= orbit.start_time:
         raise ArgumentError(
             f"this orbit has no motion to draw: its status is {orbit.status!r}, its periods are too few"
         )
-    end, system, q = reached[-1], orbit.system, orbit.system.linear
-    begin = max(orbit.start_time, end - periods * system.period)
+    return max(orbit.start_time, reached[-1] - periods * orbit.system.period), float(reached[-1])
+
+
+def film_of(orbit: "Orbit", periods: int) -> "Film":
+    """The last forcing periods that were simulated as a film."""
+    from vibro_sweep.plotting.film import FRAMES, new_film
+
+    (begin, end), system, q = _last(orbit, periods), orbit.system, orbit.system.linear
+    times = np.linspace(begin, end, 8 * FRAMES)
+    states = orbit.sample(times)
+    positions = {f"x{i}": states[:, 2 * i - 2] for i in range(1, system.masses + 1)}
+    name = "x1" if system.gap_is_x1 else "gap"
+    gap = name, states[:, 0::2] @ q.normal, states[:, 1::2] @ q.normal
+    stops = [one for one in (q.high, q.low) if np.isfinite(one)]
+    return new_film(times / system.period, positions, gap, stops, f"b = {system.b:.6g}")
+
+
+def figure_of(orbit: "Orbit", periods: int, width: float | None) -> "Figure":
+    """Phase portrait and time history of the gap over the last forcing periods that were simulated."""
+    from vibro_sweep.plotting.periodic import plot_periodic
+
+    (begin, end), system, q = _last(orbit, periods), orbit.system, orbit.system.linear
     impacts = orbit.impacts[(orbit.impacts["t"] >= begin) & (orbit.impacts["t"] <= end)]
     count = max(2, round((end - begin) / system.period * SAMPLES))
     times = np.unique(np.concatenate([np.linspace(begin, end, count), impacts["t"]]))

@@ -15,7 +15,16 @@ ORDERS = (1, 2)
 
 
 class DiscontinuityMap:
-    """P = Phi_{T/2} o C2 o Phi_{T/2} o C1 (eqs. 41, 48): call it with a state (2 N,) at the right graze's phase."""
+    """P = Phi_{T/2} o C2 o Phi_{T/2} o C1 (eqs. 41, 48): call it with a state (2 N,) at the right graze's phase.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.7)
+    >>> map_of_period = vs.discontinuity_map(system)
+    >>> map_of_period(vs.grazing(system).state).shape, map_of_period.jacobian([6, 0, 3, 0]).shape
+    ((4,), (4, 4))
+    """
 
     def __init__(self, system: AnyOscillator, order: int = 1, expand_at: float | None = None):
         checked_system(system)
@@ -49,5 +58,14 @@ def discontinuity_map(system: AnyOscillator, order: int = 1, expand_at: float | 
 
     Raises ValueError for a system that is not symmetric so, or whose gap has no steady motion, for another order, or a
     clearance that is not a number > 0. The map itself raises it for a state that is not 2 N finite numbers.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.7)
+    >>> map_of_period = vs.discontinuity_map(system)
+    >>> np.round(map_of_period(vs.grazing(system).state), 4)
+    array([ 6.8072, -0.0371,  3.196 ,  0.2112])
     """
     return DiscontinuityMap(system, order, expand_at)

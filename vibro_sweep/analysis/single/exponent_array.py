@@ -4,10 +4,18 @@ import numpy as np
 
 
 class Exponents(np.ndarray):
-    """Lyapunov exponents (4,), descending, per unit time; what is computed from them are plain arrays.
+    """Lyapunov exponents (2N,), descending, per unit time; what is computed from them are plain arrays.
 
-    error : (4,) standard errors; of a periodic orbit: what rounding and one more period change
+    error : (2N,) standard errors; of a periodic orbit: what rounding and one more period change
     residual : sum of the exponents minus its exact value; NaN where dimensions are lost
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> exponents = vs.lyapunov(system, (0, 0, 0, 0), transient=200, record=400)
+    >>> exponents.shape, exponents.error.shape, round(float(exponents[0]), 6)
+    ((4,), (4,), -0.010194)
     """
 
     error: np.ndarray

@@ -26,6 +26,7 @@ from vibro_sweep.model.refusals import not_allowed
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure
 
 CHUNK = 256  # periods computed before a look at how many impacts there were
@@ -35,7 +36,18 @@ MAX_RECORD = 10**7 * 5 // 4  # of these with all section points in memory: 400 M
 
 
 class Status(str):
-    """The name of an outcome ("ok", ...), with its `code` and a `note`; `chatters`: sequences that were summed up."""
+    """The name of an outcome ("ok", ...), with its `code` and a `note`; `chatters`: sequences that were summed up.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> orbit = vs.simulate(system.replace(R=0.1, b=1), (0, 0, 0, 0), periods=300)
+    >>> orbit.status, orbit.status.code
+    ('ok', 0)
+    >>> orbit.status.note
+    '598 chatter sequences end in a closed-form sum of impacts that are not listed'
+    """
 
     code: int
     chatters: int
@@ -63,8 +75,19 @@ class Orbit(Result):
 
     impacts : structured, fields t, side, v1 (before), x2, v2; in order. Of chatter, those computed one by one.
     sticking : structured, fields t_on, t_off, side; t_off is the end of the simulation for a rest that outlasts it.
-    section : (periods + 1, 4) states (x1, v1, x2, v2) at t = 0 mod T, NaN after a failure
+    section : (periods + 1, 2N) states (x1, v1, x2, v2, ...) at t = 0 mod T, NaN after a failure
     status : "ok", or what went wrong; `status.note` counts the chatter sequences whose end was summed up
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> orbit = vs.simulate(system, (0, 0, 0, 0), periods=200)
+    >>> orbit.section.shape, orbit.sample([1.0, 2.0]).shape
+    ((201, 4), (2, 4))
+    >>> last = orbit.impacts[-1]
+    >>> int(last["side"]), round(float(last["v1"]), 6)
+    (1, 1.633337)
     """
 
     system: AnyOscillator
@@ -106,8 +129,18 @@ class Orbit(Result):
 
         return figure_of(self, checked_count("periods", periods, 1), width)
 
+    def animate(self, periods: int = 8) -> FuncAnimation:
+        """A film of the last forcing periods: masses between stops, time history and phase portrait in step.
+
+        A notebook shows it by `HTML(orbit.animate().to_jshtml())`, and `.save("film.gif")` writes it. Raises ValueError
+        where that is not a whole number >= 1, or nothing is simulated.
+        """
+        from vibro_sweep.analysis.single.dataset import film_of
+
+        return film_of(self, checked_count("periods", periods, 1)).animation()
+
     def sample(self, times: ArrayLike) -> np.ndarray:
-        """States (x1, v1, x2, v2) at `times`, (len(times), 4). ValueError for no times, or beyond the simulated ones.
+        """States x1 v1 .. xN vN at `times`, (len(times), 2N). ValueError for no times, or beyond the simulated ones.
 
         |x1| may pass b by the rounding of an evaluation, some units in the last place.
         """
@@ -140,11 +173,19 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
 
     Parameters
     ----------
-    state : (x1, v1, x2, v2) at `start_time`
+    state : (2N,), x1 v1 .. xN vN at `start_time`
     periods : forcing periods, counted from the first section t = 0 mod T at or after `start_time`
 
     Raises TypeError where `system` is not a System; ValueError for a state that is not a state or is behind a stop, for
     fewer than 0 periods, or for a start beyond 10^9 of them. `Orbit.status` says what goes wrong later.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> orbit = vs.simulate(system, (0, 0, 0, 0), periods=200)
+    >>> orbit.status, len(orbit.impacts), orbit.section[-1].round(6)
+    ('ok', 203, array([ 2.383407, -2.120291,  1.31271 ,  0.13647 ]))
     """
     checked_system(system)
     state, periods = checked_state(state, system.masses), checked_count("periods", periods, 0, MOST_PERIODS)
@@ -210,6 +251,16 @@ def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, rec
     An array that has `.error`, the standard errors (2N,), and `.residual`, the sum minus its exact value, too.
     -inf for dimensions lost by sticking, NaN where the orbit fails. A periodic orbit (period at most record/2) gives
     its Floquet exponents. Raises ValueError as `simulate` does, and for a longer record than memory is to be taken for.
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> exponents = vs.lyapunov(system, (0, 0, 0, 0), transient=200, record=400)
+    >>> exponents.round(6)
+    array([-0.010194, -0.010194, -0.09218 , -0.09218 ])
+    >>> bool(exponents.error.max() < 1e-9), bool(abs(exponents.residual) < 1e-12)
+    (True, True)
     """
     checked_system(system)
     state, transient = checked_state(state, system.masses), checked_count("transient", transient, 0)

@@ -1,12 +1,14 @@
 """What results have in common: a table, which notebooks show; those that a file can hold also a Dataset and a file."""
 
 import html
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from vibro_sweep.model.errors import MissingPackageError
+from vibro_sweep.model.wording import itinerary_text
 
 if TYPE_CHECKING:
     import pandas
@@ -14,6 +16,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ROWS = 30  # of a table in a notebook
+FORMATS = {
+    "itinerary": lambda word: word and itinerary_text(word),
+    "error": lambda error: f"{error:.1e}" if error > 0 else "",
+    "stop": lambda side: {1: "right", -1: "left"}.get(side, ""),
+}
 
 
 class Result:
@@ -34,10 +41,29 @@ class Result:
             raise MissingPackageError("to_dataframe: needs the package pandas, which is not installed") from None
         return pandas.DataFrame(self._table())
 
+    def _picture_of(self, row: int) -> str:
+        """A small picture of what is in a row of the table, as SVG; "" where there is none."""
+        return ""
+
+    def _title(self) -> str:
+        """What stands above the table."""
+        return repr(self)
+
     def _repr_html_(self) -> str:
         rows = self.to_dataframe()
-        table = rows.to_html(border=0, max_rows=ROWS, na_rep="") if len(rows) else ""
-        return f"<pre>{html.escape(repr(self))}</pre>{table}"
+        return f"<pre>{html.escape(self._title())}</pre>{_html(rows, self._picture_of) if len(rows) else ''}"
+
+
+def _html(rows: "pandas.DataFrame", picture_of: Callable[[int], str]) -> str:
+    """A table, of many rows the first and the last ones, with a column of pictures where there are any."""
+    import pandas
+
+    places = [*range(len(rows))] if len(rows) <= ROWS else [*range(ROWS // 2), *range(len(rows) - ROWS // 2, len(rows))]
+    shown, pictures = rows.iloc[places].dropna(axis=1, how="all"), [picture_of(place) for place in places]
+    if any(pictures):
+        shown.insert(0, "orbit", pictures)
+    with pandas.option_context("display.max_colwidth", None):
+        return shown.to_html(border=0, na_rep="", escape=False, formatters=FORMATS, float_format="{:.10g}".format)
 
 
 class FileResult(Result):

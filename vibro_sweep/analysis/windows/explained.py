@@ -19,7 +19,7 @@ from vibro_sweep.analysis.periodic.one_thread import one_thread
 from vibro_sweep.analysis.windows.edges import Edges, Plane, edges_of, passing
 from vibro_sweep.analysis.windows.job import lies_on
 from vibro_sweep.analysis.windows.stretch import stable_end
-from vibro_sweep.model.bifurcations import EDGES
+from vibro_sweep.model.outcomes import EDGES
 
 SHARE = 12  # edges of a region, of which one is sent in a round
 BEYOND = 0.25  # of the way to the neighbour: so far behind it the orbit is followed

@@ -8,10 +8,10 @@ from typing import Any, Protocol
 import numpy as np
 
 from vibro_sweep.model.arguments import checked_word
-from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.model.parameters import range_of
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.state import state

@@ -20,6 +20,17 @@ class Unvisited:
     values : how many values of the sweep lie within
     at : one of them, the farthest from the window's ends at which the orbit could be computed
     orbit : the window's orbit at `at`; `orbit.status` says where it could not be computed
+
+    Examples
+    --------
+    From rest the sweep finds the motion "LR" up to b = 3.6, although "R" is stable from 3.2219 on.
+
+    >>> import numpy as np
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> windows = vs.windows(vs.sweep(system, {"b": np.linspace(3, 4.4, 8)}, transient=500, record=100))
+    >>> [(windows[one.window].itinerary, round(one.lo, 4), round(one.hi, 4)) for one in windows.unvisited]
+    [('LR', 3.8, 3.8928), ('R', 3.2219, 3.6)]
     """
 
     window: int

@@ -10,6 +10,7 @@ import numpy as np
 from vibro_sweep.analysis.branches.branch_arrays import Arrays, orbit_at, special_point
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.itinerary import word
+from vibro_sweep.analysis.periodic.orbit_portrait import portrait
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.single.result import FileResult
 from vibro_sweep.analysis.windows import window_text
@@ -27,6 +28,15 @@ class Window:
     held : the other swept numbers, of a plane
     points : how many orbits of the sweep lie in it, mirror images among them
     other_attractor : how many orbits at values within lo .. hi went to another attractor
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> window = vs.windows(vs.sweep(system, {"b": np.linspace(3, 4.4, 8)}, transient=500, record=100))[1]
+    >>> window.itinerary, window.period, round(window.lo, 6), window.lower.type
+    ('R', 1, 3.221904, 'graze')
     """
 
     parameter: str
@@ -48,6 +58,7 @@ class Window:
 
     @property
     def symmetric(self) -> bool:
+        """Whether x(t + period T/2) = -x(t)."""
         return bool(self._arrays["branch_symmetric"])
 
     @property
@@ -76,9 +87,18 @@ class Windows(FileResult, list[Window]):
 
     parameter : the number along which they were followed
     window : index of the window of each orbit of the sweep, (*sweep, starts), -1 where there is none
-    reason : codes of `model.bifurcations.REASONS`, of the same shape; 0 in a window
+    reason : codes of `model.outcomes.REASONS`, of the same shape; 0 in a window
     unvisited : stretches of windows on which the sweep shows other attractors only, each with a start for the window's
         orbit: .window (index), .lo, .hi, .values, .at, .orbit, .state
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    >>> windows = vs.windows(vs.sweep(system, {"b": np.linspace(3, 4.4, 8)}, transient=500, record=100))
+    >>> len(windows), windows.window.ravel().tolist()
+    (2, [0, 0, 0, 0, 1, 1, 1, -1])
     """
 
     parameter: str
@@ -92,10 +112,16 @@ class Windows(FileResult, list[Window]):
 
     def _table(self) -> dict[str, list]:
         held = {name: [one.held[name] for one in self] for name in (self[0].held if self else {})}
-        own = {name: [getattr(one, name) for one in self] for name in ("lo", "hi", "period", "itinerary", "symmetric")}
-        ends = {name: [getattr(one, name).type for one in self] for name in ("lower", "upper")}
-        counts = {name: [getattr(one, name) for one in self] for name in ("points", "other_attractor")}
-        return held | own | ends | counts
+        ends = {name: [getattr(one, name) for one in self] for name in ("lo", "hi")}
+        types = {name: [getattr(one, name).type for one in self] for name in ("lower", "upper")}
+        more = ("period", "itinerary", "symmetric", "points", "other_attractor")
+        return held | ends | types | {name: [getattr(one, name) for one in self] for name in more}
+
+    def _title(self) -> str:
+        return f"<{window_text.title(self)}>"
+
+    def _picture_of(self, row: int) -> str:
+        return portrait(self[row].orbit)
 
     @property
     def families(self) -> list[Family]:

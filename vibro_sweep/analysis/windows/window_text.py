@@ -3,7 +3,8 @@
 from typing import TYPE_CHECKING
 
 from vibro_sweep.analysis.branches.branch_text import event
-from vibro_sweep.analysis.periodic.orbit_text import LINES, repr_text, shortened
+from vibro_sweep.analysis.periodic.orbit_text import LINES, repr_text
+from vibro_sweep.model.wording import itinerary_text
 
 if TYPE_CHECKING:
     from vibro_sweep.analysis.windows.window import Window, Windows
@@ -20,13 +21,16 @@ def of_window(window: "Window") -> str:
     return repr_text(lines)
 
 
+def title(windows: "Windows") -> str:
+    return f"Windows in {windows.parameter}: {len(windows)}; {len(windows.unvisited)} stretches that the sweep missed"
+
+
 def of_windows(windows: "Windows") -> str:
-    head = f"<Windows in {windows.parameter}: {len(windows)}; {len(windows.unvisited)} stretches that the sweep missed"
     lines = [_window(one) for one in windows[: LINES - 2]]
     more = len(windows) - len(lines)
-    return repr_text([head, *lines, *([f"and {more:,} more"] if more else [])])
+    return repr_text([f"<{title(windows)}", *lines, *([f"and {more:,} more"] if more else [])])
 
 
 def _window(window: "Window") -> str:
     kind = ", symmetric" if window.symmetric else ""
-    return f"{window.lo:.10g} .. {window.hi:.10g}: {shortened(window.itinerary)}, period {window.period}{kind}"
+    return f"{window.lo:.10g} .. {window.hi:.10g}: {itinerary_text(window.itinerary)}, period {window.period}{kind}"

@@ -1,4 +1,4 @@
-"""Oscillators with names: one file each, found by being here. docs/models.md says how to add one."""
+"""Oscillators with names: one file each, found by being here. docs/how/models.md says how to add one."""
 
 import difflib
 import pkgutil

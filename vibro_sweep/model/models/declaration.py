@@ -52,15 +52,20 @@ class Model(NamedTuple):
         return result
 
 
+def names_of(one: Parameter, masses: int) -> list[str]:
+    """Names of the numbers of a list, counted from 1."""
+    return [f"{one.name}{i}" for i in range(1, LENGTHS[one.each](masses) + 1)]
+
+
 def entries(one: Parameter, masses: int) -> list[Parameter]:
-    """The numbers of a list, counted from 1."""
+    """The numbers of a list."""
     return [
         one._replace(
-            name=f"{one.name}{i}",
+            name=name,
             symbol=f"{one.symbol}_{{{i}}}" if "_" not in one.symbol else f"{one.symbol}{{}}_{{{i}}}",
             text=f"{one.text}, {one.each} {i}",
         )
-        for i in range(1, LENGTHS[one.each](masses) + 1)
+        for i, name in enumerate(names_of(one, masses), start=1)
     ]
 
 
@@ -69,10 +74,8 @@ def linear_of(model: Model, given: Mapping[str, Any]) -> Linear:
     masses, whole = model.masses(given), {name: value for name, value in given.items() if name != UNITS.name}
     for one in model.numbers:
         if one.each and whole.get(one.name) is not None:
-            values = [
-                whole.pop(each.name, value) for each, value in zip(entries(one, masses), whole[one.name], strict=True)
-            ]
-            whole[one.name] = values
+            names = names_of(one, masses)
+            whole[one.name] = [whole.pop(name, value) for name, value in zip(names, whole[one.name], strict=True)]
     return model.build(**whole)
 
 
