@@ -10,7 +10,7 @@ from support.windows import SYSTEM
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
-from vibro_sweep.driver.run_branches import run_branches
+from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.scene import SceneError, json_schema, parse_continuation, parse_scene
 from vibro_sweep.scene.yaml_text import read_yaml
@@ -27,7 +27,7 @@ def text(begin=LR, parameter=RANGE, more="depth: 1", numbers=NUMBERS):
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
     path = tmp_path_factory.mktemp("branches") / "lr.h5"
-    run_branches(parse_continuation(text(), "lr.yaml"), path)
+    run_continuation(parse_continuation(text(), "lr.yaml"), path)
     return path
 
 
@@ -66,12 +66,12 @@ def test_a_point_of_the_file_is_where_a_scene_goes_on(file, tmp_path):
         at = types.index("pitchfork")
         value = float(data["special_value"][at, 0])
     scene = parse_continuation(text(f"{{branches: {file}, special: {at}}}", more="depth: 0"))
-    run_branches(scene, tmp_path / "beyond.h5")
+    run_continuation(scene, tmp_path / "beyond.h5")
     with vs.open(tmp_path / "beyond.h5") as data:
         assert data["branch_symmetric"].values.tolist() == [0]  # the two mirror images are one branch
         assert float(data["b"].max()) == pytest.approx(value, abs=1e-9)
     parameter = "{omega: [0.62, 0.64]}"
-    run_branches(
+    run_continuation(
         parse_continuation(text(f"{{branches: {file}, special: {at}}}", parameter, "depth: 0")), tmp_path / "o.h5"
     )
     with vs.open(tmp_path / "o.h5") as data:
@@ -86,14 +86,14 @@ def test_it_does_not_depend_on_interruptions(file, tmp_path):
 
     scene = parse_continuation(text(), "lr.yaml")
     with pytest.raises(KeyboardInterrupt):
-        run_branches(scene, tmp_path / "lr.h5", progress=stop)
-    run_branches(scene, tmp_path / "lr.h5", mode="resume")
+        run_continuation(scene, tmp_path / "lr.h5", progress=stop)
+    run_continuation(scene, tmp_path / "lr.h5", mode="resume")
     assert numbers(tmp_path / "lr.h5") == numbers(file)
 
 
 @pytest.mark.slow
 def test_two_workers_make_the_same_file(file, tmp_path):
-    run_branches(parse_continuation(text(), "lr.yaml"), tmp_path / "lr.h5", workers=2)
+    run_continuation(parse_continuation(text(), "lr.yaml"), tmp_path / "lr.h5", workers=2)
     assert numbers(tmp_path / "lr.h5") == numbers(file)
 
 
@@ -110,7 +110,7 @@ def test_other_beginnings(begin, parameter, number, tmp_path):
     if "state" in begin:
         orbit = vs.periodic_orbit(SYSTEM.replace(b=2), itinerary="LR")
         begin = "{state: {" + ", ".join(f"{k}: {v}" for k, v in zip(("x1", "v1", "x2", "v2"), orbit.state)) + "}}"  # noqa: B905
-    run_branches(parse_continuation(text(begin, parameter, "depth: 0", numbers)), tmp_path / "x.h5")
+    run_continuation(parse_continuation(text(begin, parameter, "depth: 0", numbers)), tmp_path / "x.h5")
     with vs.open(tmp_path / "x.h5") as data:
         assert data.sizes["branch"] == number
 
@@ -183,7 +183,7 @@ def test_the_scene_that_comes_with_the_package(tmp_path):
     schema = jsonschema.Draft7Validator(json_schema())
     schema.validate(read_yaml(scene.text))
     assert not schema.is_valid(read_yaml(scene.text + "\norbit: {transient: 1, record: 1}\n"))
-    run_branches(scene, tmp_path / "symmetric.h5")
+    run_continuation(scene, tmp_path / "symmetric.h5")
     with vs.open(tmp_path / "symmetric.h5") as data:
         names = [TYPES[code].name for code in data["special_type"].values]
         found = dict(zip(names, data["special_value"].values[:, 0].tolist(), strict=True))
@@ -194,7 +194,7 @@ def test_the_scene_that_comes_with_the_package(tmp_path):
 @pytest.mark.slow
 def test_the_cascade_towards_sticking(tmp_path):
     """Impacts added one by one, at grazes that accumulate at the onset of sticking (60 impacts written out)."""
-    run_branches(vs.load_scene(ROOT / "configs" / "branches" / "sticking.yaml"), tmp_path / "sticking.h5")
+    run_continuation(vs.load_scene(ROOT / "configs" / "branches" / "sticking.yaml"), tmp_path / "sticking.h5")
     with vs.open(tmp_path / "sticking.h5") as data:
         assert data["branch_impacts"].values.tolist() == [4 + 2 * i for i in range(13)]
         assert data["branch_parent"].values.tolist() == list(range(-1, 12))

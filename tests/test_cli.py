@@ -13,6 +13,7 @@ from support.cli import NUMBERS, assert_refused, contents, scene
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
+from vibro_sweep.model.status import BEYOND_STOP, NOT_FINITE, STATUSES
 
 
 def test_from_the_shell(scene_folder):
@@ -161,11 +162,15 @@ def test_file_of_another_version_is_kept(scene_folder, capsys, monkeypatch):
 
 def test_bad_points_are_counted_by_name(scene_folder, capsys, monkeypatch):
     report = SimpleNamespace(
-        points=1003, bad=3, statuses={"ok": 1000, "chatter": 2, "lost": 1}, seconds=1.234, computed=1
+        points=1003, bad=3, statuses={"ok": 1000, "not_finite": 2, "beyond_a_stop": 1}, seconds=1.234, computed=1
     )
     monkeypatch.setattr("vibro_sweep.driver.run.run", lambda *_: report)
     assert main(["run", "good.yaml"]) == 1
-    assert capsys.readouterr().out == "good.h5: 1,003 points in 1.2 s, 3 with a bad status (chatter 2, lost 1)\n"
+    assert capsys.readouterr().out.splitlines() == [
+        "good.h5: 1,003 points in 1.2 s, 3 with a bad status (not_finite 2, beyond_a_stop 1)",
+        f"not_finite: {STATUSES[NOT_FINITE].advice}",
+        f"beyond_a_stop: {STATUSES[BEYOND_STOP].advice}",
+    ]
     assert main(["run", "good.yaml", "--quiet"]) == 1
 
 

@@ -149,14 +149,19 @@ def test_a_quantity_without_its_own_dimension(kinds, tmp_path, monkeypatch):
 LAST = "the key of the last piece"
 BYTE = [["a", "|u1", [1]]]
 ODD = {
-    "no piece": ({"note": "x"}, b""),
-    "a key that is not a text": ({"piece": [1], "arrays": []}, b""),
-    "no arrays": ({"piece": "0:0"}, b""),
-    "too short": ({"piece": "0:0", "arrays": [["a", "<f8", [1000]]]}, b"12345678"),
-    "too long": ({"piece": "0:0", "arrays": [["a", "<f8", [1]]]}, b"1234567812345678"),
-    "no type of numbers": ({"piece": "0:1", "arrays": [["a", "nonsense", [1]]]}, b"12345678"),
-    "objects": ({"piece": "0:1", "arrays": [["a", "O", [1]]]}, b"12345678"),
-    "other names": ({"piece": LAST, "arrays": BYTE}, b"1"),
+    "no piece": ({"key": {"note": "x"}, "arrays": []}, b""),
+    "no key": ({"note": "x"}, b""),
+    "a key that is not a text": ({"key": [1], "arrays": []}, b""),
+    "no arrays": ({"key": "0:0"}, b""),
+    "arrays of one word": ({"key": "0:0", "arrays": [["a"], 3]}, b""),
+    "too short": ({"key": "0:0", "arrays": [["a", "<f8", [1000]]]}, b"12345678"),
+    "too long": ({"key": "0:0", "arrays": [["a", "<f8", [1]]]}, b"1234567812345678"),
+    "negative lengths": ({"key": "0:0", "arrays": [["a", "<f8", [-1, -1]]]}, b"12345678"),
+    "endless lengths": ({"key": "0:0", "arrays": [["a", "<f8", [1e999]]]}, b"12345678"),
+    "an empty array too long": ({"key": "0:0", "arrays": [["a", "<f8", [0, 10**30]]]}, b""),
+    "no type of numbers": ({"key": "0:1", "arrays": [["a", "nonsense", [1]]]}, b"12345678"),
+    "objects": ({"key": "0:1", "arrays": [["a", "O", [1]]]}, b"12345678"),
+    "other names": ({"key": LAST, "arrays": BYTE}, b"1"),
 }
 
 
@@ -194,7 +199,7 @@ def test_a_part_with_records_of_somebody_else(kinds, tmp_path, monkeypatch):
     words, part = KINDS["windows"].command("windows"), Path("windows.h5.part")
     key = begun(words, monkeypatch)
     edited_part(
-        part, [({**text, "piece": key} if text.get("piece") == LAST else text, data) for text, data in ODD.values()]
+        part, [({**text, "key": key} if text.get("key") == LAST else text, data) for text, data in ODD.values()]
     )
     assert damage.said(["info", str(part)]).outcome == damage.REFUSED
     assert main([*words, "--resume"]) == 0

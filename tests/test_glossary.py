@@ -1,4 +1,4 @@
-"""docs/glossary.md: every key, option, argument and variable is in it, once, and nothing that does not exist."""
+"""docs/reference/glossary.md: every key, option, argument and variable is in it, once, and nothing else."""
 
 import inspect
 import re
@@ -15,7 +15,7 @@ from vibro_sweep.model.curve_columns import OF_EDGES
 from vibro_sweep.model.observables import VARIABLES
 from vibro_sweep.scene import json_schema
 
-TEXT = (ROOT / "docs" / "glossary.md").read_text()
+TEXT = (ROOT / "docs" / "reference" / "glossary.md").read_text()
 OF_NUMPY = {"Exponents", "Status"}  # an array and a text, with the methods of these
 
 

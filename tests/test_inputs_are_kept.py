@@ -9,7 +9,7 @@ import pytest
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
-from vibro_sweep.driver.run_branches import run_branches
+from vibro_sweep.driver.run_continuation import run_continuation
 from vibro_sweep.driver.windows import run_windows
 
 SYSTEM = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8}\n"
@@ -35,7 +35,7 @@ def made(tmp_path_factory):
         Path("s.yaml").write_text(SWEEP)
         Path("br.yaml").write_text(FROM_SWEEP)
         vs.run(vs.load_scene("s.yaml"), "s.h5")
-        run_branches(vs.load_scene("br.yaml"), "br.h5")
+        run_continuation(vs.load_scene("br.yaml"), "br.h5")
         run_windows("s.h5", "w.h5")
     finally:
         os.chdir(before)
@@ -94,7 +94,7 @@ def test_python_leaves_its_inputs_alone(folder):
                 vs.run(one, output, mode="overwrite")
     for call in (
         lambda: vs.run(scene, "new/"),
-        lambda: run_branches(branches, "new/"),
+        lambda: run_continuation(branches, "new/"),
         lambda: run_windows("s.h5", "new/"),
     ):
         with pytest.raises(
@@ -102,7 +102,7 @@ def test_python_leaves_its_inputs_alone(folder):
         ):
             call()
     with pytest.raises(vs.StoreError, match=r"this run reads s\.h5"):
-        run_branches(branches, "hard.h5", mode="overwrite")
+        run_continuation(branches, "hard.h5", mode="overwrite")
     with pytest.raises(vs.StoreError, match=r"this run reads s\.h5"):
         run_windows("s.h5", "hard.h5", mode="overwrite")
     assert contents(folder) == before

@@ -238,7 +238,7 @@ def test_the_mass_at_the_stops_is_the_one_that_stays_between_them(stop_at):
 
 
 def test_docs_show_every_model():
-    page = (ROOT / "docs" / "models.md").read_text()
+    page = (ROOT / "docs" / "how" / "models.md").read_text()
     for name, model in MODELS.items():
         assert f"## `{name}`" in page and model_text(model) in page
 

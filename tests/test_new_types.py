@@ -1,4 +1,4 @@
-"""How many edits a new type of bifurcation takes: made in a copy of the package, as docs/architecture.md says."""
+"""How many edits a new type of bifurcation takes: made in a copy of the package (docs/development/architecture.md)."""
 
 import json
 import os

@@ -10,7 +10,6 @@ import pytest
 
 from vibro_sweep.store import appending, heap, names, parts
 from vibro_sweep.store.appending import ChangedError
-from vibro_sweep.store.done import Done
 from vibro_sweep.store.parts import PartError, Scan
 
 SKELETON = b"skeleton " * 20
@@ -27,13 +26,18 @@ def begun(path):
     return part
 
 
+def of(raw):
+    """The arrays of a record."""
+    return {"a": np.frombuffer(raw, np.uint8)}
+
+
 def written(path, count=6):
     """A part with some blocks, its bytes, and where each block ends."""
     rng, blocks, ends = np.random.default_rng(1), [], []
     part = begun(path)
     for k in range(count):
-        blocks.append(({"box": [[k, k + 1]]}, rng.bytes(int(rng.integers(0, 60)))))
-        part.append(blocks[-1][0], [memoryview(blocks[-1][1])])
+        blocks.append(([[k, k + 1]], rng.bytes(int(rng.integers(0, 60)))))
+        part.append(blocks[-1][0], of(blocks[-1][1]))
         ends.append(path.stat().st_size)
     part.close()
     return blocks, path.read_bytes(), ends
@@ -45,7 +49,7 @@ def read(content):
     head = parts.read_head(file)
     parts.copy_skeleton(file, head, io.BytesIO())
     scan = Scan(FileLike(content), head)
-    found = [(record.text, content[record.at : record.at + record.length]) for record in scan]
+    found = [(record.key, content[record.at : record.at + record.layout[0][2][0]]) for record in scan]
     return found, scan.damaged
 
 
@@ -68,9 +72,9 @@ def test_killed_while_a_block_is_written(path):
     path.write_bytes(content[:-1])
     part = appending.lock(path)
     part.go_on(parts.read_head(part.file), ends[-2])
-    part.append({"box": [[9, 10]]}, [memoryview(b"more")])
+    part.append([[9, 10]], of(b"more"))
     part.close()
-    assert read(path.read_bytes()) == ([*blocks[:-1], ({"box": [[9, 10]]}, b"more")], 0)
+    assert read(path.read_bytes()) == ([*blocks[:-1], ([[9, 10]], b"more")], 0)
 
 
 def test_every_flipped_bit_is_found(path):
@@ -106,18 +110,18 @@ def test_without_locks_the_first_finds_out(path, monkeypatch):
     monkeypatch.setattr(appending.portalocker, "lock", unsupported)
     first, second = begun(path), appending.lock(path)
     second.go_on(parts.read_head(second.file), path.stat().st_size)
-    second.append({"box": [[0, 1]]}, [memoryview(b"kept")])
+    second.append([[0, 1]], of(b"kept"))
     with pytest.raises(ChangedError):
-        first.append({"box": [[0, 1]]}, [memoryview(b"lost")])
+        first.append([[0, 1]], of(b"lost"))
     first.close()
-    second.append({"box": [[1, 2]]}, [memoryview(b" too")])
+    second.append([[1, 2]], of(b" too"))
     second.close()
     assert [data for _, data in read(path.read_bytes())[0]] == [b"kept", b" too"]
 
 
 def test_a_full_disk_leaves_whole_blocks(path, monkeypatch):
     part = begun(path)
-    part.append({}, [memoryview(b"kept")])
+    part.append([], of(b"kept"))
     before = path.read_bytes()
 
     class Full(io.FileIO):
@@ -132,7 +136,7 @@ def test_a_full_disk_leaves_whole_blocks(path, monkeypatch):
     part.file.close()
     part.file = Full(path, "r+")
     with pytest.raises(OSError, match="No space"):
-        part.append({}, [memoryview(bytes(100))])
+        part.append([], of(bytes(100)))
     assert path.read_bytes() == before
     part.close()
 
@@ -146,27 +150,7 @@ def test_a_hole_is_not_searched(path):
         file.truncate(2**40)
     with parts.open_regular(path) as file:
         scan = Scan(file, parts.read_head(file))
-        assert [record.text for record in scan] == [text for text, _ in blocks] and scan.damaged == 1
-
-
-# Intervals of what is done
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_done_against_an_array(seed):
-    rng = np.random.default_rng(seed)
-    shape = tuple(rng.integers(1, 6, rng.integers(0, 4)).tolist())
-    order = tuple(rng.permutation(len(shape)).tolist())
-    done, model = Done(shape, order), np.zeros(shape, bool)
-    for _ in range(30):
-        axes = rng.integers(0, len(shape) + 1)
-        box = tuple(slice(*sorted(rng.choice(extent + 1, 2, replace=False).tolist())) for extent in shape[:axes])
-        assert done.holds(box) == bool(np.all(model[box]))
-        if rng.random() < 0.5:
-            done.add(box)
-            model[box] = True
-        assert done.count() == model.sum()
-    assert len(done._starts) == len(done._ends) <= max(1, model.size)
+        assert [record.key for record in scan] == [key for key, _ in blocks] and scan.damaged == 1
 
 
 # Names

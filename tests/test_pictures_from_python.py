@@ -35,7 +35,7 @@ def test_picture_of_a_part_of_a_dataset():
     orders = dict(trajectory={"periods": 2, "samples": 50}, observe=["section", "lyapunov"])
     data = vs.sweep(SYSTEM, {"b": [6.5, 6.6, 6.7]}, **orders, **SHORT)
     one = data.sel(b=6.6)
-    assert plotting.kinds(one) == ["phase-portrait", "configuration", "history", "iteration", "poincare"]
+    assert plotting.kinds(one) == ["phase-portrait", "configuration", "history", "film", "iteration", "poincare"]
     assert "b = 6.6" in vs.plot(one, "history").get_suptitle()
     assert len(vs.plot(data.isel(b=slice(1, 3)), "history").axes) == 2
     (ax,) = vs.plot(data, "history", at={"b": 6.61}).axes

@@ -202,7 +202,7 @@ def test_the_scene_names_its_picture(tmp_path, kind):
     assert parse_scene(scene.to_yaml()).picture == kind and scene.replace(picture=None).picture is None
     vs.run(scene, tmp_path / "a.h5")
     assert plotting.kinds(tmp_path / "a.h5")[0] == kind
-    assert len(plotting.kinds(tmp_path / "a.h5")) == 5
+    assert len(plotting.kinds(tmp_path / "a.h5")) == 6
 
 
 def test_a_picture_that_the_file_has_no_data_for(tmp_path):

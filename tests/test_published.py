@@ -133,3 +133,43 @@ def test_a_ball_in_the_cavity_of_a_heavy_host():
     alone = vs.periodic_orbit(shaken, itinerary="LR", periods=1, guess=guess)
     np.testing.assert_allclose(ours.impacts["t"], alone.impacts["t"], rtol=0, atol=1e-6)
     np.testing.assert_allclose(ours.impacts["v1"], alone.impacts["v1"], rtol=1e-6)
+
+
+@pytest.mark.parametrize(("omega", "R", "n"), [(2.8, 0.8, 1), (2.6, 0.7, 1), (1.8, 0.8, 1), (4.3, 0.8, 2)])
+def test_one_impact_without_damping(omega, R, n):
+    """x'' + x = cos(omega t), x < sigma: the end of the ellipse of speeds over sigma, and the speed where the period
+    doubles, by the closed forms of docs/papers/single_impact_orbits.md."""
+    P, gamma = 2 * math.pi * n / omega, 1 / (1 - omega**2)
+    c, r = math.sin(P) * (1 + R) / (1 - math.cos(P)), (1 - R) / omega
+    d = 4 * R * math.cos(P) - 2 * (1 + R**2) + (omega**2 - 1) * c**2 * (1 - math.cos(P))
+    steep = ((1 + R) * omega * math.sin(P)) ** 2 * (omega**2 * (c**2 + r**2) - 2 * d / (1 - math.cos(P)))
+    doubling = abs(2 * (1 + R) * math.sin(P) * omega**2 * gamma) / math.sqrt(d**2 + steep)
+    system = vs.Oscillator.named("one_mass", zeta=0, F=1, omega=omega, R=R, b=0.0, stops="right", tau=math.pi / 2)
+    branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R", periods=n), "b", (-5, 5))
+    (fold,) = specials(branch, "fold")
+    assert abs(fold.parameters["b"]) == pytest.approx(abs(gamma) * math.hypot(1, c / r), rel=1e-12)
+    for flip in specials(branch, "flip"):
+        assert flip.orbit.impacts["v1"][0] == pytest.approx(doubling, rel=1e-11)
+    assert len(specials(branch, "flip")) == (omega != 1.8)
+
+
+def test_amplitudes_of_a_textbook():
+    """docs/papers/nonlinear_dynamics_and_chaos.md: 60 Hz, R = 0.5; the second doubling at 0.0115 cm."""
+    ball = vs.Oscillator.named(
+        "one_mass", k=0, zeta=0, constant=-1, base=True, F=1.2, omega=1, R=0.5, b=0, tau=0, stops="left"
+    )
+    (first,) = specials(vs.continue_orbit(vs.periodic_orbit(ball, itinerary="L"), "F", (1.0, 2.2)), "flip")
+    _, second = specials(vs.continue_orbit(vs.switch(first)[0], "F", (1.0, 2.2)), "flip")
+    centimetres = 981 / (2 * math.pi * 60) ** 2
+    assert first.parameters["F"] == pytest.approx(math.hypot(math.pi / 3, 2.5 / 2.25), rel=1e-13)
+    assert round(second.parameters["F"] * centimetres, 4) == 0.0115
+
+
+def test_an_orbit_of_recipes_for_continuation():
+    """docs/papers/recipes_for_continuation.md: k = 1, c = 0.1, A = 1, w = 1, d = 1, e = 0.8."""
+    system = vs.Oscillator.named("one_mass", k=1, zeta=0.05, F=1, omega=1, R=0.8, b=1, stops="right", tau=math.pi / 2)
+    orbit = vs.periodic_orbit(system, itinerary="R")
+    (hit,) = orbit.impacts
+    assert round(hit["t"], 3) == 0.076 and round(-0.8 * hit["v1"], 2) == -1.36
+    (graze,) = specials(vs.continue_orbit(orbit, "F", (0.01, 1.0001)), "graze")
+    assert graze.parameters["F"] == pytest.approx(0.1, rel=1e-12)

@@ -15,7 +15,7 @@ from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.analysis.windows.rows import REASON_CODES
 from vibro_sweep.analysis.windows.window_search import WindowSearch
 from vibro_sweep.driver.windows import rows_in
-from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.outcomes import REASONS
 
 # an impact damper, of which an asymmetric orbit is born at the upper end of a window, where a symmetric one loses its
 # symmetry; and one whose window ends at the symmetric orbit's own pitchfork

@@ -12,23 +12,20 @@ import pytest
 from support import ROOT
 
 PAGES = {
-    path.name: [
+    str(path.relative_to(ROOT)): [
         (language, textwrap.dedent(text))
-        for language, text in re.findall(r"^ *```(sh|python)\n(.*?)^ *```$", path.read_text(), re.MULTILINE | re.DOTALL)
+        for language, text in re.findall(
+            r"(?<!-->\n)^ *```(sh|python)\n(.*?)^ *```$", path.read_text(), re.MULTILINE | re.DOTALL
+        )
     ]
     for path in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 }
 SLOW = (
     "README.md",
-    "cluster.md",
-    "gallery.md",
-    "physical_units.md",
-    "periodic_orbits.md",
-    "architecture.md",
-    "windows.md",
-    "curves.md",
+    "docs/how/cluster.md",
+    "docs/development/architecture.md",
 )
-NETWORK = "ip link set lo up\nip addr add dev lo 10.0.0.1\n"  # the address of docs/cluster.md
+NETWORK = "ip link set lo up\nip addr add dev lo 10.0.0.1\n"  # the address of docs/how/cluster.md
 
 # What these pages take from other packages, where these are not installed; workers of this machine in their place.
 STAND_INS = {
@@ -78,6 +75,7 @@ def marked(name):
 def test_page_twice(tmp_path, name):
     for folder in ("configs", "docs"):
         shutil.copytree(ROOT / folder, tmp_path / folder)
+    shutil.copy(ROOT / "CITATION.cff", tmp_path)
     for file, text in STAND_INS.items():
         place = tmp_path / "stand_ins" / file
         place.parent.mkdir(parents=True, exist_ok=True)
@@ -114,11 +112,28 @@ def assert_as_said(text, printed):
         assert re.search(rf"(?<![\d.]){re.escape(number)}", printed), (number, printed)
 
 
-def test_what_is_found():
-    """README has its two commands for setting up, and no fence of another language hides a snippet from these tests."""
+def test_setting_up_is_two_commands():
     install, test = PAGES["README.md"][0][1].splitlines()
     assert install.startswith("pip install . && vibro-sweep run configs/quickstart.yaml --plot")
     assert test.startswith("pip install '.[test]' && pytest")
-    for path in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]:
-        opened = re.findall(r"^ *```(\S+)", path.read_text(), re.MULTILINE)
-        assert sum(language not in ("diff", "text") for language in opened) == len(PAGES[path.name]), path
+
+
+SHOWN = ("diff", "text", "yaml", "toml", "bibtex")  # nothing of these could be executed
+NOT_RUN = "<!-- not run: "  # above a block, with the reason
+
+
+@pytest.mark.parametrize("path", [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")], ids=lambda path: path.name)
+def test_every_block_is_executed(path):
+    """Here (sh, python), by the build of the site (code-cell), or it says why not."""
+    lines = path.read_text().splitlines()
+    fences = [(place, line.strip()) for place, line in enumerate(lines) if re.match(r" *(```+|~~~+|:::+)", line)]
+    opened = [(place, re.match(r"[`~:]+ *(.+)", line).group(1)) for place, line in fences if line.strip("`~: ")]
+    plain = [place for place, language in opened if language in ("sh", "python")]
+    for place, language in opened:
+        directive = re.match(r"\{([\w:-]+)\}", language)
+        shows_code = directive and directive.group(1) in ("code", "code-block", "sourcecode")
+        executed = place in plain or (directive and not shows_code) or language in SHOWN
+        marked = place and lines[place - 1].strip().startswith(NOT_RUN)
+        assert executed or marked, f"{path}:{place + 1}: {language}"
+    name = str(path.relative_to(ROOT))
+    assert len(plain) - sum(lines[place - 1].strip().startswith(NOT_RUN) for place in plain) == len(PAGES[name])

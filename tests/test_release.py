@@ -43,7 +43,9 @@ def test_links_of_contributing_lead_somewhere():
     text = (ROOT / "CONTRIBUTING.md").read_text()
     for target in re.findall(r"\]\(([^)#]+)", text):
         assert (ROOT / target).exists(), target
-    headings = [line.lstrip("# ").lower().replace(" ", "-") for line in (ROOT / "docs/architecture.md").open()]
+    headings = [
+        line.lstrip("# ").lower().replace(" ", "-") for line in (ROOT / "docs/development/architecture.md").open()
+    ]
     for anchor in re.findall(r"architecture\.md#([\w-]+)", text):
         assert f"{anchor}\n" in headings, anchor
     for path in re.findall(r"`((?:vibro_sweep|model|engine|analysis|plotting|tests|benchmarks)/[\w/.]*)`", text):

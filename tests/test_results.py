@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import sys
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.branch import not_followed
+from vibro_sweep.analysis.periodic.orbit_portrait import portrait
 
 SYSTEM = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4.0)
 BALL = vs.Oscillator.named("one_mass", k=0, zeta=0.0, F=1.0, omega=1.0, R=0.5, b=0.0, constant=-0.5, stops="left")
@@ -32,6 +34,8 @@ def check_html(result):
     """It says what `repr` says, and has a row for each line of the table."""
     text, rows = result._repr_html_(), result.to_dataframe()
     assert text.startswith("<pre>&lt;") and text.count("<tr") == (len(rows) + 1 if len(rows) else 0)
+    of_rows = [one.orbit for one in getattr(result, "special", result if isinstance(result, list) else [])]
+    assert text.count("<svg") == sum(one.period > 0 for one in of_rows)
 
 
 @pytest.fixture(scope="module")
@@ -178,6 +182,32 @@ def test_a_number_that_breaks_the_symmetry(tmp_path):
     assert again.points.identical(branch.points)
     with vs.open(tmp_path / "s.h5") as data:
         assert data.branch_sections.values.tolist() == [1]
+
+
+def test_options_that_the_picture_of_an_orbit_does_not_have_are_refused(orbit, tmp_path):
+    for option in ({"kind": "history"}, {"output": tmp_path / "o.png"}, {"xlim": (0, 1)}, {"relative": True}):
+        with pytest.raises(vs.PlotError, match=f"^{next(iter(option))}: of an orbit `width` is the only option"):
+            vs.plot(orbit, **option)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("word, stops", [("R", 1), ("LR", 2)])
+def test_a_small_portrait_is_the_orbit(word, stops):
+    """It reaches its stops, never passes them, and jumps there by (1 + R) times the speed."""
+    orbit = vs.periodic_orbit(SYSTEM, itinerary=word)
+    walls, path = re.findall(r'<path d="(.*?)"', portrait(orbit))
+    walls = [int(place) for place in re.findall(r"M(\d+) 0v160", walls)]
+    start, steps = path.removeprefix("M").split("l")
+    x, y = np.cumsum(
+        [[int(one) for one in pair.split()] for pair in [start, *re.findall(r"-?\d+ -?\d+", steps)]], axis=0
+    ).T
+    assert len(walls) == 2 and walls[0] == 8 and walls[1] == x.max() == 240 - 8
+    assert (x.min() == walls[0]) == (stops == 2) and (x[0], y[0]) == (x[-1], y[-1])
+    v = orbit.sample(np.linspace(0, orbit.period * SYSTEM.period, 5000))[:, 1]
+    pixel = (160 - 2 * 8) / np.ptp(np.append(v, orbit.impacts["v1"]))
+    jumps = np.diff(y)[(np.diff(x) == 0) & (x[1:] == walls[1])]
+    assert np.abs(jumps).max() == pytest.approx((1 + SYSTEM.R) * np.abs(orbit.impacts["v1"]).max() * pixel, abs=2)
+    assert portrait(vs.periodic_orbit(SYSTEM.replace(b=50.0), itinerary="R")) == ""
 
 
 def test_an_orbit_without_impacts_is_drawn():

@@ -7,19 +7,25 @@ import io
 import h5py
 import numpy as np
 import pytest
+import typer
 from support import ROOT
 
 import vibro_sweep as vs
 from vibro_sweep.cli import reference
+from vibro_sweep.cli.commands import app
+from vibro_sweep.cli.reference_pages.status_page import MESSAGES
 from vibro_sweep.driver.blocks import plan_of
 from vibro_sweep.engine.records import POINT, new_results, result_of
 from vibro_sweep.engine.simd.jit import ENGINE, SHARED
+from vibro_sweep.model.bifurcations import TYPES
 from vibro_sweep.model.catalogue import AXES
 from vibro_sweep.model.dimensions import DIMENSIONS
 from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.observables import VARIABLES, WORDS, asked_for
+from vibro_sweep.model.outcomes import BRANCHES, EDGES, ORBITS, POINTS, REASONS
 from vibro_sweep.model.parameters import BY_NAME, NAMES
 from vibro_sweep.model.state import state
+from vibro_sweep.model.status import STATUSES
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.model.units import unit_in
 from vibro_sweep.model.wording import sentence
@@ -88,14 +94,36 @@ class TestWhatFollows:
                 assert (result_of(2)[one.name].base, result_of(2)[one.name].shape) == (np.dtype(one.dtype), own)
                 np.testing.assert_array_equal(empty[one.name], np.full(own, one.fill))
 
-    def test_the_reference_page_is_up_to_date(self):
-        text = (ROOT / "docs" / "reference.md").read_text()
-        assert text == reference.page(), "python -m vibro_sweep.cli.reference > docs/reference.md"
+    @pytest.mark.parametrize("name, text", reference.pages(ROOT).items())
+    def test_a_reference_page_is_up_to_date(self, name, text):
+        assert (ROOT / "docs" / "reference" / name).read_text() == text, (
+            "python -m vibro_sweep.cli.reference docs/reference"
+        )
 
-    def test_the_reference_page_has_everything(self):
-        page = reference.page()
+    def test_the_reference_pages_have_everything(self):
+        text = "".join(reference.pages(ROOT).values())
         for name in (*NAMES, *DIMENSIONS, *WORDS, *(one.name for one in VARIABLES)):
-            assert f"`{name}`" in page, name
+            assert f"`{name}`" in text, name
+
+    def test_each_outcome_that_is_not_good_says_what_to_do(self):
+        good = {"ok", "in_a_window", "chaos", "curve", "closed"}
+        found = {one.name: one for one in (*STATUSES.values(), *TYPES)} | ORBITS | BRANCHES | POINTS | REASONS | EDGES
+        assert {name for name, one in found.items() if not one.advice} == good
+        text = (ROOT / "docs" / "reference" / "statuses.md").read_text()
+        assert all(f"**`{name}`" in text for name in found)
+
+    def test_common_messages_are_those_of_the_program(self):
+        sources = "".join(
+            path.read_text() for path in (ROOT / "vibro_sweep").rglob("*.py") if path.name != "status_page.py"
+        )
+        assert [part for part in MESSAGES if part not in sources] == []
+
+    def test_each_command_and_option_is_in_the_reference(self):
+        text = reference.pages(ROOT)["commands.md"]
+        for name, command in typer.main.get_command(app).commands.items():
+            section = text.partition(f"## `vibro-sweep {name}`\n")[2].partition("\n## ")[0]
+            assert all(option in section for one in command.params for option in one.opts if option.startswith("-"))
+            assert command.help.splitlines()[0] in section
 
     def test_kernels_compile_in_only_what_names_their_cache(self):
         """An edit to any other module of the model leaves the compiled kernels as they are."""

@@ -4,6 +4,7 @@ import functools
 import inspect
 import typing
 
+import matplotlib.animation
 import matplotlib.axes
 import matplotlib.figure
 import numpy as np
@@ -13,6 +14,7 @@ import xarray
 import vibro_sweep as vs
 
 KNOWN = {"pandas": pandas, "xarray": xarray, "np": np, "Axes": matplotlib.axes.Axes, "Figure": matplotlib.figure.Figure}
+KNOWN["FuncAnimation"] = matplotlib.animation.FuncAnimation
 DESCRIBED = {"Model", "Option", "Parameter", "Range"}  # how models describe themselves: nothing that functions take
 
 

@@ -74,6 +74,23 @@ def test_a_run_that_is_interrupted_goes_on(few, file, tmp_path):  # noqa: F811
     assert not (tmp_path / "w.h5.part").exists()
 
 
+def test_interrupted_when_the_file_has_its_name(few, file, tmp_path, monkeypatch):  # noqa: F811
+    """And its part is still there: nothing is followed again."""
+
+    def stop(_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("vibro_sweep.store.appending.LockedPart.remove", stop)
+        with pytest.raises(KeyboardInterrupt):
+            run_windows(few, tmp_path / "w.h5")
+    made = (tmp_path / "w.h5").read_bytes()
+    assert (tmp_path / "w.h5.part").exists()
+    assert run_windows(few, tmp_path / "w.h5", mode="resume") is None
+    assert [path.name for path in tmp_path.iterdir()] == ["w.h5"] and (tmp_path / "w.h5").read_bytes() == made
+    assert numbers(tmp_path / "w.h5") == numbers(file)
+
+
 @pytest.mark.slow
 def test_two_workers_make_the_same_file(few, file, tmp_path):  # noqa: F811
     run_windows(few, tmp_path / "w.h5", workers=2)

@@ -10,7 +10,7 @@ import vibro_sweep as vs
 from vibro_sweep import store
 from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.driver.windows import rows_in
-from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.model.window_families import families
 
 

@@ -12,9 +12,9 @@ from support.oscillators import PAPER
 
 import vibro_sweep as vs
 from vibro_sweep.model import frame
-from vibro_sweep.model.bifurcations import REASONS
 from vibro_sweep.model.contact import contact_coordinates, natural_coordinates
 from vibro_sweep.model.exponents import CERTAIN, sign_of
+from vibro_sweep.model.outcomes import REASONS
 
 BEYOND = (2.0, 5.0)  # errors
 

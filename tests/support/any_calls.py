@@ -148,6 +148,7 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
         ),
         "Orbit.sample": Call(simulated.sample, times),
         "Orbit.plot": Call(simulated.plot, each("periods", 1, 4.0) | width),
+        "Orbit.animate": Call(simulated.animate, each("periods", 1, 4.0)),
         "Orbit.to_xarray": Call(simulated.to_xarray, {}),
         "lyapunov": Call(vs.lyapunov, system | state | each("transient", 1, 2.0) | each("record", 2, np.int8(3))),
         "discontinuity_map": Call(

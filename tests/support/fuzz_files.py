@@ -92,6 +92,11 @@ def records(*made: tuple[dict, int]) -> Change:
     return result
 
 
+def block(key, length: int) -> tuple[dict, int]:
+    """A record with a key and an array of bytes."""
+    return {"key": key, "arrays": [["x1", "|u1", [length]]]}, length
+
+
 def grown(path: Path, rng: np.random.Generator) -> None:
     os.truncate(path, 2**40)
 
@@ -135,11 +140,20 @@ HOSTILE = {
 }
 HOSTILE_PARTS = {
     "a terabyte long": grown,
-    "a box that is none": records(({"box": 3}, 0), ({"box": [[0, 1], [0, 1]]}, 0), ({"box": [["a", None]]}, 0)),
-    "a box outside": records(({"box": [[11, 13]]}, 100), ({"box": [[-1, 1]]}, 100), ({"box": [[10**30, 10**31]]}, 0)),
-    "a box too small": records(({"box": [[3, 3]]}, 0), ({"box": [[5, 4]]}, 10)),
-    "data of another length": records(({"box": [[0, 1]]}, 7), ({"box": [[0, 12]]}, 10**6)),
-    "texts of anything": records(({"note": 3}, 0), ({}, 9), ({"note": "a" * 10**5}, 0), ({"x": [[[[1]]]]}, 0)),
+    "a box that is none": records(block(3, 0), block([[0, 1], [0, 1]], 0), block([["a", None]], 0)),
+    "a box outside": records(block([[11, 13]], 100), block([[-1, 1]], 100), block([[10**30, 10**31]], 0)),
+    "a box too small": records(block([[3, 3]], 0), block([[5, 4]], 10)),
+    "data of another length": records(block([[0, 1]], 7), block([[0, 12]], 10**6)),
+    "arrays of nonsense": records(
+        ({"key": [[0, 1]]}, 0),
+        ({"key": [[0, 1]], "arrays": [["x1", "O", [1]]]}, 8),
+        ({"key": [[0, 1]], "arrays": [["x1", "<f8", [1e999]]]}, 8),
+        ({"key": [[0, 1]], "arrays": [["x1", "<f8", [-1, -1]]]}, 8),
+        ({"key": [[0, 1]], "arrays": {"x1": 3}}, 8),
+    ),
+    "texts of anything": records(
+        block({"note": 3}, 0), ({}, 9), block({"note": "a" * 10**5}, 0), ({"x": [[[[1]]]]}, 0)
+    ),
     **{f"edit: {name}": edited(EDITS[name]) for name in list(EDITS)[:9]},
     **{f"{how}: x1": edited(lambda file, b=how: elsewhere(file, "x1", b)) for how in LINKS},
 }

@@ -21,7 +21,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.windows.job import Job, lies_on, window_of
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.driver.windows import rows_in
-from vibro_sweep.model.bifurcations import REASONS
+from vibro_sweep.model.outcomes import REASONS
 
 NEAR_ENDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # shares of a window from its ends
 CLOSE = 1e-9  # of the range: ends of one window differ by less
