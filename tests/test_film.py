@@ -53,6 +53,13 @@ def test_files(data, tmp_path, few, suffix):
         vs.plot(data, output=place)
 
 
+def test_width_and_resolution_are_those_asked_for(data, tmp_path, few):
+    place = tmp_path / "narrow.gif"
+    vs.plot(data, "film", at={"b": 4.0}, width=101.6, dpi=60, output=place)
+    with Image.open(place) as moving:
+        assert moving.size[0] == 240
+
+
 def test_from_the_command_line(tmp_path, few, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     vs.sweep(SYSTEM, {"b": [4.0]}, transient=50, record=10, trajectory={"periods": 1, "samples": 60}, output="one.h5")

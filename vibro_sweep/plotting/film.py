@@ -5,21 +5,23 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
-from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from vibro_sweep.plotting.orbit_pictures import displacements
+from vibro_sweep.plotting.page import Picture, page
 from vibro_sweep.plotting.paths import path
 from vibro_sweep.plotting.style import DASHES, FAINT, INK, SECTION, symbol
 from vibro_sweep.plotting.sweep_result import PlotError, Result
 
 SUFFIXES = (".gif", ".mp4")
 FRAMES, RATE = 200, 20  # ten seconds
-DPI = 80
+HEIGHT = 3.8  # inches
 
 
-class Film(Figure):
+class Film(Picture):
     """A figure that moves; `show(i)` draws one of its FRAMES."""
+
+    resolution: float = 80  # pixels an inch of a file
 
     def show(self, i: int) -> None:
         raise NotImplementedError
@@ -37,12 +39,12 @@ class Film(Figure):
         writer = PillowWriter(RATE) if suffix == ".gif" else FFMpegWriter(RATE)
         with tempfile.TemporaryDirectory() as folder:
             place = Path(folder) / f"film{suffix}"
-            self.animation().save(place, writer, dpi=DPI)
+            self.animation().save(place, writer, dpi=self.resolution)
             return place.read_bytes()
 
 
 class _OfAnOrbit(Film):
-    def begin(self, t, positions: dict[str, np.ndarray], gap: tuple, stops, title: str, unit: str) -> "_OfAnOrbit":
+    def begin(self, t, positions: dict[str, np.ndarray], gap: tuple, stops, unit: str) -> "_OfAnOrbit":
         """t : (n,) in forcing periods; positions : of each mass (n,); gap : its name, values and rates (n,)"""
         self.times, self.positions, self.gap = t, positions, gap
         grid = self.add_gridspec(2, 2, height_ratios=(1, 2), width_ratios=(3, 2))
@@ -55,7 +57,6 @@ class _OfAnOrbit(Film):
             right.axvline(stop, color=INK, lw=0.8, ls=DASHES)
         left.set(xlabel="$t / T$ (forcing periods)", ylabel=symbol(name) + unit, xlim=(t[0], t[-1]))
         right.set(xlabel=symbol(name) + unit)
-        self.suptitle(title)
         rows = {name: values} if name not in positions else {}
         rows |= positions
         self.boxes, ends = [], np.concatenate([*rows.values(), list(stops)])
@@ -98,12 +99,12 @@ def film(result: Result) -> Film:
     there = np.isfinite(way[first]) & np.isfinite(way["x1"])
     positions = {name: way[name][there] for name in names if name != "gap"}
     title = f"{result.title('Film')}\n{point.label}" if point.label else result.title("Film")
-    return new_film(
-        way.t[there], positions, (first, way[first][there], way[rate][there]),
-        result.stops(point.place).values(), title, result.unit(first),
-    )  # fmt: skip
+    gap, stops = (first, way[first][there], way[rate][there]), tuple(result.stops(point.place).values())
+    moving = result.options.page(HEIGHT, title, _OfAnOrbit)
+    moving.resolution = result.options.dpi or moving.resolution
+    return moving.begin(way.t[there], positions, gap, stops, result.unit(first))
 
 
-def new_film(t, positions, gap, stops, title: str, unit: str = "") -> Film:
+def new_film(t, positions, gap, stops, title: str) -> Film:
     """A film of evenly sampled motion, as `_OfAnOrbit.begin` takes it."""
-    return _OfAnOrbit(figsize=(6.4, 3.8), layout="constrained").begin(t, positions, gap, tuple(stops), title, unit)
+    return page(HEIGHT, title, kind=_OfAnOrbit).begin(t, positions, gap, tuple(stops), "")

@@ -93,11 +93,13 @@ class Picture(Figure):
             text.remove()
 
 
-def page(height: float, title: str, size: tuple[float, float] | None = None, width: float | None = None) -> Picture:
+def page(
+    height: float, title: str, size: tuple[float, float] | None = None, width: float | None = None, kind=Picture
+) -> Picture:
     """An empty figure of the page's width, or so many inches wide; of this size, where one is given. It needs no
     display."""
     lower = 1.0 if width is None else max(LEAST_HEIGHT, min(1.0, width / WIDTH))
-    fig = Picture(figsize=size or (width or WIDTH, lower * height), layout="constrained")
+    fig = kind(figsize=size or (width or WIDTH, lower * height), layout="constrained")
     fig.grows, fig.narrow = size is None, width is not None and width < NARROW
     fig.entitle(title)
     return fig

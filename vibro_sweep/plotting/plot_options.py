@@ -77,9 +77,9 @@ class PlotOptions:
         """matplotlib's settings for a page of that width."""
         return style_of(self.inches)
 
-    def page(self, height: float, title: str) -> Picture:
+    def page(self, height: float, title: str, kind=Picture) -> Picture:
         """An empty figure, of the size and the resolution that are asked for: texts find their places in these."""
-        fig = page(height, title, self.size, self.inches)
+        fig = page(height, title, self.size, self.inches, kind)
         if self.dpi:
             fig.set_dpi(self.dpi)
         width, height = fig.get_size_inches() * fig.dpi
