@@ -36,6 +36,19 @@ def test_every_example_is_a_scene_that_finds_its_schema(folder, name):
     assert scene.parameter if isinstance(scene, Continuation) else scene.n_points > 0
 
 
+def test_each_example_has_a_name_of_its_own_and_says_what_it_is_for():
+    files = list((ROOT / "configs").glob("**/*.yaml"))
+    assert len(files) == len(examples.examples()) > 20
+    for path in files:
+        assert 20 < len(examples.purpose(path)) < 300 and examples.purpose(path)[-1] in ".?"
+
+
+def test_commands_in_a_copy_name_files_beside_it(folder):
+    assert main(["new", "plane_edges"]) == 0
+    text = Path("plane_edges.yaml").read_text()
+    assert "run plane_edges.yaml" in text and "run plane_clearance_frequency.yaml" in text
+
+
 def test_an_unchanged_copy_is_no_obstacle(folder, capsys):
     assert main(["new", "basins"]) == main(["new", "basins"]) == 0
     with Path("basins.yaml").open("a") as file:

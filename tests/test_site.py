@@ -85,6 +85,13 @@ def test_each_tutorial_can_be_downloaded_as_a_notebook(site, pages):
         assert f"{name}.ipynb" in pages[site / "tutorials" / f"{name}.html"].links
         cells = json.loads((site / "tutorials" / f"{name}.ipynb").read_text())["cells"]
         assert any(one["cell_type"] == "code" for one in cells) and not any(one.get("outputs") for one in cells)
+        words = "".join(line for one in cells if one["cell_type"] == "markdown" for line in one["source"])
+        assert words and not re.search(r"\]\((?!https?:|#)", words)  # a link of the page leads nowhere from elsewhere
+
+
+def test_commands_look_as_one_types_them(site):
+    words = (site / "start" / "ten_minutes.html").read_text()
+    assert "vibro-sweep new quickstart" in re.sub("<[^>]+>", "", words) and "%%bash" not in words
 
 
 def test_the_interface_links_to_other_packages_and_to_the_gallery(site, pages):

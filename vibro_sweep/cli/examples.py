@@ -21,6 +21,13 @@ def examples() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("**/*.yaml"))}
 
 
+def purpose(scene: Path) -> str:
+    """The first sentence of a scene's comments."""
+    paragraph = scene.read_text(encoding="utf-8").partition("\n\n")[0].split("\n#\n")[1]  # behind the line that names the schema
+    text = " ".join(line.strip("# ") for line in paragraph.splitlines())
+    return re.split(r"(?<=[.?]) (?=[A-Z\d])", text)[0].strip()
+
+
 def write_example(name: str) -> list[Path]:
     """Copy a scene into the current folder, and the schema if there is none; the paths. Raises ExampleError."""
     known = examples()
@@ -31,7 +38,7 @@ def write_example(name: str) -> list[Path]:
         raise ExampleError(f"NAME {name!r}: there is no such example; {hint}there are {', '.join(known)}")
     scene = Path(f"{name}.yaml")
     text = known[name].read_text(encoding="utf-8")
-    text = re.sub(r"configs/(paper/|models/)?", "", text).replace("../", "./")  # the files are in this folder now
+    text = re.sub(r"configs/(\w+/)?", "", text).replace("../", "./")  # the files are in this folder now
     try:
         with open(scene, "x", encoding="utf-8") as file:
             file.write(text)

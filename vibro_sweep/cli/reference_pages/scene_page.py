@@ -8,7 +8,7 @@ from vibro_sweep.model.observables import VARIABLES, WORDS
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.scene import json_schema
 
-from ..examples import examples
+from ..examples import examples, purpose
 from .markdown import head, listed, table
 
 SEVERAL = ("anyOf", "oneOf", "allOf")
@@ -33,6 +33,9 @@ def page() -> Iterator[str]:
         yield f"## `{path}`{_telling(form, beside)}\n\n{form['description']}\n"
         yield from keys(form)
     yield from _words()
+    yield "## Scenes that come with the program\n"
+    yield "`vibro-sweep new NAME` copies one of them into the current folder.\n"
+    yield from table(("name", "what it is for"), ((f"`{name}`", purpose(path)) for name, path in examples().items()))
 
 
 def _telling(form: dict, beside: list[dict]) -> str:
