@@ -3,7 +3,8 @@
 At a prompt
     System, Oscillator, grazing, simulate, lyapunov, discontinuity_map
 Sweeps
-    sweep (from Python), load_scene and run (from YAML to an HDF5 file), open (that file as an xarray.Dataset), plot
+    sweep (from Python), load_scene and run (from YAML to an HDF5 file), open (that file as an xarray.Dataset), plot,
+    explore (a page on which the diagram follows sliders)
 Periodic orbits
     periodic_orbit, continue_orbit, switch, follow_branches, bifurcation_curve, born_at_grazing, sticking_onset
     windows (of a sweep), load (what the results' `.save` wrote)
@@ -33,6 +34,7 @@ __all__ = [
     "born_at_grazing",
     "continue_orbit",
     "discontinuity_map",
+    "explore",
     "follow_branches",
     "grazing",
     "load",
@@ -65,6 +67,7 @@ if TYPE_CHECKING:
     from vibro_sweep.driver.loaded_results import load
     from vibro_sweep.driver.run import run
     from vibro_sweep.driver.windows import windows
+    from vibro_sweep.live.served_page import explore
     from vibro_sweep.model.errors import VibroSweepError
     from vibro_sweep.model.general import Oscillator
     from vibro_sweep.model.grazing import grazing
@@ -88,6 +91,7 @@ else:
         "born_at_grazing": "analysis.periodic.lcp",
         "continue_orbit": "analysis.branches.branch",
         "discontinuity_map": "analysis.single.discontinuity_map",
+        "explore": "live.served_page",
         "follow_branches": "analysis.branches.generations",
         "grazing": "model.grazing",
         "load": "driver.loaded_results",

@@ -1,4 +1,4 @@
-"""Pages that are executed: commands of a terminal look as one types them, and every page can be downloaded as a notebook."""
+"""Pages that are executed: commands of a terminal look as one types them, and each page is a notebook to download."""
 
 import posixpath
 import re

@@ -252,7 +252,9 @@ def models(name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Of
 
 
 @app.command()
-def new(name: Annotated[str, typer.Argument(metavar="[NAME]", help="Of an example; another lists all.")] = "quickstart"):
+def new(
+    name: Annotated[str, typer.Argument(metavar="[NAME]", help="Of an example; another lists all.")] = "quickstart",
+):
     """Write an example scene to start from, NAME.yaml, into this folder.
 
     Without a name the one of the README. Beside it scene.schema.json, by which editors complete and check scenes.

@@ -23,7 +23,8 @@ def examples() -> dict[str, Path]:
 
 def purpose(scene: Path) -> str:
     """The first sentence of a scene's comments."""
-    paragraph = scene.read_text(encoding="utf-8").partition("\n\n")[0].split("\n#\n")[1]  # behind the line that names the schema
+    comments, _, _ = scene.read_text(encoding="utf-8").partition("\n\n")
+    paragraph = comments.split("\n#\n")[1]  # behind the line that names the schema
     text = " ".join(line.strip("# ") for line in paragraph.splitlines())
     return re.split(r"(?<=[.?]) (?=[A-Z\d])", text)[0].strip()
 

@@ -9,18 +9,14 @@ from .console import InputError, all_is_imported, input_errors, messages, say
 from .examples import examples
 
 FIRST = "quickstart"
-PACKAGES = ("starlette", "uvicorn", "websockets")  # the extra `explore`
 
 
 def explore(path: Path | None, port: int, browser: bool) -> None:
     """Serve the page until Ctrl-C. Raises InputError where packages are missing or the port is taken."""
-    try:
+    from vibro_sweep.live.extra import MissingPackageError, needed
+
+    with input_errors(MissingPackageError), needed():
         from vibro_sweep.live.server import bound, serve
-    except ModuleNotFoundError as error:
-        if error.name not in PACKAGES:
-            raise
-        text = f"explore needs the package {error.name}: pip install {' '.join(PACKAGES)}"
-        raise InputError(text) from None
     from vibro_sweep.live.presets import presets_of, scene_to_explore
 
     presets = presets_of(examples().values())

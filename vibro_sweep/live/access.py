@@ -9,7 +9,7 @@ HOSTS = ("127.0.0.1", "localhost")
 HEADERS = {
     "content-security-policy": (
         "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data: blob:; "
-        "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+        "base-uri 'none'; form-action 'none'; frame-ancestors http://127.0.0.1:* http://localhost:*"  # notebooks
     ),
     "referrer-policy": "no-referrer",
     "x-content-type-options": "nosniff",

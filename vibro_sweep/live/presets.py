@@ -1,8 +1,9 @@
 """The scenes that a page can begin with."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from vibro_sweep.model.built import BUILD
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.scene import Scene, load_scene
@@ -28,11 +29,25 @@ def scene_to_explore(path: Path) -> Scene:
             raise ArgumentError(f"{path} follows branches; explore takes the scene of a sweep")
     else:
         with opened(path, names=(), content=False) as (file, _):
-            if (kind := text(file, "kind")) != "sweep":
-                raise ArgumentError(f"{path} holds {cut(kind)}; explore takes a sweep")
-            scene = parse_scene(text(file, "scene"), str(path))
+            attributes = {name: text(file, name) for name in ("kind", "type", "scene") if name in file.attrs}
+        return scene_of_results(attributes, str(path))
+    return described_sweep(scene, str(path))
+
+
+def scene_of_results(attributes: Mapping[str, str], name: str) -> Scene:
+    """The scene that results were made from, by their attributes. Raises SceneError and ArgumentError."""
+    kind, made_by = attributes.get("kind", "something else"), attributes.get("type")
+    if kind != "sweep":
+        raise ArgumentError(f"{name} holds {cut(kind)}; explore takes a sweep")
+    if made_by == BUILD:
+        raise ArgumentError(f"{name} sweeps a function; explore moves along a number of an oscillator")
+    return described_sweep(parse_scene(attributes["scene"], name), name)
+
+
+def described_sweep(scene: Scene, name: str) -> Scene:
+    """The scene; ArgumentError where it has no number of an oscillator to move along."""
     if not scene.system.described or (scene.sweep and not _has_axis(scene)):
-        raise ArgumentError(f"{path} sweeps no number of an oscillator; explore moves along one")
+        raise ArgumentError(f"{name} sweeps no number of an oscillator; explore moves along one")
     return scene
 
 

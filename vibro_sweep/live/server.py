@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 import socket
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -140,10 +141,7 @@ def bound(port: int) -> socket.socket:
     return result
 
 
-def serve(presets: dict[str, Scene], first: str, sock: socket.socket, ready: Callable[[str], None]) -> None:
-    """Serve pages until Ctrl-C. ready : called with the address once it can be opened."""
-    explorer = Explorer(presets, first)
-    address = f"http://127.0.0.1:{sock.getsockname()[1]}/?token={explorer.token}"
+def _server(explorer: Explorer, ready: Callable[[], None]) -> _Server:
     config = uvicorn.Config(
         explorer,
         ws="websockets-sansio",
@@ -155,12 +153,40 @@ def serve(presets: dict[str, Scene], first: str, sock: socket.socket, ready: Cal
         lifespan="off",
         timeout_graceful_shutdown=1,
     )
+    return _Server(config, ready)
+
+
+def _address(explorer: Explorer, sock: socket.socket) -> str:
+    return f"http://127.0.0.1:{sock.getsockname()[1]}/?token={explorer.token}"
+
+
+def serve(presets: dict[str, Scene], first: str, sock: socket.socket, ready: Callable[[str], None]) -> None:
+    """Serve pages until Ctrl-C. ready : called with the address once it can be opened."""
+    explorer = Explorer(presets, first)
     before = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH)
     try:
-        _Server(config, lambda: ready(address)).run(sockets=[sock])
+        _server(explorer, lambda: ready(_address(explorer, sock))).run(sockets=[sock])
     except KeyboardInterrupt:
         pass
     finally:
         sys.setswitchinterval(before)
         explorer.close()
+
+
+class Serving:
+    """Pages served by a thread of this process until `close`, at `address`."""
+
+    def __init__(self, presets: dict[str, Scene], first: str):
+        self._explorer, sock = Explorer(presets, first), bound(0)
+        self.address, ready = _address(self._explorer, sock), threading.Event()
+        self._server = _server(self._explorer, ready.set)
+        self._thread = threading.Thread(target=self._server.run, args=([sock],), daemon=True)
+        self._thread.start()
+        ready.wait()
+
+    def close(self) -> None:
+        """End the server and the engine's threads, once they have finished what they compute."""
+        self._server.should_exit = True
+        self._thread.join()
+        self._explorer.close()

@@ -156,6 +156,10 @@ def corrected(system, name: str, points: dict, stored: list[Motion]) -> list[str
         moved, changed = distance(motion, found), multiplier_distance(motion, found)
         if not moved <= error:
             lines.append(f"point at {value!r} moved by {moved:.1e}, error {error:.1e}")
-        elif not changed <= more:
-            lines.append(f"point at {value!r}: multipliers changed by {changed:.1e}, error {more:.1e}")
+        elif not changed <= more:  # the record's error is that of another processor's rounding: with that of this one
+            _, now = errors_of(system, name, value, found, np.random.default_rng(0)) or (None, 0.0)
+            if not changed <= more + now:
+                lines.append(
+                    f"point at {value!r}: multipliers changed by {changed:.1e}, errors {more:.1e} and {now:.1e}"
+                )
     return lines

@@ -12,6 +12,7 @@ from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.solution import Solution
 
 AMPLITUDE = 1e-3  # of a branch that is born, in the units of its curve
+ROUNDED = 1e-9  # a part of a direction that is taken for zero
 LARGER = (4.0, 16.0, 64.0)  # times as large: where the branch leaves nearly along the born orbits
 
 
@@ -27,12 +28,23 @@ def born(parent: Solution, name: str, sign: int) -> Solution | None:
     w = Linearised(parent).critical_direction(-1)
     change = repeated(parent, 2, w, -1.0)[1]
     size = np.linalg.norm(change / twice.units[: len(change)])
-    w *= -np.copysign(1 / size, w[parent.K : 2 * parent.K].sum())  # a choice: which of two mirror images comes first
+    w *= -np.copysign(1 / size, _first_image(parent, w))
     for factor in (1.0, *LARGER):
         solution = with_amplitude(curve, *repeated(parent, 2, sign * AMPLITUDE * factor * w, -1.0))
         if solution is not None and is_steady(solution, name):
             return solution
     return None
+
+
+def _first_image(parent: Solution, w: np.ndarray) -> float:
+    """A number whose sign says which of two mirror images comes first, whichever half of the parent is described.
+
+    It is the change of all jumps or, where this is rounding, of the times on the left less those on the right.
+    """
+    scaled = w[: 2 * parent.K] / parent.units[: 2 * parent.K]
+    times, jumps = np.split(scaled, 2)
+    change = jumps.sum()
+    return change if abs(change) > ROUNDED * np.abs(scaled).max() else -np.dot(parent.sides, times)
 
 
 def is_steady(solution: Solution, name: str) -> bool:

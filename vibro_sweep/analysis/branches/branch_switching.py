@@ -50,8 +50,12 @@ def _beyond_graze(special: SpecialPoint) -> list[Solution | None]:
     result = [_beside(parent, name, None)]
     if parent.sigma == -1:  # the motion touches both stops at once: orbits that hit one of them
         one = _beside(Solution(family, 1, 2, (), np.empty(0)), name, None)
-        result += [one, one and mirrored(one)]
+        result += sorted([one, mirrored(one)], key=_on_the_left) if one else []
     return result
+
+
+def _on_the_left(solution: Solution) -> int:
+    return solution.sides.count(-1)
 
 
 BEYOND = {  # what branches off a type of special point

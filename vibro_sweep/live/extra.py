@@ -1,0 +1,24 @@
+"""Packages that the page needs beside those of the program: the extra `explore`."""
+
+import contextlib
+from collections.abc import Iterator
+
+from vibro_sweep.model.errors import VibroSweepError
+
+PACKAGES = ("starlette", "uvicorn", "websockets")
+
+
+class MissingPackageError(VibroSweepError, ImportError):
+    """A package of the extra `explore` is not installed."""
+
+
+@contextlib.contextmanager
+def needed() -> Iterator[None]:
+    """Import the server within this. Raises MissingPackageError."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if error.name not in PACKAGES:
+            raise
+        text = f"explore needs the package {error.name}: pip install {' '.join(PACKAGES)}"
+        raise MissingPackageError(text) from None
