@@ -136,3 +136,22 @@ def test_a_phone(browser, program, scheme):
     assert tab.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
     assert np.ptp(np.frombuffer(colours(tab), np.uint8)) > 100
     context.close()
+
+
+def test_what_lies_under_the_pointer_and_a_number_that_follows_another(page):
+    """The pointer tells value and period; asked to, it shows the orbit. An emptied field follows its leader again."""
+    click(page, 0.5)
+    page.wait_for_selector("#facts b")
+    box = page.locator("#diagram").bounding_box()
+    page.mouse.move(box["x"] + 0.97 * box["width"], box["y"] + 0.3 * box["height"])
+    page.locator("#under", has_text="period 1").wait_for()
+    page.locator("#trail").click()
+    page.mouse.move(box["x"] + 0.96 * box["width"], box["y"] + 0.3 * box["height"])
+    page.locator("#facts", has_text="no impacts").wait_for()
+    left = page.locator("#field-R_left")
+    for text, value in (("0.5", "0.5"), ("", "0.7")):
+        page.locator("#field-R").fill("0.7")
+        left.fill(text)
+        left.press("Enter")
+        assert left.input_value() == value
+    settle(page)

@@ -141,9 +141,30 @@ def test_the_ends_of_a_window_are_where_its_orbit_ends(page, view):
         data = vs.sweep(system, {"b": values}, start=start, transient=2600, record=260, observe=["section", "impacts"])
         strikes = (data["impacts_right"] + data["impacts_left"]).values[::-inwards]
         assert (strikes[:-1] == 160).all() and strikes[-1] != 160  # 8 in 13 periods, until its end is passed
-    assert arrays["y"].size == 13 * arrays["value"].size and not arrays["unstable"].any()
+    (points, lines), *others = words["branches"]  # the window's own, and those that it meets at its grazes
+    assert lines == 13 and others and len(arrays["value"]) == points + sum(n for n, _ in others)
+    assert arrays["y"].size == sum(n * m for n, m in words["branches"]) and not arrays["unstable"][:points].any()
+    assert arrays["value"][:points].min() == pytest.approx(words["low"]["value"], abs=1e-6)
     words, _ = answers(page, "window", 3, view=view, value=4.45)
     assert "Lyapunov exponent is positive" in words["reason"]
+
+
+def test_a_newer_diagram_ends_the_following_of_a_window(page, view):
+    """Nobody waits for what is no longer shown: of a window that is followed there comes nothing then."""
+    page.send(json.dumps({"type": "window", "seq": 2, "view": view, "value": 4.9}))
+    words, _ = answers(page, "sweep", 3, view=view)[-1]
+    assert words["last"] and words["seq"] == 3
+    words, _ = answers(page, "window", 4, view=view | {"transient": 4000, "record": 200}, value=4.9)
+    assert words["seq"] == 4 and words["period"] == 13
+
+
+def test_a_number_that_follows_another_one(page, view):
+    words, _ = answers(page, "open", 2, view=view)
+    numbers = {one["name"]: one for one in words["numbers"]}
+    assert (numbers["R_left"]["value"], numbers["R_left"]["leader"], numbers["R_left"]["follows"]) == (0.8, "R", True)
+    words, _ = answers(page, "open", 3, view=view | {"numbers": {"R_left": 0.5}})
+    numbers = {one["name"]: one for one in words["numbers"]}
+    assert [numbers["R_left"][key] for key in ("value", "follows", "symbol")] == [0.5, False, "R left"]
 
 
 def test_a_saved_view_is_computed_again(page, view, tmp_path, monkeypatch):
@@ -159,6 +180,8 @@ def test_a_saved_view_is_computed_again(page, view, tmp_path, monkeypatch):
     with vs.open(path) as data:
         assert np.array_equal(data["x1"], scope["data"]["x1"]) and data.attrs["R"] == 0.75
     assert Path("explored.png").stat().st_size > 10_000
+    picture = answers(page, "save", 5, view=view, form="svg")[1]["data"].tobytes()
+    assert b"<svg" in picture and b"clearance" in picture
 
 
 @pytest.mark.parametrize(

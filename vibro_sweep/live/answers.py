@@ -1,6 +1,6 @@
 """The answers to a page's requests. Each is made in the engine's thread, a sweep piece by piece."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -11,13 +11,14 @@ from vibro_sweep.live.messages import binary_message, number, text_message
 from vibro_sweep.live.model_words import model_words
 from vibro_sweep.live.pace import Pace
 from vibro_sweep.live.requests import ClickedOrbit, OfOneOrbit, Open, Save, Sweep, WindowEnds
-from vibro_sweep.live.saved_view import hdf5_of, python_of
+from vibro_sweep.live.saved_view import hdf5_of, python_of, svg_of
 from vibro_sweep.live.views import base_of, height_of, needed, scene_of_view, view_of
 from vibro_sweep.live.window_ends import window_message
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.grazing import grazing
 from vibro_sweep.scene import Scene
 
+CONTENTS = {"hdf5": hdf5_of, "svg": svg_of}
 EXPONENTS = ("lyapunov", "lyapunov_error")
 
 Message = str | bytes
@@ -61,10 +62,10 @@ class Answers:
         words |= {"slot": request.slot, "value": request.value, "went_on": went_on}
         return binary_message("orbit", request.seq, arrays, **words)
 
-    def window(self, request: WindowEnds) -> Message:
-        """Why a window ends."""
+    def window(self, request: WindowEnds, progress: Callable[[int, float], None]) -> Message:
+        """Why a window ends. progress : called while branches are followed"""
         found, _ = self._settled(request)
-        arrays, words = window_message(request.view, request.value, found)
+        arrays, words = window_message(request.view, request.value, found, progress)
         return binary_message("window", request.seq, arrays, value=request.value, **words)
 
     def opened(self, request: Open) -> Message:
@@ -79,9 +80,9 @@ class Answers:
     def saved(self, request: Save) -> Message:
         """A view as a scene, a program or its data."""
         scene = scene_of_view(request.view)
-        if request.form == "hdf5":
-            data = np.frombuffer(hdf5_of(scene), np.uint8)
-            return binary_message("saved", request.seq, {"data": data}, form="hdf5")
+        if request.form in CONTENTS:
+            data = np.frombuffer(CONTENTS[request.form](scene), np.uint8)
+            return binary_message("saved", request.seq, {"data": data}, form=request.form)
         text = scene.to_yaml() if request.form == "yaml" else python_of(scene)
         return text_message("saved", request.seq, form=request.form, text=text)
 

@@ -3,6 +3,7 @@
 A page's new request takes the place of the one that waits, and what is left of the older one's pieces is dropped.
 """
 
+import contextlib
 import logging
 import threading
 from collections.abc import Callable, Iterator
@@ -28,6 +29,11 @@ class Page:
         self.clicks: dict[object, Request] = {}  # by kind: the last one of each
         self.slow: dict[object, Request] = {}
         self.unsent = 0
+        self.newest = -1  # number of the last request that changes what is shown
+
+
+class StaleError(Exception):
+    """What is being computed is no longer asked for."""
 
 
 class EngineThreads:
@@ -54,6 +60,8 @@ class EngineThreads:
     def ask(self, page: Page, request: Request) -> None:
         """A request of a page."""
         with self._changed:
+            if isinstance(request, (Sweep, WindowEnds)):
+                page.newest = request.seq
             if isinstance(request, Sweep):
                 page.sweep, page.frames = request, None
             elif isinstance(request, (WindowEnds, Save)):
@@ -110,7 +118,19 @@ class EngineThreads:
                     return
                 page = next(one for one in self._pages if one.slow and _reads(one))
                 request = page.slow.pop(next(iter(page.slow)))
-            self._answer(page, request, lambda page=page, request=request: _of_slow(page, request))
+            self._answer(page, request, lambda page=page, request=request: self._of_slow(page, request))
+
+    def _of_slow(self, page: Page, request: Request) -> Message | None:
+        if isinstance(request, Save):
+            return page.answers.saved(request)
+
+        def progress(points: int, value: float) -> None:
+            if page.newest > request.seq or page not in self._pages or self._closed:
+                raise StaleError
+
+        with contextlib.suppress(StaleError):
+            return page.answers.window(request, progress)  # type: ignore[arg-type]
+        return None
 
     def _answer(self, page: Page, request: Request, make: Callable[[], Message | None]) -> bool:
         """Send an answer, or why there is none. Returns whether there was one."""
@@ -142,10 +162,6 @@ def _waits(page: Page) -> bool:
 
 def _of_click(page: Page, request: Request) -> Message:
     return page.answers.orbit(request) if request.type == "orbit" else page.answers.opened(request)  # type: ignore
-
-
-def _of_slow(page: Page, request: Request) -> Message:
-    return page.answers.window(request) if request.type == "window" else page.answers.saved(request)  # type: ignore
 
 
 def _words(error: Exception) -> str:

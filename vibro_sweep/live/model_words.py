@@ -11,11 +11,12 @@ from vibro_sweep.model.catalogue import BY_NAME
 from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.models import MODELS
 from vibro_sweep.model.parameters import NUMBER, POSITIVE, Parameter, range_of
-from vibro_sweep.model.status import STATUSES
+from vibro_sweep.model.status import NOT_SETTLED, STATUSES
 from vibro_sweep.plotting.style import CHAOS, EXPONENTS, LONGER, LONGEST, NO_PERIOD, PERIODS, density_colours
 
 DECADE = 10.0
 _GREEK = {r"\mu": "μ", r"\zeta": "ζ", r"\omega": "ω", r"\tau": "τ", r"\bar f": "f̄"}
+_UPRIGHT = r"\mathrm"
 _BELOW = str.maketrans("0123456789cmk", "₀₁₂₃₄₅₆₇₈₉cmₖ")
 
 
@@ -25,7 +26,7 @@ def model_words(system: AnyOscillator, view: View) -> dict[str, Any]:
     numbers = [
         _slider(one, value, view, stops)
         for name, one in system.described.items()
-        if isinstance(value := view.numbers.get(name, system.numbers[name]), (int, float))
+        if isinstance(value := _value(system, view, one), (int, float)) and not (name == "R_left" and stops != "both")
     ]
     return {
         "numbers": numbers,
@@ -34,8 +35,15 @@ def model_words(system: AnyOscillator, view: View) -> dict[str, Any]:
         "stops": [one if np.isfinite(one) else None for one in (system.linear.low, system.linear.high)],
         "colours": _colours(),
         "statuses": {str(code): one.text for code, one in STATUSES.items()},
+        "not_settled": NOT_SETTLED,
         "certain": CERTAIN,
     }
+
+
+def _value(system: AnyOscillator, view: View, one: Parameter) -> Any:
+    """What a number is; of one that is left out what it follows."""
+    given = {**system.numbers, **view.numbers}
+    return given[one.follows] if one.follows and given[one.name] is None else given[one.name]
 
 
 def _slider(one: Parameter, value: float, view: View, stops: str) -> dict[str, Any]:
@@ -54,6 +62,8 @@ def _slider(one: Parameter, value: float, view: View, stops: str) -> dict[str, A
     if one.name == view.axis:
         low, high, logarithmic = view.low, view.high, False
     words = {"name": one.name, "symbol": _plain(one.symbol), "label": one.label, "text": one.text, "value": value}
+    leader = one.follows if view.system.get(one.name) is None else ""
+    words |= {"leader": leader, "follows": bool(leader) and one.name not in view.numbers}
     return words | {"low": low, "high": high, "log": logarithmic, "allowed": (allowed or NUMBER).text}
 
 
@@ -68,7 +78,7 @@ def _plain(symbol: str) -> str:
     for word, letter in _GREEK.items():
         symbol = symbol.replace(word, letter)
     head, _, below = symbol.replace("{}", "").replace("{", "").replace("}", "").partition("_")
-    return head + below.translate(_BELOW)
+    return f"{head} {below.removeprefix(_UPRIGHT)}" if below.startswith(_UPRIGHT) else head + below.translate(_BELOW)
 
 
 def _colours() -> dict[str, Any]:

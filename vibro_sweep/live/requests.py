@@ -96,11 +96,11 @@ class Open(_Request):
 
 
 class Save(_Request):
-    """The view as a scene, as a program in Python, or its data."""
+    """The view as a scene, as a program in Python, as a picture, or its data."""
 
     type: Literal["save"]
     view: View
-    form: Literal["yaml", "python", "hdf5"]
+    form: Literal["yaml", "python", "svg", "hdf5"]
 
 
 Request = Sweep | ClickedOrbit | WindowEnds | Open | Save

@@ -1,11 +1,15 @@
-"""A view to keep: as a program in Python, and as a file of its data. As a scene it is `scene.to_yaml()`."""
+"""A view to keep: as a program in Python, a picture, a file of its data. As a scene it is `scene.to_yaml()`."""
 
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from vibro_sweep.driver.sweep import run_sweep
 from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.plotting import figure
+from vibro_sweep.plotting.pictures import save
 from vibro_sweep.scene import Scene
 from vibro_sweep.scene.written import data_of
 from vibro_sweep.store import size
@@ -44,9 +48,23 @@ def _options(data: dict[str, Any]) -> dict[str, Any]:
 
 def hdf5_of(scene: Scene) -> bytes:
     """The file of the sweep. Raises ArgumentError where it is too large for a page."""
+    with _computed(scene) as path:
+        return path.read_bytes()
+
+
+def svg_of(scene: Scene) -> bytes:
+    """The picture of the sweep, as `vibro-sweep plot` draws it. Raises ArgumentError as `hdf5_of`."""
+    with _computed(scene) as path:
+        picture = path.with_suffix(".svg")
+        save(figure(path), picture, overwrite=False, inputs=())
+        return picture.read_bytes()
+
+
+@contextmanager
+def _computed(scene: Scene) -> Iterator[Path]:
     if size(scene) > LARGEST:
         raise ArgumentError(f"the file would have {size(scene) / 1e6:.0f} MB; save the scene, and run it")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "explored.h5")
         run_sweep(scene, path, workers=1, progress=lambda done, total: None)
-        return path.read_bytes()
+        yield path

@@ -1,11 +1,13 @@
 """Why a window ends: the periodic orbit of a column is followed along the swept number to where it is not stable."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from vibro_sweep.analysis.branches.branch import continue_orbit
+from vibro_sweep.analysis.branches.branch import Branch, continue_orbit
 from vibro_sweep.analysis.branches.branch_arrays import Arrays, arrays_of, branch_of, sections_of
+from vibro_sweep.analysis.branches.branch_switching import switch
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.windows.job import Job, window_of
@@ -20,11 +22,17 @@ from vibro_sweep.model.state import state
 from vibro_sweep.model.status import STATUSES, is_valid
 
 MOST_POINTS = 300  # of a branch that is drawn
+NEAR = 1e-9  # relative: grazes nearer than this are the same
 _REASONS = list(REASONS)
 
 
-def window_message(view: View, value: float, found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """Arrays and words on the window around a value: its ends, and the branch that it is a part of; or `reason`."""
+def window_message(
+    view: View, value: float, found: Settled, progress: Callable[[int, float], None]
+) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Arrays and words on the window around a value: its ends, and the branches that meet there; or `reason`.
+
+    The first branch is that of which the window is a part. progress : as of `continue_orbit`
+    """
     if found.period == 0:
         return {}, {"reason": _not_periodic(found)}
     bounds = _bounds(view, found)
@@ -40,9 +48,28 @@ def window_message(view: View, value: float, found: Settled) -> tuple[dict[str, 
     origin = found.system.replace(**{view.axis: float(arrays["value"][int(arrays["branch_origin"])])})
     orbit = PeriodicOrbit(origin, "ok", orbit)
     words["itinerary"] = orbit.itinerary
-    branch = continue_orbit(orbit, view.axis, bounds)
-    specials = [_end(one, 0, bounds) for one in branch.special]
-    return _drawn(view, found, _thinned(arrays_of(branch, value))), words | {"specials": specials}
+    branches = [continue_orbit(orbit, view.axis, bounds, progress)]
+    branches += _met((window.begins, window.ends), view.axis, bounds, progress)
+    drawn = [_drawn(view, found, _thinned(arrays_of(one, value))) for one in branches]
+    words["specials"] = [_end(one, 0, bounds) for one in branches[0].special]
+    words["branches"] = [[len(one["value"]), len(one["y"]) // len(one["value"])] for one in drawn]
+    return {name: np.concatenate([one[name] for one in drawn]) for name in drawn[0]}, words
+
+
+def _met(ends: tuple[SpecialPoint, ...], axis: str, bounds: tuple[float, float], progress) -> list[Branch]:
+    """The branches that a motion meets at grazes, where an impact appears or vanishes; one that leads from graze to
+    graze once."""
+    found: list[Branch] = []
+    for end in ends:
+        if end.type == "graze" and not any(_ends_at(one, end, axis) for one in found):
+            found += [continue_orbit(one, axis, bounds, progress) for one in switch(end)]
+    return found
+
+
+def _ends_at(branch: Branch, end: SpecialPoint, axis: str) -> bool:
+    value = end.parameters[axis]
+    near = NEAR * max(abs(value), 1.0)
+    return any(one.type == "graze" and abs(one.parameters[axis] - value) <= near for one in branch.special)
 
 
 def _not_periodic(found: Settled) -> str:

@@ -50,8 +50,10 @@ export class Controls {
       field.addEventListener("change", () => {
         const value = Number(field.value);
         if (field.value !== "" && Number.isFinite(value)) this.set(one.name, value, true);
+        else if (field.value === "" && entry.leader) this.follow(entry);
         else field.value = shown(entry.value);
       });
+      if (one.leader) name.title += `; it is ${one.leader} until it is changed, and again once its field is emptied`;
       this.set(one.name, one.value, false);
     }
     this.mark(axis);
@@ -69,7 +71,16 @@ export class Controls {
     if (Number(entry.field.value) !== value || entry.field.value === "") entry.field.value = shown(value);
     entry.slider.value = indexOf(entry, value);
     entry.slider.setAttribute("aria-valuetext", shown(value));
+    if (tell) entry.follows = false;
+    for (const other of this.rows.values()) if (other.follows && other.leader === name) this.set(other.name, value, false);
     if (tell) this.change(name, value);
+  }
+
+  // a number that was changed has the value of another one again
+  follow(entry) {
+    entry.follows = true;
+    this.set(entry.name, this.rows.get(entry.leader).value, false);
+    this.change(entry.name, null);
   }
 
   // the swept number has no slider: it is along the axis

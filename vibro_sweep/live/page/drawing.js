@@ -218,7 +218,7 @@ export class Drawing {
       line(context, x(view.low), y(values[0]), x(view.high), y(values[1]));
       context.setLineDash([]);
     }
-    if (marks.branch) this.branch(marks.branch, x, y, theme);
+    for (const one of marks.branches) this.branch(one, x, y, theme);
     if (marks.window) this.ends(marks.window, x, dots, inside, theme);
     marks.lines.forEach((value, i) => {
       if (value === null || !inside(value)) return;
@@ -255,6 +255,17 @@ export class Drawing {
     context.setLineDash([]);
   }
 
+  // a text over dots
+  readable(words, x, y, theme) {
+    const { context } = this;
+    context.strokeStyle = theme.paper;
+    context.lineWidth = 4;
+    context.lineJoin = "round";
+    context.strokeText(words, x, y);
+    context.fillStyle = theme.ink;
+    context.fillText(words, x, y);
+  }
+
   ends(window, x, dots, inside, theme) {
     const { context } = this;
     [window.low, window.high].forEach((end, i) => {
@@ -263,14 +274,13 @@ export class Drawing {
       context.strokeStyle = theme.stable;
       context.lineWidth = 1;
       line(context, left, dots.y, left, dots.y + dots.h);
-      context.fillStyle = theme.ink;
       context.textAlign = i ? "left" : "right";
       if (i === 0 && left - dots.x < 150) context.textAlign = "left";
       if (i === 1 && dots.x + dots.w - left < 150) context.textAlign = "right";
       const by = context.textAlign === "left" ? 4 : -4;
       const level = dots.y + 18 + 28 * i;
-      context.fillText(end.type.replace("_", "-"), left + by, level);
-      context.fillText(short(end.value, 9), left + by, level + 13);
+      this.readable(end.type.replace("_", "-"), left + by, level, theme);
+      this.readable(short(end.value, 9), left + by, level + 13, theme);
     });
   }
 }

@@ -19,10 +19,11 @@ const state = new ViewState();
 const drawing = new Drawing($("diagram"));
 const panel = new OrbitPanel($("orbit"));
 const controls = new Controls($("numbers"), (name, value) => {
-  state.view.numbers[name] = value;
+  if (value === null) delete state.view.numbers[name];
+  else state.view.numbers[name] = value;
   request();
 });
-let model = null, data = null, asked = 0, dirty = false, fitNext = true, arrived = null, branch = null, why = null;
+let model = null, data = null, asked = 0, dirty = false, fitNext = true, arrived = null, branches = [], why = null;
 let timer = null, askedWhy = 0, since = 0, lines = [null, null], starts = [0, 0], failed = false, rectangle = null;
 
 const link = new Link({ open: begin, answer, closed });
@@ -130,7 +131,9 @@ function frame(message) {
 function summary() {
   const counts = new Map();
   for (const code of data.status) if (code !== 0) counts.set(code, (counts.get(code) ?? 0) + 1);
-  const words = [...counts].map(([code, n]) => `${n} ${n > 1 ? "orbits" : "orbit"}: ${model.statuses[code] ?? code}`);
+  const words = [...counts].map(([code, n]) => code === model.not_settled
+    ? `${n} not settled yet: a longer transient or record may tell`
+    : `${n} ${n > 1 ? "orbits" : "orbit"}: ${model.statuses[code] ?? code}`);
   say([`${data.columns} values of ${state.view.axis}`, ...words].join("; "));
 }
 
@@ -146,15 +149,27 @@ function windowFound(message) {
   clearTimeout(clickTimer);
   why = message;
   say(message.reason ? "No window was found" : "The window and its two ends");
-  const n = message.arrays?.value?.length ?? 0;
-  branch = n ? { ...message.arrays, m: message.arrays.y.length / n } : null;
+  branches = split(message);
   showWhy();
   redraw();
 }
 
+// the arrays of each branch, one behind the other
+function split({ arrays, branches = [] }) {
+  let first = 0, at = 0;
+  return branches.map(([n, m]) => {
+    const own = (values) => values.subarray(first, first + n);
+    const one = { value: own(arrays.value), unstable: own(arrays.unstable), y: arrays.y.subarray(at, at + n * m), m };
+    first += n;
+    at += n * m;
+    return one;
+  });
+}
+
 function forgetWhy() {
-  if (!branch && !why) return;
-  branch = why = null;
+  if (!branches.length && !why) return;
+  branches = [];
+  why = null;
   askedWhy = 0;
   showWhy();
 }
@@ -169,7 +184,8 @@ function showWhy() {
   const others = why.specials.filter((one) => one.type !== "boundary").map((one) => `${one.type.replace("_", "-")} at ${short(one.value, 8)}`);
   box.replaceChildren(
     text("p", `Window of the orbit ${kind}:`), end(why.low, "lower"), end(why.high, "upper"),
-    text("p", `On the branch, stable (solid) or not (dashed): ${others.join(", ") || "no special point"}.`),
+    text("p", `On its branch, stable (solid) or not (dashed): ${others.join(", ") || "no special point"}.`),
+    ...(branches.length > 1 ? [text("p", "Dashed, too: the motions that meet it at a graze, with one impact more or less.")] : []),
   );
 }
 
@@ -227,7 +243,7 @@ function picture() {
     data, certain: model.certain, colours: model.colours, view: { low: view.low, high: view.high, bottom, top },
     names: { axis: number ? `${number.label} ${number.symbol}` : view.axis, height },
     marks: {
-      grazing: view.axis === "b" ? data?.stars ?? [] : [], lines, branch, window: why && !why.reason ? why : null, stops: stopLines(), rectangle,
+      grazing: view.axis === "b" ? data?.stars ?? [] : [], lines, branches, window: why && !why.reason ? why : null, stops: stopLines(), rectangle,
     },
   };
 }
@@ -257,6 +273,16 @@ function paint() {
   }
   root.dataset.frame = Number(root.dataset.frame) + 1;
   arrived = null;
+}
+
+const trailing = () => !$("orbit").hidden && $("trail").getAttribute("aria-pressed") === "true";
+
+function underPointer(column) {
+  const at = column * data.starts, period = data.period[at], K = data.K;
+  const words = [`${state.view.axis} = ${short(data.axis?.[column] ?? NaN, 9)}`];
+  if (period > 0) words.push(`period ${period}`);
+  if (K && Number.isFinite(data.exponents?.[at * K])) words.push(`λ₁ = ${short(data.exponents[at * K], 4)} ± ${short(data.errors[at * K], 1)}`);
+  return words.join(": ").replace(": λ", ", λ");
 }
 
 function soon() {
@@ -308,6 +334,12 @@ const actions = {
     askOrbit(slot);
     state.write();
     redraw();
+  },
+  hover(value) {
+    const column = value === null ? -1 : data?.column(value) ?? -1;
+    $("under").textContent = column < 0 ? "" : underPointer(column);
+    if (column < 0 || !trailing() || value === null || data.axis[column] === lines[0]) return;
+    actions.choose(value, 0);
   },
   move(by) {
     const column = data?.column(lines[0] ?? (state.view.low + state.view.high) / 2) ?? 0;
@@ -371,6 +403,7 @@ $("home").addEventListener("click", actions.home);
 $("fit").addEventListener("click", actions.fit);
 $("pan").addEventListener("click", () => $("pan").setAttribute("aria-pressed", String($("pan").getAttribute("aria-pressed") !== "true")));
 $("why").addEventListener("click", actions.why);
+$("trail").addEventListener("click", () => $("trail").setAttribute("aria-pressed", String($("trail").getAttribute("aria-pressed") !== "true")));
 $("close").addEventListener("click", () => {
   panel.clear();
   lines = [null, null];

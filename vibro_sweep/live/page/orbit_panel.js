@@ -69,7 +69,7 @@ export class OrbitPanel {
     const periods = Math.max(...shown.map(([one]) => one.periods));
     const view = { low: 0, high: periods, ...vertical(shown, "gap") };
     const { x, y } = scales(box, view);
-    axes(context, box, view, "t/T", "gap", theme);
+    axes(context, box, view, "t/T", names(shown)[0], theme);
     clipped(context, box, () => {
       stops(context, shown[0][0], view, x, y, theme);
       for (const [one, i] of shown) {
@@ -93,7 +93,7 @@ export class OrbitPanel {
     if (!shown.length) return;
     const view = { ...horizontal(shown, "gap"), ...vertical(shown, "rate") };
     const { x, y } = scales(box, view);
-    axes(context, box, view, "gap", "velocity of the gap", theme);
+    axes(context, box, view, ...names(shown), theme);
     clipped(context, box, () => {
       context.strokeStyle = theme.faint;
       context.setLineDash([3, 3]);
@@ -115,7 +115,7 @@ export class OrbitPanel {
     if (!shown.length) return;
     const view = { ...horizontal(shown, "sectionGap"), ...vertical(shown, "sectionRate") };
     const { x, y } = scales(box, view);
-    axes(context, box, view, "gap", "velocity of the gap", theme);
+    axes(context, box, view, ...names(shown), theme);
     clipped(context, box, () => {
       for (const [one, i] of shown) {
         context.fillStyle = colourOf(i, theme);
@@ -196,6 +196,10 @@ function paragraph(one, i) {
   if (one.alone) words.push("from the start of the scene alone, not from where the points before it lead");
   p.append(head, words.filter(Boolean).join("; "));
   return p;
+}
+
+function names([[one]]) {
+  return one.gapIsFirst ? ["x1", "v1"] : ["gap", "velocity of the gap"];
 }
 
 function prepare(canvas, pad = 0) {

@@ -1,6 +1,6 @@
 // Files that the browser keeps: scene, program, picture, data.
 
-const FILES = { yaml: "explored.yaml", python: "explored.py", hdf5: "explored.h5", png: "explored.png" };
+const FILES = { yaml: "explored.yaml", python: "explored.py", hdf5: "explored.h5", png: "explored.png", svg: "explored.svg" };
 
 export async function saveAs(message, state) {
   if (message.form === "link") {
@@ -8,7 +8,7 @@ export async function saveAs(message, state) {
     return "Copied. The link has no token: who opens it adds the ?token=... of a running program before the #.";
   }
   if (message.form === "png") return message.canvas.toBlob((blob) => download(blob, FILES.png));
-  const content = message.form === "hdf5" ? message.arrays.data : message.text;
+  const content = message.arrays?.data ?? message.text;
   return download(new Blob([content]), FILES[message.form]);
 }
 

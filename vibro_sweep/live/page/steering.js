@@ -32,7 +32,7 @@ export function steer(canvas, actions) {
     down = { at: place(event), pan, view: { ...state.view }, range: [...state.range], moved: false, pushed: false };
   });
   canvas.addEventListener("pointermove", (event) => {
-    if (!down) return;
+    if (!down) return ready() && actions.hover(inDots(place(event)) ? value(place(event)[0]) : null);
     const [x, y] = place(event), [x0, y0] = down.at;
     if (!down.moved && Math.hypot(x - x0, y - y0) < CLICK) return;
     down.moved = true;
@@ -68,6 +68,7 @@ export function steer(canvas, actions) {
     down = null;
     actions.setRectangle(null);
   });
+  canvas.addEventListener("pointerleave", () => actions.hover(null));
   canvas.addEventListener("wheel", (event) => {
     if (!ready()) return;
     event.preventDefault();
@@ -96,6 +97,7 @@ export function steer(canvas, actions) {
     f: actions.fit,
     w: actions.why,
     p: () => document.getElementById("pan").click(),
+    o: () => document.getElementById("trail").click(),
     "+": () => zoom(0.5, state.line ?? (state.view.low + state.view.high) / 2, (state.range[0] + state.range[1]) / 2),
     "-": () => zoom(2, state.line ?? (state.view.low + state.view.high) / 2, (state.range[0] + state.range[1]) / 2),
   };
