@@ -151,6 +151,7 @@ def test_what_lies_under_the_pointer_and_a_number_that_follows_another(page):
     left = page.locator("#field-R_left")
     for text, value in (("0.5", "0.5"), ("", "0.7")):
         page.locator("#field-R").fill("0.7")
+        page.locator("#field-R").press("Enter")
         left.fill(text)
         left.press("Enter")
         assert left.input_value() == value

@@ -24,9 +24,9 @@ class Preview(NamedTuple):
     """An early picture of a sweep: at most so many columns of so many forcing periods, in about so many seconds."""
 
     columns: int = 250
-    transient: int = 150
+    transient: int = 300
     record: int = 50
-    seconds: float = 0.012
+    seconds: float = 0.02
 
 
 class Frame(NamedTuple):
