@@ -2,6 +2,7 @@
 
 import http.client
 import json
+import socket
 import time
 from contextlib import ExitStack
 from pathlib import Path
@@ -312,3 +313,17 @@ def test_the_scene_of_a_file_comes_first(tmp_path):
         assert words["name"] == "mine" and words["view"]["axis"] == "omega" and words["view"]["system"]["R"] == 0.6
         assert json.loads(json.dumps(words["view"])) == words["view"]
         assert running.end()[0] == 0
+
+
+def test_a_thousand_connections(program, page, view):
+    """Those that say nothing take little memory, those without a token get 403, and a page is answered beside them."""
+    before = memory(program)
+    with ExitStack() as stack:
+        silent = [stack.enter_context(socket.create_connection(("127.0.0.1", program.port))) for _ in range(1000)]
+        silent[0].sendall(b"GET / HTTP/1.1\r\n")  # and no more
+        assert answers(page, "sweep", 2, view=view)[-1][0]["last"]
+        assert memory(program) < before + 100
+        for one in silent[1:]:
+            one.sendall(b"GET /socket HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
+        assert all(one.recv(64).startswith(b"HTTP/1.1 40") for one in silent[1:])
+        assert answers(page, "sweep", 3, view=view)[-1][0]["last"]

@@ -146,7 +146,7 @@ def test_what_has_no_windows_is_refused(tmp_path):
     with pytest.raises(ValueError, match="observe: has no 'section'"):
         vs.windows(tmp_path / "no.h5")
     vs.sweep(SYSTEM, {"x1": [0.0, 0.1]}, transient=5, record=5, output=tmp_path / "start.h5", workers=1)
-    with pytest.raises(ValueError, match="windows need a number of the system"):
+    with pytest.raises(ValueError, match="windows need a number of the system at two values"):
         vs.windows(tmp_path / "start.h5")
     vs.sweep(SYSTEM, {"b": [6.9, 7.0]}, transient=5, record=5, output=tmp_path / "b.h5", workers=1)
     with pytest.raises(ValueError, match="parameter: 'omega' is not allowed; it must be b"):

@@ -48,6 +48,7 @@ def window_message(
     origin = found.system.replace(**{view.axis: float(arrays["value"][int(arrays["branch_origin"])])})
     orbit = PeriodicOrbit(origin, "ok", orbit)
     words["itinerary"] = orbit.itinerary
+    words["mirrored"] = found.system.linear.symmetric and not orbit.symmetric
     branches = [continue_orbit(orbit, view.axis, bounds, progress)]
     branches += _met((window.begins, window.ends), view.axis, bounds, progress)
     drawn = [_drawn(view, found, _thinned(arrays_of(one, value))) for one in branches]

@@ -86,7 +86,8 @@ def chosen_key(data: Contents, system, parameter: str | None) -> str:
     swept = swept_in(data)
     able = [name for name in swept if name in system.described and data.sizes[name] > 1]
     if not able:
-        raise ArgumentError(f"sweep: {', '.join(swept) or 'nothing'} is swept; windows need a number of the system")
+        given = ", ".join(f"{name} of {data.sizes[name]}" for name in swept) or "nothing"
+        raise ArgumentError(f"sweep: {given} is swept; windows need a number of the system at two values or more")
     return checked_word("parameter", parameter, able, optional=True) or able[0]
 
 
@@ -97,7 +98,7 @@ def check_data(data: Contents) -> None:
     if data.attrs.get("type") == BUILD:
         raise ArgumentError("type: 'build' is not allowed; the function that made the oscillators is not in the file")
     if data.attrs.get("dynamics", "flow") != "flow":
-        raise ArgumentError("model: 'map' is not allowed; windows are those of the oscillator itself, dynamics: flow")
+        raise ArgumentError("dynamics: 'map' is not allowed; windows are those of the oscillator itself, 'flow'")
     if data.attrs.get("section", "phase") != "phase":
         raise ArgumentError("section: 'impact' is not allowed; windows start from states at t = 0 mod T, kind: phase")
     if "period" not in data or "x1" not in data:

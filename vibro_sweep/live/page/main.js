@@ -180,7 +180,7 @@ function showWhy() {
   if (!why) return;
   if (why.reason) return box.replaceChildren(text("p", `At ${state.view.axis} = ${shown(why.value)}: ${why.reason}.`));
   const end = (one, side) => text("p", `${side} end ${shown(one.value)}${one.error ? ` ± ${short(one.error, 1)}` : ""}: ${one.type.replace("_", "-")}, ${one.text}`);
-  const kind = `${why.itinerary ? why.itinerary : "no impacts"}, period ${why.period}${why.symmetric ? ", symmetric" : ""}`;
+  const kind = `${why.itinerary ? why.itinerary : "no impacts"}, period ${why.period}${why.symmetric ? ", symmetric" : why.mirrored ? ", or its mirror image" : ""}`;
   const others = why.specials.filter((one) => one.type !== "boundary").map((one) => `${one.type.replace("_", "-")} at ${short(one.value, 8)}`);
   box.replaceChildren(
     text("p", `Window of the orbit ${kind}:`), end(why.low, "lower"), end(why.high, "upper"),
