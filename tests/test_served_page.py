@@ -71,7 +71,7 @@ def test_what_is_refused(arguments, told):
 
 def test_other_refusals():
     scene = vs.load_scene("configs/quickstart.yaml")
-    with pytest.raises(ValueError, match="belong to a system"):
+    with pytest.raises(ValueError, match="is swept already"):
         vs.explore(scene, "b")
     built = vs.sweep(lambda q: SYSTEM.replace(b=q), {"q": [5, 6]}, **SHORT)
     with pytest.raises(ValueError, match="the Dataset sweeps a function"):

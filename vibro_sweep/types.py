@@ -17,6 +17,7 @@ from vibro_sweep.analysis.windows.unvisited import Unvisited
 from vibro_sweep.analysis.windows.window import Window, Windows
 from vibro_sweep.driver.cost import Estimate
 from vibro_sweep.driver.sweep import RunReport
+from vibro_sweep.live.served_page import LivePage
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.grazing import Grazing
 from vibro_sweep.model.linear import Family, Linear
@@ -39,6 +40,7 @@ __all__ = [
     "FollowedBranch",
     "Grazing",
     "Linear",
+    "LivePage",
     "Modes",
     "Orbit",
     "PeriodicOrbit",

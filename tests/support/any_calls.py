@@ -1,5 +1,6 @@
 """Every public function, method and class by name, with valid values for each of its arguments."""
 
+import functools
 import inspect
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -209,6 +210,12 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
                 "changes", each("depth", 0, 1) | each("follow", (), ["flip"]) | each("parameter", {"b": (0.39, 0.41)})
             ),
         ),
+        "explore": Call(
+            explored,
+            each("system", SYSTEM, made["Oscillator"])
+            | {"parameter": [{"parameter": None}, {"parameter": "b"}, {"parameter": np.str_("omega"), "bounds": None}]}
+            | each("bounds", None, (6.5, 6.7), np.array([6.5, 6.7])),
+        ),
         "run": Call(
             vs.run, each("scene", scene, made["Continuation"]) | how | each("executor", None, made["Executor"])
         ),
@@ -261,6 +268,12 @@ def any_of(name: str, valid: dict[str, list[dict[str, Any]]]) -> dict[str, list[
 
 def impacts(orbit) -> list[tuple[float, int, float]]:
     return [(float(one["t"]), int(one["side"]), float(one["v1"])) for one in orbit.impacts]
+
+
+@functools.wraps(vs.explore)
+def explored(*arguments: Any, **options: Any) -> None:
+    """A page that is served no longer than this call."""
+    vs.explore(*arguments, **options).close()
 
 
 def print_nothing(*_: Any) -> None:

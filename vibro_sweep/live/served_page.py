@@ -8,8 +8,9 @@ from vibro_sweep.live.extra import needed
 from vibro_sweep.live.presets import described_sweep, scene_of_results, scene_to_explore
 from vibro_sweep.live.views import COLUMNS, span
 from vibro_sweep.model.any_oscillator import AnyOscillator
-from vibro_sweep.model.arguments import checked_interval
+from vibro_sweep.model.arguments import checked_interval, checked_word
 from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
+from vibro_sweep.model.files import checked_path
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.scene import Scene, scene_of
 from vibro_sweep.scene.written import changed
@@ -73,18 +74,18 @@ def explore(
     """
     if isinstance(system, AnyOscillator):
         scene = _swept(system, "b" if parameter is None else parameter, bounds)
-    elif parameter is not None or bounds is not None:
-        raise ArgumentError("parameter and bounds belong to a system; a sweep has them already")
     else:
         scene = _of_a_sweep(system)
+        for name, value in (("parameter", parameter), ("bounds", bounds)):
+            if value is not None:
+                raise ArgumentError(not_allowed(name, value, "left out: what is given for system is swept already"))
     page = LivePage(scene)
     print(page.url)
     return page
 
 
 def _swept(system: AnyOscillator, parameter: str, bounds: Sequence[float] | None) -> Scene:
-    if parameter not in system.described:
-        raise ArgumentError(not_allowed("parameter", parameter, f"one of {', '.join(system.described)}"))
+    checked_word("parameter", parameter, tuple(system.described))
     value = float(system.numbers[parameter])
     lo, hi = span(value) if bounds is None else checked_interval("bounds", bounds, value)
     sweep = {parameter: {"start": lo, "stop": hi, "num": COLUMNS}}
@@ -95,7 +96,7 @@ def _of_a_sweep(system: object) -> Scene:
     if isinstance(system, Scene):
         return described_sweep(system, "the scene")
     if isinstance(system, (str, Path)):
-        return scene_to_explore(Path(system))
+        return scene_to_explore(checked_path("system", system))
     if attributes := getattr(system, "attrs", None):
         return scene_of_results(attributes, "the Dataset")
     raise ArgumentTypeError(not_allowed("system", system, "a System, an Oscillator, a scene, a sweep or its file"))
