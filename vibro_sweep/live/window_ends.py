@@ -14,7 +14,7 @@ from vibro_sweep.analysis.windows.job import Job, window_of
 from vibro_sweep.live.clicked_orbit import Settled
 from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import SPEEDS, height_of
-from vibro_sweep.model.bifurcations import BY_NAME
+from vibro_sweep.model.bifurcations import BY_NAME, GRAZES
 from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.model.parameters import range_of
@@ -100,7 +100,7 @@ def _end(point: SpecialPoint, side: int, bounds: tuple[float, float]) -> dict[st
     if point.type == "graze":
         stop = "right" if (point.stop or 1) > 0 else "left"
         change = "an impact loses its speed" if point.impact is not None else "a flight touches a stop"
-        text = f"{stop} stop, {change}: {point.kind}"
+        text = f"{stop} stop, {change}: {point.kind}; {GRAZES[point.kind.replace(' ', '_')]}"
     elif point.criticality:
         text += f" ({point.criticality}critical)"
     error = float(point.error) if np.isfinite(point.error) else None

@@ -131,5 +131,9 @@ CODIMENSION_TWO = (
 )  # fmt: skip
 CODES_OF_CURVES = {one.name: code for code, one in enumerate(CODIMENSION_TWO)}
 
-KINDS = ("none", "persistence", "nonsmooth_fold")  # of a graze
+GRAZES = {  # kinds of them, and what happens
+    "persistence": "beyond it the motion has one impact more or less",
+    "nonsmooth_fold": "two motions meet, one with an impact more, and neither exists beyond",
+}
+KINDS = ("none", *GRAZES)
 CRITICALITIES = ("none", "super", "sub")
