@@ -25,6 +25,16 @@ class LivePage:
     """A page that can be opened at `url` until `close()` or the end of the process; a notebook shows it.
 
     url : its address on this machine, with the token without which nobody gets it
+
+    Examples
+    --------
+    >>> import vibro_sweep as vs
+    >>> system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6)
+    >>> page = vs.explore(system)  # doctest: +ELLIPSIS
+    http://127.0.0.1:...
+    >>> page.url.startswith("http://127.0.0.1:")
+    True
+    >>> page.close()
     """
 
     def __init__(self, scene: Scene):
