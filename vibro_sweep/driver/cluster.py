@@ -5,7 +5,7 @@ import ipaddress
 import logging
 import socket
 from collections.abc import Iterator
-from concurrent.futures import Executor
+from concurrent.futures import CancelledError, Executor
 
 from distributed import Client
 from distributed import client as client_module
@@ -56,22 +56,16 @@ class ClusterExecutor(ClientExecutor):
 
 
 def _is_news(record: logging.LogRecord) -> bool:
-    """Whether a log record is news. That blocks of a dead scheduler cannot be cancelled is not: the run says so in one
-    line."""
-    return not (record.exc_info and isinstance(record.exc_info[1], GONE))
+    """Whether a log record is news. That blocks were cancelled, or cannot be since the scheduler is dead, is not: the
+    run says so in one line."""
+    return not (record.exc_info and isinstance(record.exc_info[1], (*GONE, CancelledError)))
 
 
-@contextlib.contextmanager
-def _callbacks_filtered() -> Iterator[None]:
-    """These log what callbacks raise, with a traceback; here without what is not news."""
-    loggers = [logging.getLogger(name) for name in ("concurrent.futures", "tornado.application")]
-    for logger in loggers:
-        logger.addFilter(_is_news)
-    try:
-        yield
-    finally:
-        for logger in loggers:
-            logger.removeFilter(_is_news)
+def _filter_callbacks() -> None:
+    """These log what callbacks raise, with a traceback; from here on without what is not news, since some are still
+    called when the client is closed."""
+    for name in ("concurrent.futures", "tornado.application"):
+        logging.getLogger(name).addFilter(_is_news)
 
 
 @contextlib.contextmanager
@@ -97,7 +91,8 @@ def cluster(address: str) -> Iterator[Executor]:
             "so the network must be closed (docs/how/cluster.md)",
             address,
         )
-    with _callbacks_filtered(), _closing(client):
+    _filter_callbacks()
+    with _closing(client):
         try:
             client.wait_for_workers(1, timeout=JOIN_SECONDS)
         except TimeoutError:
