@@ -215,12 +215,13 @@ def test_a_point_that_cannot_be_computed_has_no_attractor(tmp_path):
         (
             "observe: [attractor]",
             'observe[0] = "attractor": did you mean `attractors`? '
-            "allowed: section, lyapunov, multipliers, impacts, attractors, energy, convergence",
+            "allowed: section, lyapunov, multipliers, impacts, contacts, attractors, energy, convergence",
         ),
         (
             "sweep: {start_x1: {values: [0]}}",
             'sweep.start_x1 = {"values": [0]}: unknown key; allowed here: '
-            "mu_m, mu_k, zeta, f2, omega, R, b, tau, offset, R_left, mu_c, x1, v1, x2, v2",
+            "mu_m, mu_k, zeta, f2, omega, R, b, tau, offset, R_left, mu_c, k_stop, c_stop, preload, k_stop_left, "
+            "c_stop_left, preload_left, x1, v1, x2, v2",
         ),
     ],
 )

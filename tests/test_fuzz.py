@@ -27,7 +27,8 @@ BEYOND_THE_SCHEMA = re.compile(
     "makes .* values; at most|wrong sign|must differ from start|of memory at once|numbers; at most|points; at most|"
     "no finite steady motion|in resonance|must be .*proportional|P1 . P2 > 0|has no such stop|belongs to|"
     "nothing would be computed|no sweep to follow|says where orbits start|is swept, and|not observed|no motion between|"
-    "the map's section|resolution of double|is farther than"
+    "must be given; or k_stop|rigid or compliant|both stops are rigid|the map's section|resolution of double|"
+    "is farther than"
 )
 
 counts = pytest.mark.parametrize(

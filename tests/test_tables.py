@@ -23,7 +23,7 @@ from vibro_sweep.model.dimensions import DIMENSIONS
 from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.observables import VARIABLES, WORDS, asked_for
 from vibro_sweep.model.outcomes import BRANCHES, EDGES, ORBITS, POINTS, REASONS
-from vibro_sweep.model.parameters import BY_NAME, NAMES
+from vibro_sweep.model.parameters import BY_NAME, COMPLIANT, COMPLIANT_LEFT, NAMES
 from vibro_sweep.model.state import state
 from vibro_sweep.model.status import STATUSES
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
@@ -39,7 +39,8 @@ LONGEST_LABEL = 30  # characters, beside an axis
 
 
 def scene_of(observe, more=""):
-    return parse_scene(f"{SCENE}observe: [{', '.join(observe)}]\n{more}")
+    scene = SCENE.replace("R: 0.8", "k_stop: 100") if "contacts" in observe else SCENE
+    return parse_scene(f"{scene}observe: [{', '.join(observe)}]\n{more}")
 
 
 def skeleton(scene):
@@ -68,6 +69,7 @@ class TestWhatFollows:
     def test_the_system_has_each_parameter_with_its_default(self):
         fields = {one.name: one.default for one in dataclasses.fields(vs.System)}
         assert fields.pop("stops") == "both" and fields.pop("units") is None
+        assert fields.pop("release") == "displacement"
         given = {name: one.default for name, one in BY_NAME.items()}
         assert tuple(fields) == tuple(BY_NAME)
         assert {name: None if value is dataclasses.MISSING else value for name, value in fields.items()} == given
@@ -80,6 +82,9 @@ class TestWhatFollows:
         system = vs.System(**SYSTEM)
         before = vs.grazing(system)
         for name, one in BY_NAME.items():
+            if name in (each.name for each in (*COMPLIANT, *COMPLIANT_LEFT)):  # its stops are rigid
+                assert not one.free_motion
+                continue
             value = getattr(system, name) or system.parameters()[name]
             other = vs.grazing(system.replace(**{name: 0.5 if name == "tau" else 1.1 * value}))
             changed = (other.b_right + other.b_left, other.tau) != (before.b_right + before.b_left, before.tau)
@@ -156,9 +161,10 @@ class TestOnlyWhatIsAskedFor:
         assert "phase" not in asked_for(frozenset({"section"}), False)
         assert "phase" not in asked_for(frozenset({"lyapunov"}), True)
 
-    def test_each_dataset_is_described(self):
+    @pytest.mark.parametrize("without", ["contacts", "energy"])  # of rigid stops, of compliant ones
+    def test_each_dataset_is_described(self, without):
         more = "sweep: {b: {values: [6, 7]}, omega: {values: [0.6, 0.7]}}\ntrajectory: {periods: 2, samples: 5}\n"
-        with skeleton(scene_of(WORDS, more)) as file:
+        with skeleton(scene_of([word for word in WORDS if word != without], more)) as file:
             by_name = AXES | {one.name: one for one in VARIABLES}
             assert {"b", "omega", "tau", "b_star", "sample", "elapsed"} <= set(file)
             for name, dataset in file.items():

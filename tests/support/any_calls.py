@@ -57,6 +57,11 @@ def each(name: str, *values: Any) -> dict[str, list[dict[str, Any]]]:
     return {name: [{name: value} for value in values]}
 
 
+OF_STOPS = {name: [{name: None}] for name in ("c_stop", "preload", "c_stop_left", "preload_left")}
+OF_STOPS |= {"k_stop": [{"k_stop": None}, {"k_stop": 29, "R": None}, {"k_stop": np.float64(1e4), "R": None}]}
+OF_STOPS |= {"k_stop_left": [{"k_stop_left": None}, {"k_stop_left": 100.0}]} | each("release", "displacement")
+
+
 def objects() -> dict[str, Any]:
     """Public objects of all kinds."""
     orbit = vs.periodic_orbit(SYSTEM.replace(b=0.4), itinerary="LLLRRR")
@@ -99,18 +104,20 @@ def calls(made: dict[str, Any]) -> dict[str, Call]:
         name: [{name: value}, {name: np.float64(value)}, {name: np.array(value)}] for name, value in numbers.items()
     }
     of_system |= each("tau", "grazing", 0.1, np.str_("grazing")) | each("stops", "both", "right", np.str_("left"))
-    of_system |= each("offset", 0.0, 1) | each("R_left", None, 0.5) | each("mu_c", None, 2)
+    of_system |= each("offset", 0.0, 1) | each("R_left", None, 0.5) | each("mu_c", None, 2) | OF_STOPS
     units = each("units", None, "SI", np.str_("SI"), (1, 0.1, 2.0), np.ones(3))
     of_system |= units
     physical = dict(M1=1, M2=10, K1=1, K2=5, C1=0.1, C2=0.5, P1=1, P2=0, Omega=0.63, R=0.8, B=6)
     of_physical = {name: [{name: value}, {name: np.float64(value)}] for name, value in physical.items()}
     of_physical |= each("tau", "grazing", 1) | each("stops", "both") | each("B0", 0.0, 1) | each("R_left", None, 0.5)
+    of_physical |= OF_STOPS
     M, K = np.eye(2), [[2.0, -1.0], [-1.0, 2.0]]
     pair = each("M", M, M.tolist(), xr.DataArray(M), np.ma.array(M)) | each("K", K, np.array(K))
     pair |= each("C", None, np.eye(2), 0) | each("modal_damping", None, [0.1, 0.1], np.ones(2))
     pair |= each("rayleigh", None, (0.1, 0.0)) | each("force", [1, 0], np.ones(2), 0) | each("force_cos", 0, [0, 1])
     pair |= each("constant", 0, [0, 1]) | each("force_power", 0, 2) | each("contact_normal", [1, 0], np.ones(2))
     pair |= each("omega", 1, 1.5) | each("b", 1, np.float32(1)) | each("offset", 0.0, 1) | each("R", 0.5, 1)
+    pair |= OF_STOPS
     pair |= each("R_left", None, 0.5) | each("tau", "grazing", 0.0) | each("stops", "both", "right") | units
     of_pair = {name: values for name, values in pair.items() if name not in ("C", "modal_damping")}
     of_pair |= each("force1", 1.0, 0)  # it has rayleigh

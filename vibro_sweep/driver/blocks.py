@@ -87,6 +87,7 @@ def plan_of(scene: Scene) -> points.Plan:
         states=any(WORDS[word].states for word in scene.observe),
         lyapunov=lyapunov,
         impacts="impacts" in scene.observe,
+        contacts="contacts" in scene.observe,
         attractors="attractors" in scene.observe,
         section_side=side if scene.section.kind == "impact" and "section" in scene.observe else 0.0,
         periods=scene.trajectory.periods if scene.trajectory else 0,

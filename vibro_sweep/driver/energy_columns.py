@@ -91,13 +91,19 @@ def _contact_masses(block: Block, shape: tuple[int, int]) -> np.ndarray:
 
 
 def at_contact(table: np.ndarray, ends: np.ndarray, resting: np.ndarray) -> np.ndarray:
-    """States (..., 2 N) of the masses in contact coordinates, none behind a stop, and at one where they rest."""
+    """States (..., 2 N) of the masses in contact coordinates, none behind a rigid stop, and at one where they rest."""
     ends = np.array(ends)
     if "P" in table.dtype.names:
         ends[..., 0::2] -= table["origin"]
         pairs = ends.reshape(*ends.shape[:-1], -1, 2)
         ends = np.einsum("...ij,...jk->...ik", table["P"], pairs).reshape(ends.shape)
     low, high = table["stops"][..., 0], table["stops"][..., 1]
+    if "contact_stiffness" in table.dtype.names:
+        low, high = (
+            np.where(table["contact_stiffness"][..., n] > 0, np.inf * (2 * n - 1), one)
+            for n, one in enumerate((low, high))
+        )
+        resting = np.where(np.isinf(np.where(resting > 0, high, low)), 0, resting)
     ends[..., 0] = np.where(resting > 0, high, np.where(resting < 0, low, np.clip(ends[..., 0], low, high)))
     ends[..., 1] = np.where(resting == 0, ends[..., 1], 0.0)
     return ends

@@ -9,6 +9,7 @@ from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH
 from vibro_sweep.model.confinement import confinement_of
 from vibro_sweep.model.contact import (
+    by_mass,
     contact_coordinates,
     coordinates,
     distance,
@@ -32,7 +33,8 @@ def kind_of(linears: Iterable[Linear]) -> Kind:
     """The kind for which kernels must be compiled: oscillators with the same number of masses."""
     linears = list(linears)
     constant = any(np.any(q.constant) or np.any(origin_of(q)) for q in linears)
-    return Kind(len(linears[0].normal), constant, False, all(is_own(q) for q in linears))
+    compliant = any(q.k_low > 0 or q.k_high > 0 for q in linears)
+    return Kind(len(linears[0].normal), constant, False, all(is_own(q) for q in linears), compliant)
 
 
 def any_points(linears: np.ndarray, kind: Kind, frames: bool = True) -> np.ndarray:
@@ -46,7 +48,23 @@ def any_points(linears: np.ndarray, kind: Kind, frames: bool = True) -> np.ndarr
         result[place] = known[key]
         low, high = (distance(q, known[key]["origin"], gap) for gap in (q.low, q.high))
         result[place]["stops"] = low, high, q.R_low, q.R_high
+        if kind.compliant:
+            _set_contact(result[place], q)
     return result
+
+
+def _set_contact(point: np.void, q: Linear) -> None:
+    """The compliant stops of a point, over m_e = 1/(n M^-1 n), and the fastest rate in contact with each."""
+    mass = 1 / float(q.normal @ by_mass(q.M, q.normal[:, None])[:, 0])
+    point["contact_mass"], point["by_force"] = mass, q.by_force
+    pairs = ("contact_stiffness", q.k_low, q.k_high), ("contact_damping", q.c_low, q.c_high)
+    for name, low, high in (*pairs, ("contact_preload", q.p_low, q.p_high)):
+        point[name] = low / mass, high / mass
+    for n in range(2):
+        stiffness, damping = point["stiffness"].copy(), point["damping"].copy()
+        stiffness[:, 0] += point["push"] * point["contact_stiffness"][n]
+        damping[:, 0] += point["push"] * point["contact_damping"][n]
+        point["contact_rate"][n] = max(fastest_rate(stiffness, damping), q.omega)
 
 
 def grazing_points(linears: np.ndarray, expand_at: float | None) -> np.ndarray:

@@ -160,7 +160,9 @@ def carry_one(e, w, begin, rest, part):
     set_state(o, f, Stops(o.stops[0], o.stops[1], o.stops[2], o.stops[3]), 0, 0.0, begin)
     o.resting, o.periods, o.log_side = rest, 1, 0.0
     carry(
-        Ensemble(e.flights, e.orbits, e.strike, e.tangent, part, e.halt), None, Readings(w.section, False, w.growth, 0)
+        Ensemble(e.flights, e.orbits, e.strike, e.tangent, part, e.halt, e.law),
+        None,
+        Readings(w.section, False, w.growth, 0),
     )
 
 

@@ -7,10 +7,11 @@ out to be periodic and exponents are wanted, three times one more period, the la
 import numpy as np
 
 from vibro_sweep.engine.averages import keep_averages
+from vibro_sweep.engine.compliant.law import clear_contacts
 from vibro_sweep.engine.motion.orbits import reset_counts
 from vibro_sweep.engine.periods import REPEAT, ROUNDING, find_period, has_settled
 from vibro_sweep.engine.point_tables import to_masses
-from vibro_sweep.engine.simd.jit import jit, noinline
+from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import put
 from vibro_sweep.engine.variational.multipliers import BESIDE, begin_period, read_period
@@ -41,6 +42,7 @@ def begin_phase(e, w, plan, phase, results):
         set_out(e, plan.record)
         for i in range(len(results)):
             reset_counts(e.orbits[i])
+            begin_contacts(e.law, i, plan.contacts)
             put(e.orbits[i].largest, 0, 0.0)
             e.orbits[i].impacts_logged, e.orbits[i].log_side = 0, plan.section_side
         return plan.parts
@@ -75,6 +77,27 @@ def end_phase(e, w, plan, phase, points, results, sections, phases, running):
         read_period(e, w, results, phase - FLOQUET)
 
 
+@inline
+def begin_contacts(law, i, wanted):
+    """Count the contacts of an orbit with compliant stops from here on."""
+    if law is not None:
+        if wanted:
+            clear_contacts(law.orbits[i])
+
+
+@inline
+def keep_contacts(law, o, result, time):
+    """Keep what is known of the contacts with compliant stops of the record, which lasts this time."""
+    if law is not None:
+        contact = law.orbits[o.lane]
+        result.relaxed[0], result.relaxed[1] = contact.relaxed[0], contact.relaxed[1]
+        result.contacts_left, result.contacts_right = contact.contacts[0], contact.contacts[1]
+        result.contact_time = contact.time / time
+        result.penetration_max = contact.peak if contact.peak > -np.inf else np.nan
+        result.contact_force_max = contact.peak_force if contact.peak > -np.inf else np.nan
+        result.restitution_mean = contact.restitutions / contact.ended if contact.ended > 0 else np.nan
+
+
 @noinline
 def keep_record(e, w, plan, point, result, section, phase, running, o):
     """Keep the results of the record of an orbit."""
@@ -82,6 +105,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
     result.min_impact_speed = o.slowest if o.slowest < np.inf else np.nan
     result.contact_error = o.miss if o.slowest < np.inf else np.nan
     result.sticking_time = o.rest_time
+    keep_contacts(e.law, o, result, plan.record * period_of(e, o))
     states, growth, T = w.section[o.lane], w.growth[o.lane], period_of(e, o)
     numbers = len(result.end)
     for j in range(numbers):

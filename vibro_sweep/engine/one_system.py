@@ -4,6 +4,7 @@ import numpy as np
 
 from vibro_sweep.engine import points
 from vibro_sweep.engine.any_points import any_points, kind_of
+from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.point_tables import ON_STOP
 from vibro_sweep.engine.records import PAPER, POINT, Kind, new_results
@@ -31,6 +32,13 @@ def impact_of(masses: int) -> np.dtype:
 
 
 STICKING = np.dtype([("t_on", float), ("t_off", float), ("side", np.int8)])
+
+CONTACT = np.dtype(
+    [
+        ("t_touch", float), ("t_release", float), ("side", np.int8), ("v_touch", float), ("v_release", float),
+        ("max_penetration", float), ("max_force", float),
+    ]
+)  # fmt: skip
 
 ROOM = 256  # impacts and rests of each of eight orbits there is room for at first
 
@@ -73,6 +81,7 @@ def plan_of(transient: int = 0, record: int = 0, lyapunov: bool = False) -> poin
         states=lyapunov,
         lyapunov=lyapunov,
         impacts=False,
+        contacts=False,
         attractors=False,
         section_side=0.0,
         periods=0,
@@ -88,6 +97,8 @@ def is_paper(system, axes: dict[str, np.ndarray] | None = None) -> bool:
     """
     axes = axes or {}
     if not isinstance(system, System) or "mu_c" in axes or not (system.mu_c is None or system.mu_c == system.mu_k):
+        return False
+    if system.k_stop is not None or system.k_stop_left is not None:
         return False
     if not np.all(axes.get("mu_k", system.mu_k)):
         return False
@@ -118,7 +129,7 @@ class Engine:
     """
 
     def __init__(self, system, later: float = 0.0):
-        self._made_of = system, later
+        self._made_of, self.system = (system, later), system
         self.point, self.kind = point_of_one(system, later)
         self.states = 2 * self.kind.masses
         self.is_system = isinstance(system, System)
@@ -154,11 +165,18 @@ class Engine:
     def checked(self, state) -> np.ndarray:
         """The state in contact coordinates. Raises ValueError where it is not a state, or behind a stop."""
         values = self.to_contact(checked_state(state, self.kind.masses))
-        if not self.stops.left <= values[0] <= self.stops.right:
+        left, right = self.compliant
+        if not (left or self.stops.left <= values[0]) or not (right or values[0] <= self.stops.right):
             low, high, gap = (float(one + self.middle) for one in (self.stops.left, self.stops.right, values[0]))
             name = "the gap" if self.turned else "x1"
             raise ArgumentError(f"state: {name} = {gap!r} is behind a stop; allowed: {low!r} .. {high!r}")
         return values
+
+    @property
+    def compliant(self) -> tuple[bool, bool]:
+        """Whether the left stop is, and the right one."""
+        q = self.system.linear
+        return q.k_low > 0, q.k_high > 0
 
     @property
     def turned(self) -> bool:
@@ -198,15 +216,23 @@ class Engine:
     def put(self, state, cell: int = 0, offset: float = 0.0, lane: int = 0) -> None:
         """Start a new orbit from an allowed state in contact coordinates, at this offset of this cell."""
         nodes = self.ensemble.flights.nodes[0]
+        if self.ensemble.law is not None:
+            for name in ("relaxed", "pressed", "logged"):
+                self.ensemble.law.orbits[name][lane] = 0
         orbits.set_state(
             self.ensemble.orbits[lane], nodes, self.stops, int(cell), float(offset), np.asarray(state, float)
         )
 
-    def carry(self, records: orbits.Records, section: np.ndarray) -> int:
-        """Carry the orbit over as many periods as `section` (n, 2 N) has rows. Returns a status."""
+    def carry(self, records: orbits.Records, section: np.ndarray, contacts: np.ndarray | None = None) -> int:
+        """Carry the orbit over as many periods as `section` (n, 2 N) has rows. Returns a status.
+
+        contacts : (1, m, LOGGED), room for those with compliant stops
+        """
         self.orbit["periods"] = len(section)
         self.ensemble.orbits["status"][1:] = status.NOT_COMPUTED
-        self._run(points.MOTION, 1, section[None], records=records)
+        law = self.ensemble.law
+        kept = {} if law is None or contacts is None else {"law": law._replace(log=contacts)}
+        self._run(points.MOTION, 1, section[None], records=records, **kept)
         return int(self.orbit["status"][0])
 
     def carry_eight(self, states: np.ndarray, cell: int, periods: int) -> tuple[np.ndarray, orbits.Records]:
@@ -259,6 +285,45 @@ class Engine:
             result["x2"], result["v2"] = states[:, 2], states[:, 3]
         else:
             result["x"], result["xdot"] = states[:, 0::2], states[:, 1::2]
+        return result
+
+    def before(self) -> tuple[np.ndarray, ...]:
+        """Where the first orbit is, for `go_back`."""
+        law = self.ensemble.law
+        return self.orbit.copy(), *(() if law is None else (law.orbits[:1].copy(),))
+
+    def go_back(self, before: tuple[np.ndarray, ...]) -> None:
+        self.orbit[:] = before[0]
+        if self.ensemble.law is not None:
+            self.ensemble.law.orbits[:1] = before[1]
+
+    def new_log(self, room: int, open_contact: np.ndarray) -> np.ndarray:
+        """Room for so many contacts of the first orbit, of which one may be going on."""
+        log, law = np.empty((1, room if self.ensemble.law is not None else 0, LOGGED)), self.ensemble.law
+        if law is not None:
+            log[0, : len(open_contact)] = open_contact
+            law.orbits["logged"][0] = len(open_contact)
+            law.orbits["row"][0] = 0 if len(open_contact) else -1
+        return log
+
+    @property
+    def contacts_logged(self) -> int:
+        law = self.ensemble.law
+        return 0 if law is None else int(law.orbits["logged"][0])
+
+    @property
+    def in_contact(self) -> bool:
+        """Whether the first orbit is in contact with a compliant stop."""
+        law = self.ensemble.law
+        return law is not None and bool(law.orbits["pressed"][0] != 0 and self.orbit["resting"][0] != 0)
+
+    def contacts(self, rows: np.ndarray, start: float = -np.inf) -> np.ndarray:
+        """Logged contacts (m, LOGGED) as a structured array `CONTACT`; none before `start`."""
+        result = np.empty(len(rows), CONTACT)
+        result["t_touch"] = np.maximum(self.time(rows[:, 0], rows[:, 1], rows[:, 2]), start)
+        result["t_release"] = self.time(rows[:, 3], rows[:, 4], rows[:, 5])
+        for name, column in zip(CONTACT.names[2:], rows.T[6:], strict=True):
+            result[name] = column
         return result
 
     def sticking(self, rows: np.ndarray, end: float) -> np.ndarray:

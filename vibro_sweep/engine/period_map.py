@@ -26,7 +26,7 @@ from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import is_number
 from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.linear import Linear, gap_response
+from vibro_sweep.model.linear import Linear, gap_response, rigid_family_of
 from vibro_sweep.model.oscillator import System, checked_system
 from vibro_sweep.model.parameters import NAMES
 from vibro_sweep.model.refusals import not_allowed
@@ -69,6 +69,7 @@ class PeriodMap:
 
     def __init__(self, system: AnyOscillator, order: int = 0, expand_at: float | None = None):
         checked_system(system)
+        rigid_family_of(system, "the mapping is that of impacts")
         if order not in (0, 1, 2):
             raise ArgumentError(not_allowed("order", order, "0 (the flow), 1 or 2"))
         self.system = system if order == 0 else system.replace(tau="grazing")

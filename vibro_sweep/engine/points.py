@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.law import relax_from, set_law
 from vibro_sweep.engine.motion import strike
 from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Stops, new_records, set_state
@@ -11,7 +12,7 @@ from vibro_sweep.engine.motion.together import Ensemble, Readings, flight_of, ne
 from vibro_sweep.engine.observe import PHASES, RECORD, begin_phase, close, end_phase
 from vibro_sweep.engine.point_tables import fill_tables, same_tables, set_graze, to_contact
 from vibro_sweep.engine.records import PAPER, Kind, point_of
-from vibro_sweep.engine.simd.jit import exported, jit
+from vibro_sweep.engine.simd.jit import exported, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables import general_tables, series
 from vibro_sweep.engine.variational import tangent
@@ -33,6 +34,7 @@ class Plan(NamedTuple):
     states: bool  # of every recorded section, for the scene or to find the period of the orbit
     lyapunov: bool  # with `states`
     impacts: bool
+    contacts: bool
     attractors: bool  # with `lyapunov`
     section_side: float  # 0: the section is t = 0 mod T; else the stop of an impact section
     periods: int  # of the trajectory
@@ -84,6 +86,24 @@ def clearance(stops):
     return abs(stops.right if stops.right < np.inf else stops.left)
 
 
+@inline
+def give_law(law, i, point, width):
+    """Give orbit i its compliant stops."""
+    if law is not None:
+        set_law(law, i, point, width)
+
+
+@inline
+def keep_between(law, i, state, stops):
+    """Put a state that is behind a rigid stop on it."""
+    if law is not None:
+        contact = law.orbits[i]
+        left, right = -np.inf if contact.compliant[0] else stops.left, np.inf if contact.compliant[1] else stops.right
+        state[0] = min(max(state[0], left), right)
+    else:
+        state[0] = min(max(state[0], stops.left), stops.right)
+
+
 @jit
 def prepare(points, i, w, plan):
     """Orbit i gets the tables of its point, those of the orbit before it if they are the same; and its stops."""
@@ -100,6 +120,7 @@ def prepare(points, i, w, plan):
     stops = Stops(point.stops[0], point.stops[1], point.stops[2], point.stops[3])
     o.from_base = int(q.stiff or q.largest > LARGE * clearance(stops))
     strike.set_stops(e.strike[0], i, stops)
+    give_law(e.law, i, point, q.width)
     if not same_tables(point, w.carried[i], w.paper, w.other):
         strike.set_oscillator(e.strike[0], i, q)
         if plan.lyapunov:
@@ -125,9 +146,11 @@ def set_orbits(points, starts, results, n, first, w, plan):
         goes_on = n > 0 and results[n - 1, first + i].status in status.VALID
         for j in range(len(state)):
             state[j] = results[n - 1, first + i].end[j] if goes_on else starts[min(n, 1), first + i, j]
+        if goes_on:
+            relax_from(e.law, i, results[n - 1, first + i].relaxed)
         to_contact(point, state, stops, w.other)
         if plan.order == 0:  # points of the map may lie beyond the stops
-            state[0] = min(max(state[0], stops.left), stops.right)
+            keep_between(e.law, i, state, stops)
         set_state(o, e.flights.nodes[o.table], stops, 0, 0.0, state)
 
 

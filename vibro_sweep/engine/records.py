@@ -17,6 +17,7 @@ class Kind(NamedTuple):
     constant: bool  # whether a constant force acts
     paper: bool  # the paper's oscillator, with tables from its modes
     own: bool = True  # all in coordinates of the masses themselves, of which an impulse moves the first alone
+    compliant: bool = False  # whether some stops are (engine/compliant/)
 
 
 PAPER = Kind(2, False, True)
@@ -35,8 +36,17 @@ def point_of(kind: Kind) -> np.dtype:
     if kind.paper:
         return POINT
     n = kind.masses
+    contact = [
+        ("contact_stiffness", float, 2),  # of the left stop and the right one, over m_e; 0: it is rigid
+        ("contact_damping", float, 2),
+        ("contact_preload", float, 2),
+        ("contact_rate", float, 2),  # the fastest in contact
+        ("contact_mass", float),  # m_e
+        ("by_force", np.bool_),
+    ]
     return np.dtype(
         [
+            *(contact if kind.compliant else []),
             ("stops", float, 4),
             ("omega", float),
             ("tau", float),
@@ -95,6 +105,7 @@ def result_of(masses: int) -> np.dtype:
             ("log_error", float, (2 * masses,)),  # too; and its error
             ("end", float, (2 * masses,)),  # the state at the last section, and
             ("resting", float),  # the side of the stop that M1 rests on there, or 0
+            ("relaxed", float, 2),  # where compliant stops are that relax
         ]
     )
 

@@ -8,11 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.law import lane_of, relax_from
 from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Records, set_state
 from vibro_sweep.engine.motion.together import Ensemble, Readings
 from vibro_sweep.engine.points import prepare
-from vibro_sweep.engine.simd.jit import exported, jit
+from vibro_sweep.engine.simd.jit import exported, inline, jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 
@@ -54,7 +55,7 @@ def follow(w, periods, hits, samples, sections, impacts):
             records.times[i, 1] = (cells - math.floor(cells)) * q.width
             i += 1
         part = Records(hits, records.rests, records.times[first:i], records.samples[first:i])
-        part = Ensemble(e.flights, e.orbits, e.strike, e.tangent, part, e.halt)
+        part = Ensemble(e.flights, e.orbits, e.strike, e.tangent, part, e.halt, e.law)
         carry(part, None, Readings(w.section, False, w.growth, 0))
         if o.status != status.OK:
             sections[: n + 1] = np.nan
@@ -106,6 +107,15 @@ def keep_fastest(hits, impacts, q, stops):
             n += 1
 
 
+@inline
+def hold(law, o, result):
+    """Where compliant stops are at the section; a mass inside one is in contact, which its state says."""
+    if law is not None:
+        relax_from(law, 0, result.relaxed)
+        if o.resting != 0.0 and law.orbits[0].compliant[lane_of(o.resting)]:
+            o.resting = 0.0
+
+
 @exported
 def run_trajectories(points, results, hits, kept, w, plan):
     """Go on from where `run_points` left the orbits of a block. hits: scratch, (1, m, 3 + 2 N)."""
@@ -120,6 +130,7 @@ def run_trajectories(points, results, hits, kept, w, plan):
                 stops = prepare(points[p : p + 1], 0, w, plan)
                 set_state(o, e.flights.nodes[o.table], stops, 0, 0.0, result.end)
                 o.resting = result.resting
+                hold(e.law, o, result)
                 samples, sections, impacts = kept.samples[p, s], kept.sections[p, s], kept.impacts[p, s]
                 count = follow(w, plan.periods, hits, samples, sections, impacts)
                 if o.status == status.OK:

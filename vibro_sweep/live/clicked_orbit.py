@@ -80,7 +80,8 @@ def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]
     words |= {"itinerary": _itinerary(impacts, T, found.period), "orbit_status": str(orbit.status)}
     arrays |= {"t": times.astype("f4"), "states": states.astype("f4").ravel()}
     arrays |= {"impact_t": shown["t"].astype("f4"), "impact_side": shown["side"].astype("i1")}
-    return arrays, words | {"R_right": float(q.restitution(1)), "R_left": float(q.restitution(-1))}
+    ended = found.period * T * (1 - 1e-9) if found.period else np.inf
+    return arrays, words | {"contacts": int(np.count_nonzero(orbit.contacts["t_touch"] < ended))}
 
 
 def _itinerary(impacts: np.ndarray, T: float, period: int) -> str:

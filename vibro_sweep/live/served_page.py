@@ -1,6 +1,6 @@
 """`vs.explore`: the page of a sweep, served by a thread of this process and shown in a notebook."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -107,6 +107,7 @@ def _of_a_sweep(system: object) -> Scene:
         return described_sweep(system, "the scene")
     if isinstance(system, (str, Path)):
         return scene_to_explore(checked_path("system", system))
-    if attributes := getattr(system, "attrs", None):
+    attributes = getattr(system, "attrs", None)
+    if isinstance(attributes, Mapping) and attributes:
         return scene_of_results(attributes, "the Dataset")
     raise ArgumentTypeError(not_allowed("system", system, "a System, an Oscillator, a scene, a sweep or its file"))

@@ -8,6 +8,7 @@ import numpy as np
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models.declaration import Model
 from vibro_sweep.model.parameters import Parameter
+from vibro_sweep.model.stops import followers
 from vibro_sweep.model.units import Units
 
 
@@ -66,5 +67,4 @@ class AnyOscillator:
     def parameters(self) -> dict[str, float]:
         """The numbers by name, `tau` resolved, and those that follow others."""
         known = {name: value for name, value in self.numbers.items() if value is not None}
-        follow = {one.name: known[one.follows] for one in self.described.values() if one.follows}
-        return follow | known | {"tau": self.phase}
+        return followers(self.numbers) | known | {"tau": self.phase}

@@ -17,6 +17,7 @@ from vibro_sweep.model.models.declaration import Model, Option, linear_of
 from vibro_sweep.model.parameters import LENGTHS, Parameter, ParameterError, checked_number
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.state import MOST_MASSES
+from vibro_sweep.model.stops import check_stops
 from vibro_sweep.model.units import ALLOWED, Units, units_from
 
 
@@ -30,7 +31,10 @@ class Oscillator(AnyOscillator):
     M, K : (N, N), symmetric; M positive definite, K positive semidefinite
     C, modal_damping, rayleigh : at most one; a matrix as K, a ratio for each mode, alpha and beta of alpha M + beta K
     force, force_cos, constant, contact_normal : (N,); a force of 0 acts on no mass
-    R_left : of the left stop; left out: R
+    R, R_left : restitution of rigid stops; R_left, of the left one, is R where it is left out
+    k_stop, c_stop, preload : of compliant stops, in place of R: in contact the force k_stop delta + c_stop delta' +
+        preload acts on the gap, delta the way behind the stop; with `_left` of the left one
+    release : displacement, a contact ends where delta = 0; force, where its force is zero
     tau : phase in radians, or "grazing": where the gap of the free motion is largest at t = 0
     stops : both, right, left; b may be <= 0 where there is one
     units : for labels: SI; or what a mass, a length and a time of 1 are in kg, m and s; left out: nondimensional
@@ -51,8 +55,11 @@ class Oscillator(AnyOscillator):
     def __init__(
         self, M: ArrayLike, K: ArrayLike, C: ArrayLike | None = None, *, modal_damping: ArrayLike | None = None,
         rayleigh: ArrayLike | None = None, force: ArrayLike = 0, force_cos: ArrayLike = 0, constant: ArrayLike = 0,
-        force_power: float = 0, contact_normal: ArrayLike, omega: float, b: float, offset: float = 0.0, R: float,
-        R_left: float | None = None, tau: float | Literal["grazing"] = "grazing",
+        force_power: float = 0, contact_normal: ArrayLike, omega: float, b: float, offset: float = 0.0,
+        R: float | None = None, R_left: float | None = None, k_stop: float | None = None, c_stop: float | None = None,
+        preload: float | None = None, k_stop_left: float | None = None, c_stop_left: float | None = None,
+        preload_left: float | None = None, release: Literal["displacement", "force"] = "displacement",
+        tau: float | Literal["grazing"] = "grazing",
         stops: Literal["both", "right", "left"] = "both",
         units: Literal["SI"] | ArrayLike | None = None,
     ) -> None:  # fmt: skip
@@ -216,6 +223,7 @@ def checked(model: Model, given: Mapping[str, Any]) -> dict[str, Any]:
             words = isinstance(value, str) and value in one.words
             left_out = value is None and (one.follows or one.optional)
             result[one.name] = value if words or left_out else checked_number(one, value, stops)
+    check_stops(result)
     return {name: result[name] for name in known}
 
 

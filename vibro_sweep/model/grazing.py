@@ -11,7 +11,8 @@ import numpy as np
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.linear import Linear, amplitudes, gap_response, grazing_phase, static_state
 from vibro_sweep.model.modes import modes
-from vibro_sweep.model.parameters import FREE_MOTION, PARAMETERS
+from vibro_sweep.model.parameters import FREE_MOTION
+from vibro_sweep.model.stops import followers
 
 ROUNDED = 4 * np.finfo(float).eps  # of a force on a mode, relative to its parts
 
@@ -79,9 +80,10 @@ def with_phase(numbers: dict) -> dict:
 def resolved(numbers: dict) -> dict:
     """A system's numbers by name, with tau in radians, and those that follow others in numbers."""
     numbers = with_phase(numbers)
-    follow = {one.name: numbers[one.follows] for one in PARAMETERS if one.follows and numbers[one.name] is None}
+    follow = followers(numbers) | ({"mu_c": numbers["mu_k"]} if numbers["mu_c"] is None else {})
     tau = numbers["tau"]
-    return numbers | follow | {"tau": float(tau) if np.ndim(tau) == 0 else tau}
+    found = numbers | follow | {"tau": float(tau) if np.ndim(tau) == 0 else tau}
+    return {name: value for name, value in found.items() if value is not None}
 
 
 def grazing_clearance(numbers: dict) -> np.ndarray:

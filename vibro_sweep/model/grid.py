@@ -11,6 +11,7 @@ from vibro_sweep.model.built import Built, sizes_of, stored_of
 from vibro_sweep.model.grazing import resolved
 from vibro_sweep.model.linear import Linear
 from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.stops import followers
 
 MOST_COMPARED = 4096
 
@@ -28,7 +29,7 @@ def grid(system: AnyOscillator, axes: dict[str, np.ndarray]) -> dict[str, np.nda
     else:
         if isinstance(system, Built):
             numbers |= _sizes(linears(system, axes))
-        numbers |= {one.name: numbers[one.follows] for one in system.described.values() if _follows(one, numbers)}
+        numbers |= followers(numbers)
         numbers = {name: value for name, value in numbers.items() if value is not None}
         if isinstance(numbers.get("tau"), str):
             numbers["tau"] = np.array([q.tau for q in linears(system, axes).flat]).reshape(shape)
@@ -78,7 +79,3 @@ def _sizes(each: np.ndarray) -> dict[str, np.ndarray]:
 
 def _one(family, changes) -> Linear:
     return family.replace(**changes).linear
-
-
-def _follows(one, numbers) -> bool:
-    return bool(one.follows) and numbers.get(one.name) is None

@@ -14,8 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.model.errors import ArgumentTypeError
+from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.model.stops import RIGID_ALONE, Stop
 
 DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
 FORCED = ("M", "K", "C", "normal", "constant", "sine", "cosine", "omega")  # fields that move the steady motion
@@ -32,6 +33,9 @@ class Linear(NamedTuple):
     low, high : positions of the stops; infinite where there is none
     R_low, R_high : their coefficients of restitution
     middle : the offset about which the stops lie
+    k_low, c_low, p_low, k_high, c_high, p_high : stiffness, damping and preload of compliant stops; 0 of rigid ones,
+        and of compliant ones R is NaN
+    by_force : whether contact ends where the force of the stop is zero, and not at zero displacement
 
     Examples
     --------
@@ -59,11 +63,25 @@ class Linear(NamedTuple):
     R_low: float
     R_high: float
     middle: float = 0.0
+    k_low: float = 0.0
+    c_low: float = 0.0
+    p_low: float = 0.0
+    k_high: float = 0.0
+    c_high: float = 0.0
+    p_high: float = 0.0
+    by_force: bool = False
 
     @property
     def symmetric(self) -> bool:
         """Whether x -> -x, t -> t + T/2 maps motions to motions."""
-        return self.low == -self.high and self.R_low == self.R_high and not np.any(self.constant)
+        kind = self.k_low, self.c_low, self.p_low
+        alike = kind == (self.k_high, self.c_high, self.p_high) and (kind[0] > 0 or self.R_low == self.R_high)
+        return self.low == -self.high and alike and not np.any(self.constant)
+
+    @property
+    def compliant(self) -> bool:
+        """Whether a stop is: then there is motion beyond it."""
+        return self.k_low > 0 or self.k_high > 0
 
     def stop(self, sides) -> np.ndarray:
         """Positions of the stops on these sides (+1 high, -1 low)."""
@@ -250,14 +268,23 @@ def rest_state(q: Linear) -> np.ndarray:
     return np.linalg.lstsq(bordered, np.append(q.constant, gap), rcond=None)[0][:n]
 
 
-def contact(b, offset, R, R_left, stops) -> dict:
-    """The fields of `Linear` that say where the stops are; also for complex numbers. R_left: None follows R."""
+def contact(
+    *, b, offset=0.0, stops="both", R=None, R_left=None, k_stop=None, c_stop=None, preload=None, k_stop_left=None,
+    c_stop_left=None, preload_left=None, release="displacement",
+) -> dict:  # fmt: skip
+    """The fields of `Linear` that say where the stops are, and of what kind; also for complex numbers. What is None of
+    the left one follows the right one."""
+    right = Stop(R, k_stop, c_stop, preload)
+    left = right.left(R_left, k_stop_left, c_stop_left, preload_left)
     return {
         "low": offset - b if stops != "right" else -np.inf,
         "high": offset + b if stops != "left" else np.inf,
-        "R_low": R if R_left is None else R_left,
-        "R_high": R,
+        "R_low": left.R_or_nan,
+        "R_high": right.R_or_nan,
         "middle": offset,
+        **{f"{name}_low": value for name, value in zip("kcp", left.compliance, strict=True)},
+        **{f"{name}_high": value for name, value in zip("kcp", right.compliance, strict=True)},
+        "by_force": release == "force" and (left.k_stop is not None or right.k_stop is not None),
     }
 
 
@@ -268,6 +295,14 @@ def family_of(system) -> Family:
     if not isinstance(getattr(system, "family", None), Family):
         raise ArgumentTypeError(not_allowed("system", system, "a System or an Oscillator"))
     return system.family
+
+
+def rigid_family_of(system, what: str) -> Family:
+    """The same, for what is computed with rigid stops alone. Raises ValueError where a stop is compliant."""
+    family = family_of(system)
+    if family.built.compliant:
+        raise ArgumentError(not_allowed("system", system, f"with rigid stops: {what}. {RIGID_ALONE}"))
+    return family
 
 
 def forcing_period(q: Linear) -> float:

@@ -29,6 +29,7 @@ WORDS = {
     "lyapunov": Word("Lyapunov spectrum, its standard errors and the residual of its sum rule", tangents=True),
     "multipliers": Word("Floquet multipliers of periodic orbits", tangents=True),
     "impacts": Word("counts and speeds of impacts, time at rest on a stop", states=False),
+    "contacts": Word("counts, time, peaks and restitution of contacts with compliant stops", states=False),
     "attractors": Word("which starts end on the same attractor", tangents=True),
     "energy": Word(
         "power lost in impacts, root mean square and largest size of every coordinate", states=False,
@@ -46,6 +47,7 @@ def _attractor(name: str, label: str, text: str, dtype: str = "f8") -> Variable:
 
 
 _EXPONENTS, _MULTIPLIERS, _IMPACTS, _ENERGY = ("lyapunov",), ("multipliers",), ("impacts",), ("energy",)
+_CONTACTS = ("contacts",)
 GAP = "gap"
 
 
@@ -132,6 +134,27 @@ _OF_ANY = (
     Variable(
         "contact_error", _IMPACTS, "contact error", "largest distance from the stop at which an impact was computed",
         units="m",
+    ),
+    Variable(
+        "contacts_right", _CONTACTS, "contacts on the right",
+        "contacts with the right stop that begin in the recorded periods", dtype="i8",
+    ),
+    Variable(
+        "contacts_left", _CONTACTS, "contacts on the left",
+        "contacts with the left stop that begin in the recorded periods", dtype="i8",
+    ),
+    Variable("contact_time", _CONTACTS, "share of time in contact", "share of the recorded time in contact"),
+    Variable(
+        "contact_force_max", _CONTACTS, "largest contact force",
+        "largest force of a compliant stop in the recorded periods; NaN without contacts", units="N",
+    ),
+    Variable(
+        "penetration_max", _CONTACTS, "largest penetration",
+        "how far the mass was behind a compliant stop at most; NaN without contacts", units="m",
+    ),
+    Variable(
+        "restitution_mean", _CONTACTS, "mean restitution",
+        "mean of -v_release/v_touch over the contacts that ended in the recorded periods; NaN without any",
     ),
     Variable("sticking_time", _IMPACTS, "sticking time", "time at rest on a stop in the recorded periods", units="s"),
 )  # fmt: skip

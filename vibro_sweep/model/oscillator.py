@@ -18,6 +18,7 @@ from vibro_sweep.model.models.two_mass import MODEL
 from vibro_sweep.model.modes import Modes, modes
 from vibro_sweep.model.parameters import (
     PARAMETERS,
+    RELEASES,
     STOPS,
     Parameter,
     ParameterError,
@@ -25,9 +26,11 @@ from vibro_sweep.model.parameters import (
     physical_range,
 )
 from vibro_sweep.model.real import number_of
+from vibro_sweep.model.stops import check_stops
 from vibro_sweep.model.units import ALLOWED, Units, units_from
 
 Stops = Literal["both", "right", "left"]
+Release = Literal["displacement", "force"]
 
 
 @dataclass(frozen=True)
@@ -47,31 +50,41 @@ class System(AnyOscillator):
     zeta: float
     f2: float
     omega: float
-    R: float
-    b: float
+    R: float | None = None
+    b: float | None = None  # it must be given
     tau: float | Literal["grazing"] = "grazing"
     stops: Stops = "both"
     offset: float = 0.0
     R_left: float | None = None
     mu_c: float | None = None
+    k_stop: float | None = None
+    c_stop: float | None = None
+    preload: float | None = None
+    k_stop_left: float | None = None
+    c_stop_left: float | None = None
+    preload_left: float | None = None
+    release: Release = "displacement"
     units: Units | None = None
     model: ClassVar[Model] = MODEL
 
     def __post_init__(self):
-        _check_stops(self.stops)
+        _check_word("stops", self.stops, STOPS)
         if self.units is not None:
             if (units := units_from(self.units)) is None:
                 raise ParameterError("units", self.units, ALLOWED)
             object.__setattr__(self, "units", units)
         for one in PARAMETERS:
             value = getattr(self, one.name)
-            if not (isinstance(value, str) and value in one.words) and not (value is None and one.follows):
+            left_out = value is None and (one.follows or one.optional)
+            if not (isinstance(value, str) and value in one.words) and not left_out:
                 object.__setattr__(self, one.name, checked_number(one, value, self.stops))
+        _check_word("release", self.release, RELEASES)
+        check_stops(vars(self))
 
     @property
     def family(self) -> Family:
         """The same oscillator by its numbers, with their derivatives."""
-        return Family(MODEL.build, self.numbers | {"stops": self.stops})
+        return Family(MODEL.build, self.numbers | {"stops": self.stops, "release": self.release})
 
     @property
     def described(self) -> dict[str, Parameter]:
@@ -86,7 +99,7 @@ class System(AnyOscillator):
     @property
     def options(self) -> dict[str, Any]:
         """What is not a number: which stops there are, and the units."""
-        return {"stops": self.stops, "units": self.units}
+        return {"stops": self.stops, "release": self.release, "units": self.units}
 
     masses = 2
     gap_is_x1 = True
@@ -104,10 +117,17 @@ class System(AnyOscillator):
         P1: float,
         P2: float,
         Omega: float,
-        R: float,
         B: float,
+        R: float | None = None,
         B0: float = 0.0,
         R_left: float | None = None,
+        k_stop: float | None = None,
+        c_stop: float | None = None,
+        preload: float | None = None,
+        k_stop_left: float | None = None,
+        c_stop_left: float | None = None,
+        preload_left: float | None = None,
+        release: Release = "displacement",
         tau: float | Literal["grazing"] = "grazing",
         stops: Stops = "both",
     ) -> "System":
@@ -115,7 +135,8 @@ class System(AnyOscillator):
         `ParameterError`.
 
         Its `units` say what its own, nondimensional numbers are measured in.
-        The stops stand at B0 - B and B0 + B; R_left, of the left one, is R where it is left out.
+        The stops stand at B0 - B and B0 + B; R_left, of the left one, is R where it is left out. k_stop in N/m, c_stop
+        in N s/m and preload in N of compliant stops, in place of R, are as those of a System.
 
         Examples
         --------
@@ -126,7 +147,7 @@ class System(AnyOscillator):
         >>> round(system.omega, 6), round(system.b, 6), round(system.zeta, 6)
         (0.63, 4.0, 0.05)
         """
-        _check_stops(stops)
+        _check_word("stops", stops, STOPS)
         given = dict(M1=M1, M2=M2, K1=K1, K2=K2, C1=C1, C2=C2, P1=P1, P2=P2, Omega=Omega, B=B, B0=B0)
         for name, value in given.items():
             allowed, number = physical_range(name, stops), number_of(value)
@@ -149,9 +170,14 @@ class System(AnyOscillator):
         for name, (key, value) in numbers.items():
             if not math.isfinite(value) or (value == 0) != (given[key] == 0):
                 raise ParameterError(key, given[key], f"such that {name} = {value!r} is in the range of the floats")
+        stop = dict(k_stop=k_stop, c_stop=c_stop, preload=preload)
+        stop |= dict(k_stop_left=k_stop_left, c_stop_left=c_stop_left, preload_left=preload_left)
+        sizes = 2 * [K1, frequency * M1, P1 + P2]
+        for (name, value), size in zip(stop.items(), sizes, strict=True):
+            stop[name] = value if number_of(value) is None else number_of(value) / size
         units = units_from((M1, (P1 + P2) / K1, 1 / frequency))  # none where they leave the range
         made = {name: value for name, (_, value) in numbers.items()}
-        system = cls(**made, R=R, R_left=R_left, tau=tau, stops=stops, units=units)
+        system = cls(**made, **stop, R=R, R_left=R_left, tau=tau, stops=stops, release=release, units=units)
         one, other = Fraction(C1) * Fraction(K2), Fraction(C2) * Fraction(K1)
         if abs(one - other) <= max(one, other) / 10**9:  # proportional, but for the rounding of the input
             return system
@@ -202,9 +228,9 @@ class System(AnyOscillator):
         return resolved(self.numbers)
 
 
-def _check_stops(stops: object) -> None:
-    if not (isinstance(stops, str) and stops in STOPS):
-        raise ParameterError("stops", stops, f"{', '.join(STOPS[:-1])} or {STOPS[-1]}")
+def _check_word(name: str, value: object, words: tuple[str, ...]) -> None:
+    if not (isinstance(value, str) and value in words):
+        raise ParameterError(name, value, f"{', '.join(words[:-1])} or {words[-1]}")
 
 
 def checked_system(system: object) -> None:

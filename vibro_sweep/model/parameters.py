@@ -10,6 +10,7 @@ from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed
 
 STOPS = ("both", "right", "left")
+RELEASES = ("displacement", "force")
 
 _HOLDS = {
     "exclusiveMinimum": operator.gt,
@@ -76,7 +77,10 @@ class Parameter(NamedTuple):
 FREQUENCY = Parameter(
     "omega", r"\omega", "rad s-1", POSITIVE, "forcing frequency", "angular frequency of the force", free_motion=True
 )
-RESTITUTION = Parameter("R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution", "(4)")
+RESTITUTION = Parameter(
+    "R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution of a rigid stop", "(4)",
+    optional=True,
+)  # fmt: skip
 CLEARANCE = Parameter(
     "b", "b", "m", Range("a number > 0; any number where there is one stop alone", {}), "clearance",
     "clearance on each side of the middle", "(4)",
@@ -94,6 +98,27 @@ RESTITUTION_LEFT = Parameter(
     "R_left", r"R_{\mathrm{left}}", "1", FRACTION, "restitution on the left",
     "coefficient of restitution of the left stop; left out: R", follows="R",
 )  # fmt: skip
+STIFFNESS = Parameter(
+    "k_stop", r"k_{\mathrm{stop}}", "N m-1", POSITIVE, "stiffness of the stop",
+    "stiffness of a compliant stop, in place of R", optional=True,
+)  # fmt: skip
+DAMPING = Parameter(
+    "c_stop", r"c_{\mathrm{stop}}", "N s m-1", NOT_NEGATIVE, "damping of the stop",
+    "damping of a compliant stop; left out: 0", optional=True,
+)  # fmt: skip
+PRELOAD = Parameter(
+    "preload", r"p_{\mathrm{stop}}", "N", NOT_NEGATIVE, "preload of the stop",
+    "force with which a compliant stop is pressed together before it is touched; left out: 0", optional=True,
+)  # fmt: skip
+COMPLIANT = (STIFFNESS, DAMPING, PRELOAD)
+COMPLIANT_LEFT = tuple(
+    one._replace(
+        name=f"{one.name}_left", symbol=one.symbol.replace("stop", "left"), label=f"left {one.label.split(' ')[0]}",
+        text=f"{one.name} of the left stop; left out: {one.name}", follows=one.name,
+    )
+    for one in COMPLIANT
+)  # fmt: skip
+STOP_NUMBERS = (RESTITUTION, RESTITUTION_LEFT, *COMPLIANT, *COMPLIANT_LEFT)
 
 # Of the paper's oscillator, in the order of the kernels' records and derivatives.
 PAPER = (
@@ -124,6 +149,8 @@ PARAMETERS = (
         "mu_c", r"\mu_c", "1", NOT_NEGATIVE, "ratio of dampers", "ratio of the dampers C2/C1; left out: mu_k",
         free_motion=True, follows="mu_k",
     ),
+    *COMPLIANT,
+    *COMPLIANT_LEFT,
 )  # fmt: skip
 
 # Physical quantities in SI units, from which these follow (section 2 of the paper).
@@ -144,7 +171,7 @@ PHYSICAL = (
         "forcing frequency",
         "angular frequency of the force, 2 pi times that in Hz",
     ),
-    Parameter("R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution"),
+    RESTITUTION,
     CLEARANCE._replace(name="B", symbol="B", text="clearance on each side, from the middle to a stop"),
     Parameter(
         "B0",
@@ -156,6 +183,8 @@ PHYSICAL = (
         default=0.0,
     ),
     RESTITUTION_LEFT,
+    *COMPLIANT,
+    *COMPLIANT_LEFT,
 )
 
 B_STAR = Parameter(

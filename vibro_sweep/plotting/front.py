@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibro_sweep.model.arguments import check_type, checked_flag
+from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import checked_path, file_to_write
 from vibro_sweep.model.picture_kinds import Plottable
 from vibro_sweep.model.real import array_of, number_of
@@ -129,7 +130,10 @@ def _data(name: str, given) -> "Path | xarray.Dataset":
         return checked_path(name, given)
     from xarray import Dataset  # it is imported already where it is one
 
-    data = given.to_xarray() if _is_result(given) and hasattr(given, "to_xarray") else given
+    try:
+        data = given.to_xarray() if _is_result(given) and hasattr(given, "to_xarray") else given
+    except ArgumentError as error:
+        raise PlotError(f"{name}: {error}") from None
     check_type(name, data, Dataset, A_FILE)
     return data
 

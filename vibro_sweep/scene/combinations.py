@@ -1,15 +1,17 @@
 """How the keys of a scene must fit each other: none contradicts another, none is without effect."""
 
+from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.observables import WORDS
+from vibro_sweep.model.stops import RIGID_ALONE
 
 from .fields import Form
 from .problems import problem
 
 
-def combination_problems(form: Form, data: dict) -> list[str]:
-    """The problems of a scene of the right form; data: as it was read."""
+def combination_problems(form: Form, data: dict, system: AnyOscillator | None) -> list[str]:
+    """The problems of a scene of the right form; data: as it was read; system: None where it is wrong itself."""
     section, stops = form.section, getattr(form.system, "stops", "both")
-    problems = _map_problems(form)
+    problems = _map_problems(form) + (_contact_problems(form, system) if system is not None else [])
     for name in sorted(form.observe):
         if data.get("observe", []).count(name) > 1:
             problems.append(problem("observe", data["observe"], f"names {name} twice"))
@@ -23,6 +25,23 @@ def combination_problems(form: Form, data: dict) -> list[str]:
     if not form.observe and form.trajectory is None:
         text = f"nothing would be computed; name some of {', '.join(WORDS)}, or ask for a trajectory"
         problems.append(problem("observe", [], text))
+    return problems
+
+
+def _contact_problems(form: Form, system: AnyOscillator) -> list[str]:
+    """What compliant stops have no part in, and rigid ones."""
+    q = system.linear
+    if not q.compliant:
+        text = "both stops are rigid, which are struck and not pressed; observe impacts"
+        return [problem("observe", sorted(form.observe), text)] if "contacts" in form.observe else []
+    problems = []
+    if form.dynamics == "map":
+        problems.append(problem("dynamics", form.dynamics, f"is that of rigid stops; {RIGID_ALONE}"))
+    if "energy" in form.observe:
+        problems.append(problem("observe", sorted(form.observe), "energy is that of rigid stops so far; leave it out"))
+    if form.section.kind == "impact" and (q.k_high if form.section.stop == "right" else q.k_low) > 0:
+        text = "this stop is compliant, and has no impacts; take `kind: phase`, or the other stop"
+        problems.append(problem("section.stop", form.section.stop, text))
     return problems
 
 

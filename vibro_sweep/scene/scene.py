@@ -270,7 +270,7 @@ def scene_of(data: object, name: str, given: str | None = None, built: Built | N
 
     sweep, problems = sweep_of(form, data.get("sweep"), numbers)
     system, more = system_of(form, sweep, kind, masses) if built is None else (built, [])
-    problems += more + start_problems(form, sweep, system, masses) + combination_problems(form, data)
+    problems += more + start_problems(form, sweep, system, masses) + combination_problems(form, data, system)
     if problems:
         raise SceneError(name, problems)
     trajectory = form.trajectory and Trajectory(form.trajectory.periods, form.trajectory.samples)

@@ -89,6 +89,7 @@ def _behind(form: Form, sweep, system: AnyOscillator, names, swept) -> list[str]
         values = sweep.get(START[name], [getattr(form.start, name)])
         gaps = np.add.outer(gaps, along[i] * np.array([min(values), max(values)])).ravel()
     low, high = stops_of(system, sweep)
+    low, high = -np.inf if system.linear.k_low > 0 else low, np.inf if system.linear.k_high > 0 else high
     if low <= gaps.min() and gaps.max() <= high:
         return []
     worst = float(gaps.max() if gaps.max() > high else gaps.min())

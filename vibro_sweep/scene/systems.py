@@ -21,9 +21,12 @@ PhysicalNumbers = create_model(
     "PhysicalNumbers",
     __base__=Form,
     __doc__="Physical quantities in SI units: kg, m, s and N. "
-    "All but B0 and R_left must be given; a sweep over `omega`, `b`, `offset` or `R` replaces the value that follows "
-    "from `Omega`, `B`, `B0` or `R`.",
-    **{one.name: number(one) if one.follows or one.default is not None else _required(one) for one in PHYSICAL},
+    "All but B0 and the numbers of the stops must be given, and of these R or k_stop; a sweep over `omega`, `b`, "
+    "`offset` or `R` replaces the value that follows from `Omega`, `B`, `B0` or `R`.",
+    **{
+        one.name: number(one) if one.follows or one.optional or one.default is not None else _required(one)
+        for one in PHYSICAL
+    },
 )
 
 PhysicalSystemForm = create_model(

@@ -24,7 +24,7 @@ from vibro_sweep.engine.impulses.flow import closing, flow
 from vibro_sweep.engine.impulses.free_modes import has_free_gap
 from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.linear import Linear, family_of, forcing_period
+from vibro_sweep.model.linear import Linear, forcing_period, rigid_family_of
 from vibro_sweep.model.refusals import not_allowed
 
 BESIDE = (1e-4, 1e-5, 1e-6, 1e-7)  # distances from b*, over the amplitude of the gap, at which an orbit is confirmed
@@ -97,7 +97,7 @@ def born_at_grazing(system, periods: int = 6) -> list[Born]:
     >>> [(one.itinerary, one.period, one.born) for one in vs.born_at_grazing(system, periods=1)]
     [('R', 1, 'below'), ('LR', 1, 'below')]
     """
-    family = family_of(system)
+    family = rigid_family_of(system, "orbits are born at the grazing of rigid ones")
     periods = checked_count("periods", periods, 1)
     if "b" not in family.numbers:
         raise ArgumentError(not_allowed("system", system, "one with a clearance b"))

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from vibro_sweep.analysis.single.exponent_array import Exponents
 from vibro_sweep.analysis.single.result import Result, impact_table
 from vibro_sweep.engine import points
+from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.one_system import Engine, plan_of
@@ -75,6 +76,8 @@ class Orbit(Result):
 
     impacts : structured, fields t, side, v1 (before), x2, v2; in order. Of chatter, those computed one by one.
     sticking : structured, fields t_on, t_off, side; t_off is the end of the simulation for a rest that outlasts it.
+    contacts : with compliant stops, structured, fields t_touch, t_release, side, v_touch, v_release (speeds into the
+        stop), max_penetration, max_force; of one that outlasts the simulation the end is NaN, the largest so far
     section : (periods + 1, 2N) states (x1, v1, x2, v2, ...) at t = 0 mod T, NaN after a failure
     status : "ok", or what went wrong; `status.note` counts the chatter sequences whose end was summed up
 
@@ -94,6 +97,7 @@ class Orbit(Result):
     start_time: float
     impacts: np.ndarray
     sticking: np.ndarray
+    contacts: np.ndarray
     section: np.ndarray
     status: Status
     _start: np.ndarray  # in contact coordinates, as
@@ -161,6 +165,10 @@ class Orbit(Result):
             records.times[:, 0], records.times[:, 1] = cell[chosen], offset[chosen]
             if n < first:
                 engine.put(self._start, start_cell, start_offset)
+            elif self.system.linear.by_force:  # stops that relax at a section are not part of its state
+                engine.put(self._start, start_cell, start_offset)
+                if periods := n - first + int(start_cell > 0 or start_offset > 0):
+                    engine.carry(orbits.new_records(1, masses=engine.kind.masses), np.empty((periods, engine.states)))
             else:
                 engine.put(self._states[n - first])
             engine.carry(records, np.empty((1, engine.states)))
@@ -204,7 +212,7 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
     if not inside:
         section[0] = begin
     done = 0 if inside else 1
-    hits, rests, chatters, outcome = interruptible(
+    hits, rests, contacts, chatters, outcome = interruptible(
         _carried, engine, section[done:], halt=engine.ensemble.halt, cells=engine.cells * periods
     )
     if outcome != status.OK:
@@ -216,6 +224,7 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
         start_time,
         engine.impacts(np.concatenate(hits) if hits else np.empty((0, 3 + engine.states)), start_time),
         engine.sticking(np.concatenate(rests) if rests else np.empty((0, 4)), end),
+        engine.contacts(np.concatenate(contacts) if contacts else np.empty((0, LOGGED)), start_time),
         engine.to_masses(section),
         Status(outcome, chatters),
         begin,
@@ -224,25 +233,34 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
     )
 
 
-def _carried(engine: Engine, section: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray], int, int]:
-    """Carry the orbit over as many periods as `section` (n, 2 N) has rows: impacts, rests, chatters, a status."""
-    hits, rests, chatters, room, outcome = [], [], 0, ROOM, status.OK
-    done = 0
+_Carried = tuple[list[np.ndarray], list[np.ndarray], list[np.ndarray], int, int]
+
+
+def _carried(engine: Engine, section: np.ndarray) -> _Carried:
+    """Carry the orbit over as many periods as `section` (n, 2 N) has rows: impacts, rests, contacts, chatters, a
+    status."""
+    hits, rests, contacts, chatters, room, outcome = [], [], [], 0, ROOM, status.OK
+    done, open_contact = 0, np.empty((0, LOGGED))
     while done < len(section) and outcome == status.OK:
-        before = engine.orbit.copy()
+        before = engine.before()
         records = orbits.new_records(1, impacts=room, rests=room, masses=engine.kind.masses)
-        outcome = engine.carry(records, section[done : done + CHUNK])
-        logged = max(engine.orbit["impacts_logged"][0], engine.orbit["rests_logged"][0])
+        log = engine.new_log(room, open_contact)
+        outcome = engine.carry(records, section[done : done + CHUNK], log)
+        touched = engine.contacts_logged
+        logged = max(engine.orbit["impacts_logged"][0], engine.orbit["rests_logged"][0], touched)
         if logged > room:
-            engine.orbit[:] = before
+            engine.go_back(before)
             room, outcome = 2 * int(logged), status.OK
             continue
         hits.append(records.impacts[0, : engine.orbit["impacts_logged"][0]])
         rests.append(records.rests[0, : engine.orbit["rests_logged"][0]])
+        ended = touched - int(engine.in_contact)
+        contacts.append(log[0, :ended])
+        open_contact = log[0, ended:touched]
         chatters += int(engine.orbit["chatters"][0])
         engine.orbit["impacts_logged"] = engine.orbit["rests_logged"] = engine.orbit["chatters"] = 0
         done += CHUNK
-    return hits, rests, chatters, outcome
+    return hits, rests, [*contacts, open_contact], chatters, outcome
 
 
 def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, record: int = 10_000) -> Exponents:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.crossing import cross_cell_with_law
 from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
@@ -55,6 +56,29 @@ def set_node_state(o, X):
     put(o.X, 0, X)
 
 
+@inline
+def cross(law, f, stops, o, records, t, k, s):
+    """Follow the orbit to the end of its cell. law: None where all stops are rigid: the other way is not compiled."""
+    if law is not None:
+        return cross_cell_with_law(law, f, stops, o, records, t, k, s)
+    return cross_cell(f, stops, o, records, t, k, s)
+
+
+@inline
+def keep_from_striking(law, o):
+    """Compliant stops are not struck."""
+    if law is not None:
+        o.crossed = 0
+
+
+@inline
+def is_behind(law, o):
+    """Whether the orbit, at a node, is behind a compliant stop: the search for the next contact begins before it."""
+    if law is not None:
+        return not o.stops[0] <= o.X[0] <= o.stops[1]
+    return False
+
+
 @noinline
 def resolve_events(e, o, f, readings):
     """Follow the orbit from event to event to the end of its cell, or of the cell in which M1 leaves the stop."""
@@ -68,7 +92,7 @@ def resolve_events(e, o, f, readings):
             return
     while True:
         events, rested = o.events, o.offset > 0.0 or o.resting != 0.0
-        o.status = cross_cell(f, stops_of(o), o, records_of(e, o), e.tangent[0], o.cell, o.offset)
+        o.status = cross(e.law, f, stops_of(o), o, records_of(e, o), e.tangent[0], o.cell, o.offset)
         free = not (rested or o.events > events)
         o.cell += 1
         if not free:
@@ -79,7 +103,7 @@ def resolve_events(e, o, f, readings):
             o.origin = o.cell
             put(o.y, 0, X - row(f.nodes[np.uint64(o.cell)].z, 0))
         o.offset = 0.0
-        if o.resting == 0.0 or o.status != status.OK:
+        if (o.resting == 0.0 and not is_behind(e.law, o)) or o.status != status.OK:
             return
         if o.cell == q.cells:
             end_period_here(e, o, f, readings)
@@ -234,7 +258,7 @@ def begin(e, readings):
             o.status = status.NOT_COMPUTED
         elif o.done >= o.goal and o.status == status.OK:
             o.goal = min(o.periods, o.done + max(1, CELLS_BETWEEN_LOOKS // o.cells))
-        if under_way(o) and (o.offset > 0.0 or o.resting != 0.0):
+        if under_way(o) and (o.offset > 0.0 or o.resting != 0.0 or is_behind(e.law, o)):
             resolve_events(e, o, flight_of(e, o), readings)
         waiting |= int(under_way(o)) << i
     return waiting
@@ -253,6 +277,7 @@ def carry(e, mapping, readings):
         o.done = o.read = o.goal = 0
         if o.periods > 0 and o.status == status.OK:  # of others there may be no tables
             load_constants(o, flight_of(e, o).oscillator[0])
+            keep_from_striking(e.law, o)
             from_base |= o.from_base << i
     clear_counts(strikes)
     if mapping is not None:

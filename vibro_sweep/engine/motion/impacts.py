@@ -179,7 +179,7 @@ def cross_cell(f, stops, o, records, t, k, s):
             swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
             sin, cos = sin * turn + cos * swing, cos * turn - sin * swing
         if o.resting != 0.0:
-            d = stay_at_rest(f, o, records, t, k, s, sin, cos)
+            d = stay_at_rest(f, o, records, t, k, s, sin, cos, np.inf)
             if d != d:
                 return status.UNRESOLVED
             if d == np.inf:

@@ -85,6 +85,7 @@ def orbit_of(masses: int, constant: bool = False) -> np.dtype:
         ("slowest", float),  # least |v1| before an impact
         ("miss", float),  # how far from the stop an impact was found at most
         ("rest_time", float),
+        ("pressed_time", float),  # in contact with compliant stops
         ("log_volume", float),  # ln|det| of the jumps of the discontinuity mapping
     ]
     log = [
@@ -168,7 +169,7 @@ def is_finite(o):
 def reset_counts(o):
     """Count impacts and rest from here on."""
     o.impacts_left = o.impacts_right = o.chatters = 0
-    o.slowest, o.miss, o.rest_time, o.log_volume = np.inf, 0.0, 0.0, 0.0
+    o.slowest, o.miss, o.rest_time, o.pressed_time, o.log_volume = np.inf, 0.0, 0.0, 0.0, 0.0
 
 
 @jit

@@ -85,20 +85,32 @@ def carry_tangent(t, i, q, w):
 
 
 @jit
-def first_release(o, left):
-    """Time at which the free acceleration, which points into the stop, changes sign: a root found like a contact."""
+def first_release(o, left, most):
+    """Time at which the free acceleration, which points into the stop, changes sign: a root found like a contact; or is
+    `most`, beyond which the preload of a compliant stop does not hold it."""
     side, c1 = o.resting, o.c[0]
     gap = max(side * c1[0], 0.0)
     n = 0 if gap > 0.0 else first_nonzero(c1, 1)
     if side * c1[n] <= 0.0:
         return 0.0
     set_gap(o.gap, c1, gap, -side, n)
-    return first_contact(o.gap, bound_third_over(o.gap, left), left)
+    d = first_contact(o.gap, bound_third_over(o.gap, left), left)
+    if most < np.inf:
+        gap = most - side * c1[0]
+        n = 0 if gap > 0.0 else first_nonzero(c1, 1)
+        if n > 0 and side * c1[n] > 0.0:
+            return 0.0
+        set_gap(o.gap, c1, gap, side, n)
+        d = min(d, first_contact(o.gap, bound_third_over(o.gap, left), left))
+    return d
 
 
 @jit
-def stay_at_rest(f, o, records, t, k, s, sin, cos):
-    """M1 rests from offset s of cell k on. Returns the time to the release, infinite if not in this cell."""
+def stay_at_rest(f, o, records, t, k, s, sin, cos, most):
+    """M1 rests from offset s of cell k on. Returns the time to the release, infinite if not in this cell.
+
+    most : of the acceleration into the stop that this holds; infinite of a rigid one
+    """
     q, X = f.oscillator[0], o.X
     x2, v2, sin_there, cos_there, w, w_low = X[2], X[3], sin, cos, 0.0, 0.0
     one_series = q.rest_step == q.width
@@ -107,7 +119,7 @@ def stay_at_rest(f, o, records, t, k, s, sin, cos):
         left = (q.width - s - w) - w_low
         last = left <= 1.001 * q.rest_step
         left = left if last else q.rest_step
-        d = first_release(o, left)
+        d = first_release(o, left, most)
         end = min(d, left)
         take_samples(o, records, k, s + w, s + w + end)
         if q.exact:

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.law import Law, new_law
 from vibro_sweep.engine.halting import halt_of_thread
 from vibro_sweep.engine.motion.orbits import Records, Stops, new_records, orbit_of
 from vibro_sweep.engine.motion.strike import strikes_of
@@ -24,6 +25,7 @@ class Ensemble(NamedTuple):
     tangent: np.ndarray  # (1,) `tangents_of`
     records: Records  # with a first axis: one for each orbit
     halt: np.ndarray  # (1,): not 0 where their results are not awaited any more (engine/halting.py)
+    law: Law | None  # of compliant stops
 
 
 class Readings(NamedTuple):
@@ -37,16 +39,17 @@ class Readings(NamedTuple):
 
 def new_ensemble(cells: int, kind: Kind, impacts: int = 0, rests: int = 0, samples: int = 0) -> Ensemble:
     """Orbits of oscillators with at most so many cells, and room for what is kept of each."""
-    masses, constant, paper, _ = kind
+    masses, constant, paper = kind[:3]
     orbits = new_lines(LANES, orbit_of(masses, constant))
     orbits["lane"] = np.arange(LANES)
     return Ensemble(
         new_flight(LANES, cells, masses, constant),
         orbits,
         new_lines(1, strikes_of(masses, constant)),
-        new_lines(1, tangents_of(masses, paper)),
+        new_lines(1, tangents_of(masses, paper, kind.compliant)),
         new_records(LANES, impacts, rests, samples, masses),
         halt_of_thread(),
+        new_law(kind),
     )
 
 

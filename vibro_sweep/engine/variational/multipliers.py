@@ -20,6 +20,7 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.law import relax
 from vibro_sweep.engine.motion.orbits import reset_counts, set_state
 from vibro_sweep.engine.motion.together import flight_of, stops_of
 from vibro_sweep.engine.simd.jit import jit, noinline
@@ -81,6 +82,7 @@ def step_aside(e, o, direction, state):
         state[m] = o.X[m] + step * state[m]
     state[0] = min(max(state[0], stops.left), stops.right)
     set_state(o, f.nodes, stops, 0, 0.0, state)
+    relax(e.law, o.lane)
 
 
 @noinline

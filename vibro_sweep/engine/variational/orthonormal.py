@@ -41,12 +41,30 @@ def watch(t, who, determinant):
 def orthonormalise(t, who):
     """Gram-Schmidt: Z = Q R, Z becomes Q and the diagonal of R is added to the growth."""
     orthogonalise(t, who)
+    combine_places(t, who)
     if t.collected:
         collect(t, bits(who))
     extreme = normalise(t, who)
     if bits(extreme) != 0:
         take_logs(t, bits(extreme))
     put(t.volume, 0, select(who, 1.0, row(t.volume, 0)))
+
+
+@inline
+def combine_places(t, who):
+    """Combine what the vectors do to the places of stops as the vectors themselves."""
+    size = len(t.growth)
+    for m in range(0, len(t.places) - size + 1, size):
+        for lane in range(LANES):
+            if bits(who) >> lane & 1:
+                n = 0
+                for i in range(size):
+                    for j in range(i + 1, size):
+                        t.places[m + j, lane] -= t.normal[n, lane] * t.places[m + i, lane]
+                        n += 1
+                for i in range(size):
+                    square = t.square_length[i, lane]
+                    t.places[m + i, lane] = t.places[m + i, lane] / math.sqrt(square) if square > 0.0 else 0.0
 
 
 @inline

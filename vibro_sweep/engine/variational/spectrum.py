@@ -114,7 +114,7 @@ def period_of(e, o):
 def is_free(o, plan):
     """Whether the orbit met no stop in what was counted last."""
     struck = o.impacts_left + o.impacts_right > 0 or o.rest_time > 0.0 or o.resting != 0.0
-    return plan.order == 0 and not struck
+    return plan.order == 0 and not struck and o.pressed_time == 0.0
 
 
 @jit

@@ -20,9 +20,10 @@ from vibro_sweep.engine.variational.tangent_flight import apply_flight, catch_up
 ALIKE = 10.0  # difference of the logarithms of two growths that need not be distinguished
 
 
-def tangents_of(masses: int, paper: bool) -> np.dtype:
+def tangents_of(masses: int, paper: bool, compliant: bool = False) -> np.dtype:
     """The record of the tangent vectors of eight orbits, one column each; n vectors of n numbers, n = 2 N.
 
+    compliant : with stops that may relax, whose places are numbers of a vector, too
     paper : its oscillator, whose modes move the gap by their first numbers alone: kernels for it do not ask
     """
     n = 2 * masses
@@ -56,6 +57,9 @@ def tangents_of(masses: int, paper: bool) -> np.dtype:
         ("square_length", float, (n, LANES)),  # squares of the diagonal of R in the last Z = Q R, and
         ("normal", float, (pairs, LANES)),  # what stands beside it, over it, row by row: 01, 02, 03, 12, 13, 23;
         ("shear", float, (pairs, LANES)),  # the same of the product of all R, where they are `collected`
+        # what each vector does to the place of a stop that was left, on the left and on the right; one row, of which
+        # the compiler knows that it is not used, where no stop relaxes
+        ("places", float, (2 * n if compliant else 1, LANES)),
         ("wanted", np.bool_),  # else nothing is computed
         ("collected", np.bool_),
         # [1]: whether both numbers of some mode move the gap. Of the paper's oscillator none does: there the field has
@@ -96,6 +100,8 @@ def begin(t, i):
         for j in range(size):
             t.Z[size * m + j, i] = 1.0 if m == j else 0.0
         t.flight[m, i] = 1.0 - m % 2
+    for m in range(len(t.places)):
+        t.places[m, i] = 0.0
     t.lost[i], t.volume[i], t.offset[i], t.mixed[i] = 0.0, 1.0, 0.0, 0.0
     t.cell[i] = t.flown[i] = 0
     start_record(t, i)
@@ -121,6 +127,8 @@ def sort_vectors(t, i):
                 break
             for m in range(size):
                 swap(t.Z, size * m + j, size * m + j - 1, i)
+            for m in range(len(t.places) // size):
+                swap(t.places, size * m + j, size * m + j - 1, i)
             swap(t.growth, j, j - 1, i)
             swap(t.logs, j, j - 1, i)
 

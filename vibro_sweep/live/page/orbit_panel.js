@@ -189,7 +189,7 @@ function paragraph(one, i) {
   head.textContent = `${one.axis} = ${shown(one.value)}: `;
   const exponents = [...one.arrays.exponents].map((v, k) => `${short(v, 4)} ± ${short(one.arrays.errors[k], 1)}`);
   const kind = one.period ? `period ${one.period}` : one.arrays.exponents[0] > one.certain * one.arrays.errors[0] ? "chaotic" : "no period found";
-  const itinerary = one.itinerary === undefined ? "" : one.itinerary.length > 40 ? `${one.impacts} impacts` : one.itinerary || (one.period ? "no impacts" : "");
+  const itinerary = one.itinerary === undefined ? "" : one.itinerary.length > 40 ? `${one.impacts} impacts` : one.itinerary || (!one.period ? "" : one.contacts ? `${one.contacts} contacts` : "no impacts");
   const words = [kind, itinerary, one.rests ? `${one.rests} rests on a stop` : "", `λ = ${exponents.join(", ")}`];
   if (one.status !== "computed") words.push(one.status);
   if (one.orbit_status && one.orbit_status !== "ok") words.push(one.orbit_status);

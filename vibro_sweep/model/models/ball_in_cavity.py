@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import UNITS, Model
+from vibro_sweep.model.models.declaration import RELEASE, UNITS, Model
 from vibro_sweep.model.parameters import (
     CLEARANCE,
     FREQUENCY,
@@ -11,12 +11,12 @@ from vibro_sweep.model.parameters import (
     NUMBER,
     PHASE,
     POSITIVE,
-    RESTITUTION,
+    STOP_NUMBERS,
     Parameter,
 )
 
 
-def ball_in_cavity(*, mass_ratio, zeta, F, omega, R, b, tau) -> Linear:
+def ball_in_cavity(*, mass_ratio, zeta, F, omega, tau, **stops) -> Linear:
     """The oscillator; numbers may be complex."""
     return Linear(
         M=np.array([[1, 0], [0, mass_ratio]]),
@@ -28,7 +28,7 @@ def ball_in_cavity(*, mass_ratio, zeta, F, omega, R, b, tau) -> Linear:
         cosine=np.zeros(2),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
-        **contact(b, 0.0, R, None, "both"),
+        **contact(**stops),
     )
 
 
@@ -63,11 +63,11 @@ MODEL = Model(
         Parameter("zeta", r"\zeta", "1", NOT_NEGATIVE, "damping ratio", "damping ratio of the host", free_motion=True),
         Parameter("F", "F", "N", NUMBER, "forcing amplitude", "amplitude of the force on the host", free_motion=True),
         FREQUENCY,
-        RESTITUTION,
+        *STOP_NUMBERS,
         CLEARANCE._replace(text="half of the ball's play", range=POSITIVE),
         PHASE,
     ),
-    options=(UNITS,),
+    options=(RELEASE, UNITS),
     masses=lambda given: 2,
     build=ball_in_cavity,
 )

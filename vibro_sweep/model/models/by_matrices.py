@@ -4,7 +4,7 @@ import numpy as np
 
 from vibro_sweep.model import wording
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import CONTACT, UNITS, WHICH_STOPS, Model, Option
+from vibro_sweep.model.models.declaration import CONTACT, RELEASE, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter, ParameterError
 
 ROUNDING = 1e-12  # of a matrix, relative to its largest entry or eigenvalue
@@ -13,8 +13,8 @@ DAMPING = ("C", "modal_damping", "rayleigh")  # ways to give it
 
 
 def linear(
-    *, M, K, C, modal_damping, rayleigh, force, force_cos, constant, force_power, contact_normal, omega, R, R_left, b,
-    offset, tau, stops,
+    *, M, K, C, modal_damping, rayleigh, force, force_cos, constant, force_power, contact_normal, omega, tau,
+    **stops,
 ) -> Linear:  # fmt: skip
     """The oscillator; numbers may be complex, but not the matrices."""
     M, K = np.array(M, float), np.array(K, float)
@@ -30,7 +30,7 @@ def linear(
         cosine=power * np.array(force_cos),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
-        **contact(b, offset, R, R_left, stops),
+        **contact(**stops),
     )
 
 
@@ -161,6 +161,7 @@ MODEL = Model(
         Option("C", "matrix", "damping: symmetric, positive semidefinite", optional=True, units="N s m-1"),
         Option("contact_normal", "vector", "n of the gap g = n . x"),
         WHICH_STOPS,
+        RELEASE,
         UNITS,
     ),
     masses=lambda given: len(given["M"]),

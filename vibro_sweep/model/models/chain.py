@@ -3,11 +3,11 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import CONTACT, UNITS, WHICH_STOPS, Model, Option
+from vibro_sweep.model.models.declaration import CONTACT, RELEASE, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, POSITIVE, Parameter, ParameterError
 
 
-def chain(*, m, k, c, force, constant, stop_at, omega, R, R_left, b, offset, tau, stops) -> Linear:
+def chain(*, m, k, c, force, constant, stop_at, omega, tau, **stops) -> Linear:
     """The oscillator; numbers may be complex."""
     n = len(m)
     return Linear(
@@ -20,7 +20,7 @@ def chain(*, m, k, c, force, constant, stop_at, omega, R, R_left, b, offset, tau
         cosine=np.zeros(n),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
-        **contact(b, offset, R, R_left, stops),
+        **contact(**stops),
     )
 
 
@@ -63,7 +63,12 @@ MODEL = Model(
         _list("constant", r"\bar f", "N", NUMBER, "mass", "constant force", "constant force", 0.0),
         *CONTACT,
     ),
-    options=(Option("stop_at", "whole", "the mass that hits the stops, counted from 1", 1), WHICH_STOPS, UNITS),
+    options=(
+        Option("stop_at", "whole", "the mass that hits the stops, counted from 1", 1),
+        WHICH_STOPS,
+        RELEASE,
+        UNITS,
+    ),
     masses=lambda given: len(given["m"]),
     build=chain,
     check=_check,

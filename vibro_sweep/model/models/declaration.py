@@ -10,8 +10,8 @@ from vibro_sweep.model.parameters import (
     LENGTHS,
     OFFSET,
     PHASE,
-    RESTITUTION,
-    RESTITUTION_LEFT,
+    RELEASES,
+    STOP_NUMBERS,
     STOPS,
     Parameter,
 )
@@ -84,4 +84,8 @@ UNITS = Option(
     optional=True,
 )  # fmt: skip
 WHICH_STOPS = Option("stops", "word", "which stops there are", "both", STOPS)
-CONTACT = (FREQUENCY, RESTITUTION, RESTITUTION_LEFT, CLEARANCE, OFFSET, PHASE)  # numbers that every model has
+RELEASE = Option(
+    "release", "word", "where a contact with a compliant stop ends: at zero displacement, or where its force is zero",
+    "displacement", RELEASES,
+)  # fmt: skip
+CONTACT = (FREQUENCY, *STOP_NUMBERS, CLEARANCE, OFFSET, PHASE)  # numbers that every model has

@@ -3,11 +3,11 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import CONTACT, UNITS, WHICH_STOPS, Model, Option
+from vibro_sweep.model.models.declaration import CONTACT, RELEASE, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter
 
 
-def one_mass(*, k, zeta, F, constant, base, omega, R, R_left, b, offset, tau, stops) -> Linear:
+def one_mass(*, k, zeta, F, constant, base, omega, tau, **stops) -> Linear:
     """The oscillator; numbers may be complex."""
     return Linear(
         M=np.ones((1, 1)),
@@ -19,7 +19,7 @@ def one_mass(*, k, zeta, F, constant, base, omega, R, R_left, b, offset, tau, st
         cosine=np.zeros(1),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
-        **contact(b, offset, R, R_left, stops),
+        **contact(**stops),
     )
 
 
@@ -64,6 +64,7 @@ MODEL = Model(
     options=(
         Option("base", "flag", "true: the wall moves, and the force is F omega^2", False),
         WHICH_STOPS,
+        RELEASE,
         UNITS,
     ),
     masses=lambda given: 1,

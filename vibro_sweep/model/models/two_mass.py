@@ -3,11 +3,11 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import UNITS, WHICH_STOPS, Model
+from vibro_sweep.model.models.declaration import RELEASE, UNITS, WHICH_STOPS, Model
 from vibro_sweep.model.parameters import PARAMETERS
 
 
-def two_mass(*, mu_m, mu_k, zeta, f2, omega, R, b, tau, stops, offset=0.0, R_left=None, mu_c=None) -> Linear:
+def two_mass(*, mu_m, mu_k, zeta, f2, omega, tau, mu_c=None, **stops) -> Linear:
     """The oscillator; numbers may be complex."""
     return Linear(
         M=np.array([[1, 0], [0, mu_m]]),
@@ -19,7 +19,7 @@ def two_mass(*, mu_m, mu_k, zeta, f2, omega, R, b, tau, stops, offset=0.0, R_lef
         cosine=np.zeros(2),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
-        **contact(b, offset, R, R_left, stops),
+        **contact(**stops),
     )
 
 
@@ -40,7 +40,7 @@ MODEL = Model(
 """,
     source="the paper that this package follows, eqs. (3), (4): docs/how/model.md",
     numbers=PARAMETERS,
-    options=(WHICH_STOPS, UNITS),
+    options=(WHICH_STOPS, RELEASE, UNITS),
     masses=lambda given: 2,
     build=two_mass,
 )

@@ -1,0 +1,350 @@
+"""Compliant stops against many digits, closed forms, exact identities, and the rigid ones that they come near to."""
+
+import math
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from reference import compliant
+
+import vibro_sweep as vs
+from vibro_sweep.scene import SceneError, parse_scene
+
+FREE = dict(k=0, zeta=0, F=0, omega=1, b=1, stops="right", tau=0.0)
+PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63)
+ELASTIC = dict(k=1, zeta=0.01, F=0.5, omega=0.8, b=1, stops="right", tau=0.0)
+FIELDS = ("t_touch", "t_release", "v_touch", "v_release", "max_penetration", "max_force")
+
+
+def one_mass(**changes):
+    return vs.Oscillator.named("one_mass", **changes)
+
+
+# --- against a slow simulator in forty digits
+
+
+def drawn(rng):
+    """An oscillator of one to three masses with any law of contact, and a start."""
+    N, z = int(rng.integers(1, 4)), rng.choice([0, 10 ** rng.uniform(-2, 0.3)])
+    A, B = rng.normal(size=(2, N, N))
+    M = np.eye(N) + 0.3 * A @ A.T if rng.random() < 0.5 else np.diag(rng.uniform(0.5, 3, N))
+    K = B @ B.T + 0.2 * np.eye(N)
+    normal = np.eye(N)[0] if rng.random() < 0.6 else rng.normal(size=N)
+    mass = 1 / (normal @ np.linalg.solve(M, normal))
+    k, preload = 10 ** rng.uniform(-1, 8), rng.choice([0, 10 ** rng.uniform(-2, 0.5)])
+    stop = dict(k_stop=k * mass, c_stop=2 * z * math.sqrt(k) * mass, preload=preload)
+    stop["release"] = str(rng.choice(["displacement", "force"]))
+    stops = str(rng.choice(["both", "right"]))
+    if stops == "both" and rng.random() < 0.6:
+        left = [("R_left", rng.uniform(0.2, 1)), ("k_stop_left", 10 ** rng.uniform(-1, 6) * mass)]
+        stop |= [left[int(rng.integers(2))]]
+    system = vs.Oscillator(
+        M, K, rng.uniform(0, 0.2) * K, force=rng.normal(size=N), contact_normal=normal, omega=rng.uniform(0.4, 2),
+        b=rng.uniform(0.1, 1.5), stops=stops, tau=rng.uniform(0, 6), **stop,
+    )  # fmt: skip
+    start = np.zeros(2 * N)
+    start[1] = 0.5 * rng.normal()
+    if rng.random() < 0.3 and stop["release"] and "R_left" not in stop:
+        start[0] = 2 * rng.normal()
+    return system, start
+
+
+@pytest.mark.parametrize(
+    "count, seed",
+    [(12, 3), pytest.param(150, 5, marks=pytest.mark.slow), pytest.param(1000, 6, marks=pytest.mark.soak)],
+)
+def test_contacts_of_random_oscillators(count, seed):
+    rng, counted, worst = np.random.default_rng(seed), 0, 0.0
+    for _ in range(count):
+        system, start = drawn(rng)
+        orbit = vs.simulate(system, start, 12)
+        exact = compliant.simulate(system.linear, start.tolist(), contacts=6, periods=10)
+        assert orbit.status == "ok" and len(orbit.contacts) >= len(exact.contacts)
+        if not exact.contacts:
+            continue
+        counted += 1
+        for name in FIELDS:
+            found = orbit.contacts[name][: len(exact.contacts)]
+            wanted = np.array([float(getattr(one, name)) for one in exact.contacts])
+            scale = 1.0 if name.startswith("t") else np.abs(wanted).max()
+            worst = max(worst, float(np.abs(found - wanted).max()) / scale)
+    print(f"{count} oscillators, {counted} with contacts; errors of their first six at most {worst:.1e}")
+    assert counted > count / 2 and worst < 1e-9  # chaotic ones lose digits from contact to contact
+
+
+@pytest.mark.parametrize("stiffness", [29, 1e4, 1e8])
+@pytest.mark.parametrize("release", ["displacement", "force"])
+@pytest.mark.parametrize("ratio, preload", [(0, 0), (0.1, 0.3), (1.0, 0), (1.0, 0.3)])
+def test_first_contacts_to_rounding(stiffness, release, ratio, preload):
+    stop = dict(k_stop=stiffness, c_stop=2 * ratio * math.sqrt(stiffness), preload=preload, release=release)
+    system = one_mass(**ELASTIC, **stop)
+    found = vs.simulate(system, (0, 0), 20).contacts[:4]
+    exact = compliant.simulate(system.linear, [0.0, 0.0], contacts=4).contacts
+    for name in FIELDS:
+        wanted = np.array([float(getattr(one, name)) for one in exact])
+        scale = found["t_touch"] if name.startswith("t") else np.abs(wanted).max()
+        assert np.all(np.abs(found[name] - wanted) <= 4e-15 * scale), name
+
+
+# --- closed forms
+
+
+@pytest.mark.parametrize("stiffness", [1.0, 1e4, 1e8])
+@pytest.mark.parametrize("z", [0.0, 0.07, 0.5, 0.99, 1.0, 2.0])
+def test_restitution_of_a_free_mass(stiffness, z):
+    """z: damping ratio of the mass on the stop."""
+    for release in ("displacement", "force"):
+        system = one_mass(**FREE, k_stop=stiffness, c_stop=2 * z * math.sqrt(stiffness), release=release)
+        contact = vs.simulate(system, (0, 1), 10).contacts[0]
+        if release == "displacement":
+            if z >= 1:  # it never ends
+                assert math.isnan(contact["t_release"])
+                continue
+            expected = math.exp(-math.pi * z / math.sqrt(1 - z * z))
+        elif z < 1:
+            root = math.sqrt(1 - z * z)
+            expected = math.exp(-2 * z / root * math.atan2(root, z))
+        else:
+            root = math.sqrt(z * z - 1)
+            expected = math.exp(-2.0) if z == 1 else math.exp(-2 * z / root * math.atanh(root / z))
+        assert -contact["v_release"] / contact["v_touch"] == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+def test_stiff_stops_come_near_to_rigid_ones():
+    """At a fixed z orbits differ from those with the restitution exp(-pi z/sqrt(1 - z^2)) like k^(-1/2)."""
+    z, start = 0.07, (1.5, 2.0, 0.5, 0.0)
+    rigid = vs.System(**PAPER, b=3, R=math.exp(-math.pi * z / math.sqrt(1 - z * z)))
+    wanted = vs.simulate(rigid, start, 3).section[3]
+    apart = []
+    for k in (1e4, 1e5, 1e6, 1e7, 1e8):
+        soft = vs.System(**PAPER, b=3, k_stop=k, c_stop=2 * z * math.sqrt(k))
+        apart.append(np.abs(vs.simulate(soft, start, 3).section[3] - wanted).max())
+    orders = -np.diff(np.log10(apart))
+    assert np.all(np.abs(orders[1:] - 0.5) < 0.02), orders
+
+
+@pytest.mark.parametrize(
+    "order, stop", [(1.5, dict(c_stop=0.4)), (1.0, dict(c_stop=0.4, release="force")), (0.5, dict(preload=0.3))]
+)
+def test_order_of_what_a_grazing_touch_does(order, stop):
+    """What a touch does to the state after it, by how far the mass would have gone beyond the stop without it."""
+    thrown = FREE | {"constant": -1.0}  # it turns back at 1 + depth
+    depths, changes = np.logspace(-9 if order < 1.5 else -7.5, -6.5 if order < 1.5 else -5.5, 5), []
+    for depth in depths:
+        start = 0.0, math.sqrt(2 * (1 + depth))
+        touches, passes = one_mass(**thrown, k_stop=29, **stop), one_mass(**thrown | {"b": 3}, k_stop=29, **stop)
+        ends = [vs.simulate(one, start, 1).sample([3.0])[0] for one in (touches, passes)]
+        changes.append(np.abs(ends[0] - ends[1]).max())
+    fitted = np.polyfit(np.log(depths), np.log(changes), 1)[0]
+    assert fitted == pytest.approx(order, abs=0.02)
+
+
+# --- exponents
+
+
+@pytest.mark.parametrize(
+    "stop", [dict(k_stop=29), dict(k_stop=29, c_stop=1.0), dict(k_stop=1e4, c_stop=14, preload=0.2), dict(k_stop=1e8)]
+)
+def test_multipliers_against_differences_in_forty_digits(stop):
+    """The monodromy matrix of a periodic orbit, by differences of orbits 1e-20 apart."""
+    system = one_mass(**{**ELASTIC, "zeta": 0.1, "tau": 1.0}, **stop)
+    data = vs.sweep(system, {"omega": [0.8]}, transient=2000, record=20, observe=["section", "multipliers"])
+    period = int(data.period[0])
+    assert period > 0
+    start, columns = [float(data.x1[0, -1]), float(data.v1[0, -1])], []
+    with mp.workdps(50):
+        end = compliant.simulate(system.linear, start, periods=period).section[period]
+        for j in range(2):
+            beside = [mpf(one) for one in start]
+            beside[j] += mpf(10) ** -20
+            moved = compliant.simulate(system.linear, beside, periods=period).section[period]
+            columns.append([float((a - b) * mpf(10) ** 20) for a, b in zip(moved, end, strict=True)])
+    exact = np.linalg.eigvals(np.array(columns).T)
+    found = data.multiplier_re.values[0] + 1j * data.multiplier_im.values[0]
+    for one in found:
+        assert np.abs(exact - one).min() < 1e-9 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+@pytest.mark.parametrize("b", [3.0, 5.0, 6.4])
+def test_sum_rule(release, b):
+    system = vs.System(**PAPER, b=b, k_stop=1e4, c_stop=14, k_stop_left=400, c_stop_left=3, release=release)
+    exponents = vs.lyapunov(system, (0, 0, 0, 0), 300, 600)
+    assert abs(exponents.residual) < 1e-12 and np.all(np.isfinite(exponents))
+
+
+def test_one_rigid_and_one_compliant_stop_have_a_sum_rule():
+    system = vs.System(**PAPER, b=3, R=0.8, k_stop_left=100, c_stop_left=2)
+    orbit = vs.simulate(system, (0, 0, 0, 0), 200)
+    assert np.all(orbit.impacts["side"] == 1) and np.all(orbit.contacts["side"] == -1)
+    assert len(orbit.impacts) > 50 and len(orbit.contacts) > 50
+    assert abs(vs.lyapunov(system, (0, 0, 0, 0), 300, 600).residual) < 1e-12
+
+
+# --- sweeps
+
+
+def test_what_a_sweep_observes_is_what_an_orbit_has():
+    system = one_mass(**ELASTIC, k_stop=29, c_stop=0.5)
+    data = vs.sweep(
+        system, {"omega": [0.9, 0.8]}, transient=100, record=50, start={"x1": 0.3}, observe=["contacts", "section"]
+    )
+    for i, omega in enumerate((0.9, 0.8)):
+        one = system.replace(omega=omega)
+        orbit = vs.simulate(one, (0.3, 0), 150)
+        T = one.period
+        touched = orbit.contacts[orbit.contacts["t_touch"] >= 100 * T]
+        ended = touched[~np.isnan(touched["t_release"])]
+        assert data.contacts_right[i] == len(touched) > 20 and data.contacts_left[i] == 0
+        assert float(data.penetration_max[i]) == pytest.approx(touched["max_penetration"].max(), rel=1e-9)
+        assert float(data.contact_force_max[i]) == pytest.approx(touched["max_force"].max(), rel=1e-9)
+        assert float(data.restitution_mean[i]) == pytest.approx(
+            np.mean(-ended["v_release"] / ended["v_touch"]), rel=1e-2
+        )
+        assert 0 < float(data.contact_time[i]) < 1
+
+
+def test_bits_do_not_depend_on_workers_or_on_other_points():
+    system, axes = vs.System(**PAPER, b=4, k_stop=1e3, c_stop=2), {"b": np.linspace(3, 7, 40)}
+    how = dict(transient=50, record=30, observe=["section", "lyapunov", "contacts"])
+    whole, pair = vs.sweep(system, axes, workers=1, **how), vs.sweep(system, axes, workers=2, **how)
+    part = vs.sweep(system, {"b": axes["b"][7:12]}, **how)
+    for name in whole.data_vars:
+        assert whole[name].values.tobytes() == pair[name].values.tobytes(), name
+        assert whole[name].values[7:12].tobytes() == part[name].values.tobytes(), name
+
+
+def test_a_start_inside_a_stop_is_in_contact():
+    orbit = vs.simulate(one_mass(**ELASTIC, k_stop=29), (1.5, 0), 3)
+    assert orbit.contacts["t_touch"][0] == 0 and orbit.contacts["max_penetration"][0] >= 0.5
+
+
+def test_rest_on_a_preloaded_stop():
+    """A mass that is pressed on with less than the preload stays, held by the force itself."""
+    system = one_mass(k=0, zeta=0, F=0.2, constant=0.3, omega=1, b=1, stops="right", tau=0.0, k_stop=50, preload=1)
+    orbit = vs.simulate(system, (1, 0), 5)
+    assert len(orbit.contacts) == 0 and orbit.sticking["t_on"][0] == 0 and np.all(orbit.section[:, 0] == 1)
+    heavy = vs.simulate(system.replace(constant=0.9), (1, 0), 1)  # its largest pull exceeds the preload
+    assert heavy.contacts["t_touch"][0] == pytest.approx(math.asin(0.5), abs=1e-12)
+
+
+# --- what is refused
+
+
+@pytest.mark.parametrize(
+    "numbers, key",
+    [
+        (dict(k_stop=-1), "k_stop"),
+        (dict(k_stop=0), "k_stop"),
+        (dict(k_stop=math.inf), "k_stop"),
+        (dict(k_stop="stiff"), "k_stop"),
+        (dict(k_stop=10, R=0.5), "k_stop"),
+        (dict(R=0.5, R_left=0.5, k_stop_left=3), "k_stop_left"),
+        (dict(k_stop=10, c_stop=-1), "c_stop"),
+        (dict(k_stop=10, preload=-1), "preload"),
+        (dict(R=0.5, preload=1), "preload"),
+        (dict(R=0.5, c_stop=1), "c_stop"),
+        (dict(R=0.5, preload_left=1), "preload_left"),
+        (dict(k_stop=10, R_left=0.5, c_stop_left=1), "c_stop_left"),
+        (dict(R=0.5, release="force"), "release"),
+        (dict(k_stop=10, release="speed"), "release"),
+        (dict(k_stop=10, release=None), "release"),
+        ({}, "R"),
+        (dict(preload=1), "R"),
+        (dict(c_stop=1, release="force"), "R"),
+    ],
+)
+def test_numbers_that_do_not_fit(numbers, key):
+    for make in (
+        lambda: vs.System(**PAPER, b=4, **numbers),
+        lambda: one_mass(**{**ELASTIC, "stops": "both"}, **numbers),
+    ):
+        with pytest.raises(vs.ParameterError) as caught:
+            make()
+        assert caught.value.key == key
+
+
+SOFT = (
+    "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, b: 5, k_stop: 100}\n"
+    + "orbit: {transient: 1, record: 1}\n"
+)
+
+
+@pytest.mark.parametrize(
+    "more, key",
+    [
+        ("dynamics: map\n", "dynamics"),
+        ("observe: [energy]\n", "observe"),
+        ("section: {kind: impact, stop: right}\n", "section.stop"),
+        ("sweep: {R: {values: [0.5]}}\n", "k_stop"),
+        ("sweep: {k_stop: {values: [0, 1]}}\n", "sweep.k_stop"),
+    ],
+)
+def test_scenes_that_are_refused(more, key):
+    with pytest.raises(SceneError) as caught:
+        parse_scene(SOFT + more)
+    assert any(key in line for line in caught.value.problems)
+    with pytest.raises(SceneError, match="rigid"):
+        parse_scene(SOFT.replace("k_stop: 100", "R: 0.8") + "observe: [contacts]\n")
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda one: vs.periodic_orbit(one, itinerary="R"),
+        lambda one: vs.born_at_grazing(one),
+        lambda one: vs.discontinuity_map(one),
+        lambda one: vs.windows(vs.sweep(one, {"b": [5, 6]}, transient=10, record=10)),
+    ],
+)
+def test_what_belongs_to_rigid_stops_says_so(call):
+    with pytest.raises(ValueError, match=r"(of|with) rigid stops"):
+        call(vs.System(**PAPER, b=5, k_stop=100))
+
+
+def test_numbers_follow_those_of_the_right_stop():
+    system = vs.System(**PAPER, b=5, k_stop=100, c_stop=1)
+    assert system.linear.symmetric and system.parameters()["k_stop_left"] == 100
+    mixed = system.replace(R_left=0.5)
+    assert (mixed.linear.k_low, mixed.linear.R_low, mixed.linear.k_high) == (0, 0.5, 100)
+    assert "k_stop_left" not in mixed.parameters()
+    physical = vs.System.physical(
+        M1=2, M2=20, K1=800, K2=4000, C1=4, C2=20, P1=10, P2=0, Omega=12.6, B=0.05, k_stop=8e5, c_stop=40, preload=5
+    )
+    assert (physical.k_stop, physical.c_stop, physical.preload) == pytest.approx((1000, 1.0, 0.5))
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_trajectories_and_samples_go_on_from_a_contact_or_a_relaxing_stop(release):
+    system = one_mass(**ELASTIC | {"tau": 1.3}, k_stop=29, c_stop=6, release=release)
+    orbit = vs.simulate(system, (0.3, 0), 44)
+    T = system.period
+    held = [t for t in orbit.section_times[:40] if orbit.section[round(t / T), 0] > 1]
+    assert held  # some sections lie in a contact
+    data = vs.sweep(
+        system, {"omega": [0.8]}, transient=20, record=20, start={"x1": 0.3}, trajectory={"periods": 2, "samples": 41}
+    )
+    assert data.trajectory_x1.values[0] == pytest.approx(orbit.sample(np.linspace(40, 42, 41) * T)[:, 0], abs=1e-10)
+    fine = vs.simulate(system, (0.3, 0), 10).sample(np.linspace(0, 10, 2001) * T)
+    assert np.abs(np.diff(fine[:, 0])).max() < 1.1 * np.abs(fine[:, 1]).max() * T / 200
+
+
+@pytest.mark.parametrize("release, c_stop", [("force", 1.0), ("force", 4.0), ("displacement", 1.0)])
+def test_volumes_through_stops_that_relax(release, c_stop):
+    """The sum of the exponents over a period is the logarithm of the determinant of differences in eighty digits."""
+    soft = ELASTIC | {"k": 25, "omega": 1.5, "b": 0.02, "stops": "both"}
+    system = one_mass(**soft, constant=0.3, k_stop=4, c_stop=c_stop, preload=0.01, release=release)
+    start, step = [mpf("0.01"), mpf("1.5")], mpf(10) ** -30
+    how = dict(periods=1, digits=80)
+    with mp.workdps(80):
+        end = compliant.simulate(system.linear, start, **how)
+        columns = []
+        for j in range(2):
+            beside = [one + step * (i == j) for i, one in enumerate(start)]
+            moved = compliant.simulate(system.linear, beside, **how).section[1]
+            columns.append([(a - b) / step for a, b in zip(moved, end.section[1], strict=True)])
+        wanted = float(mp.log(abs(mp.det(mp.matrix(columns)))))
+    exponents = vs.lyapunov(system, [float(one) for one in start], 0, 1)
+    assert len(end.contacts) >= 3
+    assert exponents.sum() * system.period == pytest.approx(wanted, abs=1e-9)
+    assert abs(exponents.residual) < 1e-12

@@ -1,0 +1,1 @@
+"""Compliant stops: contacts that last, in closed steps of Taylor series."""

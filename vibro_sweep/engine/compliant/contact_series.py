@@ -1,0 +1,193 @@
+"""Flight in contact: Taylor series of delta, w2, ..., of the force, and of tangent vectors; and where the contact ends.
+
+A series reaches as far as rate * time <= 1/2 (tables/flight.py), with the fastest rate in contact. The end is the first
+zero of delta, or of the force if the stop is left by force; that which delta has at the touch is divided out
+(motion/first_contact.py), so that contacts of any shortness keep their digits, and no end is passed.
+"""
+
+import numpy as np
+
+from vibro_sweep.engine.compliant.law import lane_of
+from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
+from vibro_sweep.engine.motion.impacts import size_at
+from vibro_sweep.engine.motion.rest import first_nonzero
+from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.tables.flight import ORDER, evaluate
+from vibro_sweep.engine.tables.resting import bound_third_over
+
+NOTHING = 1e-250  # a contact that has died away, which has no end
+STEPS = 60  # of Newton's method, or halvings, towards a peak
+
+
+@jit
+def enter(contact, o, stops, side):
+    """Set delta, w2, ... from the orbit's state."""
+    X, y = o.X, contact.y
+    y[0] = side * (X[0] - (stops.right if side > 0.0 else stops.left))
+    y[1] = side * X[1]
+    for j in range(1, len(contact.push)):
+        y[2 * j] = X[2 * j] - contact.push[j] * X[0]
+        y[2 * j + 1] = X[2 * j + 1] - contact.push[j] * X[1]
+
+
+@jit
+def leave(contact, o, stops, side):
+    """Set the orbit's state from delta, w2, ..."""
+    X, y = o.X, contact.y
+    X[0] = (stops.right if side > 0.0 else stops.left) + side * y[0]
+    X[1] = side * y[1]
+    for j in range(1, len(contact.push)):
+        X[2 * j] = y[2 * j] + contact.push[j] * X[0]
+        X[2 * j + 1] = y[2 * j + 1] + contact.push[j] * X[1]
+
+
+@jit
+def load_contact(contact, side, omega, sin, cos):
+    """Taylor series from y on, at the phase (sin, cos) of the force."""
+    n_stop = lane_of(side)
+    G, c, y = contact.equations[n_stop], contact.c, contact.y
+    masses, states = len(c), 2 * len(c)
+    for i in range(masses):
+        c[i, 0], c[i, 1] = y[2 * i], y[2 * i + 1]
+    for n in range(ORDER - 2):
+        share = 1.0 / ((n + 1.0) * (n + 2.0))
+        for i in range(masses):
+            total = G[i, states] * sin + G[i, states + 1] * cos
+            if n == 0:
+                total += G[i, states + 2]
+            for j in range(masses):
+                total += G[i, 2 * j] * c[j, n] + G[i, 2 * j + 1] * ((n + 1.0) * c[j, n + 1])
+            c[i, n + 2] = total * share
+        sin, cos = omega * cos / (n + 1.0), -omega * sin / (n + 1.0)
+
+
+@jit
+def load_force(contact, side):
+    """Taylor series of F/m_e = k delta + c delta' + p."""
+    n_stop, c = lane_of(side), contact.c
+    k, d = contact.stiffness[n_stop], contact.damping[n_stop]
+    for n in range(ORDER - 1):
+        contact.force[n] = k * c[0, n] + d * ((n + 1.0) * c[0, n + 1])
+    contact.force[0] += contact.preload[n_stop]
+    contact.force[ORDER - 1] = k * c[0, ORDER - 1]
+
+
+@jit
+def leaves_by_force(contact, side):
+    """Whether the end of contact is where the force is zero: without a damper that is where delta is."""
+    return contact.by_force and contact.damping[lane_of(side)] > 0.0
+
+
+@jit
+def first_zero(contact, c, n, length):
+    """The first zero in (0, length] of a polynomial that is positive after a zero of order n at 0."""
+    set_gap(contact.gap, c, c[0], -1.0, n)
+    if size_at(contact.gap, length) < NOTHING:
+        return np.inf
+    if not contact.gap[0] > 0.0:
+        return 0.0
+    return first_contact(contact.gap, bound_third_over(contact.gap, length), length)
+
+
+@jit
+def end_of_contact(contact, side, length):
+    """When contact ends within the series, infinite if it does not; NaN where that cannot be decided."""
+    order = first_nonzero(contact.c[0], 1) if contact.entered else 0
+    contact.ends_by_force = leaves_by_force(contact, side)
+    if not contact.ends_by_force:
+        return first_zero(contact, contact.c[0], order, length)
+    load_force(contact, side)
+    d = first_zero(contact, contact.force, first_nonzero(contact.force, 0), length)
+    if contact.preload[lane_of(side)] > 0.0 and d > 0.0:
+        sooner = first_zero(
+            contact, contact.c[0], first_nonzero(contact.c[0], 1) if contact.entered else 0, min(d, length)
+        )
+        if not sooner > d:
+            contact.ends_by_force = False
+            return sooner
+    return d
+
+
+@jit
+def go_on_in_contact(contact, u):
+    """y at offset u of the series."""
+    for i in range(len(contact.c)):
+        contact.y[2 * i], contact.y[2 * i + 1] = evaluate(contact.c[i], u)
+
+
+@jit
+def slope_of(c, u):
+    """The derivative of a polynomial."""
+    total = 0.0
+    for n in range(ORDER - 1, 0, -1):
+        total = total * u + n * c[n]
+    return total
+
+
+@jit
+def peak_between(c, u):
+    """The largest value of a polynomial on [0, u] that turns back there once, or not."""
+    largest = max(c[0], evaluate(c, u)[0])
+    if slope_of(c, 0.0) > 0.0 > slope_of(c, u):
+        low, high = 0.0, u
+        at = u * slope_of(c, 0.0) / (slope_of(c, 0.0) - slope_of(c, u))
+        for _ in range(STEPS):
+            slope, curve = 0.0, 0.0
+            for n in range(ORDER - 1, 0, -1):
+                curve = curve * at + slope
+                slope = slope * at + n * c[n]
+            if slope > 0.0:
+                low = at
+            else:
+                high = at
+            newton = at - slope / curve if curve != 0.0 else low
+            after = newton if low < newton < high else 0.5 * (low + high)
+            if abs(after - at) <= 1e-9 * u:  # its square is below rounding
+                break
+            at = after
+        largest = max(largest, evaluate(c, at)[0])
+    return largest
+
+
+@jit
+def watch_contact(contact, side, u):
+    """What is recorded of the contact over the time u of the series."""
+    load_force(contact, side)
+    contact.largest = max(contact.largest, peak_between(contact.c[0], u))
+    contact.strongest = max(contact.strongest, peak_between(contact.force, u))
+
+
+@jit
+def begin_matrix(contact):
+    """The unit matrix."""
+    for i in range(len(contact.matrix)):
+        for j in range(len(contact.matrix)):
+            contact.matrix[i, j] = 1.0 if i == j else 0.0
+
+
+@jit
+def carry_matrix(contact, side, u):
+    """Multiply the matrix of the contact by that of the time u. Its vectors are (delta, delta' + c delta, w2, w2', ..).
+
+    In these no jump of size c or k acts at touch and release, and nothing of that size is taken off again.
+    """
+    n_stop, terms = lane_of(side), contact.terms
+    G, d, states = contact.equations[n_stop], contact.damping[n_stop], len(contact.matrix)
+    for column in range(states):
+        for i in range(states):
+            terms[0, i] = contact.matrix[i, column]
+        for n in range(1, ORDER + 1):
+            # before, after: terms of the series; a tangent vector's delta' is its pi - c delta
+            now, then = terms[(n - 1) % 2], terms[n % 2]
+            slope = now[1] - d * now[0]
+            for i in range(0, states, 2):
+                then[i] = slope if i == 0 else now[i + 1]
+                total = G[i // 2, 0] * now[0] + G[i // 2, 1] * slope
+                if i == 0:
+                    total += d * slope
+                for j in range(2, states):
+                    total += G[i // 2, j] * now[j]
+                then[i + 1] = total
+            for i in range(states):
+                then[i] *= u / n
+                contact.matrix[i, column] += then[i]

@@ -1,0 +1,169 @@
+"""What kernels know of compliant stops: the numbers of each, the equations of contact, and the contact of each orbit.
+
+In contact the gap is g = stop + side delta, and the force F = m_e (k delta + c delta' + p) acts on it, with k = k_stop,
+c = c_stop and p = preload, each over m_e = 1/(n M^-1 n). The other coordinates are w_j = q_j - p_j g: an impulse on the
+gap leaves them alone, and so does F, so that of a soft motion beside a stiff contact no digit is lost:
+
+    delta'' = -(k0 + k) delta - (c0 + c) delta' + (coupling to w, force, what k0 does at the stop) - p
+
+Lanes of stops: 0 left, 1 right, as in the records of orbits.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.engine.records import Kind
+from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.simd.memory import new_lines, record
+from vibro_sweep.engine.tables.flight import ORDER, WIDTH
+
+LOGGED = 11  # numbers in a row of the log
+
+
+class Law(NamedTuple):
+    """The compliant stops of eight orbits. Where all stops are rigid there is None in its place, and nothing of it is
+    compiled."""
+
+    orbits: np.ndarray  # (LANES,) `law_of`
+    # (LANES, m, LOGGED): period, cell and offset of touch and of release (NaN where there is none yet), side, speed
+    # into the stop at both, largest delta, and largest force
+    log: np.ndarray
+
+
+def law_of(masses: int) -> np.dtype:
+    """The record of the stops of one orbit, and of the contact that it is in."""
+    states = 2 * masses
+    fields = [
+        ("compliant", np.int64, 2),
+        ("stiffness", float, 2),  # k, c and p
+        ("damping", float, 2),
+        ("preload", float, 2),
+        ("by_force", np.bool_),  # a contact ends where the force is zero, and the stop goes on relaxing
+        ("mass", float),  # m_e
+        ("equations", float, (2, masses, states + 3)),  # (delta'', w2'', ..) by (delta, delta', w2, .., sin, cos, 1)
+        ("step", float, 2),  # of Taylor series in contact
+        ("push", float, (masses,)),  # p_j
+        # of the contact
+        ("pressed", float),  # the side of the stop that it is with, or 0
+        ("entered", np.bool_),  # whether this is its beginning, where delta is zero
+        ("ends_by_force", np.bool_),  # whether its end is where the force is zero
+        ("y", float, (states,)),  # delta, delta', w2, w2', ...
+        ("c", float, (masses, ORDER)),  # Taylor coefficients of delta, w2, ...
+        ("force", float, (ORDER,)),  # F/m_e
+        ("gap", float, (ORDER,)),
+        # of stops that relax
+        ("relaxed", float, 2),  # s: how far the massless stop is from where it is relaxed; and where it was left
+        ("left", float, 2),
+        ("cell", np.int64, 2),  # when: cells since t = 0, and
+        ("offset", float, 2),
+        # of tangent vectors: entries of the matrix of a contact, by (delta, delta' + c delta, w2, ..)
+        ("matrix", float, (states, states)),
+        ("terms", float, (2, states)),
+        ("before", float, (states,)),
+        ("after", float, (states,)),
+        ("begun", np.int64),  # how they come in (tangent_in_contact.py)
+        ("touched", float),  # delta' at the touch
+        ("decay", float),  # of what a vector does to a stop that relaxes, since it was left
+        ("solve", float, (states, states + 1)),
+        # of what is recorded
+        ("watched", np.bool_),  # whether the peaks are wanted
+        ("largest", float),  # delta so far in this contact
+        ("strongest", float),  # F/m_e
+        ("row", np.int64),  # of the log, of the contact that goes on; -1 where there is no room
+        ("logged", np.int64),
+        ("contacts", np.int64, 2),
+        ("time", float),  # in contact
+        ("peak", float),  # delta
+        ("peak_force", float),
+        ("restitutions", float),  # sum of -v_release/v_touch, and
+        ("ended", np.int64),  # of how many contacts
+    ]
+    return record(fields)
+
+
+def new_law(kind: Kind, room: int = 0) -> Law | None:
+    """None where all stops are rigid."""
+    if not kind.compliant:
+        return None
+    return Law(new_lines(LANES, law_of(kind.masses)), np.empty((LANES, room, LOGGED)))
+
+
+@jit
+def set_law(law, i, point, width):
+    """Give orbit i its stops. width: of a cell."""
+    contact, masses = law.orbits[i], len(point.push)
+    contact.by_force, contact.mass = point.by_force, point.contact_mass
+    for m in range(masses):
+        contact.push[m] = point.push[m]
+    for n in range(2):
+        contact.compliant[n] = int(point.contact_stiffness[n] > 0.0)
+        contact.stiffness[n], contact.damping[n] = point.contact_stiffness[n], point.contact_damping[n]
+        contact.preload[n] = point.contact_preload[n]
+        contact.step[n] = min(width, WIDTH / point.contact_rate[n]) if contact.compliant[n] else width
+        contact.relaxed[n] = 0.0
+        fill_equations(contact.equations[n], point, 2.0 * n - 1.0, n)
+    contact.pressed, contact.entered, contact.row = 0.0, False, -1
+
+
+@jit
+def fill_equations(G, point, side, n):
+    """The equations of contact with one stop."""
+    p, S, D, f = point.push, point.stiffness, point.damping, point.force
+    masses, states, wall = len(p), 2 * len(p), point.stops[n]
+    k0, c0 = 0.0, 0.0
+    for j in range(masses):
+        k0 += S[0, j] * p[j]
+        c0 += D[0, j] * p[j]
+    for i in range(masses):
+        k, c = 0.0, 0.0
+        for j in range(masses):
+            k += S[i, j] * p[j]
+            c += D[i, j] * p[j]
+        # of row i >= 1 what the gap's own row does is taken off
+        share, turned = (p[i], 1.0) if i > 0 else (0.0, side)
+        k, c = k - share * k0, c - share * c0
+        G[i, 0], G[i, 1] = (-side * k, -side * c) if i > 0 else (-k, -c)
+        for j in range(1, masses):
+            G[i, 2 * j] = -turned * (S[i, j] - share * S[0, j])
+            G[i, 2 * j + 1] = -turned * (D[i, j] - share * D[0, j])
+        for j in range(3):
+            G[i, states + j] = turned * (f[i, j] - share * f[0, j])
+        G[i, states + 2] -= turned * k * wall
+    G[0, 0] -= point.contact_stiffness[n]
+    G[0, 1] -= point.contact_damping[n]
+    G[0, states + 2] -= point.contact_preload[n]
+
+
+@inline
+def relax(law, i):
+    """All stops of orbit i are relaxed, and none is touched."""
+    if law is not None:
+        contact = law.orbits[i]
+        contact.relaxed[0] = contact.relaxed[1] = contact.pressed = 0.0
+
+
+@inline
+def relax_from(law, i, places):
+    """The stops of orbit i, at the beginning of a period, relax from these places."""
+    if law is not None:
+        contact = law.orbits[i]
+        for n in range(2):
+            contact.relaxed[n] = contact.left[n] = places[n]
+            contact.cell[n], contact.offset[n] = 0, 0.0
+
+
+@jit
+def lane_of(side):
+    """Place of the stop on this side."""
+    return 1 if side > 0.0 else 0
+
+
+@jit
+def clear_contacts(contact):
+    """Count contacts from here on, and watch their peaks."""
+    contact.watched = True
+    contact.contacts[0] = contact.contacts[1] = contact.ended = 0
+    contact.time = contact.restitutions = 0.0
+    contact.peak = contact.peak_force = contact.largest = contact.strongest = -np.inf

@@ -1,0 +1,143 @@
+"""A contact with a compliant stop: how it begins, goes on, and ends."""
+
+import math
+
+import numpy as np
+
+from vibro_sweep.engine.compliant.contact_series import (
+    begin_matrix,
+    carry_matrix,
+    end_of_contact,
+    enter,
+    go_on_in_contact,
+    leave,
+    load_contact,
+    watch_contact,
+)
+from vibro_sweep.engine.compliant.law import lane_of
+from vibro_sweep.engine.compliant.tangent_in_contact import CONTINUED, RELAXED, UNRELAXED, carry_over_contact
+from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.tables.flight import evaluate
+from vibro_sweep.engine.variational import tangent_flight
+
+
+@jit
+def begin_contact(law, f, stops, o, t, k, s, side, on_stop):
+    """The mass touches the stop, or starts inside it. on_stop: whether delta is zero."""
+    contact, n = law.orbits[o.lane], lane_of(side)
+    enter(contact, o, stops, side)
+    if on_stop:
+        contact.y[0] = 0.0
+    o.resting = contact.pressed = side
+    contact.entered, contact.touched = on_stop, contact.y[1]
+    contact.begun = UNRELAXED if contact.relaxed[n] > 0.0 else RELAXED if on_stop else CONTINUED
+    if contact.relaxed[n] > 0.0:
+        rest = contact.preload[n] / contact.stiffness[n]
+        contact.decay = (contact.relaxed[n] + rest) / (contact.left[n] + rest)
+    contact.relaxed[n] = 0.0
+    contact.largest, contact.strongest = -np.inf, -np.inf
+    contact.contacts[n] += 1
+    o.events += 1
+    contact.row = -1
+    contact.watched = contact.watched or law.log.shape[1] > 0
+    if contact.logged < law.log.shape[1]:
+        contact.row, line = contact.logged, law.log[o.lane, contact.logged]
+        line[0], line[1], line[2] = o.period, k, s
+        line[3] = line[4] = line[5] = line[8] = np.nan
+        line[6], line[7] = side, contact.y[1]
+    contact.logged += 1
+    if t.wanted:
+        tangent_flight.fly_to(t, o.lane, f.oscillator[0], f.nodes, k, s)
+
+
+@jit
+def stay_in_contact(law, f, stops, o, records, t, k, s, sin, cos):
+    """Contact from offset s of cell k on. Returns the time to its end, infinite if not in this cell."""
+    q, contact, side, w = f.oscillator[0], law.orbits[o.lane], law.orbits[o.lane].pressed, 0.0
+    n, sin_there, cos_there = lane_of(side), sin, cos
+    if t.wanted:
+        begin_matrix(contact)
+    while True:
+        load_contact(contact, side, q.omega, sin_there, cos_there)
+        left = q.width - s - w
+        last = left <= 1.001 * contact.step[n]
+        left = left if last else contact.step[n]
+        d = end_of_contact(contact, side, left)
+        if d != d:
+            return d
+        end = min(d, left)
+        sample_contact(contact, stops, o, records, k, side, s + w, s + w + end)
+        contact.time += end
+        if contact.watched:
+            watch_contact(contact, side, end)
+        if t.wanted:
+            carry_matrix(contact, side, end)
+        go_on_in_contact(contact, end)
+        contact.entered = False
+        w += end
+        if last or d < np.inf:
+            break
+        swing, turn = math.sin(q.omega * w), math.cos(q.omega * w)
+        sin_there, cos_there = sin * turn + cos * swing, cos * turn - sin * swing
+    ended = d < np.inf
+    if ended:
+        end_contact(contact, o, k, s + w, side)
+    leave(contact, o, stops, side)
+    o.log_volume -= contact.damping[n] * w
+    o.pressed_time += w
+    if t.wanted:
+        o.log_volume += carry_over_contact(t, o.lane, contact, side, w, ended)
+        t.cell[o.lane], t.offset[o.lane] = k, s + w
+    contact.begun = CONTINUED
+    keep_in_log(law, contact, o, k, s + w, ended)
+    return w if ended else d
+
+
+@jit
+def end_contact(contact, o, k, s, side):
+    """The mass leaves the stop: exactly where delta is zero, or the force."""
+    n, y = lane_of(side), contact.y
+    if contact.ends_by_force:
+        stiffness, damping, preload = contact.stiffness[n], contact.damping[n], contact.preload[n]
+        if damping * math.sqrt(stiffness) < stiffness:  # what is better conditioned
+            y[0] = -(damping * y[1] + preload) / stiffness
+        else:
+            y[1] = -(stiffness * y[0] + preload) / damping
+        contact.relaxed[n] = contact.left[n] = y[0]
+        contact.cell[n], contact.offset[n] = o.period * o.cells + k, s
+    else:
+        y[0], y[1] = 0.0, min(y[1], 0.0)
+    o.resting = contact.pressed = 0.0
+    if contact.touched > 0.0:
+        contact.restitutions -= y[1] / contact.touched
+        contact.ended += 1
+
+
+@jit
+def keep_in_log(law, contact, o, k, s, ended):
+    """What is known of the contact by now."""
+    contact.peak, contact.peak_force = (
+        max(contact.peak, contact.largest),
+        max(contact.peak_force, contact.mass * contact.strongest),
+    )
+    if contact.row >= 0:
+        line = law.log[o.lane, contact.row]
+        line[9], line[10] = contact.largest, contact.mass * contact.strongest
+        if ended:
+            line[3], line[4], line[5], line[8] = o.period, k, s, contact.y[1]
+
+
+@jit
+def sample_contact(contact, stops, o, records, k, side, start, stop):
+    """Take the samples that fall in cell k between the offset `start`, where the series begins, and `stop`."""
+    times, samples, i = records.times, records.samples, o.samples_taken
+    while i < len(times) and times[i, 0] == k and times[i, 1] <= stop:
+        u = max(times[i, 1] - start, 0.0)
+        x, v = evaluate(contact.c[0], u)
+        samples[i, 0], samples[i, 1] = (stops.right if side > 0.0 else stops.left) + side * x, side * v
+        for j in range(1, len(contact.push)):
+            x, v = evaluate(contact.c[j], u)
+            samples[i, 2 * j] = x + contact.push[j] * samples[i, 0]
+            samples[i, 2 * j + 1] = v + contact.push[j] * samples[i, 1]
+        i += 1
+    o.samples_taken = i

@@ -1,0 +1,79 @@
+"""A massless stop that a mass has left by force: k s + c s' + p = 0 until it is relaxed, s = 0.
+
+Without a preload it only comes near to that, and counts as relaxed where s is below rounding of what it began with.
+"""
+
+import math
+
+from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.tables.flight import ORDER, WIDTH
+
+GONE = 2.0**-60  # of where the stop was left
+ROUNDING = 2.0**-50
+
+
+@jit
+def is_relaxing(contact, n):
+    return contact.relaxed[n] > 0.0
+
+
+@jit
+def rate_of_relaxing(contact, n):
+    """k/c."""
+    return contact.stiffness[n] / contact.damping[n]
+
+
+@jit
+def bring_stops(contact, o, k, s, width):
+    """Where relaxing stops are at offset s of cell k."""
+    for n in range(2):
+        if contact.relaxed[n] > 0.0:
+            cell = o.period * o.cells + k
+            u = (cell - contact.cell[n]) * width + (s - contact.offset[n])
+            if u > 0.0:
+                contact.relaxed[n] = relaxed_after(contact, n, u)
+                contact.cell[n], contact.offset[n] = cell, s
+
+
+@jit
+def relaxed_after(contact, n, u):
+    """s after the time u; 0 where it is relaxed."""
+    rate, rest = rate_of_relaxing(contact, n), contact.preload[n] / contact.stiffness[n]
+    if rate * u > 700.0:
+        return 0.0
+    s = contact.relaxed[n] * math.exp(-rate * u) + rest * math.expm1(-rate * u)
+    gone = GONE * contact.left[n] if rest == 0.0 else ROUNDING * (contact.relaxed[n] + rest)
+    return s if s > gone else 0.0
+
+
+@jit
+def reach_of_relaxing(contact, n, left):
+    """How far a series of s reaches, at most to where it is relaxed."""
+    rate, rest = rate_of_relaxing(contact, n), contact.preload[n] / contact.stiffness[n]
+    reach = min(left, WIDTH / rate)
+    if rest > 0.0:
+        reach = min(reach, math.log1p(contact.relaxed[n] / rest) / rate)
+    return reach
+
+
+@jit
+def set_distance(contact, n, side, c, wall, order):
+    """Taylor coefficients of s - delta along a flight c of the gap, which begins with a zero of this order: without
+    it."""
+    rate, rest = rate_of_relaxing(contact, n), contact.preload[n] / contact.stiffness[n]
+    term = contact.relaxed[n] + rest
+    for m in range(ORDER):
+        value = contact.relaxed[n] - side * (c[0] - wall) if m == 0 else term - side * c[m]
+        if m >= order:
+            contact.gap[m - order] = value
+        term *= -rate / (m + 1.0)
+    for m in range(ORDER - order, ORDER):
+        contact.gap[m] = 0.0
+
+
+@jit
+def speed_of_stop(contact, n):
+    """s'."""
+    if contact.relaxed[n] == 0.0:
+        return 0.0
+    return -(contact.stiffness[n] * contact.relaxed[n] + contact.preload[n]) / contact.damping[n]
