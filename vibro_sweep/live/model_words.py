@@ -26,7 +26,8 @@ def model_words(system: AnyOscillator, view: View) -> dict[str, Any]:
     numbers = [
         _slider(one, value, view, stops)
         for name, one in system.described.items()
-        if isinstance(value := _value(system, view, one), (int, float)) and not (name == "R_left" and stops != "both")
+        if isinstance(value := _value(system, view, one), (int, float))
+        and not (name.endswith("_left") and stops != "both")
     ]
     return {
         "numbers": numbers,
