@@ -17,6 +17,8 @@ from vibro_sweep.model.models.declaration import Model
 from vibro_sweep.model.models.two_mass import MODEL
 from vibro_sweep.model.modes import Modes, modes
 from vibro_sweep.model.parameters import (
+    COMPLIANT,
+    COMPLIANT_LEFT,
     PARAMETERS,
     RELEASES,
     STOPS,
@@ -103,6 +105,13 @@ class System(AnyOscillator):
 
     masses = 2
     gap_is_x1 = True
+
+    def __repr__(self) -> str:
+        """The call that makes it, without the numbers of compliant stops where there is none."""
+        left_out = {one.name: None for one in (*COMPLIANT, *COMPLIANT_LEFT)} | {"release": RELEASES[0]}
+        given = {one.name: getattr(self, one.name) for one in fields(self)}
+        shown = (f"{name}={value!r}" for name, value in given.items() if value != left_out.get(name, ...))
+        return f"System({', '.join(shown)})"
 
     @classmethod
     def physical(

@@ -111,7 +111,9 @@ class OrbitForm(Form):
     """The length of every orbit in forcing periods T = 2 pi/omega."""
 
     transient: Whole = Field(ge=0, le=MAX_COUNT, description="periods that are computed first and not recorded")
-    record: Whole = Field(ge=1, le=MAX_COUNT, description="periods that are recorded")
+    record: Whole = Field(
+        ge=1, le=MAX_COUNT, description="periods that are recorded; at a section of impacts at most so many of them"
+    )
 
 
 class SectionForm(Form):
