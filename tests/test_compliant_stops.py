@@ -51,7 +51,7 @@ def drawn(rng):
 
 @pytest.mark.parametrize(
     "count, seed",
-    [(12, 3), pytest.param(150, 5, marks=pytest.mark.slow), pytest.param(1000, 6, marks=pytest.mark.soak)],
+    [(12, 3), pytest.param(40, 5, marks=pytest.mark.slow), pytest.param(1000, 6, marks=pytest.mark.soak)],
 )
 def test_contacts_of_random_oscillators(count, seed):
     rng, counted, worst = np.random.default_rng(seed), 0, 0.0
