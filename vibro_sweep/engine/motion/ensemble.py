@@ -258,6 +258,8 @@ def begin(e, readings):
             o.status = status.NOT_COMPUTED
         elif o.done >= o.goal and o.status == status.OK:
             o.goal = min(o.periods, o.done + max(1, CELLS_BETWEEN_LOOKS // o.cells))
+        if under_way(o) and is_behind(e.law, o) and o.from_base:
+            keep_start(o)
         if under_way(o) and (o.offset > 0.0 or o.resting != 0.0 or is_behind(e.law, o)):
             resolve_events(e, o, flight_of(e, o), readings)
         waiting |= int(under_way(o)) << i
