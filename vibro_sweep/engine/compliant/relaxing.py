@@ -13,11 +13,6 @@ ROUNDING = 2.0**-50
 
 
 @jit
-def is_relaxing(contact, n):
-    return contact.relaxed[n] > 0.0
-
-
-@jit
 def rate_of_relaxing(contact, n):
     """k/c."""
     return contact.stiffness[n] / contact.damping[n]
