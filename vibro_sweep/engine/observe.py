@@ -8,6 +8,7 @@ import numpy as np
 
 from vibro_sweep.engine.averages import keep_averages
 from vibro_sweep.engine.compliant.law import clear_contacts
+from vibro_sweep.engine.compliant.relaxing import bring_stops
 from vibro_sweep.engine.motion.orbits import reset_counts
 from vibro_sweep.engine.periods import REPEAT, ROUNDING, find_period, has_settled
 from vibro_sweep.engine.point_tables import to_masses
@@ -86,10 +87,12 @@ def begin_contacts(law, i, wanted):
 
 
 @inline
-def keep_contacts(law, o, result, time):
-    """Keep what is known of the contacts with compliant stops of the record, which lasts this time."""
+def keep_contacts(law, o, result, width, time):
+    """Keep what is known of the contacts with compliant stops of the record, which lasts this time. width: of a
+    cell."""
     if law is not None:
         contact = law.orbits[o.lane]
+        bring_stops(contact, o, 0, 0.0, width)
         result.relaxed[0], result.relaxed[1] = contact.relaxed[0], contact.relaxed[1]
         result.contacts_left, result.contacts_right = contact.contacts[0], contact.contacts[1]
         result.contact_time = contact.time / time
@@ -105,7 +108,7 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
     result.min_impact_speed = o.slowest if o.slowest < np.inf else np.nan
     result.contact_error = o.miss if o.slowest < np.inf else np.nan
     result.sticking_time = o.rest_time
-    keep_contacts(e.law, o, result, plan.record * period_of(e, o))
+    keep_contacts(e.law, o, result, e.strike[0].width[o.lane], plan.record * period_of(e, o))
     states, growth, T = w.section[o.lane], w.growth[o.lane], period_of(e, o)
     numbers = len(result.end)
     for j in range(numbers):

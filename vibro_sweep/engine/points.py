@@ -87,10 +87,10 @@ def clearance(stops):
 
 
 @inline
-def give_law(law, i, point, width):
-    """Give orbit i its compliant stops."""
+def give_law(law, i, point, q):
+    """Give orbit i of the oscillator q its compliant stops."""
     if law is not None:
-        set_law(law, i, point, width)
+        set_law(law, i, point, q)
 
 
 @inline
@@ -120,7 +120,7 @@ def prepare(points, i, w, plan):
     stops = Stops(point.stops[0], point.stops[1], point.stops[2], point.stops[3])
     o.from_base = int(q.stiff or q.largest > LARGE * clearance(stops))
     strike.set_stops(e.strike[0], i, stops)
-    give_law(e.law, i, point, q.width)
+    give_law(e.law, i, point, q)
     if not same_tables(point, w.carried[i], w.paper, w.other):
         strike.set_oscillator(e.strike[0], i, q)
         if plan.lyapunov:

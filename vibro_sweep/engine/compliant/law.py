@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.passage_tables import passages_of, set_passage
 from vibro_sweep.engine.records import Kind
 from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.simd.lanes import LANES
@@ -30,6 +31,7 @@ class Law(NamedTuple):
     # (LANES, m, LOGGED): period, cell and offset of touch and of release (NaN where there is none yet), side, speed
     # into the stop at both, largest delta, and largest force
     log: np.ndarray
+    passage: np.ndarray  # (1,) `passages_of`
 
 
 def law_of(masses: int) -> np.dtype:
@@ -87,13 +89,14 @@ def new_law(kind: Kind, room: int = 0) -> Law | None:
     """None where all stops are rigid."""
     if not kind.compliant:
         return None
-    return Law(new_lines(LANES, law_of(kind.masses)), np.empty((LANES, room, LOGGED)))
+    passage = new_lines(1, passages_of(kind.masses, kind.constant))
+    return Law(new_lines(LANES, law_of(kind.masses)), np.empty((LANES, room, LOGGED)), passage)
 
 
 @jit
-def set_law(law, i, point, width):
-    """Give orbit i its stops. width: of a cell."""
-    contact, masses = law.orbits[i], len(point.push)
+def set_law(law, i, point, q):
+    """Give orbit i of the oscillator q its stops."""
+    contact, masses, width = law.orbits[i], len(point.push), q.width
     contact.by_force, contact.mass = point.by_force, point.contact_mass
     for m in range(masses):
         contact.push[m] = point.push[m]
@@ -104,7 +107,8 @@ def set_law(law, i, point, width):
         contact.step[n] = min(width, WIDTH / point.contact_rate[n]) if contact.compliant[n] else width
         contact.relaxed[n] = 0.0
         fill_equations(contact.equations[n], point, 2.0 * n - 1.0, n)
-    contact.pressed, contact.entered, contact.row = 0.0, False, -1
+    contact.pressed, contact.entered, contact.watched, contact.row = 0.0, False, False, -1
+    set_passage(law.passage[0], i, contact, point, q)
 
 
 @jit

@@ -10,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.compliant.crossing import cross_cell_with_law
+from vibro_sweep.engine.compliant.meeting import finish_passage, is_open, meet_stops
+from vibro_sweep.engine.compliant.tangent_passage import carry_through
 from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
 from vibro_sweep.engine.motion.impacts import cross_cell, watch_rebound
@@ -24,10 +26,10 @@ from vibro_sweep.engine.motion.scan import (
     state_from_base,
 )
 from vibro_sweep.engine.motion.section import end_period, end_period_here
-from vibro_sweep.engine.motion.strike import clear_counts, strike
+from vibro_sweep.engine.motion.strike import clear_counts
 from vibro_sweep.engine.motion.together import flight_of, records_of, stops_of
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
-from vibro_sweep.engine.simd.lanes import LANES, lanes_of, lowest, number
+from vibro_sweep.engine.simd.lanes import LANES, bits, lanes_of, lowest, number
 from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.tables.flight import load
 from vibro_sweep.engine.variational import tangent, tangent_flight
@@ -62,13 +64,6 @@ def cross(law, f, stops, o, records, t, k, s):
     if law is not None:
         return cross_cell_with_law(law, f, stops, o, records, t, k, s)
     return cross_cell(f, stops, o, records, t, k, s)
-
-
-@inline
-def keep_from_striking(law, o):
-    """Compliant stops are not struck."""
-    if law is not None:
-        o.crossed = 0
 
 
 @inline
@@ -180,7 +175,7 @@ def advance_to_candidates(e, advancing, readings):
                 q = f.oscillator[0]
                 k, X = candidate_state(o, f.nodes)
                 o.cell = k
-                if k < o.crossed and o.stops[0] < number(X, 0) < o.stops[1]:
+                if k < o.crossed and o.stops[0] < number(X, 0) < o.stops[1] and is_open(e.law, e, o, k, readings):
                     put(strikes.z, i, X)
                     waiting |= 1 << i
                     advancing ^= 1 << i
@@ -224,7 +219,7 @@ def resolve_cell(e, o, free, struck, readings):
 
 
 @inline
-def finish_cells(e, waiting, free, struck, readings):
+def finish_cells(e, waiting, free, struck, passed, readings):
     """Go on to the ends of the cells in which the `waiting` may have struck. Returns those that have periods to go."""
     left = waiting & ~(free | struck)
     if len(e.records.times) > 0:
@@ -242,9 +237,12 @@ def finish_cells(e, waiting, free, struck, readings):
         free &= free - 1
     while struck != 0:
         o = e.orbits[lowest(struck)]
+        f = flight_of(e, o)
+        if passed >> o.lane & 1:
+            finish_passage(e.law, e, o, f, readings)
         struck &= struck - 1
         o.cell += 1
-        begin_free_flight(o, flight_of(e, o).nodes, row(e.strike[0].X, o.lane))
+        begin_free_flight(o, f.nodes, row(e.strike[0].X, o.lane))
     return waiting
 
 
@@ -279,7 +277,6 @@ def carry(e, mapping, readings):
         o.done = o.read = o.goal = 0
         if o.periods > 0 and o.status == status.OK:  # of others there may be no tables
             load_constants(o, flight_of(e, o).oscillator[0])
-            keep_from_striking(e.law, o)
             from_base |= o.from_base << i
     clear_counts(strikes)
     if mapping is not None:
@@ -296,7 +293,7 @@ def carry(e, mapping, readings):
             continue
         if waiting & from_base != 0:
             put_states_from_base(e, waiting & from_base)
-        free, struck = strike(strikes, lanes_of(waiting))
+        free, struck, passed = meet_stops(e.law, strikes, waiting)
         if t.wanted and struck != 0:
             left = struck
             while left != 0:
@@ -306,8 +303,11 @@ def carry(e, mapping, readings):
                 f = flight_of(e, o)
                 tangent_flight.aim(t, i, f.oscillator[0], f.nodes, o.cell, strikes.offset[i])
             tangent_flight.fly(t, lanes_of(struck))
-            tangent.saltate(t, lanes_of(struck), row(strikes.jump, 0) / row(strikes.speed, 0), row(strikes.R, 0))
-        waiting = finish_cells(e, waiting, free, struck, readings)
+            hit = lanes_of(struck & ~passed)
+            if bits(hit) != 0:
+                tangent.saltate(t, hit, row(strikes.jump, 0) / row(strikes.speed, 0), row(strikes.R, 0))
+            carry_through(e.law, e, passed)
+        waiting = finish_cells(e, waiting, free, struck, passed, readings)
     for i in range(LANES):
         add_count(e.orbits[i], strikes.hits[0, i], strikes.hits[1, i], strikes.slowest[i], strikes.miss[i])
 

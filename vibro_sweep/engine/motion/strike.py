@@ -52,7 +52,8 @@ def strikes_of(masses: int, constant: bool = False) -> np.dtype:
         ("jump", float, (LANES,)),  # a+ + R a-, for the saltation matrix
         ("hits", float, (2, LANES)),  # impacts since `clear_counts`, on the left and on the right
         ("slowest", float, (LANES,)),  # least |v1| before one
-        ("miss", float, (LANES,)),  # how far from the stop one was found at most, where `measured`
+        ("missed", float, (LANES,)),  # how far from the stop a contact was found, and
+        ("miss", float, (LANES,)),  # of those of impacts the largest, where `measured`
         ("measured", np.bool_),
     ]
     return record(fields)
@@ -243,12 +244,11 @@ def land(strikes, z, impulse, rest):
 
 
 @inline
-def strike(strikes, waiting):
-    """Cross a cell. Returns masks of the `waiting`: free flight (the orbit is left alone); one impact and none after.
+def find_contact(strikes, z, waiting):
+    """The first contact in the cell, from its beginning z. Returns masks of the `waiting`: free flight; a contact.
 
-    Of the impact are left its `side`, `offset`, `speed`, `impulse` and `jump`, and X at the end of the cell.
+    Then, of the contact: side, offset, v1, acceleration, and a bound on the third derivative over the cell.
     """
-    z = transposed(strikes.z, strikes.tail)
     c, width, v1 = strikes.c, row(strikes.width, 0), z[1]
     put(c, 1, v1)
     load_x1(strikes, z, 2, 3)
@@ -267,18 +267,30 @@ def strike(strikes, waiting):
         turning = turning & turns_clear(c, z[0], gap, rate, curve, side, third, width)
         free, wanted = free | turning, wanted & ~turning
     if bits(wanted) == 0:
-        return bits(free), 0
+        return free, wanted, side, u, u, u, third
     u = approach(c, u, gap, side, width)
-    d, v, a, struck = descend(c, u, gap, side, abs(curve) + third * width, width, wanted)
+    d, v, a, touching = descend(c, u, gap, side, abs(curve) + third * width, width, wanted)
     falls = rate + select(curve > 0.0, curve, 0.0) * d + 0.5 * third * d * d < 0.0  # all the way to the contact
-    R = select(side > 0.0, row(strikes.restitution, 1), row(strikes.restitution, 0))
-    impulse, rest = -(1.0 + R) * v, width - d
-    after = a - row(strikes.drag, 0) * impulse
-    third += abs(impulse) * row(strikes.impulse_third, 0)
-    struck = struck & falls & (side * v > 0.0) & leaves_freely(strikes, R * abs(v), after, side, rest, third)
-    count(strikes, struck, side, v)
     if strikes.measured:
         miss = abs(gap - side * derivatives(c, d, TERMS)[0])
+        put(strikes.missed, 0, miss)
+    return free, touching & falls & (side * v > 0.0), side, d, v, a, third
+
+
+@inline
+def rebound(strikes, z, touching, side, d, v, a, third):
+    """The impacts of the orbits that are `touching` a rigid stop. Returns those that touch none after it in the cell.
+
+    Of the impact are left its `side`, `offset`, `speed`, `impulse` and `jump`, and X at the end of the cell.
+    """
+    R = select(side > 0.0, row(strikes.restitution, 1), row(strikes.restitution, 0))
+    impulse, rest = -(1.0 + R) * v, row(strikes.width, 0) - d
+    after = a - row(strikes.drag, 0) * impulse
+    third += abs(impulse) * row(strikes.impulse_third, 0)
+    struck = touching & leaves_freely(strikes, R * abs(v), after, side, rest, third)
+    count(strikes, struck, side, v)
+    if strikes.measured:
+        miss = row(strikes.missed, 0)
         put(strikes.miss, 0, select(struck & (miss > row(strikes.miss, 0)), miss, row(strikes.miss, 0)))
     put(strikes.side, 0, side)
     put(strikes.R, 0, R)
@@ -287,4 +299,14 @@ def strike(strikes, waiting):
     put(strikes.impulse, 0, impulse)
     put(strikes.jump, 0, after + R * a)
     land(strikes, z, impulse, rest)
-    return bits(free), bits(struck)
+    return struck
+
+
+@inline
+def strike(strikes, waiting):
+    """Cross a cell. Returns, of the `waiting`, those that fly freely, which are left alone, and that strike once."""
+    z = transposed(strikes.z, strikes.tail)
+    free, touching, side, d, v, a, third = find_contact(strikes, z, waiting)
+    if bits(touching) == 0:
+        return bits(free), 0
+    return bits(free), bits(rebound(strikes, z, touching, side, d, v, a, third))

@@ -53,6 +53,23 @@ def transposed(typingctx, array, like):
 
 
 @intrinsic
+def rows_of(typingctx, columns):
+    """The rows of a field (m, LANES)."""
+    if isinstance(columns, types.NestedArray):
+        count = columns.shape[0]
+
+        def codegen(context, builder, sig, args):
+            places = (ir.Constant(ir.IntType(64), n) for n in range(count))
+            kinds = (sig.args[0], types.intp)
+            loaded = [
+                builder.load(address(context, builder, kinds, (args[0], n), LANES, LANES), align=8) for n in places
+            ]
+            return context.make_tuple(builder, sig.return_type, loaded)
+
+        return types.UniTuple(lanes, count)(columns), codegen
+
+
+@intrinsic
 def put_transposed(typingctx, array, columns):
     """The rows of `columns`, a field (m, LANES), become the first m columns of a field (LANES, width), others zero."""
     if isinstance(array, types.Array) and isinstance(columns, types.NestedArray):

@@ -121,6 +121,7 @@ _define(operator.gt, MaskType, lambda builder, x, y: builder.fcmp_ordered(">", x
 _define(operator.ge, MaskType, lambda builder, x, y: builder.fcmp_ordered(">=", x, y))
 _define(abs, LanesType, call("fabs"), 1)
 _define(math.sqrt, LanesType, call("sqrt"), 1)
+_define(math.floor, LanesType, call("floor"), 1)
 
 
 @intrinsic

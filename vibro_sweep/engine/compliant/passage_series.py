@@ -1,0 +1,124 @@
+"""Taylor series of a contact, for eight orbits at once: of delta, w2, ... and of tangent vectors."""
+
+import numpy as np
+
+from vibro_sweep.engine.compliant.passage_tables import TERMS
+from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.engine.simd.lanes import select
+from vibro_sweep.engine.simd.memory import put, row
+
+INVERSE = 1.0 / np.arange(1.0, TERMS + 2.0)  # of n + 1
+
+
+@inline
+def of_stop(rows, right):
+    """The numbers of the stop that is touched."""
+    return select(right, row(rows, 1), row(rows, 0))
+
+
+@inline
+def turn(angle):
+    """sin and cos of angles below pi/2, by their series."""
+    square = angle * angle
+    sin, cos = INVERSE[20] * INVERSE[19] * square, INVERSE[21] * INVERSE[20] * square
+    for n in range(19, 1, -2):
+        sin = (1.0 - sin) * (INVERSE[n - 1] * INVERSE[n - 2] * square)
+        cos = (1.0 - cos) * (INVERSE[n] * INVERSE[n - 1] * square)
+    return angle * (1.0 - sin), 1.0 - (1.0 - cos) * (0.5 * square)
+
+
+@inline
+def choose_equations(passage, right):
+    """Take the equations of the stop that is touched."""
+    count = len(passage.row)
+    for j in range(count):
+        put(passage.row, j, select(right, row(passage.equations, count + j), row(passage.equations, j)))
+
+
+@inline
+def acceleration_of(passage, sin, cos):
+    """a: what drives delta, in the state y, at the phase (sin, cos) of the force."""
+    states, G, y = len(passage.y), passage.row, passage.y
+    total = row(G, states) * sin + row(G, states + 1) * cos + row(G, states + 2)
+    for j in range(2, states):
+        total = total + row(G, j) * row(y, j)
+    return total
+
+
+@jit
+def load_passage(passage, sin, cos):
+    """Taylor series from y on, at the phase (sin, cos) of the force: of the motion, and of a."""
+    masses, states, G, x, v = len(passage.push), len(passage.y), passage.row, passage.x, passage.v
+    omega = row(passage.omega, 0)
+    for m in range(masses):
+        put(x, m * TERMS, row(passage.y, 2 * m))
+        put(v, m * TERMS, row(passage.y, 2 * m + 1))
+    for n in range(TERMS - 1):
+        for m in range(masses):
+            first = m * (states + 3)
+            total = row(G, first + states) * sin + row(G, first + states + 1) * cos
+            if n == 0:
+                total = total + row(G, first + states + 2)
+            for j in range(1, masses):
+                total = total + (
+                    row(G, first + 2 * j) * row(x, j * TERMS + n) + row(G, first + 2 * j + 1) * row(v, j * TERMS + n)
+                )
+            if m == 0:
+                put(passage.drive, n, total)
+            total = total + (row(G, first + 1) * row(v, n) + row(G, first) * row(x, n))
+            put(v, m * TERMS + n + 1, total * INVERSE[n])
+        for m in range(masses):
+            put(x, m * TERMS + n + 1, row(v, m * TERMS + n) * INVERSE[n])
+        sin, cos = omega * cos * INVERSE[n], -omega * sin * INVERSE[n]
+
+
+@inline
+def at(c, first, u):
+    """The series whose coefficients begin in row `first`, at u. Even and odd terms go side by side."""
+    square, last = u * u, first + TERMS - 1
+    odd, even = row(c, last), row(c, last - 1)
+    for n in range(last - 2, first, -2):
+        odd = odd * square + row(c, n)
+        even = even * square + row(c, n - 1)
+    return even + u * odd
+
+
+@inline
+def derivatives_at(c, u):
+    """A series at u, its derivative, and half its second one."""
+    f, slope, curve = row(c, TERMS - 1), 0.0 * u, 0.0 * u
+    for n in range(TERMS - 2, -1, -1):
+        curve = curve * u + slope
+        slope = slope * u + f
+        f = f * u + row(c, n)
+    return f, slope, curve
+
+
+@jit
+def carry_vector(passage, damping, u, going):
+    """Carry the tangent vector `before`, (delta, delta' + c delta, w2, w2', ...), on by the time u in contact.
+
+    In these coordinates no jump of size c or k acts at touch and release (tangent_in_contact.py).
+    """
+    masses, states, G, x, v = len(passage.push), len(passage.y), passage.row, passage.x, passage.v
+    for m in range(masses):
+        put(x, m * TERMS, row(passage.before, 2 * m))
+        put(v, m * TERMS, row(passage.before, 2 * m + 1))
+    for n in range(TERMS - 1):
+        speed = row(v, n) - damping * row(x, n)  # delta'
+        for m in range(masses):
+            first = m * (states + 3)
+            total = row(G, first + 1) * speed + row(G, first) * row(x, n)
+            if m == 0:
+                total = total + damping * speed
+            for j in range(1, masses):
+                total = total + (
+                    row(G, first + 2 * j) * row(x, j * TERMS + n) + row(G, first + 2 * j + 1) * row(v, j * TERMS + n)
+                )
+            put(v, m * TERMS + n + 1, total * INVERSE[n])
+        put(x, n + 1, speed * INVERSE[n])
+        for m in range(1, masses):
+            put(x, m * TERMS + n + 1, row(v, m * TERMS + n) * INVERSE[n])
+    for m in range(masses):
+        put(passage.before, 2 * m, select(going, at(x, m * TERMS, u), row(passage.before, 2 * m)))
+        put(passage.before, 2 * m + 1, select(going, at(v, m * TERMS, u), row(passage.before, 2 * m + 1)))

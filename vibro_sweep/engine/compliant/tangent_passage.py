@@ -1,0 +1,95 @@
+"""Tangent vectors through the contacts of eight orbits at once; what touch and release do: tangent_in_contact.py."""
+
+from vibro_sweep.engine.compliant.passage_series import carry_vector, of_stop
+from vibro_sweep.engine.simd.jit import inline, noinline
+from vibro_sweep.engine.simd.lanes import bits, lanes_of, lowest, select
+from vibro_sweep.engine.simd.memory import put, row
+from vibro_sweep.engine.variational.orthonormal import watch
+from vibro_sweep.engine.variational.tangent_flight import apply_flight
+
+HALVINGS = 5  # of the argument of an exponential
+
+
+@inline
+def carry_through(law, e, passed):
+    """Carry the tangent vectors of the orbits that `passed` a contact, as bits, through it."""
+    if law is not None:
+        if passed != 0:
+            carry_through_contacts(law.passage[0], e.strike[0], e.tangent[0], e.orbits, passed)
+
+
+@noinline
+def carry_through_contacts(passage, strikes, t, orbits, passed):
+    """`carry_through` where there are some; their flight up to the touch is collected."""
+    who, side, size = lanes_of(passed), row(strikes.side, 0), len(t.growth)
+    right, time, parts = side > 0.0, row(passage.time, 0), row(passage.parts, 0)
+    c, p = of_stop(passage.damping, right), of_stop(passage.preload, right)
+    touch, release = p / row(passage.speed, 0), p / row(passage.speed_after, 0)
+    by_force, u = of_stop(passage.by_force, right) > 0.0, time / parts
+    apply_flight(t, who)
+    for j in range(size):
+        to_contact(passage, t, side, j)
+        before = passage.before
+        put(before, 1, row(before, 1) - touch * row(before, 0))
+        part, going = 0.0 * u, who
+        while bits(going) != 0:
+            carry_vector(passage, c, u, going)
+            part = part + 1.0
+            going = going & (part < parts)
+        delta = row(before, 0)
+        put(before, 1, row(before, 1) + select(by_force, -c, release) * delta)
+        for n in range(len(t.places) // size):
+            chosen = who & (right if n == 1 else ~right)
+            put(t.places, n * size + j, select(chosen, delta, row(t.places, n * size + j)))
+        from_contact(passage, t, side, j, who)
+    put(t.mixed, 0, select(who, 1.0, row(t.mixed, 0)))
+    watch(t, who, exponential(of_stop(passage.trace, right) * time))
+    left = passed
+    while left != 0:
+        i = lowest(left)
+        left &= left - 1
+        crossed = int(passage.crossed[i])
+        t.cell[i] = orbits[i].cell + crossed
+        t.offset[i] = strikes.offset[i] + passage.time[i] - crossed * strikes.width[i]
+
+
+@inline
+def exponential(x):
+    """e^x to some nine digits, which is enough to see vectors that come to lie too close together."""
+    x = x * 2.0**-HALVINGS
+    result = 1.0 + x * (1.0 + x * (1.0 / 2.0 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * (1.0 / 120.0)))))
+    for _ in range(HALVINGS):
+        result = result * result
+    return result
+
+
+@inline
+def to_contact(passage, t, side, j):
+    """Tangent vector j as (delta, delta', w2, ...)."""
+    Z, back, size, to = t.Z, t.from_frame, len(t.growth), passage.before
+    for a in range(size):
+        total = row(back, a * size) * row(Z, j)
+        for m in range(1, size):
+            total = total + row(back, a * size + m) * row(Z, m * size + j)
+        put(to, a, total)
+    for m in range(1, len(passage.push)):
+        put(to, 2 * m, row(to, 2 * m) - row(passage.push, m) * row(to, 0))
+        put(to, 2 * m + 1, row(to, 2 * m + 1) - row(passage.push, m) * row(to, 1))
+    put(to, 0, side * row(to, 0))
+    put(to, 1, side * row(to, 1))
+
+
+@inline
+def from_contact(passage, t, side, j, who):
+    """Tangent vector j from (delta, delta', w2, ...)."""
+    Z, frame, size, of = t.Z, t.to_frame, len(t.growth), passage.before
+    put(of, 0, side * row(of, 0))
+    put(of, 1, side * row(of, 1))
+    for m in range(1, len(passage.push)):
+        put(of, 2 * m, row(of, 2 * m) + row(passage.push, m) * row(of, 0))
+        put(of, 2 * m + 1, row(of, 2 * m + 1) + row(passage.push, m) * row(of, 1))
+    for m in range(size):
+        total = row(frame, size * m) * row(of, 0)
+        for a in range(1, size):
+            total = total + row(frame, size * m + a) * row(of, a)
+        put(Z, size * m + j, select(who, total, row(Z, size * m + j)))
