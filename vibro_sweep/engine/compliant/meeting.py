@@ -50,10 +50,11 @@ def is_open_to(law, e, o, k, readings):
     go alone. Sets how long a contact may last: over the section, if nothing but the state is read there.
     """
     contact, passage, i, records = law.orbits[o.lane], law.passage[0], o.lane, e.records
-    alone = contact.watched or law.log.shape[1] > 0 or len(records.times) > 0 or records.impacts.shape[1] > 0
+    alone = law.log.shape[1] > 0 or len(records.times) > 0 or records.impacts.shape[1] > 0
     if contact.relaxed[0] > 0.0 or contact.relaxed[1] > 0.0:
         bring_stops(contact, o, k, 0.0, e.strike[0].width[i])
     read = readings.parts > 0 and (o.done + 1) * readings.parts >= (o.read + 1) * o.periods
+    passage.watched = contact.watched
     passage.ahead[i] = o.cells - k
     passage.last[i] = passage.ahead[i] + (o.cells if o.done + 1 < o.goal and not read else 0)
     return not (alone or contact.relaxed[0] > 0.0 or contact.relaxed[1] > 0.0)
@@ -75,6 +76,9 @@ def finish_passage_of(law, e, o, f, readings):
     contact.ended += 1
     contact.time += passage.time[i]
     contact.restitutions -= passage.speed_after[i] / passage.speed[i]
+    if contact.watched:
+        contact.peak = max(contact.peak, passage.largest[i])
+        contact.peak_force = max(contact.peak_force, contact.mass * passage.strongest[i])
     o.pressed_time += passage.time[i]
     o.log_volume -= passage.damping[n, i] * passage.time[i]
     k = o.cell + crossed

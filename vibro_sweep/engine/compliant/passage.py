@@ -23,13 +23,14 @@ from vibro_sweep.engine.compliant.passage_series import (
 from vibro_sweep.engine.compliant.passage_tables import NEARLY, REACH, TERMS
 from vibro_sweep.engine.motion.strike import bound_third, leaves_freely
 from vibro_sweep.engine.simd.columns import put_transposed, rows_of, weigh
-from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import bits, select
 from vibro_sweep.engine.simd.memory import put, row
 from vibro_sweep.engine.tables import economy
 
 LOOKS = 4  # at the end, each followed by a step towards it
 FARTHER = 1.1  # how much longer than guessed the last series may be
+TOP_LOOKS = 6  # at a peak, of which the last ones change nothing
 CLOSE = 2.0**-54  # of the time, a third power: what a step of third order leaves
 MARGIN = 1.0 + 1e-9  # of bounds that rounding may have moved
 
@@ -75,12 +76,19 @@ def seek_end(c, u, farthest, rate, wanted):
 
 
 @inline
+def load_force(passage, to, k, c, p):
+    """The series of F/m_e."""
+    for n in range(TERMS):
+        put(to, n, k * row(passage.x, n) + c * row(passage.v, n))
+    put(to, 0, row(to, 0) + p)
+
+
+@inline
 def load_end(passage, k, c, p, by_force):
     """The series of what is zero at the end: delta, or F/m_e."""
-    x, v = passage.x, passage.v
-    put(passage.end, 0, select(by_force, k * row(x, 0) + c * row(v, 0) + p, row(x, 0)))
-    for n in range(1, TERMS):
-        put(passage.end, n, select(by_force, k * row(x, n) + c * row(v, n), row(x, n)))
+    load_force(passage, passage.end, k, c, p)
+    for n in range(TERMS):
+        put(passage.end, n, select(by_force, row(passage.end, n), row(passage.x, n)))
 
 
 @inline
@@ -103,6 +111,12 @@ def changes_of(c, u):
         if n > 1:
             slope = slope * u + float(n) * abs(row(c, n))
     return size * u * MARGIN, slope * u * MARGIN
+
+
+@inline
+def keeps_sign(value, change, going, positive, negative):
+    """Which lanes are still positive, and negative, where a value changes by so much at most while they are `going`."""
+    return positive & (~going | (value >= change)), negative & (~going | (-value >= change))
 
 
 @jit
@@ -140,7 +154,8 @@ def pass_contacts(passage, strikes, z, touching, side, d, v):
     going = touching & (of_stop(passage.ends, right) > 0.0) & (reach <= 4.0)
     u, found, crossing = about / parts, going & ~going, going & ~going
     pressed, pulled, rising, falling = going, going, going, going  # the signs of L of what ends, and of its slope
-    one_sided = ~(by_force & (p > 0.0))  # delta does not come to zero before the force does
+    preloaded = by_force & (p > 0.0)  # delta may come to zero before the force does, if a changes its sign
+    into, away = going, going
     strongest, time, part = 0.0 * u, 0.0 * u, 0.0 * u
     to_section = row(passage.ahead, 0) * width - d
     while bits(going) != 0:
@@ -155,11 +170,16 @@ def pass_contacts(passage, strikes, z, touching, side, d, v):
         if bits(passing) != 0:
             crossing = crossing | passing
             keep_at(passage, passage.section, passing, to_section - time)
+        if passage.watched:
+            watch_peaks(passage, going, length, k, c, p, part)
+        if bits(going & preloaded) != 0:
+            change, bend = changes_of(passage.drive, length)
+            into, away = keeps_sign(row(passage.drive, 0), change, going, into, away)
         load_drive(passage, k, c, p * -row(passage.row, 0), by_force)
         begins, slope = row(passage.drive, 0), row(passage.drive, 1)
         change, bend = changes_of(passage.drive, length)
-        pressed, pulled = pressed & (~going | (begins >= change)), pulled & (~going | (-begins >= change))
-        rising, falling = rising & (~going | (slope >= bend)), falling & (~going | (-slope >= bend))
+        pressed, pulled = keeps_sign(begins, change, going, pressed, pulled)
+        rising, falling = keeps_sign(slope, bend, going, rising, falling)
         largest = abs(begins) + change
         strongest = select(going & (largest > strongest), largest, strongest)
         keep_at(passage, y, going, length)
@@ -176,7 +196,38 @@ def pass_contacts(passage, strikes, z, touching, side, d, v):
     put(passage.speed, 0, select(touching, speed, row(passage.speed, 0)))
     put(passage.time, 0, select(touching, time, row(passage.time, 0)))
     put(passage.parts, 0, select(touching, parts, row(passage.parts, 0)))
-    return leave_stop(passage, strikes, found & certain & one_sided, crossing, side, d + time, sin, cos)
+    certain = certain & (~preloaded | (into | away) & short & (row(y, 0) > 0.0))
+    return leave_stop(passage, strikes, found & certain, crossing, side, d + time, sin, cos)
+
+
+@noinline
+def watch_peaks(passage, going, length, k, c, p, part):
+    """Keep the largest delta and F/m_e of the contact, over the time `length` of its series number `part`."""
+    load_force(passage, passage.force, k, c, p)
+    first = part <= 1.0
+    keep_larger(passage.largest, peak_within(passage.x, length), going, first)
+    keep_larger(passage.strongest, peak_within(passage.force, length), going, first)
+
+
+@inline
+def keep_larger(kept, found, going, first):
+    """Keep what is found, where it is the `first`, or larger than what was kept."""
+    put(kept, 0, select(going & (first | (found > row(kept, 0))), found, row(kept, 0)))
+
+
+@inline
+def peak_within(c, u):
+    """The largest value of a series on [0, u] that turns back there once, or not."""
+    first, (end, slope, _) = row(c, 0), derivatives_at(c, u)
+    largest, begins = select(end > first, end, first), row(c, 1)
+    turns = (begins > 0.0) & (slope < 0.0)
+    top = select(turns, u * begins / (begins - slope), 0.0 * u)
+    for _ in range(TOP_LOOKS):
+        f, slope, curve = derivatives_at(c, top)
+        largest = select(turns & (f > largest), f, largest)
+        after = top - 0.5 * slope / curve
+        top = select(turns & (curve < 0.0) & (after > 0.0) & (after < u), after, top)
+    return largest
 
 
 @inline

@@ -96,14 +96,14 @@ def derivatives_at(c, u):
 
 @jit
 def carry_vector(passage, damping, u, going):
-    """Carry the tangent vector `before`, (delta, delta' + c delta, w2, w2', ...), on by the time u in contact.
+    """Carry the tangent `vector`, (delta, delta' + c delta, w2, w2', ...), on by the time u in contact.
 
     In these coordinates no jump of size c or k acts at touch and release (tangent_in_contact.py).
     """
     masses, states, G, x, v = len(passage.push), len(passage.y), passage.row, passage.x, passage.v
     for m in range(masses):
-        put(x, m * TERMS, row(passage.before, 2 * m))
-        put(v, m * TERMS, row(passage.before, 2 * m + 1))
+        put(x, m * TERMS, row(passage.vector, 2 * m))
+        put(v, m * TERMS, row(passage.vector, 2 * m + 1))
     for n in range(TERMS - 1):
         speed = row(v, n) - damping * row(x, n)  # delta'
         for m in range(masses):
@@ -120,5 +120,5 @@ def carry_vector(passage, damping, u, going):
         for m in range(1, masses):
             put(x, m * TERMS + n + 1, row(v, m * TERMS + n) * INVERSE[n])
     for m in range(masses):
-        put(passage.before, 2 * m, select(going, at(x, m * TERMS, u), row(passage.before, 2 * m)))
-        put(passage.before, 2 * m + 1, select(going, at(v, m * TERMS, u), row(passage.before, 2 * m + 1)))
+        put(passage.vector, 2 * m, select(going, at(x, m * TERMS, u), row(passage.vector, 2 * m)))
+        put(passage.vector, 2 * m + 1, select(going, at(v, m * TERMS, u), row(passage.vector, 2 * m + 1)))

@@ -75,8 +75,12 @@ def passages_of(masses: int, constant: bool = False) -> np.dtype:
         ("time", float, (LANES,)),  # from touch to release
         ("parts", float, (LANES,)),  # series that this time takes
         ("crossed", float, (LANES,)),  # cells between the one of the touch and the one of the release
-        ("before", float, (states, LANES)),  # of a tangent vector
-        ("after", float, (states, LANES)),
+        ("vector", float, (states, LANES)),  # a tangent vector on its way
+        # of what is recorded
+        ("watched", np.bool_),  # whether the peaks are wanted
+        ("force", float, (TERMS, LANES)),  # the series of F/m_e
+        ("largest", float, (LANES,)),  # delta in this contact, and
+        ("strongest", float, (LANES,)),  # F/m_e
     ]
     return record(fields)
 

@@ -29,15 +29,15 @@ def carry_through_contacts(passage, strikes, t, orbits, passed):
     apply_flight(t, who)
     for j in range(size):
         to_contact(passage, t, side, j)
-        before = passage.before
-        put(before, 1, row(before, 1) - touch * row(before, 0))
+        vector = passage.vector
+        put(vector, 1, row(vector, 1) - touch * row(vector, 0))
         part, going = 0.0 * u, who
         while bits(going) != 0:
             carry_vector(passage, c, u, going)
             part = part + 1.0
             going = going & (part < parts)
-        delta = row(before, 0)
-        put(before, 1, row(before, 1) + select(by_force, -c, release) * delta)
+        delta = row(vector, 0)
+        put(vector, 1, row(vector, 1) + select(by_force, -c, release) * delta)
         for n in range(len(t.places) // size):
             chosen = who & (right if n == 1 else ~right)
             put(t.places, n * size + j, select(chosen, delta, row(t.places, n * size + j)))
@@ -66,7 +66,7 @@ def exponential(x):
 @inline
 def to_contact(passage, t, side, j):
     """Tangent vector j as (delta, delta', w2, ...)."""
-    Z, back, size, to = t.Z, t.from_frame, len(t.growth), passage.before
+    Z, back, size, to = t.Z, t.from_frame, len(t.growth), passage.vector
     for a in range(size):
         total = row(back, a * size) * row(Z, j)
         for m in range(1, size):
@@ -82,7 +82,7 @@ def to_contact(passage, t, side, j):
 @inline
 def from_contact(passage, t, side, j, who):
     """Tangent vector j from (delta, delta', w2, ...)."""
-    Z, frame, size, of = t.Z, t.to_frame, len(t.growth), passage.before
+    Z, frame, size, of = t.Z, t.to_frame, len(t.growth), passage.vector
     put(of, 0, side * row(of, 0))
     put(of, 1, side * row(of, 1))
     for m in range(1, len(passage.push)):

@@ -104,6 +104,8 @@ def resolve_events(e, o, f, readings):
             end_period_here(e, o, f, readings)
             if o.done == o.goal:
                 return
+        if o.from_base:
+            keep_start(o)
 
 
 @noinline
