@@ -11,6 +11,7 @@ from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
 from vibro_sweep.engine.motion.impacts import size_at
 from vibro_sweep.engine.motion.rest import first_nonzero
+from vibro_sweep.engine.quadrature import PLACES, WEIGHTS
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, evaluate
 from vibro_sweep.engine.tables.resting import bound_third_over
@@ -155,6 +156,21 @@ def watch_contact(contact, side, u):
     load_force(contact, side)
     contact.largest = max(contact.largest, peak_between(contact.c[0], u))
     contact.strongest = max(contact.strongest, peak_between(contact.force, u))
+
+
+@jit
+def stored_energy(contact, n):
+    """What the spring of stop n holds, over m_e: k delta^2/2 + p delta."""
+    return (0.5 * contact.stiffness[n] * contact.y[0] + contact.preload[n]) * contact.y[0]
+
+
+@jit
+def integral_of_square(c, u):
+    """The integral over [0, u] of the square of the derivative of a polynomial, which has the length of a series."""
+    total = 0.0
+    for n in range(len(PLACES)):
+        total += WEIGHTS[n] * slope_of(c, PLACES[n] * u) ** 2
+    return total * u
 
 
 @jit

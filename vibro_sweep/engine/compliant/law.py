@@ -77,6 +77,7 @@ def law_of(masses: int) -> np.dtype:
         ("logged", np.int64),
         ("contacts", np.int64, 2),
         ("time", float),  # in contact
+        ("work", float),  # of F/m_e on the masses that press the stop
         ("peak", float),  # delta
         ("peak_force", float),
         ("restitutions", float),  # sum of -v_release/v_touch, and
@@ -169,5 +170,5 @@ def clear_contacts(contact):
     """Count contacts from here on, and watch their peaks."""
     contact.watched = True
     contact.contacts[0] = contact.contacts[1] = contact.ended = 0
-    contact.time = contact.restitutions = 0.0
+    contact.time = contact.work = contact.restitutions = 0.0
     contact.peak = contact.peak_force = contact.largest = contact.strongest = -np.inf

@@ -10,8 +10,10 @@ from vibro_sweep.engine.compliant.contact_series import (
     end_of_contact,
     enter,
     go_on_in_contact,
+    integral_of_square,
     leave,
     load_contact,
+    stored_energy,
     watch_contact,
 )
 from vibro_sweep.engine.compliant.law import lane_of
@@ -55,6 +57,7 @@ def stay_in_contact(law, f, stops, o, records, t, k, s, sin, cos):
     """Contact from offset s of cell k on. Returns the time to its end, infinite if not in this cell."""
     q, contact, side, w = f.oscillator[0], law.orbits[o.lane], law.orbits[o.lane].pressed, 0.0
     n, sin_there, cos_there = lane_of(side), sin, cos
+    contact.work -= stored_energy(contact, n)
     if t.wanted:
         begin_matrix(contact)
     while True:
@@ -70,6 +73,7 @@ def stay_in_contact(law, f, stops, o, records, t, k, s, sin, cos):
         contact.time += end
         if contact.watched:
             watch_contact(contact, side, end)
+            contact.work += contact.damping[n] * integral_of_square(contact.c[0], end)
         if t.wanted:
             carry_matrix(contact, side, end)
         go_on_in_contact(contact, end)
@@ -82,6 +86,7 @@ def stay_in_contact(law, f, stops, o, records, t, k, s, sin, cos):
     ended = d < np.inf
     if ended:
         end_contact(contact, o, k, s + w, side)
+    contact.work += stored_energy(contact, n)
     leave(contact, o, stops, side)
     o.log_volume -= contact.damping[n] * w
     o.pressed_time += w
