@@ -274,7 +274,6 @@ SOFT = (
     "more, key",
     [
         ("dynamics: map\n", "dynamics"),
-        ("observe: [energy]\n", "observe"),
         ("section: {kind: impact, stop: right}\n", "section.stop"),
         ("sweep: {R: {values: [0.5]}}\n", "k_stop"),
         ("sweep: {k_stop: {values: [0, 1]}}\n", "sweep.k_stop"),

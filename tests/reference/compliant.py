@@ -29,6 +29,7 @@ class Orbit(NamedTuple):
     contacts: list[Contact]
     impacts: list[tuple]  # (t, side, v)
     section: list[list]
+    taken: mpf  # the energy that stops have taken from the masses
 
 
 class Flow:
@@ -151,6 +152,14 @@ def column(terms, row):
     return [dot(row, term) for term in terms]
 
 
+def work(force, speed, u):
+    """The integral of the product of two polynomials over [0, u]."""
+    total = ZERO
+    for n in reversed(range(len(force))):
+        total += force[n] * sum((b * u ** (n + m + 1) / (n + m + 1) for m, b in enumerate(speed)), ZERO)
+    return total
+
+
 def leading(c, h, tiny):
     """The order of the first coefficient that is not rounding, over a step h."""
     sizes = [abs(a) * h**n for n, a in enumerate(c)]
@@ -166,7 +175,7 @@ def simulate(q, state, contacts=None, periods=None, digits=40):
         y = [to_gmp(mpf(a)) for a in state] + [gmpy2.sin(tau), gmpy2.cos(tau), ZERO + 1, ZERO, ZERO]
         end = gmpy2.inf() if periods is None else periods * period
         done, impacts, section, pressed, relaxing, held, touched = [], [], [], 0, set(), 0, None
-        deepest, strongest, leaving, next_section = ZERO, ZERO, 0, 0
+        deepest, strongest, leaving, next_section, taken = ZERO, ZERO, 0, 0, ZERO
         for side in o.walls:
             if o.R[side] is None and dot(o.depth(side), y) > 0:
                 if o.by_force and dot(o.force(side), y) < 0:
@@ -214,6 +223,7 @@ def simulate(q, state, contacts=None, periods=None, digits=40):
                 section.append([from_gmp(a) for a in evaluate(terms, next_section * period - t)[: 2 * N]])
                 next_section += 1
             if pressed:
+                taken += work(column(terms, o.force(pressed)), column(terms, o.speed(pressed)), min(u, end - t))
                 for row, largest in ((o.depth(pressed), "deep"), (o.force(pressed), "strong")):
                     c = column(terms, row)
                     slope = [n * a for n, a in enumerate(c)][1:]
@@ -243,13 +253,14 @@ def simulate(q, state, contacts=None, periods=None, digits=40):
             elif what == "touch" and o.R[side] is not None:
                 speed = dot(o.speed(side), y)
                 impacts.append((from_gmp(t), side, from_gmp(speed)))
+                taken += o.mass * (1 - o.R[side]) * (1 + o.R[side]) * speed * speed / 2
                 y, leaving = o.kick(y, -side * (1 + o.R[side]) * speed), side
             elif what == "touch":
                 relaxing.discard(side)
                 y[o.place_of_s(side)] = ZERO
                 pressed, touched, leaving = side, (t, dot(o.speed(side), y)), ("begin", side)
                 deepest, strongest = dot(o.depth(side), y), dot(o.force(side), y)
-        return Orbit(done, impacts, section)
+        return Orbit(done, impacts, section, from_gmp(taken))
 
 
 def limit(o, side):

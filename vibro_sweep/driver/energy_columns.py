@@ -25,6 +25,8 @@ def energies_of(
     begins[0] = starts[0]
     going_on = status.is_valid(results["status"][:-1])[..., None]
     begins[1:] = np.where(going_on, results["end"][:-1], begins[1:])  # where chains go on
+    relaxed = np.zeros((*shape, 2))
+    relaxed[1:] = np.where(going_on, results["relaxed"][:-1], 0.0)
     systems, begins, resting = steps.reshape(-1), begins.reshape(-1, states), np.zeros(steps.size)
     outcome = np.where(status.is_valid(results["status"]), status.NOT_COMPUTED, results["status"]).reshape(-1)
     plan = block.plan._replace(states=False, lyapunov=False, impacts=False, attractors=False, section_side=0.0)
@@ -38,7 +40,8 @@ def energies_of(
             workspace, plan, None,
         )  # fmt: skip
         begins, resting = passed["end"][0], passed["resting"][0].copy()  # as laid out as the other
-    begins = at_contact(systems, begins, resting)
+        relaxed = passed["relaxed"][0].copy()
+    begins, relaxed = at_contact(systems, begins, resting), relaxed.reshape(-1, 2)
     wanted = {
         "loss": np.empty(len(systems)),
         "squares": np.empty((len(systems), states)),
@@ -52,7 +55,7 @@ def energies_of(
     parts, room = _parts(systems), ROOM
     while True:  # once in any case: what a scene needs is compiled with its first point, however that goes
         run_energy(
-            systems, begins, resting, masses, back, origin, block.plan.record, workspace, plan,
+            systems, begins, resting, relaxed, masses, back, origin, block.plan.record, workspace, plan,
             new_workspace(parts, room, kind.masses), *wanted.values(), outcome,
         )  # fmt: skip
         room *= 8

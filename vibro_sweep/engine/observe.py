@@ -87,7 +87,7 @@ def begin_contacts(law, i, wanted):
 
 
 @inline
-def keep_contacts(law, o, result, width, time):
+def keep_contacts(law, o, result, time, width):
     """Keep what is known of the contacts with compliant stops of the record, which lasts this time. width: of a
     cell."""
     if law is not None:
@@ -108,8 +108,8 @@ def keep_record(e, w, plan, point, result, section, phase, running, o):
     result.min_impact_speed = o.slowest if o.slowest < np.inf else np.nan
     result.contact_error = o.miss if o.slowest < np.inf else np.nan
     result.sticking_time = o.rest_time
-    keep_contacts(e.law, o, result, e.strike[0].width[o.lane], plan.record * period_of(e, o))
     states, growth, T = w.section[o.lane], w.growth[o.lane], period_of(e, o)
+    keep_contacts(e.law, o, result, plan.record * T, e.flights.oscillator[o.table, 0].width)
     numbers = len(result.end)
     for j in range(numbers):
         result.end[j] = o.X[j]

@@ -108,10 +108,10 @@ def keep_fastest(hits, impacts, q, stops):
 
 
 @inline
-def hold(law, o, result):
+def hold(law, o, relaxed):
     """Where compliant stops are at the section; a mass inside one is in contact, which its state says."""
     if law is not None:
-        relax_from(law, 0, result.relaxed)
+        relax_from(law, 0, relaxed)
         if o.resting != 0.0 and law.orbits[0].compliant[lane_of(o.resting)]:
             o.resting = 0.0
 
@@ -130,7 +130,7 @@ def run_trajectories(points, results, hits, kept, w, plan):
                 stops = prepare(points[p : p + 1], 0, w, plan)
                 set_state(o, e.flights.nodes[o.table], stops, 0, 0.0, result.end)
                 o.resting = result.resting
-                hold(e.law, o, result)
+                hold(e.law, o, result.relaxed)
                 samples, sections, impacts = kept.samples[p, s], kept.sections[p, s], kept.impacts[p, s]
                 count = follow(w, plan.periods, hits, samples, sections, impacts)
                 if o.status == status.OK:

@@ -32,7 +32,7 @@ WORDS = {
     "contacts": Word("counts, time, peaks and restitution of contacts with compliant stops", states=False),
     "attractors": Word("which starts end on the same attractor", tangents=True),
     "energy": Word(
-        "power lost in impacts, root mean square and largest size of every coordinate", states=False,
+        "power that stops take, root mean square and largest size of every coordinate", states=False,
     ),
     "convergence": Word("Lyapunov exponents as they converge along the record", tangents=True),
 }  # fmt: skip
@@ -173,8 +173,9 @@ def _energies(masses: int) -> tuple[Variable, ...]:
     sizes = (("rms", "rms of", "root mean square of the {}"), ("peak", "peak of", "largest size of the {}"))
     return (
         Variable(
-            "impact_power", _ENERGY, "power lost in impacts",
-            "energy lost in impacts in the recorded periods, per unit time", units="W", in_kernel=False,
+            "impact_power", _ENERGY, "power that stops take",
+            "energy lost in impacts, and the work of the masses on compliant stops, in the recorded periods, per unit "
+            "time", units="W", in_kernel=False,
         ),
         *(
             Variable(

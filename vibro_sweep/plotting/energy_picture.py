@@ -56,7 +56,7 @@ def energy(result: Result):
 
 def _power(ax, values, power, result) -> None:
     """power : (values, starts)"""
-    ax.set_ylabel(f"power lost\nin impacts{result.unit('impact_power')}")
+    ax.set_ylabel(f"power that\nstops take{result.unit('impact_power')}")
     if not result.follow:
         curve(ax, values, power, color=INK)
         return

@@ -37,8 +37,6 @@ def _contact_problems(form: Form, system: AnyOscillator) -> list[str]:
     problems = []
     if form.dynamics == "map":
         problems.append(problem("dynamics", form.dynamics, f"is that of rigid stops; {RIGID_ALONE}"))
-    if "energy" in form.observe:
-        problems.append(problem("observe", sorted(form.observe), "energy is that of rigid stops so far; leave it out"))
     if form.section.kind == "impact" and (q.k_high if form.section.stop == "right" else q.k_low) > 0:
         text = "this stop is compliant, and has no impacts; take `kind: phase`, or the other stop"
         problems.append(problem("section.stop", form.section.stop, text))

@@ -1,0 +1,102 @@
+"""`observe: [energy]` with compliant stops: what they take, against forty digits and the balance of energy."""
+
+import numpy as np
+import pytest
+from mpmath import mpf
+from reference import compliant
+
+import vibro_sweep as vs
+from vibro_sweep.model.state import state
+
+ONE = dict(k=1, zeta=0.01, F=0.5, omega=0.8, b=1, tau=0.3)
+PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0.2, omega=0.63, b=3, tau=0.4)
+CHAIN = dict(m=[1, 2, 1], k=[0.2, 1, 1, 0.5], c=[0, 0.1, 0.1, 0], force=[1, 0, 0.4], omega=0.9, b=0.8, tau=0.1)
+LAWS = {
+    "elastic": dict(k_stop=29),
+    "elastic, preloaded": dict(k_stop=29, preload=0.2),
+    "damped": dict(k_stop=40, c_stop=3),
+    "left by force": dict(k_stop=40, c_stop=3, release="force"),
+    "left by force, preloaded": dict(k_stop=40, c_stop=6, preload=0.1, release="force"),
+    "stiff": dict(k_stop=1e4, c_stop=14),
+    "one rigid": dict(k_stop=400, c_stop=4, R_left=0.7, release="force"),
+    "the other rigid": dict(R=0.6, k_stop_left=50, c_stop_left=1, preload_left=0.3),
+}
+PERIODS = 6
+
+
+def oscillator(masses, law):
+    if masses == 2:
+        return vs.System(**PAPER, **LAWS[law])
+    name, numbers = ("one_mass", ONE) if masses == 1 else ("chain", CHAIN)
+    return vs.Oscillator.named(name, **numbers, **LAWS[law])
+
+
+def observed(system, start, transient, record, **more):
+    return vs.sweep(
+        system, {"omega": [system.omega]}, start=start, transient=transient, record=record, observe=["energy"], **more
+    )
+
+
+MASSES = [1, 2, pytest.param(3, marks=pytest.mark.slow)]
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("masses", MASSES)
+def test_work_on_stops_against_forty_digits(masses, law):
+    system, start = oscillator(masses, law), [0.3, 0.9] + (2 * masses - 2) * [0.1]
+    exact = compliant.simulate(system.linear, [mpf(one) for one in start], periods=PERIODS)
+    assert len(exact.contacts) >= 2 and (len(exact.impacts) > 0) == ("rigid" in law)
+    data = observed(system, start, 0, PERIODS)
+    found, wanted = float(data.impact_power[0]) * PERIODS * system.period, float(exact.taken)
+    assert found == pytest.approx(wanted, rel=1e-10, abs=1e-12)
+    assert (abs(wanted) > 1e-3) == ("elastic" not in law)  # unless one of them goes on at the end
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("masses", MASSES)
+def test_balance_of_energy(masses, law):
+    """What the force gives is what dampers and stops take, and what the masses have more at the end.
+
+    The same samples have the mean squares and the largest sizes.
+    """
+    system, start, transient = oscillator(masses, law), 2 * masses * [0.2], 4
+    q, T = system.linear, system.period
+    data, orbit = observed(system, start, transient, PERIODS), vs.simulate(system, start, transient + PERIODS)
+    begin, end = transient * T, (transient + PERIODS) * T
+    cuts = [np.linspace(begin, end, 100 * PERIODS + 1), orbit.impacts["t"]]
+    for touch, release in zip(orbit.contacts["t_touch"], orbit.contacts["t_release"], strict=True):
+        cuts.append(np.linspace(touch, end if np.isnan(release) else release, 20))
+    cuts = np.unique(np.concatenate(cuts))
+    cuts = cuts[(cuts >= begin) & (cuts <= end)]
+    x, w = np.polynomial.legendre.leggauss(10)
+    low, length = cuts[:-1, None], np.diff(cuts)[:, None]
+    times, weights = (low + length * (x + 1) / 2).ravel(), (length * w / 2).ravel()
+    states = orbit.sample(times)
+    v, phase = states[:, 1::2], q.omega * times + q.tau
+    force = np.outer(np.sin(phase), q.sine) + np.outer(np.cos(phase), q.cosine) + q.constant
+    given, damped = weights @ (force * v).sum(1), weights @ np.einsum("ti,ij,tj->t", v, q.C, v)
+    before, after = (energy_of(q, orbit.section[n]) for n in (transient, transient + PERIODS))
+    taken = float(data.impact_power[0]) * PERIODS * T
+    assert given == pytest.approx(damped + taken + after - before, abs=1e-10)
+    for name, values in zip(state(masses), states.T, strict=True):
+        assert float(data[f"rms_{name}"][0]) == pytest.approx(np.sqrt(weights @ values**2 / (end - begin)), rel=1e-11)
+        most = np.abs(values).max()
+        assert most * (1 - 1e-8) <= float(data[f"peak_{name}"][0]) <= most * 1.005
+
+
+def energy_of(q, one):
+    x, v = one[0::2], one[1::2]
+    return 0.5 * (x @ q.K @ x + v @ q.M @ v)
+
+
+@pytest.mark.parametrize("tau", [1.0, 4.0])
+def test_an_orbit_that_is_followed_goes_on_with_stops_that_relax(tau):
+    """Two steps of one period at the same force are one record of two periods."""
+    numbers = ONE | {"b": 0.3, "tau": tau}
+    system = vs.Oscillator.named("one_mass", **numbers, k_stop=4, c_stop=20, preload=0.01, release="force")
+    start, once = {"x1": 0.2, "v1": 0.9}, 1 + 1e-15
+    whole = observed(system, start, 0, 2)
+    steps = vs.sweep(
+        system, {"F": [0.5, 0.5 * once]}, start=start | {"follow": "up"}, transient=0, record=1, observe=["energy"]
+    )
+    assert float(steps.impact_power.mean()) == pytest.approx(float(whole.impact_power[0]), rel=1e-12)
