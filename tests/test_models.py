@@ -15,8 +15,10 @@ import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
 from vibro_sweep.cli.summaries import model_text
 from vibro_sweep.model.catalogue import OF_A_SYSTEM
+from vibro_sweep.model.contact_laws import LAWS
 from vibro_sweep.model.linear import contact, rest_state
 from vibro_sweep.model.models import DEFAULT, MODELS
+from vibro_sweep.model.parameters import STOP_NUMBERS
 from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.scene import parse_scene
 
@@ -39,7 +41,8 @@ class TestEveryModel:
         parameters = inspect.signature(model.build).parameters
         own = {key for key, one in parameters.items() if one.kind is not one.VAR_KEYWORD}
         declared = {one.name for one in (*model.numbers, *model.options)}
-        assert own < declared and declared - own <= {*inspect.signature(contact).parameters, "units"}
+        of_stops = {*inspect.signature(contact).parameters, *(one.name for one in STOP_NUMBERS)}
+        assert own < declared and declared - own <= {*of_stops, "units"}
         for one in (*model.numbers, *model.options):
             assert one.text and (not hasattr(one, "label") or one.label)
 
@@ -256,7 +259,12 @@ def test_the_command_shows_a_model(name, capsys):
 def test_the_command_lists_them(capsys):
     assert main(["models"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines] == list(MODELS)
+    assert [line.split()[0] for line in lines[: len(MODELS)]] == list(MODELS)
+    assert [line.split()[0] for line in lines[-len(LAWS) :]] == list(LAWS)
+    for name, law in LAWS.items():
+        assert main(["models", name]) == 0
+        said = capsys.readouterr().out
+        assert law.equations in said and all(f"  {one.name} " in said for one in law.numbers_of_both)
     assert main(["models", "chains"]) == 2
     assert "did you mean chain?" in capsys.readouterr().err
 

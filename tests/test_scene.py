@@ -8,7 +8,7 @@ import pytest
 from support import ROOT
 
 from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.parameters import BY_NAME, COMPLIANT, COMPLIANT_LEFT, ParameterError, check_value
+from vibro_sweep.model.parameters import BY_NAME, OTHER_STOPS, ParameterError, check_value
 from vibro_sweep.scene import SceneError, json_schema, load_scene, parse_scene
 from vibro_sweep.scene.yaml_text import YAMLTextError, read_yaml
 
@@ -187,7 +187,7 @@ class TestScene:
     def test_parameters(self):
         scene = parse_scene(BASE + "sweep: {omega: {values: [0.6, 0.63]}, b: {values: [5, 6, 7]}}")
         parameters = scene.parameters()
-        compliant = {one.name for one in (*COMPLIANT, *COMPLIANT_LEFT)}  # these stops are rigid
+        compliant = {one.name for one in OTHER_STOPS}  # these stops are rigid
         assert tuple(parameters) == tuple(name for name in BY_NAME if name not in compliant)
         assert {array.shape for array in parameters.values()} == {(2, 3)}
         for i, omega in enumerate((0.6, 0.63)):

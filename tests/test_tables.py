@@ -23,7 +23,7 @@ from vibro_sweep.model.dimensions import DIMENSIONS
 from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.observables import VARIABLES, WORDS, asked_for
 from vibro_sweep.model.outcomes import BRANCHES, EDGES, ORBITS, POINTS, REASONS
-from vibro_sweep.model.parameters import BY_NAME, COMPLIANT, COMPLIANT_LEFT, NAMES
+from vibro_sweep.model.parameters import BY_NAME, NAMES, OTHER_STOPS
 from vibro_sweep.model.state import state
 from vibro_sweep.model.status import STATUSES
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
@@ -82,7 +82,7 @@ class TestWhatFollows:
         system = vs.System(**SYSTEM)
         before = vs.grazing(system)
         for name, one in BY_NAME.items():
-            if name in (each.name for each in (*COMPLIANT, *COMPLIANT_LEFT)):  # its stops are rigid
+            if name in (each.name for each in OTHER_STOPS):  # its stops are rigid
                 assert not one.free_motion
                 continue
             value = getattr(system, name) or system.parameters()[name]

@@ -240,15 +240,21 @@ def grazing(scene_file: SceneFile):
 
 
 @app.command()
-def models(name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Of a model.")] = None):
-    """What oscillators there are; of one the equations, a sketch, its numbers."""
+def models(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Of a model or a law of contact.")] = None,
+):
+    """What oscillators and laws of contact there are; of one the equations, a sketch, its numbers."""
+    from vibro_sweep.model.contact_laws import LAWS
     from vibro_sweep.model.models import model_named
     from vibro_sweep.model.parameters import ParameterError
 
-    from .summaries import model_list, model_text
+    from .summaries import law_text, model_list, model_text
 
     with input_errors(ParameterError):
-        say(model_list() if name is None else model_text(model_named(name)))
+        if name in LAWS:
+            say(law_text(LAWS[name]))
+        else:
+            say(model_list() if name is None else model_text(model_named(name)))
 
 
 @app.command()

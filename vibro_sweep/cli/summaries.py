@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
+from vibro_sweep.model.contact_laws import LAWS
+from vibro_sweep.model.contact_laws.declaration import ContactLaw
 from vibro_sweep.model.grazing import Grazing, grazing
 from vibro_sweep.model.linear import static_state
 from vibro_sweep.model.models import MODELS
@@ -86,8 +88,21 @@ def cost_text(cost: "Estimate") -> str:
 
 
 def model_list() -> str:
-    """The output of `models`: a line for each model."""
-    return "\n".join(f"{name:<16} {one.title}" for name, one in MODELS.items())
+    """The output of `models`: a line for each model, and for each law of contact that its stops may have."""
+    models = [f"{name:<16} {one.title}" for name, one in MODELS.items()]
+    laws = [f"{name:<16} {one.title}: {', '.join(one.names('right'))}" for name, one in LAWS.items()]
+    return "\n".join([*models, "", "stops, of every model:", *laws])
+
+
+def law_text(law: ContactLaw) -> str:
+    """The output of `models NAME` for a law of contact: its equation, numbers with their ranges, words and source."""
+    rows = [(one.name, one.range.text, one.text) for one in law.numbers_of_both]
+    rows += [(one.name, " or ".join(one.words), f"{one.text} [{one.words[0]}]") for one in law.options]
+    wide = [max(len(row[column]) for row in rows) for column in (0, 1)]
+    lines = [f"  {name:<{wide[0]}}  {allowed:<{wide[1]}}  {text}" for name, allowed, text in rows]
+    return "\n".join(
+        [f"{law.name} stop: {law.title}", "", f"    {law.equations}", "", *lines, "", f"source: {law.source}"]
+    )
 
 
 def model_text(model: Model) -> str:

@@ -33,7 +33,7 @@ def kind_of(linears: Iterable[Linear]) -> Kind:
     """The kind for which kernels must be compiled: oscillators with the same number of masses."""
     linears = list(linears)
     constant = any(np.any(q.constant) or np.any(origin_of(q)) for q in linears)
-    compliant = any(q.k_low > 0 or q.k_high > 0 for q in linears)
+    compliant = any(q.compliant for q in linears)
     return Kind(len(linears[0].normal), constant, False, all(is_own(q) for q in linears), compliant)
 
 

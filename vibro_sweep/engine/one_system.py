@@ -98,7 +98,7 @@ def is_paper(system, axes: dict[str, np.ndarray] | None = None) -> bool:
     axes = axes or {}
     if not isinstance(system, System) or "mu_c" in axes or not (system.mu_c is None or system.mu_c == system.mu_k):
         return False
-    if system.k_stop is not None or system.k_stop_left is not None:
+    if system.family.built.compliant:
         return False
     if not np.all(axes.get("mu_k", system.mu_k)):
         return False
@@ -176,7 +176,7 @@ class Engine:
     def compliant(self) -> tuple[bool, bool]:
         """Whether the left stop is, and the right one."""
         q = self.system.linear
-        return q.k_low > 0, q.k_high > 0
+        return q.is_compliant(-1), q.is_compliant(1)
 
     @property
     def turned(self) -> bool:

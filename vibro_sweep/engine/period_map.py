@@ -69,7 +69,7 @@ class PeriodMap:
 
     def __init__(self, system: AnyOscillator, order: int = 0, expand_at: float | None = None):
         checked_system(system)
-        rigid_family_of(system, "the mapping is that of impacts")
+        rigid_family_of(system, "period map")
         if order not in (0, 1, 2):
             raise ArgumentError(not_allowed("order", order, "0 (the flow), 1 or 2"))
         self.system = system if order == 0 else system.replace(tau="grazing")

@@ -20,7 +20,7 @@ from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.model.parameters import range_of
 from vibro_sweep.model.state import state
 from vibro_sweep.model.status import STATUSES, is_valid
-from vibro_sweep.model.stops import RIGID_ALONE
+from vibro_sweep.model.stops import why_rigid
 
 MOST_POINTS = 300  # of a branch that is drawn
 NEAR = 1e-9  # relative: grazes nearer than this are the same
@@ -35,7 +35,7 @@ def window_message(
     The first branch is that of which the window is a part. progress : as of `continue_orbit`
     """
     if found.system.linear.compliant:
-        return {}, {"reason": f"windows are those of rigid stops; {RIGID_ALONE}"}
+        return {}, {"reason": why_rigid("windows")}
     if found.period == 0:
         return {}, {"reason": _not_periodic(found)}
     bounds = _bounds(view, found)

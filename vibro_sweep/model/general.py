@@ -14,7 +14,8 @@ from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.linear import Family, Linear
 from vibro_sweep.model.models import MODELS, model_named
 from vibro_sweep.model.models.declaration import Model, Option, linear_of
-from vibro_sweep.model.parameters import LENGTHS, Parameter, ParameterError, checked_number
+from vibro_sweep.model.parameter import LENGTHS
+from vibro_sweep.model.parameters import Parameter, ParameterError, checked_number
 from vibro_sweep.model.real import array_of, number_of
 from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.model.stops import check_stops

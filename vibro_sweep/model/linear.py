@@ -14,9 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
+from vibro_sweep.model.parameters import STOP_NUMBERS
 from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.model.stops import RIGID_ALONE, Stop
+from vibro_sweep.model.stops import stop_of, why_rigid
 
 DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
 FORCED = ("M", "K", "C", "normal", "constant", "sine", "cosine", "omega")  # fields that move the steady motion
@@ -81,7 +83,11 @@ class Linear(NamedTuple):
     @property
     def compliant(self) -> bool:
         """Whether a stop is: then there is motion beyond it."""
-        return self.k_low > 0 or self.k_high > 0
+        return self.is_compliant(-1) or self.is_compliant(1)
+
+    def is_compliant(self, side: float) -> bool:
+        """Whether the stop on this side is (+1 high, -1 low)."""
+        return (self.k_high if side > 0 else self.k_low) > 0
 
     def stop(self, sides) -> np.ndarray:
         """Positions of the stops on these sides (+1 high, -1 low)."""
@@ -268,23 +274,22 @@ def rest_state(q: Linear) -> np.ndarray:
     return np.linalg.lstsq(bordered, np.append(q.constant, gap), rcond=None)[0][:n]
 
 
-def contact(
-    *, b, offset=0.0, stops="both", R=None, R_left=None, k_stop=None, c_stop=None, preload=None, k_stop_left=None,
-    c_stop_left=None, preload_left=None, release="displacement",
-) -> dict:  # fmt: skip
-    """The fields of `Linear` that say where the stops are, and of what kind; also for complex numbers. What is None of
-    the left one follows the right one."""
-    right = Stop(R, k_stop, c_stop, preload)
-    left = right.left(R_left, k_stop_left, c_stop_left, preload_left)
+def contact(*, b, offset=0.0, stops="both", release="displacement", **numbers) -> dict:
+    """The fields of `Linear` that say where the stops are, and of what kind; also for complex numbers.
+
+    numbers : those of the stops, by name
+    """
+    if unknown := numbers.keys() - {one.name for one in STOP_NUMBERS}:
+        raise TypeError(f"stops have no {', '.join(sorted(unknown))}")
+    low, high = stop_of(numbers, "left"), stop_of(numbers, "right")
+    fields = {"R": ("R", np.nan), "k": ("k_stop", 0.0), "c": ("c_stop", 0.0), "p": ("preload", 0.0)}
     return {
         "low": offset - b if stops != "right" else -np.inf,
         "high": offset + b if stops != "left" else np.inf,
-        "R_low": left.R_or_nan,
-        "R_high": right.R_or_nan,
         "middle": offset,
-        **{f"{name}_low": value for name, value in zip("kcp", left.compliance, strict=True)},
-        **{f"{name}_high": value for name, value in zip("kcp", right.compliance, strict=True)},
-        "by_force": release == "force" and (left.k_stop is not None or right.k_stop is not None),
+        **{f"{field}_low": low.number(*one) for field, one in fields.items()},
+        **{f"{field}_high": high.number(*one) for field, one in fields.items()},
+        "by_force": release == "force" and COMPLIANT in (low.law, high.law),
     }
 
 
@@ -298,10 +303,10 @@ def family_of(system) -> Family:
 
 
 def rigid_family_of(system, what: str) -> Family:
-    """The same, for what is computed with rigid stops alone. Raises ValueError where a stop is compliant."""
+    """The same, for what is computed with rigid stops alone (`NEEDS_IMPACTS`). Raises ValueError where one is not."""
     family = family_of(system)
     if family.built.compliant:
-        raise ArgumentError(not_allowed("system", system, f"with rigid stops: {what}. {RIGID_ALONE}"))
+        raise ArgumentError(not_allowed("system", system, f"with rigid stops: {why_rigid(what)}"))
     return family
 
 

@@ -13,14 +13,12 @@ from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.grazing import resolved, with_phase
 from vibro_sweep.model.linear import Family
-from vibro_sweep.model.models.declaration import Model
+from vibro_sweep.model.models.declaration import OF_STOPS, Model
 from vibro_sweep.model.models.two_mass import MODEL
 from vibro_sweep.model.modes import Modes, modes
 from vibro_sweep.model.parameters import (
-    COMPLIANT,
-    COMPLIANT_LEFT,
+    OTHER_STOPS,
     PARAMETERS,
-    RELEASES,
     STOPS,
     Parameter,
     ParameterError,
@@ -80,7 +78,8 @@ class System(AnyOscillator):
             left_out = value is None and (one.follows or one.optional)
             if not (isinstance(value, str) and value in one.words) and not left_out:
                 object.__setattr__(self, one.name, checked_number(one, value, self.stops))
-        _check_word("release", self.release, RELEASES)
+        for one in OF_STOPS:
+            _check_word(one.name, getattr(self, one.name), one.words)
         check_stops(vars(self))
 
     @property
@@ -108,7 +107,7 @@ class System(AnyOscillator):
 
     def __repr__(self) -> str:
         """The call that makes it, without the numbers of compliant stops where there is none."""
-        left_out = {one.name: None for one in (*COMPLIANT, *COMPLIANT_LEFT)} | {"release": RELEASES[0]}
+        left_out = {one.name: None for one in OTHER_STOPS} | {one.name: one.default for one in OF_STOPS}
         given = {one.name: getattr(self, one.name) for one in fields(self)}
         shown = (f"{name}={value!r}" for name, value in given.items() if value != left_out.get(name, ...))
         return f"System({', '.join(shown)})"

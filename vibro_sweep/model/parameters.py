@@ -1,86 +1,19 @@
 """The numbers of the oscillator, declared once: records, scene keys, JSON Schema, files and plot labels follow."""
 
-import operator
-from typing import Any, NamedTuple
-
 import numpy as np
 
+from vibro_sweep.model.contact_laws import LAWS, RIGID
 from vibro_sweep.model.errors import VibroSweepError
+from vibro_sweep.model.parameter import FRACTION, NOT_NEGATIVE, NUMBER, POSITIVE, Parameter, Range
 from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed
 
 STOPS = ("both", "right", "left")
-RELEASES = ("displacement", "force")
-
-_HOLDS = {
-    "exclusiveMinimum": operator.gt,
-    "minimum": operator.ge,
-    "maximum": operator.le,
-}
-
-
-class Range(NamedTuple):
-    """The range of a number, in words and as JSON Schema says it."""
-
-    text: str
-    bounds: dict[str, float]
-
-    def holds(self, numbers: np.ndarray) -> np.ndarray:
-        """Whether finite numbers are in the range; of the shape of `numbers`."""
-        good = np.isfinite(numbers)
-        for bound, value in self.bounds.items():
-            good = good & _HOLDS[bound](numbers, value)
-        return good
-
-
-POSITIVE = Range("a number > 0", {"exclusiveMinimum": 0})
-NOT_NEGATIVE = Range("a number >= 0", {"minimum": 0})
-FRACTION = Range("a number from 0 to 1", {"minimum": 0, "maximum": 1})
-NUMBER = Range("a number", {})
-
-
-LENGTHS = {  # of lists, for N masses
-    "mass": lambda masses: masses,
-    "mode": lambda masses: masses,
-    "spring": lambda masses: masses + 1,  # those to both walls too
-    "coefficient": lambda masses: 2,
-}
-
-
-class Parameter(NamedTuple):
-    name: str  # of the Python argument, the scene key and the variable of the file
-    symbol: str  # TeX, as in the paper
-    units: str  # where the system is given in SI (model/units.py)
-    range: Range
-    label: str  # short: of an axis
-    text: str
-    equation: str = ""  # in which it first appears
-    default: Any = None  # None: it must be given
-    words: dict[str, str] = {}  # noqa: RUF012  # what may stand in place of a number, and what it means; read only
-    free_motion: bool = False  # whether the non-impacting motion depends on it (tau only shifts that in time)
-    follows: str = ""  # the number whose value it has where it is left out
-    each: str = ""  # of a list: what it has one number for, a key of `LENGTHS`
-    optional: bool = False  # whether it may be left out although nothing is known of it then
-
-    @property
-    def described(self) -> str:
-        """Text and words."""
-        return ", or ".join([self.text, *(f"`{word}`: {meaning}" for word, meaning in self.words.items())])
-
-    @property
-    def long_name(self) -> str:
-        """Label and name, as plain text."""
-        return f"{self.label} {self.name.removeprefix('start_')}"
-
 
 # What all oscillators have.
 FREQUENCY = Parameter(
     "omega", r"\omega", "rad s-1", POSITIVE, "forcing frequency", "angular frequency of the force", free_motion=True
 )
-RESTITUTION = Parameter(
-    "R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution of a rigid stop", "(4)",
-    optional=True,
-)  # fmt: skip
 CLEARANCE = Parameter(
     "b", "b", "m", Range("a number > 0; any number where there is one stop alone", {}), "clearance",
     "clearance on each side of the middle", "(4)",
@@ -94,31 +27,9 @@ OFFSET = Parameter(
     "offset", "b_0", "m", NUMBER, "offset of the stops",
     "middle of the stops: they stand at offset - b and offset + b", default=0.0,
 )  # fmt: skip
-RESTITUTION_LEFT = Parameter(
-    "R_left", r"R_{\mathrm{left}}", "1", FRACTION, "restitution on the left",
-    "coefficient of restitution of the left stop; left out: R", follows="R",
-)  # fmt: skip
-STIFFNESS = Parameter(
-    "k_stop", r"k_{\mathrm{stop}}", "N m-1", POSITIVE, "stiffness of the stop",
-    "stiffness of a compliant stop, in place of R", optional=True,
-)  # fmt: skip
-DAMPING = Parameter(
-    "c_stop", r"c_{\mathrm{stop}}", "N s m-1", NOT_NEGATIVE, "damping of the stop",
-    "damping of a compliant stop; left out: 0", optional=True,
-)  # fmt: skip
-PRELOAD = Parameter(
-    "preload", r"p_{\mathrm{stop}}", "N", NOT_NEGATIVE, "preload of the stop",
-    "force with which a compliant stop is pressed together before it is touched; left out: 0", optional=True,
-)  # fmt: skip
-COMPLIANT = (STIFFNESS, DAMPING, PRELOAD)
-COMPLIANT_LEFT = tuple(
-    one._replace(
-        name=f"{one.name}_left", symbol=one.symbol.replace("stop", "left"), label=f"left {one.label.split(' ')[0]}",
-        text=f"{one.name} of the left stop; left out: {one.name}", follows=one.name,
-    )
-    for one in COMPLIANT
-)  # fmt: skip
-STOP_NUMBERS = (RESTITUTION, RESTITUTION_LEFT, *COMPLIANT, *COMPLIANT_LEFT)
+RESTITUTION, RESTITUTION_LEFT = RIGID.numbers[0], RIGID.left[0]
+OTHER_STOPS = tuple(one for law in LAWS.values() if law is not RIGID for one in law.numbers_of_both)  # none is rigid
+STOP_NUMBERS = (*RIGID.numbers_of_both, *OTHER_STOPS)
 
 # Of the paper's oscillator, in the order of the kernels' records and derivatives.
 PAPER = (
@@ -149,8 +60,7 @@ PARAMETERS = (
         "mu_c", r"\mu_c", "1", NOT_NEGATIVE, "ratio of dampers", "ratio of the dampers C2/C1; left out: mu_k",
         free_motion=True, follows="mu_k",
     ),
-    *COMPLIANT,
-    *COMPLIANT_LEFT,
+    *OTHER_STOPS,
 )  # fmt: skip
 
 # Physical quantities in SI units, from which these follow (section 2 of the paper).
@@ -183,8 +93,7 @@ PHYSICAL = (
         default=0.0,
     ),
     RESTITUTION_LEFT,
-    *COMPLIANT,
-    *COMPLIANT_LEFT,
+    *OTHER_STOPS,
 )
 
 B_STAR = Parameter(

@@ -1,83 +1,89 @@
-"""The law of contact of each stop: rigid with a restitution R, or compliant with a stiffness, damping and preload.
-
-rigid        v -> -R v
-compliant    F = k_stop delta + c_stop delta' + preload,    delta >= 0 how far the mass is behind the stop
-"""
+"""The law of contact of each stop: which it has, what it follows, and what needs rigid stops."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from vibro_sweep.model.parameters import COMPLIANT, COMPLIANT_LEFT, RELEASES, ParameterError
+from vibro_sweep.model.contact_laws import LAWS, RIGID
+from vibro_sweep.model.contact_laws.declaration import ContactLaw
+from vibro_sweep.model.parameters import ParameterError
 
 RIGID_ALONE = "with k_stop there are sweeps of the flow, `simulate` and `lyapunov` so far"
-LEFT_OUT = "left out where {} is given: a stop is rigid or compliant"
+NEEDS_IMPACTS = {  # what rigid stops have alone, and why
+    "map": "the discontinuity mapping takes the place of impacts",
+    "period map": "the derivatives of a period map are those of impacts",
+    "periodic orbits": "periodic orbits are found by their impacts",
+    "born at grazing": "orbits are born at the grazing of rigid stops",
+    "branches": "branches are followed by their impacts",
+    "windows": "windows are found by their impacts",
+    "section": "a compliant stop is pressed, and has no impacts",
+}
+
+
+def why_rigid(what: str) -> str:
+    """Why `what`, a key of `NEEDS_IMPACTS`, needs rigid stops, and what there is with others."""
+    return f"{NEEDS_IMPACTS[what]}; {RIGID_ALONE}"
 
 
 class Stop(NamedTuple):
-    """The numbers of one stop, as given; either R or k_stop."""
+    """The law of one stop, None where no number says it, and its numbers, by the names that the right stop's have."""
 
-    R: Any
-    k_stop: Any
-    c_stop: Any = None
-    preload: Any = None
+    law: ContactLaw | None
+    numbers: dict[str, Any]
 
-    def left(self, R: Any, k_stop: Any, c_stop: Any, preload: Any) -> "Stop":
-        """The left stop, where this is the right one: what is None of it follows."""
-        if R is not None or (k_stop is None and self.k_stop is None):
-            return Stop(self.R if R is None else R, None)
-        given = zip((k_stop, c_stop, preload), (self.k_stop, self.c_stop, self.preload), strict=True)
-        return Stop(None, *(leader if value is None else value for value, leader in given))
-
-    @property
-    def R_or_nan(self) -> Any:
-        return np.nan if self.R is None else self.R
-
-    @property
-    def compliance(self) -> tuple:
-        """Stiffness, damping and preload; zeros of a rigid stop."""
-        if self.k_stop is None:
-            return 0.0, 0.0, 0.0
-        return self.k_stop, *(0.0 if value is None else value for value in (self.c_stop, self.preload))
+    def number(self, name: str, missing: float) -> Any:
+        """The value; `missing` where the law has no such number, or it is left out."""
+        value = self.numbers.get(name)
+        return missing if value is None else value
 
 
-def followers(numbers: Mapping[str, Any]) -> dict[str, Any]:
+def stop_of(given: Mapping[str, Any], side: str) -> Stop:
+    """The stop on a side, right or left; what is left out of the left one follows the right one."""
+    own = law_given(given, side)
+    law = own or law_given(given, "right")
+    if law is None:
+        return Stop(None, {})
+    pairs = zip(law.names("right"), law.names(side), strict=True)
+    return Stop(law, {name: given.get(name) if given.get(one) is None else given[one] for name, one in pairs})
+
+
+def law_given(given: Mapping[str, Any], side: str) -> ContactLaw | None:
+    """The law that the numbers of this side alone say."""
+    return next((law for law in LAWS.values() if given.get(law.names(side)[0]) is not None), None)
+
+
+def followers(given: Mapping[str, Any]) -> dict[str, Any]:
     """The numbers of a left stop that are left out and follow those of the right one."""
-    given = {name: numbers.get(name) for name in ("R", "R_left", *_NAMES, *_NAMES_LEFT)}
-    if given["R_left"] is not None:
-        return {}
-    if given["k_stop_left"] is None and given["k_stop"] is None:
-        return {"R_left": given["R"]} if given["R"] is not None else {}
-    pairs = zip(_NAMES_LEFT, _NAMES, strict=True)
-    return {name: given[one] for name, one in pairs if given[name] is None and given[one] is not None}
-
-
-_NAMES, _NAMES_LEFT = (tuple(one.name for one in numbers) for numbers in (COMPLIANT, COMPLIANT_LEFT))
+    law = stop_of(given, "left").law
+    pairs = zip(law.names("left"), law.names("right"), strict=True) if law else ()
+    return {name: given[one] for name, one in pairs if given.get(name) is None and given.get(one) is not None}
 
 
 def check_stops(given: Mapping[str, Any]) -> None:
     """Raise ParameterError unless the numbers and options of the stops fit together."""
-    stops, release = given.get("stops", "both"), given.get("release", RELEASES[0])
-    right = [given.get(name) for name in _NAMES]
-    left = [given.get(name) for name in _NAMES_LEFT]
-    R, R_left = given.get("R"), given.get("R_left")
-    for rigid, numbers, names, R_name in ((R, right, _NAMES, "R"), (R_left, left, _NAMES_LEFT, "R_left")):
-        if rigid is not None and numbers[0] is not None:
-            raise ParameterError(names[0], numbers[0], LEFT_OUT.format(R_name))
-    wanted = [R, right[0]] if stops != "left" else [R, right[0], R_left, left[0]]
-    if all(one is None for one in wanted):
-        raise ParameterError("R", None, "given; or k_stop, of a compliant stop")
-    left_compliant = R_left is None and (left[0] is not None or right[0] is not None)
-    if right[0] is None:
-        _refuse(zip(_NAMES[1:], right[1:], strict=True), "k_stop", left_compliant)
-    if not left_compliant or (stops == "right" and left[0] is None):
-        _refuse(zip(_NAMES_LEFT[1:], left[1:], strict=True), "k_stop_left", False)
-    if release != RELEASES[0] and right[0] is None and not left_compliant:
-        raise ParameterError("release", release, "left out where both stops are rigid")
+    stops = given.get("stops", "both")
+    for side in ("right", "left"):
+        keys = [law.names(side)[0] for law in LAWS.values() if given.get(law.names(side)[0]) is not None]
+        for key in keys[1:]:
+            raise ParameterError(key, given[key], f"left out where {keys[0]} is given: a stop is {' or '.join(LAWS)}")
+    right, left = law_given(given, "right"), stop_of(given, "left").law
+    if (left if stops == "left" else right) is None:
+        keys = [f"{law.names('right')[0]}, of a {law.name} stop" for law in LAWS.values() if law is not RIGID]
+        raise ParameterError("R", None, f"given; or {' or '.join(keys)}")
+    for law in LAWS.values():
+        of_right, of_left = law.names("right"), law.names("left")
+        if law not in (right, left):
+            _refuse(given, of_right[1:], f"it belongs to a stop with {of_right[0]}")
+            for one in law.options:
+                if given.get(one.name, one.words[0]) != one.words[0]:
+                    raise ParameterError(one.name, given[one.name], f"left out where no stop is {law.name}")
+        if left is not law:
+            _refuse(given, of_left[1:], f"it belongs to a stop with {of_left[0]}")
+        if stops == "right" and law is not RIGID:
+            _refuse(given, of_left, "there is no left stop")
 
 
-def _refuse(numbers, stiffness: str, followed: bool) -> None:
-    for name, value in numbers:
-        if value is not None and not followed:
-            raise ParameterError(name, value, f"left out: it belongs to a stop with {stiffness}")
+def _refuse(given: Mapping[str, Any], names: tuple[str, ...], wrong: str) -> None:
+    """Refuse the numbers with these names that are given. wrong: why."""
+    for name in names:
+        if given.get(name) is not None:
+            raise ParameterError(name, given[name], f"left out: {wrong}")

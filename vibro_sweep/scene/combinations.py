@@ -2,7 +2,7 @@
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.observables import WORDS
-from vibro_sweep.model.stops import RIGID_ALONE
+from vibro_sweep.model.stops import why_rigid
 
 from .fields import Form
 from .problems import problem
@@ -36,9 +36,9 @@ def _contact_problems(form: Form, system: AnyOscillator) -> list[str]:
         return [problem("observe", sorted(form.observe), text)] if "contacts" in form.observe else []
     problems = []
     if form.dynamics == "map":
-        problems.append(problem("dynamics", form.dynamics, f"is that of rigid stops; {RIGID_ALONE}"))
-    if form.section.kind == "impact" and (q.k_high if form.section.stop == "right" else q.k_low) > 0:
-        text = "this stop is compliant, and has no impacts; take `kind: phase`, or the other stop"
+        problems.append(problem("dynamics", form.dynamics, f"needs rigid stops: {why_rigid('map')}"))
+    if form.section.kind == "impact" and q.is_compliant(1 if form.section.stop == "right" else -1):
+        text = f"{why_rigid('section')}; take `kind: phase`, or the other stop"
         problems.append(problem("section.stop", form.section.stop, text))
     return problems
 

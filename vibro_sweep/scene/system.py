@@ -5,7 +5,7 @@ import numpy as np
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.general import Oscillator
 from vibro_sweep.model.models import DEFAULT, MODELS
-from vibro_sweep.model.models.declaration import entries
+from vibro_sweep.model.models.declaration import OF_STOPS, entries
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.parameters import Parameter, ParameterError, check_value
 from vibro_sweep.model.refusals import cut
@@ -64,7 +64,8 @@ def system_of(form: Form, sweep, kind: str, masses: int) -> tuple[AnyOscillator 
     if isinstance(form.system, PhysicalSystemForm):
         physical = form.system.physical.model_dump()
         try:
-            system = System.physical(**physical, tau=form.system.tau, stops=form.system.stops)
+            options = {one.name: getattr(form.system, one.name) for one in OF_STOPS}
+            system = System.physical(**physical, tau=form.system.tau, stops=form.system.stops, **options)
             return system.replace(**first), []
         except ParameterError as error:
             path = "system.physical" if error.key in physical else "system"

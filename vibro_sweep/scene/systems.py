@@ -7,7 +7,7 @@ from pydantic import ConfigDict, Field, create_model
 from pydantic.config import JsonDict
 
 from vibro_sweep.model.models import DEFAULT, MODELS
-from vibro_sweep.model.models.declaration import WHICH_STOPS, Option
+from vibro_sweep.model.models.declaration import OF_STOPS, WHICH_STOPS, Option
 from vibro_sweep.model.parameters import PHASE, PHYSICAL, POSITIVE, Parameter
 
 from .fields import TAU, WHICH, Form, Whole, given, number
@@ -15,6 +15,28 @@ from .fields import TAU, WHICH, Form, Whole, given, number
 
 def _required(one: Parameter) -> tuple[Any, Any]:
     return float, given(one.text, **one.range.bounds)
+
+
+_UNITS: JsonDict = {
+    "anyOf": [
+        {"const": "SI"},
+        {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 3, "maxItems": 3},
+    ]
+}
+
+
+def _option(one: Option) -> tuple[Any, Any]:
+    if one.kind == "units":
+        return Any, Field(default=None, description=one.text, json_schema_extra=_UNITS)
+    kind = {
+        "word": Literal[one.words] if one.words else str,
+        "flag": bool,
+        "whole": Whole,
+        "matrix": list[list[float]],
+        "vector": list[float],
+    }[one.kind]
+    required = one.default is None and not one.optional
+    return kind, Field(default=... if required else one.default, description=one.text)
 
 
 PhysicalNumbers = create_model(
@@ -36,6 +58,7 @@ PhysicalSystemForm = create_model(
     physical=(PhysicalNumbers, Field(description="the quantities")),
     tau=TAU,
     stops=WHICH,
+    **{one.name: _option(one) for one in OF_STOPS},
 )
 
 
@@ -68,14 +91,6 @@ def form_of(name: str) -> type[Form]:
     )
 
 
-_UNITS: JsonDict = {
-    "anyOf": [
-        {"const": "SI"},
-        {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 3, "maxItems": 3},
-    ]
-}
-
-
 def _number(one: Parameter) -> tuple[Any, Any]:
     if one.name == PHASE.name:
         return TAU
@@ -84,17 +99,3 @@ def _number(one: Parameter) -> tuple[Any, Any]:
     of_each = {"items": {"type": "number"} | one.range.bounds} if one.range.bounds else {}
     text = f"{one.text}; a list, one for each {one.each}" + ("; left out: 0" if one.default == 0 else "")
     return list[float], Field(default=None, description=text, json_schema_extra=of_each)
-
-
-def _option(one: Option) -> tuple[Any, Any]:
-    if one.kind == "units":
-        return Any, Field(default=None, description=one.text, json_schema_extra=_UNITS)
-    kind = {
-        "word": Literal[one.words] if one.words else str,
-        "flag": bool,
-        "whole": Whole,
-        "matrix": list[list[float]],
-        "vector": list[float],
-    }[one.kind]
-    required = one.default is None and not one.optional
-    return kind, Field(default=... if required else one.default, description=one.text)

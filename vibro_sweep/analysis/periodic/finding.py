@@ -53,7 +53,7 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
     >>> orbit.status, orbit.period, orbit.stable, round(float(abs(orbit.multipliers[0])), 6)
     ('ok', 1, True, 0.903327)
     """
-    family = rigid_family_of(system, "periodic orbits are found by their impacts")
+    family = rigid_family_of(system, "periodic orbits")
     periods = checked_count("periods", periods, 1, MOST_PERIODS)
     sides = None if itinerary is None else _checked_sides(family.linear, itinerary)
     rows = None if guess is None else _checked_guess(family.linear, guess, itinerary)

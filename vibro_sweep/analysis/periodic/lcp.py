@@ -97,7 +97,7 @@ def born_at_grazing(system, periods: int = 6) -> list[Born]:
     >>> [(one.itinerary, one.period, one.born) for one in vs.born_at_grazing(system, periods=1)]
     [('R', 1, 'below'), ('LR', 1, 'below')]
     """
-    family = rigid_family_of(system, "orbits are born at the grazing of rigid ones")
+    family = rigid_family_of(system, "born at grazing")
     periods = checked_count("periods", periods, 1)
     if "b" not in family.numbers:
         raise ArgumentError(not_allowed("system", system, "one with a clearance b"))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import RELEASE, UNITS, Model
+from vibro_sweep.model.models.declaration import OF_STOPS, UNITS, Model
 from vibro_sweep.model.parameters import (
     CLEARANCE,
     FREQUENCY,
@@ -67,7 +67,7 @@ MODEL = Model(
         CLEARANCE._replace(text="half of the ball's play", range=POSITIVE),
         PHASE,
     ),
-    options=(RELEASE, UNITS),
+    options=(*OF_STOPS, UNITS),
     masses=lambda given: 2,
     build=ball_in_cavity,
 )

@@ -4,7 +4,7 @@ import numpy as np
 
 from vibro_sweep.model import wording
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import CONTACT, RELEASE, UNITS, WHICH_STOPS, Model, Option
+from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter, ParameterError
 
 ROUNDING = 1e-12  # of a matrix, relative to its largest entry or eigenvalue
@@ -161,7 +161,7 @@ MODEL = Model(
         Option("C", "matrix", "damping: symmetric, positive semidefinite", optional=True, units="N s m-1"),
         Option("contact_normal", "vector", "n of the gap g = n . x"),
         WHICH_STOPS,
-        RELEASE,
+        *OF_STOPS,
         UNITS,
     ),
     masses=lambda given: len(given["M"]),

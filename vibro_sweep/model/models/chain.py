@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import CONTACT, RELEASE, UNITS, WHICH_STOPS, Model, Option
+from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, POSITIVE, Parameter, ParameterError
 
 
@@ -66,7 +66,7 @@ MODEL = Model(
     options=(
         Option("stop_at", "whole", "the mass that hits the stops, counted from 1", 1),
         WHICH_STOPS,
-        RELEASE,
+        *OF_STOPS,
         UNITS,
     ),
     masses=lambda given: len(given["m"]),

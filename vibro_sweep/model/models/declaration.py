@@ -3,14 +3,14 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from vibro_sweep.model.contact_laws import LAWS
 from vibro_sweep.model.linear import Linear
+from vibro_sweep.model.parameter import LENGTHS
 from vibro_sweep.model.parameters import (
     CLEARANCE,
     FREQUENCY,
-    LENGTHS,
     OFFSET,
     PHASE,
-    RELEASES,
     STOP_NUMBERS,
     STOPS,
     Parameter,
@@ -84,8 +84,7 @@ UNITS = Option(
     optional=True,
 )  # fmt: skip
 WHICH_STOPS = Option("stops", "word", "which stops there are", "both", STOPS)
-RELEASE = Option(
-    "release", "word", "where a contact with a compliant stop ends: at zero displacement, or where its force is zero",
-    "displacement", RELEASES,
-)  # fmt: skip
+OF_STOPS = tuple(
+    Option(one.name, "word", one.text, one.words[0], one.words) for law in LAWS.values() for one in law.options
+)
 CONTACT = (FREQUENCY, *STOP_NUMBERS, CLEARANCE, OFFSET, PHASE)  # numbers that every model has

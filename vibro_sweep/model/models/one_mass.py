@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import CONTACT, RELEASE, UNITS, WHICH_STOPS, Model, Option
+from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter
 
 
@@ -64,7 +64,7 @@ MODEL = Model(
     options=(
         Option("base", "flag", "true: the wall moves, and the force is F omega^2", False),
         WHICH_STOPS,
-        RELEASE,
+        *OF_STOPS,
         UNITS,
     ),
     masses=lambda given: 1,

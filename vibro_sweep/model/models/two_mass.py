@@ -3,7 +3,7 @@
 import numpy as np
 
 from vibro_sweep.model.linear import Linear, contact
-from vibro_sweep.model.models.declaration import RELEASE, UNITS, WHICH_STOPS, Model
+from vibro_sweep.model.models.declaration import OF_STOPS, UNITS, WHICH_STOPS, Model
 from vibro_sweep.model.parameters import PARAMETERS
 
 
@@ -40,7 +40,7 @@ MODEL = Model(
 """,
     source="the paper that this package follows, eqs. (3), (4): docs/how/model.md",
     numbers=PARAMETERS,
-    options=(WHICH_STOPS, RELEASE, UNITS),
+    options=(WHICH_STOPS, *OF_STOPS, UNITS),
     masses=lambda given: 2,
     build=two_mass,
 )

@@ -1,0 +1,18 @@
+"""Laws of contact: one file each, found by being here. docs/development/architecture.md says how to add one."""
+
+import pkgutil
+from importlib import import_module
+
+from vibro_sweep.model.contact_laws.declaration import ContactLaw
+
+_ORDER = ("rigid", "compliant")  # others follow by name
+
+
+def _found() -> dict[str, ContactLaw]:
+    modules = (import_module(f"{__name__}.{one.name}") for one in pkgutil.iter_modules(__path__))
+    laws = {module.LAW.name: module.LAW for module in modules if hasattr(module, "LAW")}
+    return {name: laws[name] for name in sorted(laws, key=lambda one: (*_ORDER, one).index(one))}
+
+
+LAWS = _found()
+RIGID = LAWS["rigid"]

@@ -1,0 +1,42 @@
+"""The compliant stop: a spring and a damper side by side, without mass, which a preload may press together."""
+
+from vibro_sweep.model.contact_laws.declaration import ContactLaw, Option
+from vibro_sweep.model.parameter import NOT_NEGATIVE, POSITIVE, Parameter
+
+STIFFNESS = Parameter(
+    "k_stop", r"k_{\mathrm{stop}}", "N m-1", POSITIVE, "stiffness of the stop",
+    "stiffness of a compliant stop, in place of R", optional=True,
+)  # fmt: skip
+DAMPING = Parameter(
+    "c_stop", r"c_{\mathrm{stop}}", "N s m-1", NOT_NEGATIVE, "damping of the stop",
+    "damping of a compliant stop; left out: 0", optional=True,
+)  # fmt: skip
+PRELOAD = Parameter(
+    "preload", r"p_{\mathrm{stop}}", "N", NOT_NEGATIVE, "preload of the stop",
+    "force with which a compliant stop is pressed together before it is touched; left out: 0", optional=True,
+)  # fmt: skip
+NUMBERS = (STIFFNESS, DAMPING, PRELOAD)
+
+LAW = ContactLaw(
+    name="compliant",
+    title="the mass presses the stop in, against a spring and a damper",
+    equations="F = k_stop delta + c_stop delta' + preload,   delta how far the mass is behind the stop",
+    source="Kelvin's and Voigt's element of viscoelasticity; piecewise linear as in S. W. Shaw and P. J. Holmes, "
+    "J. Sound Vib. 90 (1983) 129",
+    numbers=NUMBERS,
+    left=tuple(
+        one._replace(
+            name=f"{one.name}_left", symbol=one.symbol.replace("stop", "left"),
+            label=f"left {one.label.split(' ')[0]}", text=f"{one.name} of the left stop; left out: {one.name}",
+            follows=one.name,
+        )
+        for one in NUMBERS
+    ),
+    options=(
+        Option(
+            "release",
+            "where a contact with a compliant stop ends: at zero displacement, or where its force is zero",
+            ("displacement", "force"),
+        ),
+    ),
+)  # fmt: skip

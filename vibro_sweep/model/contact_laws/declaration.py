@@ -1,0 +1,33 @@
+"""What a law of contact declares of itself; keys of scenes and sweeps, messages, files and pictures follow from it."""
+
+from typing import NamedTuple
+
+from vibro_sweep.model.parameter import Parameter
+
+
+class Option(NamedTuple):
+    """A word that says how all stops of this law behave; the first of its `words` is the default."""
+
+    name: str
+    text: str
+    words: tuple[str, ...]
+
+
+class ContactLaw(NamedTuple):
+    """What a stop does to the mass that meets it."""
+
+    name: str
+    title: str  # one line
+    equations: str
+    source: str
+    numbers: tuple[Parameter, ...]  # of the right stop; a stop that has the first of them has this law
+    left: tuple[Parameter, ...]  # of the left stop, one for each; left out, they follow the right one's
+    options: tuple[Option, ...] = ()
+
+    @property
+    def numbers_of_both(self) -> tuple[Parameter, ...]:
+        return (*self.numbers, *self.left)
+
+    def names(self, side: str) -> tuple[str, ...]:
+        """The names of the numbers of the stop on this side, right or left."""
+        return tuple(one.name for one in (self.numbers if side == "right" else self.left))

@@ -1,0 +1,22 @@
+"""The rigid stop, which the paper has (eq. 4)."""
+
+from vibro_sweep.model.contact_laws.declaration import ContactLaw
+from vibro_sweep.model.parameter import FRACTION, Parameter
+
+RESTITUTION = Parameter(
+    "R", "R", "1", FRACTION, "coefficient of restitution", "coefficient of restitution of a rigid stop", "(4)",
+    optional=True,
+)  # fmt: skip
+RESTITUTION_LEFT = Parameter(
+    "R_left", r"R_{\mathrm{left}}", "1", FRACTION, "restitution on the left",
+    "coefficient of restitution of the left stop; left out: R", follows="R",
+)  # fmt: skip
+
+LAW = ContactLaw(
+    name="rigid",
+    title="the mass leaves the stop at once, with R times its speed",
+    equations="v -> -R v",
+    source="the paper that this package follows, eq. (4)",
+    numbers=(RESTITUTION,),
+    left=(RESTITUTION_LEFT,),
+)
