@@ -37,9 +37,11 @@ TABLES = {
     "refusals",
     "state",
     "status",
+    "stop_force",
+    "stops",
     "trajectory_variables",
     "units",
-}  # of model/: names and labels, and checks of arguments
+}  # of model/: names and labels, checks of arguments, and the force of a stop, which follows from stored samples
 
 
 def imported(path):

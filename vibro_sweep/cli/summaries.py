@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.contact_laws import LAWS
-from vibro_sweep.model.contact_laws.declaration import ContactLaw
+from vibro_sweep.model.contact_laws.contact_law import ContactLaw
 from vibro_sweep.model.grazing import Grazing, grazing
 from vibro_sweep.model.linear import static_state
 from vibro_sweep.model.models import MODELS

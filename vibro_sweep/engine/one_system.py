@@ -176,7 +176,7 @@ class Engine:
     def compliant(self) -> tuple[bool, bool]:
         """Whether the left stop is, and the right one."""
         q = self.system.linear
-        return q.is_compliant(-1), q.is_compliant(1)
+        return bool(q.is_compliant(-1)), bool(q.is_compliant(1))
 
     @property
     def turned(self) -> bool:

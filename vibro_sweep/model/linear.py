@@ -83,11 +83,11 @@ class Linear(NamedTuple):
     @property
     def compliant(self) -> bool:
         """Whether a stop is: then there is motion beyond it."""
-        return self.is_compliant(-1) or self.is_compliant(1)
+        return self.k_low > 0 or self.k_high > 0
 
-    def is_compliant(self, side: float) -> bool:
-        """Whether the stop on this side is (+1 high, -1 low)."""
-        return (self.k_high if side > 0 else self.k_low) > 0
+    def is_compliant(self, sides) -> np.ndarray:
+        """Whether the stops on these sides (+1 high, -1 low) are compliant."""
+        return np.where(np.asarray(sides) > 0, self.k_high, self.k_low) > 0
 
     def stop(self, sides) -> np.ndarray:
         """Positions of the stops on these sides (+1 high, -1 low)."""

@@ -4,9 +4,11 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from vibro_sweep.model.contact_laws import LAWS, RIGID
-from vibro_sweep.model.contact_laws.declaration import ContactLaw
+from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
+from vibro_sweep.model.contact_laws.contact_law import ContactLaw
 from vibro_sweep.model.parameters import ParameterError
 
+NUMBERS = tuple(one.name for law in LAWS.values() for one in law.numbers_of_both)
 RIGID_ALONE = "with k_stop there are sweeps of the flow, `simulate` and `lyapunov` so far"
 NEEDS_IMPACTS = {  # what rigid stops have alone, and why
     "map": "the discontinuity mapping takes the place of impacts",
@@ -44,6 +46,12 @@ def stop_of(given: Mapping[str, Any], side: str) -> Stop:
         return Stop(None, {})
     pairs = zip(law.names("right"), law.names(side), strict=True)
     return Stop(law, {name: given.get(name) if given.get(one) is None else given[one] for name, one in pairs})
+
+
+def compliance_of(given: Mapping[str, Any], side: str) -> tuple[float, float, float] | None:
+    """Stiffness, damping and preload of the stop on a side, right or left; None where it is rigid."""
+    stop = stop_of(given, side)
+    return tuple(stop.number(name, 0.0) for name in COMPLIANT.names("right")) if stop.law is COMPLIANT else None
 
 
 def law_given(given: Mapping[str, Any], side: str) -> ContactLaw | None:

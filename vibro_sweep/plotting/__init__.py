@@ -21,6 +21,8 @@ from vibro_sweep.plotting import (
     branch_diagram,
     charts,
     coexistence,
+    contact_force,
+    contacts_picture,
     convergence,
     energy_picture,
     film,
@@ -60,12 +62,14 @@ _DRAWN = {
     "bifurcation": Kind(sweeps.shows_bifurcation, sweeps.bifurcation, sweeps.section_variables),
     "lyapunov": Kind(sweeps.shows_lyapunov, sweeps.lyapunov),
     "impacts": Kind(sweeps.shows_impacts, sweeps.impacts),
+    "contacts": Kind(contacts_picture.shows, contacts_picture.contacts),
     "energy": Kind(energy_picture.shows, energy_picture.energy, energy_picture.variables),
     "phase-portrait": Kind(
         orbit_pictures.shows_trajectory, orbit_pictures.phase_portrait, orbit_pictures.displacements, True
     ),
     "configuration": Kind(orbit_pictures.shows_both_masses, orbit_pictures.configuration, of_orbits=True),
     "history": Kind(orbit_pictures.shows_trajectory, orbit_pictures.history, orbit_pictures.coordinates, True),
+    "contact-force": Kind(contact_force.shows, contact_force.contact_force, of_orbits=True),
     "film": Kind(orbit_pictures.shows_trajectory, film.film, of_orbits=True),
     "poincare": Kind(orbit_pictures.shows_poincare, orbit_pictures.poincare, orbit_pictures.abscissae, True),
     "iteration": Kind(orbit_pictures.shows_section, orbit_pictures.iteration, sweeps.section_variables, True),

@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.patches import Rectangle
 
+from vibro_sweep.plotting import pressed
 from vibro_sweep.plotting.orbit_pictures import displacements
 from vibro_sweep.plotting.page import Picture, page
 from vibro_sweep.plotting.paths import path
@@ -45,7 +46,8 @@ class Film(Picture):
 
 class _OfAnOrbit(Film):
     def begin(self, t, positions: dict[str, np.ndarray], gap: tuple, stops, unit: str) -> "_OfAnOrbit":
-        """t : (n,) in forcing periods; positions : of each mass (n,); gap : its name, values and rates (n,)"""
+        """t : (n,) in forcing periods; positions : of each mass (n,); gap : its name, values and rates (n,);
+        stops : where each stands, and by how much it is pressed in (n,)"""
         self.times, self.positions, self.gap = t, positions, gap
         grid = self.add_gridspec(2, 2, height_ratios=(1, 2), width_ratios=(3, 2))
         above, left, right = self.add_subplot(grid[0, :]), self.add_subplot(grid[1, 0]), self.add_subplot(grid[1, 1])
@@ -67,9 +69,11 @@ class _OfAnOrbit(Film):
                 (above.add_patch(Rectangle((0, -row - 0.3), size, 0.6, color=INK if not row else FAINT)), place)
             )
             above.text(low - 2 * size, -row, symbol(each), ha="right", va="center")
-        for stop in stops:  # beside the mass or the gap that meets it
+        self.stops = []
+        for stop, moved in stops.items():  # beside the mass or the gap that meets it
             outwards = size / 2 if stop == max(stops) and stop > values.mean() else -size / 2
-            above.plot([stop + outwards] * 2, [-0.45, 0.45], color=INK, lw=3, solid_capstyle="butt")
+            line = above.plot([stop + outwards] * 2, [-0.45, 0.45], color=INK, lw=3, solid_capstyle="butt")[0]
+            self.stops.append((line, stop + outwards + moved))
         above.set(xlim=(low - 4 * size, high + 2 * size), ylim=(-len(rows) + 0.4, 0.6))
         above.set_axis_off()
         self.size = size
@@ -83,6 +87,8 @@ class _OfAnOrbit(Film):
         _, values, rates = self.gap
         for box, place in self.boxes:
             box.set_x(place[at] - self.size / 2)
+        for line, place in self.stops:
+            line.set_xdata([place[at]] * 2)
         for line, dot, (x, y) in zip(self.lines, self.dots, ((self.times, values), (values, rates)), strict=True):
             line.set_data(x[: at + 1], y[: at + 1])
             dot.set_data([x[at]], [y[at]])
@@ -99,7 +105,11 @@ def film(result: Result) -> Film:
     there = np.isfinite(way[first]) & np.isfinite(way["x1"])
     positions = {name: way[name][there] for name in names if name != "gap"}
     title = f"{result.title('Film')}\n{point.label}" if point.label else result.title("Film")
-    gap, stops = (first, way[first][there], way[rate][there]), tuple(result.stops(point.place).values())
+    gap = (first, way[first][there], way[rate][there])
+    stops = {
+        stop: side * pressed.along(result, point, way, side)[1][there]
+        for side, stop in result.stops(point.place).items()
+    }
     moving = result.options.page(HEIGHT, title, _OfAnOrbit)
     moving.resolution = result.options.dpi or moving.resolution
     return moving.begin(way.t[there], positions, gap, stops, result.unit(first))
@@ -107,4 +117,4 @@ def film(result: Result) -> Film:
 
 def new_film(t, positions, gap, stops, title: str) -> Film:
     """A film of evenly sampled motion, as `_OfAnOrbit.begin` takes it."""
-    return page(HEIGHT, title, kind=_OfAnOrbit).begin(t, positions, gap, tuple(stops), "")
+    return page(HEIGHT, title, kind=_OfAnOrbit).begin(t, positions, gap, stops, "")

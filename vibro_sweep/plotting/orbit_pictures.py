@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from vibro_sweep.model.state import MOST_MASSES, state
-from vibro_sweep.plotting import rests
+from vibro_sweep.plotting import pressed, rests
 from vibro_sweep.plotting.labels import legend_below
 from vibro_sweep.plotting.paths import GAP, gap_of, path
 from vibro_sweep.plotting.style import (
@@ -83,6 +83,7 @@ def phase_portrait(result: Result):
         way = way if first or result.contact_normal is not None else way.joined()
         _line(ax, way[x_name], way[v_name], way)
         rests.along(ax, way, x_name, v_name)
+        pressed.mark(ax, result, point, way, x_name, v_name)
         if first:
             for stop, before, after in way.jumps:
                 ax.plot([stop, stop], [before, after], color=IMPACT, lw=1.2, ls=(0, (1, 1)), label="impact")
@@ -104,6 +105,7 @@ def configuration(result: Result):
         way = path(result, point).joined()
         _line(ax, way["x1"], way["x2"], way)
         rests.along(ax, way, "x1", "x2")
+        pressed.mark(ax, result, point, way, "x1", "x2")
         if result.contact_normal is None:
             _walls(ax, result, point)
         elif not result.contact_normal[2:].any():
@@ -220,6 +222,7 @@ def history(result: Result):
             ax.plot(shown.t, shown[name], label=_symbol(name), **styles[min(i, len(styles) - 1)])
             if name == displacements(result)[0]:
                 rests.along(ax, shown, "t", name)
+                pressed.mark(ax, result, point, shown, "t", name)
         for side, stop in stops.items() if displacements(result)[0] in names else ():
             ax.axhline(stop, color=FAINT, lw=0.9, ls=DASHES if side > 0 else ":", label=stop_name(result, side))
         ax.margins(x=0)
@@ -255,13 +258,15 @@ def iteration(result: Result):
 
 
 def _walls(ax, result, point):
-    """The stops as walls: a line, and hatching where the mass cannot be."""
+    """The stops: a line, and of a rigid one hatching where the mass cannot be."""
     low, high = ax.get_xlim()
     depth = 0.04 * (high - low)
     for side, stop in result.stops(point.place).items():
         if low < stop < high:  # an orbit that stays far away is not squeezed to show them
             style = "-" if side > 0 else DASHES
             ax.axvline(stop, color=FAINT, lw=0.8, ls=style, zorder=1, label=stop_name(result, side))
+            if result.compliance(side, point.place):
+                continue
             end = stop + side * depth
             ax.axvspan(stop, end, facecolor="none", edgecolor=FAINT, hatch="//////", linewidth=0)
             ax.set_xlim(**{"right" if side > 0 else "left": end})

@@ -5,15 +5,28 @@ import numpy as np
 
 from vibro_sweep.plotting.orbit_pictures import ARROWS_AT, arrows, legend
 from vibro_sweep.plotting.plot_options import PlotOptions
+from vibro_sweep.plotting.pressed import STYLE as CONTACT
 from vibro_sweep.plotting.style import DASHES, FAINT, IMPACT, INK, LEFT, RIGHT, with_unit
 
 
 def plot_periodic(
-    times, gap, rate, impact_t, side, v_in, v_out, stops, title: str, system, names=("gap", "gap velocity"), width=None
+    times,
+    gap,
+    rate,
+    impact_t,
+    side,
+    v_in,
+    v_out,
+    stops,
+    title: str,
+    system,
+    names=("gap", "gap velocity"),
+    width=None,
+    pressed=None,
 ):
     """times, gap, rate: (m,), with the impacts' times among them; impact_t, side, v_in, v_out: (impacts,). A Figure.
 
-    system : whose units the axes have; width : mm
+    system : whose units the axes have; width : mm; pressed : (m,) bool, whether a compliant stop is pressed
     """
     options, declared = PlotOptions(width=width), ("m", "m s-1", "s")
     x_label, v_label, t_label = map(with_unit, (*names, "time $t$"), declared, 3 * [system])
@@ -31,6 +44,9 @@ def plot_periodic(
             portrait.plot([where, where], [before, after], color=IMPACT, lw=1.2, ls=(0, (1, 1)), label="impact")
         portrait.set(xlabel=x_label, ylabel=v_label)
         history.plot(times, gap, color=INK, lw=0.7)
+        if pressed is not None and pressed.any():
+            portrait.plot(np.where(pressed, gap, np.nan), np.where(pressed, rate, np.nan), **CONTACT)
+            history.plot(times, np.where(pressed, gap, np.nan), **CONTACT)
         for one, marker, colour, text in ((1, ">", RIGHT, "right"), (-1, "<", LEFT, "left")):
             hit = side == one
             label = f"impact on the {text}" if hit.any() else None

@@ -12,6 +12,7 @@ from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import not_allowed, shown
 from vibro_sweep.model.state import MOST_MASSES
 from vibro_sweep.model.status import NOT_COMPUTED
+from vibro_sweep.model.stops import NUMBERS, compliance_of
 from vibro_sweep.model.units import shown_unit
 from vibro_sweep.plotting.panel import Panel
 from vibro_sweep.plotting.plot_options import PlotOptions
@@ -20,6 +21,9 @@ from vibro_sweep.plotting.source import PlotError, source_of
 from vibro_sweep.plotting.style import axis_name, equation, in_formula
 
 LONGEST_LINE = 150  # letters of TeX
+
+
+_SIDES = {1: "right", -1: "left"}
 
 
 class Point(NamedTuple):
@@ -159,6 +163,10 @@ class Result:
         """The stops at a place in the sweep: side (+1 right, -1 left) -> the gap there."""
         b, offset = self.number("b", place), self.number("offset", place) or 0.0
         return {} if b is None else {side: offset + side * b for side in self.sides}
+
+    def compliance(self, side: int, place) -> tuple[float, float, float] | None:
+        """Stiffness, damping and preload of the stop on this side (+1 right, -1 left); None of a rigid one."""
+        return compliance_of({name: self.number(name, place) for name in NUMBERS}, _SIDES[side])
 
     @property
     def sides(self) -> tuple[int, ...]:

@@ -8,6 +8,7 @@ from vibro_sweep.analysis.single.result import columns_of
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.models.declaration import UNITS
 from vibro_sweep.model.state import state
+from vibro_sweep.model.stop_force import force_of
 from vibro_sweep.model.units import unit_in
 
 if TYPE_CHECKING:
@@ -67,7 +68,12 @@ def film_of(orbit: "Orbit", periods: int) -> "Film":
     positions = {f"x{i}": states[:, 2 * i - 2] for i in range(1, system.masses + 1)}
     name = "x1" if system.gap_is_x1 else "gap"
     gap = name, states[:, 0::2] @ q.normal, states[:, 1::2] @ q.normal
-    stops = [one for one in (q.high, q.low) if np.isfinite(one)]
+    laws = {1: (q.high, q.k_high, q.c_high, q.p_high), -1: (q.low, q.k_low, q.c_low, q.p_low)}
+    stops = {
+        stop: side * force_of(times, side * (gap[1] - stop), side * gap[2], law if law[0] > 0 else None, q.by_force)[1]
+        for side, (stop, *law) in laws.items()
+        if np.isfinite(stop)
+    }
     return new_film(times / system.period, positions, gap, stops, f"b = {system.b:.6g}")
 
 
@@ -87,4 +93,7 @@ def figure_of(orbit: "Orbit", periods: int, width: float | None) -> "Figure":
     jumps = (impacts["t"], impacts["side"], impacts["v1"], -q.restitution(impacts["side"]) * impacts["v1"])
     names = ("$x_1$", "$v_1$") if system.gap_is_x1 else ("$g$", r"$\dot g$")
     stops = [one for one in (q.high, q.low) if np.isfinite(one)]
-    return plot_periodic(times, gap, rate, *jumps, stops, title, system, names, width)
+    pressed = np.zeros(len(times), bool)
+    for touch, release in zip(orbit.contacts["t_touch"], orbit.contacts["t_release"], strict=True):
+        pressed |= (times >= touch) & ~(times > release)  # NaN: it goes on
+    return plot_periodic(times, gap, rate, *jumps, stops, title, system, names, width, pressed)

@@ -3,7 +3,7 @@
 import pkgutil
 from importlib import import_module
 
-from vibro_sweep.model.contact_laws.declaration import ContactLaw
+from vibro_sweep.model.contact_laws.contact_law import ContactLaw
 
 _ORDER = ("rigid", "compliant")  # others follow by name
 

@@ -1,6 +1,6 @@
 """The compliant stop: a spring and a damper side by side, without mass, which a preload may press together."""
 
-from vibro_sweep.model.contact_laws.declaration import ContactLaw, Option
+from vibro_sweep.model.contact_laws.contact_law import ContactLaw, Option
 from vibro_sweep.model.parameter import NOT_NEGATIVE, POSITIVE, Parameter
 
 STIFFNESS = Parameter(

@@ -1,6 +1,6 @@
 """The rigid stop, which the paper has (eq. 4)."""
 
-from vibro_sweep.model.contact_laws.declaration import ContactLaw
+from vibro_sweep.model.contact_laws.contact_law import ContactLaw
 from vibro_sweep.model.parameter import FRACTION, Parameter
 
 RESTITUTION = Parameter(

@@ -1,0 +1,91 @@
+"""Pictures of compliant stops: their force, their place, and where a motion is in contact."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import vibro_sweep as vs
+from vibro_sweep.model.stop_force import force_of
+from vibro_sweep.plotting import figure, kinds
+from vibro_sweep.plotting.sweep_result import PlotError
+
+SOFT = dict(zeta=0.02, F=0.6, omega=0.9, k_stop=20, c_stop=8, b=1, tau=0, stops="right")
+
+
+def system(**more):
+    return vs.Oscillator.named("one_mass", **SOFT | more)
+
+
+@pytest.fixture(scope="module")
+def data():
+    return vs.sweep(
+        system(release="force"), {"omega": [0.8, 0.9]}, transient=50, record=20, observe=["section", "contacts"],
+        trajectory={"periods": 2, "samples": 1601},
+    )  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    plt.close("all")
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_the_force_is_that_of_the_contacts(release):
+    """Of dense samples: its largest value, the largest place, and where it is not zero, which contacts have."""
+    one = system(release=release, preload=0.05)
+    orbit, T = vs.simulate(one, (0, 0), 20), one.period
+    t = np.linspace(0, 20 * T, 200_001)
+    x, v = orbit.sample(t).T
+    force, places = force_of(t, x - 1, v, (20, 8, 0.05), release == "force")
+    touched = orbit.contacts
+    assert len(touched) >= 15
+    assert force.max() == pytest.approx(touched["max_force"].max(), rel=1e-2)
+    assert places.max() == pytest.approx(touched["max_penetration"].max(), rel=1e-5)
+    inside = sum((touched["t_release"] - touched["t_touch"])[~np.isnan(touched["t_release"])])
+    assert np.count_nonzero(force) * t[1] == pytest.approx(inside, rel=0.02)
+
+
+def test_kinds(data):
+    assert {"contacts", "contact-force", "film", "history", "phase-portrait"} <= set(kinds(data))
+    rigid = vs.sweep(
+        system(k_stop=None, c_stop=None, R=0.8),
+        {"omega": [0.9]},
+        transient=5,
+        record=5,
+        trajectory={"periods": 1, "samples": 101},
+    )
+    assert not {"contacts", "contact-force"} & set(kinds(rigid))
+    with pytest.raises(PlotError, match="contact-force"):
+        figure(rigid, "contact-force")
+
+
+def test_a_loop_has_the_force_of_the_file(data):
+    fig = figure(data, "contact-force")
+    largest = [np.nanmax(line.get_ydata()) for ax in fig.axes[0::2] for line in ax.lines[:1]]
+    assert largest == pytest.approx(data.contact_force_max.values, rel=0.05)  # at the touch
+
+
+@pytest.mark.parametrize("kind", ["phase-portrait", "history"])
+def test_contacts_are_marked_and_not_cut_off(data, kind):
+    fig = figure(data, kind)
+    for ax, deepest in zip(fig.axes, data.penetration_max.values, strict=True):
+        (line,) = [line for line in ax.lines if line.get_label() == "contact"]
+        end = ax.get_xlim()[1] if kind == "phase-portrait" else ax.get_ylim()[1]
+        x = line.get_xdata() if kind == "phase-portrait" else line.get_ydata()
+        assert end > 1 + deepest and np.nanmax(x) == pytest.approx(1 + deepest, rel=1e-3)
+
+
+def test_a_film_shows_the_stop_pressed_in(data):
+    film = figure(data, "film")
+    ((line, place),) = film.stops
+    assert place.max() - place.min() == pytest.approx(data.penetration_max.values[0], rel=1e-3)
+    film.show(0)
+    before = line.get_xdata()[0]
+    film.show(int(np.argmax(place) / (len(place) - 1) * 199))
+    assert line.get_xdata()[0] > before
+
+
+def test_an_orbit_marks_its_contacts():
+    fig = vs.simulate(system(), (0, 0), 20).plot(periods=2)
+    assert [sum(line.get_label() == "contact" for line in ax.lines) for ax in fig.axes] == [1, 1]
