@@ -14,7 +14,7 @@ from support.kinds_of_files import KINDS, PERIODIC
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
 from vibro_sweep.store import parts
-from vibro_sweep.store.pieces import Pieces
+from vibro_sweep.store.writing import Writer
 
 BEYOND = [
     pytest.param(name, some, full, id=f"{some} {name}", marks=mark)
@@ -167,7 +167,7 @@ ODD = {
 
 def begun(words: list[str], patch, change=lambda piece: piece) -> str:
     """The part of a run that ended before its file was made, its pieces changed; returns the key of the last one."""
-    plain, keys = Pieces.write, []
+    plain, keys = Writer.write, []
 
     def changed(self, key, arrays):
         plain(self, key, change(arrays))
@@ -177,8 +177,8 @@ def begun(words: list[str], patch, change=lambda piece: piece) -> str:
         raise OSError("the disk is gone")
 
     with patch.context() as own:
-        own.setattr(Pieces, "write", changed)
-        own.setattr(Pieces, "finish", stopped)
+        own.setattr(Writer, "write", changed)
+        own.setattr(Writer, "finish", stopped)
         assert main(words) == 2
     return keys[-1]
 

@@ -30,7 +30,7 @@ from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.model.units import unit_in
 from vibro_sweep.model.wording import sentence
 from vibro_sweep.scene import parse_scene
-from vibro_sweep.store.creating import skeleton_of
+from vibro_sweep.store.creating import skeleton_of, sweep_run
 
 SYSTEM = {"mu_m": 10, "mu_k": 5, "zeta": 0.05, "f2": 0.1, "omega": 0.63, "R": 0.8, "b": 6.6}
 SCENE = f"system: {SYSTEM}\norbit: {{transient: 3, record: 60}}\n".replace("'", "")
@@ -44,7 +44,7 @@ def scene_of(observe, more=""):
 
 
 def skeleton(scene):
-    return h5py.File(io.BytesIO(skeleton_of(scene, b"0" * 16)), "r")
+    return h5py.File(io.BytesIO(skeleton_of(sweep_run(scene), b"0" * 16)), "r")
 
 
 class TestTheTablesThemselves:

@@ -4,25 +4,13 @@ import pickle
 import subprocess
 import sys
 
-import numpy as np
 import pytest
-from support import slow_cases
 from support.stored import ALL, IMPACTS, LYAPUNOV, PLANE, SECTION, SWEEP, broken_off, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep import store
 from vibro_sweep.driver import blocks, compute
 from vibro_sweep.store import describe
-
-
-def test_an_unfinished_file_can_be_read(path):
-    part = broken_off(scene_of(SWEEP + ALL), path)
-    assert not path.exists()
-    with vs.open(part) as data:
-        computed = data["status"].values == 0
-        assert 0 < np.count_nonzero(computed) < 3
-        assert np.all(np.isfinite(data["x1"][computed])) and np.all(np.isnan(data["x1"][~computed]))
-        assert np.all(data["status"][~computed] == -1)
 
 
 @pytest.mark.parametrize("part", [False, True])
@@ -38,7 +26,7 @@ def test_what_is_opened_can_be_copied_and_sent(path, part):
 
 def test_a_file_that_is_being_written_can_be_read(path):
     scene = scene_of(SWEEP)
-    with store.writer(scene, path, "new"):
+    with store.writer(store.sweep_run(scene), path, "new"):
         part = f"{path}.part"
         assert "computed     0 of 3" in in_another_process(
             f"from vibro_sweep.store import describe as d; print(d('{part}'))"
@@ -53,31 +41,11 @@ def in_another_process(code):
     return done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("mode", ["resume", *slow_cases("new", "overwrite")])
-def test_one_writer(path, mode):
-    """A second one is refused, and does the first no harm."""
-    scene = scene_of(SWEEP)
-    with store.writer(scene, path, "new") as first:
-        code = f"""
-from pathlib import Path
-from vibro_sweep import store
-from vibro_sweep.scene import scene
-with store.writer(scene.parse_scene({scene.text!r}), Path({str(path)!r}), {mode!r}):
-    print("let in")"""
-        answer = in_another_process(code)
-        assert "StoreError" in answer and "let in" not in answer
-        assert "being written by another run" in answer
-        assert first.missing((slice(None),)) and first.done() == 0
-    assert "0 of 3" in describe(f"{path}.part")
-    vs.run(scene, path, mode="resume")
-    assert "3 of 3" in describe(path)
-
-
 @pytest.mark.parametrize("starts", [1, 2])
 def test_what_is_missing_and_what_is_done(path, starts):
     scene = scene_of(PLANE + f"start: {{random: {starts}}}\nobserve: [impacts]")
     (*_, last) = blocks.blocks(scene, points_per_block=2)
-    with store.writer(scene, path, "new") as file:
+    with store.writer(store.sweep_run(scene), path, "new") as file:
         everything = (slice(None), slice(None))
         assert file.done() == 0 and file.missing(everything)
         file.write(*compute.compute(last))

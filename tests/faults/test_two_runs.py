@@ -19,10 +19,10 @@ def test_two_runs_on_one_file(scene, path, tmp_path):
     """By the command line; HDF5's own locks are not needed."""
     text = tmp_path / "the_scene.yaml"
     text.write_text(TEXT)
-    with store.writer(scene, path, "new"):
-        for option in ("--resume", "--overwrite"):
+    with store.writer(store.sweep_run(scene), path, "new"):
+        for option in ([], ["--resume"], ["--overwrite"]):
             second = subprocess.run(
-                [sys.executable, "-m", "vibro_sweep", "run", text, "-o", path, option],
+                [sys.executable, "-m", "vibro_sweep", "run", text, "-o", path, *option],
                 capture_output=True,
                 text=True,
                 check=False,
@@ -30,11 +30,14 @@ def test_two_runs_on_one_file(scene, path, tmp_path):
             )
             assert second.returncode == 2
             assert second.stderr == f"vibro-sweep: error: {path}.part is being written by another run\n"
+        assert counted(describe(f"{path}.part")) == (0, 400, 0)
+    vs.run(scene, path, mode="resume")
+    assert counted(describe(path)) == (400, 0, 0)
 
 
 def test_readers_of_a_running_run(scene, path):
     """They see what is computed, whole blocks only, and write nothing."""
-    with store.writer(scene, path, "new") as file:
+    with store.writer(store.sweep_run(scene), path, "new") as file:
         part = path.with_name(path.name + ".part")
         first, second, *_ = blocks.blocks(scene, 40)
         file.write(*compute.compute(first))

@@ -31,7 +31,7 @@ PROGRAM = """
 import math, os, signal, sys
 from vibro_sweep.__main__ import program
 from vibro_sweep.driver import compute, pool
-from vibro_sweep.store import pieces, writing
+from vibro_sweep.store.writing import Writer
 log = sys.argv[1]
 def write(what, size):
     file = os.open(log, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
@@ -42,14 +42,11 @@ def logged(block):
     write("begun", math.prod(part.stop - part.start for part in block.box))
     return plain(block)
 pool.compute = logged
-def told(of):
-    keep = of.write
-    def kept(self, where, arrays):
-        keep(self, where, arrays)
-        write("kept", arrays["status"].size if of is writing.Writer else 1)
-    of.write = kept
-told(writing.Writer)
-told(pieces.Pieces)
+keep = Writer.write
+def kept(self, where, arrays):
+    keep(self, where, arrays)
+    write("kept", 1 if isinstance(where, str) else arrays["status"].size)
+Writer.write = kept
 sys.argv[:2] = ["vibro-sweep"]
 signal.signal(signal.SIGINT, signal.default_int_handler)
 program()

@@ -16,11 +16,11 @@ from vibro_sweep.model.column import Column
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
 from vibro_sweep.store.joining import joined
-from vibro_sweep.store.pieces import Pieces
+from vibro_sweep.store.writing import Writer
 
 
 def followed_branches(
-    scene: Continuation, pool: Executor | None, file: Pieces, progress: Callable[[int, int], None] | None
+    scene: Continuation, pool: Executor | None, file: Writer, progress: Callable[[int, int], None] | None
 ) -> tuple[list[Column], Arrays]:
     """Raises NoOrbitError where the scene's first orbit does not exist. progress(done, total) counts branches."""
     names, masses = list(scene.parameter), scene.system.masses

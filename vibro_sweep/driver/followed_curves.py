@@ -25,14 +25,14 @@ from vibro_sweep.model.curve_columns import OF_EDGES
 from vibro_sweep.scene import Continuation
 from vibro_sweep.scene.continuation import BY_BRANCHES
 from vibro_sweep.store.joining import joined
-from vibro_sweep.store.pieces import Pieces
+from vibro_sweep.store.writing import Writer
 
 
 def followed_curves(
     scene: Continuation,
     of_plane: tuple[Plane, np.ndarray, Any] | None,
     pool: Executor | None,
-    file: Pieces,
+    file: Writer,
     progress: Callable[[int, int], None] | None,
 ) -> tuple[list[Column], Arrays]:
     """Raises NoOrbitError where there is no orbit to begin with. progress(done, total) counts branches, then curves.

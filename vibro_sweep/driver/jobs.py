@@ -76,7 +76,7 @@ def results(pool: Executor | None, function: Callable, jobs: Iterable[tuple[Any,
 def computed(
     function: Callable, usable: Callable[[Any], bool], pool: Executor | None, file, progress=None
 ) -> Callable[[list[str], list], list]:
-    """evaluate(names, jobs): the results of `function`, which the run `file` (store/pieces.py) keeps by these names.
+    """evaluate(names, jobs): the results of `function`, which the run `file` (store/writing.py) keeps by these names.
 
     usable : whether what was kept is a result of the function (driver/usable.py)
     progress : called as progress(done, total) in jobs

@@ -24,8 +24,9 @@ from vibro_sweep.model.files import checked_path
 from vibro_sweep.scene import parse_continuation, parse_scene
 from vibro_sweep.store import StoreError
 from vibro_sweep.store.arrays import Contents
+from vibro_sweep.store.creating import Subject
 from vibro_sweep.store.joining import part_of
-from vibro_sweep.store.ragged_files import RaggedContents, Subject
+from vibro_sweep.store.ragged_files import RaggedContents
 
 HDF5 = (b"\x89HDF", b"\x89vibro_sweep")  # with which such files, and the parts of runs, begin
 Arrays = dict[str, np.ndarray]

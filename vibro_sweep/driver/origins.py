@@ -33,7 +33,7 @@ from vibro_sweep.model.refusals import cut, shown
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.joining import part_of
-from vibro_sweep.store.pieces import Pieces
+from vibro_sweep.store.writing import Writer
 
 
 class NoOrbitError(SourceError):
@@ -78,7 +78,7 @@ def attributes_of(scene: Continuation, source: Source) -> dict[str, Any]:
     return {"parameters": list(scene.parameter)} | held | ({"source": source.run_id} if source.run_id else {})
 
 
-def seeds_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[Seed]:
+def seeds_of(scene: Continuation, file: Writer, pool: Executor | None) -> list[Seed]:
     """The first orbits of a scene, those within its range; `file` keeps what it takes to find them.
 
     Raises NoOrbitError where there is none.
@@ -131,7 +131,7 @@ def _rows(scene: Continuation, data: Contents) -> list[Row]:
     return found
 
 
-def _from_sweep(scene: Continuation, key: str, file: Pieces, pool: Executor | None) -> list[PeriodicOrbit]:
+def _from_sweep(scene: Continuation, key: str, file: Writer, pool: Executor | None) -> list[PeriodicOrbit]:
     """An orbit of each window of a sweep that reaches into the scene's range, near where it was found."""
     with store.contents(Path(scene.begin)) as data:
         rows = _rows(scene, data)
@@ -170,7 +170,7 @@ def _from_branches(scene: Continuation, key: str) -> list[PeriodicOrbit]:
     return found if key == parameter else [special.orbit, *found]
 
 
-def specials_of(scene: Continuation, file: Pieces, pool: Executor | None) -> list[SpecialPoint]:
+def specials_of(scene: Continuation, file: Writer, pool: Executor | None) -> list[SpecialPoint]:
     """The special points at which curves begin: the ends of a sweep's windows, or one of a file.
 
     `file` keeps what it takes to find them. Raises ValueError where the point is of a type that has no curve.

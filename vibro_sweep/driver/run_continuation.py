@@ -15,8 +15,8 @@ from vibro_sweep.driver.swept_plane import plane_of
 from vibro_sweep.model.branch_file import BRANCHES, CHART
 from vibro_sweep.model.files import file_to_write
 from vibro_sweep.scene import Continuation
-from vibro_sweep.store.pieces import pieces
-from vibro_sweep.store.ragged_files import Subject
+from vibro_sweep.store.creating import Subject
+from vibro_sweep.store.ragged_files import RaggedContents
 
 
 def run_continuation(
@@ -38,7 +38,7 @@ def run_continuation(
         of_plane = plane_of(scene) if of_curves else None
         attributes = attributes_of(scene, source_of(scene))
         subject = Subject(CHART if of_curves else BRANCHES, scene.name, scene.text, attributes)
-        with pieces(subject, output, mode, scene.inputs) as file:
+        with store.writer(store.ragged_run(subject, scene.inputs), output, mode) as file:
             if isinstance(file, store.Complete):
                 return False
             with workers_of(workers, executor) as pool:
@@ -50,5 +50,5 @@ def run_continuation(
                 except NoOrbitError:
                     file.drop()
                     raise
-            file.finish(provenance(), *found)
+            file.finish(provenance(), RaggedContents(subject, *found).write)
             return True

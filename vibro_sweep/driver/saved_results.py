@@ -1,6 +1,5 @@
 """Branches, bifurcation curves and windows of Python as files: `.save` and `.to_xarray`."""
 
-import io
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING
 import h5py
 import numpy as np
 
+from vibro_sweep import store
 from vibro_sweep.analysis.branches import branch_arrays
 from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.curves import curve_arrays
@@ -25,10 +25,9 @@ from vibro_sweep.model.linear import Family
 from vibro_sweep.model.parameters import ParameterError
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
+from vibro_sweep.store.creating import Subject
 from vibro_sweep.store.joining import joined
-from vibro_sweep.store.parts import new_run_id
-from vibro_sweep.store.pieces import pieces
-from vibro_sweep.store.ragged_files import RaggedContents, Subject, ragged_image
+from vibro_sweep.store.ragged_files import RaggedContents
 
 if TYPE_CHECKING:
     import xarray
@@ -41,9 +40,7 @@ def dataset_of(result: Saved) -> "xarray.Dataset":
     """The Dataset that `open` gives of the file of a result."""
     from vibro_sweep.store import lazy
 
-    contents = contents_of_file(result)
-    image = ragged_image(contents.subject, new_run_id(), provenance(), contents.columns, contents.arrays)
-    with h5py.File(io.BytesIO(image)) as file:
+    with h5py.File(contents_of_file(result).image(provenance())) as file:
         return lazy.dataset_of(file).load()
 
 
@@ -52,8 +49,8 @@ def save(result: Saved, path: str | Path) -> Path:
     path, contents = file_to_write("path", path), contents_of_file(result)
     if path.exists():
         raise ExistingFileError(path)
-    with pieces(contents.subject, path, "new", []) as file:
-        file.finish(provenance(), contents.columns, contents.arrays)
+    with store.writer(store.ragged_run(contents.subject), path, "new") as file:
+        file.finish(provenance(), contents.write)
     return path
 
 

@@ -1,7 +1,6 @@
 """From a scene to its file: blocks of points, computed by an executor, handed to the store as they come."""
 
 import logging
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing
@@ -86,9 +85,8 @@ def run_sweep(
     mode: str = "new",
 ) -> RunReport:
     """Compute a sweep and write its file; arguments and errors as of `run`."""
-    began = time.perf_counter()
     total = scene.n_points
-    with store.writer(scene, output, mode) as file:
+    with store.writer(store.sweep_run(scene), output, mode) as file:
         if isinstance(file, store.Complete):
             if progress:
                 progress(total, total)
@@ -105,10 +103,9 @@ def run_sweep(
                         done += arrays["status"].size
                         if tell:
                             tell(min(done, total), total)
-        seconds = round(time.perf_counter() - began, 3)
         threads = (workers or available_cores()) if executor is None else None
-        statuses = file.finish(_made(scene, threads, executor, seconds), partial(_complete, scene))
-    return _report(total, statuses, seconds, missing)
+        made = file.finish(_made(scene, threads, executor), partial(_complete, scene))
+    return _report(total, *made, missing)
 
 
 def _report(total: int, statuses: dict[int, int], seconds: float, computed: int) -> RunReport:
@@ -175,8 +172,8 @@ def _worker_count(pool: Executor, default: int) -> int:
     return getattr(pool, "num_workers", None) or getattr(pool, "_max_workers", None) or default
 
 
-def _made(scene: Scene, threads: int | None, executor: Executor | None, seconds: float) -> dict:
+def _made(scene: Scene, threads: int | None, executor: Executor | None) -> dict:
     """The provenance of the file, as one JSON record."""
     seed = scene.start.seed if scene.start.kind == "random" else None
     here = "threads" if executor is None else type(executor).__name__
-    return provenance() | {"executor": here, "threads": threads, "seed": seed, "wall_time_s": seconds}
+    return provenance() | {"executor": here, "threads": threads, "seed": seed}

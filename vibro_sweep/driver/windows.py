@@ -31,9 +31,9 @@ from vibro_sweep.model.state import state
 from vibro_sweep.model.stops import why_rigid
 from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.scene import parse_scene
+from vibro_sweep.store.creating import Subject
 from vibro_sweep.store.joining import joined
-from vibro_sweep.store.pieces import Pieces, pieces
-from vibro_sweep.store.ragged_files import RaggedContents, Subject
+from vibro_sweep.store.ragged_files import RaggedContents
 
 if TYPE_CHECKING:
     import xarray
@@ -109,14 +109,15 @@ def run_windows(
     inputs = [checked_path("data", data)] if isinstance(data, (str, Path)) else []
     with contents_of(data) as found:
         rows = rows_in(found, parameter)
-        with pieces(_subject(found, rows[0].parameter), output, mode, inputs) as file:
+        subject = _subject(found, rows[0].parameter)
+        with store.writer(store.ragged_run(subject, inputs), output, mode) as file:
             if isinstance(file, store.Complete):
                 return None
             with workers_of(workers, executor) as pool:
                 search = search_of(rows, file, pool, progress)
             if progress:
                 progress(search.total, search.total)
-            file.finish(provenance(), *_contents(search))
+            file.finish(provenance(), _contents_of_file(subject, search).write)
             return search
 
 
@@ -132,7 +133,7 @@ class NothingKept:
 
 def search_of(
     rows: list[Row],
-    file: Pieces | NothingKept,
+    file: store.Writer | NothingKept,
     pool: Executor | None,
     progress: Callable[[int, int], None] | None = None,
 ) -> WindowSearch:

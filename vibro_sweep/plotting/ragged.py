@@ -10,8 +10,8 @@ from vibro_sweep.model.branch_file import BRANCHES, WINDOWS
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.units import shown_unit
 from vibro_sweep.plotting.source import PlotError, name_of, readable
-from vibro_sweep.store.attributes import attributes, text, texts
-from vibro_sweep.store.opening import StoreError, opened, quantities_of
+from vibro_sweep.store.attributes import attributes, quantities_of, text, texts
+from vibro_sweep.store.opening import StoreError, opened
 from vibro_sweep.store.ragged_checks import Stored, check
 
 if TYPE_CHECKING:

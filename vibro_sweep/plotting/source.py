@@ -8,8 +8,8 @@ import numpy as np
 from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.errors import ArgumentTypeError, VibroSweepError
 from vibro_sweep.model.refusals import not_allowed
-from vibro_sweep.store.attributes import text, texts
-from vibro_sweep.store.opening import ForeignError, StoreError, is_dataset, is_flat, open_file, opened, quantities_of
+from vibro_sweep.store.attributes import is_flat, quantities_of, text, texts
+from vibro_sweep.store.opening import ForeignError, StoreError, is_dataset, open_file, opened
 
 if TYPE_CHECKING:
     import xarray

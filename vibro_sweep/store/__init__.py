@@ -18,23 +18,12 @@ _HOME = {
     "quantities": "layout",
     "size": "layout",
     "tables": "reading",
+    "ragged_run": "creating",
+    "sweep_run": "creating",
     "writer": "beginning",
 }
 
-__all__ = [
-    "Complete",
-    "StoreError",
-    "Writer",
-    "contents",
-    "coordinates",
-    "describe",
-    "examine",
-    "open",
-    "quantities",
-    "size",
-    "tables",
-    "writer",
-]
+__all__ = [*_HOME]
 
 
 def __getattr__(name: str):

@@ -9,7 +9,7 @@ import errno
 import os
 import shutil
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -17,21 +17,14 @@ import numpy as np
 import portalocker
 
 from vibro_sweep.store import parts
+from vibro_sweep.store.opening import StoreError
 from vibro_sweep.store.parts import Head, PartError
 
 SYNC_SECONDS = 1.0  # a power failure costs about so much, a kill of the program nothing
 
 
-class RemovedError(OSError):
-    """The part, or its folder, is no longer where it was."""
-
-
-class ChangedError(OSError):
-    """Another program has made the part longer or shorter."""
-
-
 class LockedPart:
-    """A part that this program has made or goes on with. Raises OSError where the disk does not take a block."""
+    """A part that this program has made or goes on with. Raises StoreError where the disk does not take a record."""
 
     def __init__(self, path: Path, file: BinaryIO):
         self.path, self.file = path, file
@@ -40,10 +33,11 @@ class LockedPart:
 
     def begin(self, head: Head, skeleton: bytes | memoryview) -> None:
         """The head and the skeleton, in place of everything."""
-        self.file.truncate(0)
-        self._end = 0
-        self._write([head.packed(), skeleton])
-        os.fsync(self.file.fileno())
+        with said(self.path):
+            self.file.truncate(0)
+            self._end = 0
+            self._write([head.packed(), skeleton])
+            os.fsync(self.file.fileno())
         self.head = head
 
     def go_on(self, head: Head, end: int) -> None:
@@ -53,15 +47,29 @@ class LockedPart:
 
     def append(self, key: Any, arrays: Mapping[str, np.ndarray]) -> None:
         """A record: once this returns, a kill does not lose it."""
-        if not _stands(self.path, self.file):
-            raise RemovedError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(self.path))
-        if parts.size(self.file) != self._end:
-            raise ChangedError(errno.EBUSY, "another program has changed it", os.fspath(self.path))
         data = [memoryview(np.ascontiguousarray(one).reshape(-1).view(np.uint8)) for one in arrays.values()]
-        self._write(parts.record(self.head.run_id, parts.text_of(key, arrays), data))
-        if time.monotonic() - self._synced > SYNC_SECONDS:
-            os.fsync(self.file.fileno())
-            self._synced = time.monotonic()
+        with said(self.path):
+            self._check_unchanged()
+            self._write(parts.record(self.head.run_id, parts.text_of(key, arrays), data))
+            if time.monotonic() - self._synced > SYNC_SECONDS:
+                os.fsync(self.file.fileno())
+                self._synced = time.monotonic()
+
+    def _check_unchanged(self) -> None:
+        if not _stands(self.path, self.file):
+            try:
+                self._put_back()
+            except OSError as error:
+                raise StoreError(f"{self.path} was removed during the run, and cannot be put back: {error}") from None
+            raise StoreError(
+                f"{self.path} was removed during the run; it is there again, with all that was computed: `resume` "
+                "continues it"
+            )
+        if parts.size(self.file) != self._end:
+            raise StoreError(
+                f"{self.path} was changed by another program during the run; this one stops, and `resume` continues "
+                "with what is left"
+            )
 
     def _write(self, pieces: list[bytes | memoryview]) -> None:
         self.file.seek(self._end)
@@ -75,10 +83,8 @@ class LockedPart:
             raise
         self._end += sum(memoryview(piece).nbytes for piece in pieces)
 
-    def put_back(self) -> None:
+    def _put_back(self) -> None:
         """Write it where it was, with all its blocks. Raises OSError."""
-        if _stands(self.path, self.file):
-            return
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with open(self.path, "xb") as copy:
             self.file.seek(0)
@@ -148,3 +154,17 @@ def _stands(path: Path, file: BinaryIO) -> bool:
         return os.path.samestat(os.fstat(file.fileno()), os.lstat(path))
     except (FileNotFoundError, NotADirectoryError):
         return False
+
+
+@contextlib.contextmanager
+def said(path: Path) -> Iterator[None]:
+    """Faults of the disk under the part of a run, in words, and that nothing is lost."""
+    try:
+        yield
+    except PartError as error:
+        raise StoreError(f"{path} {error}") from None
+    except OSError as error:
+        kept = "what was computed until then is kept: `resume` continues it"
+        reason = os.strerror(error.errno) if error.errno else str(error)
+        full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+        raise StoreError(f"{path}: {reason}; {'make room; ' if full else ''}{kept}") from None

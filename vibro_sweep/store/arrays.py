@@ -6,8 +6,8 @@ from functools import cached_property
 import h5py
 import numpy as np
 
-from vibro_sweep.store.attributes import attributes
-from vibro_sweep.store.opening import axes_of, dimensions_of, quantities_of
+from vibro_sweep.store.attributes import attributes, quantities_of
+from vibro_sweep.store.opening import axes_of, dimensions_of
 
 
 class Contents:

@@ -5,6 +5,7 @@ import h5py
 import numpy as np
 
 from vibro_sweep.model import catalogue
+from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.variable import Variable
 from vibro_sweep.model.wording import sentence
@@ -49,6 +50,16 @@ def texts(of: h5py.File | h5py.Dataset, name: str) -> list[str]:
     values = of.attrs[name]
     found = [] if isinstance(values, h5py.Empty) else np.asarray(values, object).ravel().tolist()
     return [value.decode() if isinstance(value, bytes) else str(value) for value in found]
+
+
+def is_flat(file: h5py.File) -> bool:
+    """Whether it holds branches, curves or windows, and no sweep."""
+    return "kind" in file.attrs and text(file, "kind") != SWEEP
+
+
+def quantities_of(file: h5py.File) -> list[str]:
+    """The datasets that blocks fill."""
+    return [*texts(file, "quantities"), "status"]
 
 
 def attributes(of: h5py.File | h5py.Dataset) -> dict:

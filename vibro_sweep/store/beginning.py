@@ -6,57 +6,36 @@ All questions to whom a file or a part belongs are asked here, for files of ever
 import contextlib
 import json
 import shutil
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 import h5py
 
-from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.model.branch_file import SWEEP
+from vibro_sweep.model.refusals import cut, not_allowed
 from vibro_sweep.model.status import NOT_COMPUTED
-from vibro_sweep.scene import Scene
-from vibro_sweep.store import appending, checks, layout, names, parts
+from vibro_sweep.store import appending, checks, names, parts
 from vibro_sweep.store.appending import LockedPart
-from vibro_sweep.store.attributes import text
-from vibro_sweep.store.creating import skeleton_of
+from vibro_sweep.store.attributes import is_flat, quantities_of, text
+from vibro_sweep.store.creating import Run, skeleton_of
+from vibro_sweep.store.differences import differences
 from vibro_sweep.store.image import Index, frame_of
 from vibro_sweep.store.names import Stamp
-from vibro_sweep.store.opening import (
-    StoreError,
-    blocks_lost,
-    check_scene,
-    check_version,
-    opened,
-    quantities_of,
-    skeleton,
-)
+from vibro_sweep.store.opening import StoreError, blocks_lost, check_version, opened, skeleton
 from vibro_sweep.store.parts import PartError
-from vibro_sweep.store.writing import Complete, Writer, said, unfinished
+from vibro_sweep.store.ragged_checks import damage_of
+from vibro_sweep.store.writing import Complete, Writer, unfinished
 
 MODES = ("new", "resume", "overwrite")
 NO_DATA = (".png", ".svg", ".pdf", ".yaml", ".yml")  # endings of other files of this program
 
 
-class Run(NamedTuple):
-    """A run of any kind.
-
-    check : check(file, path) raises StoreError for a file, or part, of another subject
-    lacking : lacking(file, path) is what `resume` computes again of a file, in words; empty where nothing is
-    skeleton : the bytes with which the part begins, of a run id
-    size : bytes of the file, as far as known before
-    inputs : files that the run reads, which it must not write
-    """
-
-    check: Callable[[h5py.File, Path], None]
-    lacking: Callable[[h5py.File, Path], str]
-    skeleton: Callable[[bytes], memoryview]
-    size: int
-    inputs: Collection[Path]
-
-
 @contextlib.contextmanager
-def begun(run: Run, path: Path, mode: str) -> Iterator[LockedPart | Complete]:
-    """The part of a run, begun or ready to be continued; `Complete` where the file is there, and whole."""
+def writer(run: Run, path: Path, mode: str) -> Iterator[Writer | Complete]:
+    """The `Writer` of a run; `Complete` where the file is there, and whole. Raises StoreError.
+
+    mode : "new", "resume" or "overwrite"
+    """
     part = check_outputs(path, mode, run.inputs)
     with contextlib.ExitStack() as stack:
         try:
@@ -69,42 +48,33 @@ def begun(run: Run, path: Path, mode: str) -> Iterator[LockedPart | Complete]:
                     result = _continue(run, locked, path)
                 else:
                     _begin(run, locked, path, names.stamp(path) if made or mode == "overwrite" else None)
+            result = result or _writer(locked, path, bool(made))
         except BlockingIOError:
             raise StoreError(f"{part} is being written by another run") from None
         except FileExistsError:
             raise StoreError(f"{part} has just been begun by another run") from None
         except PartError as error:
             raise StoreError(f"{part} {error}") from None
-        yield result or locked
-
-
-@contextlib.contextmanager
-def writer(scene: Scene, path: Path, mode: str) -> Iterator[Writer | Complete]:
-    """The `Writer` of a scene's file; `mode` is "new", "resume" or "overwrite". Raises StoreError."""
-
-    def check(file: h5py.File, where: Path) -> None:
-        check_scene(file, where, scene)
-        if absent := [name for name in layout.quantities(scene) if name not in quantities_of(file)]:
-            raise StoreError(f"{where} is damaged: it has no {', '.join(absent)}; overwrite it")
-
-    fresh = mode == "resume" and not names.stamp(part_of(path))
-    run = Run(check, _lacking, lambda run_id: skeleton_of(scene, run_id), layout.size(scene), scene.inputs)
-    with begun(run, path, mode) as part:
-        if isinstance(part, Complete):
-            yield part
-            return
-        head = parts.read_head(part.file)
-        with skeleton(part.file, part.path) as file:
-            frame = frame_of(file, quantities_of(file))
-        index = Index(part.file, head, frame)
-        part.go_on(head, index.end)
-        result = Writer(part, frame, index, path)
-        if index.damaged:
-            result.remark(f"damage found, to be computed again: {blocks_lost(index.damaged)}")
-        if fresh and head.replaces:
-            with opened(path) as (file, _):
-                result.take_over(file, checks.damaged(file))
         yield result
+
+
+def _writer(locked: LockedPart, path: Path, mends: bool) -> Writer:
+    """The writer that goes on behind what is in a part.
+
+    mends : whether what is whole of the file that stands at the path is taken over
+    """
+    head = parts.read_head(locked.file)
+    with skeleton(locked.file, locked.path) as file:
+        frame = frame_of(file)
+    index = Index(locked.file, head, frame)
+    locked.go_on(head, index.end)
+    result = Writer(locked, path, frame, index)
+    if index.damaged:
+        result.remark(blocks_lost(index.damaged))
+    if mends and frame.datasets:
+        with opened(path) as (file, _):
+            result.take_over(file, checks.damaged(file))
+    return result
 
 
 def check_outputs(path: Path, mode: str, inputs: Collection[Path]) -> Path:
@@ -158,7 +128,29 @@ def _check_part(part: Path, path: Path, mode: str) -> None:
     raise StoreError(f"{part} is in the way: it is not an interrupted run of vibro-sweep; move it away")
 
 
+def _check(run: Run, file: h5py.File, path: Path) -> None:
+    """Raise StoreError where a file, or a part, is of another subject: its points would not belong together."""
+    kind, old = text(file, "kind") if "kind" in file.attrs else SWEEP, text(file, "scene")
+    remedy = "name another file, or overwrite it"
+    if kind != run.subject.kind:
+        raise StoreError(f"{path} holds {cut(kind)}, and no {run.subject.kind}; {remedy}")
+    if old != run.subject.scene:
+        raise StoreError(
+            f"{path} was made from another scene; {remedy}\n"
+            f"(- is that scene, + is this one)\n{differences(old, run.subject.scene)}"
+        )
+    texts = {name: value for name, value in run.subject.attributes.items() if isinstance(value, str)}
+    if any(name not in file.attrs or text(file, name) != value for name, value in texts.items()):
+        raise StoreError(f"{path} was made from something else; {remedy}")
+    if absent := [name for name in run.quantities if name not in quantities_of(file)]:
+        raise StoreError(f"{path} is damaged: it has no {', '.join(absent)}; overwrite it")
+
+
 def _lacking(file: h5py.File, path: Path) -> str:
+    """What `resume` computes again of a file, in words; empty where nothing is."""
+    if is_flat(file):
+        damage = damage_of(file)
+        return f"is damaged: {damage}" if damage else ""
     found = checks.damaged(file)
     if not all(piece for _, piece in found):
         raise StoreError(f"{path} is damaged beyond repair: {checks.summary(found)}; overwrite it")
@@ -171,8 +163,8 @@ def _complete(run: Run, path: Path, mode: str) -> Complete | None:
     """A file that needs no run; None for one that `resume` mends. Raises StoreError for any other."""
     try:
         with opened(path, content=False) as (file, _):
-            run.check(file, path)
-            lacking = run.lacking(file, path)
+            _check(run, file, path)
+            lacking = _lacking(file, path)
             if mode == "new" or lacking:
                 check_version(file, path)
             if not lacking:
@@ -200,9 +192,8 @@ def _begin(run: Run, locked: LockedPart, path: Path, replaces: Stamp | None) -> 
     try:
         _check_space(run.size, locked)
         run_id = parts.new_run_id()
-        content = run.skeleton(run_id)
-        with said(locked):
-            locked.begin(parts.new_head(content, replaces, run_id), content)
+        content = skeleton_of(run, run_id)
+        locked.begin(parts.new_head(content, replaces, run_id), content)
     except BaseException:
         if parts.size(locked.file) == 0:
             locked.remove()
@@ -213,7 +204,7 @@ def _continue(run: Run, locked: LockedPart, path: Path) -> Complete | None:
     """Check that the part is of this run; `Complete` where it became the file before its run was killed."""
     head = parts.read_head(locked.file)
     with skeleton(locked.file, locked.path) as file:
-        run.check(file, locked.path)
+        _check(run, file, locked.path)
         check_version(file, locked.path)
     if finished := _published(path, locked, head.run_id):
         return finished

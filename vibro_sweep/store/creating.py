@@ -1,9 +1,11 @@
-"""HDF5 files as they are made in memory: the skeleton of a run, and the head that files of all kinds have."""
+"""HDF5 files as they are made in memory: the skeleton with which a run of any kind begins."""
 
 import datetime
 import io
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection
+from pathlib import Path
+from typing import Any, BinaryIO, NamedTuple
 
 import h5py
 import numpy as np
@@ -12,66 +14,102 @@ from vibro_sweep import __version__
 from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import datasets, heap, layout, numbers, parts
-from vibro_sweep.store.attributes import set_text, set_texts
-from vibro_sweep.store.checks import Piece
-from vibro_sweep.store.image import Frame
+from vibro_sweep.store.attributes import set_text, set_texts, text
 from vibro_sweep.store.opening import made_by
 from vibro_sweep.store.sink import LIBVER
 
 
-def skeleton_of(scene: Scene, run_id: bytes) -> memoryview:
-    """The bytes of an HDF5 file."""
+class Subject(NamedTuple):
+    """The subject of a file. Runs of equal subjects make equal files.
 
-    def fill(file: h5py.File) -> None:
+    kind : "sweep", "branches", "windows" or "curves"
+    scene : the YAML text that was computed; of windows that of the sweep
+    attributes : numbers and texts of the file, those that tell its run from others among them
+    """
+
+    kind: str
+    title: str
+    scene: str
+    attributes: dict[str, Any]
+
+
+class Run(NamedTuple):
+    """A run of any kind.
+
+    quantities : names of the datasets that its blocks fill; none where sizes are not known before
+    create : create(file) makes what is in the file before anything is computed
+    size : bytes of the file, as far as known before
+    inputs : files that the run reads, which it must not write
+    """
+
+    subject: Subject
+    quantities: list[str]
+    create: Callable[[h5py.File], None]
+    size: int
+    inputs: Collection[Path]
+
+
+def sweep_run(scene: Scene) -> Run:
+    """The run of a sweep."""
+
+    def create(file: h5py.File) -> None:
         set_texts(file, "sweep_dimensions", list(scene.sweep))
         for name, value in numbers.attributes(scene).items():
             file.attrs[name] = value
         datasets.create(file, scene)
 
-    names = [name for name in layout.quantities(scene) if name != "status"]
-    return image_of(SWEEP, scene.name, scene.text, run_id, made_by(), names, fill)
+    subject = Subject(SWEEP, scene.name, scene.text, {})
+    return Run(subject, list(layout.quantities(scene)), create, layout.size(scene), scene.inputs)
 
 
-def image_of(
-    kind: str,
-    title: str,
-    scene: str,
-    run_id: bytes,
-    provenance: dict,
-    quantities: list[str],
-    fill: Callable[[h5py.File], None],
-) -> memoryview:
-    """The bytes of an HDF5 file of any kind; `fill` writes what only this kind has."""
-    image = io.BytesIO()
+def ragged_run(subject: Subject, inputs: Collection[Path] = ()) -> Run:
+    """The run of branches, curves or windows; `inputs` are files that it reads."""
+    return Run(subject, [], lambda file: set_texts(file, "sweep_dimensions", []), 0, inputs)
+
+
+def skeleton_of(run: Run, run_id: bytes) -> memoryview:
+    """The bytes of the HDF5 file of a run with nothing computed in it."""
+    image, subject = io.BytesIO(), run.subject
     with h5py.File(image, "w", libver=LIBVER) as file:
         file.attrs["format"] = parts.FORMAT
         set_text(file, "identity", run_id.hex())
         set_text(file, "Conventions", "CF-1.11")
-        set_text(file, "kind", kind)
-        set_text(file, "title", f"vibro_sweep: {title}")
+        set_text(file, "kind", subject.kind)
+        set_text(file, "title", f"vibro_sweep: {subject.title}")
         set_text(file, "history", f"{now()} begun by vibro_sweep {__version__}")
-        set_text(file, "scene", scene)
-        set_text(file, "provenance", json.dumps(provenance))
-        set_texts(file, "quantities", quantities)
-        fill(file)
-    found = [(at, *heap.measured(image, at)) for at in heap.collections(image)]
-    with h5py.File(image, "r+", libver=LIBVER) as file:
-        file.attrs["heap"] = np.array(found, np.uint64).reshape(-1)
+        set_text(file, "scene", subject.scene)
+        set_text(file, "provenance", json.dumps(made_by()))
+        set_texts(file, "quantities", [name for name in run.quantities if name != "status"])
+        for name, value in subject.attributes.items():
+            _set(file, name, value)
+        run.create(file)
+    seal(image)
     return image.getbuffer()
 
 
-def units(file: h5py.File, frame: Frame) -> Iterator[Piece]:
-    """Boxes of the orbits that together are all of them, each within one chunk of the dataset with the most numbers."""
-    largest = max(frame.datasets, key=lambda name: np.prod(frame.datasets[name][1][len(frame.shape) :]))
-    edges = (file[largest].chunks or ())[: len(frame.shape)]
-    counts = [-(-extent // edge) for extent, edge in zip(frame.shape, edges, strict=True)]
-    for corner in np.ndindex(*counts):
-        yield tuple(
-            slice(at * edge, min(at * edge + edge, extent))
-            for at, edge, extent in zip(corner, edges, frame.shape, strict=True)
-        )
+def seal(image: BinaryIO) -> None:
+    """Write the checksums of the heap of an HDF5 file into the file."""
+    found = [(at, *heap.measured(image, at)) for at in heap.collections(image)]
+    with h5py.File(image, "r+", libver=LIBVER) as file:
+        file.attrs["heap"] = np.array(found, np.uint64).reshape(-1)
+
+
+def complete(file: h5py.File, provenance: dict, notes: Collection[str] = ()) -> None:
+    """Write into the file how it was made, what its runs noted, and that it is complete."""
+    lines = (text(file, "history"), *notes, f"{now()} complete")
+    set_text(file, "history", "\n".join(lines))
+    set_text(file, "provenance", json.dumps(provenance))
 
 
 def now() -> str:
     """The time as the history of a file has it."""
     return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+
+
+def _set(file: h5py.File, name: str, value) -> None:
+    if isinstance(value, str):
+        set_text(file, name, value)
+    elif isinstance(value, list):
+        set_texts(file, name, value)
+    else:
+        file.attrs[name] = value

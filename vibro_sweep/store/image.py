@@ -8,6 +8,7 @@ from typing import BinaryIO, NamedTuple
 import h5py
 import numpy as np
 
+from vibro_sweep.store.attributes import is_flat, quantities_of
 from vibro_sweep.store.parts import Head, Record, Scan
 from vibro_sweep.store.sink import Sink
 
@@ -35,13 +36,24 @@ class Frame(NamedTuple):
         spans = [slice(*part.indices(extent)[:2]) for part, extent in zip(box, self.shape, strict=False)]
         return (*spans, *(slice(0, extent) for extent in self.shape[len(box) :]))
 
+    def units(self, file: h5py.File) -> Iterator[Box]:
+        """Boxes that together have all orbits, each within one chunk of the dataset with the most numbers."""
+        largest = max(self.datasets, key=lambda name: math.prod(self.datasets[name][1][len(self.shape) :]))
+        edges = (file[largest].chunks or ())[: len(self.shape)]
+        counts = [-(-extent // edge) for extent, edge in zip(self.shape, edges, strict=True)]
+        for corner in np.ndindex(*counts):
+            yield self.whole(tuple(slice(at * edge, (at + 1) * edge) for at, edge in zip(corner, edges, strict=True)))
 
-def frame_of(file: h5py.File, names: Collection[str]) -> Frame:
-    return Frame({name: (file[name].dtype, file[name].shape) for name in names}, file["status"].shape)
+
+def frame_of(file: h5py.File) -> Frame:
+    """The frame of a sweep; of branches, curves and windows, which have no blocks, one without orbits."""
+    if is_flat(file):
+        return Frame({}, (0,))
+    return Frame({name: (file[name].dtype, file[name].shape) for name in quantities_of(file)}, file["status"].shape)
 
 
 class Index:
-    """The index of the blocks of a part, with the notes of its runs.
+    """The index of the records of a part: blocks of a sweep, `pieces` of branches, curves and windows, `notes`.
 
     `damaged` counts what is not whole; a note means that all before it is known and computed again. `end` is the end
     of the last whole record.
@@ -50,7 +62,7 @@ class Index:
     def __init__(self, file: BinaryIO, head: Head, frame: Frame):
         self._frame = frame
         scan, rows, known = Scan(file, head), array("Q"), 0
-        self.notes = []
+        self.notes, self.pieces = [], []
         for record in scan:
             box = _box(record, frame)
             if box is not None:
@@ -58,6 +70,8 @@ class Index:
             elif isinstance(record.key, dict) and isinstance(record.key.get("note"), str):
                 self.notes.append(record.key["note"])
                 known = scan.damaged
+            elif isinstance(record.key, str) and not frame.datasets:
+                self.pieces.append(record)
             else:
                 scan.damaged += 1
         self.damaged, self.end = scan.damaged - known, scan.end

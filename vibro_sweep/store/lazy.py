@@ -9,8 +9,8 @@ import xarray
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
-from vibro_sweep.store.attributes import attributes
-from vibro_sweep.store.opening import axes_of, dimensions_of, following_of, quantities_of
+from vibro_sweep.store.attributes import attributes, quantities_of
+from vibro_sweep.store.opening import axes_of, dimensions_of, following_of
 
 
 class _Numbers(BackendArray):

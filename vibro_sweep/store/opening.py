@@ -6,26 +6,30 @@ import json
 import tempfile
 from collections.abc import Collection, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, NamedTuple
+from typing import BinaryIO, NamedTuple
 
 import h5py
 import numpy as np
 
 from vibro_sweep import __version__
-from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.errors import VibroSweepError
 from vibro_sweep.model.files import MissingFileError
 from vibro_sweep.model.refusals import cut
 from vibro_sweep.store import heap, parts
-from vibro_sweep.store.attributes import MATRIX, check_dataset, check_numbers, check_own_dimensions, text, texts
-from vibro_sweep.store.differences import differences
+from vibro_sweep.store.attributes import (
+    MATRIX,
+    check_dataset,
+    check_numbers,
+    check_own_dimensions,
+    is_flat,
+    quantities_of,
+    text,
+    texts,
+)
 from vibro_sweep.store.image import Index, frame_of
 from vibro_sweep.store.parts import FORMAT, PartError
 from vibro_sweep.store.ragged_checks import damage_of
 from vibro_sweep.store.sink import Sink, changing
-
-if TYPE_CHECKING:
-    from vibro_sweep.scene import Scene
 
 IN_MEMORY = 2**26  # bytes of a part as HDF5; what is larger goes through a temporary file without a name
 REMEDY = "`--resume` computes that again"
@@ -109,7 +113,7 @@ def _from_part(raw: BinaryIO, path: Path, names: Collection[str] | None) -> Open
                     f"{path} is a run of {kind} that is not complete; where it is not being written, `--resume` "
                     "continues it"
                 )
-            index = Index(raw, head, frame_of(file, quantities_of(file)))
+            index = Index(raw, head, frame_of(file))
         sink = Sink(image)
         with changing(sink) as file:
             index.fill(raw, file, sink, names)
@@ -145,10 +149,9 @@ def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO, content: bool = 
         if NETCDF in result.attrs:
             _walk(raw)
             raise ForeignError(path, text(result, NETCDF).removeprefix("version=2,"))
-        if format_of(result) != FORMAT:
+        if (found := result.attrs.get("format")) != FORMAT:
             raise StoreError(
-                f"{path} has the format {format_of(result)} of another version of vibro_sweep; this one, "
-                f"{__version__}, reads {FORMAT}"
+                f"{path} has the format {found} of another version of vibro_sweep; this one reads {FORMAT}"
             )
         _check_heap(result, raw)
         _check(result)
@@ -161,14 +164,6 @@ def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO, content: bool = 
     except (OSError, RuntimeError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         result.close()
         raise StoreError(f"{path} is damaged ({error})") from None
-
-
-def format_of(file: h5py.File) -> int:
-    """1 for files of version 0.1, which did not say it. Raises ValueError."""
-    found = np.asarray(file.attrs.get("format", 1))
-    if found.ndim or found.dtype.kind not in "iu":
-        raise ValueError("its attribute `format` is not a whole number")
-    return int(found)
 
 
 def _check_heap(file: h5py.File, raw: BinaryIO) -> None:
@@ -216,11 +211,6 @@ def _check(file: h5py.File) -> None:
             raise ValueError(f"the axis `{name}` holds no numbers")
 
 
-def is_flat(file: h5py.File) -> bool:
-    """Whether it holds branches or windows, and no sweep."""
-    return "kind" in file.attrs and text(file, "kind") != SWEEP
-
-
 def dimensions_of(file: h5py.File, name: str) -> list[str]:
     """Names of a dataset's dimensions: those of the sweep, `start` if there is one, its own by their scales."""
     if is_flat(file):
@@ -255,23 +245,6 @@ def is_dataset(file: h5py.File, name: str) -> bool:
 def blocks_lost(count: int) -> str:
     """Damaged blocks of a part, in words."""
     return f"{count} block{'s' if count > 1 else ''} of the run"
-
-
-def quantities_of(file: h5py.File) -> list[str]:
-    """The datasets that blocks fill."""
-    return [*texts(file, "quantities"), "status"]
-
-
-def check_scene(file: h5py.File, path: Path, scene: "Scene") -> None:
-    """A run is continued by the scene that began it, or its points would not belong together."""
-    if is_flat(file):
-        raise StoreError(f"{path} holds {cut(text(file, 'kind'))}, and no sweep; name another file, or overwrite it")
-    old = text(file, "scene")
-    if old != scene.text:
-        raise StoreError(
-            f"{path} was made from another scene; name another file, or overwrite it\n"
-            f"(- is that scene, + is this one)\n{differences(old, scene.text)}"
-        )
 
 
 def check_version(file: h5py.File, path: Path) -> None:

@@ -46,7 +46,6 @@ class PartError(ValueError):
 
 
 class Head(NamedTuple):
-    format: int
     run_id: bytes
     replaces: Stamp | None  # the file that stood at FILE.h5 when `overwrite` was asked for
     length: int  # of the skeleton
@@ -59,7 +58,7 @@ class Head(NamedTuple):
 
     def packed(self) -> bytes:
         stamp = self.replaces or (0, 0, 0)
-        return _sealed(_HEAD.pack(MAGIC, self.format, self.run_id, *stamp, self.length, self.checksum))
+        return _sealed(_HEAD.pack(MAGIC, FORMAT, self.run_id, *stamp, self.length, self.checksum))
 
 
 class Record(NamedTuple):
@@ -74,7 +73,7 @@ class Record(NamedTuple):
 
 
 def new_head(skeleton: bytes | memoryview, replaces: Stamp | None, run_id: bytes) -> Head:
-    return Head(FORMAT, run_id, replaces, len(skeleton), zlib.crc32(skeleton))
+    return Head(run_id, replaces, len(skeleton), zlib.crc32(skeleton))
 
 
 def new_run_id() -> bytes:
@@ -136,7 +135,7 @@ def read_head(file: BinaryIO) -> Head:
     if version != FORMAT:
         raise PartError(f"has the format {version} of another version of vibro_sweep; this one reads {FORMAT}")
     stamp = Stamp(inode, length, changed) if inode or length or changed else None
-    return Head(version, run_id, stamp, skeleton, checksum)
+    return Head(run_id, stamp, skeleton, checksum)
 
 
 def copy_skeleton(file: BinaryIO, head: Head, target: BinaryIO) -> None:

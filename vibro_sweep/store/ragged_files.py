@@ -1,33 +1,20 @@
 """Files of branches, windows and curves: ragged arrays, laid out one after another over dimensions without
 coordinates."""
 
+import io
 from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
 
-from vibro_sweep import __version__
 from vibro_sweep.model.branch_file import RAGGED
 from vibro_sweep.model.column import Column
 from vibro_sweep.store.attributes import describe, set_text, set_texts
-from vibro_sweep.store.creating import image_of, now
+from vibro_sweep.store.creating import Subject, complete, ragged_run, skeleton_of
 from vibro_sweep.store.datasets import CHECKSUMS, create_length
+from vibro_sweep.store.parts import new_run_id
 
 CHUNK = 2**14  # numbers
-
-
-class Subject(NamedTuple):
-    """The subject of a file. Runs of equal subjects make equal files.
-
-    kind : "branches" or "windows"
-    scene : the YAML text that was computed; of windows that of the sweep
-    attributes : numbers and texts of the file, those that tell its run from others among them
-    """
-
-    kind: str
-    title: str
-    scene: str
-    attributes: dict[str, Any]
 
 
 class RaggedContents(NamedTuple):
@@ -37,28 +24,24 @@ class RaggedContents(NamedTuple):
     columns: list[Column]
     arrays: dict[str, np.ndarray]
 
+    def image(self, provenance: dict) -> io.BytesIO:
+        """An HDF5 file of them, in memory."""
+        image = io.BytesIO(skeleton_of(ragged_run(self.subject), new_run_id()))
+        with h5py.File(image, "r+") as file:
+            self.write(file)
+            complete(file, provenance)
+        return image
 
-def ragged_image(
-    subject: Subject, run_id: bytes, provenance: dict, columns: list[Column], arrays: dict[str, np.ndarray]
-) -> memoryview:
-    """The bytes of an HDF5 file; without columns and arrays the skeleton of a run."""
-
-    def fill(file: h5py.File) -> None:
-        if columns:
-            set_text(file, "history", f"{now()} made by vibro_sweep {__version__}")
-        set_texts(file, "sweep_dimensions", [])
-        for name, value in subject.attributes.items():
-            _set(file, name, value)
+    def write(self, file: h5py.File) -> None:
+        """Create the datasets in a file that has none yet."""
+        set_texts(file, "quantities", [column.name for column in self.columns if column.name != "status"])
         lengths = {}
-        for column in columns:
-            lengths |= dict(zip(column.dimensions, arrays[column.name].shape, strict=True))
+        for column in self.columns:
+            lengths |= dict(zip(column.dimensions, self.arrays[column.name].shape, strict=True))
         for name, length in lengths.items():
             create_length(file, name, length)
-        for column in columns:
-            _create(file, column, arrays[column.name])
-
-    names = [column.name for column in columns if column.name != "status"]
-    return image_of(subject.kind, subject.title, subject.scene, run_id, provenance, names, fill)
+        for column in self.columns:
+            _create(file, column, self.arrays[column.name])
 
 
 def _create(file: h5py.File, column: Column, values: np.ndarray) -> None:
@@ -77,12 +60,3 @@ def _create(file: h5py.File, column: Column, values: np.ndarray) -> None:
             set_text(dataset, "sample_dimension", dimension)
     for i, name in enumerate(column.dimensions):
         dataset.dims[i].attach_scale(file[name])
-
-
-def _set(file: h5py.File, name: str, value) -> None:
-    if isinstance(value, str):
-        set_text(file, name, value)
-    elif isinstance(value, list):
-        set_texts(file, name, value)
-    else:
-        file.attrs[name] = value

@@ -16,16 +16,14 @@ from vibro_sweep.model.files import checked_path
 from vibro_sweep.model.status import NOT_COMPUTED, NOT_SETTLED, STATUSES, VALID, meaning
 from vibro_sweep.store import checks
 from vibro_sweep.store.arrays import Contents
-from vibro_sweep.store.attributes import text, texts
+from vibro_sweep.store.attributes import is_flat, quantities_of, text, texts
 from vibro_sweep.store.opening import (
     REMEDY,
     ForeignError,
     StoreError,
     blocks_lost,
-    is_flat,
     open_file,
     opened,
-    quantities_of,
 )
 from vibro_sweep.store.ragged_checks import damage_of
 from vibro_sweep.store.ragged_tables import curves_table, special_table, windows_table
