@@ -86,8 +86,6 @@ def lanes_of(lo: np.ndarray, hi: np.ndarray, apart: float) -> list[int]:
 
 def _unvisited(ax, file, shown, lanes, limits) -> bool:
     """Hatch the bars where the sweep shows other attractors only. Whether there are such stretches."""
-    if "unvisited_window" not in file.arrays:  # of an earlier version
-        return False
     lane_of, hatched = dict(zip(shown.tolist(), lanes, strict=True)), []
     lows, highs = np.maximum(file["unvisited_lo"], limits[0]), np.minimum(file["unvisited_hi"], limits[1])
     for w, lo, hi in zip(file["unvisited_window"].tolist(), lows, highs, strict=True):

@@ -29,6 +29,15 @@ def set_texts(of: h5py.File | h5py.Dataset, name: str, values: list[str]) -> Non
     of.attrs.create(name, np.array(raw) if raw else h5py.Empty(kind), dtype=kind)
 
 
+def set_value(of: h5py.File | h5py.Dataset, name: str, value: str | list[str] | float | np.ndarray) -> None:
+    if isinstance(value, str):
+        set_text(of, name, value)
+    elif isinstance(value, list):
+        set_texts(of, name, value)
+    else:
+        of.attrs[name] = value
+
+
 def describe(dataset: h5py.Dataset, units: str, long_name: str, description: str) -> None:
     """Set its attributes for readers: `long_name` is short, for axes; `description` is a sentence."""
     for name, value in (("units", units), ("long_name", long_name), ("description", sentence(description))):
@@ -54,7 +63,7 @@ def texts(of: h5py.File | h5py.Dataset, name: str) -> list[str]:
 
 def is_flat(file: h5py.File) -> bool:
     """Whether it holds branches, curves or windows, and no sweep."""
-    return "kind" in file.attrs and text(file, "kind") != SWEEP
+    return text(file, "kind") != SWEEP
 
 
 def quantities_of(file: h5py.File) -> list[str]:

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import h5py
 
-from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.model.refusals import cut, not_allowed
 from vibro_sweep.model.status import NOT_COMPUTED
 from vibro_sweep.store import appending, checks, names, parts
@@ -130,7 +129,7 @@ def _check_part(part: Path, path: Path, mode: str) -> None:
 
 def _check(run: Run, file: h5py.File, path: Path) -> None:
     """Raise StoreError where a file, or a part, is of another subject: its points would not belong together."""
-    kind, old = text(file, "kind") if "kind" in file.attrs else SWEEP, text(file, "scene")
+    kind, old = text(file, "kind"), text(file, "scene")
     remedy = "name another file, or overwrite it"
     if kind != run.subject.kind:
         raise StoreError(f"{path} holds {cut(kind)}, and no {run.subject.kind}; {remedy}")

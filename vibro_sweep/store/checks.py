@@ -7,8 +7,9 @@ import h5py
 import numpy as np
 
 from vibro_sweep.model.status import NOT_COMPUTED
-from vibro_sweep.store.attributes import texts
+from vibro_sweep.store.attributes import is_flat, texts
 from vibro_sweep.store.opening import axes_of, following_of
+from vibro_sweep.store.ragged_checks import damage_of
 
 Piece = tuple[slice, ...]  # the box of a chunk; () for a dataset of one number
 
@@ -45,6 +46,11 @@ def damaged(file: h5py.File) -> list[tuple[str, Piece]]:
     """Every chunk whose checksum is wrong, with the name of its dataset, `status` first; () for all of a dataset."""
     names = ["status", *axes_of(file), *following_of(file), *texts(file, "quantities")]
     return [(name, piece) for name in names for piece, values in _read(file[name]) if values is None]
+
+
+def damage(file: h5py.File) -> str:
+    """The damage of a file of any kind, in words; empty where all of it can be read."""
+    return damage_of(file) if is_flat(file) else summary(damaged(file))
 
 
 def _read(dataset: h5py.Dataset) -> Iterator[tuple[Piece, np.ndarray | None]]:

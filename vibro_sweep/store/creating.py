@@ -14,7 +14,7 @@ from vibro_sweep import __version__
 from vibro_sweep.model.branch_file import SWEEP
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import datasets, heap, layout, numbers, parts
-from vibro_sweep.store.attributes import set_text, set_texts, text
+from vibro_sweep.store.attributes import set_text, set_texts, set_value, text
 from vibro_sweep.store.opening import made_by
 from vibro_sweep.store.sink import LIBVER
 
@@ -81,7 +81,7 @@ def skeleton_of(run: Run, run_id: bytes) -> memoryview:
         set_text(file, "provenance", json.dumps(made_by()))
         set_texts(file, "quantities", [name for name in run.quantities if name != "status"])
         for name, value in subject.attributes.items():
-            _set(file, name, value)
+            set_value(file, name, value)
         run.create(file)
     seal(image)
     return image.getbuffer()
@@ -104,12 +104,3 @@ def complete(file: h5py.File, provenance: dict, notes: Collection[str] = ()) -> 
 def now() -> str:
     """The time as the history of a file has it."""
     return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-
-
-def _set(file: h5py.File, name: str, value) -> None:
-    if isinstance(value, str):
-        set_text(file, name, value)
-    elif isinstance(value, list):
-        set_texts(file, name, value)
-    else:
-        file.attrs[name] = value

@@ -16,7 +16,7 @@ from vibro_sweep.model.units import unit_in
 from vibro_sweep.model.variable import Variable
 from vibro_sweep.scene import Scene
 from vibro_sweep.store import numbers
-from vibro_sweep.store.attributes import MATRIX, describe, set_text
+from vibro_sweep.store.attributes import MATRIX, describe, set_text, set_value
 from vibro_sweep.store.layout import chunk_shape, coordinates, dimensions, quantities
 
 # To Fletcher-32 two zero bytes are the same as two bytes of ones, so that 0 could become -65536 unseen. Adler-32, which
@@ -55,10 +55,7 @@ def create(file: h5py.File, scene: Scene) -> None:
         for i, dimension in enumerate(lead):
             dataset.dims[i].attach_scale(file[dimension])
         for attribute, value in quantity.attributes.items():
-            if isinstance(value, str):
-                set_text(dataset, attribute, value)
-            else:
-                dataset.attrs[attribute] = value
+            set_value(dataset, attribute, value)
 
 
 def _create_following(file: h5py.File, scene: Scene) -> tuple[str, ...]:

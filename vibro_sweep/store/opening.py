@@ -123,12 +123,9 @@ def _from_part(raw: BinaryIO, path: Path, names: Collection[str] | None) -> Open
 
 
 def skeleton(raw: BinaryIO, path: Path) -> h5py.File:
-    """The empty file that a part begins with, in memory. Raises StoreError."""
+    """The empty file that a part begins with, in memory. Raises StoreError, PartError."""
     image = io.BytesIO()
-    try:
-        parts.copy_skeleton(raw, parts.read_head(raw), image)
-    except PartError as error:
-        raise StoreError(f"{path} {error}") from None
+    parts.copy_skeleton(raw, parts.read_head(raw), image)
     return checked(image, path, image)
 
 
@@ -144,10 +141,11 @@ def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO, content: bool = 
             raise StoreError(f"{path} is a scene, not an HDF5 file: `vibro-sweep run {path}` makes that") from None
         raise StoreError(f"{path} is not an HDF5 file, or it is damaged ({error})") from None
     try:
-        if not ("status" in result or "kind" in result.attrs) or "scene" not in result.attrs:
+        if not {"kind", "scene"} <= result.attrs.keys():
             raise StoreError(f"{path} is an HDF5 file, but none that vibro-sweep wrote")
         if NETCDF in result.attrs:
-            _walk(raw)
+            for at in heap.collections(raw):
+                heap.measured(raw, at)  # HDF5 can walk through it
             raise ForeignError(path, text(result, NETCDF).removeprefix("version=2,"))
         if (found := result.attrs.get("format")) != FORMAT:
             raise StoreError(
@@ -169,12 +167,6 @@ def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO, content: bool = 
 def _check_heap(file: h5py.File, raw: BinaryIO) -> None:
     for at, last, checksum in np.reshape(file.attrs["heap"], (-1, 3)).tolist():
         heap.verify(raw, at, last, checksum)
-
-
-def _walk(raw: BinaryIO) -> None:
-    """Raise HeapError where HDF5 could not walk through the heap."""
-    for at in heap.collections(raw):
-        heap.measured(raw, at)
 
 
 def _check(file: h5py.File) -> None:

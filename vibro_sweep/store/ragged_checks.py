@@ -13,11 +13,9 @@ from vibro_sweep.model.branch_file import BRANCHES, CHART, RAGGED, WINDOWS, colu
 from vibro_sweep.model.column import Column
 from vibro_sweep.model.curve_columns import OF_EDGES
 from vibro_sweep.model.refusals import cut, shown
-from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.store.attributes import check_dataset, text, texts
 
 KINDS = (BRANCHES, WINDOWS, CHART)
-LATER = {column.dimensions[0] for column in (*OF_EDGES, *UNVISITED.values())}  # dimensions that a file need not have
 
 
 class Stored(NamedTuple):
@@ -57,7 +55,7 @@ def check(kind: str, parameters: list[str], found: Mapping[str, Stored]) -> None
     for column in (*columns(kind, parameters, masses), *OF_EDGES):
         if column.name in found:
             _check_column(column, found[column.name], lengths)
-        elif column.dimensions[0] not in LATER:
+        elif column not in OF_EDGES:  # which only curves of a plane have
             raise ValueError(f"`{cut(column.name)}` is missing")
     for dimension, counts in RAGGED.items():
         if dimension in lengths and all(name in found for name in counts):

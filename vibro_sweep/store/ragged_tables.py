@@ -52,8 +52,6 @@ def _families(arrays: Mapping) -> list[str]:
 
 def _unvisited(arrays: Mapping, parameter: str) -> list[str]:
     """A line for each stretch of a window on which the sweep shows other attractors only, with a start."""
-    if "unvisited_window" not in arrays:  # a file of an earlier version
-        return []
     words, branches = _words(arrays), np.asarray(arrays["window_branch"])
     names = [
         name for name in arrays if name.startswith("unvisited_") and name.removeprefix("unvisited_") not in UNVISITED
@@ -71,36 +69,40 @@ def _unvisited(arrays: Mapping, parameter: str) -> list[str]:
 
 def special_table(arrays: Mapping, parameters: list[str]) -> list[str]:
     """A line for each special point of each branch."""
-    words = [_short(word) for word in _words(arrays)]
-    rows = [("point", "branch", *parameters, "type", "period", "impacts", "error")]
-    values = np.asarray(arrays["special_value"])
-    for s, branch in enumerate(np.asarray(arrays["special_branch"]).tolist()):
-        numbers = [repr(float(value)) for value in values[s]]
-        kind = [str(arrays["branch_period"][branch]), words[branch]]
-        rows.append((str(s), str(branch), *numbers, ending(arrays, s), *kind, f"{arrays['special_error'][s]:.1e}"))
-    count = len(np.asarray(arrays["branch_period"]))
-    return [f"branches: {count}, special points: {len(rows) - 1}", *_aligned(rows)]
+    endings = [ending(arrays, s) for s in range(len(np.asarray(arrays["special_type"])))]
+    return _special(arrays, "branch", "branches", parameters, endings)
 
 
 def curves_table(arrays: Mapping, parameters: list[str]) -> list[str]:
     """A line for each special point of each curve; then how many curves of which type."""
-    words = [_short(word) for word in _words(arrays)]
     kinds = [CURVES[code] for code in np.asarray(arrays["branch_type"]).tolist()]
-    rows = [("point", "curve", "of", *parameters, "type", "period", "impacts", "error")]
-    values = np.asarray(arrays["special_value"])
-    for s, branch in enumerate(np.asarray(arrays["special_branch"]).tolist()):
-        kind = CODIMENSION_TWO[int(arrays["special_type"][s])].name.replace("_", "-")
-        numbers = [repr(float(value)) for value in values[s]]
-        orbit = [str(arrays["branch_period"][branch]), words[branch]]
-        error = f"{arrays['special_error'][s]:.1e}"
-        rows.append((str(s), str(branch), kinds[branch].replace("_", "-"), *numbers, kind, *orbit, error))
-    told = [f"curves: {len(kinds)}, special points: {len(rows) - 1}", *_aligned(rows)]
+    names = [CODIMENSION_TWO[code].name.replace("_", "-") for code in np.asarray(arrays["special_type"]).tolist()]
+    told = _special(arrays, "curve", "curves", parameters, names, [kind.replace("_", "-") for kind in kinds])
     told += ["curves       " + _counted(Counter(kinds))] if kinds else []
     if "edge_reason" not in arrays:
         return told
     codes = Counter(np.asarray(arrays["edge_reason"]).tolist())
     found = {list(EDGES)[code]: count for code, count in sorted(codes.items())}
     return [*told, f"edges        {sum(found.values()):,} between points of different periods: {_counted(found)}"]
+
+
+def _special(
+    arrays: Mapping, one: str, many: str, parameters: list[str], types: list[str], of: list[str] | None = None
+) -> list[str]:
+    """A line for each special point, of one of these types; of each curve the type that it is a curve `of`."""
+    words = [_short(word) for word in _words(arrays)]
+    rows = [("point", one, *([] if of is None else ["of"]), *parameters, "type", "period", "impacts", "error")]
+    values = np.asarray(arrays["special_value"])
+    for s, branch in enumerate(np.asarray(arrays["special_branch"]).tolist()):
+        place = [
+            str(s),
+            str(branch),
+            *([] if of is None else [of[branch]]),
+            *(repr(float(value)) for value in values[s]),
+        ]
+        orbit = str(arrays["branch_period"][branch]), words[branch]
+        rows.append((*place, types[s], *orbit, f"{arrays['special_error'][s]:.1e}"))
+    return [f"{many}: {len(words)}, special points: {len(rows) - 1}", *_aligned(rows)]
 
 
 def ending(arrays: Mapping, special: int) -> str:

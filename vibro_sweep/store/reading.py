@@ -25,7 +25,6 @@ from vibro_sweep.store.opening import (
     open_file,
     opened,
 )
-from vibro_sweep.store.ragged_checks import damage_of
 from vibro_sweep.store.ragged_tables import curves_table, special_table, windows_table
 
 if TYPE_CHECKING:
@@ -80,9 +79,7 @@ def _whole(path: str | Path, made: Callable[[h5py.File], Any]) -> Any:
 
 def _damage(file: h5py.File, lost: int) -> str:
     """The damage in words; of a part, its blocks."""
-    if is_flat(file):
-        return damage_of(file)
-    return blocks_lost(lost) if lost else checks.summary(checks.damaged(file))
+    return blocks_lost(lost) if lost else checks.damage(file)
 
 
 def describe(path: str | Path) -> str:
@@ -100,19 +97,16 @@ def examine(path: str | Path) -> Description:
     """The same as `describe`, and whether the file is damaged."""
     path = Path(path)
     try:
-        return _examined_file(path)
+        with opened(path, ACCURACY, content=False) as (file, lost):
+            return _examined(file, path, lost)
     except ForeignError as found:
         from vibro_sweep.store import foreign  # xarray takes long to be imported
 
         return Description(foreign.described(found), False)
-
-
-def _examined_file(path: Path) -> Description:
-    with opened(path, ACCURACY, content=False) as (file, lost):
-        try:
-            return _examined(file, path, lost)
-        except (OSError, RuntimeError, ValueError, KeyError, TypeError) as error:
-            raise StoreError(f"{path} is damaged ({error})") from None
+    except StoreError:
+        raise
+    except (OSError, RuntimeError, ValueError, KeyError, TypeError) as error:
+        raise StoreError(f"{path} is damaged ({error})") from None
 
 
 def _examined(file: h5py.File, path: Path, lost: int) -> Description:
