@@ -21,7 +21,7 @@ from vibro_sweep.engine.one_system import plan_of
 from vibro_sweep.engine.records import new_results
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
-from vibro_sweep.model.linear import amplitudes
+from vibro_sweep.model.linear import amplitudes, stacked
 
 TITLE = "Any number of masses"
 COMMAND = "python benchmarks/masses.py"
@@ -69,8 +69,7 @@ def starts_of(system: vs.Oscillator) -> np.ndarray:
 
 
 def solver(system: vs.Oscillator, states: np.ndarray, exponents: bool) -> Solver:
-    one = np.empty(1, object)
-    one[0] = system.linear
+    one = stacked([system.linear])
     kind = kind_of(one)
     table = np.repeat(any_points(one, kind)[None], LANES, axis=1)
     starts = np.stack([states, states])

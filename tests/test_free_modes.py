@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from support import slow_cases
+from support.any_oscillators import frame_of_one
 
 import vibro_sweep as vs
 from vibro_sweep.engine.period_map import PeriodMap
 from vibro_sweep.model import frame
-from vibro_sweep.model.contact import contact_coordinates, natural_coordinates
 
 CASES = pytest.mark.parametrize(
     ("k", "c", "stop_at"),
@@ -29,16 +29,11 @@ def chain_of(k, c, stop_at):
     return vs.Oscillator.named("chain", k=k, c=c, stop_at=stop_at, **numbers)
 
 
-def frame_of(chain):
-    q = chain.linear
-    return frame.frame_of(natural_coordinates(q, contact_coordinates(q)), chain.omega)
-
-
 @CASES
 def test_a_frame_exists(k, c, stop_at):
     """Two roots 0 span no plane, and the two of a free mode without damping have one vector."""
     chain = chain_of(k, c, stop_at)
-    found = frame_of(chain)
+    found = frame_of_one(chain)
     assert np.abs(found.to @ found.back - np.eye(6)).max() < 1e-9 and np.linalg.cond(found.back) < 1e6
 
 
@@ -46,7 +41,7 @@ def test_what_no_planes_part_has_no_frame(monkeypatch):
     """No oscillator is known for which this happens; the bound is lowered until it does."""
     chain = chain_of((1.02, 0, 0, 0), (0.07, 0.09, 0, 0.1), 1)
     monkeypatch.setattr(frame, "NO_PLANES", 2.0)
-    assert np.isnan(frame_of(chain).to).all()
+    assert np.isnan(frame_of_one(chain).to).all()
 
 
 @pytest.mark.parametrize("count", [500, *slow_cases(2000)])
@@ -58,7 +53,7 @@ def test_frames_of_random_chains(count):
         k, c = (rng.choice([0, 0, 1], n + 1) * 10 ** rng.uniform(-2, 0.3, n + 1) for _ in range(2))
         numbers = dict(m=rng.uniform(0.5, 2, n), force=np.ones(n), omega=0.5, R=0.6, b=1.0, tau=0.0)
         chain = vs.Oscillator.named("chain", k=k, c=c, stop_at=int(rng.integers(1, n + 1)), **numbers)
-        found = frame_of(chain)
+        found = frame_of_one(chain)
         assert np.linalg.cond(found.back) < 1e7, (k, c, chain.stop_at)
 
 

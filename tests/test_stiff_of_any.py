@@ -25,7 +25,6 @@ def blindly(monkeypatch):
         return gap_exponentials(*arguments)._replace(valid=False)
 
     monkeypatch.setattr(any_points, "gap_exponentials", untold)
-    monkeypatch.setattr(any_points, "_point", any_points._point.__wrapped__)  # which remembers those of before
 
 
 def stiff(seed, masses, damping):

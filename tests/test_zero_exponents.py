@@ -8,11 +8,10 @@ import math
 import numpy as np
 import pytest
 from support import slow_cases, zero_exponents
+from support.any_oscillators import frame_of_one
 from support.oscillators import PAPER
 
 import vibro_sweep as vs
-from vibro_sweep.model import frame
-from vibro_sweep.model.contact import contact_coordinates, natural_coordinates
 from vibro_sweep.model.exponents import CERTAIN, sign_of
 from vibro_sweep.model.outcomes import REASONS
 
@@ -77,8 +76,7 @@ def test_roots_of_frames(count):
     compared = zeros = 0
     for seed in range(count):
         system = zero_exponents.free(seed)
-        q = system.linear
-        found = frame.frame_of(natural_coordinates(q, contact_coordinates(q)), system.omega)
+        found = frame_of_one(system)
         if np.isnan(found.to).any():
             continue
         apart = np.sqrt(np.maximum(-found.square, 0.0))

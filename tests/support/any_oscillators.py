@@ -3,13 +3,21 @@
 import numpy as np
 
 import vibro_sweep as vs
-from vibro_sweep.model.linear import amplitudes, static_state
+from vibro_sweep.model.contact import contact_coordinates, natural_coordinates
+from vibro_sweep.model.frame import Frame, frame_of
+from vibro_sweep.model.linear import amplitudes, stacked, static_state
 
 
 def positive(rng, n, least):
     """A symmetric positive definite matrix."""
     A = rng.normal(size=(n, n))
     return A @ A.T / n + least * np.eye(n)
+
+
+def frame_of_one(system) -> Frame:
+    """The frame of tangent vectors of one oscillator."""
+    q = stacked([system.linear])
+    return Frame(*(one[0] for one in frame_of(natural_coordinates(q, contact_coordinates(q)), q.omega)))
 
 
 def drawn(seed, n, constant=True, contact_normal=None, **changes):

@@ -98,7 +98,10 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     workspace = _workspace(block, kind, int(table["cells"].max()), min(steps.shape[1], LANES))
     mapping = Mapping(plan.order) if plan.order else None
     begins = np.stack([first, anew])
-    points.run_points(steps, begins, *arrays.values(), workspace, plan, mapping)
+    points.run_points(
+        steps, begins, arrays["results"], arrays["sections"], arrays["phases"], arrays["running"], workspace, plan,
+        mapping,
+    )  # fmt: skip
     energies = energies_of(block, steps, kind, arrays["results"], begins) if "impact_power" in block.wanted else {}
     ends = {} if block.last else {CHAIN_ENDS: _ends(arrays["results"][-1], anew)}
     if plan.lyapunov:
@@ -158,7 +161,7 @@ def _has_sections(block: Block) -> bool:
 
 def _by_name(block: Block, arrays: dict[str, np.ndarray], lead: tuple[int, ...]) -> dict[str, np.ndarray]:
     """The kernels' arrays as the file's datasets; lead: shape of the box, and of its starts if there are several."""
-    results, sections, phases, running = arrays.values()
+    results, sections = arrays["results"], arrays["sections"]
     named = {name: results[name].reshape(lead + results[name].shape[2:]) for name in results.dtype.names}
     if _has_sections(block):
         named |= {
@@ -169,6 +172,6 @@ def _by_name(block: Block, arrays: dict[str, np.ndarray], lead: tuple[int, ...])
         gap = sections[..., 0::2] @ block.system.linear.normal
         named[GAP] = gap.reshape(lead + gap.shape[2:])
     if block.plan.section_side:
-        named["phase"] = phases.reshape(lead + phases.shape[2:])
-    named["lyapunov_running"] = running.reshape(lead + running.shape[2:])
+        named["phase"] = arrays["phases"].reshape(lead + arrays["phases"].shape[2:])
+    named["lyapunov_running"] = arrays["running"].reshape(lead + arrays["running"].shape[2:])
     return named

@@ -22,8 +22,7 @@ def starts_of(block: Block) -> np.ndarray:
         if name in block.axes:
             result[..., i] = block.parameters[name].reshape(-1, 1)
     if block.from_rest:
-        for n, q in enumerate(linears(block.system, block.axes).flat):
-            result[n, :, 0::2] = rest_state(q)
+        result[..., 0::2] = rest_state(linears(block.system, block.axes)).reshape(count, 1, masses)
     return result
 
 

@@ -9,6 +9,7 @@ from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.tables.flight import WIDTH
 from vibro_sweep.model import status
 from vibro_sweep.model.grid import linears
+from vibro_sweep.model.stacks import dot, solved
 from vibro_sweep.model.state import state
 
 ROOM = 64  # impacts of a period there is room for at first
@@ -56,7 +57,7 @@ def energies_of(
     while True:  # once in any case: what a scene needs is compiled with its first point, however that goes
         run_energy(
             systems, begins, resting, relaxed, masses, back, origin, block.plan.record, workspace, plan,
-            new_workspace(parts, room, kind.masses), *wanted.values(), outcome,
+            new_workspace(parts, room, kind.masses), wanted["loss"], wanted["squares"], wanted["peaks"], outcome,
         )  # fmt: skip
         room *= 8
         if workspace.ensemble.halt[0] != 0 or not (outcome == status.NOT_COMPUTED).any():
@@ -86,10 +87,10 @@ def _fastest(systems: np.ndarray) -> np.ndarray:
 
 def _contact_masses(block: Block, shape: tuple[int, int]) -> np.ndarray:
     """1/(n^T M^-1 n) of each point, of the shape of the steps."""
-    each = linears(block.system, block.axes)
-    masses = np.array([1 / (q.normal @ np.linalg.solve(q.M, q.normal)) for q in each.flat])
+    q = linears(block.system, block.axes)
+    masses = 1 / dot(q.normal, solved(q.M, q.normal))
     if block.follow:
-        return masses.reshape(len(each), -1)[:: -1 if block.reverse else 1]
+        return masses.reshape(len(masses), -1)[:: -1 if block.reverse else 1]
     return np.repeat(masses.reshape(1, -1), shape[1] // masses.size, axis=1)
 
 

@@ -1,6 +1,7 @@
-"""Any linear oscillators as points of the kernels, in contact coordinates; each different one is worked out once."""
+"""Stacks of linear oscillators as points of the kernels, in contact coordinates.
 
-from collections.abc import Iterable
+Of those that differ in their stops alone one is worked out.
+"""
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from vibro_sweep.engine.tables import cells
 from vibro_sweep.engine.tables.flight import WIDTH
 from vibro_sweep.model.confinement import confinement_of
 from vibro_sweep.model.contact import (
+    Contact,
     by_mass,
     contact_coordinates,
     coordinates,
@@ -22,100 +24,122 @@ from vibro_sweep.model.contact import (
 from vibro_sweep.model.exact import exact_motion
 from vibro_sweep.model.exponentials import gap_exponentials
 from vibro_sweep.model.frame import frame_of
-from vibro_sweep.model.linear import Linear, gap_response, remembered
+from vibro_sweep.model.linear import MOTION, Linear, taken
 from vibro_sweep.model.sensitivity import grazing_state
+from vibro_sweep.model.stacks import dot
+from vibro_sweep.model.steady import gap_responses, steady_amplitudes
 
-MOTION = ("M", "K", "C", "normal", "sine", "cosine", "constant", "omega", "tau", "middle")  # all but the stops and R
 APART = 8.0  # a rate over that of the force from which on tables are computed in twice the digits
 
 
-def kind_of(linears: Iterable[Linear]) -> Kind:
+def kind_of(q: Linear) -> Kind:
     """The kind for which kernels must be compiled: oscillators with the same number of masses."""
-    linears = list(linears)
-    constant = any(np.any(q.constant) or np.any(origin_of(q)) for q in linears)
-    compliant = any(q.compliant for q in linears)
-    return Kind(len(linears[0].normal), constant, False, all(is_own(q) for q in linears), compliant)
+    constant = bool(np.any(q.constant) or np.any(origin_of(q)))
+    return Kind(q.normal.shape[-1], constant, False, bool(np.all(is_own(q))), bool(np.any(q.compliant)))
 
 
-def any_points(linears: np.ndarray, kind: Kind, frames: bool = True) -> np.ndarray:
-    """Points of an array of oscillators (`Linear`, tau resolved). frames: whether tangent vectors are wanted."""
-    known, result = {}, np.zeros(linears.shape, point_of(kind))
-    for place in np.ndindex(linears.shape):
-        q = linears[place]
-        key = b"".join(np.asarray(getattr(q, name), float).tobytes() for name in MOTION)
-        if key not in known:
-            known[key] = _point(q, kind, frames)
-        result[place] = known[key]
-        low, high = (distance(q, known[key]["origin"], gap) for gap in (q.low, q.high))
-        result[place]["stops"] = low, high, q.R_low, q.R_high
-        if kind.compliant:
-            _set_contact(result[place], q)
-    return result
+def any_points(q: Linear, kind: Kind, frames: bool = True) -> np.ndarray:
+    """Points of a stack of oscillators, tau resolved, of its shape. frames: whether tangent vectors are wanted."""
+    shape, origin = q.omega.shape, origin_of(q)
+    q, origin = _flat(q), origin.reshape(-1, origin.shape[-1])
+    different, place = _different(np.concatenate([_row(getattr(q, name)) for name in MOTION] + [origin], -1))
+    known = _points(taken(q, different), kind, frames)
+    result = known[place]
+    low, high = (distance(q, origin, gap) for gap in (q.low, q.high))
+    result["stops"] = np.stack([low, high, q.R_low, q.R_high], -1)
+    if kind.compliant:
+        _set_contact(result, q)
+    return result.reshape(shape)
 
 
-def _set_contact(point: np.void, q: Linear) -> None:
-    """The compliant stops of a point, over m_e = 1/(n M^-1 n), and the fastest rate in contact with each."""
-    mass = 1 / float(q.normal @ by_mass(q.M, q.normal[:, None])[:, 0])
-    point["contact_mass"], point["by_force"] = mass, q.by_force
+def _flat(q: Linear) -> Linear:
+    """The same stack with one dimension."""
+    lead = q.omega.ndim
+    return Linear(*(one.reshape(-1, *one.shape[lead:]) for one in q))
+
+
+def _row(values: np.ndarray) -> np.ndarray:
+    return values.reshape(len(values), -1)
+
+
+def _different(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """One index of each different row of bits, and to which of these each row belongs."""
+    as_bytes = np.ascontiguousarray(rows, float).view(f"V{rows.shape[-1] * 8}")[:, 0]
+    _, first, place = np.unique(as_bytes, return_index=True, return_inverse=True)
+    return first, place
+
+
+def _set_contact(points: np.ndarray, q: Linear) -> None:
+    """The compliant stops of points, over m_e = 1/(n M^-1 n), and the fastest rate in contact with each."""
+    mass = 1 / dot(q.normal, by_mass(q.M, q.normal[..., None])[..., 0])
+    points["contact_mass"], points["by_force"] = mass, q.by_force
     pairs = ("contact_stiffness", q.k_low, q.k_high), ("contact_damping", q.c_low, q.c_high)
     for name, low, high in (*pairs, ("contact_preload", q.p_low, q.p_high)):
-        point[name] = low / mass, high / mass
+        points[name] = np.stack([low / mass, high / mass], -1)
     for n in range(2):
-        stiffness, damping = point["stiffness"].copy(), point["damping"].copy()
-        stiffness[:, 0] += point["push"] * point["contact_stiffness"][n]
-        damping[:, 0] += point["push"] * point["contact_damping"][n]
-        point["contact_rate"][n] = max(fastest_rate(stiffness, damping), q.omega)
+        stiffness, damping = points["stiffness"].copy(), points["damping"].copy()
+        stiffness[..., 0] += points["push"] * points["contact_stiffness"][..., n, None]
+        damping[..., 0] += points["push"] * points["contact_damping"][..., n, None]
+        points["contact_rate"][..., n] = np.maximum(fastest_rate(stiffness, damping), q.omega)
 
 
-def grazing_points(linears: np.ndarray, expand_at: float | None) -> np.ndarray:
+def grazing_points(q: Linear, expand_at: float | None) -> np.ndarray:
     """X* at the right stop (..., 2 N), in contact coordinates; NaN where no steady motion grazes.
 
     expand_at : the gap there, in place of the exact one
     """
-    result = np.full((*linears.shape, 2 * len(linears.flat[0].normal)), np.nan)
-    for place in np.ndindex(linears.shape):
-        q = linears[place]
-        if gap_response(q):
-            state = np.kron(coordinates(q.normal, least_restrained(q))[0], np.eye(2)) @ grazing_state(q)
-            state[0] = state[0] if expand_at is None else expand_at
-            result[place] = state
+    response = gap_responses(q, steady_amplitudes(q))
+    result = np.full((*response.shape, 2 * q.normal.shape[-1]), np.nan)
+    for place in zip(*np.nonzero(~np.isnan(response) & (response != 0)), strict=True):
+        one = taken(q, place)
+        state = np.kron(coordinates(one.normal, least_restrained(one))[0], np.eye(2)) @ grazing_state(one)
+        state[0] = state[0] if expand_at is None else expand_at
+        result[place] = state
     return result
 
 
-@remembered(*MOTION, most=2048)  # a live page asks for the same points again while a stop or R moves
-def _point(q: Linear, kind: Kind, frames: bool) -> np.void:
-    point = np.zeros((), point_of(kind))
+def _points(q: Linear, kind: Kind, frames: bool) -> np.ndarray:
+    """All but the stops."""
+    points = np.zeros(q.omega.shape, point_of(kind))
     contact = contact_coordinates(q)
-    point["omega"], point["tau"] = q.omega, q.tau
-    point["P"], point["back"], point["origin"], point["turned"] = (
-        contact.P,
-        contact.back,
-        contact.origin,
-        contact.turned,
-    )
-    point["stiffness"], point["damping"], point["force"] = contact.stiffness, contact.damping, contact.force
-    point["constrained"], point["push"] = contact.constrained, contact.push
-    point["divergence"] = -np.trace(contact.damping)
-    point["rate"] = fastest_rate(contact.stiffness, contact.damping)
-    n = len(contact.push)
-    point["constrained_rate"] = fastest_rate(-contact.constrained[1:, 1:n], -contact.constrained[1:, n + 1 : 2 * n])
-    point["apart"] = not is_own(q) and np.isfinite(point["rate"]) and point["rate"] > APART * q.omega
-    if point["apart"]:
-        rounded, point["low"] = exact_motion(q, contact)
-        point["stiffness"], point["damping"], point["force"] = (
-            -rounded[:, :n],
-            -rounded[:, n : 2 * n],
-            rounded[:, 2 * n :],
-        )
-    point["cells"] = cells.cells_for(np.maximum(point["rate"], q.omega), q.omega)
-    point["steady"], point["middle"], point["swing"], point["confining"] = confinement_of(q, contact)
-    if point["cells"] == cells.STIFF_CELLS:
-        sums = gap_exponentials(contact, q.omega, q.tau, WIDTH * q.omega * cells.STIFF_CELLS / (2 * np.pi))
-        point["valid"], point["begin"] = sums.valid, sums.begin
-        point["root"], point["part"] = (np.stack([one.real, one.imag], -1) for one in (sums.roots, sums.parts))
-    if frames and point["cells"] > 0:
-        frame = frame_of(natural_coordinates(q, contact), q.omega)
-        point["rounding"] = frame.rounding
-        point["frame_eta"], point["frame_square"], point["frame_scale"] = frame.eta, frame.square, frame.scale
-        point["to_frame"], point["from_frame"] = frame.to, frame.back
-    return point[()]
+    points["omega"], points["tau"] = q.omega, q.tau
+    for name in ("P", "back", "origin", "turned", "stiffness", "damping", "force", "constrained", "push"):
+        points[name] = getattr(contact, name)
+    points["divergence"] = -np.trace(contact.damping, axis1=-2, axis2=-1)
+    points["rate"] = fastest_rate(contact.stiffness, contact.damping)
+    n = kind.masses
+    held, damped = contact.constrained[..., 1:, 1:n], contact.constrained[..., 1:, n + 1 : 2 * n]
+    points["constrained_rate"] = fastest_rate(-held, -damped)
+    points["apart"] = ~is_own(q) & np.isfinite(points["rate"]) & (points["rate"] > APART * q.omega)
+    points["cells"] = cells.cells_for(np.maximum(points["rate"], q.omega), q.omega)
+    for name, values in confinement_of(q, contact)._asdict().items():
+        points["confining" if name == "form" else name] = values
+    for i in np.flatnonzero(points["apart"]):
+        _set_apart(points[i], taken(q, i), Contact(*(one[i] for one in contact)))
+    for i in np.flatnonzero(points["cells"] == cells.STIFF_CELLS):
+        _set_exponentials(points[i], Contact(*(one[i] for one in contact)))
+    there = np.flatnonzero(points["cells"] > 0)
+    if frames and len(there):
+        some = Contact(*(one[there] for one in contact))
+        frame = frame_of(natural_coordinates(taken(q, there), some), q.omega[there])
+        points["rounding"][there] = frame.rounding
+        points["frame_eta"][there], points["frame_square"][there] = frame.eta, frame.square
+        points["frame_scale"][there] = frame.scale
+        points["to_frame"][there], points["from_frame"][there] = frame.to, frame.back
+    return points
+
+
+def _set_apart(point: np.void, q: Linear, contact: Contact) -> None:
+    """The motion of an oscillator whose rates lie apart, in twice the digits."""
+    n = len(q.normal)
+    rounded, point["low"] = exact_motion(q, contact)
+    point["stiffness"], point["damping"] = -rounded[:, :n], -rounded[:, n : 2 * n]
+    point["force"] = rounded[:, 2 * n :]
+
+
+def _set_exponentials(point: np.void, contact: Contact) -> None:
+    """The gap of a stiff oscillator as a sum of exponentials."""
+    fast = WIDTH * point["omega"] * cells.STIFF_CELLS / (2 * np.pi)
+    sums = gap_exponentials(contact, point["omega"], point["tau"], fast)
+    point["valid"], point["begin"] = sums.valid, sums.begin
+    point["root"], point["part"] = (np.stack([one.real, one.imag], -1) for one in (sums.roots, sums.parts))

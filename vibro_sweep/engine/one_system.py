@@ -16,9 +16,11 @@ from vibro_sweep.model import status
 from vibro_sweep.model.arguments import checked_state
 from vibro_sweep.model.contact import is_far
 from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.frame import ROUNDING, moved
+from vibro_sweep.model.linear import stacked
+from vibro_sweep.model.metric import ROUNDING
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.pairs_of_roots import moved
 from vibro_sweep.model.parameters import NAMES, ParameterError
 
 IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float), ("v2", float)])
@@ -112,9 +114,8 @@ def point_of_one(system, later: float) -> tuple[np.ndarray, Kind]:
         parameters = system.parameters()
         return points_of(parameters | {"tau": parameters["tau"] + later}, system.stops).reshape(1), PAPER
     q = system.linear
-    one = np.empty(1, object)
-    one[0] = q._replace(tau=q.tau + later)
-    kind = kind_of([q])
+    one = stacked([q._replace(tau=q.tau + later)])
+    kind = kind_of(one)
     return any_points(one, kind), kind
 
 

@@ -91,24 +91,26 @@ class Built(AnyOscillator):
         return made
 
 
-def sizes_of(q: Linear) -> dict[str, float]:
-    """The sizes that random starts and comparisons need, by the names that they have for all oscillators."""
-    two = np.isfinite(q.low) and np.isfinite(q.high)
-    b = (q.high - q.low) / 2 if two else q.high if np.isfinite(q.high) else -q.low
-    return {"omega": q.omega, "tau": q.tau, "b": b, "offset": (q.high + q.low) / 2 if two else 0.0}
+def sizes_of(q: Linear) -> dict[str, np.ndarray]:
+    """The sizes (...) that random starts and comparisons need, by the names that they have for all oscillators."""
+    two, right = np.isfinite(q.low) & np.isfinite(q.high), np.isfinite(q.high)
+    with np.errstate(invalid="ignore"):  # of one stop
+        b = np.where(two, (q.high - q.low) / 2, np.where(right, q.high, -np.asarray(q.low)))
+        offset = np.where(two, (q.high + q.low) / 2, 0.0)
+    return {"omega": q.omega, "tau": q.tau, "b": b, "offset": offset}
 
 
-def stored_of(q: Linear) -> dict[str, float]:
-    """Every number of an oscillator by the name that files have for it: M11, M12, ..; along1; omega; low; R_low; ..."""
+def stored_of(q: Linear) -> dict[str, np.ndarray]:
+    """Every number (...) of a stack by the name that files have for it: M11, M12, ..; along1; omega; low; R_low; ..."""
     found = {}
     for field in STORED:
         values = getattr(q, field)
-        if values.ndim == 2:
-            found |= {f"{field}{i + 1}{j + 1}": values[i, j] for i in range(len(values)) for j in range(i, len(values))}
+        n = values.shape[-1]
+        if field in ("M", "K", "C"):
+            found |= {f"{field}{i + 1}{j + 1}": values[..., i, j] for i in range(n) for j in range(i, n)}
         else:
-            found |= {f"{field}{i + 1}": value for i, value in enumerate(values)}
-    plain = ("omega", "tau", "low", "high", "R_low", "R_high")
-    return {name: float(value) for name, value in (found | {name: getattr(q, name) for name in plain}).items()}
+            found |= {f"{field}{i + 1}": values[..., i] for i in range(n)}
+    return found | {name: getattr(q, name) for name in ("omega", "tau", "low", "high", "R_low", "R_high")}
 
 
 def stored_names(masses: int) -> dict[str, Parameter]:

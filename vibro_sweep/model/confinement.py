@@ -5,37 +5,39 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.model.contact import Contact, rest_force
-from vibro_sweep.model.linear import Linear, amplitudes
+from vibro_sweep.model.linear import Linear
+from vibro_sweep.model.stacks import dot, only, solved, times, transposed
+from vibro_sweep.model.steady import steady_amplitudes
 
 SINGULAR = 1e-12  # of the largest eigenvalue of K: a smaller one may be rounding
 
 
 class Confinement(NamedTuple):
-    """A confining motion in contact coordinates; states are interleaved."""
+    """Confining motions in contact coordinates; states are interleaved. Zero and infinite where there is none."""
 
-    steady: np.ndarray  # (2 N,): the steady motion at t = 0
-    middle: float  # of its gap, and
-    swing: float  # by how much that swings about it; infinite where there is none that confines
-    form: np.ndarray  # (2 N, 2 N): d^T form d bounds the square of what a distance d can do to the gap
+    steady: np.ndarray  # (..., 2 N): the steady motion at t = 0
+    middle: np.ndarray  # (...): of its gap, and
+    swing: np.ndarray  # (...): by how much that swings about it; infinite where there is none that confines
+    form: np.ndarray  # (..., 2 N, 2 N): d^T form d bounds the square of what a distance d can do to the gap
 
 
 def confinement_of(q: Linear, contact: Contact) -> Confinement:
-    n = len(q.M)
-    nothing = Confinement(np.zeros(2 * n), 0.0, np.inf, np.zeros((2 * n, 2 * n)))
+    """Of each oscillator of a stack."""
+    n = q.normal.shape[-1]
     stiffness = np.linalg.eigvalsh(q.K)
-    if not stiffness[0] > SINGULAR * stiffness[-1]:
-        return nothing
-    rest = np.linalg.solve(q.K, rest_force(q, contact.origin))  # as seen from x0
-    try:
-        turning = amplitudes(q) * np.exp(1j * q.tau)
-    except np.linalg.LinAlgError:
-        return nothing
-    swing = abs(q.normal @ turning)
-    if not np.isfinite(swing):
-        return nothing
-    steady, form = np.empty(2 * n), np.zeros((2 * n, 2 * n))
-    steady[0::2], steady[1::2] = contact.P @ (turning.real + rest), contact.P @ (1j * q.omega * turning).real
-    compliance = q.normal @ np.linalg.solve(q.K, q.normal)
-    form[0::2, 0::2] = compliance * contact.back.T @ q.K @ contact.back
-    form[1::2, 1::2] = compliance * contact.back.T @ q.M @ contact.back
-    return Confinement(steady, float(q.normal @ rest), float(swing), form)
+    turning = steady_amplitudes(q) * np.exp(1j * np.asarray(q.tau))[..., None]
+    swing = np.abs(dot(q.normal + 0j, turning))
+    there = (stiffness[..., 0] > SINGULAR * stiffness[..., -1]) & np.isfinite(swing)
+    K = only(there, q.K)
+    rest = solved(K, rest_force(q, contact.origin))  # as seen from x0
+    steady, form = np.empty((*there.shape, 2 * n)), np.zeros((*there.shape, 2 * n, 2 * n))
+    steady[..., 0::2] = times(contact.P, turning.real + rest)
+    steady[..., 1::2] = times(contact.P + 0j, 1j * np.asarray(q.omega)[..., None] * turning).real
+    compliance = dot(q.normal, solved(K, q.normal))[..., None, None]
+    form[..., 0::2, 0::2] = compliance * transposed(contact.back) @ q.K @ contact.back
+    form[..., 1::2, 1::2] = compliance * transposed(contact.back) @ q.M @ contact.back
+    one, many = there[..., None], there[..., None, None]
+    return Confinement(
+        np.where(one, steady, 0.0), np.where(there, dot(q.normal, rest), 0.0), np.where(there, swing, np.inf),
+        np.where(many, form, 0.0),
+    )  # fmt: skip

@@ -1,7 +1,6 @@
 """The numbers of an oscillator over a grid of values for some of them: what a sweep computes, point by point."""
 
 import hashlib
-import itertools
 import math
 
 import numpy as np
@@ -9,7 +8,7 @@ import numpy as np
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import Built, sizes_of, stored_of
 from vibro_sweep.model.grazing import resolved
-from vibro_sweep.model.linear import Linear
+from vibro_sweep.model.linear import Linear, stacked
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.stops import followers
 
@@ -28,11 +27,11 @@ def grid(system: AnyOscillator, axes: dict[str, np.ndarray]) -> dict[str, np.nda
         numbers = resolved(numbers)
     else:
         if isinstance(system, Built):
-            numbers |= _sizes(linears(system, axes))
+            numbers |= sizes_of(linears(system, axes))
         numbers |= followers(numbers)
         numbers = {name: value for name, value in numbers.items() if value is not None}
         if isinstance(numbers.get("tau"), str):
-            numbers["tau"] = np.array([q.tau for q in linears(system, axes).flat]).reshape(shape)
+            numbers["tau"] = linears(system, axes).tau
     return {name: _everywhere(value, shape) for name, value in numbers.items()}
 
 
@@ -45,16 +44,17 @@ def _everywhere(value, shape: tuple[int, ...]) -> np.ndarray:
     return np.ndarray(shape, number.dtype, number, 0, (0,) * len(shape))
 
 
-def linears(system: AnyOscillator, axes: dict[str, np.ndarray]) -> np.ndarray:
-    """The oscillators at the points of such a grid, phases resolved: an array of `Linear` with its shape."""
-    keys = [key for key in axes if key in system.described]
-    family = system.family
-    result = np.empty(tuple(len(values) for values in axes.values()), object)
-    flat = (values.tolist() if key in keys else [None] * len(values) for key, values in axes.items())
-    for place, values in zip(np.ndindex(result.shape), itertools.product(*flat), strict=True):
-        changes = {key: value for key, value in zip(axes, values, strict=True) if key in keys}
-        result[place] = _one(family, changes)
-    return result
+def linears(system: AnyOscillator, axes: dict[str, np.ndarray]) -> Linear:
+    """The oscillators at the points of such a grid, phases resolved: a stack of its shape."""
+    shape = tuple(len(values) for values in axes.values())
+    meshes = zip(axes, np.meshgrid(*axes.values(), indexing="ij"), strict=True)
+    changes = {key: values for key, values in meshes if key in system.described}
+    if not isinstance(system, Built):
+        return system.family.over(shape, changes)
+    rows = zip(*(values.ravel().tolist() for values in changes.values()), strict=True) if changes else [()]
+    each = stacked([_one(system.family, dict(zip(changes, row, strict=True))) for row in rows])
+    count = math.prod(shape)
+    return Linear(*(np.broadcast_to(one, (count, *one.shape[1:])).reshape(*shape, *one.shape[1:]) for one in each))
 
 
 def digest(system: Built, axes: dict[str, np.ndarray]) -> str:
@@ -70,11 +70,6 @@ def digest(system: Built, axes: dict[str, np.ndarray]) -> str:
         changes = {key: float(values[k]) for (key, values), k in zip(axes.items(), place, strict=True)}
         found.update(np.array([*stored_of(_one(system.family, changes)).values()]).tobytes())
     return found.hexdigest()[:16]
-
-
-def _sizes(each: np.ndarray) -> dict[str, np.ndarray]:
-    found = [sizes_of(q) for q in each.flat]
-    return {name: np.array([one[name] for one in found]).reshape(each.shape) for name in found[0]}
 
 
 def _one(family, changes) -> Linear:

@@ -6,7 +6,7 @@ An impulse acts along M^-1 n: it changes the velocity of the gap g = n.x, with t
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, wraps
 from operator import attrgetter
@@ -18,10 +18,14 @@ from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.model.errors import ArgumentError, ArgumentTypeError
 from vibro_sweep.model.parameters import STOP_NUMBERS
 from vibro_sweep.model.refusals import not_allowed
+from vibro_sweep.model.stacks import least_squares
+from vibro_sweep.model.steady import gap_responses, grazing_phases, responses, static_states, steady_amplitudes
 from vibro_sweep.model.stops import stop_of, why_rigid
 
-DRIVEN = 1e-14  # part of the force on a mode below which it is rounding
-FORCED = ("M", "K", "C", "normal", "constant", "sine", "cosine", "omega")  # fields that move the steady motion
+MATRICES = ("M", "K", "C", "normal", "omega")  # fields that move free modes,
+FORCED = (*MATRICES, "constant", "sine", "cosine")  # the steady motion too,
+MOTION = (*FORCED, "tau")  # and the flight from a time on
+RANKS = {"M": 2, "K": 2, "C": 2, "normal": 1, "constant": 1, "sine": 1, "cosine": 1}  # fields that are no numbers
 STEP = 1e-100  # of the complex step: its square underflows, so that a derivative has no truncation error
 
 
@@ -83,7 +87,7 @@ class Linear(NamedTuple):
     @property
     def compliant(self) -> bool:
         """Whether a stop is: then there is motion beyond it."""
-        return self.k_low > 0 or self.k_high > 0
+        return (self.k_low > 0) | (self.k_high > 0)
 
     def is_compliant(self, sides) -> np.ndarray:
         """Whether the stops on these sides (+1 high, -1 low) are compliant."""
@@ -132,6 +136,14 @@ class Family:
         """The oscillator, its phase resolved."""
         return self.built._replace(tau=grazing_phase(self.built)) if self.built.tau is None else self.built
 
+    def over(self, shape: tuple[int, ...], changes: dict[str, np.ndarray]) -> Linear:
+        """A stack of this shape, phases resolved: the oscillators with these numbers (arrays that broadcast to it)."""
+        built = self.build(**(self.numbers | changes))._asdict()
+        own = {name: np.shape(one)[np.ndim(one) - RANKS.get(name, 0) :] for name, one in built.items()}
+        everywhere = {name: np.broadcast_to(one, shape + own[name]) for name, one in built.items() if one is not None}
+        q = Linear(**{"tau": None} | everywhere)
+        return q._replace(tau=grazing_phases(gap_responses(q, steady_amplitudes(q)))) if q.tau is None else q
+
     def derivative(self, name: str, linear: Linear | None = None) -> Linear:
         """Derivatives of all fields by the parameter `name`, exact to rounding. linear: this one's, if it is known."""
         step = self.build(**(self.numbers | {name: self.numbers[name] + 1j * STEP}))
@@ -143,6 +155,16 @@ class Family:
         if step.tau is None:
             slope = slope._replace(tau=grazing_phase_slope(linear or self.linear, slope))
         return slope
+
+
+def taken(q: Linear, which) -> Linear:
+    """These oscillators of a stack, by an index or a mask; one of them by a number."""
+    return Linear(*(None if field is None else np.asarray(field)[which] for field in q))
+
+
+def stacked(each: Sequence[Linear]) -> Linear:
+    """A stack of oscillators, of each field (n, ...)."""
+    return Linear(*(np.stack(field) for field in zip(*each, strict=True)))
 
 
 class Keyed:
@@ -178,39 +200,21 @@ def remembered(*names: str, most: int = 64):
     return keeping
 
 
-def dynamic_stiffness(q: Linear) -> np.ndarray:
-    """K - omega^2 M + i omega C, (N, N)."""
-    with np.errstate(all="ignore"):  # beyond the range of the floats it is infinite
-        return q.K - q.omega * q.omega * q.M + 1j * q.omega * q.C
-
-
 @remembered(*FORCED, most=1024)  # as many as a curve has points
 def amplitudes(q: Linear) -> np.ndarray:
     """Complex amplitudes X (N,) of the steady motion Re(X e^{i(omega t + tau)}). LinAlgError in undamped resonance.
 
     Where the force does not drive the mode in resonance, the steady motion without that mode.
     """
-    found = _response(q, q.cosine - 1j * q.sine)
+    found = _existing(steady_amplitudes(q))
     found.flags.writeable = False  # it is shared
     return found
 
 
-def _response(q: Linear, force: np.ndarray) -> np.ndarray:
-    """X of (K - omega^2 M + i omega C) X = force. LinAlgError where it drives an undamped mode at its own frequency."""
-    Z = dynamic_stiffness(q)
-    with np.errstate(all="ignore"):  # beyond a bound of a parameter masses may vanish
-        scale = 1 / np.sqrt(np.abs(np.diag(q.M)))
-        scaled = Z * np.outer(scale, scale)
-    if not np.all(np.isfinite(scaled)):
-        return np.linalg.solve(Z, force)
-    left, sizes, right = np.linalg.svd(scaled)
-    regular = sizes > len(sizes) * np.finfo(float).eps * sizes[0]
-    if regular.all():
-        return np.linalg.solve(Z, force)
-    parts = left.conj().T @ (force * scale)
-    if np.any(np.abs(parts[~regular]) > DRIVEN * np.abs(force * scale).max()):
+def _existing(amplitudes: np.ndarray) -> np.ndarray:
+    if np.isnan(amplitudes).any():
         raise np.linalg.LinAlgError("the force drives an undamped mode at its own frequency")
-    return scale * (right[regular].conj().T @ (parts[regular] / sizes[regular]))
+    return amplitudes
 
 
 def amplitude_slopes(q: Linear, slope: Linear) -> np.ndarray:
@@ -221,23 +225,20 @@ def amplitude_slopes(q: Linear, slope: Linear) -> np.ndarray:
         - q.omega * q.omega * slope.M
         + 1j * (slope.omega * q.C + q.omega * slope.C)
     )
-    return _response(q, slope.cosine - 1j * slope.sine - dz @ amplitudes(q))
+    return _existing(responses(q, slope.cosine - 1j * slope.sine - dz @ amplitudes(q)))
 
 
 def grazing_phase(q: Linear) -> float:
     """tau for which the steady gap is largest at t = 0; 0 where there is no steady motion (eq. 18 for any n)."""
     response = gap_response(q)
-    return 0.0 if response is None else 0.0 - float(np.angle(response))
+    return float(grazing_phases(np.nan if response is None else response))
 
 
 @remembered(*FORCED, most=1024)
 def gap_response(q: Linear) -> complex | None:
     """G of the steady gap g_s + Re(G e^{i(omega t + tau)}); None where there is no steady motion."""
-    try:
-        response = complex(q.normal @ amplitudes(q))
-    except np.linalg.LinAlgError:
-        return None
-    return response if np.isfinite(response) and static_state(q) is not None else None
+    response = complex(gap_responses(q, steady_amplitudes(q)))
+    return response if np.isfinite(response) else None
 
 
 def grazing_phase_slope(q: Linear, slope: Linear) -> float:
@@ -254,24 +255,29 @@ def static_state(q: Linear) -> np.ndarray | None:
 
     Of several, where there are free modes, the nearest to zero.
     """
-    if not np.any(q.constant):
-        return np.zeros(len(q.constant))
-    found = np.linalg.lstsq(q.K, q.constant, rcond=None)[0]
-    left_over = np.abs(q.K @ found - q.constant).max()
-    return found if left_over <= 1e-9 * np.abs(q.constant).max() else None
+    found = static_states(q)
+    return found if np.isfinite(found).all() else None
 
 
 def rest_state(q: Linear) -> np.ndarray:
-    """Positions (N,) from which to start at rest: zero, or the static equilibrium held on the nearer stop.
+    """Positions (..., N) from which to start at rest: zero, or the static equilibrium held on the nearer stop.
 
     Held: the gap is zero's where that is between the stops; else that of the stop, and no other force acts along n.
     """
-    gap = min(max(0.0, q.low), q.high)
-    n = len(q.normal)
-    if gap == 0.0:
-        return np.zeros(n)
-    bordered = np.block([[q.K, q.normal[:, None]], [q.normal[None], np.zeros((1, 1))]])
-    return np.linalg.lstsq(bordered, np.append(q.constant, gap), rcond=None)[0][:n]
+    gap = np.minimum(np.maximum(0.0, q.low), q.high)
+    result, held = np.zeros(q.normal.shape), gap != 0.0
+    if held.any():
+        q = taken(q, held)
+        result[held] = least_squares(bordered(q.K, q.normal), np.append(q.constant, gap[held][..., None], -1))[..., :-1]
+    return result
+
+
+def bordered(K: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """(..., N + 1, N + 1): K, and the gap n . x as one more row and column."""
+    n = K.shape[-1]
+    result = np.zeros((*K.shape[:-2], n + 1, n + 1))
+    result[..., :n, :n], result[..., :n, n], result[..., n, :n] = K, normal, normal
+    return result
 
 
 def contact(*, b, offset=0.0, stops="both", release="displacement", **numbers) -> dict:

@@ -14,11 +14,13 @@ import numpy as np
 from vibro_sweep.model.built import Built, sizes_of, stored_names, stored_of
 from vibro_sweep.model.grazing import grazing_clearance
 from vibro_sweep.model.grid import grid, linears
-from vibro_sweep.model.linear import gap_response, static_state
+from vibro_sweep.model.linear import Linear
 from vibro_sweep.model.models import DEFAULT
 from vibro_sweep.model.models.declaration import UNITS
 from vibro_sweep.model.oscillator import System
+from vibro_sweep.model.stacks import dot
 from vibro_sweep.model.state import start
+from vibro_sweep.model.steady import gap_responses, static_states, steady_amplitudes
 from vibro_sweep.scene import Scene
 
 SLAB = 100_000  # points whose numbers are computed at once
@@ -107,30 +109,20 @@ def following(scene: Scene, box: tuple[slice, ...]) -> dict[str, np.ndarray]:
     if isinstance(scene.system, System):
         size, middle = grazing_clearance(numbers), 0.0
     else:
-        each = linears(scene.system, axes)
-        size, middle = (np.array([one(q) for q in each.flat]).reshape(each.shape) for one in (_size, _middle))
+        size, middle = _free_motion(linears(scene.system, axes))
     found = {"tau": numbers["tau"], "b_star": size, "b_right": size + middle - offset, "b_left": size - middle + offset}
     return {name: found[name] for name in ("tau", *_graze(scene))}
 
 
-def _of_built(each: np.ndarray) -> dict[str, np.ndarray]:
+def _of_built(q: Linear) -> dict[str, np.ndarray]:
     """All numbers of each oscillator, and the clearances at which its free motion touches the stops as they are."""
-    rows = []
-    for q in each.flat:
-        sizes = sizes_of(q)
-        touch = {"b_right": _size(q) + _middle(q) - sizes["offset"], "b_left": _size(q) - _middle(q) + sizes["offset"]}
-        rows.append(stored_of(q) | touch)
-    return {name: np.array([row[name] for row in rows]).reshape(each.shape) for name in rows[0]}
+    (size, middle), offset = _free_motion(q), sizes_of(q)["offset"]
+    return stored_of(q) | {"b_right": size + middle - offset, "b_left": size - middle + offset}
 
 
-def _size(q) -> float:
-    response = gap_response(q)
-    return math.nan if response is None else abs(response)
-
-
-def _middle(q) -> float:
-    rest = static_state(q)
-    return math.nan if rest is None else float(q.normal @ rest)
+def _free_motion(q: Linear) -> tuple[np.ndarray, np.ndarray]:
+    """Amplitude of the gap and its middle, for each oscillator of a stack; NaN where there are none."""
+    return np.abs(gap_responses(q, steady_amplitudes(q))), dot(q.normal, static_states(q))
 
 
 def slabs(scene: Scene) -> Iterator[tuple[slice, ...]]:

@@ -10,10 +10,10 @@ from vibro_sweep.engine.continuation import moving_flow
 from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.extremes import middle_weights
-from vibro_sweep.engine.impulses.flow import TABLES, flow, rates
+from vibro_sweep.engine.impulses.flow import flow, rates
 from vibro_sweep.engine.impulses.free_modes import checked_cells
 from vibro_sweep.engine.impulses.taylor_orders import exponential, taylor_rows
-from vibro_sweep.model.linear import Family, Linear
+from vibro_sweep.model.linear import MOTION, Family, Linear
 
 FEW = 4  # degree that is tried first
 DECAYED = 4e-15  # relative size of the last coefficients
@@ -60,7 +60,7 @@ class Oscillators:
         checked_cells(family.linear, half_periods)
         self.family, self.names, self.half_periods, self.units = family, names, half_periods, units
         self.slopes = [family.derivative(name) for name in names]
-        still = not any(np.any(getattr(slope, field)) for slope in self.slopes for field in TABLES)
+        still = not any(np.any(getattr(slope, field)) for slope in self.slopes for field in MOTION)
         self._still = sampled(family.linear, units) if still else None
         self._known: dict[tuple[float, ...], Family] = {}  # the last ones
 

@@ -13,10 +13,10 @@ from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, NUMBERS
 from vibro_sweep.engine.continuation.problem import ORBIT, Problem
 from vibro_sweep.engine.continuation.workspace import new_place, new_workspace
 from vibro_sweep.engine.impulses.extremes import middle_weights
-from vibro_sweep.engine.impulses.flow import TABLES, closing, contact_coordinates, flow, unseen_modes
+from vibro_sweep.engine.impulses.flow import closing, contact_coordinates, flow, unseen_modes
 from vibro_sweep.engine.impulses.free_modes import checked_cells
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
-from vibro_sweep.model.linear import Linear, amplitudes, remembered
+from vibro_sweep.model.linear import MOTION, Linear, amplitudes, remembered
 
 
 class EventEquations:
@@ -83,7 +83,7 @@ def _contact_of(q: Linear) -> list[float]:
     return [q.low, q.high, 1 + q.R_low, 1 + q.R_high, 1.0]
 
 
-@remembered(*TABLES)
+@remembered(*MOTION)
 def _tables(q: Linear, sigma: int, half_periods: int, rests: bool) -> tuple[np.ndarray, np.ndarray | None]:
     """(1,) `plane_of` of an oscillator, without its contact; `closing` in its units, without rests."""
     checked_cells(q, half_periods)

@@ -14,5 +14,5 @@ def table_of(system: AnyOscillator, axes: dict[str, np.ndarray], frames: bool) -
     if is_paper(system, axes):
         return points_of(grid(system, axes), system.stops, frames), PAPER
     each = linears(system, axes)
-    kind = kind_of(each.flat)
+    kind = kind_of(each)
     return any_points(each, kind, frames), kind

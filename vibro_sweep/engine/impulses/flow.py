@@ -13,7 +13,6 @@ import numpy as np
 from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.free_modes import (
-    MATRICES,
     MOST_CELLS,
     ResonanceError,
     TooStiffError,
@@ -23,10 +22,9 @@ from vibro_sweep.engine.impulses.free_modes import (
 )
 from vibro_sweep.engine.impulses.taylor_orders import ORDER, exponential, power, taylor_rows
 from vibro_sweep.model.contact import coordinates, push_of
-from vibro_sweep.model.linear import STEP, Linear, amplitudes, forcing_period, remembered
+from vibro_sweep.model.linear import MATRICES, MOTION, STEP, Linear, amplitudes, forcing_period, remembered
 
 DOUBLINGS = 18
-TABLES = (*MATRICES, "constant", "sine", "cosine", "tau")  # fields that move the tables of a flight
 
 
 class Coordinates(NamedTuple):
@@ -114,14 +112,14 @@ def free_rates(q: Linear) -> np.ndarray:
     return A
 
 
-@remembered(*TABLES, most=16)
+@remembered(*MOTION, most=16)
 def flow(q: Linear) -> Flow:
     """Tables of the free flight. Raises TooStiffError."""
     B = rates(q)
     return _flow(q, B, np.eye(len(B))[0])
 
 
-@remembered(*TABLES, most=16)
+@remembered(*MOTION, most=16)
 def constrained_flow(q: Linear) -> Flow:
     """Tables of the motion while the gap stays as it is; rows: of what the gap's free acceleration is then."""
     B = rates(q)

@@ -6,10 +6,9 @@ import numpy as np
 
 from vibro_sweep.engine.impulses.taylor_orders import REACH
 from vibro_sweep.model.errors import VibroSweepError
-from vibro_sweep.model.linear import Linear, forcing_period, remembered
+from vibro_sweep.model.linear import MATRICES, Linear, forcing_period, remembered
 
 MOST_CELLS = 1 << 17
-MATRICES = ("M", "K", "C", "normal", "omega")  # fields that move the free flight
 
 
 class TooStiffError(VibroSweepError, ValueError):

@@ -14,17 +14,18 @@ from vibro_sweep.model.parameters import (
     STOP_NUMBERS,
     Parameter,
 )
+from vibro_sweep.model.stacks import matrix, vector
 
 
 def ball_in_cavity(*, mass_ratio, zeta, F, omega, tau, **stops) -> Linear:
     """The oscillator; numbers may be complex."""
     return Linear(
-        M=np.array([[1, 0], [0, mass_ratio]]),
+        M=matrix([[1, 0], [0, mass_ratio]]),
         K=np.diag([1.0, 0.0]),
-        C=2 * zeta * np.diag([1.0, 0.0]),
+        C=2 * np.asarray(zeta)[..., None, None] * np.diag([1.0, 0.0]),
         normal=np.array([-1.0, 1.0]),
         constant=np.zeros(2),
-        sine=np.array([F, 0]),
+        sine=vector([F, 0]),
         cosine=np.zeros(2),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,

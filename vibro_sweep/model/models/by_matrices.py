@@ -6,6 +6,7 @@ from vibro_sweep.model import wording
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter, ParameterError
+from vibro_sweep.model.stacks import vector
 
 ROUNDING = 1e-12  # of a matrix, relative to its largest entry or eigenvalue
 SMALLEST = 1e-100  # of n of the gap n.x, and one over its largest
@@ -19,15 +20,15 @@ def linear(
     """The oscillator; numbers may be complex, but not the matrices."""
     M, K = np.array(M, float), np.array(K, float)
     with np.errstate(all="ignore"):
-        power = np.power(omega, force_power) if force_power else 1.0
+        power = np.asarray(np.power(omega, force_power))[..., None] if np.any(force_power) else 1.0
     return Linear(
         M=M,
         K=K,
         C=damping(M, K, C, modal_damping, rayleigh),
         normal=np.array(contact_normal, float),
-        constant=np.array(constant),
-        sine=power * np.array(force),
-        cosine=power * np.array(force_cos),
+        constant=vector(constant),
+        sine=power * vector(force),
+        cosine=power * vector(force_cos),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
         **contact(**stops),
@@ -37,13 +38,14 @@ def linear(
 def damping(M, K, C, modal_damping, rayleigh) -> np.ndarray:
     """The damping matrix: as given, from a ratio for each mode, or alpha M + beta K; else none."""
     if rayleigh is not None:
-        return rayleigh[0] * M + rayleigh[1] * K
+        alpha, beta = (np.asarray(one)[..., None, None] for one in rayleigh)
+        return alpha * M + beta * K
     if modal_damping is not None:
         from scipy.linalg import eigh  # slow to import
 
         squares, psi = eigh(K, M)  # psi^T M psi = 1
         carried = M @ psi
-        return (carried * (2 * np.array(modal_damping) * np.sqrt(np.maximum(squares, 0)))) @ carried.T
+        return (carried * (2 * vector(modal_damping) * np.sqrt(np.maximum(squares, 0)))[..., None, :]) @ carried.T
     return np.zeros_like(M) if C is None else np.array(C, float)
 
 

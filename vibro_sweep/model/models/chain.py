@@ -5,18 +5,19 @@ import numpy as np
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, POSITIVE, Parameter, ParameterError
+from vibro_sweep.model.stacks import vector
 
 
 def chain(*, m, k, c, force, constant, stop_at, omega, tau, **stops) -> Linear:
     """The oscillator; numbers may be complex."""
-    n = len(m)
+    n, masses = len(m), vector(m)
     return Linear(
-        M=np.diag(m),
+        M=masses[..., None] * np.eye(n),
         K=between_walls(k),
         C=between_walls(c),
         normal=np.eye(n)[stop_at - 1],
-        constant=np.array(constant),
-        sine=np.array(force),
+        constant=vector(constant),
+        sine=vector(force),
         cosine=np.zeros(n),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
@@ -25,9 +26,13 @@ def chain(*, m, k, c, force, constant, stop_at, omega, tau, **stops) -> Linear:
 
 
 def between_walls(springs) -> np.ndarray:
-    """The matrix (N, N) of N + 1 springs, or dampers, in a row."""
-    values = np.array(springs)
-    return np.diag(values[:-1] + values[1:]) - np.diag(values[1:-1], 1) - np.diag(values[1:-1], -1)
+    """The matrix (..., N, N) of N + 1 springs, or dampers, in a row."""
+    values = vector(springs)
+    n = values.shape[-1] - 1
+    result, i = np.zeros((*values.shape[:-1], n, n), values.dtype), np.arange(n)
+    result[..., i, i] = values[..., :-1] + values[..., 1:]
+    result[..., i[1:], i[:-1]] = result[..., i[:-1], i[1:]] = 0.0 - values[..., 1:-1]
+    return result
 
 
 def _check(given) -> None:

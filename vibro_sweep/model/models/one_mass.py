@@ -5,17 +5,18 @@ import numpy as np
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import CONTACT, OF_STOPS, UNITS, WHICH_STOPS, Model, Option
 from vibro_sweep.model.parameters import NOT_NEGATIVE, NUMBER, Parameter
+from vibro_sweep.model.stacks import matrix, vector
 
 
 def one_mass(*, k, zeta, F, constant, base, omega, tau, **stops) -> Linear:
     """The oscillator; numbers may be complex."""
     return Linear(
         M=np.ones((1, 1)),
-        K=np.array([[k]]),
-        C=np.array([[2 * zeta]]),
+        K=matrix([[k]]),
+        C=matrix([[2 * zeta]]),
         normal=np.ones(1),
-        constant=np.array([constant]),
-        sine=np.array([F * omega * omega if base else F]),
+        constant=vector([constant]),
+        sine=vector([F * omega * omega if base else F]),
         cosine=np.zeros(1),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,

@@ -5,17 +5,18 @@ import numpy as np
 from vibro_sweep.model.linear import Linear, contact
 from vibro_sweep.model.models.declaration import OF_STOPS, UNITS, WHICH_STOPS, Model
 from vibro_sweep.model.parameters import PARAMETERS
+from vibro_sweep.model.stacks import matrix, vector
 
 
 def two_mass(*, mu_m, mu_k, zeta, f2, omega, tau, mu_c=None, **stops) -> Linear:
     """The oscillator; numbers may be complex."""
     return Linear(
-        M=np.array([[1, 0], [0, mu_m]]),
-        K=np.array([[1, -1], [-1, 1 + mu_k]]),
-        C=2 * zeta * np.array([[1, -1], [-1, 1 + (mu_k if mu_c is None else mu_c)]]),
+        M=matrix([[1, 0], [0, mu_m]]),
+        K=matrix([[1, -1], [-1, 1 + mu_k]]),
+        C=2 * np.asarray(zeta)[..., None, None] * matrix([[1, -1], [-1, 1 + (mu_k if mu_c is None else mu_c)]]),
         normal=np.array([1.0, 0.0]),
         constant=np.zeros(2),
-        sine=np.array([1 - f2, f2]),
+        sine=vector([1 - f2, f2]),
         cosine=np.zeros(2),
         omega=omega,
         tau=None if isinstance(tau, str) else tau,
