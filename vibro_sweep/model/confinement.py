@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.model.contact import Contact, rest_force
 from vibro_sweep.model.linear import Linear
-from vibro_sweep.model.stacks import dot, only, solved, times, transposed
+from vibro_sweep.model.stacks import dot, modulus, only, solved, times, transposed
 from vibro_sweep.model.steady import steady_amplitudes
 
 SINGULAR = 1e-12  # of the largest eigenvalue of K: a smaller one may be rounding
@@ -26,7 +26,7 @@ def confinement_of(q: Linear, contact: Contact) -> Confinement:
     n = q.normal.shape[-1]
     stiffness = np.linalg.eigvalsh(q.K)
     turning = steady_amplitudes(q) * np.exp(1j * np.asarray(q.tau))[..., None]
-    swing = np.abs(dot(q.normal + 0j, turning))
+    swing = modulus(dot(q.normal + 0j, turning))
     there = (stiffness[..., 0] > SINGULAR * stiffness[..., -1]) & np.isfinite(swing)
     K = only(there, q.K)
     rest = solved(K, rest_force(q, contact.origin))  # as seen from x0

@@ -20,12 +20,11 @@ import numpy as np
 
 from vibro_sweep.model.contact import Natural, flight_matrix
 from vibro_sweep.model.metric import Matrix, in_the_metric, parts
-from vibro_sweep.model.pairs_of_roots import NO_PLANES, Planes, moved, planes_of_roots
+from vibro_sweep.model.pairs_of_roots import NO_PLANES, UNVISITED, Planes, moved, planes_of_roots
 from vibro_sweep.model.stacks import diagonal, dot, finite, kron2, only, transposed
 
 CLASSICAL = 1e-13  # of the matrices: what may couple modes and be neglected
 NO_PART = 1e-14  # of the terms of the gap: what is rounding
-UNVISITED = 1e-10  # share of the gap in a plane, in the metric of the masses, that counts as zero
 SLOWEST = 1e-5  # of omega: a plane that turns more slowly has the scale of omega
 LEAST_SCALE = 1e-3  # of the rate of a plane: near critical damping it shears instead of turning, and any scale serves
 

@@ -47,6 +47,11 @@ def columns(x: np.ndarray) -> np.ndarray:
     return sum(np.moveaxis(x, -2, 0))
 
 
+def modulus(z: np.ndarray) -> np.ndarray:
+    """|z| (...), as it is computed of a single number."""
+    return np.hypot(z.real, z.imag)
+
+
 def finite(A: np.ndarray, axes: int = 2) -> np.ndarray:
     """(...): whether all entries of each are, of matrices or (axes: 1) vectors."""
     return np.isfinite(A).all(tuple(range(-axes, 0)))

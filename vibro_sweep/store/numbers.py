@@ -18,7 +18,7 @@ from vibro_sweep.model.linear import Linear
 from vibro_sweep.model.models import DEFAULT
 from vibro_sweep.model.models.declaration import UNITS
 from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.stacks import dot
+from vibro_sweep.model.stacks import dot, modulus
 from vibro_sweep.model.state import start
 from vibro_sweep.model.steady import gap_responses, static_states, steady_amplitudes
 from vibro_sweep.scene import Scene
@@ -122,7 +122,7 @@ def _of_built(q: Linear) -> dict[str, np.ndarray]:
 
 def _free_motion(q: Linear) -> tuple[np.ndarray, np.ndarray]:
     """Amplitude of the gap and its middle, for each oscillator of a stack; NaN where there are none."""
-    return np.abs(gap_responses(q, steady_amplitudes(q))), dot(q.normal, static_states(q))
+    return modulus(gap_responses(q, steady_amplitudes(q))), dot(q.normal, static_states(q))
 
 
 def slabs(scene: Scene) -> Iterator[tuple[slice, ...]]:
