@@ -38,7 +38,7 @@ def drawn(rng: np.random.Generator) -> tuple[vs.types.AnyOscillator, str]:
         own = dict(mass_ratio=0.05, zeta=0.01, F=0.02)
     else:
         own = dict(mu_m=rng.uniform(0.1, 10), mu_k=rng.uniform(0, 5), zeta=0.05, f2=0.3, mu_c=rng.uniform(0, 5))
-    of_all = set(SWEPT[name]) - ({"R_left"} if "R" not in stops else set())
+    of_all = set(SWEPT[name]) - ({"R", "R_left"} if "R" not in stops else set())
     return vs.Oscillator.named(name, **own, **stops), rng.choice(sorted(of_all))
 
 
