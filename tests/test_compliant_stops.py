@@ -20,56 +20,7 @@ def one_mass(**changes):
     return vs.Oscillator.named("one_mass", **changes)
 
 
-# --- against a slow simulator in forty digits
-
-
-def drawn(rng):
-    """An oscillator of one to three masses with any law of contact, and a start."""
-    N, z = int(rng.integers(1, 4)), rng.choice([0, 10 ** rng.uniform(-2, 0.3)])
-    A, B = rng.normal(size=(2, N, N))
-    M = np.eye(N) + 0.3 * A @ A.T if rng.random() < 0.5 else np.diag(rng.uniform(0.5, 3, N))
-    K = B @ B.T + 0.2 * np.eye(N)
-    normal = np.eye(N)[0] if rng.random() < 0.6 else rng.normal(size=N)
-    mass = 1 / (normal @ np.linalg.solve(M, normal))
-    k, preload = 10 ** rng.uniform(-1, 8), rng.choice([0, 10 ** rng.uniform(-2, 0.5)])
-    stop = dict(k_stop=k * mass, c_stop=2 * z * math.sqrt(k) * mass, preload=preload)
-    stop["release"] = str(rng.choice(["displacement", "force"]))
-    stops = str(rng.choice(["both", "right"]))
-    if stops == "both" and rng.random() < 0.6:
-        left = [("R_left", rng.uniform(0.2, 1)), ("k_stop_left", 10 ** rng.uniform(-1, 6) * mass)]
-        stop |= [left[int(rng.integers(2))]]
-    system = vs.Oscillator(
-        M, K, rng.uniform(0, 0.2) * K, force=rng.normal(size=N), contact_normal=normal, omega=rng.uniform(0.4, 2),
-        b=rng.uniform(0.1, 1.5), stops=stops, tau=rng.uniform(0, 6), **stop,
-    )  # fmt: skip
-    start = np.zeros(2 * N)
-    start[1] = 0.5 * rng.normal()
-    if rng.random() < 0.3 and stop["release"] and "R_left" not in stop:
-        start[0] = 2 * rng.normal()
-    return system, start
-
-
-@pytest.mark.parametrize(
-    "count, seed",
-    [(12, 3), pytest.param(40, 5, marks=pytest.mark.slow), pytest.param(1000, 6, marks=pytest.mark.soak)],
-)
-def test_contacts_of_random_oscillators(count, seed):
-    rng, counted, worst = np.random.default_rng(seed), 0, 0.0
-    for _ in range(count):
-        system, start = drawn(rng)
-        orbit = vs.simulate(system, start, 12)
-        exact = compliant.simulate(system.linear, start.tolist(), contacts=6, periods=10)
-        assert orbit.status == "ok" and len(orbit.contacts) >= len(exact.contacts)
-        if not exact.contacts:
-            continue
-        counted += 1
-        for name in FIELDS:
-            found = orbit.contacts[name][: len(exact.contacts)]
-            wanted = np.array([float(getattr(one, name)) for one in exact.contacts])
-            scale = 1.0 if name.startswith("t") else np.abs(wanted).max()
-            worst = max(worst, float(np.abs(found - wanted).max()) / scale)
-    print(f"{count} oscillators, {counted} with contacts; errors of their first six at most {worst:.1e}")
-    assert counted > count / 2 and worst < 1e-9  # chaotic ones lose digits from contact to contact
+# --- against a simulator in forty digits; random oscillators: test_compliant_contacts.py
 
 
 @pytest.mark.parametrize("stiffness", [29, 1e4, 1e8])

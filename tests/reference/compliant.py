@@ -94,7 +94,7 @@ class Oscillator:
             row[2 * i], row[2 * i + 1] = side * at * self.normal[i], side * speed * self.normal[i]
         row[2 * self.N + 2] = constant - side * at * self.walls[side]
         row[self.place_of_s(side)] = arb(s)
-        return tuple(row)
+        return tuple(a.mid() for a in row)
 
     def depth(self, side):
         return self.row(side, at=1)

@@ -1,0 +1,141 @@
+"""How exact the contacts of random oscillators with compliant stops are, and whether they are the right ones.
+
+The reference computes the same orbits in forty digits, and again with all numbers moved by one rounding: what that does
+is the unit of errors. Beyond chaos, where rounding has moved a time by more than CHAOS, nothing is compared.
+"""
+
+import math
+
+import numpy as np
+from mpmath import mp, mpf
+from reference import compliant
+
+import vibro_sweep as vs
+from support.stiff_contacts import moved
+
+COUNT = 20  # contacts compared
+MOVES = 4
+CHAOS = 1e-8  # of a time
+FIELDS = ("t_touch", "t_release", "v_touch", "v_release", "max_penetration", "max_force")
+PERIODS = 20
+
+
+def stop_of(rng, mass):
+    """k_stop, c_stop and preload of a stop; z, the damping ratio of the gap's mass on it: 0, or 0.01 to 3."""
+    k, z = 10 ** rng.uniform(-1, 8), rng.choice([0, 10 ** rng.uniform(-2, 0.5)])
+    preload = rng.choice([0, 10 ** rng.uniform(-2, 0.5)])
+    return {"k_stop": k * mass, "c_stop": 2 * z * math.sqrt(k) * mass, "preload": preload}
+
+
+def drawn(seed):
+    """An oscillator of one to four masses with any laws of contact, and a start; one in five begins inside a stop."""
+    rng = np.random.default_rng([seed, 20])
+    N = int(rng.integers(1, 5))
+    A, B = rng.normal(size=(2, N, N))
+    M = np.eye(N) + 0.3 * A @ A.T if rng.random() < 0.5 else np.diag(rng.uniform(0.5, 3, N))
+    K = B @ B.T + 0.2 * np.eye(N)
+    normal = np.eye(N)[0] if rng.random() < 0.6 else rng.normal(size=N)
+    mass = 1 / (normal @ np.linalg.solve(M, normal))
+    stops = str(rng.choice(["both", "right"]))
+    laws = stop_of(rng, mass) | {"release": str(rng.choice(["displacement", "force"]))}
+    if stops == "both":
+        kind = rng.integers(3)  # the same law as on the right, another one, or a rigid stop
+        left = [{}, {f"{name}_left": x for name, x in stop_of(rng, mass).items()}, {"R_left": rng.uniform(0.2, 1)}]
+        laws |= left[kind]
+    numbers = dict(force=rng.normal(size=N), omega=rng.uniform(0.4, 2), b=rng.uniform(0.05, 0.5), tau=rng.uniform(0, 6))
+    system = vs.Oscillator(M, K, rng.uniform(0, 0.2) * K, contact_normal=normal, stops=stops, **numbers, **laws)
+    start = np.zeros(2 * N)
+    start[1::2] = 0.5 * rng.normal(size=N)
+    if rng.random() < 0.2:
+        start[0::2] = normal / (normal @ normal) * system.b * (1 + 10 ** rng.uniform(-6, 0.3))
+    return system, start
+
+
+def compared(seed):
+    """Errors by field in units of what rounding the data does, and how many contacts were compared."""
+    system, start = drawn(seed)
+    orbit = vs.simulate(system, start, PERIODS)
+    report = {"seed": seed, "masses": len(system.linear.normal), "release": system.linear.by_force, "compared": 0}
+    report |= {"status": str(orbit.status), "errors": dict.fromkeys(FIELDS, 0.0), "defect": ""}
+    found, end = orbit.contacts[~np.isnan(orbit.contacts["t_release"])][:COUNT], PERIODS * system.period
+    if len(orbit.sticking):  # chatter before it has no end
+        began = orbit.sticking["t_on"][0]
+        last = max([0.0, *(t for t in orbit.impacts["t"] if t < began), *(t for t in found["t_release"] if t < began)])
+        found, end = found[found["t_release"] <= last], last * (1 + 1e-12)
+    elif orbit.status != "ok" and len(found) < COUNT:  # ever shorter contacts, more than are followed
+        end = found["t_release"][-1] * (1 + 1e-12) if len(found) else 0.0
+    if not len(found):
+        exact = compliant.simulate(system.linear, start, contacts=1, until=end).contacts
+        return report | {"defect": "missed" if exact and exact[0].t_release < end * (1 - 1e-9) else ""}
+    return report | judged(system, start, found, end)
+
+
+def judged(system, start, found, end):
+    with mp.workdps(50):
+        rng, orbits = np.random.default_rng(1), []
+        for i in range(1 + MOVES):
+            numbers, state = moved_numbers(system.linear, start, rng if i else None)
+            orbits.append(compliant.simulate(numbers, state, contacts=len(found), until=2 * end).contacts)
+        return errors_of(found, orbits)
+
+
+def moved_numbers(q, start, rng):
+    """As `moved`, for the numbers that are neither infinite nor words."""
+    kept = {name: getattr(q, name) for name in q._fields if not _is_number(getattr(q, name))}
+    numbers, state = moved(_Numbers({name: a for name, a in q._asdict().items() if name not in kept}), start, rng)
+    vars(numbers).update(kept)
+    return numbers, state
+
+
+class _Numbers(dict):
+    def _asdict(self):
+        return self
+
+
+def _is_number(a):
+    a = np.asarray(a)
+    return a.dtype.kind == "f" and np.all(np.isfinite(a))
+
+
+def errors_of(found, orbits):
+    """Up to the contact from which on rounding the data changes which contacts there are, or moves them far."""
+    exact, errors = orbits[0], dict.fromkeys(FIELDS, 0.0)
+    for i in range(len(found)):
+        if any(len(one) <= i for one in orbits):
+            same = len({len(one) for one in orbits}) == 1
+            return {"errors": errors, "compared": i, "defect": "invented" if same else ""}
+        effects = {
+            name: max(abs(getattr(one[i], name) - getattr(exact[i], name)) for one in orbits[1:]) for name in FIELDS
+        }
+        if max(effects["t_touch"], effects["t_release"]) > CHAOS * exact[i].t_release:
+            return {"errors": errors, "compared": i}
+        if exact[i].side != found["side"][i]:
+            return {"errors": errors, "compared": i, "defect": "another side"}
+        for name in FIELDS:
+            wanted = getattr(exact[i], name)
+            unit = effects[name] + math.ulp(float(wanted))
+            errors[name] = max(errors[name], float(abs(mpf(float(found[name][i])) - wanted) / unit))
+    return {"errors": errors, "compared": len(found)}
+
+
+def line(report):
+    errors = " ".join(f"{error:8.2f}" for error in report["errors"].values())
+    release = "force" if report["release"] else "displacement"
+    return (
+        f"{report['seed']:5d} {report['masses']} {release:12s} {report['compared']:2d} {errors} "
+        f"{report['defect']}{'' if report['status'] == 'ok' else report['status']}"
+    ).rstrip()
+
+
+def table(reports):
+    """What was tried, and how large errors are."""
+    counted = [one for one in reports if one["compared"]]
+    bad = [one for one in reports if one["status"] != "ok"]
+    yield (
+        f"{len(reports)} oscillators drawn, {len(counted)} with contacts that were compared, "
+        f"{sum(one['compared'] for one in reports)} contacts; status not ok {len(bad)}, "
+        f"contacts missed or invented {sum(bool(one['defect']) for one in reports)}"
+    )
+    for name in FIELDS:
+        half, most, largest = np.quantile([one["errors"][name] for one in counted], [0.5, 0.9, 1.0])
+        yield f"  {name:15s} 50 % {half:.2f}, 90 % {most:.2f}, largest {largest:.2f}"

@@ -1,0 +1,50 @@
+"""The first contacts with compliant stops of random oscillators: as exact as rounding the data allows.
+
+`python tests/test_compliant_contacts.py FIRST LAST` compares the oscillators FIRST ... LAST - 1, a line for each;
+tests/data/compliant_contacts.log is what it printed.
+"""
+
+import sys
+
+import pytest
+from support.compliant_contacts import FIELDS, compared, line, table
+
+COUNT = 1000
+LEAST = 10.0  # errors allowed, in units of what rounding the data does
+
+
+def hold(reports):
+    assert not [line(one) for one in reports if one["defect"]]
+    assert not [line(one) for one in reports if max(one["errors"].values()) > LEAST]
+    assert sum(one["compared"] for one in reports) > 5 * len(reports)
+
+
+def test_contacts_of_one_mass_and_of_two():
+    """Those of more masses need kernels that no other fast test compiles."""
+    hold([compared(seed) for seed in (12, 17, 31, 32, 33, 35)])
+
+
+@pytest.mark.slow
+def test_contacts_of_sixty_oscillators():
+    hold([compared(seed) for seed in range(60)])
+
+
+@pytest.mark.soak
+def test_contacts_of_a_thousand_oscillators(capsys):
+    reports = [compared(seed) for seed in range(COUNT)]
+    with capsys.disabled():
+        print("\n" + "\n".join(table(reports)))
+    hold(reports)
+
+
+if __name__ == "__main__":
+    print(
+        f" seed N {'release':12s}  n "
+        + " ".join(f"{name[-8:]:>8s}" for name in FIELDS)
+        + ": in units of what rounding does"
+    )
+    reports = []
+    for seed in range(*map(int, sys.argv[1:])):
+        reports.append(compared(seed))
+        print(line(reports[-1]), flush=True)
+    print("\n".join(table(reports)))
