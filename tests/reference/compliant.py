@@ -7,12 +7,12 @@ or relaxes. An event is a proven root of a linear function of y.
 
 from typing import NamedTuple
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat, arb_poly, ctx
 from mpmath import mp, mpf
 
 from reference.balls import falling_root, from_ball, to_ball, to_balls
 
-REACH = 2  # |A| times the length of a step
+REACH = 8  # |A| times the length of a step
 FADED = mpf(10) ** -45  # part of where it began, at which a stop without preload has relaxed
 
 
@@ -42,7 +42,7 @@ class Flow:
         self.h, self.order = arb(REACH / norm), 1
         while mpf(REACH) ** self.order / mp.factorial(self.order) > mp.eps / (1 + rate):
             self.order += 1
-        self.tables = {}
+        self.tables, self.step = {}, (A * self.h).exp().mid()
 
     def along(self, row, y):
         """Coefficients of row . y(h u) by powers of u."""
@@ -55,7 +55,9 @@ class Flow:
         return [a.mid() for a in (self.tables[row] * y).entries()]
 
     def at(self, y, u):
-        """y after the time u."""
+        """y after the time u <= h."""
+        if u == self.h:
+            return (self.step * y).mid()
         term = total = y
         for n in range(1, self.order):
             term = (self.A * term * (u / n)).mid()
@@ -148,11 +150,14 @@ def leading(c, tiny):
 
 
 def largest_within(c, u):
-    """The largest value of a polynomial in [0, u]."""
-    turned = [n * a * u ** (n - 1) for n, a in enumerate(c)][1:]
-    top = falling_root([a.mid() for a in turned], 0, NARROW) if turned[0] > 0 and u > 0 else None
-    ends = [arb(0), u] if top is None else [arb(0), u, u * top]
-    return max(sum((a * end**n for n, a in enumerate(c)), arb(0)).mid() for end in ends)
+    """The largest value of a polynomial in [0, u], u <= 1."""
+    f, sizes = arb_poly(c), [n * abs(float(a)) for n, a in enumerate(c)]
+    ends = [c[0], f(u).mid()]
+    if sizes[1] < 1.000001 * sum(sizes[2:]) and f.derivative()(arb(0)) > 0:
+        turned = f.derivative()(arb_poly([0, u]))
+        top = falling_root([a.mid() for a in turned.coeffs()], 0, NARROW) if turned.degree() > 0 else None
+        ends += [] if top is None else [f(u * top).mid()]
+    return max(ends)
 
 
 NARROW = arb((1, -90))
