@@ -11,7 +11,7 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 import numpy as np
 import pytest
 from support import slow_cases
-from support.scenes import ALL, PAPER, SCENES, arrays_of, assert_same_bits, done, run, scene_of
+from support.scenes import ALL, COMPLIANT, PAPER, SCENES, arrays_of, assert_same_bits, done, run, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks, compute
@@ -19,13 +19,18 @@ from vibro_sweep.driver.attractor_ids import number_attractors
 from vibro_sweep.driver.drawn_starts import starts_of
 from vibro_sweep.scene import parse_scene
 
+# what `run` and `scene_of` take, by name
+EVERY = {name: (text,) for name, text in SCENES.items()} | COMPLIANT
 
-@pytest.mark.parametrize("name", ["random", "follow", "attractors", *slow_cases("plane", "basins")])
+
+@pytest.mark.parametrize(
+    "name", ["random", "follow", "attractors", "compliant", "compliant, force", *slow_cases("plane", "basins")]
+)
 def test_workers_do_not_matter(tmp_path, name):
-    one = run(tmp_path, SCENES[name], workers=1)
+    one = run(tmp_path, *EVERY[name], workers=1)
     assert np.all(one["status"] == 0)
     for workers in (2, 3):
-        assert_same_bits(run(tmp_path, SCENES[name], workers=workers), one)
+        assert_same_bits(run(tmp_path, *EVERY[name], workers=workers), one)
 
 
 @pytest.mark.parametrize("model", ["", "mu_c: 2, "])
@@ -48,9 +53,9 @@ observe: [section, lyapunov, impacts]
             assert together[key][box].tobytes() == values.tobytes(), (box, key)
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", EVERY)
 def test_block_size_does_not_matter(tmp_path, name):
-    scene, whole = scene_of(SCENES[name]), run(tmp_path, SCENES[name])
+    scene, whole = scene_of(*EVERY[name]), run(tmp_path, *EVERY[name])
     numbers = []
     for size in (1, 4, 1000):
         pieces = list(blocks.blocks(scene, points_per_block=size))
@@ -66,12 +71,13 @@ def test_block_size_does_not_matter(tmp_path, name):
     assert (numbers[0], numbers[-1]) == ((2, 2) if name == "follow" else (math.prod(scene.sweep_shape), 1))
 
 
-def test_executors_do_not_matter(tmp_path):
-    own = run(tmp_path, SCENES["random"])
+@pytest.mark.parametrize("name", ["random", *slow_cases("compliant, force")])
+def test_executors_do_not_matter(tmp_path, name):
+    own = run(tmp_path, *EVERY[name])
     with ThreadPoolExecutor(2) as pool:
-        assert_same_bits(run(tmp_path, SCENES["random"], executor=pool), own)
+        assert_same_bits(run(tmp_path, *EVERY[name], executor=pool), own)
     with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
-        assert_same_bits(run(tmp_path, SCENES["random"], executor=pool), own)
+        assert_same_bits(run(tmp_path, *EVERY[name], executor=pool), own)
 
 
 def test_random_starts(tmp_path):

@@ -43,6 +43,43 @@ orbit: {transient: 100, record: 40}
 observe: [attractors, section]""",
 }
 
+# of each law of contact, as (text, system): a scene with what it may observe
+SOFT = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, b: 4, k_stop: 400"
+CONTACTS = "observe: [section, lyapunov, multipliers, contacts]"
+COMPLIANT = {
+    "compliant": (
+        f"""
+sweep: {{b: {{start: 3, stop: 7, num: 19}}}}
+start: {{random: 2, seed: 5}}
+orbit: {{transient: 60, record: 40}}
+trajectory: {{periods: 2, samples: 50}}
+{CONTACTS}""",
+        f"{SOFT}, c_stop: 2",
+    ),
+    "compliant, force": (
+        f"""
+sweep: {{k_stop: {{values: [3, 100, 1e6]}}, b: {{start: 3, stop: 6, num: 5}}}}
+orbit: {{transient: 60, record: 40}}
+{CONTACTS}""",
+        f"{SOFT}, c_stop: 8, release: force, preload: 0.1",
+    ),
+    "compliant, left rigid": (
+        """
+sweep: {b: {start: 3, stop: 7, num: 17}}
+orbit: {transient: 60, record: 40}
+observe: [section, lyapunov, contacts, impacts]""",
+        f"{SOFT}, c_stop: 2, R_left: 0.8",
+    ),
+    "compliant, attractors": (
+        """
+sweep: {b: {start: 3, stop: 6, num: 7}}
+start: {random: 4, seed: 2}
+orbit: {transient: 400, record: 100}
+observe: [attractors]""",
+        f"{SOFT}, c_stop: 2",
+    ),
+}
+
 
 def scene_of(text, system=PAPER):
     return parse_scene(f"system: {{{system}}}\n{text}")
