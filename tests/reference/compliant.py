@@ -5,6 +5,7 @@ s+, s-), with s the places of stops that relax, obeys y' = A y between events, w
 or relaxes. An event is a proven root of a linear function of y.
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 from flint import arb, arb_mat, arb_poly, ctx
@@ -150,14 +151,16 @@ def leading(c, tiny):
 
 
 def largest_within(c, u):
-    """The largest value of a polynomial in [0, u], u <= 1."""
+    """The largest value of a polynomial in [0, u], u <= 1; in each of its parts it turns back once at most."""
     f, sizes = arb_poly(c), [n * abs(float(a)) for n, a in enumerate(c)]
-    ends = [c[0], f(u).mid()]
-    if sizes[1] < 1.000001 * sum(sizes[2:]) and f.derivative()(arb(0)) > 0:
-        turned = f.derivative()(arb_poly([0, u]))
-        top = falling_root([a.mid() for a in turned.coeffs()], 0, NARROW) if turned.degree() > 0 else None
-        ends += [] if top is None else [f(u * top).mid()]
-    return max(ends)
+    found = [c[0], f(u).mid()]
+    if sizes[1] < 1.000001 * sum(sizes[2:]):
+        slope, edges = f.derivative(), [(u * n / REACH).mid() for n in range(REACH + 1)]
+        for low, high in pairwise(edges):
+            if slope(low) > 0 and slope(high) < 0:
+                part = slope(arb_poly([low, high - low])).coeffs()
+                found.append(f(low + (high - low) * falling_root([a.mid() for a in part], 0, NARROW)).mid())
+    return max(found)
 
 
 NARROW = arb((1, -90))
