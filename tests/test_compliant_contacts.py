@@ -7,7 +7,8 @@ tests/data/compliant_contacts.log is what it printed.
 import sys
 
 import pytest
-from support.compliant_contacts import FIELDS, compared, line, table
+from support import slow_cases
+from support.compliant_contacts import FIELDS, compared, error_of_sections, line, table
 
 COUNT = 1000
 LEAST = 10.0  # errors allowed, in units of what rounding the data does
@@ -22,6 +23,13 @@ def hold(reports):
 def test_contacts_of_one_mass_and_of_two():
     """Those of more masses need kernels that no other fast test compiles."""
     hold([compared(seed) for seed in (12, 17, 31, 32, 33, 35)])
+
+
+@pytest.mark.parametrize("seeds", [(12, 17, 31, 33), *slow_cases(range(60))])
+def test_sections_of_sweeps(seeds):
+    """Of eight orbits side by side, over six periods."""
+    errors = [error for error in map(error_of_sections, seeds) if error is not None]
+    assert len(errors) > len(seeds) / 2 and max(errors) <= LEAST
 
 
 @pytest.mark.slow

@@ -12,6 +12,7 @@ from reference import compliant
 
 import vibro_sweep as vs
 from support.stiff_contacts import moved
+from vibro_sweep.model.state import coordinates
 
 COUNT = 20  # contacts compared
 MOVES = 4
@@ -77,6 +78,28 @@ def judged(system, start, found, end):
             numbers, state = moved_numbers(system.linear, start, rng if i else None)
             orbits.append(compliant.simulate(numbers, state, contacts=len(found), until=2 * end).contacts)
         return errors_of(found, orbits)
+
+
+def error_of_sections(seed, periods=6):
+    """Largest error of the section states of a sweep, which computes eight orbits side by side, in units of what
+    rounding the data does; None where chaos or a stop that is met ever more often leaves nothing to compare."""
+    system, start = drawn(seed)
+    names = [one.name for one in coordinates(system.masses)]
+    begin = dict(zip(names, start, strict=True))
+    data = vs.sweep(system, {"omega": [system.linear.omega]}, transient=0, record=periods, start=begin)
+    if data.status.values[0] != 0 or len(vs.simulate(system, start, periods).sticking):
+        return None
+    with mp.workdps(50):
+        rng, orbits = np.random.default_rng(1), []
+        for i in range(1 + MOVES):
+            numbers, state = moved_numbers(system.linear, start, rng if i else None)
+            orbits.append(np.array(compliant.simulate(numbers, state, periods=periods + 1e-9).section[1 : periods + 1]))
+        found = np.stack([data[name].values[0] for name in names], -1)
+        effect = np.max([np.abs(one - orbits[0]).max(1) for one in orbits[1:]], 0)
+        error = np.abs(found - orbits[0]).max(1)
+        counted = effect < CHAOS
+        unit = effect + np.spacing(np.abs(found).max(1))
+        return float((error / unit)[counted].max()) if counted.any() else None
 
 
 def moved_numbers(q, start, rng):
