@@ -31,6 +31,7 @@ class Orbit(NamedTuple):
     contacts: list[Contact]
     impacts: list[tuple]  # (t, side, v)
     section: list[list]
+    taken: mpf  # the energy that stops have taken from the masses
 
 
 class Flow:
@@ -186,7 +187,8 @@ class Motion:
         phase = [to_ball(mp.sin(tau)), to_ball(mp.cos(tau)), arb(1), arb(0), arb(0)]
         self.y = arb_mat(o.size, 1, [to_ball(a) for a in state] + phase)
         self.pressed, self.relaxing = 0, {}  # of stops that relax: where they began
-        self.left, self.kept = 0, Orbit([], [], [])  # left: the stop whose distance begins with a zero
+        self.left = 0  # the stop whose distance begins with a zero
+        self.kept, self.taken = Orbit([], [], [], mpf(0)), arb(0)
         for side in o.walls:
             if o.R[side] is None and value_of(o.depth(side), self.y) > 0:
                 if o.by_force and value_of(o.force(side), self.y) < 0:
@@ -246,11 +248,17 @@ class Motion:
             if self.pressed:
                 rows = o.depth(self.pressed), o.force(self.pressed)
                 found = [largest_within(flow.along(row, self.y), part) for row in rows]
+                self.taken += flow.h * self.work(flow, min(u, (end - self.t).mid()) / flow.h)
                 self.peaks = [max(pair) for pair in zip(self.peaks, found, strict=True)]
             self.y, self.t, self.left = flow.at(self.y, u), (self.t + u).mid(), 0
             if what:
                 self.happen(what, side)
-        return self.kept
+        return self.kept._replace(taken=from_ball(self.taken))
+
+    def work(self, flow, part):
+        """The integral of the force of the pressed stop times delta' over this part of a step, by parts of a step."""
+        force, speed = (flow.along(row(self.pressed), self.y) for row in (self.o.force, self.o.speed))
+        return (arb_poly(force) * arb_poly(speed)).integral()(part).mid()
 
     def keep_sections(self, flow, u, period, end):
         """Those from now to the time u after."""
@@ -264,6 +272,7 @@ class Motion:
             self.forget(side)
         elif what == "touch" and o.R[side] is not None:
             self.kept.impacts.append((from_ball(self.t), side, from_ball(speed)))
+            self.taken += o.mass * (1 - o.R[side]) * (1 + o.R[side]) * speed * speed / 2
             self.y, self.left = o.kick(self.y, -side * (1 + o.R[side]) * speed), side
         elif what == "touch":
             self.forget(side)
