@@ -251,7 +251,7 @@ class Motion:
                 self.taken += flow.h * self.work(flow, min(u, (end - self.t).mid()) / flow.h)
                 self.peaks = [max(pair) for pair in zip(self.peaks, found, strict=True)]
             self.y, self.t, self.left = flow.at(self.y, u), (self.t + u).mid(), 0
-            if what:
+            if what and self.t <= end:
                 self.happen(what, side)
         return self.kept._replace(taken=from_ball(self.taken))
 
