@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.linalg import eigvals, expm
+from support import slow_cases
 from support.branches import repeated
 from support.oscillators import CAVITY, CHAIN, ONE_MASS, PAPER
 
@@ -20,9 +21,11 @@ ORBITS = {
     "a free mode": (CAVITY, "LR", 1),
 }
 CASES = [(one, name) for one, (family, *_) in ORBITS.items() for name, x in family.numbers.items() if type(x) is float]
+FAST = [case for case in CASES if case[0] != "chain"]  # whose kernels of branches no other fast test needs
+SLOW = [case for case in CASES if case[0] == "chain"]
 
 
-@pytest.mark.parametrize(("one", "name"), CASES)
+@pytest.mark.parametrize(("one", "name"), [*FAST, *slow_cases(*SLOW)])
 def test_slopes_are_those_of_differences(one, name):
     family, itinerary, periods = ORBITS[one]
     s = vs.periodic_orbit(family, itinerary=itinerary, periods=periods)._solution
@@ -52,8 +55,9 @@ def test_critical_direction_of_a_pitchfork():
 
 
 @pytest.mark.parametrize("count", [1, 40])
-def test_closure_has_the_multipliers(count):
-    solution = repeated(vs.periodic_orbit(CHAIN.replace(b=0.2), itinerary="LR"), count)
+@pytest.mark.parametrize("system", [PAPER, *slow_cases(CHAIN.replace(b=0.2))])
+def test_closure_has_the_multipliers(system, count):
+    solution = repeated(vs.periodic_orbit(system, itinerary="LR"), count)
     linearised, n = Linearised(solution), 2 * len(solution.family.linear.normal)
     one, other = linearised.closure(1), linearised.closure(-1)
     values = eigvals(one + other, other - one)

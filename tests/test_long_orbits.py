@@ -23,7 +23,10 @@ DAMPER = vs.Oscillator.named("ball_in_cavity", mass_ratio=0.27, zeta=0.116, F=0.
 
 @pytest.mark.parametrize(
     ("system", "name"),
-    [(system, name) for system in (PAPER, CHAIN) for name in ("R", "b", "omega")] + [(PAPER, "mu_m"), (CHAIN, "c")],
+    [
+        *((PAPER, name) for name in ("R", "b", "omega", "mu_m")),
+        *slow_cases(*((CHAIN, name) for name in ("R", "b", "omega", "c"))),
+    ],
 )
 def test_slopes_of_a_long_orbit_are_those_of_the_short_one(system, name):
     short = vs.periodic_orbit(system, itinerary="LR")._solution

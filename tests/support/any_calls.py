@@ -33,6 +33,7 @@ SLOW = 20  # times as many other draws as of functions that compute for longer
 COMPUTING = ("windows", "plot", "follow_branches", "bifurcation_curve", "BifurcationCurve.plot", "continue_orbit")
 COMPUTING += ("Scene.estimate", "Branch.plot", "Branch.save", "BifurcationCurve.save", "load")
 COMPUTING += ("Orbit.plot", "PeriodicOrbit.plot", "switch", "sticking_onset", "sweep", "run", "born_at_grazing", "open")
+COMPUTING += ("Orbit.animate", "explore")
 
 
 @dataclass(frozen=True)
