@@ -26,7 +26,7 @@ def write(path, coordinates, quantities, done=None, settings=SETTINGS, time=(), 
         along = along or {}
         file.attrs.update({name: v for name, v in settings.items() if name not in coordinates and name not in along})
         file.attrs.update({"scene": "", "title": "", "history": "", "provenance": "{}"})
-        file.attrs.update({"format": FORMAT, "heap": np.zeros(0, np.uint64)})
+        file.attrs.update({"kind": "sweep", "format": FORMAT, "heap": np.zeros(0, np.uint64)})
         names = [name for name in quantities if name != "status"]
         file.attrs["sweep_dimensions"] = [name for name in coordinates if name != "start"] or h5py.Empty("S1")
         file.attrs["quantities"] = names or h5py.Empty("S1")

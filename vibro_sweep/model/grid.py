@@ -8,7 +8,7 @@ import numpy as np
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.built import Built, sizes_of, stored_of
 from vibro_sweep.model.grazing import resolved
-from vibro_sweep.model.linear import Linear, stacked
+from vibro_sweep.model.linear import Linear, stack_of, stacked
 from vibro_sweep.model.oscillator import System
 from vibro_sweep.model.stops import followers
 
@@ -50,7 +50,7 @@ def linears(system: AnyOscillator, axes: dict[str, np.ndarray]) -> Linear:
     meshes = zip(axes, np.meshgrid(*axes.values(), indexing="ij"), strict=True)
     changes = {key: values for key, values in meshes if key in system.described}
     if not isinstance(system, Built):
-        return system.family.over(shape, changes)
+        return stack_of(system.family, shape, changes)
     rows = zip(*(values.ravel().tolist() for values in changes.values()), strict=True) if changes else [()]
     each = stacked([_one(system.family, dict(zip(changes, row, strict=True))) for row in rows])
     count = math.prod(shape)

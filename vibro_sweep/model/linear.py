@@ -136,14 +136,6 @@ class Family:
         """The oscillator, its phase resolved."""
         return self.built._replace(tau=grazing_phase(self.built)) if self.built.tau is None else self.built
 
-    def over(self, shape: tuple[int, ...], changes: dict[str, np.ndarray]) -> Linear:
-        """A stack of this shape, phases resolved: the oscillators with these numbers (arrays that broadcast to it)."""
-        built = self.build(**(self.numbers | changes))._asdict()
-        own = {name: np.shape(one)[np.ndim(one) - RANKS.get(name, 0) :] for name, one in built.items()}
-        everywhere = {name: np.broadcast_to(one, shape + own[name]) for name, one in built.items() if one is not None}
-        q = Linear(**{"tau": None} | everywhere)
-        return q._replace(tau=grazing_phases(gap_responses(q, steady_amplitudes(q)))) if q.tau is None else q
-
     def derivative(self, name: str, linear: Linear | None = None) -> Linear:
         """Derivatives of all fields by the parameter `name`, exact to rounding. linear: this one's, if it is known."""
         step = self.build(**(self.numbers | {name: self.numbers[name] + 1j * STEP}))
@@ -257,6 +249,15 @@ def static_state(q: Linear) -> np.ndarray | None:
     """
     found = static_states(q)
     return found if np.isfinite(found).all() else None
+
+
+def stack_of(family: Family, shape: tuple[int, ...], changes: dict[str, np.ndarray]) -> Linear:
+    """The oscillators of a family with these numbers, arrays that broadcast to `shape`: a stack, phases resolved."""
+    built = family.build(**(family.numbers | changes))._asdict()
+    own = {name: np.shape(one)[np.ndim(one) - RANKS.get(name, 0) :] for name, one in built.items()}
+    everywhere = {name: np.broadcast_to(one, shape + own[name]) for name, one in built.items() if one is not None}
+    q = Linear(**{"tau": None} | everywhere)
+    return q._replace(tau=grazing_phases(gap_responses(q, steady_amplitudes(q)))) if q.tau is None else q
 
 
 def rest_state(q: Linear) -> np.ndarray:
