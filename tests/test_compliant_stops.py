@@ -155,6 +155,19 @@ def test_what_a_sweep_observes_is_what_an_orbit_has():
         assert 0 < float(data.contact_time[i]) < 1
 
 
+def test_exponents_do_not_depend_on_where_the_section_is():
+    """In contact or not: tau = pi/2 has its sections in contacts."""
+    numbers = dict(k=1, zeta=0.01, drive="base", F=0.9 / 1.26, omega=1.1, k_stop=29, b=1, stops="right")
+    found = []
+    for tau in (math.pi / 2, 0.3):
+        system = vs.Oscillator.named("one_mass", **numbers, tau=tau)
+        data = vs.sweep(system, {"b": [1.0]}, transient=600, record=60, observe=["section", "lyapunov"])
+        assert data.status[0] == 0
+        found.append(data.lyapunov.values.ravel())
+    for exponents in found:
+        assert exponents == pytest.approx([-0.01, -0.01], abs=1e-12)
+
+
 def test_bits_do_not_depend_on_workers_or_on_other_points():
     system, axes = vs.System(**PAPER, b=4, k_stop=1e3, c_stop=2), {"b": np.linspace(3, 7, 40)}
     how = dict(transient=50, record=30, observe=["section", "lyapunov", "contacts"])

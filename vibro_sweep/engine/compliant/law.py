@@ -159,6 +159,14 @@ def relax_from(law, i, places):
             contact.cell[n], contact.offset[n] = 0, 0.0
 
 
+@inline
+def is_at_rest(law, o):
+    """Whether a stop holds the mass: not whether the mass presses in a compliant one."""
+    if law is not None:
+        return o.resting != 0.0 and law.orbits[o.lane].pressed == 0.0
+    return o.resting != 0.0
+
+
 @jit
 def lane_of(side):
     """Place of the stop on this side."""

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.law import is_at_rest
 from vibro_sweep.engine.point_tables import divergence_of
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.variational import tangent, tangent_at_rest, tangent_flight
@@ -49,7 +50,7 @@ def end_warm_up(e, count):
 @jit
 def keep_at_rest(e, i):
     """Keep the vectors while M1 rests on a stop: two of the four directions are lost already."""
-    if e.orbits[i].resting != 0.0:
+    if is_at_rest(e.law, e.orbits[i]):
         q = e.flights.oscillator[e.orbits[i].table, 0]
         tangent_at_rest.rest(e.tangent[0], i, q.kappa, q.push)
 
