@@ -254,7 +254,6 @@ def test_scenes_that_are_refused(more, key):
 @pytest.mark.parametrize(
     "call",
     [
-        lambda one: vs.periodic_orbit(one, itinerary="R"),
         lambda one: vs.born_at_grazing(one),
         lambda one: vs.discontinuity_map(one),
         lambda one: vs.windows(vs.sweep(one, {"b": [5, 6]}, transient=10, record=10)),

@@ -47,7 +47,7 @@ TYPES = (
                 "NS", "Neimark-Sacker", "p", "#7b3294", "#1a1a5e", test="pair", condition="torus", crosses=(0, 0, 1),
                 advice="The orbit goes on, unstable. Where the point is supercritical, a sweep beyond it "
                        "shows the torus."),
-    Bifurcation("graze", "an impact appears or vanishes", "GR", "graze", "o", "#1a1a2e", "#8a8a96",
+    Bifurcation("graze", "an impact or a contact appears or vanishes", "GR", "graze", "o", "#1a1a2e", "#8a8a96",
                 condition="graze", beyond="graze",
                 advice="Orbits with an impact more, or less, exist on one of the two sides: `switch`, or "
                        "`follow: [graze]`, gives them. Of the kind `nonsmooth_fold` both lie on one side, "
@@ -61,6 +61,8 @@ TYPES = (
     Bifurcation("failed", "the branch could not be followed any further",
                 advice="What was computed is valid. Begin from an orbit beyond that place, or go round it in "
                        "another parameter."),
+    Bifurcation("split", "within a contact the mass comes back to its stop: the contact is split in two",
+                advice="Orbits with one contact more exist beyond: `simulate` finds them where they attract."),
 )  # fmt: skip
 BY_NAME = {one.name: one for one in TYPES}
 CODES = {one.name: code for code, one in enumerate(TYPES)}

@@ -13,6 +13,7 @@ from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.branches.branch_points import columns, impacts
 from vibro_sweep.analysis.branches.special import SpecialPoint
 from vibro_sweep.analysis.continuation.starting_orbit import keeps_symmetry
+from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses.free_modes import checked_cells
@@ -128,7 +129,7 @@ def solution_of(arrays: Arrays, system, t, v, t_off) -> Solution:
     K = len(sides) // 2 if symmetric else len(sides)
     sides = tuple(map(int, sides[:K]))
     rests = tuple(np.flatnonzero(np.isfinite(t_off[:K])).tolist())
-    D = -(1 + family.linear.restitution(sides)) * v[:K]
+    D = -one_plus_R(family.linear, sides) * v[:K]
     u = np.concatenate([t[:K], D, t_off[list(rests)]])
     sigma, half_periods = (-1, period) if symmetric else (1, 2 * period)
     checked_cells(family.linear, half_periods)

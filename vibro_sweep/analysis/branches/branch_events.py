@@ -20,7 +20,7 @@ ROUNDED = 1e-9  # of a step, by which rounding may put an event behind its end
 
 def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event]:
     """The events that may end the branch from a, which is real, to b."""
-    events = []
+    events, q = [], curve.orbit.family.linear
     for boundary, side in zip(bounds, (-1, 1), strict=True):
         if (b.value - boundary) * side > 0:
             events.append(Event("boundary", _beyond(boundary, side, a), boundary=boundary))
@@ -31,12 +31,16 @@ def ends_between(curve: SolutionCurve, bounds, a: Point, b: Point) -> list[Event
         if a.releases[i] > 0 >= b.releases[i]:
             events.append(Event("sticking", lambda point, i=i: point.releases[i]))
     if a.stays > 0 >= b.stays:
-        events.append(Event("sticking", lambda point: min(point.stays, 1.0)))
+        events.append(Event("split" if np.any(q.is_compliant(curve.orbit.sides)) else "sticking", _stays))
     if b.stop_distance <= 0 < a.stop_distance or _passes(b):
         most = 2 * abs(a.stop_distance) if math.isfinite(a.stop_distance) else 1.0
         test = _positive_at(a, lambda point: min(point.stop_distance, most))
         events.append(Event("graze", test, touches=True))
     return events
+
+
+def _stays(point: Point) -> float:
+    return min(point.stays, 1.0)
 
 
 def first_end(curve: SolutionCurve, events: list[Event], a: Point, b: Point) -> LocatedEvent | None:

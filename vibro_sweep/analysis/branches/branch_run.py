@@ -12,11 +12,11 @@ from vibro_sweep.analysis.branches.crossings import is_torus
 from vibro_sweep.analysis.branches.looking import hidden_between
 from vibro_sweep.analysis.branches.own_birth import before_birth, lands_on_birth, own_birth
 from vibro_sweep.analysis.branches.passed_births import before_passed, how_many_on, passed
-from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, vanishing
+from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, is_smooth, vanishing
 from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.point import Point, along
 from vibro_sweep.analysis.continuation.recorded import Rows, join
-from vibro_sweep.analysis.continuation.solution_curve import SHORTEST_STEP
+from vibro_sweep.analysis.continuation.solution_curve import SHORTEST_STEP, SolutionCurve
 from vibro_sweep.analysis.continuation.starting_orbit import KINDS
 from vibro_sweep.analysis.periodic.periodic_orbit import orbit_of
 from vibro_sweep.analysis.periodic.solution import Solution
@@ -163,7 +163,8 @@ class BranchRun:
             before = before_birth(self.curve, a, birth.share * along(a, last), birth.place)
         elif end and end.event.impact is not None:
             before = self.curve.step(a, (1 - BEFORE) * along(a, last), last)
-        found = [] if birth else bifurcations(self.curve, a, last)
+        told = before or last
+        found = [] if birth else bifurcations(self.curve, a, told if end and turns_at(self.curve, end.event) else last)
         if (
             end and end.event.boundary is not None
         ):  # where rounding does not tell them from the end they may lie beyond it
@@ -234,6 +235,11 @@ class BranchRun:
             "graze", point, error, stop=side, kind=graze.kind, impact=impact,
             direction=1 if graze.distance_slope > 0 else -1,
         )  # fmt: skip
+
+
+def turns_at(curve: SolutionCurve, event: Event) -> bool:
+    """Whether the branch turns where this event ends it, so that tests are 0/0 there: the graze of a smooth contact."""
+    return event.impact is not None and is_smooth(curve.orbit.family.linear, curve.orbit.sides[event.impact])
 
 
 def stop_and_impact(solution: Solution, index: int) -> tuple[int, int]:

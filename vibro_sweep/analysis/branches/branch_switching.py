@@ -7,7 +7,7 @@ import numpy as np
 
 from vibro_sweep.analysis.branches.births import born, is_steady
 from vibro_sweep.analysis.branches.sizes import size_of
-from vibro_sweep.analysis.branches.special import SpecialPoint, graze_at, slopes
+from vibro_sweep.analysis.branches.special import Graze, SpecialPoint, graze_at, slopes
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.model.arguments import check_type
@@ -79,7 +79,8 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
     try:
         graze = graze_at(solution, name, impact)
         target = graze.touching if impact is None else graze.without
-        du = slopes(target, name)
+        grows = math.isinf(graze.speed_slope) and impact is None
+        du = np.zeros(len(target.u)) if grows else slopes(target, name)
     except np.linalg.LinAlgError:  # a fold as well: no slopes
         return None
     slope = graze.speed_slope if impact is None else graze.distance_slope
@@ -87,7 +88,8 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
     for _ in range(20):
         try:
             family = solution.family.replace(**{name: value + step})
-            guess = replace(target, family=family, u=target.u + step * du)
+            u = pressed(graze, step) if grows else target.u + step * du
+            guess = replace(target, family=family, u=u)
             found = guess.corrected()
         except ValueError:  # the parameter is beyond its range
             found = None
@@ -96,6 +98,22 @@ def _beside(solution: Solution, name: str, impact: int | None) -> Solution | Non
             return found
         step /= 2
     return None
+
+
+def pressed(graze: Graze, step: float) -> np.ndarray:
+    """The unknowns of the orbit with a short contact, where the parameter is beyond the graze by `step`.
+
+    The gap, which turns with the acceleration a, is behind the stop by d = |slope step| at most: for the time s with
+    d = |a| s^2/8, and touches it with the speed |a| s/2.
+    """
+    target, k = graze.touching, graze.index
+    a = abs(float(target.motion[k, 1]))
+    s = math.sqrt(8 * abs(graze.distance_slope * step) / a)
+    u, K = target.u.copy(), target.K
+    u[k] -= s / 2
+    u[K + k] -= target.sides[k] * a * s / 2
+    u[2 * K + target.rests.index(k)] += s / 2
+    return u
 
 
 def mirrored(solution: Solution) -> Solution:

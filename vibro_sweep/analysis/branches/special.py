@@ -1,16 +1,19 @@
 """Special points of a branch: what they are, and what happens at a graze."""
 
+import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from vibro_sweep.analysis.branches import branch_text
 from vibro_sweep.analysis.continuation.chatter import Chatter
+from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
 from vibro_sweep.analysis.periodic.linearised import Linearised
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import flow
+from vibro_sweep.model.linear import Linear
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -104,11 +107,17 @@ def graze_at(solution: Solution, name: str, impact: int | None) -> Graze:
     else:
         touching, index, gone = solution, impact, vanishing(solution, impact)
         without = bare(solution, gone)
-    side = touching.sides[index]
-    du, q = slopes(touching, name), solution.family.linear
-    speed_slope = -side * du[touching.K + index] / (1 + q.restitution([side])[0])
+    side, q = touching.sides[index], solution.family.linear
     distance_slope = Linearised(touching, solution.family.derivative(name), gone).distance_slope(index)
+    if is_smooth(q, side):  # the speed grows like the square root of the distance passed
+        return Graze(without, touching, index, distance_slope, math.copysign(np.inf, -distance_slope))
+    speed_slope = -side * slopes(touching, name)[touching.K + index] / one_plus_R(q, [side])[0]
     return Graze(without, touching, index, distance_slope, float(speed_slope))
+
+
+def is_smooth(q: Linear, side: int) -> bool:
+    """Whether a contact with this stop begins without a jump of the force: orbits go on through its graze."""
+    return bool(q.is_compliant(side)) and (q.p_high if side > 0 else q.p_low) == 0
 
 
 def inserted(solution: Solution, slow=()) -> tuple[Solution, int]:
@@ -143,7 +152,10 @@ def _nearest_aside(solution: Solution, slow) -> tuple[float, float, int]:
 def bare(solution: Solution, gone) -> Solution:
     """The same motion as an orbit without impacts that have no speed; gone: the index of one, or rising ones."""
     gone, rests = np.atleast_1d(np.asarray(gone, int)), np.array(solution.rests, int)
-    sides, u = np.delete(solution.sides, gone), np.delete(solution.u, [*gone, *(solution.K + gone)])
+    leave = np.isin(rests, gone)  # contacts, whose ends go with them
+    sides = np.delete(solution.sides, gone)
+    u = np.delete(solution.u, [*gone, *(solution.K + gone), *(2 * solution.K + np.flatnonzero(leave))])
+    rests = rests[~leave]
     rests = tuple((rests - np.searchsorted(gone, rests)).tolist())
     return replace(solution, sides=tuple(sides.tolist()), u=u, rests=rests)
 

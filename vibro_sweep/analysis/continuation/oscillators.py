@@ -1,13 +1,12 @@
 """The oscillator as polynomials of its free numbers, two at most (engine/continuation/moving_flow.py)."""
 
 from functools import cache, lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from vibro_sweep.analysis.periodic.contact_numbers import Units, numbers_of
 from vibro_sweep.engine.continuation import moving_flow
-from vibro_sweep.engine.continuation.moving_flow import NUMBERS
 from vibro_sweep.engine.impulses.extended import extended, identity
 from vibro_sweep.engine.impulses.extremes import middle_weights
 from vibro_sweep.engine.impulses.flow import flow, rates
@@ -23,18 +22,6 @@ KEPT = 64  # oscillators
 ASIDE = 0.37  # of the reach: where degrees are read off, so that products of both parameters are seen
 
 
-class Units(NamedTuple):
-    """Units in which kernels compute, so that all numbers are of size 1."""
-
-    length: float  # the gap's size
-    rate: float  # omega of the start
-
-    @property
-    def speed(self) -> float:
-        """The unit of velocities."""
-        return self.length * self.rate
-
-
 def sampled(q: Linear, units: Units) -> np.ndarray:
     """The numbers of `plane_of`.values, in these units."""
     B, (length, rate) = rates(q), units
@@ -44,12 +31,6 @@ def sampled(q: Linear, units: Units) -> np.ndarray:
     B[N:n] /= rate**2 * np.repeat([1.0, 1 / rate, length], [N, N, 3])
     A = np.column_stack([B[:n, :n], B[:n, n + 2]])
     return np.concatenate([A.ravel(), B[N:n, n], B[N:n, n + 1], numbers_of(q, units)])
-
-
-def numbers_of(q: Linear, units: Units) -> list[float]:
-    """Stops, 1 + R at each, omega: the last of `sampled`."""
-    length, rate = units
-    return [q.low / length, q.high / length, 1 + q.R_low, 1 + q.R_high, q.omega / rate]
 
 
 class Oscillators:
@@ -78,7 +59,8 @@ class Oscillators:
         if self._still is None:
             return sampled(q, self.units)
         values = self._still.copy()
-        values[-NUMBERS:] = numbers_of(q, self.units)
+        known = numbers_of(q, self.units)
+        values[-len(known) :] = known
         return values
 
     def _sample(self, p) -> np.ndarray:
@@ -89,7 +71,8 @@ class Oscillators:
                     return np.full_like(values, np.nan)
                 return np.where(np.isinf(values), 0.0, values)  # a stop that is not there
         except (ValueError, ZeroDivisionError, np.linalg.LinAlgError):
-            return np.full(moving_flow.count_of(len(self.family.linear.normal)), np.nan)
+            q = self.family.linear
+            return np.full(moving_flow.count_of(len(q.normal), q.compliant), np.nan)
 
     def around(self, around, within) -> np.ndarray | None:
         """(1,) `plane_of` around these values, as far as `within`, or as polynomials hold; None: nowhere."""
@@ -140,12 +123,12 @@ class Oscillators:
     def _built(self, centre, reach, degrees, c, values) -> np.ndarray:
         q = self.at(centre).linear
         n = 2 * len(q.normal)
-        result = np.zeros(1, moving_flow.plane_of(n // 2))
+        result = np.zeros(1, moving_flow.plane_of(n // 2, q.compliant))
         r, at_centre = result[0], sampled(q, self.units)
         flat, size = values[..., : n * (n + 1)], _sizes(values.reshape(-1, values.shape[-1]), n)[: n * (n + 1)]
         for j in range(2):
             r["moves"][j] = bool(np.any(np.ptp(flat, axis=j) > 1e-15 * size))
-        swaying = np.delete(values.reshape(-1, values.shape[-1]), np.s_[-NUMBERS:-1], axis=1)
+        swaying = np.delete(values.reshape(-1, values.shape[-1]), np.s_[n * (n + 2) : -1], axis=1)
         r["is_still"] = bool(np.all(swaying == swaying[0]))
         if not r["moves"].any():
             c[..., : n * (n + 1)] = 0.0
@@ -200,7 +183,7 @@ def _to_powers(degree: int) -> np.ndarray:
 def _sizes(values: np.ndarray, n: int) -> np.ndarray:
     """The sizes beside which changes of `sampled` count as small: of rates together, of numbers one by one."""
     size = np.abs(values).max(axis=0)
-    forces = np.zeros(len(size) - NUMBERS, bool)
+    forces, rates = np.zeros(n * (n + 2), bool), size[: n * (n + 2)]
     forces[n : n * (n + 1) : n + 1] = forces[n * (n + 1) :] = True
-    size[:-NUMBERS] = np.where(forces, size[:-NUMBERS][forces].max(), size[:-NUMBERS][~forces].max())
+    rates[:] = np.where(forces, rates[forces].max(), rates[~forces].max())
     return np.maximum(size, 1e-300)

@@ -72,7 +72,8 @@ class Point(Place):
     @property
     def stays(self) -> float:
         """The least of what makes a rest: its length, the acceleration into the stop and the speed before it."""
-        return float(min(self.jumps[self.curve.problem.rests].min(initial=np.inf), self.tests[TEST.hold]))
+        c, q = self.curve.problem, self.curve.orbit.family.linear
+        return float(min(self.jumps[c.rests & ~q.is_compliant(c.sides)].min(initial=np.inf), self.tests[TEST.hold]))
 
 
 def along(a: Point, b: Point) -> float:

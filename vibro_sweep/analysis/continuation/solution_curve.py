@@ -5,9 +5,10 @@ from copy import copy as copy_object
 
 import numpy as np
 
-from vibro_sweep.analysis.continuation.oscillators import Oscillators, Units
+from vibro_sweep.analysis.continuation.oscillators import Oscillators
 from vibro_sweep.analysis.continuation.point import Point
 from vibro_sweep.analysis.continuation.starting_orbit import Start, keeps_symmetry
+from vibro_sweep.analysis.periodic.contact_numbers import Units, one_plus_R, which_press
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.engine.continuation import path, stepper
 from vibro_sweep.engine.continuation.curve_tests import TOUCHING
@@ -58,7 +59,8 @@ class SolutionCurve:
         mirrors = whole and s.half_periods % 4 == 2 and struck[:half] == tuple(-side for side in struck[half:])
         mirrors = mirrors and q.symmetric and all(keeps_symmetry(s.family, name) for name in self.names)
         sides, rests, count = np.array(which, float), np.isin(np.arange(K), s.rests), len(self.names)
-        self.problem = Problem(kind, start.index, sides, rests, float(s.sigma), count, self.unit, repeats, mirrors)
+        kinds, orbit = (kind, start.index, sides, rests), (float(s.sigma), count, self.unit, repeats, mirrors)
+        self.problem = Problem(*kinds, *orbit, which_press(q))
         self.workspace = new_workspace(K, self.n)
         self.path = path.new_path(AT_ONCE, K, self.n, LONGEST_STEP, SHORTEST_STEP, STRAIGHT, self.bounds)
 
@@ -280,7 +282,7 @@ class SolutionCurve:
     def releases(self, place: Place) -> np.ndarray:
         """(K,) acceleration away from the stop just after an impact with R = 0; infinite for other impacts."""
         sides, rests = self.problem.sides, self.problem.rests
-        R = self.family(place).linear.restitution(sides)
+        R = one_plus_R(self.family(place).linear, sides) - 1
         if np.all(R > 0):
             return np.full(len(sides), np.inf)
         self.assemble(place)

@@ -68,7 +68,8 @@ def _solution(special: SpecialPoint) -> Solution:
         return special._chatter.solution
     solution = special.orbit._solution
     if solution.rests:
-        raise ArgumentError("special: the mass rests on a stop; curves of such orbits cannot be followed")
+        what = "presses a compliant" if solution.family.linear.compliant else "rests on a"
+        raise ArgumentError(f"special: the mass {what} stop; curves of such orbits cannot be followed")
     return solution
 
 

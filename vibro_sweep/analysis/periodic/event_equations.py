@@ -7,9 +7,10 @@ from functools import cached_property
 
 import numpy as np
 
+from vibro_sweep.analysis.periodic.contact_numbers import Units, numbers_of, which_press
 from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
 from vibro_sweep.engine.continuation import guesses, moving_flow, path, stepper
-from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, NUMBERS
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW
 from vibro_sweep.engine.continuation.problem import ORBIT, Problem
 from vibro_sweep.engine.continuation.workspace import new_place, new_workspace
 from vibro_sweep.engine.impulses.extremes import middle_weights
@@ -29,11 +30,14 @@ class EventEquations:
     def __init__(self, q: Linear, sigma: int, half_periods: int, sides, rests=()):
         """rests : indices of impacts after which the mass rests"""
         self.q, self.K, self.n = q, len(sides), 2 * len(q.normal)
-        planes, self.closing = _tables(q, sigma, half_periods, bool(rests))
+        planes, self.closing = _tables(q, sigma, half_periods, bool(rests), q.compliant)
         self.planes = planes.copy()  # kernels write the contact's numbers into it
-        self.planes[0]["numbers"] = self.planes[0]["exact"][-NUMBERS:] = _contact_of(q)
-        resting = np.isin(np.arange(self.K), rests)
-        self.problem = Problem(ORBIT, 0, np.array(sides, float), resting, float(sigma), 0, np.ones(2), False, False)
+        self.planes[0]["numbers"] = _contact_of(q)
+        self.planes[0]["exact"][self.n * (self.n + 2) :] = numbers_of(q, Units(1.0, q.omega))
+        resting, compliant = np.isin(np.arange(self.K), rests), which_press(q)
+        self.problem = Problem(
+            ORBIT, 0, np.array(sides, float), resting, float(sigma), 0, np.ones(2), False, False, compliant
+        )
         self.place, self.workspace = new_place(self.K, self.n), new_workspace(self.K, self.n)
 
     @classmethod
@@ -47,7 +51,7 @@ class EventEquations:
 
     def take_solution(self, solution) -> None:
         """The events of a `Solution`, without the states before them."""
-        place, omega, rests = self.place, self.q.omega, self.problem.rests
+        place, omega, rests = self.place, self.q.omega, list(solution.rests)
         place.phases[:], place.jumps[:] = omega * solution.times + self.q.tau, solution.jumps / omega
         place.jumps[rests] = omega * (solution.ends - solution.times[rests])
 
@@ -84,7 +88,9 @@ def _contact_of(q: Linear) -> list[float]:
 
 
 @remembered(*MOTION)
-def _tables(q: Linear, sigma: int, half_periods: int, rests: bool) -> tuple[np.ndarray, np.ndarray | None]:
+def _tables(
+    q: Linear, sigma: int, half_periods: int, rests: bool, compliant: bool
+) -> tuple[np.ndarray, np.ndarray | None]:
     """(1,) `plane_of` of an oscillator, without its contact; `closing` in its units, without rests."""
     checked_cells(q, half_periods)
     steady_gap(q)  # where it does not exist there is no such orbit; nor where this does not, but rests hold the gap
@@ -95,7 +101,7 @@ def _tables(q: Linear, sigma: int, half_periods: int, rests: bool) -> tuple[np.n
     n = m - 3
     units = np.repeat([1.0, q.omega], n // 2)
     scale = np.append(units, 1.0) / units[:, None]
-    result = np.zeros(1, moving_flow.plane_of(n // 2))
+    result = np.zeros(1, moving_flow.plane_of(n // 2, compliant))
     r, columns = result[0], [*range(n), m - 1]
     r["A"] = f.B[:n, columns] * scale / q.omega
     to, X = contact_coordinates(q), amplitudes(q)

@@ -7,9 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import SIDES, is_mirrored, repetitions, word
 from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, found_orbit, leans, orbit_of
+from vibro_sweep.analysis.periodic.seeds_of_contacts import contact_seeds, with_contacts
 from vibro_sweep.analysis.periodic.seeds_of_rests import evenly, with_rests
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.periodic.steady_gap import push_of_free_mode, steady_gap
@@ -19,7 +21,7 @@ from vibro_sweep.engine.impulses.flow import flow
 from vibro_sweep.engine.impulses.free_modes import ResonanceError, TooStiffError
 from vibro_sweep.model.arguments import checked_count, checked_state
 from vibro_sweep.model.errors import ArgumentError
-from vibro_sweep.model.linear import Family, forcing_period, rigid_family_of
+from vibro_sweep.model.linear import Family, followable_family_of, forcing_period
 from vibro_sweep.model.real import array_of
 from vibro_sweep.model.refusals import not_allowed
 
@@ -53,7 +55,7 @@ def periodic_orbit(system, state=None, periods: int = 1, itinerary: str | None =
     >>> orbit.status, orbit.period, orbit.stable, round(float(abs(orbit.multipliers[0])), 6)
     ('ok', 1, True, 0.903327)
     """
-    family = rigid_family_of(system, "periodic orbits")
+    family = followable_family_of(system)
     periods = checked_count("periods", periods, 1, MOST_PERIODS)
     sides = None if itinerary is None else _checked_sides(family.linear, itinerary)
     rows = None if guess is None else _checked_guess(family.linear, guess, itinerary)
@@ -108,12 +110,31 @@ def _from_state(system, family, state, periods) -> PeriodicOrbit:
     simulated = simulate(system, state, periods)
     if str(simulated.status) != "ok":
         return PeriodicOrbit(system, "not_converged")
+    if family.linear.compliant:
+        return _from_contacts(system, family, simulate(system, state, 2 * periods), periods)
     if len(simulated.sticking):
         return _from_rests(system, family, simulate(system, state, 2 * periods), periods)
     impacts = simulated.impacts
     if len(impacts):  # an impact at t = 0 comes again at the end
         impacts = impacts[impacts["t"] < impacts["t"][0] + periods * system.period * (1 - 1e-9)]
     return _from_guess(system, family, [(i["t"], i["side"], i["v1"]) for i in impacts], periods)
+
+
+def _from_contacts(system, family, simulated, periods) -> PeriodicOrbit:
+    """The orbit from a simulation over two periods in which the mass presses compliant stops."""
+    if len(simulated.sticking):
+        return PeriodicOrbit(system, "sticking")
+    contacts, impacts, P = simulated.contacts, simulated.impacts, periods * system.period
+    events = [(c["t_touch"], c["side"], -c["side"] * c["v_touch"], c["t_release"]) for c in contacts]
+    events += [(i["t"], i["side"], -one_plus_R(family.linear, i["side"]) * i["v1"], None) for i in impacts]
+    events = sorted((one for one in events if one[0] > simulated.start_time), key=lambda one: one[0])
+    events = [one for one in events if one[0] < events[0][0] + P * (1 - 1e-9)]
+    rests = tuple(k for k, one in enumerate(events) if one[3] is not None)
+    t, sides, D = (tuple(one[i] for one in events) for i in range(3))
+    u = np.array([*t, *D, *(events[k][3] for k in rests)], float)
+    if not np.all(np.isfinite(u)):
+        return PeriodicOrbit(system, "not_converged")
+    return found_orbit(system, Solution(family, 1, 2 * periods, tuple(map(int, sides)), u, 0.0, rests).corrected())
 
 
 def _from_rests(system, family, simulated, periods) -> PeriodicOrbit:
@@ -137,8 +158,7 @@ def _from_guess(system, family, rows, periods) -> PeriodicOrbit:
     sides = tuple(int(side) for _, side, _ in rows)
     R = family.linear.restitution(sides)
     t, v = np.array([row[0] for row in rows]), np.array([row[2] for row in rows])
-    u = np.concatenate([t, -(1 + R) * v])
-    start = Solution(family, 1, 2 * periods, sides, u)
+    start = with_contacts(family, Solution(family, 1, 2 * periods, sides, np.empty(0)), t, v)
     if sides and t[-1] >= t[0] + start.P:
         raise ArgumentError(not_allowed("guess", rows, "(t, side, v) for each impact within one period"))
     found = start.corrected()
@@ -156,8 +176,8 @@ def _from_itinerary(system, family, sides, periods) -> PeriodicOrbit:
     virtual = None
     kinds = [Solution(family, *kind, np.empty(0)) for kind in [*kinds, (1, 2 * periods, sides)]]
     for start in kinds:
-        for found in _seeded(start):
-            if virtual is not None and (_passes_a_stop(found) or not found.real):
+        for found in contact_seeds(start, _seeded) if family.linear.compliant else _seeded(start):
+            if virtual is not None and ((not found.rests and _passes_a_stop(found)) or not found.real):
                 continue
             found = found.reduced()
             if least and len(found.whole().sides) != len(sides):

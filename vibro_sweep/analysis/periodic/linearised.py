@@ -6,8 +6,9 @@ phase, of the phase, and of the jump.
 
 import numpy as np
 
+from vibro_sweep.analysis.periodic.contact_numbers import Units, number_slopes
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
-from vibro_sweep.engine.continuation import moving_flow, stepper
+from vibro_sweep.engine.continuation import stepper
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD
 from vibro_sweep.engine.continuation.workspace import THETA
 from vibro_sweep.engine.impulses.flow import rate_slopes
@@ -25,9 +26,10 @@ class Linearised:
         e = self.equations = EventEquations.of(solution)
         self.solution, self.slope, self.q = solution, slope, e.q
         e.problem = e.problem._replace(parameters=int(slope is not None))
-        e.problem.sides[list(watched)] = 0.0
+        e.problem.sides[list(watched)], e.problem.rests[list(watched)] = 0.0, False
         self._take_oscillator()
         e.take_solution(solution)
+        e.place.jumps[list(watched)] = 0.0
         self.phases, units = e.place.phases, np.repeat([1.0, self.q.omega], e.n // 2)
         steady = (e.planes[0]["Z"] * np.exp(1j * self.phases[:, None])).real
         e.place.x[:, : e.n] = solution.states[: e.K, : e.n] / units - steady
@@ -43,10 +45,7 @@ class Linearised:
             r["parameters"], r["degree"], r["moves"][0] = 1, [1, 0], bool(np.any(dA))
             r["fit"][1, 0, : n * (n + 1)] = dA.ravel()
             r["fit"][1, 0, n * (n + 1) : n * (n + 2)] = dB[n // 2 :, n : n + 2].T.ravel() / omega**2
-            r["fit"][1, 0, -moving_flow.NUMBERS :] = [
-                *(slope.low, slope.high, slope.R_low, slope.R_high),
-                slope.omega / omega,
-            ]
+            r["fit"][1, 0, n * (n + 2) :] = number_slopes(self.q, slope, Units(1.0, omega))
         self.equations.move()
 
     def _assembled(self):

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibro_sweep.analysis.periodic import orbit_text
+from vibro_sweep.analysis.periodic.contact_table import contacts_between
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.solution import Solution
 from vibro_sweep.analysis.single.result import Result, impact_table
 from vibro_sweep.engine.impulses import flights
-from vibro_sweep.engine.impulses.flow import constrained_flow, contact_coordinates, flow
+from vibro_sweep.engine.impulses.flow import constrained_flow, contact_coordinates, contact_flow, flow
 from vibro_sweep.engine.impulses.free_modes import ResonanceError
-from vibro_sweep.engine.one_system import IMPACT, STICKING, impact_of
+from vibro_sweep.engine.one_system import CONTACT, IMPACT, STICKING, impact_of
 from vibro_sweep.model.arguments import LATEST, checked_times
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.general import Oscillator
@@ -102,18 +103,37 @@ class PeriodicOrbit(Result):
         result = np.empty(0, STICKING)
         if self._solution is not None and self._solution.rests:
             s = self._solution.whole()
-            rests, T = list(s.rests), forcing_period(s.family.linear)
+            q = s.family.linear
+            rests, T = [k for k in s.rests if not q.is_compliant(s.sides[k])], forcing_period(q)
             first, shift = self._frame or self._canonical_frame
             later = np.where(np.array(rests) < first, self.period * T, 0.0) - shift * T
             result = np.empty(len(rests), STICKING)
-            result["t_on"], result["t_off"] = s.times[rests] + later, s.ends + later
+            ends = s.ends[np.isin(s.rests, rests)]
+            result["t_on"], result["t_off"] = s.times[rests] + later, ends + later
             result["side"] = np.array(s.sides)[rests]
             result = result[np.argsort(result["t_on"])]
         return result
 
+    @cached_property
+    def contacts(self) -> np.ndarray:
+        """Structured, as `Orbit.contacts`: the contacts with compliant stops of a period that begins with the first."""
+        if self._solution is None or not self._solution.rests:
+            return np.empty(0, CONTACT)
+        s = self._solution.whole()
+        q, rests, times = s.family.linear, np.array(s.rests), self._whole[0]
+        first, _ = self._frame or self._canonical_frame
+        pressed = q.is_compliant(np.array(s.sides)[rests])
+        which = rests[pressed]
+        which = which[np.argsort((which - first) % s.K)]
+        lengths = dict(zip(s.rests, s.ends - s.times[rests], strict=True))
+        begins, sides = times[(which - first) % s.K], np.array(s.sides)[which]
+        states = s.states[which].copy()
+        states[:, 0] = q.stop(sides)
+        return contacts_between(q, begins, np.array([lengths[k] for k in which.tolist()]), sides, states)
+
     @property
     def itinerary(self) -> str:
-        """Sides of `impacts` in order, "R" and "L"; the least rotation with L < R."""
+        """Sides of `impacts` and `contacts` in order, "R" and "L"; the least rotation with L < R."""
         return "" if self._solution is None else word(self._whole[1])
 
     @property
@@ -123,12 +143,15 @@ class PeriodicOrbit(Result):
 
     @cached_property
     def impacts(self) -> np.ndarray:
-        """Structured, fields t, side, v1 (before), x2, v2; x and xdot (N,) of all masses where there is no System."""
+        """Structured, fields t, side, v1 (before), x2, v2; x and xdot (N,) of all masses where there is no System. On
+        rigid stops alone."""
         N = 2 if self._solution is None else len(self._solution.family.linear.normal)
         kind = IMPACT if isinstance(self.system, System) else impact_of(N)
         if self._solution is None or not self._solution.K:
             return np.empty(0, kind)
         t, sides, _, states = self._whole
+        struck = ~self._solution.family.linear.is_compliant(sides)
+        t, sides, states = t[struck], sides[struck], states[struck]
         x = self._masses(states)
         result = np.empty(len(t), kind)
         result["t"], result["side"], result["v1"] = t, sides, states[:, N]
@@ -191,18 +214,19 @@ class PeriodicOrbit(Result):
         which = np.searchsorted(begins, wrapped, side="left") - 1
         out = np.empty((len(times), starts.shape[1]))
         workspace = flights.new_workspace(starts.shape[1])
-        for rests in (False, True):
-            chosen = np.flatnonzero(held[which] == rests)
+        for side in (0, 1, -1):
+            chosen = np.flatnonzero(held[which] == side)
             if len(chosen):
                 part = np.empty((len(chosen), starts.shape[1]))
-                f = constrained_flow(q) if rests else flow(q)
+                f = flow(q) if side == 0 else contact_flow(q, side) if q.is_compliant(side) else constrained_flow(q)
                 flights.sample_flights(f, starts, begins, which[chosen], wrapped[chosen], part, workspace)
                 out[chosen] = part
         return self._masses(out[:, : 2 * len(q.normal)])
 
     @cached_property
     def _pieces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Begins of flights and rests in order, the states there in contact coordinates, and which are rests."""
+        """Begins of flights and of events that last, the states there in contact coordinates, and of the latter the
+        side; 0 of flights."""
         s = self._solution
         N, m = len(s.family.linear.normal), flow(s.family.linear).B.shape[0]
         if s.rests:
@@ -215,7 +239,7 @@ class PeriodicOrbit(Result):
         starts[:, : 2 * N] = states[: len(starts)]
         if len(t):
             starts[:, N] += D
-        return t if len(t) else np.zeros(1), starts, np.zeros(len(starts), bool)
+        return t if len(t) else np.zeros(1), starts, np.zeros(len(starts))
 
     @cached_property
     def state(self) -> np.ndarray:

@@ -1,7 +1,8 @@
-"""Periodic orbits in which the mass rests on a stop after impacts with R = 0: events of engine/continuation.
+"""Periodic orbits with events that last, of engine/continuation: rests after impacts with R = 0, and contacts with
+compliant stops.
 
-The unknowns are the phase of each impact and, of a rest its length in phase, of another impact its velocity jump. The
-states follow from them linearly, since the motion repeats itself. Each rest gives two multipliers 0.
+The unknowns are the phase of each event and, where it lasts its length in phase, else its velocity jump. The states
+follow from them linearly, since the motion repeats itself. Where the mass rests two multipliers are 0.
 """
 
 import numpy as np
@@ -10,6 +11,7 @@ from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.engine.continuation import stepper
 
 MOST_STEPS = 30
+ROUNDED = 8 * np.finfo(float).eps  # of phases
 LONGEST = 0.02  # step of Newton's method, in parts of the period and of the fastest jump
 
 
@@ -25,9 +27,11 @@ class RestingOrbit:
             e.workspace.events,
             e.planes[0]["Z"],
         )
+        self.pressed = self.q.is_compliant(solution.sides)  # of each event, whether it is on a compliant stop
         e.move()
         e.take_solution(solution)
         self._close()
+        self._sharpen()
 
     def _close(self) -> None:
         """The states that follow from phases, jumps and lengths, and the equations there."""
@@ -41,6 +45,15 @@ class RestingOrbit:
         x[0, :n] = np.linalg.solve(self.sigma * np.eye(n) - through, e["landing"][-1])
         self.equations.run_task(stepper.FOLLOW)
         self.equations.run_task(stepper.ASSEMBLE)
+
+    def _sharpen(self) -> None:
+        """Give the lengths of contacts the digits that they have lost as differences of two times."""
+        e, n = self.events, self.n
+        short = self.pressed & (np.abs(self.place.jumps) > 1e-6)
+        change = np.where(short, e["pull"] / np.where(short, e["release"][:, n + 1], 1.0), 0.0)
+        if np.any(short) and np.all(np.abs(change) < ROUNDED * (1 + np.abs(self._ends))):
+            self.place.jumps[:] -= change
+            self._close()
 
     def newton(self) -> tuple[np.ndarray, float]:
         """Newton's method from here: u, and the last relative change, NaN: no orbit was found. Raises LinAlgError."""
@@ -96,25 +109,29 @@ class RestingOrbit:
         self.equations.run_task(stepper.EXAMINE)
         distance, phase, side = self.equations.workspace.work[0]["nearest"]
         time = (phase - self.q.tau) / self.q.omega if distance < np.inf else 0.0
-        hold = self.events["hold"][self.rests].min() * self.q.omega**2
+        hold = (self.events["hold"] * np.where(self.pressed, 1.0, self.q.omega**2))[self.rests].min()
         return np.array([distance, time, side]), float(hold)
 
     def multipliers(self) -> np.ndarray:
-        """(2N,) of the map over P, with the mirror for sigma = -1; two of them are 0."""
+        """(2N,) of the map over P, with the mirror for sigma = -1."""
         last, n = self.equations.workspace.work[0]["last"], self.n
         ahead, behind = last[:, :n], last[:, 2 * n + 2 : 3 * n + 2]
         values = np.linalg.eigvals(-self.sigma * np.linalg.solve(ahead, behind)).astype(complex)
         values = values[np.lexsort((-values.imag, -np.abs(values)))]
-        values[-2:] = 0.0
+        if not np.all(self.pressed[self.rests]):
+            values[-2:] = 0.0
         return values
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Begins of flights and rests in order, the states there (.., 2N + 3), and which are rests."""
+        """Begins of flights and of events that last in order, the states there (.., 2N + 3), and of the latter the
+        side; 0 of flights."""
         N, rests, ends = self.n // 2, self.equations.problem.rests, self._ends
         struck, after = self.states, self._whole(self.events["after"][:, : self.n], ends)
         for states in (struck, after):
-            states[rests, 0], states[rests, N] = self.q.stop(self.equations.problem.sides)[rests], 0.0
+            states[rests, 0] = self.q.stop(self.equations.problem.sides)[rests]
+            states[rests & ~self.pressed, N] = 0.0
         order = np.sort(np.append(np.flatnonzero(rests), np.arange(len(rests)) + 0.5))  # a rest, then its flight
         which, held = np.floor(order).astype(int), order == np.floor(order)
         begins = np.where(held, self.place.phases[which], ends[which])
-        return (begins - self.q.tau) / self.q.omega, np.where(held[:, None], struck[which], after[which]), held
+        sides = np.where(held, self.equations.problem.sides[which], 0.0)
+        return (begins - self.q.tau) / self.q.omega, np.where(held[:, None], struck[which], after[which]), sides

@@ -1,5 +1,6 @@
 """A solution of the equations of periodic orbits, and what follows from it."""
 
+from bisect import bisect_left
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, groupby
@@ -7,6 +8,7 @@ from operator import attrgetter
 
 import numpy as np
 
+from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import is_mirrored, repetitions
 from vibro_sweep.analysis.periodic.motion_between import contacts_of, fly, multipliers_of
@@ -27,7 +29,8 @@ NO_SPEED = 1e-9  # impulse, relative to omega times the gap, below which an impa
 class Solution:
     """z(t + P) = sigma z(t), P = half_periods T/2, with impacts u = (t_1 .. t_K, D_1 .. D_K) on `sides`.
 
-    With R = 0 the mass may rest after the impacts `rests`; u then goes on with the ends of the rests.
+    Events that last are `rests`: with R = 0 the mass may rest after an impact, and a contact with a compliant stop
+    lasts from touch to release. Of them D is minus the velocity at the beginning, and u goes on with their ends.
     """
 
     family: Family
@@ -80,7 +83,7 @@ class Solution:
         q = self.family.linear
         B = flow(q).B
         N, states = len(q.normal), self.states[: self.K]
-        rates, v = states @ B.T, -self.jumps / (1 + q.restitution(self.sides))
+        rates, v = states @ B.T, -self.jumps / one_plus_R(q, self.sides)
         return np.column_stack([np.where(v != 0, v, states[:, N]), rates[:, N], rates @ B[N]])
 
     @cached_property
@@ -139,8 +142,9 @@ class Solution:
         """Whether every impulse pushes and every flight stays inside, to rounding."""
         rounding = 1e-13 * self.size_of_gap
         speed = self.family.linear.omega * rounding
-        sticks = self.hold > -self.family.linear.omega * speed and np.all(self.ends >= self.times[list(self.rests)])
-        sticks = sticks and not np.any(self.family.linear.restitution(np.array(self.sides)[list(self.rests)]))
+        q = self.family.linear
+        sticks = self.hold > -q.omega * speed and np.all(self.ends >= self.times[list(self.rests)])
+        sticks = sticks and np.all(one_plus_R(q, np.array(self.sides)[list(self.rests)]) == 1)
         return bool(np.all(self.pushes > -speed) and self.stop_distance > -rounding and sticks)
 
     @cached_property
@@ -170,9 +174,14 @@ class Solution:
 
     def with_touch(self, index: int, time: float, side: int) -> "Solution":
         """The same motion with one impact more, which has no speed."""
-        u = np.insert(self.u, [index, self.K + index], [time, 0.0])
         sides = (*self.sides[:index], int(side), *self.sides[index:])
-        return replace(self, sides=sides, u=u, change=0.0, rests=tuple(k + (k >= index) for k in self.rests))
+        rests, ends = [k + (k >= index) for k in self.rests], self.ends
+        if self.family.linear.is_compliant(side):  # a contact, which ends as it begins
+            place = bisect_left(rests, index)
+            rests.insert(place, index)
+            ends = np.insert(ends, place, time)
+        u = np.concatenate([np.insert(self.times, index, time), np.insert(self.jumps, index, 0.0), ends])
+        return replace(self, sides=sides, u=u, change=0.0, rests=tuple(rests))
 
     def whole(self) -> "Solution":
         """The same orbit over its whole period, sigma = +1."""

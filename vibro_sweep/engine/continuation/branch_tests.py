@@ -6,6 +6,7 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.curve_tests import changes_sign, determinant, eigenvalues_of
+from vibro_sweep.engine.continuation.lasting import is_contact, turns_at_graze
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE, exchanged
@@ -28,11 +29,17 @@ def examine_branch(f, c, place, b):
     x[TEST.above] = -1.0
     for i in range(len(b.events)):
         if c.rests[i]:
-            x[TEST.hold] = min(x[TEST.hold], b.events[i].hold, c.sides[i] * b.events[i].motion[0])
+            x[TEST.hold] = min(x[TEST.hold], b.events[i].hold)
+            if not is_contact(c.compliant, c.sides[i]):
+                x[TEST.hold] = min(x[TEST.hold], c.sides[i] * b.events[i].motion[0])
         elif f.numbers[ONE_PLUS_R_HIGH if c.sides[i] > 0 else ONE_PLUS_R_LOW] == 1.0:
             after = b.events[i].motion[1] + f.numbers[OMEGA] * b.events[i].bend[n // 2]
             x[TEST.release] = min(x[TEST.release], -c.sides[i] * after)
     x[TEST.minus] = determinant(c, b, n, -1.0)
+    for i in range(len(b.events)):
+        if c.rests[i] and turns_at_graze(f, c.compliant, c.sides[i]):
+            x[TEST.rate] /= place.x[i, n + 1]
+            x[TEST.minus] /= place.x[i, n + 1]
     for i in range(n):
         place.multipliers[i, 0] = place.multipliers[i, 1] = np.nan
     if not eigenvalues_of(c, b, n):

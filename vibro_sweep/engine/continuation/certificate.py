@@ -5,8 +5,8 @@ import cmath
 import numpy as np
 
 from vibro_sweep.engine.continuation.chatter_sum import NEXT
-from vibro_sweep.engine.continuation.constrained_gap import press
 from vibro_sweep.engine.continuation.flight_tables import polynomial
+from vibro_sweep.engine.continuation.lasting import hold_of, is_contact
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import GRAZE, STICK
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell, turns_near
@@ -83,8 +83,9 @@ def look(f, c, place, b):
             if (i + 1) % K == c.index:
                 length -= b.tail[0].numbers[NEXT] if c.kind == STICK else aside
         if c.rests[i]:
-            b.events[i].hold = press(f, c.sides[i], place.x[i], b.events[i], work)
+            b.events[i].hold = hold_of(f, c.compliant, c.sides[i], place.x[i], b.events[i], work)
             begin += place.x[i, n + 1]
+        if c.rests[i] and not is_contact(c.compliant, c.sides[i]):
             away = apart(f, y, cmath.exp(1j * begin), length, work.cell)
             polynomial(n, f.series, away, work.other[0])
             shift(f, work.other[0], y, other)

@@ -120,29 +120,36 @@ def press(f, side, x, e, work):
 @jit
 def next_term(f, order, step, swing, before, term):
     """The Taylor term of this order from that before it; swing: (i step)^{order - 1}/(order - 1)! e^{i phi}."""
-    n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
-    size, share = n * (n + 1), step / (order * omega)
+    n, N = f.A.shape[0], f.A.shape[0] // 2
     for r in range(n):
         if r == 0 or r == N:
             for c in range(n + 1 + f.parameters):
                 term[r, c] = 0.0
-            continue
-        for c in range(n + 1 + f.parameters):
-            total = 0.0
-            for k in range(n):
-                total += f.A[r, k] * before[k, c]
-            term[r, c] = share * total
-        if order == 1:
-            term[r, n] += share * f.A[r, n]
-        if r > N:
-            term[r, n] += share * (f.values[size + r - N] * swing.real + f.values[size + r] * swing.imag)
-        for j in range(f.parameters):
-            total = f.A_slopes[j, r, n] if order == 1 else 0.0
-            for k in range(n):
-                total += f.A_slopes[j, r, k] * before[k, n]
-            if r > N:
-                total += f.slopes[j, size + r - N] * swing.real + f.slopes[j, size + r] * swing.imag
-            term[r, n + 1 + j] += share * total - f.number_slopes[j, OMEGA] / omega * term[r, n]
+        else:
+            put_term(f, order, step, swing, before, term, r)
+
+
+@jit
+def put_term(f, order, step, swing, before, term, r):
+    """Row r of it, by the free rates."""
+    n, N, omega = f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
+    size, share = n * (n + 1), step / (order * omega)
+    for c in range(n + 1 + f.parameters):
+        total = 0.0
+        for k in range(n):
+            total += f.A[r, k] * before[k, c]
+        term[r, c] = share * total
+    if order == 1:
+        term[r, n] += share * f.A[r, n]
+    if r >= N:
+        term[r, n] += share * (f.values[size + r - N] * swing.real + f.values[size + r] * swing.imag)
+    for j in range(f.parameters):
+        total = f.A_slopes[j, r, n] if order == 1 else 0.0
+        for k in range(n):
+            total += f.A_slopes[j, r, k] * before[k, n]
+        if r >= N:
+            total += f.slopes[j, size + r - N] * swing.real + f.slopes[j, size + r] * swing.imag
+        term[r, n + 1 + j] += share * total - f.number_slopes[j, OMEGA] / omega * term[r, n]
 
 
 @jit

@@ -21,20 +21,21 @@ from vibro_sweep.engine.simd.memory import record
 
 LOW, HIGH, ONE_PLUS_R_LOW, ONE_PLUS_R_HIGH, OMEGA = range(5)  # of `numbers`
 NUMBERS = 5
+LAWS = 6  # k_stop, c_stop and preload over m_e, of the left stop and of the right one, where a stop is compliant
 DEGREE = 12  # of the polynomials in each parameter, at most
 BITS = 18
 
 
-def count_of(masses: int) -> int:
-    """Numbers that are polynomials: A, both forces, `numbers`."""
+def count_of(masses: int, compliant: bool) -> int:
+    """Numbers that are polynomials: A, both forces, laws of contact where a stop is compliant, `numbers`."""
     n = 2 * masses
-    return n * (n + 1) + n + NUMBERS
+    return n * (n + 1) + n + LAWS * compliant + NUMBERS
 
 
 @cache
-def plane_of(masses: int) -> np.dtype:
+def plane_of(masses: int, compliant: bool = False) -> np.dtype:
     """N masses, n = 2N. Slopes: derivatives by the first and the second parameter."""
-    n, count = 2 * masses, count_of(masses)
+    n, count = 2 * masses, count_of(masses, compliant)
     return record([
         ("parameters", np.int64),  # that are free
         ("centre", float, 2),
@@ -81,10 +82,18 @@ def moves(f):
 
 
 @jit
+def law_at(f, side):
+    """The index in `values` of the stiffness of a compliant stop, which its damping and preload follow."""
+    n = f.A.shape[0]
+    return n * (n + 2) + (LAWS // 2 if side > 0 else 0)
+
+
+@jit
 def fit_at(f, p, q):
     """Values and slopes of the polynomials at the parameters (p, q)."""
     s, u = (p - f.centre[0]) / f.reach[0], (q - f.centre[1]) / f.reach[1]
-    first = len(f.values) - NUMBERS if f.is_still > 0 and f.is_known > 0 and not moves(f) else 0
+    n = f.A.shape[0]
+    first = n * (n + 2) if f.is_still > 0 and f.is_known > 0 and not moves(f) else 0
     for i in range(first, len(f.values)):
         value, by_s, by_u = 0.0, 0.0, 0.0
         for k in range(f.degree[0], -1, -1):
@@ -126,11 +135,11 @@ def spread(f):
     """Matrices, forced motion and tables from `values` and `slopes`. False in the resonance of an undamped mode."""
     n = f.A.shape[0]
     N = n // 2
-    size = n * (n + 1)
+    size, last = n * (n + 1), len(f.values) - NUMBERS
     for i in range(NUMBERS):
-        f.numbers[i] = f.values[size + n + i]
+        f.numbers[i] = f.values[last + i]
         for j in range(f.parameters):
-            f.number_slopes[j, i] = f.slopes[j, size + n + i]
+            f.number_slopes[j, i] = f.slopes[j, last + i]
     if moves(f) or f.is_known == 0:
         for r in range(n):
             for c in range(n + 1):

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.continuation.constrained_gap import constrain_gap
 from vibro_sweep.engine.continuation.flight_tables import flight
+from vibro_sweep.engine.continuation.lasting import state_within
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.problem import index_of, unknowns
 from vibro_sweep.engine.continuation.residual import approach, leave
@@ -110,9 +110,9 @@ def state_at(f, c, x, phase, b, state):
     sign = 1.0 if c.sigma > 0.0 or turns % 2.0 == 0.0 else -1.0
     approach(f, x[i], e)
     if c.rests[i] and delay < x[i, n + 1]:
-        constrain_gap(f, c.sides[i], x[i], delay, e, work.resting)
+        state_within(f, c.compliant, c.sides[i], x[i], delay, e, work.resting, state)
         for r in range(n):
-            state[r] = sign * work.resting[0, r, n]
+            state[r] *= sign
         return
     leave(f, c, i, x[i], e, work)
     flight(f, (delay - (x[i, n + 1] if c.rests[i] else 0.0)) / f.numbers[OMEGA], E, work.other)

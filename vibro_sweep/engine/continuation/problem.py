@@ -21,12 +21,14 @@ class Problem(NamedTuple):
     kind: int  # of the condition
     index: int  # of the impact that grazes; 0 of an onset of sticking, where event 0 is the end of a chatter sequence
     sides: np.ndarray  # (K,); 0 of a turning point that is followed and takes part in nothing
-    rests: np.ndarray  # (K,) whether the gap stays at its stop after the impact, where R = 0
+    rests: np.ndarray  # (K,) whether the event lasts: a rest where R = 0, or a contact with a compliant stop
     sigma: float
     parameters: int  # numbers of the oscillator that are free
     unit: np.ndarray  # (2,) of these
     repeats: bool  # whether the second half of the orbit may repeat the first one
     mirrors: bool  # whether it may be its mirror image
+    compliant: np.ndarray | None  # (2,) whether the left and the right stop is. None where both are rigid: nothing of
+    # contacts is compiled then
 
 
 @jit

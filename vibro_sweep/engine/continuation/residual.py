@@ -21,8 +21,9 @@ import cmath
 import math
 
 from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
-from vibro_sweep.engine.continuation.constrained_gap import put_rest, rest
+from vibro_sweep.engine.continuation.constrained_gap import put_rest
 from vibro_sweep.engine.continuation.flight_tables import flight
+from vibro_sweep.engine.continuation.lasting import last
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
@@ -81,7 +82,7 @@ def leave(f, c, i, x, e, work):
     """The state after event i, and what it does to changes of the state."""
     n, N = f.A.shape[0], f.A.shape[0] // 2
     if c.rests[i]:
-        rest(f, c.sides[i], x, e, work.resting)
+        last(f, c.compliant, c.sides[i], x, e, work.resting)
         return
     for r in range(n):
         e.after[r], e.bend[r] = x[r], f.A[r, N] * x[n + 1] / f.numbers[OMEGA]

@@ -6,6 +6,7 @@ which the first is the gap, and u1 = q1', uj = qj' - p_j q1': an impulse changes
     q' = W u,    W u = u + (0, p_2, p_3, ..) u_1,    zeta' = B zeta
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -129,9 +130,22 @@ def constrained_flow(q: Linear) -> Flow:
     return _flow(q, constrained, B[N])
 
 
-def _flow(q: Linear, B: np.ndarray, row: np.ndarray) -> Flow:
+def contact_flow(q: Linear, side: int) -> Flow:
+    """Tables of the motion in contact with a compliant stop (+1 high, -1 low)."""
+    N, B = len(q.normal), rates(q)
+    laws = (q.k_high, q.c_high, q.p_high, q.high) if side > 0 else (q.k_low, q.c_low, q.p_low, q.low)
+    k, c, p, stop = laws
+    push = contact_coordinates(q).by_force[0] @ q.normal  # 1/m_e
+    B[N, 0] -= k * push
+    B[N, N] -= c * push
+    B[N, -1] -= (side * p - k * stop) * push
+    return _flow(q, B, np.eye(len(B))[0], math.sqrt(k * push) + c * push)
+
+
+def _flow(q: Linear, B: np.ndarray, row: np.ndarray, rate: float = 0.0) -> Flow:
+    """rate : beside those of the free flight, which cells are to resolve"""
     n = len(B) - 3
-    cells = 2 * cells_needed(q)
+    cells = 2 * cells_needed(q) + math.ceil(2 * rate * forcing_period(q))
     if cells > MOST_CELLS:
         raise TooStiffError(f"a forcing period needs {cells} cells, at most {MOST_CELLS} are allowed")
     width = extended(forcing_period(q)) / cells

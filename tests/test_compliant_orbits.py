@@ -1,0 +1,175 @@
+"""Periodic orbits with compliant stops, their multipliers and branches."""
+
+import math
+
+import numpy as np
+import pytest
+from reference.compliant_orbits import ContactOrbit
+from support import slow_cases
+
+import vibro_sweep as vs
+from vibro_sweep.scene import SceneError
+from vibro_sweep.scene.continuation import parse_continuation
+
+PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63)
+
+
+def paper(b, k, z=0.07, **more):
+    return vs.System(**PAPER, b=b, k_stop=k, c_stop=2 * z * math.sqrt(k), **more)
+
+
+def one_mass(**numbers):
+    given = dict(k=1, zeta=0.05, F=0.5, omega=0.8, k_stop=29, b=1, stops="right", tau=0.0)
+    return vs.Oscillator.named("one_mass", **(given | numbers))
+
+
+def in_thirty_digits(orbit):
+    """State at t = 0, times of touch and release, and multipliers of the orbit, and what the reference has of them."""
+    length, contacts = orbit.period * orbit.system.period, np.sort(orbit.contacts, order="t_touch")
+    t = contacts["t_touch"] % length
+    order = np.argsort(t)
+    times = np.column_stack([t, t + contacts["t_release"] - contacts["t_touch"]])[order].ravel()
+    exact = ContactOrbit(orbit.system.linear, contacts["side"][order], orbit.period)
+    state, known, multipliers = exact.solve(orbit.state, times)
+    multipliers = np.array([complex(one) for one in multipliers])
+    found = [orbit.state, times, np.sort_complex(orbit.multipliers)]
+    return found, [np.array(state, float), np.array(known, float), np.sort_complex(multipliers)]
+
+
+@pytest.mark.parametrize(
+    "system, itinerary",
+    [
+        (paper(4, 1e4), "R"),
+        (paper(2, 1e2, preload=0.5), "LR"),
+        (one_mass(omega=0.75, preload=0.05), "R"),
+        *slow_cases(
+            (paper(2, 1e6), "LR"),
+            (paper(5, 1e3, z=0.5), "R"),
+            (vs.System(**PAPER, b=4, k_stop=1e4, c_stop=3, k_stop_left=50, preload_left=0.1), "LR"),
+            (one_mass(), "R"),
+        ),
+    ],
+)
+def test_orbits_and_multipliers_in_thirty_digits(system, itinerary):
+    orbit = vs.periodic_orbit(system, itinerary=itinerary)
+    assert orbit.ok and orbit.itinerary == itinerary and len(orbit.impacts) == 0
+    found, known = in_thirty_digits(orbit)
+    for here, there in zip(found, known, strict=True):
+        assert np.abs(here - there).max() < 1e-12 * max(1.0, np.abs(there).max())
+
+
+def test_the_orbit_is_the_one_that_is_simulated():
+    system = paper(4, 1e4)
+    simulated = vs.simulate(system, (0, 0, 0, 0), 1500)
+    orbit, last = vs.periodic_orbit(system, simulated.section[-1]), simulated.contacts[-1]
+    assert orbit.ok and orbit.stable and orbit.state == pytest.approx(simulated.section[-1], abs=1e-11)
+    (contact,) = orbit.contacts
+    for name in ("v_touch", "v_release", "max_penetration", "max_force"):
+        assert contact[name] == pytest.approx(last[name], rel=1e-9)
+    times = np.linspace(0, system.period, 200)  # sections of flights and of contacts
+    again = vs.simulate(system, orbit.state, 1)
+    assert orbit.sample(times) == pytest.approx(again.sample(times), abs=1e-11)
+    guess = [(contact["t_touch"], 1, contact["v_touch"])]
+    assert vs.periodic_orbit(system, guess=guess).state == pytest.approx(orbit.state, abs=1e-12)
+    assert len(vs.periodic_orbit(system, itinerary="LR").contacts) == 2
+
+
+def test_a_branch_in_the_stiffness_reaches_the_rigid_orbit():
+    soft = vs.System(**PAPER, b=4, k_stop=1e3)
+    rigid = vs.periodic_orbit(vs.System(**PAPER, b=4, R=1), itinerary="R")
+    branch = vs.continue_orbit(vs.periodic_orbit(soft, itinerary="R"), "k_stop", (1e3, 1e9))
+    assert branch.ok and branch.ends.type == "boundary"
+    end = branch.ends.orbit
+    assert end.state == pytest.approx(rigid.state, abs=1e-3)
+    assert np.abs(np.sort_complex(end.multipliers) - np.sort_complex(rigid.multipliers)).max() < 1e-3
+
+
+def test_special_points_of_a_branch_are_where_the_multipliers_of_the_reference_are():
+    orbit = vs.periodic_orbit(one_mass(), itinerary="R")
+    branch = vs.continue_orbit(orbit, "omega", (0.3, 3))
+    assert [one.type for one in branch.special] == ["graze", "flip", "flip", "fold", "fold", "graze"]
+    assert all(one.kind == "persistence" for one in branch.special if one.type == "graze")
+    for one in branch.special[1:3]:
+        multipliers = in_thirty_digits(one.orbit)[1][2]
+        assert np.abs(multipliers + 1).min() < 1e-10
+    # det G(1) has no factor s: at neither graze a fold is found, and both folds turn
+    values = branch.points.omega.values
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(values))))
+    assert len(turns) == 2
+    folds = [one for one in branch.special if one.type == "fold"]
+    assert [values[i + 1] for i in turns] == pytest.approx([one.parameters["omega"] for one in folds], abs=1e-6)
+
+
+def test_a_pair_on_the_circle_and_a_graze_of_the_free_motion():
+    branch = vs.continue_orbit(vs.periodic_orbit(paper(4, 1e4), itinerary="R"), "b", (1, 7))
+    (first, *middle, last), b_star = branch.special, paper(4, 1e4).parameters()["b"]
+    assert first.type == last.type == "graze" and {one.type for one in middle} == {"neimark_sacker"} and b_star == 4
+    torus = in_thirty_digits(middle[0].orbit)[1][2]
+    assert np.abs(np.abs(torus) - 1).min() < 1e-9
+    free = vs.periodic_orbit(paper(8, 1e4), itinerary="")
+    x1 = free.sample(np.linspace(0, free.system.period, 4001))[:, 0]
+    assert last.parameters["b"] == pytest.approx(x1.max(), abs=1e-5)
+    assert vs.switch(last)[0].itinerary == "" and vs.switch(first)[0].itinerary == "LR"
+
+
+def test_branches_go_on_over_grazes_flips_and_pitchforks():
+    found = vs.follow_branches(vs.periodic_orbit(paper(4, 1e4), itinerary="R"), "b", (1, 8), depth=2)
+    assert all(one.branch.ok for one in found)
+    assert {"", "R", "LR"} <= {one.branch.begins.orbit.itinerary for one in found}
+    doubled = vs.follow_branches(vs.periodic_orbit(one_mass(), itinerary="R"), "omega", (0.3, 3))
+    assert any(one.special is not None and one.special.type == "flip" for one in doubled)
+
+
+def test_a_preload_makes_a_graze_as_of_rigid_stops():
+    """With a preload the speed is proportional to the distance from the graze, without it to its square root."""
+    for preload, power in ((0.0, 0.5), (1.0, 1.0)):
+        system = paper(4, 1e4, preload=preload)
+        branch = vs.continue_orbit(vs.periodic_orbit(system, itinerary="R"), "b", (3, 7))
+        graze = next(one for one in (branch.begins, branch.ends) if one.impact is not None)
+        b, lengths = graze.parameters["b"], []
+        s = graze.orbit._solution
+        assert abs(s.ends - s.times).min() < 1e-12
+        points = branch.points
+        near = np.argsort(np.abs(points.b.values - b))[1:3]
+        lengths = points.min_impact_speed.values[near]
+        slope = np.diff(np.log(lengths)) / np.diff(np.log(np.abs(points.b.values[near] - b)))
+        assert slope[0] == pytest.approx(power, abs=0.2)
+
+
+def test_a_mixed_machine_has_contacts_and_impacts():
+    system = vs.System(**PAPER, b=2, k_stop=1e3, c_stop=4, R_left=0.7)
+    orbit = vs.periodic_orbit(system, itinerary="LR")
+    assert orbit.ok and orbit.contacts["side"].tolist() == [1] and orbit.impacts["side"].tolist() == [-1]
+    branch = vs.continue_orbit(orbit, "R_left", (0.2, 0.95))
+    assert branch.ok
+    for end in (branch.begins, branch.ends):
+        state = end.orbit.state
+        simulated = vs.simulate(end.orbit.system, state, 1).section[-1]
+        assert simulated == pytest.approx(state, abs=1e-10)
+
+
+def test_files_hold_them(tmp_path):
+    orbit = vs.periodic_orbit(paper(4, 1e4), itinerary="R")
+    again = vs.load(orbit.save(tmp_path / "orbit.json"))
+    assert again.ok and again.state == pytest.approx(orbit.state, abs=1e-14)
+    branch = vs.continue_orbit(orbit, "b", (3.3, 4.5))
+    read = vs.load(branch.save(tmp_path / "branch.h5"))
+    assert [one.type for one in read.special] == [one.type for one in branch.special]
+    assert read.special[0].orbit.state == pytest.approx(branch.special[0].orbit.state, abs=1e-9)
+    assert branch.plot() is not None and orbit.plot() is not None
+
+
+def test_what_is_refused():
+    system = paper(4, 1e2, release="force")
+    with pytest.raises(ValueError, match="release"):
+        vs.periodic_orbit(system, itinerary="R")
+    scene = (
+        "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, b: 4, k_stop: 100RELEASE}\n"
+        "continue: {from: {itinerary: R}, parameter: {b: [3, 5]MORE}}\n"
+    )
+    for release, more, key in ((", release: force", "", "release"), ("", ", omega: [0.6, 0.7]", "curves")):
+        with pytest.raises(SceneError, match=key):
+            parse_continuation(scene.replace("RELEASE", release).replace("MORE", more))
+    special = vs.continue_orbit(vs.periodic_orbit(paper(4, 1e4), itinerary="R"), "b", (3, 4.5)).special
+    with pytest.raises(ValueError, match="compliant stop; curves"):
+        vs.bifurcation_curve(special[1], ("b", "omega"), ((3, 5), (0.6, 0.66)))

@@ -1,0 +1,50 @@
+"""The numbers of an oscillator's contact as kernels have them, in units in which all are of size 1."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibro_sweep.engine.impulses.flow import contact_coordinates
+from vibro_sweep.model.linear import STEP, Linear
+
+
+class Units(NamedTuple):
+    """Units in which kernels compute, so that all numbers are of size 1."""
+
+    length: float  # the gap's size
+    rate: float  # omega of the start
+
+    @property
+    def speed(self) -> float:
+        """The unit of velocities."""
+        return self.length * self.rate
+
+
+def numbers_of(q: Linear, units: Units) -> list[float]:
+    """Where a stop is compliant k_stop, c_stop, preload over m_e of the left and of the right one; then stops, 1 + R at
+    each, and omega."""
+    length, rate = units
+    laws = []
+    if np.real(q.k_low) > 0 or np.real(q.k_high) > 0:
+        push = contact_coordinates(q).by_force[0] @ q.normal  # 1/m_e
+        for k, c, p in ((q.k_low, q.c_low, q.p_low), (q.k_high, q.c_high, q.p_high)):
+            laws += [k * push / rate**2, c * push / rate, p * push / (rate**2 * length)]
+    R_low, R_high = (0.0 if np.real(k) > 0 else R for k, R in ((q.k_low, q.R_low), (q.k_high, q.R_high)))
+    return [*laws, q.low / length, q.high / length, 1 + R_low, 1 + R_high, q.omega / rate]
+
+
+def number_slopes(q: Linear, slope: Linear, units: Units) -> np.ndarray:
+    """Derivatives of `numbers_of` where q changes by `slope`, and these units stay."""
+    there = q._replace(**{name: 0.0 for name in ("low", "high") if np.isinf(getattr(q, name))})
+    step = Linear(*(value + 1j * STEP * np.asarray(change) for value, change in zip(there, slope, strict=True)))
+    return np.imag(numbers_of(step, units)) / STEP
+
+
+def one_plus_R(q: Linear, sides) -> np.ndarray:
+    """-D/v of events on these sides: 1 + R, and 1 of a contact, whose D stands for its speed as that of a rest does."""
+    return 1 + np.where(q.is_compliant(sides), 0.0, q.restitution(sides))
+
+
+def which_press(q: Linear) -> np.ndarray | None:
+    """(2,) whether the left and the right stop are compliant; None where both are rigid."""
+    return np.array([q.k_low > 0, q.k_high > 0]) if q.compliant else None

@@ -1,0 +1,79 @@
+"""Guesses of orbits with contacts, from those of the same machine with rigid stops.
+
+A contact of a free mass with the frequency sqrt(K) and the damping ratio z on its stop takes half a period, and its
+restitution is exp(-pi z/sqrt(1 - z^2)). Where the stop is so soft that this leads nowhere, it is made softer from
+orbit to orbit.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from vibro_sweep.analysis.periodic.contact_numbers import one_plus_R
+from vibro_sweep.analysis.periodic.solution import Solution
+from vibro_sweep.engine.impulses.flow import contact_coordinates
+from vibro_sweep.model.linear import Family, Linear
+
+MOST_DAMPED = 0.95  # of z, beyond which a contact of a free mass is as long as with this
+STIFFER = 1e4, 1e2, 1.0  # times the stiffness, at the same z
+
+
+def of_free_mass(q: Linear, side: int) -> tuple[float, float]:
+    """Restitution and duration of a contact of a free mass with a compliant stop."""
+    push = contact_coordinates(q).by_force[0] @ q.normal  # 1/m_e
+    k, c = (q.k_high, q.c_high) if side > 0 else (q.k_low, q.c_low)
+    rate = math.sqrt(k * push)
+    z = min(c * push / (2 * rate), MOST_DAMPED)
+    root = math.sqrt(1 - z * z)
+    return math.exp(-math.pi * z / root), math.pi / (rate * root)
+
+
+def rigid(family: Family) -> Family:
+    """The same machine with rigid stops, of the restitution that a free mass sees."""
+    q = family.linear
+    R = [of_free_mass(q, side)[0] if q.is_compliant(side) else R for side, R in ((-1, q.R_low), (1, q.R_high))]
+    none = {f"{name}_{side}": 0.0 for name in "kcp" for side in ("low", "high")}
+    hard = q._replace(R_low=R[0], R_high=R[1], **none)
+    return Family(lambda: hard, {})
+
+
+def stiffer(q: Linear, times: float) -> Linear:
+    """With stops that are stiffer, at the same damping ratio."""
+    root = math.sqrt(times)
+    return q._replace(k_low=q.k_low * times, k_high=q.k_high * times, c_low=q.c_low * root, c_high=q.c_high * root)
+
+
+def with_contacts(family: Family, solution: Solution, t, speeds) -> Solution:
+    """A guess with impacts or contacts at these times, with these gap velocities before them."""
+    q, sides = family.linear, np.array(solution.sides)
+    rests = tuple(np.flatnonzero(q.is_compliant(sides)).tolist())
+    ends = [t[k] + of_free_mass(q, sides[k])[1] for k in rests]
+    u = np.concatenate([t, -one_plus_R(q, sides) * speeds, ends])
+    return replace(solution, family=family, u=u, rests=rests)
+
+
+def softened(family: Family, found: Solution) -> Solution | None:
+    """The orbit of the family from one with rigid stops."""
+    speeds, one = -found.jumps / one_plus_R(found.family.linear, found.sides), None
+    for times in STIFFER:
+        there = stiffer(family.linear, times)
+        at = family if times == 1.0 else Family(lambda there=there: there, {})
+        guess = with_contacts(at, found, found.times, speeds) if one is None else replace(one, family=at)
+        if one is not None:
+            longer = guess.ends - guess.times[list(guess.rests)]
+            ends = guess.times[list(guess.rests)] + 10 * longer
+            guess = replace(guess, u=np.concatenate([guess.times, guess.jumps, ends]))
+        one = guess.corrected()
+        if one is None:
+            return None
+    return one
+
+
+def contact_seeds(start: Solution, seeded: Callable[[Solution], Iterator[Solution]]) -> Iterator[Solution]:
+    """Orbits with these contacts, from those with rigid stops that are found from fixed seeds."""
+    for found in seeded(replace(start, family=rigid(start.family))):
+        one = softened(start.family, found)
+        if one is not None:
+            yield one

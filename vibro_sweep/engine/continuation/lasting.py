@@ -1,0 +1,67 @@
+"""Events that last: a rest where R = 0, or a contact with a compliant stop. Which of them it is, is asked here alone.
+
+`compliant` is `Problem.compliant`. Where it is None the branches with contacts are not compiled.
+"""
+
+from vibro_sweep.engine.continuation.compliant_contact import contact, least_depth, press_gap
+from vibro_sweep.engine.continuation.constrained_gap import constrain_gap, press, rest
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, law_at
+from vibro_sweep.engine.simd.jit import jit
+
+
+@jit
+def is_contact(compliant, side):
+    """Whether an event that lasts on this side is a contact."""
+    if compliant is None:
+        return False
+    else:
+        return compliant[1 if side > 0 else 0]
+
+
+@jit
+def turns_at_graze(f, compliant, side):
+    """Whether a branch turns where the length s of an event on this side is 0, and det G(mu) has the factor s.
+
+    Without a preload a contact begins like its length squared: both signs of s are at one parameter.
+    """
+    if compliant is None:
+        return False
+    else:
+        return is_contact(compliant, side) and f.values[law_at(f, side) + 2] == 0.0
+
+
+@jit
+def last(f, compliant, side, x, e, room):
+    """`after`, `carry`, `pull` and `release` of an event that lasts."""
+    if compliant is None:
+        rest(f, side, x, e, room)
+    elif is_contact(compliant, side):
+        contact(f, side, x, e, room)
+    else:
+        rest(f, side, x, e, room)
+
+
+@jit
+def state_within(f, compliant, side, x, delay, e, room, state):
+    """The whole motion (n,) so long after the event has begun."""
+    n = f.A.shape[0]
+    if compliant is None:
+        constrain_gap(f, side, x, delay, e, room)
+    elif is_contact(compliant, side):
+        press_gap(f, side, x, delay, e, room)
+        room[0, 0, n] += f.numbers[HIGH if side > 0 else LOW]
+    else:
+        constrain_gap(f, side, x, delay, e, room)
+    for r in range(n):
+        state[r] = room[0, r, n]
+
+
+@jit
+def hold_of(f, compliant, side, x, e, work):
+    """What keeps it up: the least acceleration into the stop during a rest, the least depth of a contact."""
+    if compliant is None:
+        return press(f, side, x, e, work)
+    elif is_contact(compliant, side):
+        return least_depth(f, side, x, e, work)
+    else:
+        return press(f, side, x, e, work)
