@@ -115,10 +115,7 @@ def test_scenes(name):
 
 FOLLOWED = "continue: {parameter: {b: [4, 6]}, from: {itinerary: R}}\n"
 COMMANDS = {name: SCENES[name] for name in ("stiffness negative", "R and stiffness", "physical: release unknown")} | {
-    "branches": (f"system: {{{PAPER}, {SOFT}}}\n{FOLLOWED}", "system.k_stop", "rigid"),
-    "branches with one compliant stop": (
-        f"system: {{{PAPER}, R: 0.8, k_stop_left: 5}}\n{FOLLOWED}", "system.k_stop_left", "rigid",
-    ),
+    "branches": (f"system: {{{PAPER}, {SOFT}, release: force}}\n{FOLLOWED}", "system.release", "displacement"),
 }  # fmt: skip
 
 
@@ -166,7 +163,7 @@ CALLS = {
         ),
         "stop",
     ),
-    "a periodic orbit": (lambda: vs.periodic_orbit(soft(), itinerary="R"), "rigid"),
+    "a periodic orbit": (lambda: vs.periodic_orbit(soft().replace(release="force"), itinerary="R"), "displacement"),
     "orbits born at grazing": (lambda: vs.born_at_grazing(soft()), "rigid"),
     "the mapping": (lambda: vs.discontinuity_map(soft()), "rigid"),
     "windows": (lambda: vs.windows(vs.sweep(soft(), {"b": [5, 6]}, transient=1, record=2)), "rigid"),

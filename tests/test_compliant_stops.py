@@ -157,7 +157,7 @@ def test_what_a_sweep_observes_is_what_an_orbit_has():
 
 def test_exponents_do_not_depend_on_where_the_section_is():
     """In contact or not: tau = pi/2 has its sections in contacts."""
-    numbers = dict(k=1, zeta=0.01, drive="base", F=0.9 / 1.26, omega=1.1, k_stop=29, b=1, stops="right")
+    numbers = dict(k=1, zeta=0.01, base=True, F=0.9 / 1.26, omega=1.1, k_stop=29, b=1, stops="right")
     found = []
     for tau in (math.pi / 2, 0.3):
         system = vs.Oscillator.named("one_mass", **numbers, tau=tau)
