@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 from reference import compliant
+from scipy.integrate import solve_ivp
 
 import vibro_sweep as vs
 from vibro_sweep.scene import SceneError, parse_scene
@@ -153,6 +154,44 @@ def test_what_a_sweep_observes_is_what_an_orbit_has():
             np.mean(-ended["v_release"] / ended["v_touch"]), rel=1e-2
         )
         assert 0 < float(data.contact_time[i]) < 1
+
+
+@pytest.mark.parametrize("place", [0, 1])
+def test_a_rest_on_a_preload_ends_by_being_pressed_in(place):
+    """The first contact after it, against an integration from where the force of rest is the preload."""
+    k, c, p, F = 25.0, 1.0, 1.5, 0.6
+    system = vs.Oscillator.named(
+        "one_mass",
+        k=0,
+        zeta=0,
+        constant=-1,
+        F=F,
+        omega=1,
+        k_stop=k,
+        c_stop=c,
+        preload=p,
+        stops="left",
+        b=place,
+        tau=0.0,
+    )
+    orbit = vs.simulate(system, (-place, 0), 3)
+    assert orbit.status == "ok"
+    begin = math.pi + math.asin((p - 1) / F)  # 1 - F sin t = p
+    assert orbit.sticking["t_off"][0] == pytest.approx(begin, rel=1e-14)
+    back = solve_ivp(
+        lambda t, y: (y[1], 1 - F * math.sin(t) - k * y[0] - c * y[1] - p), (begin + 1e-6, 7), (1e-20, 1e-13),
+        events=_leaves, rtol=1e-11, atol=1e-14, max_step=0.02,
+    )  # fmt: skip
+    assert orbit.contacts["t_touch"][0] == pytest.approx(begin, rel=1e-14)
+    assert orbit.contacts["t_release"][0] == pytest.approx(back.t_events[0][0], abs=1e-8)
+    assert orbit.contacts["v_release"][0] == pytest.approx(back.y_events[0][0][1], abs=1e-8)
+
+
+def _leaves(t, y):
+    return y[0]
+
+
+_leaves.terminal, _leaves.direction = True, -1
 
 
 def test_exponents_do_not_depend_on_where_the_section_is():

@@ -93,16 +93,14 @@ def first_zero(contact, c, n, length):
 @jit
 def end_of_contact(contact, side, length):
     """When contact ends within the series, infinite if it does not; NaN where that cannot be decided."""
-    order = first_nonzero(contact.c[0], 1) if contact.entered else 0
+    order = first_nonzero(contact.c[0], contact.least) if contact.entered else 0
     contact.ends_by_force = leaves_by_force(contact, side)
     if not contact.ends_by_force:
         return first_zero(contact, contact.c[0], order, length)
     load_force(contact, side)
     d = first_zero(contact, contact.force, first_nonzero(contact.force, 0), length)
     if contact.preload[lane_of(side)] > 0.0 and d > 0.0:
-        sooner = first_zero(
-            contact, contact.c[0], first_nonzero(contact.c[0], 1) if contact.entered else 0, min(d, length)
-        )
+        sooner = first_zero(contact, contact.c[0], order, min(d, length))
         if not sooner > d:
             contact.ends_by_force = False
             return sooner

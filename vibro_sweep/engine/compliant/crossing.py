@@ -29,7 +29,7 @@ from vibro_sweep.engine.tables.flight import bounds, load
 from vibro_sweep.engine.tables.resting import bound_third_over
 from vibro_sweep.model import status
 
-NEAR = 8.0 * 2.0**-52  # of the place of a stop: bounces no higher are a rest on a preloaded stop
+NEAR = 8.0 * 2.0**-52  # of the place of a stop, or the depth of its preload: lower bounces are a rest on it
 
 
 @noinline
@@ -151,7 +151,8 @@ def meet(law, f, stops, o, records, t, k, s, side, hit, released):
     a = 2.0 * side * c1[2]
     if not unrelaxed and p > 0.0 and 0.0 < a < p:
         height = speed * speed / (2.0 * min(a, p - a))
-        if relative > 0.0 and height < NEAR * abs(wall_of(stops, side)):
+        size = max(abs(wall_of(stops, side)), p / contact.stiffness[n])
+        if relative > 0.0 and height < NEAR * size:
             X[1] = relative = 0.0
             o.chatters += 1
     if relative > 0.0:
@@ -159,7 +160,11 @@ def meet(law, f, stops, o, records, t, k, s, side, hit, released):
         return 0
     if relative < 0.0 or unrelaxed:
         return 1
-    order = first_nonzero(c1, 3 if released and a < 0.5 * p else 2)
+    if released and a > 0.5 * p > 0.0:  # what pressed it on exceeds the preload from here on: delta'' is zero
+        begin_contact(law, f, stops, o, t, k, s, side, True)
+        contact.least = 3
+        return 0
+    order = first_nonzero(c1, 3 if released else 2)
     if side * c1[order] <= 0.0:
         return order
     if order > 2 or a < p:

@@ -49,7 +49,8 @@ def law_of(masses: int) -> np.dtype:
         ("push", float, (masses,)),  # p_j
         # of the contact
         ("pressed", float),  # the side of the stop that it is with, or 0
-        ("entered", np.bool_),  # whether this is its beginning, where delta is zero
+        ("entered", np.bool_),  # whether this is its beginning, where delta is zero, as are its derivatives
+        ("least", np.int64),  # below this order
         ("ends_by_force", np.bool_),  # whether its end is where the force is zero
         ("y", float, (states,)),  # delta, delta', w2, w2', ...
         ("c", float, (masses, ORDER)),  # Taylor coefficients of delta, w2, ...

@@ -31,7 +31,7 @@ def begin_contact(law, f, stops, o, t, k, s, side, on_stop):
     if on_stop:
         contact.y[0] = 0.0
     o.resting = contact.pressed = side
-    contact.entered, contact.touched = on_stop, contact.y[1]
+    contact.entered, contact.least, contact.touched = on_stop, 1, contact.y[1]
     contact.begun = UNRELAXED if contact.relaxed[n] > 0.0 else RELAXED if on_stop else CONTINUED
     if contact.relaxed[n] > 0.0:
         rest = contact.preload[n] / contact.stiffness[n]
