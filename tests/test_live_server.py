@@ -204,6 +204,9 @@ def test_the_page_and_its_policy(program):
     for path in ("/../server.py", "/..%2fserver.py", "/page/main.js", "/etc/passwd"):
         assert got(program, path)[0] == 404
     assert got(program, f"/?token={program.token}", "POST")[0] == 405
+    for path in (f"/?token={program.token}", "/main.js"):
+        assert got(program, path, Origin="http://example.org")[0] == 403
+        assert got(program, path, Origin=f"http://{program.host}")[0] == 200
 
 
 @pytest.mark.parametrize(

@@ -31,8 +31,13 @@ def host_is_here(scope: Scope) -> bool:
     return _name(_header(scope, b"host")) in HOSTS
 
 
+def origin_is_foreign(scope: Scope) -> bool:
+    """Whether a request says that a page of another site makes it. Most requests of our own say nothing."""
+    return any(key == b"origin" for key, _ in scope["headers"]) and not origin_is_here(scope)
+
+
 def origin_is_here(scope: Scope) -> bool:
-    """Whether a socket is opened by a page that came from the same address."""
+    """Whether a request says that it comes from a page of the same address, as one for a socket has to."""
     host, origin = _header(scope, b"host"), _header(scope, b"origin")
     return origin in (f"http://{host}", f"https://{host}")
 

@@ -13,7 +13,7 @@ from starlette.responses import PlainTextResponse, Response
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from vibro_sweep.live.access import HEADERS, host_is_here, knows_token, new_token, origin_is_here
+from vibro_sweep.live.access import HEADERS, host_is_here, knows_token, new_token, origin_is_foreign, origin_is_here
 from vibro_sweep.live.answers import Answers, Message
 from vibro_sweep.live.engine_thread import EngineThreads, Page
 from vibro_sweep.live.pace import Pace
@@ -51,6 +51,8 @@ class Explorer:
     def _file(self, scope: Scope) -> Response:
         if not host_is_here(scope):
             return PlainTextResponse("403: another host\n", 403, HEADERS)
+        if origin_is_foreign(scope):
+            return PlainTextResponse("403: a page of another site\n", 403, HEADERS)
         if scope["method"] not in ("GET", "HEAD"):
             return PlainTextResponse("405\n", 405, HEADERS)
         if scope["path"] == "/" and not knows_token(scope, self.token):
