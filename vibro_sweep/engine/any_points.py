@@ -90,7 +90,9 @@ def grazing_points(q: Linear, expand_at: float | None) -> np.ndarray:
     """
     response = gap_responses(q, steady_amplitudes(q))
     result = np.full((*response.shape, 2 * q.normal.shape[-1]), np.nan)
-    for place in zip(*np.nonzero(~np.isnan(response) & (response != 0)), strict=True):
+    for place in np.ndindex(response.shape):  # () where it is one oscillator
+        if np.isnan(response[place]) or response[place] == 0:
+            continue
         one = taken(q, place)
         state = np.kron(coordinates(one.normal, least_restrained(one))[0], np.eye(2)) @ grazing_state(one)
         state[0] = state[0] if expand_at is None else expand_at
