@@ -149,7 +149,7 @@ def checked(source: Path | BinaryIO, path: Path, raw: BinaryIO, content: bool = 
             raise ForeignError(path, text(result, NETCDF).removeprefix("version=2,"))
         if (found := result.attrs.get("format")) != FORMAT:
             raise StoreError(
-                f"{path} has the format {found} of another version of vibro_sweep; this one reads {FORMAT}"
+                f"{path} has the format {cut(str(found))} of another version of vibro_sweep; this one reads {FORMAT}"
             )
         _check_heap(result, raw)
         _check(result)
