@@ -220,6 +220,7 @@ class Engine:
         if self.ensemble.law is not None:
             for name in ("relaxed", "pressed", "logged"):
                 self.ensemble.law.orbits[name][lane] = 0
+            self.ensemble.law.orbits["close_until"][lane] = -1
         orbits.set_state(
             self.ensemble.orbits[lane], nodes, self.stops, int(cell), float(offset), np.asarray(state, float)
         )

@@ -7,6 +7,7 @@ zero of delta, or of the force if the stop is left by force; that which delta ha
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.distance import delta_of, set_delta
 from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
 from vibro_sweep.engine.motion.impacts import size_at
@@ -24,7 +25,7 @@ STEPS = 60  # of Newton's method, or halvings, towards a peak
 def enter(contact, o, stops, side):
     """Set delta, w2, ... from the orbit's state."""
     X, y = o.X, contact.y
-    y[0] = side * (X[0] - (stops.right if side > 0.0 else stops.left))
+    y[0] = delta_of(o, stops, side)
     y[1] = side * X[1]
     for j in range(1, len(contact.push)):
         y[2 * j] = X[2 * j] - contact.push[j] * X[0]
@@ -35,7 +36,7 @@ def enter(contact, o, stops, side):
 def leave(contact, o, stops, side):
     """Set the orbit's state from delta, w2, ..."""
     X, y = o.X, contact.y
-    X[0] = (stops.right if side > 0.0 else stops.left) + side * y[0]
+    set_delta(o, stops, side, y[0])
     X[1] = side * y[1]
     for j in range(1, len(contact.push)):
         X[2 * j] = y[2 * j] + contact.push[j] * X[0]

@@ -9,19 +9,20 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.compliant.contact_series import leaves_by_force
+from vibro_sweep.engine.compliant.distance import advance_finely, delta_of, finer_at, set_delta
 from vibro_sweep.engine.compliant.law import lane_of
+from vibro_sweep.engine.compliant.phase import force_at_node
 from vibro_sweep.engine.compliant.pressing import begin_contact, stay_in_contact
-from vibro_sweep.engine.compliant.relaxing import bring_stops, reach_of_relaxing, set_distance, speed_of_stop
-from vibro_sweep.engine.motion.first_contact import first_contact
+from vibro_sweep.engine.compliant.relaxing import bring_stops, reach_of_relaxing, relax_by, set_distance, speed_of_stop
+from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
 from vibro_sweep.engine.motion.impacts import (
     EXPLAINED,
     MOST_EVENTS,
-    contact_on,
     end_chatter,
     impact,
     size_at,
 )
-from vibro_sweep.engine.motion.orbits import advance, is_finite, round_off, take_samples, wall_of
+from vibro_sweep.engine.motion.orbits import is_finite, take_samples, wall_of
 from vibro_sweep.engine.motion.rest import begin_rest, chatter, first_nonzero, stay_at_rest
 from vibro_sweep.engine.simd.jit import jit, noinline
 from vibro_sweep.engine.simd.memory import row
@@ -35,14 +36,16 @@ NEAR = 8.0 * 2.0**-52  # of the place of a stop, or the depth of its preload: lo
 @noinline
 def cross_cell_with_law(law, f, stops, o, records, t, k, s):
     """Follow the orbit from offset s in cell k to the cell's end, through all that happens. Returns a status."""
-    q, node, X, c1, contact = f.oscillator[0], f.nodes[k], o.X, o.c[0], law.orbits[o.lane]
+    q, X, c1, contact = f.oscillator[0], o.X, o.c[0], law.orbits[o.lane]
+    node_sin, node_cos = force_at_node(q, contact.tau, k)
     released, hit, leaving, order = False, 0.0, 0.0, 0
-    round_off(o)
+    if s == 0.0:
+        o.finer[0] = finer_at(o, k)
     while o.events < MOST_EVENTS:
         left = q.width - s
         last = left <= 1.001 * q.step
         left = left if last else q.step
-        sin, cos = node.z[2 * len(o.c)], node.z[2 * len(o.c) + 1]
+        sin, cos = node_sin, node_cos
         if s > 0.0:
             swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
             sin, cos = sin * turn + cos * swing, cos * turn - sin * swing
@@ -74,7 +77,7 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
                     contact.relaxed[n] = 0.0
                 else:
                     left, last = reach, last and not reach < left
-        side = leaving if leaving != 0.0 else hit if hit != 0.0 else place_of(contact, stops, X)
+        side = leaving if leaving != 0.0 else hit if hit != 0.0 else place_of(contact, o, stops)
         rigid = side != 0.0 and not contact.compliant[lane_of(side)]
         if rigid and side * X[1] > 0.0:
             impact(f, stops, o, records, t, k, s, side, sin, cos)
@@ -105,20 +108,20 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
             return status.UNRESOLVED
         end = min(d, left)
         take_samples(o, records, k, s, s + end)
-        advance(o, end)
+        advance_finely(o, end)
         if d == np.inf and (last or not is_finite(o)):
-            bring_stops(contact, o, k, s + end, q.width)
+            relax_by(contact, end, o.period * o.cells + k + 1, 0.0)
             return status.OK if is_finite(o) else status.NOT_FINITE
         s += end
+        relax_by(contact, end, o.period * o.cells + k, s)
         if d == np.inf:
             continue
-        bring_stops(contact, o, k, s, q.width)
-        place = wall_of(stops, side) + side * contact.relaxed[lane_of(side)]
-        miss = abs(X[0] - place)
+        hit, place = side, contact.relaxed[lane_of(side)]
+        miss = abs(delta_of(o, stops, side) - place)
         if miss > EXPLAINED * size_at(c1, d):
             return status.BEYOND_STOP
         o.miss = max(o.miss, miss)
-        X[0], hit = place, side
+        set_delta(o, stops, side, place)
         if contact.relaxed[lane_of(side)] == 0.0 and side * X[1] <= 0.0:  # it touched without speed
             X[1] = 0.0
             o.events += 1
@@ -126,11 +129,11 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
 
 
 @jit
-def place_of(contact, stops, X):
+def place_of(contact, o, stops):
     """The side of the stop that the mass is at, or inside; 0 between the stops."""
-    if X[0] >= stops.right + contact.relaxed[1]:
+    if delta_of(o, stops, 1.0) >= contact.relaxed[1]:
         return 1.0
-    return -1.0 if X[0] <= stops.left - contact.relaxed[0] else 0.0
+    return -1.0 if delta_of(o, stops, -1.0) >= contact.relaxed[0] else 0.0
 
 
 @jit
@@ -138,7 +141,7 @@ def meet(law, f, stops, o, records, t, k, s, side, hit, released):
     """The mass is at a compliant stop, or starts inside: contact begins, or a rest on its preload (0); or the order of
     the zero with which the mass leaves it."""
     contact, n, X, c1 = law.orbits[o.lane], lane_of(side), o.X, o.c[0]
-    speed, inside, p = side * X[1], side * (X[0] - wall_of(stops, side)), contact.preload[n]
+    speed, inside, p = side * X[1], delta_of(o, stops, side), contact.preload[n]
     relative, unrelaxed = speed - speed_of_stop(contact, n), contact.relaxed[n] > 0.0
     if not hit and inside - contact.relaxed[n] > EXPLAINED * (abs(X[0]) + abs(wall_of(stops, side))):
         if leaves_by_force(contact, side) and contact.stiffness[n] * inside + contact.damping[n] * speed + p < 0.0:
@@ -179,12 +182,13 @@ def meet(law, f, stops, o, records, t, k, s, side, hit, released):
 def touch_of(q, contact, o, stops, side, order, reach, left):
     """Offset of the first touch of the stop on `side`, infinite if there is none. order: of the zero that the distance
     from it begins with."""
-    n, wall, c1 = lane_of(side), wall_of(stops, side), o.c[0]
-    if contact.relaxed[n] == 0.0:
-        return contact_on(q, o, stops, side, order, reach, left)
-    if order == 0 and side * (wall - c1[0]) > reach:
+    n, delta = lane_of(side), delta_of(o, stops, side)
+    if order == 0 and -delta > reach:
         return np.inf
-    set_distance(contact, n, side, c1, wall, order)
+    if contact.relaxed[n] == 0.0:
+        set_gap(o.gap, o.c[0], -delta, side, order)
+        return first_contact(o.gap, bounds(q, o.gap[:])[1], left)
+    set_distance(contact, n, side, o.c[0], delta, order)
     if not contact.gap[0] > 0.0:
         return 0.0
     return first_contact(contact.gap, bound_third_over(contact.gap, left), left)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.distance import NEAR
 from vibro_sweep.engine.compliant.passage_tables import passages_of, set_passage
 from vibro_sweep.engine.records import Kind
 from vibro_sweep.engine.simd.jit import inline, jit
@@ -44,8 +45,9 @@ def law_of(masses: int) -> np.dtype:
         ("preload", float, 2),
         ("by_force", np.bool_),  # a contact ends where the force is zero, and the stop goes on relaxing
         ("mass", float),  # m_e
+        ("tau", float),  # the phase of the force at node 0
         ("equations", float, (2, masses, states + 3)),  # (delta'', w2'', ..) by (delta, delta', w2, .., sin, cos, 1)
-        ("step", float, 2),  # of Taylor series in contact
+        ("step", float, 2),  # of Taylor series in contact; in single precision, so that sums of thousands are exact
         ("push", float, (masses,)),  # p_j
         # of the contact
         ("pressed", float),  # the side of the stop that it is with, or 0
@@ -56,6 +58,9 @@ def law_of(masses: int) -> np.dtype:
         ("c", float, (masses, ORDER)),  # Taylor coefficients of delta, w2, ...
         ("force", float, (ORDER,)),  # F/m_e
         ("gap", float, (ORDER,)),
+        # of flights (distance.py)
+        ("near", float, 2),  # how near to each stop, and how slow in a cell, one is that needs all digits of the gap
+        ("close_until", np.int64),  # until which cell since t = 0: a period after the last release
         # of stops that relax
         ("relaxed", float, 2),  # s: how far the massless stop is from where it is relaxed; and where it was left
         ("left", float, 2),
@@ -99,17 +104,20 @@ def new_law(kind: Kind, room: int = 0) -> Law | None:
 def set_law(law, i, point, q):
     """Give orbit i of the oscillator q its stops."""
     contact, masses, width = law.orbits[i], len(point.push), q.width
-    contact.by_force, contact.mass = point.by_force, point.contact_mass
+    contact.by_force, contact.mass, contact.tau = point.by_force, point.contact_mass, point.tau
     for m in range(masses):
         contact.push[m] = point.push[m]
     for n in range(2):
         contact.compliant[n] = int(point.contact_stiffness[n] > 0.0)
         contact.stiffness[n], contact.damping[n] = point.contact_stiffness[n], point.contact_damping[n]
         contact.preload[n] = point.contact_preload[n]
-        contact.step[n] = min(width, WIDTH / point.contact_rate[n]) if contact.compliant[n] else width
+        step = min(width, WIDTH / point.contact_rate[n]) if contact.compliant[n] else width
+        contact.step[n] = np.float32(step)
         contact.relaxed[n] = 0.0
+        contact.near[n] = NEAR * (abs(point.stops[n]) + q.largest) if contact.compliant[n] else 0.0
         fill_equations(contact.equations[n], point, 2.0 * n - 1.0, n)
     contact.pressed, contact.entered, contact.watched, contact.row = 0.0, False, False, -1
+    contact.close_until = -1
     set_passage(law.passage[0], i, contact, point, q)
 
 

@@ -1,10 +1,11 @@
 """What happens to eight orbits that meet a stop in their cells: an impact, or the passage through a contact."""
 
+from vibro_sweep.engine.compliant.distance import finer_at, is_close_to_stop
 from vibro_sweep.engine.compliant.passage import pass_contacts
 from vibro_sweep.engine.compliant.passage_series import of_stop
-from vibro_sweep.engine.compliant.relaxing import bring_stops
+from vibro_sweep.engine.compliant.relaxing import bring_stops, relaxed_after
 from vibro_sweep.engine.motion.section import end_period
-from vibro_sweep.engine.motion.strike import find_contact, rebound, strike
+from vibro_sweep.engine.motion.strike import find_contact, gaps_at, rebound, strike
 from vibro_sweep.engine.simd.columns import transposed
 from vibro_sweep.engine.simd.jit import inline, jit, noinline
 from vibro_sweep.engine.simd.lanes import bits, lanes_of
@@ -24,7 +25,9 @@ def meet_stops(law, strikes, waiting):
 def meet_stops_of(law, strikes, waiting):
     """`meet_stops` where some stops are compliant."""
     passage, z = law.passage[0], transposed(strikes.z, strikes.tail)
-    free, touching, side, d, v, a, third = find_contact(strikes, z, lanes_of(waiting))
+    (right, left), finer = gaps_at(strikes, z), row(passage.finer, 0)
+    free, touching, side, d, v, a, third = find_contact(strikes, z, right - finer, left + finer, lanes_of(waiting))
+    free = free & ~(row(passage.close, 0) > 0.0)
     compliant = touching & (of_stop(passage.compliant, side > 0.0) > 0.0)
     struck, passed = touching & ~compliant, touching & ~touching
     if bits(struck) != 0:
@@ -55,21 +58,27 @@ def is_open_to(law, e, o, k, readings):
         bring_stops(contact, o, k, 0.0, e.strike[0].width[i])
     read = readings.parts > 0 and (o.done + 1) * readings.parts >= (o.read + 1) * o.periods
     passage.watched = contact.watched
+    passage.finer[i] = finer_at(o, k)
+    passage.close[i] = int(is_close_to_stop(contact, o, e.strike[0].width[i]))
     passage.ahead[i] = o.cells - k
     passage.last[i] = passage.ahead[i] + (o.cells if o.done + 1 < o.goal and not read else 0)
     return not (alone or contact.relaxed[0] > 0.0 or contact.relaxed[1] > 0.0)
 
 
 @inline
-def finish_passage(law, e, o, f, readings):
-    """Count the contact of an orbit, and bring it over the cells and the section that lie within."""
+def finish_meeting(law, e, o, f, passed, readings):
+    """Finish what an orbit did at a stop: where it `passed` a contact, count that, and bring the orbit over the cells
+    and the section that lie within."""
     if law is not None:
-        finish_passage_of(law, e, o, f, readings)
+        if passed:
+            finish_passage(law, e, o, f, readings)
+        else:
+            o.finer[0] = 0.0
 
 
 @noinline
-def finish_passage_of(law, e, o, f, readings):
-    """`finish_passage` where some stops are compliant."""
+def finish_passage(law, e, o, f, readings):
+    """`finish_meeting` of a contact."""
     contact, passage, i, q = law.orbits[o.lane], law.passage[0], o.lane, f.oscillator[0]
     n, crossed = 1 if e.strike[0].side[i] > 0.0 else 0, int(passage.crossed[i])
     contact.contacts[n] += 1
@@ -82,11 +91,13 @@ def finish_passage_of(law, e, o, f, readings):
     o.pressed_time += passage.time[i]
     o.log_volume -= passage.damping[n, i] * passage.time[i]
     k = o.cell + crossed
+    contact.close_until = o.period * o.cells + k + o.cells
     if passage.place[i] > 0.0:
-        contact.relaxed[n] = contact.left[n] = passage.place[i]
-        contact.cell[n] = o.period * o.cells + k
-        contact.offset[n] = e.strike[0].offset[i] + passage.time[i] - crossed * q.width
+        contact.left[n] = passage.place[i]
+        contact.relaxed[n] = passage.place[i]
+        contact.relaxed[n] = relaxed_after(contact, n, passage.rest[i])
+        contact.cell[n], contact.offset[n] = o.period * o.cells + k + 1, 0.0
     if k >= o.cells:
         end_period(e, o, q, f.nodes, row(passage.X, i), readings)
         k -= q.cells
-    o.cell = k
+    o.cell, o.finer[0] = k, passage.finer[i]

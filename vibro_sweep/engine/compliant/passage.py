@@ -36,14 +36,15 @@ MARGIN = 1.0 + 1e-9  # of bounds that rounding may have moved
 
 
 @inline
-def series_of(passage, z, m, u):
-    """Position and velocity of mass m in free flight, u after the inputs z."""
+def change_of(passage, z, m, u):
+    """By how much mass m moves in free flight within u after the inputs z, and its velocity then."""
     step, first = economy.TERMS, m * len(z) * economy.TERMS
     x, v = weigh(passage.series, first + step - 1, step, z), 0.0 * u
-    for n in range(step - 2, -1, -1):
+    for n in range(step - 2, 1, -1):
         v = v * u + x
         x = x * u + weigh(passage.series, first + n, step, z)
-    return x, v
+    v, x = v * u + x, x * u + z[2 * m + 1]
+    return x * u, v * u + x
 
 
 @inline
@@ -138,8 +139,8 @@ def pass_contacts(passage, strikes, z, touching, side, d, v):
     put(y, 0, 0.0)
     put(y, 1, speed)
     for m in range(1, masses):
-        xm, vm = series_of(passage, z, m, d)
-        put(y, 2 * m, xm - row(passage.push, m) * wall)
+        change, vm = change_of(passage, z, m, d)
+        put(y, 2 * m, (z[2 * m] + change) - row(passage.push, m) * wall)
         put(y, 2 * m + 1, vm - row(passage.push, m) * v)
     about = guess(
         speed,
@@ -277,8 +278,15 @@ def leave_stop(passage, strikes, leaving, crossing, side, end, sin, cos):
     into = select(side * after > 0.0, side * after, 0.0) + rest * third
     leaving = leaving & (~by_force | (k * (-speed - rest * into) > c * into))
     put(passage.crossed, 0, crossed)
+    put(passage.rest, 0, rest)
     for m in range(masses):
-        x, v = series_of(passage, z, m, rest)
+        change, v = change_of(passage, z, m, rest)
+        if m == 0:
+            change = side * place + change
+            x = wall + change
+            put(passage.finer, 0, (wall - (x - (x - wall))) + (change - (x - wall)))
+        else:
+            x = z[2 * m] + change
         put(strikes.landing, 2 * m, select(leaving, x, row(strikes.landing, 2 * m)))
         put(strikes.landing, 2 * m + 1, select(leaving, v, row(strikes.landing, 2 * m + 1)))
     put_transposed(strikes.X, strikes.landing)

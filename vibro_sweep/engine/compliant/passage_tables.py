@@ -56,6 +56,8 @@ def passages_of(masses: int, constant: bool = False) -> np.dtype:
         ("push", float, (masses, LANES)),  # p_j
         ("omega", float, (LANES,)),
         # of the cell in which the stop is touched
+        ("finer", float, (LANES,)),  # what x1 has beside its float there; then, at the end of the cell of the release
+        ("close", float, (LANES,)),  # 1: the next state, too, needs all digits of the gap (distance.py)
         ("ahead", float, (LANES,)),  # cells from its beginning to the section, and
         ("last", float, (LANES,)),  # to where a contact may last at most
         # of the contact
@@ -72,7 +74,8 @@ def passages_of(masses: int, constant: bool = False) -> np.dtype:
         ("speed", float, (LANES,)),  # delta' at the touch, and
         ("speed_after", float, (LANES,)),  # at the release
         ("place", float, (LANES,)),  # delta at the release
-        ("time", float, (LANES,)),  # from touch to release
+        ("time", float, (LANES,)),  # from touch to release, and
+        ("rest", float, (LANES,)),  # from there to the end of the cell
         ("parts", float, (LANES,)),  # series that this time takes
         ("crossed", float, (LANES,)),  # cells between the one of the touch and the one of the release
         ("vector", float, (states, LANES)),  # a tangent vector on its way

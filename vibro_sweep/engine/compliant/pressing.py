@@ -112,6 +112,7 @@ def end_contact(contact, o, k, s, side):
         contact.cell[n], contact.offset[n] = o.period * o.cells + k, s
     else:
         y[0], y[1] = 0.0, min(y[1], 0.0)
+    contact.close_until = o.period * o.cells + k + o.cells
     o.resting = contact.pressed = 0.0
     if contact.touched > 0.0:
         contact.restitutions -= y[1] / contact.touched

@@ -31,6 +31,15 @@ def bring_stops(contact, o, k, s, width):
 
 
 @jit
+def relax_by(contact, u, cell, offset):
+    """Let stops relax by the time u, which ends there. As the time of a flight it has more digits than times have."""
+    for n in range(2):
+        if contact.relaxed[n] > 0.0:
+            contact.relaxed[n] = relaxed_after(contact, n, u)
+            contact.cell[n], contact.offset[n] = cell, offset
+
+
+@jit
 def relaxed_after(contact, n, u):
     """s after the time u; 0 where it is relaxed."""
     rate, rest = rate_of_relaxing(contact, n), contact.preload[n] / contact.stiffness[n]
@@ -52,13 +61,13 @@ def reach_of_relaxing(contact, n, left):
 
 
 @jit
-def set_distance(contact, n, side, c, wall, order):
+def set_distance(contact, n, side, c, delta, order):
     """Taylor coefficients of s - delta along a flight c of the gap, which begins with a zero of this order: without
     it."""
     rate, rest = rate_of_relaxing(contact, n), contact.preload[n] / contact.stiffness[n]
     term = contact.relaxed[n] + rest
     for m in range(ORDER):
-        value = contact.relaxed[n] - side * (c[0] - wall) if m == 0 else term - side * c[m]
+        value = contact.relaxed[n] - delta if m == 0 else term - side * c[m]
         if m >= order:
             contact.gap[m - order] = value
         term *= -rate / (m + 1.0)

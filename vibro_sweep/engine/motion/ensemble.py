@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.engine.compliant.crossing import cross_cell_with_law
-from vibro_sweep.engine.compliant.meeting import finish_passage, is_open, meet_stops
+from vibro_sweep.engine.compliant.distance import is_close
+from vibro_sweep.engine.compliant.meeting import finish_meeting, is_open, meet_stops
 from vibro_sweep.engine.compliant.tangent_passage import carry_through
 from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
@@ -86,7 +87,7 @@ def resolve_events(e, o, f, readings):
             end_period_here(e, o, f, readings)
             return
     while True:
-        events, rested = o.events, o.offset > 0.0 or o.resting != 0.0
+        events, rested = o.events, o.offset > 0.0 or o.resting != 0.0 or is_close(e.law, o, q.width)
         o.status = cross(e.law, f, stops_of(o), o, records_of(e, o), e.tangent[0], o.cell, o.offset)
         free = not (rested or o.events > events)
         o.cell += 1
@@ -146,6 +147,9 @@ def find_candidate(e, o, f, readings):
 
     The last section is left to `advance_to_candidates`.
     """
+    if is_close(e.law, o, f.oscillator[0].width):
+        o.candidate = o.cell
+        return
     o.candidate = first_candidate(f, o)
     if o.candidate == o.ends and o.done + 1 < o.goal:
         X = state_at(o, f.nodes, o.ends)
@@ -240,8 +244,7 @@ def finish_cells(e, waiting, free, struck, passed, readings):
     while struck != 0:
         o = e.orbits[lowest(struck)]
         f = flight_of(e, o)
-        if passed >> o.lane & 1:
-            finish_passage(e.law, e, o, f, readings)
+        finish_meeting(e.law, e, o, f, passed >> o.lane & 1, readings)
         struck &= struck - 1
         o.cell += 1
         begin_free_flight(o, f.nodes, row(e.strike[0].X, o.lane))

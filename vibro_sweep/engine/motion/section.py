@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.distance import keep_finer
 from vibro_sweep.engine.motion.orbits import begin_free_flight
 from vibro_sweep.engine.simd.jit import inline, noinline
 from vibro_sweep.engine.simd.lanes import select
@@ -13,6 +14,7 @@ from vibro_sweep.engine.variational import tangent
 def end_period(e, o, q, nodes, X, readings):
     """Take the orbit over the section, where its state is X."""
     parts = readings.parts
+    keep_finer(e.law, o, q)
     o.cell = o.events = o.samples_taken = 0
     begin_free_flight(o, nodes, X)
     o.period += 1

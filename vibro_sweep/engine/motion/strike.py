@@ -244,15 +244,21 @@ def land(strikes, z, impulse, rest):
 
 
 @inline
-def find_contact(strikes, z, waiting):
-    """The first contact in the cell, from its beginning z. Returns masks of the `waiting`: free flight; a contact.
+def gaps_at(strikes, z):
+    """The gaps to the right stop and to the left one."""
+    return row(strikes.right, 0) - z[0], z[0] - row(strikes.left, 0)
 
-    Then, of the contact: side, offset, v1, acceleration, and a bound on the third derivative over the cell.
+
+@inline
+def find_contact(strikes, z, right, left, waiting):
+    """The first contact in the cell, from its beginning z, where the gaps are `right` and `left`.
+
+    Returns masks of the `waiting`: free flight; a contact. Then, of the contact: side, offset, v1, acceleration, and a
+    bound on the third derivative over the cell.
     """
     c, width, v1 = strikes.c, row(strikes.width, 0), z[1]
     put(c, 1, v1)
     load_x1(strikes, z, 2, 3)
-    right, left = row(strikes.right, 0) - z[0], z[0] - row(strikes.left, 0)
     side, gap, behind = select(v1 > 0.0, 1.0, -1.0), select(v1 > 0.0, right, left), select(v1 > 0.0, left, right)
     rate, curve = -abs(v1), -2.0 * side * row(c, 2)
     u = nearest_root(gap, rate, curve, width)
@@ -306,7 +312,8 @@ def rebound(strikes, z, touching, side, d, v, a, third):
 def strike(strikes, waiting):
     """Cross a cell. Returns, of the `waiting`, those that fly freely, which are left alone, and that strike once."""
     z = transposed(strikes.z, strikes.tail)
-    free, touching, side, d, v, a, third = find_contact(strikes, z, waiting)
+    right, left = gaps_at(strikes, z)
+    free, touching, side, d, v, a, third = find_contact(strikes, z, right, left, waiting)
     if bits(touching) == 0:
         return bits(free), 0
     return bits(free), bits(rebound(strikes, z, touching, side, d, v, a, third))

@@ -1,0 +1,66 @@
+"""How far a mass is from a stop, in more digits than x1 has.
+
+A float holds x1 to an ulp of the place of the stop only, of which a short flight back to the same stop may be no higher
+than a few. From a contact on x1 is therefore X[0] + finer[0], the sum of two floats, as long as the flight goes from
+series to series; formed from the tables it is X[0] alone.
+"""
+
+from vibro_sweep.engine.motion.orbits import advance, wall_of
+from vibro_sweep.engine.simd.jit import inline, jit
+from vibro_sweep.engine.tables.products import change_within
+from vibro_sweep.engine.tables.twofold import add
+
+NEAR = 2.0**-5  # of the size of x1: a flight that goes no further away needs these digits
+SIDES = (-1.0, 1.0)
+
+
+@jit
+def delta_of(o, stops, side):
+    """delta: how far the mass is behind the place of the stop; negative before it."""
+    return side * ((o.X[0] - wall_of(stops, side)) + o.finer[0])
+
+
+@jit
+def set_delta(o, stops, side, delta):
+    """Put the mass there."""
+    o.X[0], o.finer[0] = add(wall_of(stops, side), 0.0, side * delta, 0.0)
+
+
+@jit
+def advance_finely(o, u):
+    """The state at offset u of the series."""
+    x, low, change = o.X[0], o.finer[0], change_within(o.c[0], u)[0]
+    advance(o, u)
+    o.X[0], o.finer[0] = add(x, low, change, 0.0)
+
+
+@jit
+def finer_at(o, k):
+    """What x1 at node k has beside X[0]: nothing where the tables give it."""
+    return o.finer[0] if k == o.base else 0.0
+
+
+@inline
+def keep_finer(law, o, q):
+    """At the section, which is node `cells` and then node 0."""
+    if law is not None:
+        o.finer[0] = finer_at(o, q.cells)
+
+
+@inline
+def is_close(law, o, width):
+    """Whether the orbit, at a node, has just left a stop and may come back to it from so near that all digits of the
+    gap are needed."""
+    if law is not None:
+        return is_close_to_stop(law.orbits[o.lane], o, width)
+    return False
+
+
+@jit
+def is_close_to_stop(contact, o, width):
+    """`is_close` where some stops are compliant."""
+    if o.cell == o.base and o.period * o.cells + o.cell <= contact.close_until:
+        for n in range(2):
+            if abs(o.X[0] - o.stops[n]) < contact.near[n] and abs(o.X[1]) * width < contact.near[n]:
+                return True
+    return False
