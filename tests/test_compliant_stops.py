@@ -7,6 +7,7 @@ import pytest
 from mpmath import mp, mpf
 from reference import compliant
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import vibro_sweep as vs
 from vibro_sweep.scene import SceneError, parse_scene
@@ -75,20 +76,50 @@ def test_stiff_stops_come_near_to_rigid_ones():
     assert np.all(np.abs(orders[1:] - 0.5) < 0.02), orders
 
 
-@pytest.mark.parametrize(
-    "order, stop", [(1.5, dict(c_stop=0.4)), (1.0, dict(c_stop=0.4, release="force")), (0.5, dict(preload=0.3))]
-)
-def test_order_of_what_a_grazing_touch_does(order, stop):
+ORDERS = [
+    (1.5, {}),
+    (1.5, dict(release="force")),
+    (1.5, dict(c_stop=0.4)),
+    (1.0, dict(c_stop=0.4, release="force")),
+    (0.5, dict(preload=0.3)),
+    (0.5, dict(preload=0.3, c_stop=0.4, release="force")),
+]
+
+
+def fitted_order(order, change):
+    """The power of the depth of a touch with which what it does grows: change(depth)."""
+    depths = np.logspace(-9 if order < 1.5 else -7.5, -6.5 if order < 1.5 else -5.5, 5)
+    return np.polyfit(np.log(depths), np.log([change(depth) for depth in depths]), 1)[0]
+
+
+@pytest.mark.parametrize("stiffness", [29, 1e4])
+@pytest.mark.parametrize("order, stop", ORDERS)
+def test_order_of_what_a_grazing_touch_does(order, stop, stiffness):
     """What a touch does to the state after it, by how far the mass would have gone beyond the stop without it."""
     thrown = FREE | {"constant": -1.0}  # it turns back at 1 + depth
-    depths, changes = np.logspace(-9 if order < 1.5 else -7.5, -6.5 if order < 1.5 else -5.5, 5), []
-    for depth in depths:
+
+    def change(depth):
         start = 0.0, math.sqrt(2 * (1 + depth))
-        touches, passes = one_mass(**thrown, k_stop=29, **stop), one_mass(**thrown | {"b": 3}, k_stop=29, **stop)
+        touches, passes = one_mass(**thrown, k_stop=stiffness, **stop), one_mass(**thrown | {"b": 3}, k_stop=stiffness)
         ends = [vs.simulate(one, start, 1).sample([3.0])[0] for one in (touches, passes)]
-        changes.append(np.abs(ends[0] - ends[1]).max())
-    fitted = np.polyfit(np.log(depths), np.log(changes), 1)[0]
-    assert fitted == pytest.approx(order, abs=0.02)
+        return np.abs(ends[0] - ends[1]).max()
+
+    assert fitted_order(order, change) == pytest.approx(order, abs=0.02)
+
+
+@pytest.mark.parametrize("order, stop", ORDERS)
+def test_order_of_what_a_grazing_touch_of_two_masses_does(order, stop):
+    """The free motion under the force turns back at a known place, and the stop is so far before it."""
+    start, far = (0.0, 1.2, 0.3, 0.0), vs.simulate(vs.System(**PAPER, b=50, k_stop=29), (0.0, 1.2, 0.3, 0.0), 1)
+    top = brentq(lambda t: far.sample([t])[0, 1], 0.1, 3.0, xtol=1e-15)
+    height, after = far.sample([top])[0, 0], far.sample([top + 0.5])[0]
+
+    def change(depth):
+        touches = vs.simulate(vs.System(**PAPER, b=height - depth, k_stop=29, **stop), start, 1)
+        assert touches.contacts["side"][0] == 1 and touches.contacts["t_touch"][0] < top
+        return np.abs(touches.sample([top + 0.5])[0] - after).max()
+
+    assert fitted_order(order, change) == pytest.approx(order, abs=0.02)
 
 
 # --- exponents

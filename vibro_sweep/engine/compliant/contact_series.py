@@ -15,7 +15,9 @@ from vibro_sweep.engine.motion.rest import first_nonzero
 from vibro_sweep.engine.quadrature import PLACES, WEIGHTS
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import ORDER, evaluate
+from vibro_sweep.engine.tables.products import change_within
 from vibro_sweep.engine.tables.resting import bound_third_over
+from vibro_sweep.engine.tables.twofold import add, multiply
 
 NOTHING = 1e-250  # a contact that has died away, which has no end
 STEPS = 60  # of Newton's method, or halvings, towards a peak
@@ -30,6 +32,8 @@ def enter(contact, o, stops, side):
     for j in range(1, len(contact.push)):
         y[2 * j] = X[2 * j] - contact.push[j] * X[0]
         y[2 * j + 1] = X[2 * j + 1] - contact.push[j] * X[1]
+    for j in range(len(y)):
+        contact.low[j] = 0.0
 
 
 @jit
@@ -44,21 +48,41 @@ def leave(contact, o, stops, side):
 
 
 @jit
-def load_contact(contact, side, omega, sin, cos):
-    """Taylor series from y on, at the phase (sin, cos) of the force."""
-    n_stop = lane_of(side)
-    G, c, y = contact.equations[n_stop], contact.c, contact.y
-    masses, states = len(c), 2 * len(c)
+def drive_of(contact, G):
+    """a of delta'' = -(k0 + k) delta - (c0 + c) delta' + a, of products and sums in twice the digits.
+
+    In a contact of many series delta follows a, whose terms are large where it is small at the end. Constant errors of
+    a shift that end a little, but a rounding of its own in each series would be a jump that delta' follows.
+    """
+    states, a, low = len(contact.y), G[0, len(contact.y) + 2], 0.0
+    for j in range(2, states):
+        term, term_low = multiply(G[0, j], 0.0, contact.y[j], contact.low[j])
+        a, low = add(a, low, term, term_low)
+    for j in range(2):
+        term, term_low = multiply(G[0, states + j], 0.0, contact.phase[j], contact.phase_low[j])
+        a, low = add(a, low, term, term_low)
+    return a
+
+
+@jit
+def load_contact(contact, side, omega):
+    """Taylor series from y on."""
+    G, c, y = contact.equations[lane_of(side)], contact.c, contact.y
+    masses, states, sin, cos = len(c), 2 * len(c), contact.phase[0], contact.phase[1]
     for i in range(masses):
         c[i, 0], c[i, 1] = y[2 * i], y[2 * i + 1]
     for n in range(ORDER - 2):
         share = 1.0 / ((n + 1.0) * (n + 2.0))
         for i in range(masses):
-            total = G[i, states] * sin + G[i, states + 1] * cos
-            if n == 0:
-                total += G[i, states + 2]
-            for j in range(masses):
-                total += G[i, 2 * j] * c[j, n] + G[i, 2 * j + 1] * ((n + 1.0) * c[j, n + 1])
+            if n == 0 and i == 0:
+                total = drive_of(contact, G)
+            else:
+                total = G[i, states] * sin + G[i, states + 1] * cos
+                if n == 0:
+                    total += G[i, states + 2]
+                for j in range(1, masses):
+                    total += G[i, 2 * j] * c[j, n] + G[i, 2 * j + 1] * ((n + 1.0) * c[j, n + 1])
+            total += G[i, 0] * c[0, n] + G[i, 1] * ((n + 1.0) * c[0, n + 1])
             c[i, n + 2] = total * share
         sin, cos = omega * cos / (n + 1.0), -omega * sin / (n + 1.0)
 
@@ -111,8 +135,11 @@ def end_of_contact(contact, side, length):
 @jit
 def go_on_in_contact(contact, u):
     """y at offset u of the series."""
+    y, low = contact.y, contact.low
     for i in range(len(contact.c)):
-        contact.y[2 * i], contact.y[2 * i + 1] = evaluate(contact.c[i], u)
+        x, v = change_within(contact.c[i], u)
+        y[2 * i], low[2 * i] = add(y[2 * i], low[2 * i], x, 0.0)
+        y[2 * i + 1], low[2 * i + 1] = add(y[2 * i + 1], low[2 * i + 1], v, 0.0)
 
 
 @jit

@@ -4,14 +4,12 @@ As motion/impacts.py has it for rigid stops; a stop of each kind may be on eithe
 series to its end, or to the end of the cell, and goes on in the next one.
 """
 
-import math
-
 import numpy as np
 
 from vibro_sweep.engine.compliant.contact_series import leaves_by_force
 from vibro_sweep.engine.compliant.distance import advance_finely, delta_of, finer_at, set_delta
+from vibro_sweep.engine.compliant.force_phase import set_phase, turn_phase
 from vibro_sweep.engine.compliant.law import lane_of
-from vibro_sweep.engine.compliant.phase import force_at_node
 from vibro_sweep.engine.compliant.pressing import begin_contact, stay_in_contact
 from vibro_sweep.engine.compliant.relaxing import bring_stops, reach_of_relaxing, relax_by, set_distance, speed_of_stop
 from vibro_sweep.engine.motion.first_contact import first_contact, set_gap
@@ -36,23 +34,22 @@ NEAR = 8.0 * 2.0**-52  # of the place of a stop, or the depth of its preload: lo
 @noinline
 def cross_cell_with_law(law, f, stops, o, records, t, k, s):
     """Follow the orbit from offset s in cell k to the cell's end, through all that happens. Returns a status."""
-    q, X, c1, contact = f.oscillator[0], o.X, o.c[0], law.orbits[o.lane]
-    node_sin, node_cos = force_at_node(q, contact.tau, k)
+    q, node, X, c1, contact = f.oscillator[0], f.nodes[k], o.X, o.c[0], law.orbits[o.lane]
     released, hit, leaving, order = False, 0.0, 0.0, 0
     if s == 0.0:
         o.finer[0] = finer_at(o, k)
+    if contact.pressed == 0.0:
+        set_phase(contact, node.z[2 * len(o.c)], node.z[2 * len(o.c) + 1])
+        turn_phase(contact, q.omega, s)
     while o.events < MOST_EVENTS:
         left = q.width - s
         last = left <= 1.001 * q.step
         left = left if last else q.step
-        sin, cos = node_sin, node_cos
-        if s > 0.0:
-            swing, turn = math.sin(q.omega * s), math.cos(q.omega * s)
-            sin, cos = sin * turn + cos * swing, cos * turn - sin * swing
+        sin, cos = contact.phase[0], contact.phase[1]
         if o.resting != 0.0:
             side, pressed = o.resting, contact.pressed != 0.0
             if pressed:
-                d = stay_in_contact(law, f, stops, o, records, t, k, s, sin, cos)
+                d = stay_in_contact(law, f, stops, o, records, t, k, s)
             else:
                 most = contact.preload[lane_of(side)] if contact.compliant[lane_of(side)] else np.inf
                 d = stay_at_rest(f, o, records, t, k, s, sin, cos, most)
@@ -61,6 +58,8 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
             if d == np.inf:
                 return status.OK
             s += d
+            if not pressed:
+                turn_phase(contact, q.omega, d)
             released, leaving, order = not pressed, 0.0, 1
             if pressed:
                 unrelaxed = contact.relaxed[lane_of(side)] > 0.0
@@ -94,6 +93,7 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
                 w = chatter(q, stops, o, third, side, left)
                 if w < np.inf:
                     end_chatter(q, stops, o, records, k, s, side, w)
+                    turn_phase(contact, q.omega, w)
                     s += w
                     begin_rest(f, o, records, t, k, s, side, w)
                     continue
@@ -109,6 +109,7 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
         end = min(d, left)
         take_samples(o, records, k, s, s + end)
         advance_finely(o, end)
+        turn_phase(contact, q.omega, end)
         if d == np.inf and (last or not is_finite(o)):
             relax_by(contact, end, o.period * o.cells + k + 1, 0.0)
             return status.OK if is_finite(o) else status.NOT_FINITE

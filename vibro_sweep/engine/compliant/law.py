@@ -45,7 +45,6 @@ def law_of(masses: int) -> np.dtype:
         ("preload", float, 2),
         ("by_force", np.bool_),  # a contact ends where the force is zero, and the stop goes on relaxing
         ("mass", float),  # m_e
-        ("tau", float),  # the phase of the force at node 0
         ("equations", float, (2, masses, states + 3)),  # (delta'', w2'', ..) by (delta, delta', w2, .., sin, cos, 1)
         ("step", float, 2),  # of Taylor series in contact; in single precision, so that sums of thousands are exact
         ("push", float, (masses,)),  # p_j
@@ -54,7 +53,10 @@ def law_of(masses: int) -> np.dtype:
         ("entered", np.bool_),  # whether this is its beginning, where delta is zero, as are its derivatives
         ("least", np.int64),  # below this order
         ("ends_by_force", np.bool_),  # whether its end is where the force is zero
-        ("y", float, (states,)),  # delta, delta', w2, w2', ...
+        ("y", float, (states,)),  # delta, delta', w2, w2', ..., and
+        ("low", float, (states,)),  # what rounding leaves of them
+        ("phase", float, 2),  # sin and cos of the force, and
+        ("phase_low", float, 2),  # what rounding leaves of them
         ("c", float, (masses, ORDER)),  # Taylor coefficients of delta, w2, ...
         ("force", float, (ORDER,)),  # F/m_e
         ("gap", float, (ORDER,)),
@@ -104,7 +106,7 @@ def new_law(kind: Kind, room: int = 0) -> Law | None:
 def set_law(law, i, point, q):
     """Give orbit i of the oscillator q its stops."""
     contact, masses, width = law.orbits[i], len(point.push), q.width
-    contact.by_force, contact.mass, contact.tau = point.by_force, point.contact_mass, point.tau
+    contact.by_force, contact.mass = point.by_force, point.contact_mass
     for m in range(masses):
         contact.push[m] = point.push[m]
     for n in range(2):

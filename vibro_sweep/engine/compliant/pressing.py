@@ -16,6 +16,7 @@ from vibro_sweep.engine.compliant.contact_series import (
     stored_energy,
     watch_contact,
 )
+from vibro_sweep.engine.compliant.force_phase import turn_phase
 from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.tangent_in_contact import CONTINUED, RELAXED, UNRELAXED, carry_over_contact
 from vibro_sweep.engine.simd.jit import jit
@@ -53,15 +54,15 @@ def begin_contact(law, f, stops, o, t, k, s, side, on_stop):
 
 
 @jit
-def stay_in_contact(law, f, stops, o, records, t, k, s, sin, cos):
+def stay_in_contact(law, f, stops, o, records, t, k, s):
     """Contact from offset s of cell k on. Returns the time to its end, infinite if not in this cell."""
     q, contact, side, w = f.oscillator[0], law.orbits[o.lane], law.orbits[o.lane].pressed, 0.0
-    n, sin_there, cos_there = lane_of(side), sin, cos
+    n = lane_of(side)
     contact.work -= stored_energy(contact, n)
     if t.wanted:
         begin_matrix(contact)
     while True:
-        load_contact(contact, side, q.omega, sin_there, cos_there)
+        load_contact(contact, side, q.omega)
         left = q.width - s - w
         last = left <= 1.001 * contact.step[n]
         left = left if last else contact.step[n]
@@ -77,12 +78,11 @@ def stay_in_contact(law, f, stops, o, records, t, k, s, sin, cos):
         if t.wanted:
             carry_matrix(contact, side, end)
         go_on_in_contact(contact, end)
+        turn_phase(contact, q.omega, end)
         contact.entered = False
         w += end
         if last or d < np.inf:
             break
-        swing, turn = math.sin(q.omega * w), math.cos(q.omega * w)
-        sin_there, cos_there = sin * turn + cos * swing, cos * turn - sin * swing
     ended = d < np.inf
     if ended:
         end_contact(contact, o, k, s + w, side)

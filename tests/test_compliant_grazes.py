@@ -1,0 +1,44 @@
+"""Flights past a compliant stop at 10^-1 .. 10^-15 of the clearance: no contact missed, none invented.
+
+Full counts, 10^5 flights for each number of masses: `pytest -m soak`, tests/data/compliant_grazes.log.
+"""
+
+import pytest
+from numpy.random import default_rng
+from support.compliant_grazes import PATHS, judge
+from support.decades import show
+
+BATCH = 4000  # flights drawn for an oscillator: some end behind a stop where they should begin
+
+
+def search(masses, flights, batch=BATCH):
+    rng, rows, seed = default_rng(masses), 0, 0
+    while seed == 0 or rows[0, ..., 0].sum() < flights:
+        seed += 1
+        rows = rows + judge(masses, seed, batch, rng)
+    return rows
+
+
+@pytest.mark.parametrize(
+    ("masses", "flights"), [(1, 500), *(pytest.param(n, 10_000, marks=pytest.mark.slow) for n in (1, 2, 3))]
+)
+def test_none_missed_and_none_invented(masses, flights):
+    rows = search(masses, flights, BATCH if flights > BATCH else 400)
+    assert (rows[..., 3].sum((1, 2)) > flights / 2).all() and (rows[0, ..., 0] > 0).all()
+    assert rows[..., 1:3].sum() == 0
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("masses", [1, 2, 3])
+def test_a_hundred_thousand_flights(masses, capsys):
+    rows = search(masses, 100_000)
+    with capsys.disabled():
+        for path, found in zip(PATHS, rows, strict=True):
+            show(f"{masses} masses, {path}: {found[..., 0].sum()} flights, {found[..., 3].sum()} contacts", found)
+    assert rows[..., 1:3].sum() == 0
+
+
+def test_the_judge_sees_a_stop_that_is_moved():
+    """By 10^-12 of the clearance: outwards contacts are missed, inwards they are invented."""
+    missed, invented = (judge(1, 1, 1000, default_rng(1), moved=by) for by in (1e-12, -1e-12))
+    assert (missed[:, -3:, :, 1].sum((1, 2)) > 10).all() and (invented[:, -3:, :, 2].sum((1, 2)) > 10).all()
