@@ -98,6 +98,18 @@ def test_zoom_and_back(page):
     assert colours(page) == before
 
 
+def test_turning_the_wheel_is_one_step_back(page):
+    box = page.locator("#diagram").bounding_box()
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.3 * box["height"])
+    for _ in range(4):
+        page.mouse.wheel(0, -200)
+    page.wait_for_timeout(200)
+    settle(page)
+    assert float(page.input_value("#high")) - float(page.input_value("#low")) < 2
+    page.click("#back")
+    assert (page.input_value("#low"), page.input_value("#high")) == ("4.2", "7")
+
+
 def test_an_orbit_and_why_its_window_ends(page):
     click(page, 0.5, 0.3)  # near b = 5.5, in the window of period 8
     page.wait_for_selector("#orbit:not([hidden])", timeout=MOST)
@@ -156,3 +168,66 @@ def test_what_lies_under_the_pointer_and_a_number_that_follows_another(page):
         left.press("Enter")
         assert left.input_value() == value
     settle(page)
+
+
+@pytest.mark.parametrize("width", [1280, 360])
+def test_the_names_of_numbers_are_whole(page, width):
+    page.set_viewport_size({"width": width, "height": 900})
+    cut = page.locator(".number .name").evaluate_all(
+        "all => all.filter(one => one.scrollWidth > one.clientWidth).length"
+    )
+    assert page.locator(".number .name").count() == 10 and cut == 0
+
+
+def test_arrows_in_a_field_are_steps_of_its_slider(page):
+    page.press("#field-R", "ArrowUp")
+    assert 0.8 < float(page.input_value("#field-R")) < 0.81
+    settle(page)
+
+
+def test_another_swept_number_begins_where_the_orbit_is(page):
+    click(page, 0.5)
+    page.wait_for_selector("#facts b")
+    value = page.inner_text("#facts b").split("=")[1].strip(" :")
+    page.select_option("#axis", "omega")
+    assert page.input_value("#field-b") == value and page.input_value("#low") == "0.441"
+    page.wait_for_timeout(200)
+    settle(page)
+
+
+def test_a_mapping(page):
+    """It has points, and no motion between them."""
+    page.select_option("#dynamics", "map")
+    page.wait_for_timeout(500)
+    settle(page)
+    click(page, 0.5)
+    page.locator("#section").wait_for(timeout=MOST)
+    assert not page.locator("#history").is_visible()
+    page.click("#why")
+    page.locator("#window", has_text="this is its mapping").wait_for(timeout=MOST)
+
+
+def test_contacts_with_a_compliant_stop(page):
+    page.select_option("#presets", "compliant_stop")
+    page.locator("#field-k_stop").wait_for()
+    page.wait_for_timeout(200)
+    settle(page)
+    click(page, 0.5)  # near omega = 0.88
+    page.locator("#facts", has_text="period 2; 1 contact;").wait_for(timeout=MOST)
+    page.locator("figcaption", has_text="thick where a stop is pressed").wait_for()
+    page.click("#why")
+    page.locator("#window", has_text="upper end 0.909012603678").wait_for(timeout=MOST)
+
+
+def test_the_masses_go_on_moving_after_another_example(page):
+    click(page, 0.5)
+    page.wait_for_selector("#facts b")
+    page.click("#play")
+    page.select_option("#presets", "paper_clearance")
+    page.wait_for_timeout(500)
+    settle(page)
+    click(page, 0.97, 0.1)
+    page.wait_for_selector("#facts b")
+    before = page.locator("#masses").screenshot()
+    page.wait_for_timeout(400)
+    assert page.inner_text("#play") == "Pause" and page.locator("#masses").screenshot() != before

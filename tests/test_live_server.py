@@ -115,7 +115,7 @@ def test_an_orbit_is_that_of_simulate(page, view):
     words, arrays = answers(page, "orbit", 2, view=view | {"transient": 1000, "record": 200}, value=4.9)
     assert (words["period"], words["itinerary"], words["went_on"]) == (13, "LLLLRRRR", False)
     system = vs.load_scene(ROOT / "configs" / "quickstart.yaml").system.replace(b=4.9)
-    whole = vs.simulate(system, [0, 0, 0, 0], 1212)
+    whole = vs.simulate(system, [0, 0, 0, 0], 1214)
     states = whole.sample(1200 * system.period + arrays["t"].astype(float))  # it is shown from the end of its record
     assert np.allclose(arrays["states"].reshape(-1, 4)[:, 0::2], states[:, 0::2], atol=1e-4)
     exponents = vs.lyapunov(system, [0, 0, 0, 0], 1000, 200)
@@ -157,6 +157,44 @@ def test_a_newer_diagram_ends_the_following_of_a_window(page, view):
     assert words["last"] and words["seq"] == 3
     words, _ = answers(page, "window", 4, view=view | {"transient": 4000, "record": 200}, value=4.9)
     assert words["seq"] == 4 and words["period"] == 13
+
+
+def test_a_mapping_is_swept_and_saved_as_one(page, tmp_path, monkeypatch):
+    view = answers(page, "open", 1, name="figure_06")[0]["view"] | {"columns": 16, "transient": 100, "record": 20}
+    assert view["dynamics"] == "map"
+    frames = answers(page, "sweep", 2, view=view)
+    words, arrays = answers(page, "orbit", 3, view=view, value=6.55)
+    assert words["mapping"] and words["periods"] == 0
+    monkeypatch.chdir(tmp_path)
+    scope = {}
+    exec(answers(page, "save", 4, view=view, form="python")[0]["text"], scope)
+    expected = np.asarray(scope["data"]["x1"])
+    assert scope["data"].attrs["dynamics"] == "map"
+    drawn = heights(frames, 16, 1, 20)[:, 0]
+    assert np.array_equal(drawn[np.isfinite(drawn)], expected.astype("f4")[np.isfinite(drawn)])
+    assert np.isfinite(drawn[:, -1]).all() and np.isfinite(drawn).sum() > 160
+    one = vs.discontinuity_map(vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=6.55))
+    points = arrays["section"].reshape(-1, 4).astype(float)
+    assert np.allclose([one(state) for state in points[:-1]], points[1:], atol=1e-4)
+    assert "mapping" in answers(page, "window", 5, view=view, value=6.8)[0]["reason"]
+
+
+@pytest.mark.slow
+def test_contacts_with_a_compliant_stop_and_the_ends_of_its_windows(page):
+    words, _ = answers(page, "open", 1, name="compliant_stop")
+    view = words["view"]
+    assert {one["name"]: one["value"] for one in words["numbers"]}["c_stop"] == 0
+    assert [name for name, _ in words["heights"]] == ["x1", "v1"]
+    words, arrays = answers(page, "orbit", 2, view=view, value=1.2)
+    touch, release = arrays["contact_touch"], arrays["contact_release"]
+    assert (words["period"], words["contacts"], len(touch)) == (1, 1, 1) and words["pressed"][1]
+    x1 = arrays["states"].reshape(-1, 2)[:, 0]
+    assert np.array_equal(x1 > 1 + 1e-5, (arrays["t"] > touch[0] + 1e-4) & (arrays["t"] < release[0] - 1e-4))
+    words, _ = answers(page, "window", 3, view=view, value=0.6)
+    assert words["event"] == "contact" and "contact more" in words["high"]["text"]
+    # the free motion has the amplitude F / sqrt((1 - omega^2)^2 + (2 zeta omega)^2), which is b at its graze
+    squares = np.roots([1, 4 * 0.01**2 - 2, 1 - 0.5**2])
+    assert words["high"]["value"] == pytest.approx(np.sqrt(squares.min()), abs=1e-12)
 
 
 def test_a_number_that_follows_another_one(page, view):

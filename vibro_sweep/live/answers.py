@@ -75,7 +75,7 @@ class Answers:
             raise ArgumentError(f"there is no scene {name!r}")
         view = view_of(self._presets[name]) if name else request.view
         words = {"view": view.model_dump(), "name": name, "presets": [*self._presets]}
-        return text_message("model", request.seq, **words, **model_words(base_of(view.system).system, view))
+        return text_message("model", request.seq, **words, **model_words(base_of(view), view))
 
     def saved(self, request: Save) -> Message:
         """A view as a scene, a program or its data."""

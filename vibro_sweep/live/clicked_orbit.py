@@ -17,7 +17,7 @@ from vibro_sweep.model.status import STATUSES, is_valid
 from vibro_sweep.scene import Scene, Section
 
 SAMPLES = 200  # in a forcing period
-MOST_SHOWN, UNSETTLED = 12, 8  # forcing periods: of a periodic orbit, of another one
+MOST_SHOWN, UNSETTLED = 60, 8  # forcing periods: of a periodic orbit, of another one
 LONGEST = 500  # forcing periods of which impacts are counted
 
 
@@ -32,6 +32,7 @@ class Settled(NamedTuple):
     exponents: np.ndarray
     errors: np.ndarray
     alone: bool  # whether it was computed by itself, and not from where the points before it lead
+    mapping: bool  # whether it is one of the discontinuity mapping, which has no motion between its points
 
 
 def settled(view: View, value: float, start: int, end: np.ndarray | None) -> Settled:
@@ -56,7 +57,7 @@ def _computed(scene: Scene, system: AnyOscillator, start: int, alone: bool) -> S
         arrays = {name: values[min(start, scene.n_starts - 1)] for name, values in arrays.items()}
     section = np.stack([arrays[name] for name in names], axis=-1)
     numbers = (int(arrays["period"]), int(arrays["status"]), arrays["lyapunov"], arrays["lyapunov_error"])
-    return Settled(system, arrays["end"], section, *numbers, alone)
+    return Settled(system, arrays["end"], section, *numbers, alone, scene.dynamics == "map")
 
 
 def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
@@ -64,9 +65,10 @@ def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]
     system, q = found.system, found.system.linear
     words: dict[str, Any] = {"status": STATUSES[found.status].text, "period": found.period, "alone": found.alone}
     words |= {"T": system.period, "low": _finite(q.low), "high": _finite(q.high), "masses": system.masses}
-    words["normal"] = q.normal.tolist()
+    words |= {"normal": q.normal.tolist(), "mapping": found.mapping}
+    words["pressed"] = [bool(one) for one in q.is_compliant((-1, 1))]
     arrays = {"exponents": found.exponents, "errors": found.errors, "section": found.section.astype("f4").ravel()}
-    if not is_valid(found.status):
+    if found.mapping or not is_valid(found.status):
         return arrays, words | {"periods": 0}
     T, periods = system.period, min(found.period, MOST_SHOWN) if found.period else UNSETTLED
     orbit = simulate(system, found.end, max(periods, min(found.period, LONGEST)))
@@ -74,14 +76,18 @@ def orbit_message(found: Settled) -> tuple[dict[str, np.ndarray], dict[str, Any]
     if found.period:  # an impact at t = 0 comes again at the end
         impacts = impacts[impacts["t"] < found.period * T * (1 - 1e-9)]
     shown = impacts[impacts["t"] <= periods * T]
-    times = np.unique(np.concatenate([np.linspace(0, periods * T, periods * SAMPLES + 1), shown["t"]]))
+    touch, release = (np.nan_to_num(orbit.contacts[name], nan=np.inf) for name in ("t_touch", "t_release"))
+    drawn = touch <= periods * T
+    pressed = touch[drawn], np.minimum(release[drawn], periods * T)
+    times = np.unique(np.concatenate([np.linspace(0, periods * T, periods * SAMPLES + 1), shown["t"], *pressed]))
     states = orbit.sample(times)
     words |= {"periods": periods, "impacts": len(impacts), "rests": len(orbit.sticking)}
     words |= {"itinerary": _itinerary(impacts, T, found.period), "orbit_status": str(orbit.status)}
     arrays |= {"t": times.astype("f4"), "states": states.astype("f4").ravel()}
     arrays |= {"impact_t": shown["t"].astype("f4"), "impact_side": shown["side"].astype("i1")}
+    arrays |= {"contact_touch": pressed[0].astype("f4"), "contact_release": pressed[1].astype("f4")}
     ended = found.period * T * (1 - 1e-9) if found.period else np.inf
-    return arrays, words | {"contacts": int(np.count_nonzero(orbit.contacts["t_touch"] < ended))}
+    return arrays, words | {"contacts": int(np.count_nonzero(touch < ended))}
 
 
 def _itinerary(impacts: np.ndarray, T: float, period: int) -> str:

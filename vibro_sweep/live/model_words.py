@@ -8,30 +8,38 @@ from vibro_sweep.live.requests import View
 from vibro_sweep.live.views import SPEEDS, heights
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.catalogue import BY_NAME
+from vibro_sweep.model.contact_laws.compliant import LAW as COMPLIANT
 from vibro_sweep.model.exponents import CERTAIN
 from vibro_sweep.model.models import MODELS
 from vibro_sweep.model.parameters import NUMBER, POSITIVE, Parameter, range_of
 from vibro_sweep.model.status import NOT_SETTLED, STATUSES
+from vibro_sweep.model.stops import stop_of
 from vibro_sweep.plotting.style import CHAOS, EXPONENTS, LONGER, LONGEST, NO_PERIOD, PERIODS, density_colours
+from vibro_sweep.scene import Scene
 
 DECADE = 10.0
-_GREEK = {r"\mu": "μ", r"\zeta": "ζ", r"\omega": "ω", r"\tau": "τ", r"\bar f": "f̄"}
+_GREEK = {
+    r"\mu": "μ", r"\zeta": "ζ", r"\omega": "ω", r"\tau": "τ", r"\epsilon": "ε", r"\bar f": "f̄", r"\tilde f": "f̃",
+}  # fmt: skip
 _UPRIGHT = r"\mathrm"
 _BELOW = str.maketrans("0123456789cmk", "₀₁₂₃₄₅₆₇₈₉cmₖ")
 
 
-def model_words(system: AnyOscillator, view: View) -> dict[str, Any]:
-    """All that a page needs to know of an oscillator."""
+def model_words(scene: Scene, view: View) -> dict[str, Any]:
+    """All that a page needs to know of an oscillator, or of its mapping."""
+    system = scene.system
     stops = system.options.get("stops", "both")
     numbers = [
         _slider(one, value, view, stops)
         for name, one in system.described.items()
         if isinstance(value := _value(system, view, one), (int, float))
         and not (name.endswith("_left") and stops != "both")
+        and not (scene.dynamics == "map" and name.startswith(("offset", "R_left", "constant", "tau")))
     ]
     return {
         "numbers": numbers,
-        "heights": [[name, _label(name)] for name in heights(system)],
+        "mapping": not system.linear.compliant,
+        "heights": [[name, _label(name)] for name in heights(scene)],
         "title": MODELS[system.model.name].title if system.model.name in MODELS else system.model.name,
         "stops": [one if np.isfinite(one) else None for one in (system.linear.low, system.linear.high)],
         "colours": _colours(),
@@ -42,8 +50,11 @@ def model_words(system: AnyOscillator, view: View) -> dict[str, Any]:
 
 
 def _value(system: AnyOscillator, view: View, one: Parameter) -> Any:
-    """What a number is; of one that is left out what it follows."""
+    """What a number is; of one that is left out what it follows, or what a compliant stop has without it."""
     given = {**system.numbers, **view.numbers}
+    for side in ("right", "left"):
+        if one.name in COMPLIANT.names(side) and (stop := stop_of(given, side)).law is COMPLIANT:
+            return stop.number(one.name.removesuffix("_left"), 0.0)
     return given[one.follows] if one.follows and given[one.name] is None else given[one.name]
 
 

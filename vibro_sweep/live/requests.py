@@ -26,12 +26,16 @@ class _Checked(BaseModel):
 class View(_Checked):
     """What a diagram shows.
 
-    system : as in the YAML of a scene, with a value for each number; numbers : those that are others now
+    system, dynamics, order, expand_at : as in the YAML of a scene, with a value for each number of the system
+    numbers : of the system, those that are others now
     start : as in the YAML of a scene
     y : a coordinate, `gap`, or `speed_right` or `speed_left`, at which the mass meets a stop
     """
 
     system: dict[Name, Any] = Field(max_length=40)
+    dynamics: Literal["flow", "map"] = "flow"
+    order: Literal[1, 2] = 1
+    expand_at: float | None = None
     numbers: dict[Name, float] = Field(default={}, max_length=300)
     axis: Name
     low: float

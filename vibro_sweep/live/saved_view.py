@@ -19,6 +19,8 @@ LARGEST = 64 * 10**6  # bytes of a file that goes to the page
 
 def python_of(scene: Scene) -> str:
     """A program that computes and draws the same sweep."""
+    if scene.dynamics == "map":
+        return _program_of_mapping(scene)
     data = data_of(scene)
     numbers = dict(data["system"])
     kind = numbers.pop("type", None)
@@ -35,6 +37,21 @@ def python_of(scene: Scene) -> str:
         f"    {{{name!r}: {axis!r}}},",
         *(f"    {key}={value!r}," for key, value in _options(data).items()),
         ")",
+        'vs.plot(data).savefig("explored.png")',
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _program_of_mapping(scene: Scene) -> str:
+    """The same of a discontinuity mapping, which is swept by its scene."""
+    lines = [
+        "from pathlib import Path",
+        "",
+        "import vibro_sweep as vs",
+        "",
+        f'Path("explored.yaml").write_text("""{scene.to_yaml()}""")',
+        'vs.run(vs.load_scene("explored.yaml"), "explored.h5")',
+        'data = vs.open("explored.h5")',
         'vs.plot(data).savefig("explored.png")',
     ]
     return "\n".join(lines) + "\n"

@@ -23,12 +23,16 @@ MOST_RECORDED, LONGEST_TRANSIENT = 400, 2000  # of a scene that is opened; the p
 _bases: OrderedDict[str, Scene] = OrderedDict()
 
 
-def base_of(system: dict[str, Any]) -> Scene:
-    """The scene of one orbit of a system, from its YAML data. Raises SceneError."""
-    key = json.dumps(system, sort_keys=True)
+def base_of(view: View) -> Scene:
+    """The scene of one orbit of a view's system, or of its mapping, without the numbers that were changed. Raises
+    SceneError."""
+    data: dict[str, Any] = {"system": view.system, "observe": [*OBSERVE]}
+    if view.dynamics == "map":
+        data |= {"dynamics": "map", "order": view.order}
+        data |= {} if view.expand_at is None else {"expand_at": view.expand_at}
+    key = json.dumps(data, sort_keys=True)
     if key not in _bases:
-        data = {"system": system, "orbit": {"transient": 1000, "record": 200}, "observe": [*OBSERVE]}
-        _bases[key] = scene_of(data, "view")
+        _bases[key] = scene_of(data | {"orbit": {"transient": 1000, "record": 200}}, "view")
         while len(_bases) > KEPT:
             _bases.popitem(last=False)
     return _bases[key]
@@ -36,13 +40,13 @@ def base_of(system: dict[str, Any]) -> Scene:
 
 def system_of(view: View) -> AnyOscillator:
     """The oscillator of a view. Raises SceneError, ParameterError."""
-    return base_of(view.system).system.replace(**view.numbers)
+    return base_of(view).system.replace(**view.numbers)
 
 
 def scene_of_view(view: View) -> Scene:
     """The scene of a sweep that a view shows. Raises SceneError, ParameterError, ArgumentError."""
     section = {"kind": "impact", "stop": SPEEDS[view.y]} if view.y in SPEEDS else {"kind": "phase"}
-    scene = base_of(view.system).replace(
+    scene = base_of(view).replace(
         system=system_of(view),
         sweep={view.axis: {"start": view.low, "stop": view.high, "num": view.columns}},
         start=view.start,
@@ -50,15 +54,20 @@ def scene_of_view(view: View) -> Scene:
         record=view.record,
         section=section,
     )
-    if view.y not in heights(scene.system):
-        raise ArgumentError(f"y: must be one of {', '.join(heights(scene.system))}")
+    if view.y not in heights(scene):
+        raise ArgumentError(f"y: must be one of {', '.join(heights(scene))}")
     return scene
 
 
-def heights(system: AnyOscillator) -> list[str]:
-    """What can stand on the vertical axis."""
+def heights(scene: Scene) -> list[str]:
+    """What can stand on the vertical axis. A compliant stop has no impacts, a mapping neither."""
+    system = scene.system
     q = system.linear
-    speeds = [name for name, stop in zip(SPEEDS, (q.high, q.low), strict=True) if np.isfinite(stop)]
+    speeds = [
+        name
+        for name, stop, side in zip(SPEEDS, (q.high, q.low), (1, -1), strict=True)
+        if np.isfinite(stop) and scene.dynamics == "flow" and not q.is_compliant(side)
+    ]
     return [*state(system.masses), *([] if system.gap_is_x1 else ["gap"]), *speeds]
 
 
@@ -89,6 +98,9 @@ def view_of(scene: Scene) -> View:
         start = start | {"random": min(scene.start.count, 4)}
     return View(
         system=json.loads(json.dumps(system)),
+        dynamics=scene.dynamics,
+        order=scene.order,
+        expand_at=scene.expand_at,
         axis=axis,
         low=low,
         high=high,

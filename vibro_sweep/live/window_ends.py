@@ -20,7 +20,6 @@ from vibro_sweep.model.outcomes import REASONS
 from vibro_sweep.model.parameters import range_of
 from vibro_sweep.model.state import state
 from vibro_sweep.model.status import STATUSES, is_valid
-from vibro_sweep.model.stops import why_rigid
 
 MOST_POINTS = 300  # of a branch that is drawn
 NEAR = 1e-9  # relative: grazes nearer than this are the same
@@ -34,8 +33,8 @@ def window_message(
 
     The first branch is that of which the window is a part. progress : as of `continue_orbit`
     """
-    if found.system.linear.compliant:
-        return {}, {"reason": why_rigid("windows")}
+    if found.mapping:
+        return {}, {"reason": "windows are those of the oscillator itself, and this is its mapping"}
     if found.period == 0:
         return {}, {"reason": _not_periodic(found)}
     bounds = _bounds(view, found)
@@ -46,7 +45,8 @@ def window_message(
         return {}, {"reason": f"no window here: {found_out.text}. {found_out.advice}".strip()}
     window = branch_of(arrays, view.axis, found.system)
     orbit = window._start
-    words = {"low": _end(window.begins, -1, bounds), "high": _end(window.ends, 1, bounds)}
+    event = "contact" if found.system.linear.compliant else "impact"
+    words: dict[str, Any] = {"low": _end(window.begins, -1, event), "high": _end(window.ends, 1, event), "event": event}
     words |= {"period": int(arrays["branch_period"]), "symmetric": bool(arrays["branch_symmetric"])}
     origin = found.system.replace(**{view.axis: float(arrays["value"][int(arrays["branch_origin"])])})
     orbit = PeriodicOrbit(origin, "ok", orbit)
@@ -55,7 +55,7 @@ def window_message(
     branches = [continue_orbit(orbit, view.axis, bounds, progress)]
     branches += _met((window.begins, window.ends), view.axis, bounds, progress)
     drawn = [_drawn(view, found, _thinned(arrays_of(one, value))) for one in branches]
-    words["specials"] = [_end(one, 0, bounds) for one in branches[0].special]
+    words["specials"] = [_end(one, 0, event) for one in branches[0].special]
     words["branches"] = [[len(one["value"]), len(one["y"]) // len(one["value"])] for one in drawn]
     return {name: np.concatenate([one[name] for one in drawn]) for name in drawn[0]}, words
 
@@ -95,8 +95,9 @@ def _bounds(view: View, found: Settled) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def _end(point: SpecialPoint, side: int, bounds: tuple[float, float]) -> dict[str, Any]:
-    """What a special point is. side: -1, 1 of the lower and the upper end of a window; 0 of another point."""
+def _end(point: SpecialPoint, side: int, event: str) -> dict[str, Any]:
+    """What a special point is. side: -1, 1 of the lower and the upper end of a window; 0 of another point. event: what
+    happens at a stop, an impact or a contact."""
     (value,) = point.parameters.values()
     beyond = point.type == "boundary"
     text = "it is stable beyond what was looked at" if side and beyond else BY_NAME[point.type].text
@@ -106,6 +107,8 @@ def _end(point: SpecialPoint, side: int, bounds: tuple[float, float]) -> dict[st
         text = f"{stop} stop, {change}: {point.kind}; {GRAZES[point.kind.replace(' ', '_')]}"
     elif point.criticality:
         text += f" ({point.criticality}critical)"
+    if event == "contact":
+        text = text.replace("an impact", "a contact").replace("impact", "contact")
     error = float(point.error) if np.isfinite(point.error) else None
     return {"value": value, "error": error, "type": point.type, "text": text}
 

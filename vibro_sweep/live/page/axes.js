@@ -15,6 +15,7 @@ export function ticks(low, high, most) {
     list.push({ at: base + k * step, text: near ? signed(k * step) : plain(k * step, step) });
     if (list.length > 50) break;
   }
+  if (list.length < 2 && most < 64) return ticks(low, high, 2 * most); // one number alone gives no scale
   return { base: near ? base : null, list };
 }
 

@@ -47,6 +47,11 @@ export class Controls {
         event.preventDefault();
         this.nudge(entry, event.deltaY < 0 ? 1 : -1);
       }, { passive: false });
+      field.addEventListener("keydown", (event) => {
+        if (!["ArrowUp", "ArrowDown"].includes(event.key)) return;
+        event.preventDefault();
+        this.nudge(entry, event.key === "ArrowUp" ? 1 : -1);
+      });
       field.addEventListener("change", () => {
         const value = Number(field.value);
         if (field.value !== "" && Number.isFinite(value)) this.set(one.name, value, true);

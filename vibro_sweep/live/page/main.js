@@ -62,20 +62,24 @@ function opened(message) {
     lines = [restored.line ?? null, null];
   } else lines = [null, null];
   data = null;
+  drawing.exponentRange = null;
   since = link.seq;
   fitNext = !state.range;
   forgetWhy();
   panel.clear();
   fill();
   request();
+  redraw();
   if (lines[0] !== null) askOrbit(0);
 }
 
 function fill() {
   const { view } = state;
-  options($("presets"), ["", ...model.presets].map((name) => [name, name || "(this address)"]), model.name);
+  options($("presets"), ["", ...model.presets].map((name) => [name, name || "(this view)"]), model.name);
   options($("axis"), model.numbers.map((one) => [one.name, `${one.symbol}  ${one.label}`]), view.axis);
   options($("height"), model.heights, view.y);
+  $("dynamics").value = view.dynamics;
+  $("motion").hidden = !model.mapping;
   $("start").value = view.start.follow ?? (view.start.random ? "random" : "state");
   controls.build(model.numbers, view.axis);
   fields();
@@ -180,12 +184,12 @@ function showWhy() {
   if (!why) return;
   if (why.reason) return box.replaceChildren(text("p", `At ${state.view.axis} = ${shown(why.value)}: ${why.reason}.`));
   const end = (one, side) => text("p", `${side} end ${shown(one.value)}${one.error ? ` ± ${short(one.error, 1)}` : ""}: ${one.type.replace("_", "-")}, ${one.text}`);
-  const kind = `${why.itinerary ? why.itinerary : "no impacts"}, period ${why.period}${why.symmetric ? ", symmetric" : why.mirrored ? ", or its mirror image" : ""}`;
+  const kind = `${why.itinerary || `without ${why.event}s`}, period ${why.period}${why.symmetric ? ", symmetric" : why.mirrored ? ", or its mirror image" : ""}`;
   const others = why.specials.filter((one) => one.type !== "boundary").map((one) => `${one.type.replace("_", "-")} at ${short(one.value, 8)}`);
   box.replaceChildren(
     text("p", `Window of the orbit ${kind}:`), end(why.low, "lower"), end(why.high, "upper"),
     text("p", `On its branch, stable (solid) or not (dashed): ${others.join(", ") || "no special point"}.`),
-    ...(branches.length > 1 ? [text("p", "Dashed, too: the motions that meet it at a graze, with one impact more or less.")] : []),
+    ...(branches.length > 1 ? [text("p", `Dashed, too: the motions that meet it at a graze, with one ${why.event} more or less.`)] : []),
   );
 }
 
@@ -196,6 +200,7 @@ function saved(message) {
 
 function error(message) {
   clearTimeout(clickTimer);
+  if (message.of === "open" && model) $("dynamics").value = state.view.dynamics;
   if (message.of !== "sweep") return say(message.text, true);
   if (message.seq !== asked) return;
   clearTimeout(timer);
@@ -305,9 +310,9 @@ const actions = {
     rectangle = value;
     redraw();
   },
-  go(low, high, range) {
+  go(low, high, range, on = false) {
     if (!(high > low) || !range || !(range[1] > range[0])) return;
-    state.go(low, high, range);
+    state.go(low, high, range, on);
     fitNext = false;
     request();
     redraw();
@@ -362,7 +367,11 @@ $("presets").addEventListener("change", (event) => event.target.value && open({ 
 $("axis").addEventListener("change", (event) => {
   const number = model.numbers.find((one) => one.name === event.target.value);
   let { low, high } = number;
-  if (number.log) [low, high] = [controls.rows.get(number.name).value * 0.7, controls.rows.get(number.name).value * 1.4];
+  if (number.log) [low, high] = [0.7, 1.4].map((part) => Number((controls.rows.get(number.name).value * part).toPrecision(4)));
+  if (lines[0] !== null) { // the number that was swept stays where the orbit is
+    state.view.numbers[state.view.axis] = lines[0];
+    controls.set(state.view.axis, lines[0], false);
+  }
   state.begin({ ...state.view, axis: number.name, low, high });
   fitNext = true;
   lines = [null, null];
@@ -374,6 +383,9 @@ $("height").addEventListener("change", (event) => {
   state.begin({ ...state.view, y: event.target.value });
   fitNext = true;
   request();
+});
+$("dynamics").addEventListener("change", (event) => {
+  open({ view: { ...state.view, dynamics: event.target.value, y: "x1" } }, null);
 });
 $("start").addEventListener("change", (event) => {
   const { follow, random, seed, ...rest } = state.view.start, value = event.target.value;

@@ -3,7 +3,8 @@
 import { short, shown, ticks } from "./axes.js";
 import { themeOf } from "./drawing.js";
 
-const PAD = { left: 44, right: 8, top: 8, bottom: 30 };
+const PAD = { left: 58, right: 8, top: 8, bottom: 30 };
+const LONGEST = 12; // forcing periods of a time history; the next ones follow while the masses move
 const PERIODS_A_SECOND = 0.4;
 
 export class OrbitPanel {
@@ -13,12 +14,15 @@ export class OrbitPanel {
     this.playing = false;
     this.time = 0;
     this.canvases = Object.fromEntries(["masses", "history", "portrait", "section"].map((id) => [id, root.querySelector(`#${id}`)]));
+    this.captions = Object.fromEntries(Object.entries(this.canvases).map(([id, one]) => [id, one.parentElement.querySelector("figcaption")]));
     this.step = this.step.bind(this);
   }
 
   show(orbit) {
     this.slots[orbit.slot] = prepared(orbit);
+    const hidden = this.root.hidden;
     this.root.hidden = false;
+    if (hidden && this.playing) this.play(true);
     this.facts();
     this.draw();
   }
@@ -26,7 +30,6 @@ export class OrbitPanel {
   clear() {
     this.slots = [null, null];
     this.root.hidden = true;
-    this.play(false);
   }
 
   play(on) {
@@ -52,6 +55,11 @@ export class OrbitPanel {
   }
 
   draw() {
+    const known = this.slots.filter(Boolean), mapping = known.some((one) => one.mapping);
+    for (const id of ["masses", "history", "portrait"]) this.canvases[id].parentElement.hidden = mapping;
+    this.captions.history.textContent = known.some((one) => one.contacts)
+      ? "Time history; thick where a stop is pressed" : "Time history; circles are impacts";
+    this.captions.section.textContent = mapping ? "Points of the mapping" : "Section, t = 0 mod T";
     this.masses();
     this.history();
     this.portrait();
@@ -62,28 +70,43 @@ export class OrbitPanel {
     return this.slots.map((one, i) => [one, i]).filter(([one]) => one && one.periods);
   }
 
+  // forcing periods since the longest orbit that is shown began
+  get clock() {
+    const longest = Math.max(...this.shown.map(([one]) => one.periods));
+    return ((this.time % longest) + longest) % longest;
+  }
+
   history() {
     const shown = this.shown;
     const { context, theme, box } = prepare(this.canvases.history);
     if (!shown.length) return;
-    const periods = Math.max(...shown.map(([one]) => one.periods));
-    const view = { low: 0, high: periods, ...vertical(shown, "gap") };
+    const span = Math.min(LONGEST, Math.max(...shown.map(([one]) => one.periods)));
+    const first = span * Math.floor(this.clock / span);
+    const view = { low: first, high: first + span, ...vertical(shown, "gap") };
     const { x, y } = scales(box, view);
     axes(context, box, view, "t/T", names(shown)[0], theme);
     clipped(context, box, () => {
-      stops(context, shown[0][0], view, x, y, theme);
+      for (const [one] of shown) stops(context, one, view, x, y, theme);
       for (const [one, i] of shown) {
-        polyline(context, one.t.length, (k) => x(one.t[k] / one.T), (k) => y(one.gap[k]), colourOf(i, theme));
-        context.fillStyle = theme.paper;
-        context.strokeStyle = colourOf(i, theme);
-        one.arrays.impact_t.forEach((t, k) => {
-          context.beginPath();
-          context.arc(x(t / one.T), y(one.arrays.impact_side[k] > 0 ? one.high : one.low), 3, 0, 7);
-          context.fill();
-          context.stroke();
-        });
-        dot(context, x(this.phase(one)), y(at(one, one.gap, this.phase(one))), colourOf(i, theme));
+        const repeats = one.periods === one.period; // and not a part of a longer orbit
+        const from = repeats ? one.periods * Math.floor(first / one.periods) : 0, to = repeats ? first + span : 1;
+        for (let shift = from; shift < to; shift += one.periods) this.flight(context, one, (t) => x(shift + t / one.T), y, colourOf(i, theme), theme);
+        dot(context, x(repeats ? this.clock : this.phase(one)), y(at(one, one.gap, this.phase(one))), colourOf(i, theme));
       }
+    });
+  }
+
+  // an orbit over time, once
+  flight(context, one, x, y, colour, theme) {
+    polyline(context, one.t.length, (k) => x(one.t[k]), (k) => y(one.gap[k]), colour);
+    pressed(context, one, (k) => x(one.t[k]), (k) => y(one.gap[k]), colour);
+    context.fillStyle = theme.paper;
+    context.strokeStyle = colour;
+    one.arrays.impact_t.forEach((t, k) => {
+      context.beginPath();
+      context.arc(x(t), y(one.arrays.impact_side[k] > 0 ? one.high : one.low), 3, 0, 7);
+      context.fill();
+      context.stroke();
     });
   }
 
@@ -97,12 +120,13 @@ export class OrbitPanel {
     clipped(context, box, () => {
       context.strokeStyle = theme.faint;
       context.setLineDash([3, 3]);
-      for (const stop of [shown[0][0].low, shown[0][0].high]) {
+      for (const stop of shown.flatMap(([one]) => [one.low, one.high])) {
         if (stop !== null) polyline(context, 2, () => x(stop), (k) => (k ? box.y : box.y + box.h), theme.faint);
       }
       context.setLineDash([]);
       for (const [one, i] of shown) {
         polyline(context, one.t.length, (k) => x(one.gap[k]), (k) => y(one.rate[k]), colourOf(i, theme));
+        pressed(context, one, (k) => x(one.gap[k]), (k) => y(one.rate[k]), colourOf(i, theme));
         const phase = this.phase(one);
         dot(context, x(at(one, one.gap, phase)), y(at(one, one.rate, phase)), colourOf(i, theme));
       }
@@ -110,7 +134,7 @@ export class OrbitPanel {
   }
 
   section() {
-    const shown = this.shown;
+    const shown = this.slots.map((one, i) => [one, i]).filter(([one]) => one?.arrays.section.length);
     const { context, theme, box } = prepare(this.canvases.section);
     if (!shown.length) return;
     const view = { ...horizontal(shown, "sectionGap"), ...vertical(shown, "sectionRate") };
@@ -131,37 +155,44 @@ export class OrbitPanel {
     const shown = this.shown;
     const { context, theme, box: { x: left, w, fullHeight: h } } = prepare(this.canvases.masses, 8);
     if (!shown.length) return;
-    const [[one]] = shown, N = one.masses, phase = this.phase(one);
+    const [[one]] = shown, N = one.masses;
     const rows = one.gapIsFirst ? N : N + 1, height = h / rows, size = Math.min(34, height * 0.42);
-    const reach = Math.max(one.reach, Math.abs(one.low ?? 0), Math.abs(one.high ?? 0), 1e-9);
+    const reach = Math.max(1e-9, ...shown.flatMap(([{ reach, low, high }]) => [reach, Math.abs(low ?? 0), Math.abs(high ?? 0)]));
     const scale = (w / 2 - size - 6) / reach, middle = left + w / 2;
     context.font = "11px system-ui, sans-serif";
     context.textBaseline = "middle";
+    context.textAlign = "center";
     for (let r = 0; r < rows; r++) {
       const gapRow = r === 0, mass = one.gapIsFirst ? r : r - 1, centre = height * (r + 0.5);
-      const value = gapRow && !one.gapIsFirst ? at(one, one.gap, phase) : at(one, one.positions[mass], phase);
-      const x = middle + scale * value;
-      context.strokeStyle = theme.line;
+      const name = gapRow && !one.gapIsFirst ? "gap" : String(mass + 1);
       polyline(context, 2, (k) => (k ? left + w : left), () => centre + size / 2 + 1, theme.line);
-      if (gapRow) {
-        for (const [stop, side] of [[one.low, -1], [one.high, 1]]) {
-          if (stop === null) continue;
-          const wall = middle + scale * stop + side * (size / 2);
-          const close = Math.abs(value - stop) < 0.004 * reach;
-          context.fillStyle = close ? theme.second : theme.faint;
-          context.fillRect(side > 0 ? wall : wall - 5, centre - height * 0.36, 5, height * 0.72);
-        }
+      for (const [each, i] of [...shown].reverse()) {
+        const value = at(each, mass < 0 || (gapRow && each.gapIsFirst) ? each.gap : each.positions[mass], this.phase(each));
+        if (gapRow) this.walls(context, each, value, { x: (v) => middle + scale * v, centre, size, height, near: 0.004 * reach }, i, theme);
+        const x = middle + scale * value, colour = i ? theme.second : gapRow ? theme.accent : theme.faint;
+        context.strokeStyle = context.fillStyle = colour;
+        if (i) context.strokeRect(x - size / 2, centre - size / 2, size, size);
+        else context.fillRect(x - size / 2, centre - size / 2, size, size);
+        context.fillStyle = i ? colour : theme.paper;
+        context.fillText(name, x, centre);
       }
-      context.fillStyle = gapRow ? theme.accent : theme.faint;
-      context.fillRect(x - size / 2, centre - size / 2, size, size);
-      context.fillStyle = theme.paper;
-      context.textAlign = "center";
-      context.fillText(gapRow && !one.gapIsFirst ? "gap" : String(mass + 1), x, centre);
     }
   }
 
+  // the stops of an orbit; one that is compliant goes with the mass that presses it
+  walls(context, one, value, { x, centre, size, height, near }, i, theme) {
+    [[one.low, -1], [one.high, 1]].forEach(([stop, side], k) => {
+      if (stop === null) return;
+      const beyond = one.pressed[k] && side * (value - stop) > 0;
+      const wall = x(beyond ? value : stop) + side * (size / 2), edge = side > 0 ? wall : wall - 5;
+      context.fillStyle = context.strokeStyle = beyond || Math.abs(value - stop) < near ? theme.second : theme.faint;
+      if (i) context.strokeRect(edge, centre - height * 0.36, 5, height * 0.72);
+      else context.fillRect(edge, centre - height * 0.36, 5, height * 0.72);
+    });
+  }
+
   phase(one) {
-    return ((this.time % one.periods) + one.periods) % one.periods;
+    return this.clock % one.periods;
   }
 }
 
@@ -189,13 +220,18 @@ function paragraph(one, i) {
   head.textContent = `${one.axis} = ${shown(one.value)}: `;
   const exponents = [...one.arrays.exponents].map((v, k) => `${short(v, 4)} ± ${short(one.arrays.errors[k], 1)}`);
   const kind = one.period ? `period ${one.period}` : one.arrays.exponents[0] > one.certain * one.arrays.errors[0] ? "chaotic" : "no period found";
-  const itinerary = one.itinerary === undefined ? "" : one.itinerary.length > 40 ? `${one.impacts} impacts` : one.itinerary || (!one.period ? "" : one.contacts ? `${one.contacts} contacts` : "no impacts");
-  const words = [kind, itinerary, one.rests ? `${one.rests} rests on a stop` : "", `λ = ${exponents.join(", ")}`];
+  const touching = one.contacts ? counted(one.contacts, "contact") : "no impacts";
+  const itinerary = one.itinerary === undefined ? "" : one.itinerary.length > 40 ? counted(one.impacts, "impact") : one.itinerary || (one.period ? touching : "");
+  const words = [kind, itinerary, one.rests ? `${counted(one.rests, "rest")} on a stop` : "", `λ = ${exponents.join(", ")}`];
   if (one.status !== "computed") words.push(one.status);
   if (one.orbit_status && one.orbit_status !== "ok") words.push(one.orbit_status);
   if (one.alone) words.push("from the start of the scene alone, not from where the points before it lead");
   p.append(head, words.filter(Boolean).join("; "));
   return p;
+}
+
+function counted(n, word) {
+  return `${n} ${word}${n === 1 ? "" : "s"}`;
 }
 
 function names([[one]]) {
@@ -249,7 +285,7 @@ function axes(context, box, view, across, up, theme) {
   context.font = "10px system-ui, sans-serif";
   context.textAlign = "center";
   context.textBaseline = "top";
-  for (const one of ticks(view.low, view.high, box.w / 60).list) context.fillText(one.text, x(one.at), box.y + box.h + 3);
+  for (const one of ticks(view.low, view.high, box.w / 50).list) context.fillText(one.text, x(one.at), box.y + box.h + 3);
   context.fillText(across, box.x + box.w / 2, box.y + box.h + 16);
   context.textAlign = "right";
   context.textBaseline = "middle";
@@ -279,9 +315,19 @@ function clipped(context, box, draw) {
   context.restore();
 }
 
-function polyline(context, n, x, y, colour) {
+// where a compliant stop is pressed, once more and thick
+function pressed(context, one, x, y, colour) {
+  one.arrays.contact_touch.forEach((touch, c) => {
+    const release = one.arrays.contact_release[c], from = one.t.findIndex((t) => t >= touch);
+    let n = 0;
+    while (from + n < one.t.length && one.t[from + n] <= release) n++;
+    if (from >= 0) polyline(context, n, (k) => x(from + k), (k) => y(from + k), colour, 3.5);
+  });
+}
+
+function polyline(context, n, x, y, colour, width = 1.2) {
   context.strokeStyle = colour;
-  context.lineWidth = 1.2;
+  context.lineWidth = width;
   context.beginPath();
   for (let k = 0; k < n; k++) context.lineTo(x(k), y(k));
   context.stroke();

@@ -2,10 +2,11 @@
 
 const CLICK = 5; // pixels that a click may move
 const ZOOM = 1.0015; // a unit of the wheel
+const PAUSE = 500; // ms, after which turning the wheel is another step to go back
 
 export function steer(canvas, actions) {
   const { state, drawing } = actions;
-  let down = null;
+  let down = null, turned = -Infinity;
 
   const place = (event) => {
     const rect = canvas.getBoundingClientRect();
@@ -41,13 +42,7 @@ export function steer(canvas, actions) {
     const by = ((down.view.high - down.view.low) * (x0 - x)) / dots.w;
     const up = ((down.range[1] - down.range[0]) * (y - y0)) / dots.h;
     const to = [down.view.low + by, down.view.high + by, [down.range[0] + up, down.range[1] + up]];
-    if (!down.pushed) actions.go(...to);
-    else {
-      Object.assign(state.view, { low: to[0], high: to[1] });
-      state.range = to[2];
-      actions.request();
-      actions.redraw();
-    }
+    actions.go(...to, down.pushed);
     down.pushed = true;
   });
   canvas.addEventListener("pointerup", (event) => {
@@ -72,14 +67,15 @@ export function steer(canvas, actions) {
   canvas.addEventListener("wheel", (event) => {
     if (!ready()) return;
     event.preventDefault();
-    const [x, y] = place(event);
-    zoom(ZOOM ** event.deltaY, value(x), height(y), y <= drawing.place.dots.y + drawing.place.dots.h);
+    const [x, y] = place(event), on = event.timeStamp - turned < PAUSE;
+    turned = event.timeStamp;
+    zoom(ZOOM ** event.deltaY, value(x), height(y), y <= drawing.place.dots.y + drawing.place.dots.h, on);
   }, { passive: false });
 
-  function zoom(factor, cx, cy, both = true) {
+  function zoom(factor, cx, cy, both = true, on = false) {
     const { low, high } = state.view, [bottom, top] = state.range;
     const range = both ? [cy - (cy - bottom) * factor, cy + (top - cy) * factor] : [bottom, top];
-    actions.go(cx - (cx - low) * factor, cx + (high - cx) * factor, range);
+    actions.go(cx - (cx - low) * factor, cx + (high - cx) * factor, range, on);
   }
 
   function pan(across, up) {

@@ -26,9 +26,9 @@ export class ViewState {
     return { axis, low, high, y, range: this.range && [...this.range] };
   }
 
-  // move to another part of the plane; it can be gone back to
-  go(low, high, range) {
-    this.past.push(this.place());
+  // move to another part of the plane; it can be gone back to. on: the movement before goes on
+  go(low, high, range, on = false) {
+    if (!on) this.past.push(this.place());
     if (this.past.length > 200) this.past.shift();
     this.coming = [];
     Object.assign(this.view, { low, high });
