@@ -9,6 +9,7 @@ import { OrbitPanel } from "./orbit_panel.js";
 import { saveAs } from "./saving.js";
 import { steer } from "./steering.js";
 import { fromAddress, ViewState } from "./view_state.js";
+import { branchesOf, wordsOfWindow } from "./window_ends.js";
 
 const $ = (id) => document.getElementById(id);
 const root = document.documentElement;
@@ -153,21 +154,9 @@ function windowFound(message) {
   clearTimeout(clickTimer);
   why = message;
   say(message.reason ? "No window was found" : "The window and its two ends");
-  branches = split(message);
+  branches = branchesOf(message);
   showWhy();
   redraw();
-}
-
-// the arrays of each branch, one behind the other
-function split({ arrays, branches = [] }) {
-  let first = 0, at = 0;
-  return branches.map(([n, m]) => {
-    const own = (values) => values.subarray(first, first + n);
-    const one = { value: own(arrays.value), unstable: own(arrays.unstable), y: arrays.y.subarray(at, at + n * m), m };
-    first += n;
-    at += n * m;
-    return one;
-  });
 }
 
 function forgetWhy() {
@@ -182,15 +171,7 @@ function showWhy() {
   const box = $("window");
   box.hidden = !why;
   if (!why) return;
-  if (why.reason) return box.replaceChildren(text("p", `At ${state.view.axis} = ${shown(why.value)}: ${why.reason}.`));
-  const end = (one, side) => text("p", `${side} end ${shown(one.value)}${one.error ? ` ± ${short(one.error, 1)}` : ""}: ${one.type.replace("_", "-")}, ${one.text}`);
-  const kind = `${why.itinerary || `without ${why.event}s`}, period ${why.period}${why.symmetric ? ", symmetric" : why.mirrored ? ", or its mirror image" : ""}`;
-  const others = why.specials.filter((one) => one.type !== "boundary").map((one) => `${one.type.replace("_", "-")} at ${short(one.value, 8)}`);
-  box.replaceChildren(
-    text("p", `Window of the orbit ${kind}:`), end(why.low, "lower"), end(why.high, "upper"),
-    text("p", `On its branch, stable (solid) or not (dashed): ${others.join(", ") || "no special point"}.`),
-    ...(branches.length > 1 ? [text("p", `Dashed, too: the motions that meet it at a graze, with one ${why.event} more or less.`)] : []),
-  );
+  box.replaceChildren(...wordsOfWindow(why, state.view.axis));
 }
 
 function saved(message) {
@@ -216,12 +197,6 @@ function set(value) {
 function say(words, bad = false) {
   $("status").textContent = words;
   $("status").classList.toggle("bad", bad);
-}
-
-function text(tag, words) {
-  const element = document.createElement(tag);
-  element.textContent = words;
-  return element;
 }
 
 function options(select, list, value) {

@@ -1,0 +1,23 @@
+// What is known of an orbit, in words.
+
+import { short, shown } from "./axes.js";
+
+export function paragraph(one, i) {
+  const p = document.createElement("p"), head = document.createElement("b");
+  head.className = i ? "second" : "first";
+  head.textContent = `${one.axis} = ${shown(one.value)}: `;
+  const exponents = [...one.arrays.exponents].map((v, k) => `${short(v, 4)} ± ${short(one.arrays.errors[k], 1)}`);
+  const kind = one.period ? `period ${one.period}` : one.arrays.exponents[0] > one.certain * one.arrays.errors[0] ? "chaotic" : "no period found";
+  const touching = one.contacts ? counted(one.contacts, "contact") : "no impacts";
+  const itinerary = one.itinerary === undefined ? "" : one.itinerary.length > 40 ? counted(one.impacts, "impact") : one.itinerary || (one.period ? touching : "");
+  const words = [kind, itinerary, one.rests ? `${counted(one.rests, "rest")} on a stop` : "", `λ = ${exponents.join(", ")}`];
+  if (one.status !== "computed") words.push(one.status);
+  if (one.orbit_status && one.orbit_status !== "ok") words.push(one.orbit_status);
+  if (one.alone) words.push("from the start of the scene alone, not from where the points before it lead");
+  p.append(head, words.filter(Boolean).join("; "));
+  return p;
+}
+
+function counted(n, word) {
+  return `${n} ${word}${n === 1 ? "" : "s"}`;
+}
