@@ -110,6 +110,16 @@ def test_turning_the_wheel_is_one_step_back(page):
     assert (page.input_value("#low"), page.input_value("#high")) == ("4.2", "7")
 
 
+def test_home_is_the_first_range_after_another_was_typed(page):
+    page.fill("#low", "5.5")
+    page.press("#low", "Enter")
+    page.wait_for_timeout(200)
+    settle(page)
+    assert page.get_attribute("#diagram", "aria-label") == "displacement x1 over clearance b from 5.5 to 7"
+    page.click("#home")
+    assert (page.input_value("#low"), page.input_value("#high")) == ("4.2", "7")
+
+
 def test_an_orbit_and_why_its_window_ends(page):
     click(page, 0.5, 0.3)  # near b = 5.5, in the window of period 8
     page.wait_for_selector("#orbit:not([hidden])", timeout=MOST)

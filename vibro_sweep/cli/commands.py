@@ -175,7 +175,10 @@ def plot_command(
         typer.Option("--overwrite", help="Replace an existing file, also one that is not a picture of this program."),
     ] = False,
 ):
-    """Draw what a file holds."""
+    """Draw what a file holds.
+
+    Of a sweep, `vibro-sweep explore FILE.h5` shows the same diagram as a page with sliders.
+    """
     values = dict(key_and_value(one) for one in at or ())
     pairs = [
         pair and tuple(number_in(f"--{name}", text) for text in pair)

@@ -139,6 +139,8 @@ function summary() {
   const words = [...counts].map(([code, n]) => code === model.not_settled
     ? `${n} not settled yet: a longer transient or record may tell`
     : `${n} ${n > 1 ? "orbits" : "orbit"}: ${model.statuses[code] ?? code}`);
+  const { axis, height } = picture().names;
+  $("diagram").setAttribute("aria-label", `${height} over ${axis} from ${shown(state.view.low)} to ${shown(state.view.high)}`);
   say([`${data.columns} values of ${state.view.axis}`, ...words].join("; "));
 }
 
@@ -373,7 +375,6 @@ for (const id of ["low", "high"]) {
     const low = Number($("low").value), high = Number($("high").value);
     if ($("low").value === "" || $("high").value === "" || !(high > low)) return say("The range must rise: from a smaller to a greater number.", true);
     state.go(low, high, state.range);
-    state.home = { low, high };
     request();
   });
 }
