@@ -13,7 +13,7 @@ from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
 FOLDER = Path(__file__).parent / "tutorials"
-SIZE = {"width": 1100, "height": 760}
+SIZE = {"width": 1100, "height": 860}
 
 
 def settle(page: Page) -> None:

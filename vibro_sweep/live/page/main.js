@@ -40,7 +40,8 @@ function begin() {
 let restored = null, clickTimer = null;
 function open(what, found) {
   restored = found;
-  say("Connected");
+  say(model ? "Opening" : "Connected");
+  computing();
   link.ask("open", what);
 }
 
@@ -102,13 +103,17 @@ function request() {
   const { view } = state;
   failed = false;
   asked = link.ask("sweep", { view, middle: state.range ? (state.range[0] + state.range[1]) / 2 : 0 });
-  set("computing");
-  clearTimeout(timer);
-  timer = setTimeout(() => say(COMPILING), LONG);
+  computing();
   forgetWhy();
   state.write();
   fields();
   panel.slots.forEach((one, slot) => one && askOrbit(slot));
+}
+
+function computing() {
+  set("computing");
+  clearTimeout(timer);
+  timer = setTimeout(() => say(COMPILING), LONG);
 }
 
 function frame(message) {
@@ -184,8 +189,8 @@ function saved(message) {
 function error(message) {
   clearTimeout(clickTimer);
   if (message.of === "open" && model) $("dynamics").value = state.view.dynamics;
-  if (message.of !== "sweep") return say(message.text, true);
-  if (message.seq !== asked) return;
+  if (!["sweep", "open"].includes(message.of)) return say(message.text, true);
+  if (message.of === "sweep" && message.seq !== asked) return;
   clearTimeout(timer);
   failed = true;
   say(message.text, true);
