@@ -18,7 +18,7 @@ import vibro_sweep as vs
 from vibro_sweep.engine import points
 from vibro_sweep.engine.any_points import any_points, kind_of
 from vibro_sweep.engine.one_system import plan_of
-from vibro_sweep.engine.records import new_results
+from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 from vibro_sweep.model.linear import amplitudes, stacked
@@ -72,7 +72,7 @@ def solver(system: vs.Oscillator, states: np.ndarray, exponents: bool) -> Solver
     one = stacked([system.linear])
     kind = kind_of(one)
     table = np.repeat(any_points(one, kind)[None], LANES, axis=1)
-    starts = np.stack([states, states])
+    starts = starts_at(np.stack([states, states]))
 
     def job(periods):
         plan = plan_of(0, periods, exponents)

@@ -17,10 +17,11 @@ import h5py
 import pytest
 from support import ROOT
 from support.clusters import LIMIT, Cluster
-from support.scenes import ALL, PAPER, arrays_of, assert_same_bits, done
+from support.scenes import ALL, COMPLIANT, PAPER, arrays_of, assert_same_bits, done, run
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
+from vibro_sweep.driver import sweep
 from vibro_sweep.driver.compute import RunError
 
 pytest.importorskip("distributed")
@@ -92,6 +93,21 @@ def test_dask_processes_and_threads_agree(tmp_path, cluster, scene, whole):
     assert all(worker.poll() is None for worker in workers)
     with h5py.File(tmp_path / "dask.h5") as file:
         assert json.loads(file.attrs["provenance"])["executor"] == "ClusterExecutor"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in COMPLIANT if "rigid" not in name])
+def test_dask_and_threads_agree_on_compliant_stops(tmp_path, cluster, name, monkeypatch):
+    """Chains in parts of three points, each by any worker."""
+    text, system = COMPLIANT[name]
+    own = run(tmp_path, text, system)
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(f"system: {{{system}}}\n{text}")
+    monkeypatch.setattr(sweep, "orbits_per_block", lambda *_: 9)
+    cluster.worker(), cluster.worker()
+    cluster.wait_for_workers(2)
+    assert main(command_of(scene, tmp_path / "dask.h5", cluster)) == 0
+    assert_same_bits(arrays_of(tmp_path / "dask.h5"), own)
 
 
 @pytest.mark.slow

@@ -262,6 +262,17 @@ def test_rest_on_a_preloaded_stop():
     assert heavy.contacts["t_touch"][0] == pytest.approx(math.asin(0.5), abs=1e-12)
 
 
+def test_a_stop_that_loses_its_damper_along_a_chain_is_relaxed_at_once():
+    system = one_mass(**ELASTIC | {"b": 0.3, "tau": 0.8}, k_stop=4, c_stop=20, release="force")
+    data = vs.sweep(
+        system, {"c_stop": [20.0, 0.0]}, start={"x1": 0.2, "v1": 0.9, "follow": "down"}, transient=0, record=1
+    )
+    begin = float(data.x1[0, 0]), float(data.v1[0, 0])
+    there = vs.simulate(system.replace(c_stop=0), begin, 1)
+    assert begin[0] < 0.3 and there.contacts["t_touch"][0] < 1
+    assert there.section[1] == pytest.approx([float(data.x1[1, 0]), float(data.v1[1, 0])], abs=1e-14)
+
+
 # --- what is refused
 
 

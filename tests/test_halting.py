@@ -19,7 +19,7 @@ from vibro_sweep.analysis.single import orbit
 from vibro_sweep.engine import halting, points, simd
 from vibro_sweep.engine.motion.ensemble import Mapping
 from vibro_sweep.engine.one_system import Engine, plan_of
-from vibro_sweep.engine.records import new_results
+from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.engine.simd import jit
 from vibro_sweep.model import status
 from vibro_sweep.model.grazing import expansion_point
@@ -71,7 +71,7 @@ def halted(plan, mapping=None):
         engine = Engine(CHAOS)
         if plan.order:
             engine.point["graze"] = expansion_point(CHAOS.parameters(), None)
-        nothing, starts = np.empty((1, 8, 0)), np.tile(STATE, (2, 8, 1))
+        nothing, starts = np.empty((1, 8, 0)), starts_at(np.tile(STATE, (2, 8, 1)))
         workspace = points.new_workspace(plan, engine.cells, 0)
         steps = np.ascontiguousarray(np.broadcast_to(engine.point, (1, 8)))
         kept = nothing[..., None], nothing, nothing[..., None]

@@ -15,6 +15,8 @@ from support import kills
         ("windows", "2 workers"),
         ("branches", "1 worker"),
         ("curves", "Dask"),
+        ("compliant", "Dask"),
+        ("compliant, follow", "2 workers"),
     ],
 )
 def test_killed_at_random_moments(name, by, tmp_path, monkeypatch):
@@ -29,7 +31,7 @@ def test_killed_at_random_moments(name, by, tmp_path, monkeypatch):
 @pytest.mark.parametrize("by", kills.BY)
 @pytest.mark.parametrize("name", kills.KILLED)
 def test_killed_many_times(name, by, tmp_path, monkeypatch, capsys):
-    """63 kills in all."""
+    """81 kills in all."""
     monkeypatch.chdir(tmp_path)
     found = kills.measure(tmp_path, name, by, 2, 5)
     with capsys.disabled():

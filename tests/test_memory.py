@@ -6,7 +6,8 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from support.scenes import PAPER, SCENES, arrays_of, assert_same_bits, computed, scene_of
+from support import slow_cases
+from support.scenes import EVERY, PAPER, SCENES, arrays_of, assert_same_bits, computed, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.driver import cost, memory_needed, sweep
@@ -72,10 +73,13 @@ sweep: {omega: {values: [0.5, 0.6, 0.63, 0.7, 0.9, 1.1]}, b: {start: 0.4, stop: 
 start: {follow: both}
 orbit: {transient: 0, record: 60}
 observe: [section, lyapunov, impacts]"""
-MORE = {"failing": FAILING, "hasty": HASTY}
+MORE = {"failing": (FAILING,), "hasty": (HASTY,)}
 
 
-@pytest.mark.parametrize("name", [*(name for name in SCENES if name != "attractors"), *MORE])
+@pytest.mark.parametrize(
+    "name",
+    [*(name for name in SCENES if name != "attractors"), *MORE, "compliant, follow", *slow_cases("compliant, force")],
+)
 def test_parts_of_points_and_chains_give_the_same_bits(name, monkeypatch):
     def too_stiff(*given):
         table = points_of(*given)
@@ -84,7 +88,7 @@ def test_parts_of_points_and_chains_give_the_same_bits(name, monkeypatch):
 
     if name == "failing":
         monkeypatch.setattr("vibro_sweep.analysis.single.tables.points_of", too_stiff)
-    scene = scene_of((SCENES | MORE)[name])
+    scene = scene_of(*(EVERY | MORE)[name])
     whole, _ = computed(scene, 10**6, None)
     if name == "failing":
         assert len(np.unique(whole["status"])) > 1

@@ -11,7 +11,7 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 import numpy as np
 import pytest
 from support import slow_cases
-from support.scenes import ALL, COMPLIANT, PAPER, SCENES, arrays_of, assert_same_bits, done, run, scene_of
+from support.scenes import ALL, EVERY, PAPER, arrays_of, assert_same_bits, done, run, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks, compute
@@ -19,12 +19,17 @@ from vibro_sweep.driver.attractor_ids import number_attractors
 from vibro_sweep.driver.drawn_starts import starts_of
 from vibro_sweep.scene import parse_scene
 
-# what `run` and `scene_of` take, by name
-EVERY = {name: (text,) for name, text in SCENES.items()} | COMPLIANT
-
 
 @pytest.mark.parametrize(
-    "name", ["random", "follow", "attractors", "compliant", "compliant, force", *slow_cases("plane", "basins")]
+    "name",
+    [
+        "random",
+        "follow",
+        "attractors",
+        "compliant",
+        "compliant, follow",
+        *slow_cases("plane", "basins", "compliant, force"),
+    ],
 )
 def test_workers_do_not_matter(tmp_path, name):
     one = run(tmp_path, *EVERY[name], workers=1)
@@ -68,7 +73,7 @@ def test_block_size_does_not_matter(tmp_path, name):
             number_attractors(scene, parts)
         assert_same_bits(parts, whole)
     # of a `follow`, the axis that it follows is never cut, and each direction is a block of its own
-    assert (numbers[0], numbers[-1]) == ((2, 2) if name == "follow" else (math.prod(scene.sweep_shape), 1))
+    assert (numbers[0], numbers[-1]) == ((2, 2) if "follow" in name else (math.prod(scene.sweep_shape), 1))
 
 
 @pytest.mark.parametrize("name", ["random", *slow_cases("compliant, force")])

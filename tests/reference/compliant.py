@@ -31,6 +31,7 @@ class Orbit(NamedTuple):
     contacts: list[Contact]
     impacts: list[tuple]  # (t, side, v)
     section: list[list]
+    places: list[tuple]  # at the sections: s of the right stop and of the left one
     taken: mpf  # the energy that stops have taken from the masses
 
 
@@ -167,14 +168,14 @@ def largest_within(c, u):
 NARROW = arb((1, -90))
 
 
-def simulate(q, state, contacts=None, periods=None, digits=40, until=None):
+def simulate(q, state, contacts=None, periods=None, digits=40, until=None, places=(0, 0)):
     """The orbit from the state (x1, v1, ..) at t = 0 until so many contacts have ended, or over so many periods, or
-    until a time."""
+    until a time. places: of the right stop and of the left one, from where they relax."""
     before = ctx.prec
     with mp.workdps(digits + 20):
         ctx.prec = mp.prec
         try:
-            return Motion(Oscillator(q), q.tau, state, digits).go(contacts, periods, until)
+            return Motion(Oscillator(q), q.tau, state, digits, places).go(contacts, periods, until)
         finally:
             ctx.prec = before
 
@@ -182,15 +183,19 @@ def simulate(q, state, contacts=None, periods=None, digits=40, until=None):
 class Motion:
     """One orbit, and what is recorded of it."""
 
-    def __init__(self, o, tau, state, digits):
+    def __init__(self, o, tau, state, digits, places):
         self.o, self.t, self.tiny = o, arb(0), to_ball(mpf(10) ** -digits)
         phase = [to_ball(mp.sin(tau)), to_ball(mp.cos(tau)), arb(1), arb(0), arb(0)]
         self.y = arb_mat(o.size, 1, [to_ball(a) for a in state] + phase)
         self.pressed, self.relaxing = 0, {}  # of stops that relax: where they began
         self.left = 0  # the stop whose distance begins with a zero
-        self.kept, self.taken = Orbit([], [], [], mpf(0)), arb(0)
-        for side in o.walls:
-            if o.R[side] is None and value_of(o.depth(side), self.y) > 0:
+        self.kept, self.taken = Orbit([], [], [], [], mpf(0)), arb(0)
+        for side, s in zip((1, -1), map(to_ball, places), strict=True):
+            if s > 0:
+                self.relaxing[side] = s
+                self.set_s(side, s)
+            if side in o.walls and o.R[side] is None and value_of(o.depth(side), self.y) > s:
+                self.forget(side)
                 if o.by_force and value_of(o.force(side), self.y) < 0:
                     self.relax(side)
                 else:
@@ -265,6 +270,7 @@ class Motion:
         while (at := (len(self.kept.section) * period).mid()) <= min((self.t + u).mid(), end):
             there = flow.at(self.y, (at - self.t).mid()).entries()
             self.kept.section.append([from_ball(a) for a in there[: 2 * self.o.N]])
+            self.kept.places.append(tuple(from_ball(there[self.o.place_of_s(side)]) for side in (1, -1)))
 
     def happen(self, what, side):
         o, speed = self.o, value_of(self.o.speed(side), self.y)

@@ -71,13 +71,32 @@ KINDS = {
         (("branches: branches.h5, special: 1", "sweep: sweep.h5, largest: 4"), ("b: [5.85,", "b: [5.4,")),
     ),
 }
+# sweeps with compliant stops, which are killed as well; files of one format need not be damaged twice
+COMPLIANT = {
+    "compliant": Kind(
+        "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, b: 4, k_stop: 400, c_stop: 2, preload: 0.1}\n"
+        "sweep: {b: {start: 3, stop: 7, num: 3}}\nstart: {random: 2, seed: 5}\n"
+        "orbit: {transient: 5, record: 6}\nobserve: [attractors, section, contacts, energy]\n",
+        longer=(("num: 3", "num: 120"), ("transient: 5, record: 6", "transient: 3000, record: 100")),
+    ),
+    "compliant, follow": Kind(
+        "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, k_stop: 2, c_stop: 20, preload: 0.01,"
+        " release: force}\n"
+        "sweep: {b: {start: 3, stop: 5, num: 3}, omega: {values: [0.6, 0.63, 0.66]}}\nstart: {follow: both}\n"
+        "orbit: {transient: 5, record: 6}\nobserve: [section, lyapunov, contacts, energy]\n",
+        longer=(
+            ("num: 3", "num: 400"),
+            ("omega: {values: [0.6, 0.63, 0.66]}", "omega: {start: 0.6, stop: 0.7, num: 40}"),
+        ),
+    ),
+}
 RAGGED = ("windows", "branches", "curves")
 PERIODIC = "periodic"  # `PeriodicOrbit.save`
 BOTH_SIDES = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=1)
 
 
 def write_scenes(folder: Path, longer: bool = False) -> None:
-    for name, kind in KINDS.items():
+    for name, kind in (KINDS | COMPLIANT).items():
         if kind.scene is None:
             continue
         text = kind.scene

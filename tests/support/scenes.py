@@ -45,6 +45,7 @@ observe: [attractors, section]""",
 
 # of each law of contact, as (text, system): a scene with what it may observe
 SOFT = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, b: 4, k_stop: 400"
+SLOW = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, k_stop: 2, release: force, preload: 0.01"
 CONTACTS = "observe: [section, lyapunov, multipliers, contacts]"
 COMPLIANT = {
     "compliant": (
@@ -75,10 +76,22 @@ observe: [section, lyapunov, contacts, impacts]""",
 sweep: {b: {start: 3, stop: 6, num: 7}}
 start: {random: 4, seed: 2}
 orbit: {transient: 400, record: 100}
-observe: [attractors]""",
-        f"{SOFT}, c_stop: 2",
+observe: [attractors, contacts, energy]""",
+        f"{SOFT}, c_stop: 2, preload: 0.2",
+    ),
+    # stops that relax for longer than a period: at the sections between two steps, some are not where they will be
+    "compliant, follow": (
+        """
+sweep: {b: {start: 3, stop: 5, num: 9}, c_stop: {values: [300, 20, 6]}}
+start: {follow: both}
+orbit: {transient: 3, record: 4}
+observe: [section, lyapunov, contacts, energy]""",
+        SLOW,
     ),
 }
+
+# what `run` and `scene_of` take, by name
+EVERY = {name: (text,) for name, text in SCENES.items()} | COMPLIANT
 
 
 def scene_of(text, system=PAPER):

@@ -15,7 +15,7 @@ from vibro_sweep.driver.trajectories import trajectories_of
 from vibro_sweep.engine import points
 from vibro_sweep.engine.any_points import grazing_points
 from vibro_sweep.engine.motion.ensemble import Mapping
-from vibro_sweep.engine.records import Kind, new_results
+from vibro_sweep.engine.records import Kind, new_results, starts_after, starts_at
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model import status
 from vibro_sweep.model.errors import VibroSweepError
@@ -56,7 +56,7 @@ _local = threading.local()
 def compute(block: Block) -> tuple[tuple[slice, ...], dict[str, np.ndarray]]:
     """The block's box and its arrays by dataset name; runs anywhere, needs nothing but the block.
 
-    Where chains go on in another block, `CHAIN_ENDS` among the arrays has the states (chains, 4) to go on from.
+    Where chains go on in another block, `CHAIN_ENDS` among the arrays has the starts (chains, 2 N + 2) to go on from.
     Raises BlockError, also where the program that made the block has another version.
     """
     worker = f"worker {platform.node()}, process {os.getpid()}"
@@ -93,7 +93,7 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
         "phases": np.full((*steps.shape, record if plan.section_side else 0), np.nan),
         "running": np.full((*steps.shape, plan.parts if "lyapunov_running" in block.wanted else 0, states), np.nan),
     }
-    anew = starts.reshape(-1, states)[: steps.shape[1]]  # also after a point that failed
+    anew = starts_at(starts.reshape(-1, states)[: steps.shape[1]])  # also after a point that failed
     first = anew if block.begun is None else block.begun
     workspace = _workspace(block, kind, int(table["cells"].max()), min(steps.shape[1], LANES))
     mapping = Mapping(plan.order) if plan.order else None
@@ -121,8 +121,8 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
 
 
 def _ends(last: np.ndarray, anew: np.ndarray) -> np.ndarray:
-    """The states from which chains go on; anew: those after a point that failed."""
-    return np.where(status.is_valid(last["status"])[:, None], last["end"], anew)
+    """The starts from which chains go on; anew: those after a point that failed."""
+    return np.where(status.is_valid(last["status"])[:, None], starts_after(last), anew)
 
 
 def _drop_without_exponents(arrays: dict[str, np.ndarray]) -> None:

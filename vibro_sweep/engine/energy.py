@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.law import LOGGED, Law, clear_contacts, relax
+from vibro_sweep.engine.compliant.law import LOGGED, Law, clear_contacts
 from vibro_sweep.engine.compliant.relaxing import bring_stops
 from vibro_sweep.engine.energy_times import cut_contacts, cuts_of, set_times, sort
 from vibro_sweep.engine.motion.ensemble import carry
@@ -126,9 +126,8 @@ def with_log(law, log):
 
 @inline
 def begin_contacts(law):
-    """Nothing is pressed, and the log of contacts is empty."""
+    """The log of contacts is empty."""
     if law is not None:
-        relax(law, 0)
         clear_contacts(law.orbits[0])
         law.orbits[0].logged, law.orbits[0].row = 0, -1
 

@@ -157,7 +157,7 @@ class Engine:
         nothing = np.empty((1, count, 0, self.states))
         workspace = self._workspace._replace(section=nothing[0] if section is None else section)
         points.run_points(
-            self.point.repeat(count).reshape(1, count), np.zeros((2, count, self.states)),
+            self.point.repeat(count).reshape(1, count), np.zeros((2, count, self.states + 2)),
             new_results((1, count), self.kind.masses), nothing, np.empty((1, count, 0)), nothing,
             workspace._replace(ensemble=workspace.ensemble._replace(**kept)),
             plan_of()._replace(step=step, states=section is not None), None,

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.law import relax_from, set_law
+from vibro_sweep.engine.compliant.law import keep_between, relax_from, set_law
 from vibro_sweep.engine.motion import strike
 from vibro_sweep.engine.motion.ensemble import carry
 from vibro_sweep.engine.motion.orbits import Stops, new_records, set_state
@@ -93,17 +93,6 @@ def give_law(law, i, point, q):
         set_law(law, i, point, q)
 
 
-@inline
-def keep_between(law, i, state, stops):
-    """Put a state that is behind a rigid stop on it."""
-    if law is not None:
-        contact = law.orbits[i]
-        left, right = -np.inf if contact.compliant[0] else stops.left, np.inf if contact.compliant[1] else stops.right
-        state[0] = min(max(state[0], left), right)
-    else:
-        state[0] = min(max(state[0], stops.left), stops.right)
-
-
 @jit
 def prepare(points, i, w, plan):
     """Orbit i gets the tables of its point, those of the orbit before it if they are the same; and its stops."""
@@ -143,11 +132,14 @@ def set_orbits(points, starts, results, n, first, w, plan):
             result.status = status.TOO_STIFF
             continue
         stops = prepare(points[n, first:last], i, w, plan)
+        start = starts[min(n, 1), first + i]
         goes_on = n > 0 and results[n - 1, first + i].status in status.VALID
         for j in range(len(state)):
-            state[j] = results[n - 1, first + i].end[j] if goes_on else starts[min(n, 1), first + i, j]
+            state[j] = results[n - 1, first + i].end[j] if goes_on else start[j]
         if goes_on:
             relax_from(e.law, i, results[n - 1, first + i].relaxed)
+        else:
+            relax_from(e.law, i, start[len(state) :])
         to_contact(point, state, stops, w.other)
         if plan.order == 0:  # points of the map may lie beyond the stops
             keep_between(e.law, i, state, stops)
@@ -158,8 +150,9 @@ def set_orbits(points, starts, results, n, first, w, plan):
 def run_points(points, starts, results, sections, phases, running, w, plan, mapping):
     """Compute a block. n = steps, m = orbits; observations that are not asked for have no samples.
 
-    points: (n, m) of `point_of`. starts: (2, m, 2 N), at the first step, and at a step after one that failed; at the
-    others an orbit goes on from where it ended, with the next point's numbers. results: (n, m) of `result_of`.
+    points: (n, m) of `point_of`. starts: (2, m, 2 N + 2), at the first step, and at a step after one that failed:
+    states, and the places of stops that relax; at the others an orbit goes on from where it ended, with the next
+    point's numbers. results: (n, m) of `result_of`.
     sections: (n, m, record, 2 N). phases: (n, m, record), for an impact section. running: (n, m, parts, 2 N), the
     exponents as they converge. mapping: as of `carry`.
 

@@ -118,3 +118,13 @@ def new_results(shape: tuple[int, ...], masses: int = 2) -> np.ndarray:
     for name in ("log_multiplier", "log_error", "end"):
         result[name] = np.nan
     return result.repeat(math.prod(shape)).reshape(shape)
+
+
+def starts_at(states: np.ndarray) -> np.ndarray:
+    """Starts (..., 2 N + 2) of orbits at these states (..., 2 N), with all stops relaxed."""
+    return np.concatenate([states, np.zeros((*states.shape[:-1], 2))], axis=-1)
+
+
+def starts_after(results: np.ndarray) -> np.ndarray:
+    """Starts (..., 2 N + 2) of orbits that go on from these results: states, and the places of stops that relax."""
+    return np.concatenate([results["end"], results["relaxed"]], axis=-1)

@@ -16,7 +16,7 @@ from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.motion import orbits
 from vibro_sweep.engine.one_system import Engine, plan_of
-from vibro_sweep.engine.records import new_results
+from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.model import status
 from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import LATEST, checked_count, checked_state, checked_times
@@ -287,7 +287,7 @@ def lyapunov(system: AnyOscillator, state: ArrayLike, transient: int = 1000, rec
     engine.checked(state)
     plan = plan_of(transient, record, lyapunov=True)
     results, nothing = new_results((1, 1), engine.kind.masses), np.empty((1, 1, 0))
-    starts = np.tile(state, (2, 1, 1))
+    starts = starts_at(np.tile(state, (2, 1, 1)))
     workspace = points.new_workspace(plan, engine.cells, 0, orbits=1, kind=engine.kind)
     steps = engine.point.reshape(1, 1)
     kept = nothing[..., None], nothing, nothing[..., None]

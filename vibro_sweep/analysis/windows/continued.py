@@ -10,7 +10,7 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.halting import interruptible
 from vibro_sweep.engine.impulses.free_modes import has_free_gap
 from vibro_sweep.engine.one_system import plan_of
-from vibro_sweep.engine.records import new_results
+from vibro_sweep.engine.records import new_results, starts_at
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.model.exponents import sign_of
 from vibro_sweep.model.linear import family_of
@@ -53,7 +53,7 @@ def _computed(row: Row, i: np.ndarray, begin: np.ndarray, transient: int) -> Con
     n, states = len(i), 2 * kind.masses
     plan = plan_of(transient + WARM_UP, MORE, lyapunov=True)._replace(impacts=True)
     results, nothing = new_results((1, n), kind.masses), np.empty((1, n, 0))
-    starts = np.stack([begin, begin])
+    starts = starts_at(np.stack([begin, begin]))
     workspace = points.new_workspace(plan, int(table["cells"].max()), 0, min(n, LANES), kind)
     unused = np.empty((1, n, 0, states))
     interruptible(

@@ -15,6 +15,7 @@ import numpy as np
 
 from vibro_sweep.engine.compliant.distance import NEAR
 from vibro_sweep.engine.compliant.passage_tables import passages_of, set_passage
+from vibro_sweep.engine.compliant.relaxing import bring_stops
 from vibro_sweep.engine.records import Kind
 from vibro_sweep.engine.simd.jit import inline, jit
 from vibro_sweep.engine.simd.lanes import LANES
@@ -153,21 +154,39 @@ def fill_equations(G, point, side, n):
 
 
 @inline
-def relax(law, i):
-    """All stops of orbit i are relaxed, and none is touched."""
-    if law is not None:
-        contact = law.orbits[i]
-        contact.relaxed[0] = contact.relaxed[1] = contact.pressed = 0.0
-
-
-@inline
 def relax_from(law, i, places):
-    """The stops of orbit i, at the beginning of a period, relax from these places."""
+    """None of the stops of orbit i is pressed; from these places, at the beginning of a period, they relax."""
     if law is not None:
         contact = law.orbits[i]
+        contact.pressed = 0.0
         for n in range(2):
             contact.relaxed[n] = contact.left[n] = places[n]
             contact.cell[n], contact.offset[n] = 0, 0.0
+
+
+@inline
+def begin_anew(law, o, width):
+    """Nothing is pressed, and the stops of an orbit that is set out anew from this section relax from where they are.
+
+    width: of a cell.
+    """
+    if law is not None:
+        contact = law.orbits[o.lane]
+        bring_stops(contact, o, 0, 0.0, width)
+        contact.pressed = 0.0
+        for n in range(2):
+            contact.cell[n], contact.offset[n] = 0, 0.0
+
+
+@inline
+def keep_between(law, i, state, stops):
+    """Put a state that is behind a rigid stop on it."""
+    if law is not None:
+        contact = law.orbits[i]
+        left, right = -np.inf if contact.compliant[0] else stops.left, np.inf if contact.compliant[1] else stops.right
+        state[0] = min(max(state[0], left), right)
+    else:
+        state[0] = min(max(state[0], stops.left), stops.right)
 
 
 @inline

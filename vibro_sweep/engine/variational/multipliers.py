@@ -20,7 +20,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.law import relax
+from vibro_sweep.engine.compliant.law import begin_anew, keep_between
 from vibro_sweep.engine.motion.orbits import reset_counts, set_state
 from vibro_sweep.engine.motion.together import flight_of, stops_of
 from vibro_sweep.engine.simd.jit import jit, noinline
@@ -80,9 +80,9 @@ def step_aside(e, o, direction, state):
         step = -step
     for m in range(size):
         state[m] = o.X[m] + step * state[m]
-    state[0] = min(max(state[0], stops.left), stops.right)
+    keep_between(e.law, o.lane, state, stops)
+    begin_anew(e.law, o, f.oscillator[0].width)
     set_state(o, f.nodes, stops, 0, 0.0, state)
-    relax(e.law, o.lane)
 
 
 @noinline
