@@ -66,6 +66,28 @@ def test_a_loop_has_the_force_of_the_file(data):
     assert largest == pytest.approx(data.contact_force_max.values, rel=0.05)  # at the touch
 
 
+@pytest.mark.parametrize("periodic", [False, True])
+def test_a_loop_of_an_orbit_has_the_area_that_the_stop_takes(periodic):
+    """The work on the stop by `observe: [energy]`, in a period."""
+    one, T = system(), system().period
+    energy = vs.sweep(one, {"omega": [one.omega]}, transient=300, record=10, observe=["section", "energy"])
+    state = [float(energy[name][0, -1]) for name in ("x1", "v1")]
+    orbit = vs.periodic_orbit(one, state) if periodic else vs.simulate(one, state, 3)
+    fig = vs.plot(orbit, kind="contact-force") if periodic else orbit.plot(1, kind="contact-force")
+    (loop,) = (line for line in fig.axes[1].lines if len(line.get_xdata()) > 2)
+    x, force = loop.get_xdata(), loop.get_ydata()
+    pressed = ~np.isnan(force)
+    assert np.nanmax(force) == pytest.approx(orbit.contacts["max_force"].max(), rel=1e-3)
+    area = np.trapezoid(force[pressed], x[pressed])
+    assert area == pytest.approx(float(energy.impact_power[0]) * T, rel=0.01)
+
+
+def test_orbits_with_rigid_stops_have_no_such_picture():
+    orbit = vs.simulate(system(k_stop=None, c_stop=None, R=0.8), (0, 0), 5)
+    with pytest.raises(ValueError, match="contact-force"):
+        orbit.plot(kind="contact-force")
+
+
 @pytest.mark.parametrize("kind", ["phase-portrait", "history"])
 def test_contacts_are_marked_and_not_cut_off(data, kind):
     fig = figure(data, kind)

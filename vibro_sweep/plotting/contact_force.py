@@ -1,11 +1,13 @@
 """The force of compliant stops along a motion: over time, and against the gap as a loop."""
 
+import matplotlib as mpl
 import numpy as np
 
 from vibro_sweep.plotting import pressed
 from vibro_sweep.plotting.orbit_pictures import displacements, legend, shows_trajectory
 from vibro_sweep.plotting.paths import path
-from vibro_sweep.plotting.style import DASHES, FAINT, LEFT, RIGHT, stop_name, symbol
+from vibro_sweep.plotting.plot_options import PlotOptions
+from vibro_sweep.plotting.style import DASHES, FAINT, LEFT, RIGHT, stop_name, symbol, with_unit
 from vibro_sweep.plotting.sweep_result import Result
 
 COLOURS = {1: RIGHT, -1: LEFT}
@@ -32,14 +34,39 @@ def contact_force(result: Result):
             if result.compliance(side, point.place) is None:
                 continue
             force, _ = pressed.along(result, point, way, side)
-            style = {"color": COLOURS[side], "lw": 1.0, "label": stop_name(result, side)}
-            over_time.plot(way.t, force, **style)
-            there = np.where(force != 0, force, np.nan)
-            loop.plot(way[name], there, **style)
-            loop.axvline(stop, color=FAINT, lw=0.8, ls=DASHES)
+            draw(over_time, loop, way.t, way[name], force, side, stop, stop_name(result, side))
         over_time.set(title=point.label, ylabel="force of the stop" + unit)
         over_time.margins(x=0)
     grid[-1, 0].set_xlabel("$t / T$ (forcing periods)")
     grid[-1, 1].set_xlabel(symbol(name) + result.unit(name))
     legend(fig)
     return fig
+
+
+def draw(over_time, loop, t, gap, force, side: int, stop: float, label: str) -> None:
+    """Draw the force of the stop on this side, which stands at `stop`: t, gap, force (m,)."""
+    style = {"color": COLOURS[side], "lw": 1.0, "label": label}
+    over_time.plot(t, force, **style)
+    loop.plot(gap, np.where(force != 0, force, np.nan), **style)
+    loop.axvline(stop, color=FAINT, lw=0.8, ls=DASHES)
+
+
+def contact_force_of_orbit(times, gap, forces, title: str, system, name: str, width=None):
+    """The same of one orbit. times, gap: (m,); forces: of each compliant stop (side, where it stands, (m,)).
+
+    system : whose units the axes have; name : of the gap; width : mm
+    """
+    options = PlotOptions(width=width)
+    t_label, x_label, label = (
+        with_unit(text, unit, system) for text, unit in (("time $t$", "s"), (name, "m"), ("force of the stop", "N"))
+    )
+    with mpl.rc_context(options.style):
+        fig = options.page(3.2, title)
+        over_time, loop = fig.subplots(1, 2, width_ratios=(2, 1), sharey=True)
+        for side, stop, force in forces:
+            draw(over_time, loop, times, gap, force, side, stop, f"{'right' if side > 0 else 'left'} stop")
+        over_time.set(xlabel=t_label, ylabel=label)
+        over_time.margins(x=0)
+        loop.set(xlabel=x_label)
+        legend(fig)
+        return fig

@@ -55,7 +55,7 @@ def plot(
     overwrite: bool = False,
 ) -> Figure | None:
     """A picture of a file, of a Dataset of `vibro_sweep.open` or `vibro_sweep.sweep`, or of a result: an orbit, a
-    branch, a curve or windows; a matplotlib Figure. Of an orbit `width` alone is an option.
+    branch, a curve or windows; a matplotlib Figure. Of an orbit `width` is an option, and `kind` "contact-force".
 
     A notebook shows it as the value of a cell. In axes of pyplot, which shows them itself, it is not returned too.
     Options have the names that they have on the command line.
@@ -87,12 +87,12 @@ def plot(
     '$x_1$ at $t = 0$ mod $T$'
     """
     if _is_result(data) and hasattr(data, "sample"):  # an orbit, whose motion is computed as it is drawn
-        given = {"kind": kind, "ax": ax, "at": at, "variable": variable, "xlim": xlim, "ylim": ylim, "size": size}
+        given = {"ax": ax, "at": at, "variable": variable, "xlim": xlim, "ylim": ylim, "size": size}
         given |= {"dpi": dpi, "windows": windows, "over": over, "relative": relative or None, "output": output}
         for name, value in given.items():
             if value is not None:
-                raise PlotError(f"{name}: of an orbit `width` is the only option; the Figure has more")
-        return data.plot(width=width)
+                raise PlotError(f"{name}: of an orbit `width` and `kind` are the only options; the Figure has more")
+        return data.plot(width=width, kind=kind)
     data = _data("data", data)
     check_type("kind", kind, (str, NoneType), "the name of a kind of picture, or None")
     check_type("variable", variable, (str, NoneType), "the name of a variable, or None")

@@ -13,7 +13,7 @@ from vibro_sweep.analysis.periodic.contact_table import contacts_between
 from vibro_sweep.analysis.periodic.event_equations import EventEquations
 from vibro_sweep.analysis.periodic.itinerary import canonical_start, word
 from vibro_sweep.analysis.periodic.solution import Solution
-from vibro_sweep.analysis.single.result import Result, impact_table
+from vibro_sweep.analysis.single.result import Result, impact_table, shows_force
 from vibro_sweep.engine.impulses import flights
 from vibro_sweep.engine.impulses.flow import constrained_flow, contact_coordinates, contact_flow, flow
 from vibro_sweep.engine.impulses.free_modes import ResonanceError
@@ -265,19 +265,25 @@ class PeriodicOrbit(Result):
     def _table(self) -> dict[str, list]:
         return impact_table(self.impacts)
 
-    def plot(self, width: float | None = None):
-        """Phase portrait of the gap and its time history, impacts marked: a matplotlib Figure, `width` mm wide."""
+    def plot(self, width: float | None = None, kind: str | None = None):
+        """Phase portrait of the gap and its time history, impacts marked: a matplotlib Figure, `width` mm wide.
+
+        kind : "contact-force" for the force of the compliant stops over time and against the gap
+        """
+        from vibro_sweep.analysis.single.dataset import force_figure
         from vibro_sweep.plotting.periodic import plot_periodic
 
         q = self._solution.family.linear if self._solution is not None else None
         if q is None:
             raise ArgumentError(f"this orbit has no motion: {ORBITS[self.status].text}")
         length = self.period * forcing_period(q)
+        title = f"{self.itinerary or 'free'}, period {self.period}, {'stable' if self.stable else 'unstable'}"
+        if shows_force(kind):
+            return force_figure(self, q, 0.0, length, title, "gap", width)
         t, sides, v = self.impacts["t"] % length, self.impacts["side"], self.impacts["v1"]
         times = np.unique(np.concatenate([np.linspace(0, length, 400 * self.period + 1), t]))
         states = self.sample(times)
         gap, rate = states[:, ::2] @ q.normal, states[:, 1::2] @ q.normal
-        title = f"{self.itinerary or 'free'}, period {self.period}, {'stable' if self.stable else 'unstable'}"
         jumps, stops = (t, sides, v, -q.restitution(sides) * v), (q.low, q.high)
         return plot_periodic(times, gap, rate, *jumps, stops, title, self.system, width=width)
 

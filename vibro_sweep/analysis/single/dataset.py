@@ -6,6 +6,7 @@ import numpy as np
 
 from vibro_sweep.analysis.single.result import columns_of
 from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.model.linear import Linear
 from vibro_sweep.model.models.declaration import UNITS
 from vibro_sweep.model.state import state
 from vibro_sweep.model.stop_force import force_of
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 _UNITS = {"t": "s", "xdot": "m s-1", "x": "m", "v": "m s-1"}  # in SI, of fields that begin so
 SAMPLES = 400  # of a picture, in a forcing period
+IN_CONTACT = 65  # in a contact, besides
 
 
 def dataset_of(orbit: Any, times: np.ndarray, section: np.ndarray, about: dict[str, Any]) -> "xarray.Dataset":
@@ -77,6 +79,47 @@ def film_of(orbit: "Orbit", periods: int) -> "Film":
     return new_film(times / system.period, positions, gap, stops, f"b = {system.b:.6g}")
 
 
+def _title(orbit: "Orbit", begin: float, end: float) -> str:
+    return f"{begin:.6g} < t < {end:.6g}, b = {orbit.system.b:.6g}"
+
+
+def _names(orbit: "Orbit") -> tuple[str, str]:
+    """Of the gap and its velocity."""
+    return ("$x_1$", "$v_1$") if orbit.system.gap_is_x1 else ("$g$", r"$\dot g$")
+
+
+def force_figure_of(orbit: "Orbit", periods: int, width: float | None) -> "Figure":
+    """The force of the compliant stops over the last forcing periods that were simulated, and against the gap."""
+    begin, end = _last(orbit, periods)
+    return force_figure(orbit, orbit.system.linear, begin, end, _title(orbit, begin, end), _names(orbit)[0], width)
+
+
+def force_figure(
+    orbit: Any, q: Linear, begin: float, end: float, title: str, name: str, width: float | None
+) -> "Figure":
+    """The same of an Orbit or a PeriodicOrbit of the oscillator q, between two times. name: of the gap.
+
+    Raises ArgumentError where no stop is compliant.
+    """
+    from vibro_sweep.plotting.contact_force import contact_force_of_orbit
+
+    laws = {1: (q.high, q.k_high, q.c_high, q.p_high), -1: (q.low, q.k_low, q.c_low, q.p_low)}
+    laws = {side: law for side, law in laws.items() if np.isfinite(law[0]) and law[1] > 0}
+    if not laws:
+        raise ArgumentError('kind "contact-force": the stops of this orbit are rigid')
+    touched, released = orbit.contacts["t_touch"], np.nan_to_num(orbit.contacts["t_release"], nan=end)
+    count = max(2, round((end - begin) * q.omega / (2 * np.pi) * SAMPLES))
+    times = np.concatenate([np.linspace(begin, end, count), np.linspace(touched, released, IN_CONTACT).ravel()])
+    times = np.unique(times[(times >= begin) & (times <= end)])
+    states = orbit.sample(times)
+    gap, rate = states[:, 0::2] @ q.normal, states[:, 1::2] @ q.normal
+    forces = [
+        (side, stop, force_of(times, side * (gap - stop), side * rate, law, q.by_force)[0])
+        for side, (stop, *law) in laws.items()
+    ]
+    return contact_force_of_orbit(times, gap, forces, title, orbit.system, name, width)
+
+
 def figure_of(orbit: "Orbit", periods: int, width: float | None) -> "Figure":
     """Phase portrait and time history of the gap over the last forcing periods that were simulated."""
     from vibro_sweep.plotting.periodic import plot_periodic
@@ -89,9 +132,9 @@ def figure_of(orbit: "Orbit", periods: int, width: float | None) -> "Figure":
     gap, rate = states[:, 0::2] @ q.normal, states[:, 1::2] @ q.normal
     at = np.searchsorted(times, impacts["t"])
     gap[at], rate[at] = q.stop(impacts["side"]), impacts["v1"]  # before the impact
-    title = f"{begin:.6g} < t < {end:.6g}, b = {system.b:.6g}"
+    title = _title(orbit, begin, end)
     jumps = (impacts["t"], impacts["side"], impacts["v1"], -q.restitution(impacts["side"]) * impacts["v1"])
-    names = ("$x_1$", "$v_1$") if system.gap_is_x1 else ("$g$", r"$\dot g$")
+    names = _names(orbit)
     stops = [one for one in (q.high, q.low) if np.isfinite(one)]
     pressed = np.zeros(len(times), bool)
     for touch, release in zip(orbit.contacts["t_touch"], orbit.contacts["t_release"], strict=True):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibro_sweep.analysis.single.exponent_array import Exponents
-from vibro_sweep.analysis.single.result import Result, impact_table
+from vibro_sweep.analysis.single.result import Result, impact_table, shows_force
 from vibro_sweep.engine import points
 from vibro_sweep.engine.compliant.law import LOGGED
 from vibro_sweep.engine.halting import interruptible
@@ -124,14 +124,16 @@ class Orbit(Result):
     def _table(self) -> dict[str, list]:
         return impact_table(self.impacts)
 
-    def plot(self, periods: int = 4, width: float | None = None) -> Figure:
+    def plot(self, periods: int = 4, width: float | None = None, kind: str | None = None) -> Figure:
         """Phase portrait and time history of the last forcing periods, impacts marked; so many mm wide.
 
-        Raises ValueError where that is not a whole number >= 1, or nothing is simulated.
+        kind : "contact-force" for the force of the compliant stops over time and against the gap
+        Raises ValueError where `periods` is not a whole number >= 1, or nothing is simulated.
         """
-        from vibro_sweep.analysis.single.dataset import figure_of
+        from vibro_sweep.analysis.single.dataset import figure_of, force_figure_of
 
-        return figure_of(self, checked_count("periods", periods, 1), width)
+        draw = force_figure_of if shows_force(kind) else figure_of
+        return draw(self, checked_count("periods", periods, 1), width)
 
     def animate(self, periods: int = 8) -> FuncAnimation:
         """A film of the last forcing periods: masses between stops, time history and phase portrait in step.

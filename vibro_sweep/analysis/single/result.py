@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vibro_sweep.model.errors import MissingPackageError
+from vibro_sweep.model.errors import ArgumentError, MissingPackageError
+from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.wording import itinerary_text
 
 if TYPE_CHECKING:
@@ -90,6 +91,13 @@ class FileResult(Result):
         from vibro_sweep.driver.saved_results import save
 
         return save(self, path)
+
+
+def shows_force(kind: str | None) -> bool:
+    """Whether the picture of an orbit that is asked for is that of forces. Raises ArgumentError for another word."""
+    if kind not in (None, "contact-force"):
+        raise ArgumentError(not_allowed("kind", kind, '"contact-force", or None'))
+    return kind is not None
 
 
 def columns_of(records: np.ndarray) -> dict[str, np.ndarray]:
