@@ -8,6 +8,7 @@ from mpmath import mp, mpf
 from reference import compliant
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.scene import SceneError, parse_scene
@@ -42,38 +43,56 @@ def test_first_contacts_to_rounding(stiffness, release, ratio, preload):
 # --- closed forms
 
 
+def restitution_of(z, release):
+    """Of a free mass on a stop on which its damping ratio is z; None where it never leaves the stop."""
+    if z < 1:
+        root = math.sqrt(1 - z * z)
+        turn = math.pi if release == "displacement" else 2 * math.atan2(root, z)
+        return math.exp(-z / root * turn)
+    if release == "displacement":
+        return None
+    root = math.sqrt(z * z - 1)
+    return math.exp(-2.0) if z == 1 else math.exp(-2 * z / root * math.atanh(root / z))
+
+
 @pytest.mark.parametrize("stiffness", [1.0, 1e4, 1e8])
 @pytest.mark.parametrize("z", [0.0, 0.07, 0.5, 0.99, 1.0, 2.0])
 def test_restitution_of_a_free_mass(stiffness, z):
-    """z: damping ratio of the mass on the stop."""
     for release in ("displacement", "force"):
         system = one_mass(**FREE, k_stop=stiffness, c_stop=2 * z * math.sqrt(stiffness), release=release)
-        contact = vs.simulate(system, (0, 1), 10).contacts[0]
-        if release == "displacement":
-            if z >= 1:  # it never ends
-                assert math.isnan(contact["t_release"])
-                continue
-            expected = math.exp(-math.pi * z / math.sqrt(1 - z * z))
-        elif z < 1:
-            root = math.sqrt(1 - z * z)
-            expected = math.exp(-2 * z / root * math.atan2(root, z))
+        expected = restitution_of(z, release)
+        contact = vs.simulate(system, (0, 1), 1 if expected is None else 10).contacts[0]
+        if expected is None:
+            assert math.isnan(contact["t_release"])
         else:
-            root = math.sqrt(z * z - 1)
-            expected = math.exp(-2.0) if z == 1 else math.exp(-2 * z / root * math.atanh(root / z))
-        assert -contact["v_release"] / contact["v_touch"] == pytest.approx(expected, rel=1e-12, abs=1e-12)
+            assert -contact["v_release"] / contact["v_touch"] == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
-def test_stiff_stops_come_near_to_rigid_ones():
+@pytest.mark.parametrize("release", ["displacement", "force"])
+@pytest.mark.parametrize("stiffness", [1.0, 1e2, 1e4, 1e6, 1e8])
+def test_restitution_in_a_plane_of_clearance_and_damping(stiffness, release):
+    ratios = np.array([0, 0.01, 0.1, 0.3, 0.6, 0.9, 0.99, 1, 1.01, 1.5, 2, 3, 4])
+    ratios = ratios[(ratios < 1) | (release == "force")]
+    system = one_mass(**FREE | {"omega": 0.2}, k_stop=stiffness, c_stop=0, release=release)
+    axes = {"b": np.linspace(0.1, 3, 7), "c_stop": 2 * ratios * math.sqrt(stiffness)}
+    data = vs.sweep(system, axes, start={"v1": 1}, transient=0, record=1, observe=["contacts"])
+    expected = [restitution_of(z, release) for z in ratios]
+    assert np.all(data.contacts_right == 1)
+    np.testing.assert_allclose(data.restitution_mean, np.tile(expected, (7, 1)), rtol=1e-12)
+
+
+@pytest.mark.parametrize("z", [0.07, *slow_cases(0.01, 0.3)])
+@pytest.mark.parametrize("b", [3, *slow_cases(1, 2, 4)])
+def test_stiff_stops_come_near_to_rigid_ones(b, z):
     """At a fixed z orbits differ from those with the restitution exp(-pi z/sqrt(1 - z^2)) like k^(-1/2)."""
-    z, start = 0.07, (1.5, 2.0, 0.5, 0.0)
-    rigid = vs.System(**PAPER, b=3, R=math.exp(-math.pi * z / math.sqrt(1 - z * z)))
-    wanted = vs.simulate(rigid, start, 3).section[3]
-    apart = []
-    for k in (1e4, 1e5, 1e6, 1e7, 1e8):
-        soft = vs.System(**PAPER, b=3, k_stop=k, c_stop=2 * z * math.sqrt(k))
+    start, stiffness = (0.4 * b, 2.0, 0.5, 0.0), np.logspace(4, 8, 9)
+    rigid = vs.System(**PAPER, b=b, R=restitution_of(z, "displacement"))
+    wanted, apart = vs.simulate(rigid, start, 3).section[3], []
+    for k in stiffness:
+        soft = vs.System(**PAPER, b=b, k_stop=k, c_stop=2 * z * math.sqrt(k))
         apart.append(np.abs(vs.simulate(soft, start, 3).section[3] - wanted).max())
-    orders = -np.diff(np.log10(apart))
-    assert np.all(np.abs(orders[1:] - 0.5) < 0.02), orders
+    order = np.polyfit(np.log(stiffness), np.log(apart), 1)[0]
+    assert order == pytest.approx(-0.5, abs=0.02), apart
 
 
 ORDERS = [
