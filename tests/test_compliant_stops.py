@@ -175,6 +175,16 @@ def test_sum_rule(release, b):
     assert abs(exponents.residual) < 1e-12 and np.all(np.isfinite(exponents))
 
 
+def test_the_fastest_direction_is_not_lost_in_a_long_contact():
+    """Two rates far apart, k/c and c: within a cell of time the one vector shrinks by e^-100 beside the other."""
+    k, c = 5e3, 297.0
+    system = one_mass(**ELASTIC | {"zeta": 0.05, "F": 0.8, "omega": 0.7, "b": 0.3}, k_stop=k, c_stop=c)
+    exponents, orbit = vs.lyapunov(system, (0, 0), 30, 30), vs.simulate(system, (0, 0), 40)
+    held = (orbit.contacts["t_release"] - orbit.contacts["t_touch"])[-1]
+    assert exponents.sum() == pytest.approx(-0.1 - c * held / system.period, rel=1e-10)
+    assert abs(exponents.residual) < 1e-11 and exponents[1] < -c * 0.3
+
+
 def test_one_rigid_and_one_compliant_stop_have_a_sum_rule():
     system = vs.System(**PAPER, b=3, R=0.8, k_stop_left=100, c_stop_left=2)
     orbit = vs.simulate(system, (0, 0, 0, 0), 200)

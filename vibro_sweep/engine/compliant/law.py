@@ -78,6 +78,7 @@ def law_of(masses: int) -> np.dtype:
         ("touched", float),  # delta' at the touch
         ("decay", float),  # of what a vector does to a stop that relaxes, since it was left
         ("solve", float, (states, states + 1)),
+        ("volume", float),  # ln|det| of the jumps of the orbit while another is followed beside it
         # of what is recorded
         ("watched", np.bool_),  # whether the peaks are wanted
         ("largest", float),  # delta so far in this contact
@@ -165,17 +166,25 @@ def relax_from(law, i, places):
 
 
 @inline
-def begin_anew(law, o, width):
-    """Nothing is pressed, and the stops of an orbit that is set out anew from this section relax from where they are.
+def begin_beside(law, o, width):
+    """Another orbit is followed from beside this one: nothing is pressed, and stops relax from where they are.
 
     width: of a cell.
     """
     if law is not None:
         contact = law.orbits[o.lane]
+        contact.volume = o.log_volume
         bring_stops(contact, o, 0, 0.0, width)
         contact.pressed = 0.0
         for n in range(2):
             contact.cell[n], contact.offset[n] = 0, 0.0
+
+
+@inline
+def end_beside(law, o):
+    """What its jumps do to volumes is again that of the orbit itself."""
+    if law is not None:
+        o.log_volume = law.orbits[o.lane].volume
 
 
 @inline

@@ -23,6 +23,9 @@ from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.tables.flight import evaluate
 from vibro_sweep.engine.variational import tangent_flight
 
+# by how much one matrix may shrink vectors, as a logarithm: what shrinks more is lost beside what does not
+MOST_SHRUNK = 4.0
+
 
 @jit
 def begin_contact(law, f, stops, o, t, k, s, side, on_stop):
@@ -57,7 +60,7 @@ def begin_contact(law, f, stops, o, t, k, s, side, on_stop):
 def stay_in_contact(law, f, stops, o, records, t, k, s):
     """Contact from offset s of cell k on. Returns the time to its end, infinite if not in this cell."""
     q, contact, side, w = f.oscillator[0], law.orbits[o.lane], law.orbits[o.lane].pressed, 0.0
-    n = lane_of(side)
+    n, carried = lane_of(side), 0.0  # so far tangent vectors are
     contact.work -= stored_energy(contact, n)
     if t.wanted:
         begin_matrix(contact)
@@ -83,6 +86,10 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
         w += end
         if last or d < np.inf:
             break
+        if t.wanted and contact.damping[n] * (w - carried) > MOST_SHRUNK:
+            o.log_volume += carry_over_contact(t, o.lane, contact, side, w - carried, False)
+            contact.begun, carried = CONTINUED, w
+            begin_matrix(contact)
     ended = d < np.inf
     if ended:
         end_contact(contact, o, k, s + w, side)
@@ -91,7 +98,7 @@ def stay_in_contact(law, f, stops, o, records, t, k, s):
     o.log_volume -= contact.damping[n] * w
     o.pressed_time += w
     if t.wanted:
-        o.log_volume += carry_over_contact(t, o.lane, contact, side, w, ended)
+        o.log_volume += carry_over_contact(t, o.lane, contact, side, w - carried, ended)
         t.cell[o.lane], t.offset[o.lane] = k, s + w
     contact.begun = CONTINUED
     keep_in_log(law, contact, o, k, s + w, ended)

@@ -20,7 +20,7 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.law import begin_anew, keep_between
+from vibro_sweep.engine.compliant.law import begin_beside, end_beside, is_at_rest, keep_between
 from vibro_sweep.engine.motion.orbits import reset_counts, set_state
 from vibro_sweep.engine.motion.together import flight_of, stops_of
 from vibro_sweep.engine.simd.jit import jit, noinline
@@ -40,15 +40,16 @@ OFF = 16.0  # by how many of them rounding at one impact moves the orbit; that a
 
 @jit
 def begin_period(e, w, results, which):
-    """Set periodic orbits out for exactly one more period of each; beside the orbit those that strike a stop and do not
-    rest: motion that strikes none has the same multipliers there."""
+    """Set periodic orbits out for exactly one more period of each; beside the orbit those that touch a stop and do not
+    rest: motion that touches none has the same multipliers there."""
     t = e.tangent[0]
     t.collected = True
     for i in range(len(results)):
         o, result = e.orbits[i], results[i]
         goes = o.status == status.OK and result.period > 0
         if which == BESIDE:
-            goes = goes and o.resting == 0.0 and o.impacts_left + o.impacts_right > 0
+            touches = o.impacts_left + o.impacts_right > 0 or o.pressed_time > 0.0
+            goes = goes and touches and not is_at_rest(e.law, o)
         o.periods = result.period if goes else 0
         if goes:
             for _ in range(2):  # where rounding alone was left of a vector, it is not at right angles to the others yet
@@ -81,7 +82,7 @@ def step_aside(e, o, direction, state):
     for m in range(size):
         state[m] = o.X[m] + step * state[m]
     keep_between(e.law, o.lane, state, stops)
-    begin_anew(e.law, o, f.oscillator[0].width)
+    begin_beside(e.law, o, f.oscillator[0].width)
     set_state(o, f.nodes, stops, 0, 0.0, state)
 
 
@@ -92,8 +93,10 @@ def read_period(e, w, results, which):
     t.collected = False
     for i in range(len(results)):
         o, result = e.orbits[i], results[i]
-        if which == BESIDE and o.periods > 0 and o.status != status.OK:
-            o.status, o.periods = status.OK, 0  # the orbit itself has not failed
+        if which == BESIDE and o.periods > 0:
+            end_beside(e.law, o)
+            if o.status != status.OK:
+                o.status, o.periods = status.OK, 0  # the orbit itself has not failed
         if o.periods > 0 and o.status == status.OK:
             omega, largest = e.flights.oscillator[o.table, 0].omega, o.largest[0]
             for j in range(2, len(t.growth), 2):
