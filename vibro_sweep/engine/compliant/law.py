@@ -175,7 +175,7 @@ def begin_beside(law, o, width):
         contact = law.orbits[o.lane]
         contact.volume = o.log_volume
         bring_stops(contact, o, 0, 0.0, width)
-        contact.pressed = 0.0
+        contact.pressed, contact.close_until = 0.0, -1
         for n in range(2):
             contact.cell[n], contact.offset[n] = 0, 0.0
 

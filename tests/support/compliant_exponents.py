@@ -1,0 +1,185 @@
+"""Exponents of periodic orbits with compliant stops, as sweeps find them, against sixty digits.
+
+Of a random oscillator a sweep over the clearance finds attractors; the first periodic one with contacts counts. The
+reference (reference/compliant.py) makes it periodic to many digits by Newton's method, and differences of its orbits
+give the monodromy matrix. Where stops relax at the section their places are numbers of the state, too; each gives a
+multiplier that is 0, since the next contact forgets it.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from mpmath import mp, mpf
+from reference import compliant
+
+import vibro_sweep as vs
+from vibro_sweep.model.state import coordinates
+
+DIGITS = 80  # and two for each of the smallest multiplier
+STEP = -30  # power of ten, and one for each of these
+CLOSED = 10  # digits of the periodic orbit beyond the step
+MOST_STEPS = 8
+MOST_CONTACTS = 30  # a period
+MOST_DIGITS = 120  # of the smallest multiplier
+CLEARANCES = np.linspace(0.3, 0.9, 8)  # in parts of the grazing clearance
+
+
+class Report(NamedTuple):
+    """Of an oscillator; `period` 0: no periodic attractor with contacts was found."""
+
+    seed: int
+    system: vs.Oscillator
+    period: int = 0
+    contacts: int = 0  # a period
+    relaxing: int = 0  # stops that relax at the section
+    share: float = 0.0  # of the time in contact
+    errors: np.ndarray = np.empty(0)  # of the exponents, in units of omega
+    stated: np.ndarray = np.empty(0)
+    multiplier_errors: np.ndarray = np.empty(0)
+    multipliers_stated: np.ndarray = np.empty(0)
+
+    def __str__(self):
+        q = self.system.linear
+        about = f"{self.seed:4d} {len(q.normal)} {'force' if q.by_force else 'displacement':12s}"
+        about += "".join(f" {law_of(q, side):32s}" for side in (1, -1))
+        if not self.period:
+            return about + " no periodic attractor with contacts"
+        return (
+            f"{about} {self.period:2d} {self.contacts:3d} {self.relaxing} {self.share:8.1e}"
+            f" {self.errors.max():8.1e} {self.stated.max():8.1e}"
+        )
+
+
+def law_of(q, side):
+    """Stiffness, damping ratio and preload of a stop, in words."""
+    wall, R, k, c, p = (
+        (q.high, q.R_high, q.k_high, q.c_high, q.p_high) if side > 0 else (q.low, q.R_low, q.k_low, q.c_low, q.p_low)
+    )
+    if math.isinf(wall):
+        return "none"
+    mass = 1 / (q.normal @ np.linalg.solve(q.M, q.normal))
+    return f"k {k:.1e} z {c / (2 * math.sqrt(k * mass)):.2g} p {p:.1g}" if k > 0 else f"R {R:.2f}"
+
+
+def drawn(seed):
+    """An oscillator of one to three masses, k_stop 1 to 10^8 times the stiffness, damping none to overdamped.
+
+    Overdamped stops that the mass leaves by `displacement` are at most a thousand times as stiff: stiffer ones hold it
+    for long.
+    """
+    rng = np.random.default_rng([seed, 21])
+    N = 1 + seed % 3
+    M = np.diag(rng.uniform(0.5, 3, N))
+    B = rng.normal(size=(N, N))
+    K = B @ B.T + 0.3 * np.eye(N)
+    normal = np.eye(N)[0] if rng.random() < 0.5 else rng.normal(size=N)
+    release = str(rng.choice(["displacement", "force"]))
+    laws = {"release": release} | stop_of(rng, M, K, normal, release)
+    stops = str(rng.choice(["both", "right"]))
+    if stops == "both":
+        kind = rng.integers(3)  # the same law as on the right, another one, or a rigid stop
+        other = {f"{name}_left": value for name, value in stop_of(rng, M, K, normal, release).items()}
+        laws |= ({}, other, {"R_left": rng.uniform(0.3, 0.95)})[kind]
+    numbers = dict(force=rng.normal(size=N), omega=rng.uniform(0.5, 1.6), b=1.0, tau=rng.uniform(0, 6))
+    damping = rng.uniform(0.05, 0.25) * K + rng.uniform(0, 0.1) * M
+    return vs.Oscillator(M, K, damping, contact_normal=normal, stops=stops, **numbers, **laws)
+
+
+def stop_of(rng, M, K, normal, release):
+    """k_stop, c_stop and preload of a stop."""
+    mass = 1 / (normal @ np.linalg.solve(M, normal))
+    kind, power = rng.choice(["elastic", "damped", "damped", "overdamped"]), rng.uniform(0, 8)
+    z = {"elastic": 0.0, "damped": 10 ** rng.uniform(-2, 0), "overdamped": 10 ** rng.uniform(0, 0.7)}[kind]
+    if kind == "overdamped" and release == "displacement":
+        power *= 3 / 8
+    k = 10**power / (normal @ np.linalg.solve(K, normal))
+    return {
+        "k_stop": k,
+        "c_stop": 2 * z * math.sqrt(k * mass),
+        "preload": rng.choice([0, 10 ** rng.uniform(-2.5, 0)]),
+    }
+
+
+def compared(seed):
+    """The `Report` on oscillator `seed`."""
+    system = drawn(seed)
+    axis = few_contacts(system, CLEARANCES * vs.grazing(system).b)
+    if not len(axis):
+        return Report(seed, system)
+    data = vs.sweep(
+        system, {"b": axis}, transient=800, record=64, observe=["section", "lyapunov", "multipliers", "contacts"]
+    )
+    touched = data.contacts_right + data.contacts_left
+    usual = np.isfinite(data.lyapunov).all("exponent")  # a rest on a preloaded stop loses dimensions
+    counted = np.flatnonzero((data.status == 0) & (data.period > 0) & (touched > 0) & usual)
+    if not len(counted):
+        return Report(seed, system)
+    at = data.isel(b=counted[0])
+    system, period = system.replace(b=float(axis[counted[0]])), int(at.period)
+    state = [float(at[one.name][-1]) for one in coordinates(system.masses)]
+    small = -float(at.lyapunov.min()) * period * system.period / math.log(10)
+    if small > MOST_DIGITS:
+        return Report(seed, system)
+    exact, relaxing = multipliers(system.linear, state, period, math.ceil(small))
+    logs = np.array([float(mp.log(abs(one))) for one in exact])
+    found = at.multiplier_re.values + 1j * at.multiplier_im.values
+    return Report(
+        seed, system, period, round(int(touched[counted[0]]) * period / 64), relaxing, float(at.contact_time),
+        np.abs(at.lyapunov.values - logs / (period * system.period)) / system.linear.omega,
+        at.lyapunov_error.values / system.linear.omega,
+        np.array([float(min(abs(one - other) for other in exact)) for one in found]),
+        at.multiplier_error.values,
+    )  # fmt: skip
+
+
+def few_contacts(system, axis):
+    """The clearances at which the mass touches its stops, and does not bounce on a preload ever faster."""
+    data = vs.sweep(system, {"b": axis}, transient=40, record=20, observe=["contacts"])
+    touched = (data.contacts_right + data.contacts_left).values
+    return axis[(data.status.values == 0) & (touched > 0) & (touched <= MOST_CONTACTS * 20)]
+
+
+def multipliers(q, state, period, small):
+    """The multipliers, by falling modulus, of the periodic orbit near this state, and how many stops relax there.
+
+    small : so many digits the smallest multiplier lies below 1
+    """
+    masses, digits, step = len(q.normal), DIGITS + 2 * small, mpf(10) ** (STEP - small)
+    with mp.workdps(digits + 20):
+        first = compliant.simulate(q, state, periods=period, digits=digits)
+        relaxing = [n for n in range(2) if first.places[period][n] > 0]
+        u = mp.matrix([*first.section[period], *(first.places[period][n] for n in relaxing)])
+
+        def mapped(u):
+            places = [mpf(0), mpf(0)]
+            for n, s in zip(relaxing, u[2 * masses :], strict=True):
+                places[n] = s
+            end = compliant.simulate(q, list(u[: 2 * masses]), periods=period, digits=digits, places=places)
+            return mp.matrix([*end.section[period], *(end.places[period][n] for n in relaxing)])
+
+        for _ in range(MOST_STEPS):
+            away, J = mapped(u) - u, mp.matrix(len(u))
+            for j in range(len(u)):
+                beside = u.copy()
+                beside[j] += step
+                column = (mapped(beside) - u - away) / step
+                for i in range(len(u)):
+                    J[i, j] = column[i]
+            if mp.norm(away) < step * mpf(10) ** -CLOSED:
+                values = mp.eig(J, left=False, right=False)
+                return sorted(values, key=lambda value: -abs(value))[: 2 * masses], len(relaxing)
+            u += mp.lu_solve(mp.eye(len(u)) - J, away)
+    raise ArithmeticError(f"no periodic orbit near {state}")
+
+
+def table(reports):
+    """What was tried, what counted, and how large errors are."""
+    counted = [one for one in reports if one.period]
+    errors, stated = (np.concatenate([getattr(one, name) for one in counted]) for name in ("errors", "stated"))
+    yield (
+        f"{len(reports)} oscillators tried, {len(counted)} counted: a periodic attractor with contacts in a sweep over "
+        f"b; {sum(one.relaxing > 0 for one in counted)} with stops that relax at the section"
+    )
+    yield f"{len(errors)} exponents; largest error {errors.max():.1e} omega; beyond the stated error: "
+    yield ", ".join(f"{times} times: {np.count_nonzero(errors > times * stated)}" for times in (1, 2, 5))

@@ -1,0 +1,110 @@
+"""The sum of the exponents of sweeps with compliant stops, and its exact value from what the files hold.
+
+Of an orbit that begins no contact with a stop that still relaxes it is -tr(M^-1 C), less c_stop/m_e times the share of
+the time in contact, and 2 nu ln R for each impact of a rigid stop, with nu of them per unit time.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+import vibro_sweep as vs
+from vibro_sweep.model.status import is_valid
+
+POINTS = 12  # along each axis of a plane
+RECORD = 100
+MODELS = ("two_mass", "one_mass", "chain", "matrices")
+
+
+class Report(NamedTuple):
+    seed: int
+    model: str
+    release: str
+    points: int
+    counted: int  # with contacts, and with all exponents
+    worst: float  # stored residual
+    compared: int  # whose sum was formed anew
+    apart: float  # from that, at most
+    contacts: int
+
+    def __str__(self):
+        return (
+            f"{self.seed:4d} {self.model:9s} {self.release:12s} {self.points:4d} {self.counted:4d} {self.worst:8.1e}"
+            f" {self.compared:4d} {self.apart:8.1e} {self.contacts:7d}"
+        )
+
+
+def drawn(seed):
+    """An oscillator with the same compliant stops on both sides, with one, or with one of them rigid; and two axes."""
+    rng = np.random.default_rng([seed, 22])
+    model, release = MODELS[seed % 4], str(rng.choice(["displacement", "force"]))
+    z = rng.choice([0.0, 10 ** rng.uniform(-2, 0.4)])
+    longest = 3 if z > 0.9 and release == "displacement" else 8  # stiffer ones hold the mass for long
+    k = 10 ** rng.uniform(0, longest)
+    # the mass on the stop is 1 in the first two models and about 1 in the others
+    law = {"k_stop": k, "c_stop": 2 * z * math.sqrt(k), "preload": rng.choice([0.0, 10 ** rng.uniform(-3, -0.5)])}
+    stops = str(rng.choice(["both", "right", "mixed"]))
+    law |= {"R_left": rng.uniform(0.3, 0.95)} if stops == "mixed" else {}
+    common = {"b": 0.5, "omega": rng.uniform(0.5, 1.5), "stops": "right" if stops == "right" else "both"}
+    common |= law | {"release": release}
+    N = 3
+    if model == "two_mass":
+        named = dict(mu_m=rng.uniform(1, 10), mu_k=rng.uniform(1, 8), zeta=rng.uniform(0.01, 0.1), f2=rng.uniform(0, 1))
+        system = vs.System(**named, **common)
+    elif model == "one_mass":
+        system = vs.Oscillator.named("one_mass", zeta=rng.uniform(0.01, 0.1), F=1, k=1, tau=0.3, **common)
+    elif model == "chain":
+        springs = dict(m=rng.uniform(0.5, 2, N), k=rng.uniform(0.3, 2, N + 1), c=rng.uniform(0.01, 0.1, N + 1))
+        system = vs.Oscillator.named("chain", force=[1, 0, 0.4], tau=0.1, **springs, **common)
+    else:
+        A, B = rng.normal(size=(2, 2, 2))
+        M, K = np.eye(2) + 0.2 * A @ A.T, B @ B.T + 0.3 * np.eye(2)
+        system = vs.Oscillator(
+            M, K, 0.1 * K, contact_normal=rng.normal(size=2), force=rng.normal(size=2), tau=0.2, **common
+        )
+    clearance = vs.grazing(system).b_right
+    axes = {"omega": system.omega * np.linspace(0.9, 1.1, POINTS), "b": clearance * np.linspace(0.05, 0.95, POINTS)}
+    return model, system, axes
+
+
+def summed(seed):
+    """The `Report` on the plane of oscillator `seed`."""
+    model, system, axes = drawn(seed)
+    q = system.linear
+    rigid = math.isfinite(q.low) and not q.k_low > 0
+    words = ["section", "lyapunov", "contacts", *(["impacts"] if rigid else [])]
+    data = vs.sweep(system, axes, transient=60, record=RECORD, observe=words)
+    touched = (data.contacts_right + data.contacts_left).values
+    counted = is_valid(data.status.values) & (touched > 0) & np.isfinite(data.lyapunov.values).all(-1)
+    exact = -np.trace(np.linalg.solve(q.M, q.C)) - q.c_high / mass_of(q) * data.contact_time.values
+    if rigid:
+        rate = data.impacts_left.values * axes["omega"][:, None] / (2 * math.pi * RECORD)
+        exact = exact + 2 * rate * math.log(q.R_low)
+    alike = counted & (data.period.values == 0)  # else the exponents are those of one period
+    if q.by_force and q.c_high > 0:
+        alike[:] = False
+    apart = np.abs(data.lyapunov.values.sum(-1) - exact)
+    return Report(
+        seed, model, "force" if q.by_force else "displacement", counted.size, int(counted.sum()),
+        float(np.abs(data.lyapunov_residual.values[counted]).max(initial=0.0)), int(alike.sum()),
+        float(apart[alike].max(initial=0.0)), int(touched[counted].sum()),
+    )  # fmt: skip
+
+
+def mass_of(q):
+    """m_e = 1/(n M^-1 n)."""
+    return 1 / (q.normal @ np.linalg.solve(q.M, q.normal))
+
+
+def table(reports):
+    """What was tried, what counted, and the largest differences."""
+    yield (
+        f"{len(reports)} planes, {sum(one.points for one in reports)} points; {sum(one.counted for one in reports)} "
+        f"with contacts and all exponents, {sum(one.contacts for one in reports)} contacts; "
+        f"largest residual stored {max(one.worst for one in reports):.1e}"
+    )
+    yield (
+        f"{sum(one.compared for one in reports)} sums formed anew from the share of contact and the impacts; "
+        f"largest difference {max(one.apart for one in reports):.1e}"
+    )
