@@ -26,9 +26,9 @@ from vibro_sweep.model.arguments import check_type
 from vibro_sweep.model.branch_file import WINDOWS, columns_of
 from vibro_sweep.model.errors import ArgumentError
 from vibro_sweep.model.files import checked_path, file_to_write
+from vibro_sweep.model.linear import followable_family_of
 from vibro_sweep.model.refusals import not_allowed
 from vibro_sweep.model.state import state
-from vibro_sweep.model.stops import why_rigid
 from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.creating import Subject
@@ -149,8 +149,7 @@ def rows_in(data: Contents, parameter: str | None) -> list[Row]:
     check_data(data)
     system = parse_scene(data.attrs["scene"]).system
     system = system.replace(**{name: value for name, value in data.chosen.items() if name in system.described})
-    if system.linear.compliant:
-        raise ArgumentError(not_allowed("data", "a sweep with k_stop", f"of rigid stops: {why_rigid('windows')}"))
+    followable_family_of(system)
     return list(rows_of(data, system, chosen_key(data, system, parameter)))
 
 

@@ -36,7 +36,7 @@ def window_message(
     """
     if found.mapping:
         return {}, {"reason": "windows are those of the oscillator itself, and this is its mapping"}
-    if found.system.linear.compliant and found.system.options["release"] == "force":
+    if found.system.linear.by_force:
         return {}, {"reason": f"no window here: release must be {BY_FORCE}"}
     if found.period == 0:
         return {}, {"reason": _not_periodic(found)}

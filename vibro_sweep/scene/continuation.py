@@ -11,7 +11,7 @@ from vibro_sweep.model.any_oscillator import AnyOscillator
 from vibro_sweep.model.arguments import checked_count
 from vibro_sweep.model.parameters import ParameterError
 from vibro_sweep.model.refusals import cut, not_allowed
-from vibro_sweep.model.stops import BY_FORCE, why_rigid
+from vibro_sweep.model.stops import BY_FORCE
 
 from .continue_form import ORIGINS
 from .fields import Form
@@ -153,9 +153,6 @@ def _continuation_of(data: Any, name: str, text: str) -> Continuation:
     problems += more
     if system is not None and system.linear.by_force:
         problems.append(problem("system.release", "force", f"must be {BY_FORCE}"))
-    if system is not None and system.linear.compliant and len(ranges) > 1:
-        key = next(key for key in ("k_stop", "k_stop_left") if system.numbers[key] is not None)
-        problems.append(problem(f"system.{key}", system.numbers[key], f"needs rigid stops: {why_rigid('curves')}"))
     for key, limits in ranges.items() if system is not None else ():
         problems += [line for value in limits for line in _outside(system, key, value)]
         value = system.numbers[key]

@@ -233,7 +233,7 @@ class SolutionCurve:
 
     def is_real(self, place: Place) -> bool:
         """Whether all impulses but the grazing one push, and every flight stays inside."""
-        pushes = -self.problem.sides * place.jumps
+        pushes = np.where(self.problem.rests, 1.0, -self.problem.sides) * place.jumps
         if self.problem.kind >= GRAZE:
             pushes = np.delete(pushes, self.problem.index)
         return bool(np.all(pushes > 0) and place.tests[TEST.stop_distance] > -TOUCHING)

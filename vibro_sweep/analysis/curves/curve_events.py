@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from vibro_sweep.analysis.branches.special import is_smooth
 from vibro_sweep.analysis.continuation.events import Event, LocatedEvent
 from vibro_sweep.analysis.continuation.secant import error_of, root
 from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
@@ -47,7 +48,9 @@ def events_between(curve: SolutionCurve, a: Place, b: Place) -> list[Event]:
             events.append(Event(type_at(curve, i), lambda place, i=i, size=size: place.tests[i] / size, i))
     for i in range(curve.K):
         if a.jumps[i] * b.jumps[i] < 0 and not (kind >= GRAZE and i == curve.problem.index):
-            events.append(Event(type_at(curve, VANISHES), lambda place, i=i: place.jumps[i], impact=i))
+            smooth = is_smooth(curve.orbit.family.linear, int(curve.problem.sides[i]))
+            name = type_at(curve, TOUCHES if smooth else VANISHES)
+            events.append(Event(name, lambda place, i=i: place.jumps[i], impact=i))
     least, most = sorted(place.tests[TEST.stop_distance] for place in (a, b))
     if least < -TOUCHING and most > TOUCHING:
         name = type_at(curve, TOUCHES)

@@ -67,9 +67,8 @@ def _solution(special: SpecialPoint) -> Solution:
             raise ArgumentError("special: this sticking is not the onset at which impacts accumulate; it has no curve")
         return special._chatter.solution
     solution = special.orbit._solution
-    if solution.rests:
-        what = "presses a compliant" if solution.family.linear.compliant else "rests on a"
-        raise ArgumentError(f"special: the mass {what} stop; curves of such orbits cannot be followed")
+    if not np.all(solution.family.linear.is_compliant(np.array(solution.sides)[list(solution.rests)])):
+        raise ArgumentError("special: the mass rests on a stop; curves of such orbits cannot be followed")
     return solution
 
 

@@ -51,4 +51,4 @@ def representative(orbit: PeriodicOrbit, parameter: str) -> PeriodicOrbit:
 
 
 def _order(orbit: PeriodicOrbit) -> tuple:
-    return -orbit.itinerary.count("R"), orbit.itinerary, float(orbit.impacts["t"][0])
+    return -orbit.itinerary.count("R"), orbit.itinerary, float(orbit._whole[0][0])

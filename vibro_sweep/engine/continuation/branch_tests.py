@@ -6,7 +6,7 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.curve_tests import changes_sign, determinant, eigenvalues_of
-from vibro_sweep.engine.continuation.lasting import is_contact, turns_at_graze
+from vibro_sweep.engine.continuation.lasting import factor_of_grazes, is_contact
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.workspace import BRANCH_TESTS, TEST
 from vibro_sweep.engine.impulses.pairs import ON_PAIR, ON_SQUARE, exchanged
@@ -36,10 +36,9 @@ def examine_branch(f, c, place, b):
             after = b.events[i].motion[1] + f.numbers[OMEGA] * b.events[i].bend[n // 2]
             x[TEST.release] = min(x[TEST.release], -c.sides[i] * after)
     x[TEST.minus] = determinant(c, b, n, -1.0)
-    for i in range(len(b.events)):
-        if c.rests[i] and turns_at_graze(f, c.compliant, c.sides[i]):
-            x[TEST.rate] /= place.x[i, n + 1]
-            x[TEST.minus] /= place.x[i, n + 1]
+    grazes = factor_of_grazes(f, c, place)
+    x[TEST.rate] /= grazes
+    x[TEST.minus] /= grazes
     for i in range(n):
         place.multipliers[i, 0] = place.multipliers[i, 1] = np.nan
     if not eigenvalues_of(c, b, n):

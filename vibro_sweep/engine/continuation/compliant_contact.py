@@ -79,16 +79,23 @@ def parts_of(f, side, length):
 
 @jit
 def press_gap(f, side, x, length, e, room):
-    """room[0]: as of `begin_contact`, but this length in phase, which may be negative, after the touch; room[3]: its
-    mean rate of change. Returned is the derivative of that of d by the length."""
-    n, N, parts, by_length = f.A.shape[0], f.A.shape[0] // 2, parts_of(f, side, length), 0.0
+    """room[0]: as of `begin_contact`, but this length in phase, which may be negative, after the touch; else as
+    `press_on`."""
     begin_contact(f, x, e, room[0])
+    return press_on(f, side, length, e.turn, room, e.course)
+
+
+@jit
+def press_on(f, side, length, turn, room, course):
+    """Take room[0] so far ahead, from e^{i phi} = turn on; room[3]: its mean rate of change. Returned is the derivative
+    of that of d by the length."""
+    n, N, parts, by_length = f.A.shape[0], f.A.shape[0] // 2, parts_of(f, side, length), 0.0
     for r in range(n):
         for c in range(n + 1 + f.parameters):
             room[3, r, c] = 0.0
     for k in range(parts):
         step = length / parts
-        by_length = press(f, side, step, parts, e.turn * cmath.exp(1j * step * k), room, e.course)
+        by_length = press(f, side, step, parts, turn * cmath.exp(1j * step * k), room, course)
     if parts == 1:
         return by_length
     return (room[0, N, n] / f.numbers[OMEGA] - room[3, 0, n]) / length

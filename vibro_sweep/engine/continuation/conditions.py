@@ -2,7 +2,8 @@
 
     graze, onset of sticking: D_i = 0        critical multiplier mu = 1, -1, e^{i theta}: g = 0
 
-with g of the bordered G(mu) (residual.py), which is zero where G(mu) is singular:
+with g of the bordered G(mu) (residual.py), which is zero where G(mu) is singular (all G(mu) are where a contact without
+preload has no length s: there the condition is g/s = 0):
 
     [G b; c 0] (v, g) = (0, 1)        w.G + g' c = 0, w.b = 1        dg = -w.(dJ) v
 
@@ -16,6 +17,7 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.continuation.factors import factorise, square, substitute, substitute_transposed
+from vibro_sweep.engine.continuation.lasting import factor_of_grazes, turns_at_graze
 from vibro_sweep.engine.continuation.problem import FOLD, ORBIT, TORUS, conditions, is_critical
 from vibro_sweep.engine.continuation.reflections import (
     clear_sides,
@@ -152,19 +154,21 @@ def put_conditions(f, c, place, b):
     if not square(g) < np.inf:
         return False
     differentiate(f, c, place, b, mu)
-    K, turn = len(b.events), 0j
+    K, turn, grazes = len(b.events), 0j, factor_of_grazes(f, c, place)
     for r in range(n):  # theta turns the closure alone
         turn -= b.events[K - 1].w[2 + r] * b.events[0].v[r]
     turn *= c.sigma * 1j * mu
     for k in range(conditions(c)):
         unit = 1.0 + 0j if k == 0 else -1j  # the imaginary part is the real one of -1j g
-        work.row_left[k] = (unit * (g - work.defect)).real
+        work.row_left[k] = (unit * (g - work.defect)).real / grazes
         for i in range(K):
             e = b.events[i]
             for r in range(n + 2):
-                e.rows[k, r] = -(unit * e.slopes[r]).real
+                e.rows[k, r] = -(unit * e.slopes[r]).real / grazes
+            if c.rests[i] and turns_at_graze(f, c.compliant, c.sides[i]):
+                e.rows[k, n + 1] -= work.row_left[k] / place.x[i, n + 1]
         for j in range(c.parameters):
-            work.row_p[k, j] = -(unit * work.slopes_p[j]).real * c.unit[j]
-        work.row_p[k, THETA] = (unit * turn).real
+            work.row_p[k, j] = -(unit * work.slopes_p[j]).real * c.unit[j] / grazes
+        work.row_p[k, THETA] = (unit * turn).real / grazes
         reduce_row(c, b, n, k)
     return True

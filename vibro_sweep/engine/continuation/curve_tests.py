@@ -8,6 +8,7 @@ from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.chatter_sum import REACH
 from vibro_sweep.engine.continuation.conditions import keep_null_vectors
 from vibro_sweep.engine.continuation.factors import factorise, solve_rows
+from vibro_sweep.engine.continuation.lasting import factor_of_grazes
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.normal_form import coefficient
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS, is_critical
@@ -92,11 +93,12 @@ def examine_curve(f, c, place, b):
         return True
     if is_critical(c):
         examine_null_vectors(c, place, b, n)
-    if c.kind != FOLD:
-        tests[TEST.plus] = determinant(c, b, n, 1.0)
-    if c.kind != FLIP:
-        tests[TEST.minus] = determinant(c, b, n, -1.0)
-    if c.kind == FLIP or c.kind == TORUS:  # det G(1) takes away the pole where the orbit has the multiplier 1 as well
+    grazes = factor_of_grazes(f, c, place)
+    if c.kind != FOLD and grazes != 0.0:
+        tests[TEST.plus] = determinant(c, b, n, 1.0) / grazes
+    if c.kind != FLIP and grazes != 0.0:
+        tests[TEST.minus] = determinant(c, b, n, -1.0) / grazes
+    if (c.kind == FLIP or c.kind == TORUS) and not np.any(c.rests):  # det G(1) takes away the pole where the orbit has the multiplier 1 as well
         tests[TEST.normal] = coefficient(f, c, place, b) * tests[TEST.plus]
     if c.kind == GRAZE:
         b.work[0].sign = eliminate(f, c, place, b, True)

@@ -4,6 +4,7 @@
 """
 
 from vibro_sweep.engine.continuation.compliant_contact import contact, least_depth, press_gap
+from vibro_sweep.engine.continuation.contact_derivative import differentiate_contact
 from vibro_sweep.engine.continuation.constrained_gap import constrain_gap, press, rest
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, law_at
 from vibro_sweep.engine.simd.jit import jit
@@ -31,6 +32,17 @@ def turns_at_graze(f, compliant, side):
 
 
 @jit
+def factor_of_grazes(f, c, place):
+    """The product of the lengths at which a branch turns (`turns_at_graze`); 1.0 where there is none."""
+    result = 1.0
+    if c.compliant is not None:
+        for i in range(len(place.x)):
+            if c.rests[i] and turns_at_graze(f, c.compliant, c.sides[i]):
+                result *= place.x[i, -1]
+    return result
+
+
+@jit
 def last(f, compliant, side, x, e, room):
     """`after`, `carry`, `pull` and `release` of an event that lasts."""
     if compliant is None:
@@ -39,6 +51,13 @@ def last(f, compliant, side, x, e, room):
         contact(f, side, x, e, room)
     else:
         rest(f, side, x, e, room)
+
+
+@jit
+def differentiate_last(f, compliant, side, x, e, through, work):
+    """Add the terms of a contact to the derivative along a null vector; curves of orbits that rest are not followed."""
+    if compliant is not None:
+        differentiate_contact(f, side, x, e, through, work)
 
 
 @jit

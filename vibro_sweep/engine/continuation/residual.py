@@ -83,6 +83,8 @@ def leave(f, c, i, x, e, work):
     n, N = f.A.shape[0], f.A.shape[0] // 2
     if c.rests[i]:
         last(f, c.compliant, c.sides[i], x, e, work.resting)
+        for r in range(n):
+            e.bend[r] = 0.0  # of a contact that is only watched, without length
         return
     for r in range(n):
         e.after[r], e.bend[r] = x[r], f.A[r, N] * x[n + 1] / f.numbers[OMEGA]

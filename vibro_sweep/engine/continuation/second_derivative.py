@@ -9,6 +9,7 @@ kappa = Delta/omega, and ds = (dphi_i+1 - dphi_i)/omega - s d omega/omega,
     - kappa lambda.(A (E (dy + e_v dD) + y1. ds + E_p (y + D e_v, 1)) + A_p (y1, 1))
 """
 
+from vibro_sweep.engine.continuation.lasting import differentiate_last
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.simd.jit import jit
 
@@ -32,15 +33,17 @@ def differentiate(f, c, place, b, mu):
     b.work[0].defect = 0.0
     for i in range(K):
         differentiate_event(f, c, place, b, i)
-        differentiate_flight(f, place, b, i, mu)
+        differentiate_flight(f, c, place, b, i, mu)
 
 
 @jit
 def differentiate_event(f, c, place, b, i):
-    """Add the terms of rows 1 and 2 of an impact."""
+    """Add the terms of rows 1 and 2 of an impact, and of row 1 of an event that lasts."""
     n, N, e, slopes_p = f.A.shape[0], f.A.shape[0] // 2, b.events[i], b.work[0].slopes_p
     one_plus_R = ONE_PLUS_R_HIGH if c.sides[i] > 0 else ONE_PLUS_R_LOW
     R1, alpha, beta, phi_v = f.numbers[one_plus_R], e.w[0], e.w[1], e.v[n]
+    if c.rests[i]:
+        beta = 0j
     e.slopes[n] -= phi_v * (alpha * (f.Z[0] * e.turn).real + beta * R1 * (f.Z[N] * e.turn).real)
     speed_v = e.v[N] + phi_v * (e.rate[N] + (1j * f.Z[N] * e.turn).real)
     for j in range(f.parameters):
@@ -49,15 +52,24 @@ def differentiate_event(f, c, place, b, i):
 
 
 @jit
-def differentiate_flight(f, place, b, i, mu):
-    """Add the terms of the rows of a flight."""
+def differentiate_flight(f, c, place, b, i, mu):
+    """Add the terms of the rows of a flight, and of the event that lasts before it."""
     K, n, N, omega = len(b.events), f.A.shape[0], f.A.shape[0] // 2, f.numbers[OMEGA]
     e, following, work = b.events[i], b.events[i + 1 if i + 1 < K else 0], b.work[0]
     y, Ey, by_state, through = work.along[0], work.along[1], work.along[2], work.along[3]
-    for r in range(n):
-        y[r] = e.v[r] + e.rate[r] * e.v[n]
-    y[N] += e.v[n + 1]
-    delta = (following.v[n] if i + 1 < K else mu * following.v[n]) - e.v[n]
+    delta, begin = following.v[n] if i + 1 < K else mu * following.v[n], e.v[n]
+    if c.rests[i]:
+        begin += e.v[n + 1]
+        turn_carry(f, e)
+        for r in range(n):
+            y[r] = 0j
+            for k in range(n + 2):
+                y[r] += e.carry[r, k] * e.v[k]
+    else:
+        for r in range(n):
+            y[r] = e.v[r] + e.rate[r] * e.v[n]
+        y[N] += e.v[n + 1]
+    delta -= begin
     kappa = delta / omega
     by_length, landing, defect = 0j, 0j, 0j
     for r in range(n):
@@ -71,16 +83,23 @@ def differentiate_flight(f, place, b, i, mu):
         by_length -= by_state[k] * (Ey[k] + delta * e.landing_rate[k])
         landing += e.w[2 + k] * omega * e.landing_rate[k]
         defect += by_state[k] * e.defect[k]
-    work.defect += defect * (delta + e.v[n]) / omega
+    work.defect += defect * (delta + begin) / omega
     by_phase = 0j
     for k in range(n):
         through[k] = 0.0
         for r in range(n):
             through[k] += by_state[r] * e.E[0, r, k]
-        e.slopes[k] -= kappa * through[k]
-        by_phase -= kappa * through[k] * e.rate[k]
-    e.slopes[n + 1] -= kappa * through[N]
-    e.slopes[n] += by_phase - by_length / omega
+        if not c.rests[i]:
+            e.slopes[k] -= kappa * through[k]
+            by_phase -= kappa * through[k] * e.rate[k]
+    if c.rests[i]:
+        take_through(f, e, kappa, work)
+        e.slopes[n] -= by_length / omega
+        e.slopes[n + 1] -= by_length / omega
+        differentiate_last(f, c.compliant, c.sides[i], place.x[i], e, work.along[4], work)
+    else:
+        e.slopes[n + 1] -= kappa * through[N]
+        e.slopes[n] += by_phase - by_length / omega
     following.slopes[n] += by_length / omega
     length = e.length
     for j in range(f.parameters):
@@ -99,3 +118,29 @@ def differentiate_flight(f, place, b, i, mu):
                 rate += f.A_slopes[j, r, k] * e.landing[k]
             total -= kappa * e.w[2 + r] * rate
         work.slopes_p[j] += total
+
+
+@jit
+def turn_carry(f, e):
+    """`carry` becomes the change of y itself after an event that lasts: xi and y' (dphi + ds)."""
+    n = f.A.shape[0]
+    for r in range(n):
+        rate = 0.0
+        for k in range(n + 1):
+            rate += f.A[r, k] * e.after[k] / f.numbers[OMEGA]
+        e.carry[r, n] += rate
+        e.carry[r, n + 1] += rate
+
+
+@jit
+def take_through(f, e, kappa, work):
+    """Add what a flight of another length makes of changes of the state after an event that lasts; `along[4]`: -w E."""
+    n, through, back = f.A.shape[0], work.along[3], work.along[4]
+    for r in range(n):
+        for k in range(n + 2):
+            e.slopes[k] -= kappa * through[r] * e.carry[r, k]
+        for j in range(f.parameters):
+            work.slopes_p[j] -= kappa * through[r] * e.carry[r, n + 2 + j]
+        back[r] = 0j
+        for k in range(n):
+            back[r] -= e.w[2 + k] * e.E[0, k, r]

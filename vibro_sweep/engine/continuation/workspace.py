@@ -139,6 +139,7 @@ def work_of(masses: int) -> np.dtype:
         ("image", float, (n, columns_of(2 * n - 1))),
         ("matrix", float, (n, n)),
         ("resting", float, (4, n, n + 1 + PARAMETERS)),  # see constrained_gap.py and compliant_contact.py
+        ("varied", float, (6, n, n + 1 + PARAMETERS)),  # see contact_derivative.py
         ("re", float, (n,)),
         ("im", float, (n,)),
         ("cell", float, (ORDER + 1,)),
@@ -154,7 +155,7 @@ def work_of(masses: int) -> np.dtype:
         ("column", complex, (2 * n + 2,)),
         ("closure", float, (n,)),  # xi_{K+1}
         ("rate", float, (n,)),  # y' before the first event, by time
-        ("along", complex, (4, n)),  # of a flight: v at its begin, at its end, w A, w A E (second_derivative.py)
+        ("along", complex, (5, n)),  # of a flight: v at its begin, at its end, w A, w A E, -w E (second_derivative.py)
         ("slopes_p", complex, (ROWS,)),  # of a condition by the parameters
         ("defect", complex),  # see second_derivative.py
         ("first", complex, (n, TERMS)),  # power series of y_1, see normal_form.py
