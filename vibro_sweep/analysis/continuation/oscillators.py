@@ -56,6 +56,8 @@ class Oscillators:
     def values(self, p) -> np.ndarray:
         """`sampled` at the parameters p; the phase, which that does not need, is not looked for."""
         q = self.at(p).built
+        if np.any(q.is_compliant((-1, 1)) != self.family.linear.is_compliant((-1, 1))):
+            raise ValueError("k_stop: a stop has lost its stiffness")
         if self._still is None:
             return sampled(q, self.units)
         values = self._still.copy()

@@ -8,7 +8,8 @@ preload has no length s: there the condition is g/s = 0):
     [G b; c 0] (v, g) = (0, 1)        w.G + g' c = 0, w.b = 1        dg = -w.(dJ) v
 
 The derivative dJ is that of all equations (second_derivative.py), for v and w over all of their unknowns and rows. The
-borders are the null vectors of the last point. For a pair, g is complex and theta one unknown more.
+borders are the null vectors of the last point. For a pair, g is complex and theta one unknown more. The graze of a
+contact without preload is that of the orbit without it: its turning point is watched, and gap_i = stop_i.
 """
 
 import cmath
@@ -17,7 +18,8 @@ import math
 import numpy as np
 
 from vibro_sweep.engine.continuation.factors import factorise, square, substitute, substitute_transposed
-from vibro_sweep.engine.continuation.lasting import factor_of_grazes, turns_at_graze
+from vibro_sweep.engine.continuation.lasting import factor_of_grazes, is_watched, turns_at_graze
+from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA
 from vibro_sweep.engine.continuation.problem import FOLD, ORBIT, TORUS, conditions, is_critical
 from vibro_sweep.engine.continuation.reflections import (
     clear_sides,
@@ -144,6 +146,14 @@ def put_conditions(f, c, place, b):
             for r in range(n + 2):
                 rows[k, r] = 0.0
     if c.kind == ORBIT:
+        return True
+    if is_watched(f, c, c.index):
+        e, stop = b.events[c.index], HIGH if c.sides[c.index] > 0 else LOW
+        e.rows[0, 0], e.rows[0, n] = 1.0, e.motion[0] / f.numbers[OMEGA]
+        work.row_left[0] = e.gap - f.numbers[stop]
+        for j in range(c.parameters):
+            work.row_p[0, j] = ((f.Z_slopes[j, 0] * e.turn).real - f.number_slopes[j, stop]) * c.unit[j]
+        reduce_row(c, b, n, 0)
         return True
     if not is_critical(c):
         b.events[c.index].rows[0, n + 1], work.row_left[0] = 1.0, place.x[c.index, n + 1]

@@ -8,7 +8,7 @@ from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.chatter_sum import REACH
 from vibro_sweep.engine.continuation.conditions import keep_null_vectors
 from vibro_sweep.engine.continuation.factors import factorise, solve_rows
-from vibro_sweep.engine.continuation.lasting import factor_of_grazes
+from vibro_sweep.engine.continuation.lasting import factor_of_grazes, is_watched
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.normal_form import coefficient
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS, is_critical
@@ -94,9 +94,10 @@ def examine_curve(f, c, place, b):
     if is_critical(c):
         examine_null_vectors(c, place, b, n)
     grazes = factor_of_grazes(f, c, place)
-    if c.kind != FOLD and grazes != 0.0:
+    watched = is_watched(f, c, c.index)  # then this is the orbit without the contact
+    if c.kind != FOLD and not watched:
         tests[TEST.plus] = determinant(c, b, n, 1.0) / grazes
-    if c.kind != FLIP and grazes != 0.0:
+    if c.kind != FLIP and not watched:
         tests[TEST.minus] = determinant(c, b, n, -1.0) / grazes
     if (c.kind == FLIP or c.kind == TORUS) and not np.any(c.rests):  # det G(1) takes away the pole where the orbit has the multiplier 1 as well
         tests[TEST.normal] = coefficient(f, c, place, b) * tests[TEST.plus]

@@ -7,6 +7,7 @@ from vibro_sweep.engine.continuation.compliant_contact import contact, least_dep
 from vibro_sweep.engine.continuation.contact_derivative import differentiate_contact
 from vibro_sweep.engine.continuation.constrained_gap import constrain_gap, press, rest
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, law_at
+from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.engine.simd.jit import jit
 
 
@@ -32,12 +33,18 @@ def turns_at_graze(f, compliant, side):
 
 
 @jit
+def is_watched(f, c, i):
+    """Whether event i grazes along the curve as a contact that begins smoothly: it is a turning point at its stop."""
+    return c.kind == GRAZE and i == c.index and c.rests[i] and turns_at_graze(f, c.compliant, c.sides[i])
+
+
+@jit
 def factor_of_grazes(f, c, place):
     """The product of the lengths at which a branch turns (`turns_at_graze`); 1.0 where there is none."""
     result = 1.0
     if c.compliant is not None:
         for i in range(len(place.x)):
-            if c.rests[i] and turns_at_graze(f, c.compliant, c.sides[i]):
+            if c.rests[i] and turns_at_graze(f, c.compliant, c.sides[i]) and not is_watched(f, c, i):
                 result *= place.x[i, -1]
     return result
 

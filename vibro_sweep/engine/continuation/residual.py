@@ -23,7 +23,7 @@ import math
 from vibro_sweep.engine.continuation.chatter_tail import end_of_chatter, put_tail
 from vibro_sweep.engine.continuation.constrained_gap import put_rest
 from vibro_sweep.engine.continuation.flight_tables import flight
-from vibro_sweep.engine.continuation.lasting import last
+from vibro_sweep.engine.continuation.lasting import is_watched, last
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
 from vibro_sweep.engine.continuation.problem import STICK, width_of
 from vibro_sweep.engine.continuation.reflections import copy_row, reflect
@@ -81,10 +81,10 @@ def put_rows(f, law, side, x, e, panel):
 def leave(f, c, i, x, e, work):
     """The state after event i, and what it does to changes of the state."""
     n, N = f.A.shape[0], f.A.shape[0] // 2
-    if c.rests[i]:
+    if c.rests[i] and not is_watched(f, c, i):
         last(f, c.compliant, c.sides[i], x, e, work.resting)
         for r in range(n):
-            e.bend[r] = 0.0  # of a contact that is only watched, without length
+            e.bend[r] = 0.0  # where it is only watched, without length
         return
     for r in range(n):
         e.after[r], e.bend[r] = x[r], f.A[r, N] * x[n + 1] / f.numbers[OMEGA]
@@ -199,7 +199,7 @@ def eliminate(f, c, place, b, watched):
     for i in range(K):
         e, x, last = b.events[i], place.x[i], i + 1 == K
         law = REST if c.rests[i] else END if c.kind == STICK and i == 0 else IMPACT
-        if c.sides[i] == 0.0 or (watched and i == c.index):
+        if c.sides[i] == 0.0 or (watched and i == c.index) or is_watched(f, c, i):
             law = WATCHED
         for r in range(n, 2 * n + 2):
             for j in range(width):
