@@ -12,10 +12,15 @@ DIGITS = 45
 
 
 class ContactOrbit:
-    """q: a `Linear` of floats, which count as exact; sides: of the contacts; periods: of the force."""
+    """q: a `Linear` of floats, which count as exact, or of numbers of mpmath; sides: of the contacts, within so many
+    periods of the force. sigma: the motion is repeated after them, or (-1) mirrored."""
 
-    def __init__(self, q, sides, periods):
-        self.q, self.sides, self.N = q, list(sides), len(q.normal)
+    def __init__(self, q, sides, periods, sigma=1):
+        with mp.workdps(DIGITS):
+            self._build(q, sides, periods, sigma)
+
+    def _build(self, q, sides, periods, sigma):
+        self.q, self.sides, self.N, self.sigma = q, list(sides), len(q.normal), sigma
         self.length = periods * 2 * mp.pi / mpf(q.omega)
         N, self.size = self.N, 2 * self.N + 3
         inverse = mp.inverse(mp.matrix(q.M.tolist()))
@@ -70,7 +75,7 @@ class ContactOrbit:
             y = mp.expm(A * length) * y
             if stop is not None:
                 rows.append((self.gap * y)[0] - stop)
-        return mp.matrix([*(y[i] - u[i] for i in range(2 * self.N)), *rows])
+        return mp.matrix([*(self.sigma * y[i] - u[i] for i in range(2 * self.N)), *rows])
 
     def solve(self, state, times, steps=12):
         """(state, times, multipliers) from a guess: x1 v1 .. at t = 0, and touch and release of each contact within the
@@ -93,6 +98,12 @@ class ContactOrbit:
             return [a for pair in zip(x, v, strict=True) for a in pair], list(u[2 * self.N :]), self.multipliers(u)
 
     def multipliers(self, u):
+        """By falling size, of the map over these periods."""
+        values = mp.eig(self.closure(u), left=False, right=False)
+        return sorted(values, key=lambda value: (-abs(value), -value.imag))
+
+    def closure(self, u):
+        """The matrix whose eigenvalues are the multipliers."""
         y, product = self._begin(u), mp.eye(self.size)
         for A, length, stop, behind in self._pieces(u):
             E = mp.expm(A * length)
@@ -101,5 +112,4 @@ class ContactOrbit:
                 before, after = A * y, behind * y
                 product += (after - before) * (self.gap * product) / (self.gap * before)[0]
         n = 2 * self.N
-        values = mp.eig(product[:n, :n], left=False, right=False)
-        return sorted(values, key=lambda value: (-abs(value), -value.imag))
+        return self.sigma * product[:n, :n]

@@ -1,0 +1,76 @@
+"""Special points of branches and curves with contacts, held against thirty digits."""
+
+import numpy as np
+from reference.compliant_bifurcations import Bifurcation
+
+from vibro_sweep.analysis.branches.special import bare
+from vibro_sweep.model.linear import family_of
+
+CONDITIONS = {
+    "fold": ["fold"],
+    "flip": ["flip"],
+    "pitchfork": ["flip"],
+    "neimark_sacker": ["pair"],
+    "graze": [],
+    "cusp": ["fold", "cusp"],
+    "fold_flip": ["fold", "flip"],
+    "fold_neimark_sacker": ["fold", "pair"],
+    "flip_neimark_sacker": ["flip", "pair"],
+    "resonance_1_1": ["fold", "double_1"],
+    "resonance_1_2": ["flip", "double_-1"],
+    "resonance_1_3": ["pair"],
+    "resonance_1_4": ["pair"],
+    "fold_graze": ["fold"],
+    "flip_graze": ["flip"],
+    "pitchfork_graze": ["flip"],
+    "neimark_sacker_graze": ["pair"],
+}
+ANGLES = {"resonance_1_3": 2 * np.pi / 3, "resonance_1_4": np.pi / 2}
+NO_LENGTH = 1e-7  # of the period: a contact that short is a touch
+
+
+def distance_in_digits(special) -> tuple[np.ndarray, float]:
+    """By how much the parameters of a special point differ from those of the reference, and its last change."""
+    system, solution = special.orbit.system, special.orbit._solution
+    names, family = list(special.parameters), family_of(system)
+    q, P = family.linear, solution.P
+    touching, sides = [], []
+    if solution.K:
+        lengths = np.full(solution.K, np.inf)
+        lengths[list(solution.rests)] = solution.ends - solution.times[list(solution.rests)]
+        gone = np.flatnonzero(np.abs(lengths) < NO_LENGTH * P)
+        touching, sides = solution.times[gone].tolist(), [solution.sides[k] for k in gone]
+        solution = bare(solution, gone) if len(gone) else solution
+    if special.type.endswith("graze") and not touching:
+        touching, sides = [solution.nearest[1]], [solution.nearest[2]]
+    # t = 0 of the reference is in the middle of the longest flight
+    begins, ends = (solution.times, solution.ends) if solution.K else (np.array([touching[0] + P / 2]),) * 2
+    gaps = np.append(begins[1:], begins[0] + P) - ends
+    k = int(np.argmax(gaps))
+    start = float(ends[k] + 0.37 * gaps[k]) if solution.K else float(begins[0])
+    order = np.roll(np.arange(solution.K), -k - 1)
+    turns = np.floor((solution.times[order] - start) / P)
+    signs = (float(solution.sigma) ** turns).astype(int) if solution.sigma < 0 else np.ones(solution.K, int)
+    begins = solution.times[order] - turns * P - start
+    lengths = (solution.ends - solution.times)[order]
+    around = np.column_stack([begins, begins + lengths]).ravel()
+    touched = [(t - start) % P for t in touching]
+    sides = [int(side) * (solution.sigma ** int(np.floor((t - start) / P))) for side, t in zip(sides, touching, strict=True)]
+    state = type(special.orbit)(system, "ok", solution, (0, 0)).sample([start])[0]
+    moved = q._replace(tau=float(q.tau + q.omega * start))
+    theta = None
+    if "pair" in CONDITIONS[special.type]:
+        mu = solution.multipliers
+        theta = float(np.angle(mu[np.argmin(np.where(mu.imag > 1e-9, np.abs(np.abs(mu) - 1), np.inf))]))
+    exact = Bifurcation(
+        moved,
+        [family.derivative(name)._replace(tau=0.0) for name in names],
+        np.array(solution.sides)[order] * signs,
+        solution.half_periods / 2,
+        solution.sigma,
+        CONDITIONS[special.type],
+        sides,
+        ANGLES.get(special.type),
+    )
+    off, change = exact.solve(state, around, touched, theta)
+    return np.array(off), change

@@ -1,0 +1,107 @@
+"""Branches of random oscillators with compliant stops, from several starts and with several lengths of steps.
+
+python tests/support/compliant_branches.py 0 100            # seeds; prints what disagrees, and a summary
+"""
+
+import collections
+import sys
+
+import numpy as np
+
+import vibro_sweep as vs
+from support.drawn_branches import MOST_IMPACTS, Case, drawn_number, drawn_oscillator, recorded
+from support.same_branch import TooLongError, differences, follow, listed
+from vibro_sweep.analysis.branches.branch_arrays import arrays_of, orbit_at
+from vibro_sweep.model.bifurcations import BY_NAME
+
+MODELS = ("two_mass", "one_mass", "chain", "linear")
+ON_CIRCLE = 1e-6  # of | |mu| - 1 |: so near to it counts are rounding
+
+
+def drawn_stops(model: str, rng):
+    """An oscillator as of `drawn_oscillator`, its stops compliant: soft or stiff, some damped, some preloaded."""
+    system = drawn_oscillator(model, rng)
+    k, z = 10 ** rng.uniform(0.5, 4), rng.choice([0.0, rng.uniform(0.01, 0.4)])
+    rigid = dict.fromkeys(("R", "R_left")) if system.numbers.get("R_left") is not None else {"R": None}
+    preload = float(rng.choice([0.0, 0.0, rng.uniform(0, 0.3)]))
+    return system.replace(**rigid, k_stop=k, c_stop=2 * z * np.sqrt(k), preload=preload)
+
+
+def drawn_case(seed: int) -> Case | None:
+    """An attractor of a drawn oscillator, and the number in which its branch is followed."""
+    rng = np.random.default_rng(seed)
+    system = drawn_stops(MODELS[seed % len(MODELS)], rng)
+    for _ in range(4):
+        orbit = recorded(system, rng)
+        if orbit is not None and orbit.ok and 0 < len(orbit.itinerary) <= MOST_IMPACTS:
+            return Case(orbit, *drawn_number(system, rng))
+    return None
+
+
+def unexplained(branch) -> list[str]:
+    """Changes of the number of unstable multipliers between special points that no special point explains."""
+    start = branch._start.family.numbers[branch.parameter]
+    arrays = arrays_of(branch, start)
+    mu = branch.points.multiplier_re.values + 1j * branch.points.multiplier_im.values
+    sure = np.all(np.abs(np.abs(mu) - 1) > ON_CIRCLE, axis=1)
+    outside, found = np.sum(np.abs(mu) > 1, axis=1), []
+    places = arrays["special_point"].tolist()
+    for first, last in zip([-1, *places], [*places, len(mu)], strict=True):
+        between = np.flatnonzero(sure[first + 1 : last]) + first + 1
+        if len(between) and np.ptp(outside[between]) > 0:
+            found.append(f"unstable {np.unique(outside[between])} between points {first} and {last}")
+    for one, at in zip(branch.special, places, strict=True):
+        before, behind = np.flatnonzero(sure[:at]), np.flatnonzero(sure[at + 1 :]) + at + 1
+        inner = len(before) and len(behind) and not any(other != at and before[-1] <= other <= behind[0] for other in places)
+        crossing = np.dot(BY_NAME[one.type].crosses, (1, 1, 2))
+        if inner and one.type in ("fold", "flip", "pitchfork", "neimark_sacker"):
+            if abs(outside[behind[0]] - outside[before[-1]]) != crossing:
+                found.append(f"{one.type} at {one.parameters}: {outside[before[-1]]} and {outside[behind[0]]}")
+    return found
+
+
+def other_starts(branch, case: Case, rng, most=3):
+    """(words, orbit) at points of the branch."""
+    arrays = arrays_of(branch, case.orbit._solution.family.numbers[case.name])
+    count = len(arrays["value"])
+    for k in rng.permutation(np.unique(np.r_[1, count - 2, rng.integers(1, count - 1, 3)]))[:most].tolist():
+        system = case.orbit.system.replace(**{case.name: float(arrays["value"][k])})
+        found = orbit_at(arrays, k, system)._solution.corrected()
+        if found is not None:
+            yield f"point {k}", type(case.orbit)(system, "ok", found.reduced(), None)
+
+
+def study(seed: int) -> tuple[collections.Counter, list[str]]:
+    """What was counted, and what is wrong, of one drawn branch."""
+    counted, wrong, case = collections.Counter(drawn=1), [], drawn_case(seed)
+    if case is None:
+        return counted, wrong
+    try:
+        branch = follow(case)
+    except TooLongError:
+        return counted + collections.Counter(too_long=1), wrong
+    counted.update(branches=1, points=branch.points.sizes["point"])
+    counted.update(one.type for one in branch.special)
+    wrong += unexplained(branch)
+    wrong += [f"failed at {one.parameters}" for one in branch.special if one.type == "failed"]
+    wrong += [f"{one.type} at {one.parameters}: error {one.error:.1e}" for one in branch.special if one.error > 1e-9]
+    runs = [(f"steps times {factor}", case.orbit, factor) for factor in (0.5, 2.0)]
+    rng = np.random.default_rng(seed + 10**6)
+    runs += [(words, orbit, 1.0) for words, orbit in other_starts(branch, case, rng)]
+    for words, orbit, factor in runs:
+        again = follow(case._replace(orbit=orbit), factor)
+        counted["runs"] += 1
+        size = case.bounds[1] - case.bounds[0]
+        for kind, difference in dict(differences(listed(branch), listed(again), size, branch.closed)).items():
+            wrong.append(f"{words}: {kind}, {difference}")
+    return counted, [f"seed {seed}, {case}: {line}" for line in wrong]
+
+
+if __name__ == "__main__":
+    total, seeds = collections.Counter(), 0
+    for seed in range(*map(int, sys.argv[1:3])):
+        counted, wrong = study(seed)
+        total += counted
+        seeds += bool(wrong)
+        print(*wrong, sep="\n", end="\n" * bool(wrong), flush=True)
+    print(f"{dict(total)}\n{seeds} seeds with a disagreement")
