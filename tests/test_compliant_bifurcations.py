@@ -1,0 +1,158 @@
+"""Windows and curves with compliant stops; special points and points of codimension two in 45 digits.
+
+`pytest -m soak -s tests/test_compliant_bifurcations.py` has all of them: tests/data/compliant_bifurcations.log.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from support import compliant_branches, slow_cases
+from support.compliant_bifurcations import CONDITIONS, distance_in_digits
+
+import vibro_sweep as vs
+from vibro_sweep.analysis.continuation.first_point import first_place
+from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
+from vibro_sweep.analysis.curves.curve_start import start_at
+from vibro_sweep.engine.continuation import stepper
+
+PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63)
+ENDS = ("boundary", "closed")
+
+
+def paper(b, k, z=0.07, **more):
+    return vs.System(**PAPER, b=b, k_stop=k, c_stop=2 * z * math.sqrt(k), **more)
+
+
+def one_mass(**numbers):
+    given = dict(k=1, zeta=0.05, F=0.5, omega=0.8, k_stop=29, b=1, stops="right", tau=0.0)
+    return vs.Oscillator.named("one_mass", **(given | numbers))
+
+
+# orbit, number, bounds; and of curves both numbers and bounds, and the types of special points from which they start
+BRANCHES = {
+    "one mass": (one_mass(), "R", "omega", (0.3, 3)),
+    "one mass, preloaded": (one_mass(preload=0.05, omega=0.75), "R", "omega", (0.3, 3)),
+    "one mass, damped stop": (one_mass(c_stop=0.5, preload=0.03), "R", "omega", (0.3, 3)),
+    "R": (paper(4, 1e2), "R", "b", (1, 7)),
+    "R, stiff": (paper(4, 1e4), "R", "b", (1, 7)),
+    "LR": (paper(2, 1e2), "LR", "b", (1, 7)),
+    "LR, preloaded": (paper(2, 1e2, preload=0.5), "LR", "b", (1, 7)),
+}
+CURVES = {
+    "folds of one mass": ("one mass", "fold", ("omega", "F"), ((0.3, 3), (0.05, 1.5)), {"cusp"}),
+    "folds over the stiffness": ("one mass", "fold", ("omega", "k_stop"), ((0.3, 3), (1, 100)), {"cusp"}),
+    "folds with a preload": ("one mass, preloaded", "fold", ("omega", "F"), ((0.3, 3), (0.05, 1.5)), {"cusp"}),
+    "grazes": ("R", "graze", ("b", "omega"), ((1, 7), (0.4, 0.9)), {"flip_graze", "neimark_sacker_graze"}),
+    "pairs": (
+        "R", "neimark_sacker", ("b", "omega"), ((1, 7), (0.4, 0.9)), {"fold_neimark_sacker", "neimark_sacker_graze"},
+    ),
+    "pitchforks": ("LR", "pitchfork", ("b", "omega"), ((0.2, 7), (0.4, 0.9)), {"fold_flip"}),
+}  # fmt: skip
+
+
+def branch_of(name):
+    system, itinerary, number, bounds = BRANCHES[name]
+    return vs.continue_orbit(vs.periodic_orbit(system, itinerary=itinerary), number, bounds)
+
+
+def compare(special):
+    """The distance from 45 digits: 1e-12 at most, or what the point says of itself."""
+    off, change = distance_in_digits(special)
+    assert change < 1e-16
+    assert np.all(np.abs(off) < max(1e-12, special.error)), (special, off)
+    return np.abs(off).max()
+
+
+@pytest.mark.parametrize("name", ["one mass", *slow_cases(*[name for name in BRANCHES if name != "one mass"])])
+def test_special_points_of_branches_in_45_digits(name):
+    branch, compared = branch_of(name), 0
+    assert not compliant_branches.unexplained(branch)
+    for special in branch.special:
+        if special.type not in ENDS:
+            compare(special)
+            compared += 1
+    assert compared >= 3
+
+
+@pytest.mark.parametrize("name", ["folds of one mass", *slow_cases(*[name for name in CURVES if "of one mass" not in name])])
+def test_points_of_codimension_two_in_45_digits(name):
+    branch, of, names, bounds, types = CURVES[name]
+    start = next(one for one in branch_of(branch).special if one.type == of)
+    found = vs.bifurcation_curve(start, names, bounds).special
+    assert types <= {one.type for one in found} and not any(one.type == "failed" for one in found)
+    for special in found:
+        if special.type in CONDITIONS:
+            compare(special)
+
+
+@pytest.mark.parametrize("names, bounds", [
+    (("omega", "F"), ((0.3, 3), (0.2, 1))),
+    *slow_cases(
+        (("omega", "k_stop"), ((0.3, 3), (20, 40))),
+        (("c_stop", "omega"), ((0, 1), (0.3, 3))),
+        (("preload", "zeta"), ((0, 1), (0, 0.3))),
+    ),
+])  # fmt: skip
+def test_newton_converges_on_curves(names, bounds):
+    """The gradient of a condition is exact: changes fall to rounding, in two steps by their squares."""
+    for special in branch_of("one mass, damped stop").special:
+        if special.type not in ("flip", "fold", "graze"):
+            continue
+        curve = SolutionCurve(start_at(special, names), names, bounds)
+        place = first_place(curve)
+        place.x[:] += 1e-3 * np.cos(np.arange(place.x.size)).reshape(place.x.shape)
+        changes = []
+        for _ in range(7):
+            curve.take_numbers(place)
+            changes.append(curve.run_task(stepper.CORRECT, place, place.direction))
+        assert changes[6] < 1e-12 and changes[4] < 10 * changes[2] ** 1.5 + 1e-14, (special.type, changes)
+
+
+def test_folds_run_beside_grazes():
+    """Without a preload the branch of short contacts turns at a fold that is nearer to the graze than any step, and both
+    curves can be followed."""
+    branch = branch_of("one mass")
+    fold, graze = branch.special[-2:]
+    assert fold.type == "fold" and graze.type == "graze"
+    beyond = []
+    for one in (fold, graze):
+        points = vs.bifurcation_curve(one, ("omega", "F"), ((1.1, 1.4), (0.3, 0.8))).points
+        omega, F = points.omega.values, points.F.values
+        assert len(omega) > 20
+        beyond.append(F - np.hypot(1 - omega**2, 2 * 0.05 * omega))  # of where the free motion has the size 1
+    assert np.abs(beyond[1]).max() < 1e-12
+    assert np.all(beyond[0] > 1e-6) and np.all(beyond[0] < 1e-3)
+
+
+def test_windows_of_one_elastic_stop():
+    """Every window has a label at both ends, and the motion there is stable inside and gone or unstable beyond."""
+    system = one_mass(zeta=0.01, base=True, F=0.9 / 1.26, tau=np.pi / 2)
+    data = vs.sweep(system, {"omega": np.linspace(0.74, 1.1, 19)}, transient=600, record=60)
+    windows = vs.windows(data)
+    assert {(one.period, one.itinerary) for one in windows} >= {(1, "R"), (2, "R"), (3, "RR")}
+    for one in windows:
+        for end, inwards in ((one.lower, 1), (one.upper, -1)):
+            if end.type == "boundary":
+                continue
+            assert end.type in ("graze", "fold", "flip") and end.error < 1e-12
+            value = end.parameters["omega"] + inwards * 1e-6
+            inside = vs.simulate(system.replace(omega=value), end.orbit.state, 4000 * one.period)
+            last = inside.section[-1], inside.section[-1 - one.period]
+            assert np.abs(last[0] - last[1]).max() < 1e-3
+
+
+def test_windows_need_release_by_displacement():
+    data = vs.sweep(one_mass(c_stop=1, release="force"), {"omega": [0.8, 0.9]}, transient=100, record=20)
+    with pytest.raises(ValueError, match="release"):
+        vs.windows(data)
+
+
+@pytest.mark.parametrize("seeds", [range(1, 2), *slow_cases(range(12))])
+def test_random_branches_from_several_starts(seeds):
+    counted = 0
+    for seed in seeds:
+        found, wrong = compliant_branches.study(seed)
+        assert not wrong
+        counted += found["branches"]
+    assert counted > 0.6 * len(seeds)
