@@ -75,7 +75,9 @@ def test_special_points_of_branches_in_45_digits(name):
     assert compared >= 3
 
 
-@pytest.mark.parametrize("name", ["folds of one mass", *slow_cases(*[name for name in CURVES if "of one mass" not in name])])
+@pytest.mark.parametrize(
+    "name", ["folds of one mass", *slow_cases(*[name for name in CURVES if "of one mass" not in name])]
+)
 def test_points_of_codimension_two_in_45_digits(name):
     branch, of, names, bounds, types = CURVES[name]
     start = next(one for one in branch_of(branch).special if one.type == of)

@@ -55,7 +55,9 @@ def distance_in_digits(special) -> tuple[np.ndarray, float]:
     lengths = (solution.ends - solution.times)[order]
     around = np.column_stack([begins, begins + lengths]).ravel()
     touched = [(t - start) % P for t in touching]
-    sides = [int(side) * (solution.sigma ** int(np.floor((t - start) / P))) for side, t in zip(sides, touching, strict=True)]
+    sides = [
+        int(side) * (solution.sigma ** int(np.floor((t - start) / P))) for side, t in zip(sides, touching, strict=True)
+    ]
     state = type(special.orbit)(system, "ok", solution, (0, 0)).sample([start])[0]
     moved = q._replace(tau=float(q.tau + q.omega * start))
     theta = None

@@ -8,7 +8,6 @@ import sys
 
 import numpy as np
 
-import vibro_sweep as vs
 from support.drawn_branches import MOST_IMPACTS, Case, drawn_number, drawn_oscillator, recorded
 from support.same_branch import TooLongError, differences, follow, listed
 from vibro_sweep.analysis.branches.branch_arrays import arrays_of, orbit_at
@@ -52,7 +51,11 @@ def unexplained(branch) -> list[str]:
             found.append(f"unstable {np.unique(outside[between])} between points {first} and {last}")
     for one, at in zip(branch.special, places, strict=True):
         before, behind = np.flatnonzero(sure[:at]), np.flatnonzero(sure[at + 1 :]) + at + 1
-        inner = len(before) and len(behind) and not any(other != at and before[-1] <= other <= behind[0] for other in places)
+        inner = (
+            len(before)
+            and len(behind)
+            and not any(other != at and before[-1] <= other <= behind[0] for other in places)
+        )
         crossing = np.dot(BY_NAME[one.type].crosses, (1, 1, 2))
         if inner and one.type in ("fold", "flip", "pitchfork", "neimark_sacker"):
             if abs(outside[behind[0]] - outside[before[-1]]) != crossing:

@@ -4,8 +4,8 @@
 """
 
 from vibro_sweep.engine.continuation.compliant_contact import contact, least_depth, press_gap
-from vibro_sweep.engine.continuation.contact_derivative import differentiate_contact
 from vibro_sweep.engine.continuation.constrained_gap import constrain_gap, press, rest
+from vibro_sweep.engine.continuation.contact_derivative import differentiate_contact
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, law_at
 from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.engine.simd.jit import jit
