@@ -19,11 +19,12 @@ import math
 
 import numpy as np
 
-from vibro_sweep.engine.continuation.constrained_gap import put_term
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, law_at
 from vibro_sweep.engine.impulses.extremes import OVERLAP, extremes_of_cell
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
+from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.simd.memory import eight, put_eight
 
 
 @jit
@@ -70,6 +71,12 @@ def begin_contact(f, x, e, state):
 
 
 @jit
+def copy_motion(source, target):
+    for place in range(0, len(source) * source.shape[1], LANES):
+        put_eight(target, place, eight(source, place))
+
+
+@jit
 def parts_of(f, side, length):
     """The number of parts in which a contact is computed: their length times its rates is a half at most."""
     law = law_at(f, side)
@@ -90,9 +97,8 @@ def press_on(f, side, length, turn, room, course):
     """Take room[0] so far ahead, from e^{i phi} = turn on; room[3]: its mean rate of change. Returned is the derivative
     of that of d by the length."""
     n, N, parts, by_length = f.A.shape[0], f.A.shape[0] // 2, parts_of(f, side, length), 0.0
-    for r in range(n):
-        for c in range(n + 1 + f.parameters):
-            room[3, r, c] = 0.0
+    for place in range(0, n * room.shape[2], LANES):
+        put_eight(room[3], place, 0.0 * eight(room[0], place))
     for k in range(parts):
         step = length / parts
         by_length = press(f, side, step, parts, turn * cmath.exp(1j * step * k), room, course)
@@ -109,10 +115,8 @@ def press(f, side, step, parts, swing, room, course):
     Returned is the derivative of the mean rate of d by the step.
     """
     n, state, before, term, mean = f.A.shape[0], room[0], room[1], room[2], room[3]
-    power, by_length = 1.0, 0.0
-    for r in range(n):
-        for c in range(n + 1 + f.parameters):
-            before[r, c] = state[r, c]
+    power, by_length, size = 1.0, 0.0, n * state.shape[1]
+    copy_motion(state, before)
     course[0] = before[0, n]
     for order in range(1, ORDER + 1):
         next_term(f, side, order, swing, before, term)
@@ -121,11 +125,11 @@ def press(f, side, step, parts, swing, room, course):
         if order > 1:
             by_length += (order - 1) * term[0, n] * power
             power *= step
-        for r in range(n):
-            for c in range(n + 1 + f.parameters):
-                mean[r, c] += term[r, c] * power / parts
-                state[r, c] += term[r, c] * power * step
-                before[r, c] = term[r, c]
+        for place in range(0, size, LANES):
+            values = eight(term, place)
+            put_eight(mean, place, eight(mean, place) + values * (power / parts))
+            put_eight(state, place, eight(state, place) + values * (power * step))
+            put_eight(before, place, values)
     return by_length
 
 
@@ -133,24 +137,31 @@ def press(f, side, step, parts, swing, room, course):
 def next_term(f, side, order, swing, before, term):
     """The Taylor coefficient of this order from that before it; swing: i^{order - 1}/(order - 1)! e^{i phi}."""
     n, N, stop, law = f.A.shape[0], f.A.shape[0] // 2, HIGH if side > 0 else LOW, law_at(f, side)
-    share, first = 1.0 / (order * f.numbers[OMEGA]), 1.0 if order == 1 else 0.0
+    omega, forces, wide, first = f.numbers[OMEGA], n * (n + 1), before.shape[1], 1.0 if order == 1 else 0.0
     k, c, p = f.values[law], f.values[law + 1], side * f.values[law + 2]
+    share = 1.0 / (order * omega)
     for r in range(n):
-        put_term(f, order, 1.0, swing, before, term, r)
-        change = first * f.A[r, 0] * f.numbers[stop]
-        if r == N:
-            change -= first * p
-            for i in range(n + 1 + f.parameters):
-                term[r, i] -= share * (k * before[0, i] + c * before[N, i])
-        term[r, n] += share * change
+        for place in range(0, wide, LANES):
+            total = eight(before, place) * (f.A[r, 0] - (k if r == N else 0.0))
+            for i in range(1, n):
+                total = total + eight(before, i * wide + place) * (f.A[r, i] - (c if r == i == N else 0.0))
+            put_eight(term, r * wide + place, total * share)
+        constant = first * (f.A[r, n] + f.A[r, 0] * f.numbers[stop] - (p if r == N else 0.0))
+        if r >= N:
+            constant += f.values[forces + r - N] * swing.real + f.values[forces + r] * swing.imag
+        term[r, n] += share * constant
         for j in range(f.parameters):
-            slope = first * (f.A_slopes[j, r, 0] * f.numbers[stop] + f.A[r, 0] * f.number_slopes[j, stop])
-            moved = change
+            slope = first * (f.A_slopes[j, r, n] + f.A_slopes[j, r, 0] * f.numbers[stop])
+            slope += first * f.A[r, 0] * f.number_slopes[j, stop]
+            if f.moves[j] > 0:
+                for i in range(n):
+                    slope += f.A_slopes[j, r, i] * before[i, n]
+            if r >= N:
+                slope += f.slopes[j, forces + r - N] * swing.real + f.slopes[j, forces + r] * swing.imag
             if r == N:
-                dk, dc, dp = f.slopes[j, law], f.slopes[j, law + 1], side * f.slopes[j, law + 2]
-                slope -= dk * before[0, n] + dc * before[N, n] + first * dp
-                moved -= k * before[0, n] + c * before[N, n]
-            term[r, n + 1 + j] += share * (slope - f.number_slopes[j, OMEGA] / f.numbers[OMEGA] * moved)
+                slope -= f.slopes[j, law] * before[0, n] + f.slopes[j, law + 1] * before[N, n]
+                slope -= first * side * f.slopes[j, law + 2]
+            term[r, n + 1 + j] += share * slope - f.number_slopes[j, OMEGA] / omega * term[r, n]
 
 
 @jit

@@ -11,7 +11,7 @@ at the release, where z'_b and z'_p are the rates of change of E_c b and z_p. Ro
 import cmath
 import math
 
-from vibro_sweep.engine.continuation.compliant_contact import begin_contact, next_term, press_on
+from vibro_sweep.engine.continuation.compliant_contact import begin_contact, copy_motion, next_term, press_on
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.simd.jit import jit
 
@@ -31,8 +31,8 @@ def differentiate_contact(f, side, x, e, through, work):
     begin_contact(f, x, e, room[0])
     next_term(f, side, 1, e.turn, room[0], kept[START])
     by_length = press_on(f, side, length, e.turn, room, e.course)
-    copy_columns(f, room[0], kept[END])
-    copy_columns(f, room[3], kept[MEAN])
+    copy_motion(room[0], kept[END])
+    copy_motion(room[3], kept[MEAN])
     next_term(f, side, 1, end, room[0], kept[END_RATE])
     for k in range(2):
         phase, longer = part_of(e.v[n], k), part_of(e.v[n + 1], k)
@@ -53,15 +53,6 @@ def differentiate_contact(f, side, x, e, through, work):
 def part_of(value, k):
     """The real part (k = 0) or the imaginary one."""
     return value.real if k == 0 else value.imag
-
-
-@jit
-def copy_columns(f, source, target):
-    """Copy the columns of a motion in contact."""
-    n = f.A.shape[0]
-    for r in range(n):
-        for c in range(n + 1 + f.parameters):
-            target[r, c] = source[r, c]
 
 
 @jit

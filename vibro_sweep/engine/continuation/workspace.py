@@ -138,8 +138,8 @@ def work_of(masses: int) -> np.dtype:
         ("other", float, (3, n, columns_of(n))),
         ("image", float, (n, columns_of(2 * n - 1))),
         ("matrix", float, (n, n)),
-        ("resting", float, (4, n, n + 1 + PARAMETERS)),  # see constrained_gap.py and compliant_contact.py
-        ("varied", float, (6, n, n + 1 + PARAMETERS)),  # see contact_derivative.py
+        ("resting", float, (4, n, columns_of(n + PARAMETERS))),  # see constrained_gap.py and compliant_contact.py
+        ("varied", float, (6, n, columns_of(n + PARAMETERS))),  # see contact_derivative.py
         ("re", float, (n,)),
         ("im", float, (n,)),
         ("cell", float, (ORDER + 1,)),
