@@ -1,6 +1,6 @@
 """Windows and curves with compliant stops; special points and points of codimension two in 45 digits.
 
-`pytest -m soak -s tests/test_compliant_bifurcations.py` has all of them: tests/data/compliant_bifurcations.log.
+With `-m slow` all of BRANCHES and CURVES. What was found: tests/data/compliant_bifurcations.log.
 """
 
 import math
@@ -112,8 +112,7 @@ def test_newton_converges_on_curves(names, bounds):
 
 
 def test_folds_run_beside_grazes():
-    """Without a preload the branch of short contacts turns at a fold that is nearer to the graze than any step, and both
-    curves can be followed."""
+    """Without a preload the branch of short contacts turns at a fold just beside the graze; both can be followed."""
     branch = branch_of("one mass")
     fold, graze = branch.special[-2:]
     assert fold.type == "fold" and graze.type == "graze"

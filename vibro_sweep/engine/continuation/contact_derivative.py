@@ -1,7 +1,7 @@
 """The derivative of the linearised equations of a contact (compliant_contact.py) along a null vector v.
 
 The motion z in contact is affine in its start a and in e^{i phi}. So its change q along v, with the length s held, is
-the difference of two such motions, and so is what q changes by with the parameters. With b = xi + .. of compliant_contact.py,
+the difference of two such motions, and so is what q changes by with the parameters. With b = xi + .. as there,
 
     z_v = q + z' s_v        D_v z_u = z'_b s_v + z_v' (dphi + ds) - E_c q'(0) dphi + E_c D_v a_u + (q_p + z'_p s_v) dp
 
@@ -11,7 +11,7 @@ at the release, where z'_b and z'_p are the rates of change of E_c b and z_p. Ro
 import cmath
 import math
 
-from vibro_sweep.engine.continuation.compliant_contact import begin_contact, copy_motion, next_term, press_on
+from vibro_sweep.engine.continuation.compliant_contact import apply, begin_contact, copy_motion, press_on, put_rates
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.simd.jit import jit
 
@@ -29,24 +29,37 @@ def differentiate_contact(f, side, x, e, through, work):
     length = math.copysign(max(abs(x[n + 1]), LEAST), x[n + 1])
     end = e.turn * cmath.exp(1j * length)
     begin_contact(f, x, e, room[0])
-    next_term(f, side, 1, e.turn, room[0], kept[START])
-    by_length = press_on(f, side, length, e.turn, room, e.course)
+    put_rates(f, side, work.rates)
+    put_motion_rate(f, work.rates, e.turn, room[0], kept[START])
+    by_length = press_on(f, side, length, e.turn, work)
     copy_motion(room[0], kept[END])
     copy_motion(room[3], kept[MEAN])
-    next_term(f, side, 1, end, room[0], kept[END_RATE])
+    put_motion_rate(f, work.rates, end, room[0], kept[END_RATE])
     for k in range(2):
         phase, longer = part_of(e.v[n], k), part_of(e.v[n + 1], k)
         begin_contact(f, x, e, room[0])
         for r in range(1, n):
             room[0, r, n] += part_of(e.v[r], k) + phase * (e.rate[r] + (1j * f.Z[r] * e.turn).real)
-        next_term(f, side, 1, e.turn * (1.0 + 1j * phase), room[0], kept[START_VARIED])
-        press_on(f, side, length, e.turn * (1.0 + 1j * phase), room, e.course)
+        put_motion_rate(f, work.rates, e.turn * (1.0 + 1j * phase), room[0], kept[START_VARIED])
+        press_on(f, side, length, e.turn * (1.0 + 1j * phase), work)
         for r in range(n):
             room[0, r, n] += longer * kept[END_RATE, r, n]
-        next_term(f, side, 1, end * (1.0 + 1j * (phase + longer)), room[0], kept[END_VARIED])
+        put_motion_rate(f, work.rates, end * (1.0 + 1j * (phase + longer)), room[0], kept[END_VARIED])
         unit = 1.0 + 0j if k == 0 else 1j
         add_map(f, e, end, phase, longer, unit, through, work)
         add_second_row(f, e, length, by_length, phase, longer, unit * e.w[1], work)
+
+
+@jit
+def put_motion_rate(f, rates, swing, motion, out):
+    """out: the rate of change by phase of a motion in contact, its derivatives with it."""
+    n, omega = f.A.shape[0], f.numbers[OMEGA]
+    apply(f, rates, swing, motion, out)
+    for r in range(n):
+        for c in range(n + 1 + f.parameters):
+            out[r, c] /= omega
+        for j in range(f.parameters):
+            out[r, n + 1 + j] -= f.number_slopes[j, OMEGA] / omega * out[r, n]
 
 
 @jit

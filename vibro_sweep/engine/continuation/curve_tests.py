@@ -99,9 +99,8 @@ def examine_curve(f, c, place, b):
         tests[TEST.plus] = determinant(c, b, n, 1.0) / grazes
     if c.kind != FLIP and not watched:
         tests[TEST.minus] = determinant(c, b, n, -1.0) / grazes
-    if (c.kind == FLIP or c.kind == TORUS) and not np.any(
-        c.rests
-    ):  # det G(1) takes away the pole where the orbit has the multiplier 1 as well
+    if (c.kind == FLIP or c.kind == TORUS) and not np.any(c.rests):
+        # det G(1) takes away the pole where the orbit has the multiplier 1 as well
         tests[TEST.normal] = coefficient(f, c, place, b) * tests[TEST.plus]
     if c.kind == GRAZE:
         b.work[0].sign = eliminate(f, c, place, b, True)

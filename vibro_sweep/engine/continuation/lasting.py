@@ -50,14 +50,14 @@ def factor_of_grazes(f, c, place):
 
 
 @jit
-def last(f, compliant, side, x, e, room):
+def last(f, compliant, side, x, e, work):
     """`after`, `carry`, `pull` and `release` of an event that lasts."""
     if compliant is None:
-        rest(f, side, x, e, room)
+        rest(f, side, x, e, work.resting)
     elif is_contact(compliant, side):
-        contact(f, side, x, e, room)
+        contact(f, side, x, e, work)
     else:
-        rest(f, side, x, e, room)
+        rest(f, side, x, e, work.resting)
 
 
 @jit
@@ -68,13 +68,13 @@ def differentiate_last(f, compliant, side, x, e, through, work):
 
 
 @jit
-def state_within(f, compliant, side, x, delay, e, room, state):
+def state_within(f, compliant, side, x, delay, e, work, state):
     """The whole motion (n,) so long after the event has begun."""
-    n = f.A.shape[0]
+    n, room = f.A.shape[0], work.resting
     if compliant is None:
         constrain_gap(f, side, x, delay, e, room)
     elif is_contact(compliant, side):
-        press_gap(f, side, x, delay, e, room)
+        press_gap(f, side, x, delay, e, work)
         room[0, 0, n] += f.numbers[HIGH if side > 0 else LOW]
     else:
         constrain_gap(f, side, x, delay, e, room)

@@ -110,7 +110,7 @@ def state_at(f, c, x, phase, b, state):
     sign = 1.0 if c.sigma > 0.0 or turns % 2.0 == 0.0 else -1.0
     approach(f, x[i], e)
     if c.rests[i] and delay < x[i, n + 1]:
-        state_within(f, c.compliant, c.sides[i], x[i], delay, e, work.resting, state)
+        state_within(f, c.compliant, c.sides[i], x[i], delay, e, work, state)
         for r in range(n):
             state[r] *= sign
         return

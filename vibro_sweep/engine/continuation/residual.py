@@ -82,7 +82,7 @@ def leave(f, c, i, x, e, work):
     """The state after event i, and what it does to changes of the state."""
     n, N = f.A.shape[0], f.A.shape[0] // 2
     if c.rests[i] and not is_watched(f, c, i):
-        last(f, c.compliant, c.sides[i], x, e, work.resting)
+        last(f, c.compliant, c.sides[i], x, e, work)
         for r in range(n):
             e.bend[r] = 0.0  # where it is only watched, without length
         return
