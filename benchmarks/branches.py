@@ -173,6 +173,14 @@ def main() -> None:
     for name, bounds in (("omega", (0.62, 0.64)), ("zeta", (0.048, 0.055))):
         speed, corrections = points(solution, name, bounds)
         print(f"    1 impact, in {name}: {speed:8.0f} per second, {corrections:.1f} corrections each")
+    print("The same with compliant stops, beside rigid ones with as many impacts:")
+    for count in (1, 4):
+        for k_stop in (1e2, 1e4):
+            system = PAPER.replace(b=4.0, R=None, k_stop=k_stop, c_stop=0.14 * k_stop**0.5)
+            pressed = vs.periodic_orbit(system, itinerary="R")._solution.repeated(count)
+            speed, _ = points(pressed)
+            share = f"{speed * times[count]:.2f} of the rigid ones"
+            print(f"  {count:3d} contacts, k_stop = {k_stop:g}, in b: {speed:8.0f} per second, {share}")
 
 
 if __name__ == "__main__":
