@@ -8,13 +8,13 @@ import sys
 
 import pytest
 from support import slow_cases
-from support.compliant_contacts import FIELDS, compared, error_of_sections, line, table
+from support.compliant_contacts import FIELDS, compared, drawn, error_of_sections, line, table
 
 COUNT = 1000
 LEAST = 10.0  # errors allowed, in units of what rounding the data does
-# Oscillators with larger ones, of the first 128: a mass that comes back to its stop at once, with a low speed, over the
-# end of a cell. The state there has the gap to an ulp of the place of the stop, and not of the height of the flight.
-SHORT_FLIGHTS = (0, 25, 34, 62, 77, 85, 90, 98, 111, 113, 126)
+# Oscillators with larger ones: what presses the mass on is for long a small difference of large forces.
+PRESSED_LITTLE = (93, 126)
+FEW_MASSES = [seed for seed in range(18) if drawn(seed)[0].masses <= 2]  # others need kernels of no other fast test
 
 
 def hold(reports):
@@ -24,11 +24,10 @@ def hold(reports):
 
 
 def test_contacts_of_one_mass_and_of_two():
-    """Those of more masses need kernels that no other fast test compiles."""
-    hold([compared(seed) for seed in (12, 17, 31, 32, 33, 35)])
+    hold([compared(seed) for seed in FEW_MASSES])
 
 
-@pytest.mark.parametrize("seeds", [(12, 17, 31, 33), *slow_cases(range(60))])
+@pytest.mark.parametrize("seeds", [FEW_MASSES, *slow_cases(range(60))])
 def test_sections_of_sweeps(seeds):
     """Of eight orbits side by side, over six periods."""
     errors = [error for error in map(error_of_sections, seeds) if error is not None]
@@ -36,17 +35,10 @@ def test_sections_of_sweeps(seeds):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [seed for seed in range(60) if seed not in SHORT_FLIGHTS])
+@pytest.mark.parametrize("seed", range(60))
 def test_contacts_of_sixty_oscillators(seed):
     report = compared(seed)
     assert not report["defect"] and max(report["errors"].values()) <= LEAST
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", [seed for seed in SHORT_FLIGHTS if seed < 60])
-def test_short_flights_have_the_contacts_but_fewer_digits(seed):
-    report = compared(seed)
-    assert not report["defect"] and LEAST < max(report["errors"].values()) < 1e3
 
 
 @pytest.mark.soak
@@ -54,7 +46,7 @@ def test_contacts_of_a_thousand_oscillators(capsys):
     reports = [compared(seed) for seed in range(COUNT)]
     with capsys.disabled():
         print("\n" + "\n".join(table(reports)))
-    hold([one for one in reports if one["seed"] not in SHORT_FLIGHTS])
+    hold([one for one in reports if one["seed"] not in PRESSED_LITTLE])
 
 
 if __name__ == "__main__":

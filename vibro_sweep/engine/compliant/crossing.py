@@ -99,8 +99,9 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
                     continue
         elif side != 0.0 and leaving == 0.0:
             order = meet(law, f, stops, o, records, t, k, s, side, hit != 0.0, released)
-            if order == 0:
+            if order <= 0:
                 hit, released = 0.0, False
+                leaving, order = side if order < 0 else 0.0, 1
                 continue
         hit, leaving, released = 0.0, 0.0, False
         d, side = next_touch(q, contact, o, stops, side, order, reach, left)
@@ -139,8 +140,8 @@ def place_of(contact, o, stops):
 
 @jit
 def meet(law, f, stops, o, records, t, k, s, side, hit, released):
-    """The mass is at a compliant stop, or starts inside: contact begins, or a rest on its preload (0); or the order of
-    the zero with which the mass leaves it."""
+    """The mass is at a compliant stop, or starts inside: contact begins, or a rest on its preload (0); or it starts by
+    leaving a stop that relaxes (-1); or the order of the zero with which the mass leaves it."""
     contact, n, X, c1 = law.orbits[o.lane], lane_of(side), o.X, o.c[0]
     speed, inside, p = side * X[1], delta_of(o, stops, side), contact.preload[n]
     relative, unrelaxed = speed - speed_of_stop(contact, n), contact.relaxed[n] > 0.0
@@ -148,7 +149,7 @@ def meet(law, f, stops, o, records, t, k, s, side, hit, released):
         if leaves_by_force(contact, side) and contact.stiffness[n] * inside + contact.damping[n] * speed + p < 0.0:
             contact.relaxed[n] = contact.left[n] = inside
             contact.cell[n], contact.offset[n] = o.period * o.cells + k, s
-            return 1
+            return -1
         contact.relaxed[n] = 0.0
         begin_contact(law, f, stops, o, t, k, s, side, False)
         return 0
