@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 _UNITS = {"t": "s", "xdot": "m s-1", "x": "m", "v": "m s-1"}  # in SI, of fields that begin so
 SAMPLES = 400  # of a picture, in a forcing period
-IN_CONTACT = 65  # in a contact, besides
+IN_CONTACT = 65  # in a contact, besides; the first and the last one
+EDGE = 1e-6  # of its length within it: at the touch itself rounding says on which side of the stop the mass is
 
 
 def dataset_of(orbit: Any, times: np.ndarray, section: np.ndarray, about: dict[str, Any]) -> "xarray.Dataset":
@@ -108,8 +109,9 @@ def force_figure(
     if not laws:
         raise ArgumentError('kind "contact-force": the stops of this orbit are rigid')
     touched, released = orbit.contacts["t_touch"], np.nan_to_num(orbit.contacts["t_release"], nan=end)
+    inside = touched + (released - touched) * np.linspace(EDGE, 1 - EDGE, IN_CONTACT)[:, None]
     count = max(2, round((end - begin) * q.omega / (2 * np.pi) * SAMPLES))
-    times = np.concatenate([np.linspace(begin, end, count), np.linspace(touched, released, IN_CONTACT).ravel()])
+    times = np.concatenate([np.linspace(begin, end, count), inside.ravel()])
     times = np.unique(times[(times >= begin) & (times <= end)])
     states = orbit.sample(times)
     gap, rate = states[:, 0::2] @ q.normal, states[:, 1::2] @ q.normal
