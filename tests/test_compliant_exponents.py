@@ -14,18 +14,12 @@ from support import compliant_exponents, compliant_sums, slow_cases
 ORBITS, PLANES = 200, 200
 WITHIN = 5  # times the stated error
 MOST = 1e-12  # of a residual; the share of contact, a sum of many, is known to less
-# Of the first 66. A mass bounces on a preloaded stop, each time lower: rounding moves its last touches further than the
-# errors tell.
-SLOW_TOUCHES = (38,)
 
 
 def hold(reports):
     for one in reports:
-        if one.seed in SLOW_TOUCHES:
-            continue
         assert np.all(one.errors <= WITHIN * one.stated), one
         assert np.all(one.multiplier_errors <= WITHIN * one.multipliers_stated), one
-        assert np.all(one.errors < 1e-9), one
 
 
 @pytest.mark.parametrize("seed", [0, 1])
@@ -41,7 +35,7 @@ def test_exponents_of_sixty_orbits(capsys):
     with capsys.disabled():
         print("\n" + "\n".join(compliant_exponents.table(reports)))
     hold(reports)
-    assert sum(one.period > 0 for one in reports) >= 60
+    assert sum(one.period > 0 and one.stated.max() < 1e-9 for one in reports) >= 50
 
 
 @pytest.mark.soak
