@@ -26,9 +26,13 @@ class Contents:
     def __contains__(self, name: str) -> bool:
         return name in self.names
 
+    @cached_property
+    def _dimensions(self) -> dict[str, list[str]]:
+        return dimensions_of(self._file)
+
     def dims(self, name: str) -> list[str]:
         """Names of the dimensions of a quantity."""
-        return dimensions_of(self._file, name)
+        return self._dimensions[name]
 
     @cached_property
     def sizes(self) -> dict[str, int]:

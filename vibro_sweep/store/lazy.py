@@ -9,7 +9,7 @@ import xarray
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
-from vibro_sweep.store.attributes import attributes, quantities_of
+from vibro_sweep.store.attributes import attributes
 from vibro_sweep.store.opening import axes_of, dimensions_of, following_of
 
 
@@ -47,9 +47,10 @@ class _Close:
 
 def dataset_of(file: h5py.File) -> xarray.Dataset:
     """Closing it closes the file."""
+    dimensions = dimensions_of(file)
     coordinates = {name: _variable([name], file[name]) for name in axes_of(file)}
     coordinates |= {name: _variable(along, file[name]) for name, along in following_of(file).items()}
-    quantities = {name: _variable(dimensions_of(file, name), file[name]) for name in quantities_of(file)}
+    quantities = {name: _variable(along, file[name]) for name, along in dimensions.items()}
     result = xarray.Dataset(quantities, coordinates, attributes(file))
     result.set_close(_Close(file))
     return result

@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import itertools
 import json
 import tempfile
 from collections.abc import Collection, Iterator
@@ -185,13 +186,17 @@ def _check(file: h5py.File) -> None:
     shape, sweep = file["status"].shape, tuple(len(file[name]) for name in axes)
     if shape[: len(sweep)] != sweep or len(shape) - len(sweep) not in (0, 1):
         raise ValueError("its datasets do not fit together: `status` and the sweep")
-    for name in quantities_of(file):
-        if file[name].dtype.kind not in "if" or file[name].shape[: len(shape)] != shape:
+    extents = {}  # of the axes that are checked
+    for name, dimensions in dimensions_of(file).items():
+        dataset = file[name]
+        if dataset.dtype.kind not in "if" or dataset.shape[: len(shape)] != shape:
             raise ValueError(f"its datasets do not fit together: `status` and `{name}`")
-        check_own_dimensions(name, file[name].ndim - len(shape))
-        for axis, extent in zip(dimensions_of(file, name), file[name].shape, strict=True):
-            check_dataset(file, axis)
-            if file[axis].shape != (extent,):
+        check_own_dimensions(name, dataset.ndim - len(shape))
+        for axis, extent in zip(dimensions, dataset.shape, strict=True):
+            if axis not in extents:
+                check_dataset(file, axis)
+                extents[axis] = file[axis].shape
+            if extents[axis] != (extent,):
                 raise ValueError(f"its datasets do not fit together: `{name}` and its axis `{axis}`")
     for name in text(file, "coordinates").split() if "coordinates" in file.attrs else []:
         check_dataset(file, name)
@@ -203,26 +208,36 @@ def _check(file: h5py.File) -> None:
             raise ValueError(f"the axis `{name}` holds no numbers")
 
 
-def dimensions_of(file: h5py.File, name: str) -> list[str]:
-    """Names of a dataset's dimensions: those of the sweep, `start` if there is one, its own by their scales."""
+def dimensions_of(file: h5py.File) -> dict[str, list[str]]:
+    """Names of each quantity's dimensions: those of the sweep, `start` if there is one, its own by their scales."""
+    lead = _lead_of(file)
+    return {name: [*lead, *_scales_of(file[name], len(lead))] for name in quantities_of(file)}
+
+
+def _lead_of(file: h5py.File) -> list[str]:
+    """Names of the dimensions of `status`, with which those of all quantities begin; none of branches and windows."""
     if is_flat(file):
-        return [dimension[0].name.removeprefix("/") for dimension in file[name].dims]
+        return []
     lead = texts(file, "sweep_dimensions")
-    lead += ["start"] * (file["status"].ndim - len(lead))
-    return [*lead, *(dimension[0].name.removeprefix("/") for dimension in list(file[name].dims)[len(lead) :])]
+    return [*lead, *["start"] * (file["status"].ndim - len(lead))]
+
+
+def _scales_of(dataset: h5py.Dataset, first: int = 0) -> list[str]:
+    """Names of its dimensions from this one on."""
+    return [dataset.dims[i][0].name.removeprefix("/") for i in range(first, dataset.ndim)]
 
 
 def axes_of(file: h5py.File) -> list[str]:
     """All dimensions of a file that have coordinates: none of branches or windows."""
     if is_flat(file):
         return []
-    return list(dict.fromkeys(axis for name in quantities_of(file) for axis in dimensions_of(file, name)))
+    return list(dict.fromkeys(itertools.chain(*dimensions_of(file).values())))
 
 
 def following_of(file: h5py.File) -> dict[str, list[str]]:
     """The coordinates that follow from the axes (b_star, tau), in a file that has any, and over which axes they are."""
     names = text(file, "coordinates").split() if "coordinates" in file.attrs else []
-    return {name: [dimension[0].name.removeprefix("/") for dimension in file[name].dims] for name in names}
+    return {name: _scales_of(file[name]) for name in names}
 
 
 def is_dataset(file: h5py.File, name: str) -> bool:
