@@ -93,7 +93,6 @@ def plot(
             if value is not None:
                 raise PlotError(f"{name}: of an orbit `width` and `kind` are the only options; the Figure has more")
         return data.plot(width=width, kind=kind)
-    data = _data("data", data)
     check_type("kind", kind, (str, NoneType), "the name of a kind of picture, or None")
     check_type("variable", variable, (str, NoneType), "the name of a variable, or None")
     check_type("at", at, (Mapping, NoneType), "a mapping from names of swept numbers to values, or None")
@@ -110,6 +109,7 @@ def plot(
         raise PlotError(not_allowed("dpi", dpi, "a number of pixels an inch"))
     beside = [None if given is None else _data(name, given) for name, given in (("windows", windows), ("over", over))]
     options = PlotOptions(chosen, variable, *limits, number_of(dpi), *beside, checked_flag("relative", relative), width)
+    data = _data("data", data)  # last: the Dataset of a branch takes longer than all checks
     inputs = [Path(one) for one in (data, *beside) if isinstance(one, (str, Path))]
     place = None if output is None else file_to_write("output", output)
     if place is not None:

@@ -80,7 +80,7 @@ class FileResult(Result):
         """`vibro_sweep.plot` of it, with the same options."""
         from vibro_sweep.plotting.front import plot
 
-        return plot(self.to_xarray(), **options)
+        return plot(self, **options)
 
     def save(self, path: str | Path) -> Path:
         """Write its HDF5 file, for `vibro_sweep.load` and `vibro_sweep.open`.
