@@ -106,6 +106,7 @@ def test_picture(tmp_path):
         vs.periodic_orbit(PAPER.replace(b=9.0), guess=[(0.0, 1, 3.0), (0.1, 1, 1e9)]).plot()
 
 
+@pytest.mark.slow
 def test_two_impacts_in_501_periods_pass_the_stops():
     """Thousands of solutions do, which a look at one period shows."""
     assert vs.periodic_orbit(PAPER.replace(b=3.0), itinerary="LR", periods=501).status == "inadmissible"

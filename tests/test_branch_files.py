@@ -150,6 +150,7 @@ def test_scenes_of_sweeps_and_of_branches_are_told_apart():
         parse_continuation(f"system: {NUMBERS}\norbit: {{transient: 1, record: 1}}\n")
 
 
+@pytest.mark.slow
 def test_commands(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "lr.yaml").write_text(text(more="depth: 0"))

@@ -72,6 +72,7 @@ def test_largest_belongs_to_sweeps(begin, words):
         scene(begin, 5, 7)
 
 
+@pytest.mark.slow
 def test_a_range_beside_the_orbits_of_the_sweep(few, tmp_path):  # noqa: F811
     """The window of period 13 begins at 6.59468; its first orbit in the sweep is at 6.596, outside of the range."""
     run_continuation(scene(f"{{sweep: {few}}}", 6.59, 6.595), tmp_path / "b.h5")
@@ -81,6 +82,7 @@ def test_a_range_beside_the_orbits_of_the_sweep(few, tmp_path):  # noqa: F811
         assert float(data["b"].max()) == 6.595
 
 
+@pytest.mark.slow
 def test_the_row_of_a_plane(tmp_path):
     axes = {"omega": [0.62, 0.63], "b": [6.8, 7.8, 8.8]}
     vs.sweep(SYSTEM, axes, transient=300, record=20, output=tmp_path / "plane.h5", workers=1)
@@ -101,6 +103,7 @@ def test_the_row_of_a_plane(tmp_path):
         run_continuation(scene(begin, 5, 9, numbers=NUMBERS.replace("0.63", "0.64")), tmp_path / "no.h5")
 
 
+@pytest.mark.slow
 def test_the_numbers_of_the_oscillator_are_those_of_the_special_point(few, tmp_path):  # noqa: F811
     """A branch in omega has the b of the special point, not that of the scene; so does one from that branch."""
     run_continuation(scene(f"{{sweep: {few}}}", 6.5, 6.7), tmp_path / "b.h5")

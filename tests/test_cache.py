@@ -104,12 +104,14 @@ def test_a_full_disk(program, small_disk):
     assert hits == 0 and len(told) == 1 and str(small_disk) in told[0] and "No space left on device" in told[0]
 
 
+@pytest.mark.slow
 def test_a_folder_that_cannot_be(program, tmp_path):
     (tmp_path / "file").write_text("")
     hits, told = program(NUMBA_CACHE_DIR=str(tmp_path / "file"))
     assert hits == 0 and len(told) == 1 and str(tmp_path / "file") in told[0]
 
 
+@pytest.mark.slow
 def test_no_home(program, tmp_path, monkeypatch):
     """No HOME and nobody of this number: no folder `~` in the current one."""
     (tmp_path / "sitecustomize.py").write_text("import os\nos.path.expanduser = lambda path: path\n")
@@ -119,6 +121,7 @@ def test_no_home(program, tmp_path, monkeypatch):
     assert {path.name for path in tmp_path.iterdir()} - before <= {"__pycache__"}
 
 
+@pytest.mark.slow
 def test_a_relative_cache_home_is_ignored(program, tmp_path):
     before = {path.name for path in tmp_path.iterdir()}
     hits, told = program(NUMBA_CACHE_DIR=None, XDG_CACHE_HOME="relative", HOME=str(tmp_path / "home"))

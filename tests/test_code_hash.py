@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from support import slow_cases
 
 import vibro_sweep
 from vibro_sweep import code_hash
@@ -112,6 +113,7 @@ def imported(name):
     return found
 
 
+@pytest.mark.slow
 def test_the_compiled_kernels_are_those_of_the_engine_alone(tmp_path):
     """An edited message compiles nothing anew: the folder is named by the engine's sources."""
     home = tmp_path / "vibro_sweep"
@@ -133,7 +135,7 @@ def test_the_compiled_kernels_are_those_of_the_engine_alone(tmp_path):
     assert folder() != jit.source_hash()
 
 
-@pytest.mark.parametrize("setting", ["NUMBA_CPU_FEATURES=+avx2", "OPENBLAS_CORETYPE=Prescott"])
+@pytest.mark.parametrize("setting", ["NUMBA_CPU_FEATURES=+avx2", *slow_cases("OPENBLAS_CORETYPE=Prescott")])
 def test_processors_that_round_otherwise_have_other_identities(setting):
     """One without fused multiply-adds, one for which BLAS adds in another order; told by a setting."""
     code = "from vibro_sweep.code_hash import code_hash; print(code_hash())"

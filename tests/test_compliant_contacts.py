@@ -7,7 +7,6 @@ tests/data/compliant_contacts.log is what it printed.
 import sys
 
 import pytest
-from support import slow_cases
 from support.compliant_contacts import FIELDS, compared, drawn, error_of_sections, line, table
 
 COUNT = 1000
@@ -24,11 +23,13 @@ def hold(reports):
     assert sum(one["compared"] for one in reports) > 5 * len(reports)
 
 
+@pytest.mark.slow
 def test_contacts_of_one_mass_and_of_two():
     hold([compared(seed) for seed in FEW_MASSES])
 
 
-@pytest.mark.parametrize("seeds", [FEW_MASSES, *slow_cases(range(60))])
+@pytest.mark.slow
+@pytest.mark.parametrize("seeds", [FEW_MASSES, range(60)])
 def test_sections_of_sweeps(seeds):
     """Of eight orbits side by side, over six periods."""
     errors = [error for error in map(error_of_sections, seeds) if error is not None]

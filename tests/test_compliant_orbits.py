@@ -41,8 +41,8 @@ def in_thirty_digits(orbit):
     [
         (paper(4, 1e4), "R"),
         (paper(2, 1e2, preload=0.5), "LR"),
-        (one_mass(omega=0.75, preload=0.05), "R"),
         *slow_cases(
+            (one_mass(omega=0.75, preload=0.05), "R"),
             (paper(2, 1e6), "LR"),
             (paper(5, 1e3, z=0.5), "R"),
             (vs.System(**PAPER, b=4, k_stop=1e4, c_stop=3, k_stop_left=50, preload_left=0.1), "LR"),
@@ -84,6 +84,7 @@ def test_a_branch_in_the_stiffness_reaches_the_rigid_orbit():
     assert np.abs(np.sort_complex(end.multipliers) - np.sort_complex(rigid.multipliers)).max() < 1e-3
 
 
+@pytest.mark.slow
 def test_special_points_of_a_branch_are_where_the_multipliers_of_the_reference_are():
     orbit = vs.periodic_orbit(one_mass(), itinerary="R")
     branch = vs.continue_orbit(orbit, "omega", (0.3, 3))
@@ -116,6 +117,10 @@ def test_branches_go_on_over_grazes_flips_and_pitchforks():
     found = vs.follow_branches(vs.periodic_orbit(paper(4, 1e4), itinerary="R"), "b", (1, 8), depth=2)
     assert all(one.branch.ok for one in found)
     assert {"", "R", "LR"} <= {one.branch.begins.orbit.itinerary for one in found}
+
+
+@pytest.mark.slow
+def test_a_branch_that_a_flip_begins():
     doubled = vs.follow_branches(vs.periodic_orbit(one_mass(), itinerary="R"), "omega", (0.3, 3))
     assert any(one.special is not None and one.special.type == "flip" for one in doubled)
 

@@ -111,6 +111,7 @@ def fitted_order(order, change):
     return np.polyfit(np.log(depths), np.log([change(depth) for depth in depths]), 1)[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order, stop", ORDERS)
 def test_order_of_what_a_grazing_touch_does(order, stop):
     """What a touch does to the state after it, by how far the mass would have gone beyond the stop without it."""
@@ -215,6 +216,7 @@ def test_what_a_sweep_observes_is_what_an_orbit_has():
         assert 0 < float(data.contact_time[i]) < 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", [0, 1])
 def test_a_rest_on_a_preload_ends_by_being_pressed_in(place):
     """The first contact after it, against an integration from where the force of rest is the preload."""
@@ -281,6 +283,7 @@ def test_a_start_inside_a_stop_is_in_contact():
     assert orbit.contacts["t_touch"][0] == 0 and orbit.contacts["max_penetration"][0] >= 0.5
 
 
+@pytest.mark.slow
 def test_a_start_inside_a_stop_may_leave_it_at_once():
     """By force, and sooner than the stop relaxes."""
     stop = dict(k_stop=125, c_stop=1, preload=0.05, release="force")
@@ -291,6 +294,7 @@ def test_a_start_inside_a_stop_may_leave_it_at_once():
         assert orbit.contacts[name][0] == pytest.approx(float(getattr(exact.contacts[0], name)), rel=1e-13), name
 
 
+@pytest.mark.slow
 def test_rest_on_a_preloaded_stop():
     """A mass that is pressed on with less than the preload stays, held by the force itself."""
     system = one_mass(k=0, zeta=0, F=0.2, constant=0.3, omega=1, b=1, stops="right", tau=0.0, k_stop=50, preload=1)
@@ -410,6 +414,7 @@ def test_trajectories_and_samples_go_on_from_a_contact_or_a_relaxing_stop(releas
     assert np.abs(np.diff(fine[:, 0])).max() < 1.1 * np.abs(fine[:, 1]).max() * T / 200
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("release, c_stop", [("force", 1.0), ("force", 4.0), ("displacement", 1.0)])
 def test_volumes_through_stops_that_relax(release, c_stop):
     """The sum of the exponents over a period is the logarithm of the determinant of differences in eighty digits."""

@@ -32,7 +32,7 @@ def shell(command):
     return subprocess.run(["bash", "-c", text], capture_output=True, text=True, timeout=LIMIT, check=False)
 
 
-@pytest.mark.parametrize("closed", ["2>&-", ">&- 2>&- <&-", *slow_cases(">&-", "<&-")])
+@pytest.mark.parametrize("closed", [">&- 2>&- <&-", *slow_cases("2>&-", ">&-", "<&-")])
 def test_closed_streams(folder, closed):
     """And no message of a library can reach the data file by the number of a closed stream."""
     done = shell(f"vibro-sweep run good.yaml {closed}")
@@ -56,6 +56,7 @@ def test_a_reader_that_has_read_enough(folder):
     assert done.stdout.splitlines() == ["{", "0"] and done.stderr == ""
 
 
+@pytest.mark.slow
 def test_ctrl_c_twice(folder):
     (folder / "long.yaml").write_text(SCENE + "orbit: {transient: 1.0e+9, record: 1}\n")
     process = subprocess.Popen([*PROGRAM, "run", "long.yaml"], stderr=subprocess.PIPE, text=True)
@@ -115,8 +116,13 @@ ADVICE = "; to continue: vibro-sweep run good.yaml -o good.h5 --resume"
     [
         ("typer", ""),
         ("numba", ADVICE),
-        ("a destructor", ADVICE),
-        *slow_cases(("yaml", ADVICE), ("h5py", ADVICE), ("vibro_sweep.driver.progress", ADVICE), ("a handler", ADVICE)),
+        *slow_cases(
+            ("a destructor", ADVICE),
+            ("yaml", ADVICE),
+            ("h5py", ADVICE),
+            ("vibro_sweep.driver.progress", ADVICE),
+            ("a handler", ADVICE),
+        ),
     ],
 )
 def test_ctrl_c_is_never_lost(folder, where, advice):
@@ -226,6 +232,7 @@ def test_workers_that_cannot_be(folder, capsys, workers):
     assert [path.name for path in folder.iterdir()] == ["good.yaml"]
 
 
+@pytest.mark.slow
 def test_a_scene_whose_name_is_no_text(folder):
     os.rename(b"good.yaml", b"\xff\xfe.yaml")
     done = subprocess.run([*PROGRAM, "run", os.fsdecode(b"\xff\xfe.yaml")], capture_output=True, check=False)

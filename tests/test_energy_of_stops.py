@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from mpmath import mpf
 from reference import compliant
+from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.model.state import state
@@ -37,7 +38,7 @@ def observed(system, start, transient, record, **more):
     )
 
 
-MASSES = [1, 2, pytest.param(3, marks=pytest.mark.slow)]
+MASSES = [1, *slow_cases(2, 3)]
 
 
 @pytest.mark.parametrize("law", LAWS)

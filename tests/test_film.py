@@ -44,7 +44,7 @@ def test_files(data, tmp_path, few, suffix):
         return
     place = tmp_path / f"film{suffix}"
     for _ in "twice":
-        vs.plot(data, output=place)
+        vs.plot(data, at={"b": 4.0}, dpi=60, output=place)
     if suffix == ".gif":
         with Image.open(place) as moving:
             assert moving.n_frames == 5 and moving.size[0] > 400

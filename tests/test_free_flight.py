@@ -20,7 +20,7 @@ SYSTEMS = {
     "undamped": dict(**naive.PAPER | {"zeta": 0.0, "omega": 1.7}, tau=1.0, b=1.0),
     "stiff": dict(**naive.PAPER | {"mu_k": 1e9, "zeta": 0.0}, tau=1.0, b=1.0),
 }
-KINDS = ["paper", "overdamped", *slow_cases("two forces", "undamped", "stiff")]
+KINDS = ["paper", *slow_cases("overdamped", "two forces", "undamped", "stiff")]
 
 
 class Exact:

@@ -123,6 +123,7 @@ def test_the_comparison_sees(one, change):
     assert len(branches.compared(record, changed, branch, rng)) > 0
 
 
+@pytest.mark.slow
 def test_the_comparison_sees_what_a_curve_lost():
     record = files.read("curves")[FEW["curves"][0]]
     made = curves.traced(record)

@@ -14,7 +14,7 @@ from support.scenes import arrays_of, assert_same_bits
 import vibro_sweep as vs
 from vibro_sweep import store
 from vibro_sweep.cli.commands import main
-from vibro_sweep.store import StoreError, describe
+from vibro_sweep.store import StoreError
 
 # Readers write nothing
 
@@ -158,25 +158,3 @@ def test_without_fcntl(folder):
 
 
 # Standard output
-
-
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="a device that is always full")
-@pytest.mark.parametrize(
-    "arguments", [["run", "scene.yaml", "-o", "out.h5"], *slow_cases(["info", "x.h5"], ["schema"])]
-)
-def test_standard_output_on_a_full_disk(folder, arguments):
-    with open("/dev/full", "w") as full:
-        done = subprocess.run(
-            [sys.executable, "-m", "vibro_sweep", *arguments],
-            stdout=full,
-            stderr=subprocess.PIPE,
-            text=True,
-            check=False,
-        )
-    assert done.returncode == 2
-    told = [
-        line for line in done.stderr.splitlines() if not line.startswith("vibro-sweep: compil")
-    ]  # it may be the first to run
-    assert told == ["vibro-sweep: error: the standard output: No space left on device"]
-    if arguments[0] == "run":
-        assert "12 of 12" in describe("out.h5")

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from support import path_with, slow_cases
+from support import path_with
 
 from vibro_sweep import code_hash
 from vibro_sweep.driver import blocks, compute
@@ -64,8 +64,9 @@ def test_a_compilation_within_another_one_leaves_it_lean():
     assert PostProcessor.run is own
 
 
+@pytest.mark.slow
 @known
-@pytest.mark.parametrize("change, outcome", [("", "yes"), *slow_cases((BROKEN, "no"))])
+@pytest.mark.parametrize("change, outcome", [("", "yes"), (BROKEN, "no")])
 def test_a_small_kernel_tells_whether_numba_is_as_expected_inside(change, outcome, tmp_path):
     def start():
         program = change + "from vibro_sweep.engine.simd import jit; print(jit.AS_ONE)"

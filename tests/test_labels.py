@@ -95,7 +95,7 @@ def test_numbers_lie_in_their_regions_of_many_planes(tmp_path):
 def test_ticks_of_a_colour_bar():
     """Of bars with arrows at their ends, which take a part of their place: 0 is kept, and what else has room."""
     thinned = 0
-    for width in np.linspace(2, 7, 16):
+    for width in np.linspace(2, 7, 8):
         fig = Figure(figsize=(width, 2), layout="constrained")
         ax = fig.subplots()
         image = ax.pcolorfast(np.zeros((3, 3)), vmin=-0.035, vmax=0.035)
@@ -106,7 +106,7 @@ def test_ticks_of_a_colour_bar():
         told = [label.get_text() for label in bar.ax.get_xticklabels()]
         assert not overlaps(bar.ax.get_xticklabels()) and 3 <= len(told) <= 7 and "0.00" in told
         thinned += len(told) < 7
-    assert 4 < thinned < 14
+    assert 2 < thinned < 7
 
 
 def test_a_colour_bar_keeps_the_power_of_ten_of_its_ticks():
@@ -133,9 +133,9 @@ def test_small_numbers_have_room_in_a_narrow_panel():
 
 
 def test_names_cover_neither_each_other_nor_marks():
-    """8 random crowds of marks."""
+    """4 random crowds of marks."""
     rng, named, left_out = np.random.default_rng(0), 0, 0
-    for _ in range(8):
+    for _ in range(4):
         fig = Figure(figsize=rng.uniform(2, 5, 2), layout="constrained")
         ax = fig.subplots()
         places = rng.normal(size=(rng.integers(5, 150), 2)) * rng.choice([0.1, 1], (1, 2))
@@ -155,7 +155,7 @@ def test_names_cover_neither_each_other_nor_marks():
             assert ax.bbox.x0 - 1 <= box.x0 and box.x1 <= ax.bbox.x1 + 1
             assert not (box.x0 < corner[1, 0] - 1 and box.y0 < corner[1, 1] - 1)
         named, left_out = named + len(texts), left_out + len(places) - len(texts)
-    assert named > 200 and left_out > 50
+    assert named > 100 and left_out > 25
 
 
 def test_a_legend_is_no_wider_than_the_page():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from support import slow_cases
 from support.oscillators import PAPER
 
 from vibro_sweep.analysis.periodic.motion_between import multipliers_of
@@ -28,7 +29,7 @@ def exact(B, R, t, motion):
 
 
 @pytest.mark.parametrize("fastest", [0.3, 300.0])  # acceleration before an impact: the shear is small, or large
-@pytest.mark.parametrize("R", [0.8, 0.3, 0.1, 1e-3])
+@pytest.mark.parametrize("R", [0.8, 1e-3, *slow_cases(0.3, 0.1)])
 def test_each_multiplier_keeps_its_digits(R, fastest):
     """Also where restitution and shear stretch little at one impact, and much at sixteen."""
     rng, f = np.random.default_rng(1), flow(PAPER.family.linear)

@@ -4,6 +4,7 @@ import pytest
 from mpmath import mp, mpf
 from reference import monodromy, naive
 from reference.gmp import expm
+from support import slow_cases
 
 PAPER = {**naive.PAPER, "b": 6.6, "tau": 2.2}
 START = (1.0, 0.5, -0.3, 0.2)
@@ -60,13 +61,14 @@ def test_grazing_of_the_paper():
     assert mp.nstr(tau, 13) == "2.229306509033"
 
 
-@pytest.mark.parametrize("changes", [{}, {"zeta": 1.5, "f2": 0.7, "mu_m": 0.5}])
+@pytest.mark.parametrize("changes", [{}, *slow_cases({"zeta": 1.5, "f2": 0.7, "mu_m": 0.5})])
 def test_free_flight_as_an_ode_solver_has_it(changes):
     params = {**PAPER, **changes, "b": 100, "omega": 2.0}
     section = naive.simulate(params, START, periods=1, start_time=mp.pi).section
     assert distance(section[1], solve(equations(params)[0], mp.pi, START, 2 * mp.pi)) < mpf("1e-22")
 
 
+@pytest.mark.slow
 def test_impacts_as_an_ode_solver_has_them():
     params = {**PAPER, "b": 1.5, "f2": 0.2}
     orbit = naive.simulate(params, START, impacts=4)

@@ -40,6 +40,7 @@ def test_a_hundred_thousand_flights(masses, capsys):
     assert rows[..., 1:3].sum() == 0
 
 
+@pytest.mark.slow
 def test_the_judge_sees_a_stop_that_is_moved():
     """By 10^-12 of the clearance: outwards contacts are missed, inwards they are invented."""
     missed = judge(3, 1, 1000, default_rng(1), moved=1e-12)

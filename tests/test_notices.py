@@ -6,6 +6,7 @@ import sys
 from types import SimpleNamespace
 
 import pytest
+from support import slow_cases
 
 from vibro_sweep.driver import notebook_bar, progress
 
@@ -35,9 +36,11 @@ def told(tmp_path, program: str) -> str:
     "before, expected",
     [
         ("", f"vibro_sweep: {MESSAGE}vibro_sweep: warning: beware\n"),
-        ("logging.getLogger('vibro_sweep').setLevel(logging.WARNING)", "vibro_sweep: warning: beware\n"),
-        ("logging.getLogger('vibro_sweep').setLevel(logging.CRITICAL)", ""),
-        ("logging.getLogger('vibro_sweep').addHandler(logging.NullHandler())", ""),
+        *slow_cases(
+            ("logging.getLogger('vibro_sweep').setLevel(logging.WARNING)", "vibro_sweep: warning: beware\n"),
+            ("logging.getLogger('vibro_sweep').setLevel(logging.CRITICAL)", ""),
+            ("logging.getLogger('vibro_sweep').addHandler(logging.NullHandler())", ""),
+        ),
         ("logging.basicConfig(format='of mine: %(message)s')", f"of mine: {MESSAGE}of mine: beware\n"),
     ],
 )

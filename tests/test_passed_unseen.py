@@ -40,6 +40,7 @@ def beside_fold():
     return [*branches, vs.continue_orbit(fold.orbit, "b", bounds)]
 
 
+@pytest.mark.slow
 def test_a_pair_goes_out_where_a_fold_takes_one_in(beside_fold):
     """As many multipliers lie outside before both points as behind them."""
     kinds = ["graze", "flip", "neimark_sacker", "fold", "graze"]
@@ -95,7 +96,7 @@ def crossings(matrices):
     return mu, result
 
 
-@pytest.mark.parametrize("paths", [80, *slow_cases(400)])
+@pytest.mark.parametrize("paths", [20, *slow_cases(400)])
 def test_counts_tell_what_is_missing(paths):
     """On random paths of 4 x 4 matrices: a bifurcation explains the change that it makes, no other one does, nor
     none; what is not explained although nothing was left out are multipliers that meet near the circle, seldom."""

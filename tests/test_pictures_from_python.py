@@ -21,7 +21,7 @@ def drawn(fig):
 
 
 @pytest.mark.parametrize(
-    "kind", ["bifurcation", "history", *slow_cases("lyapunov", "phase-portrait", "configuration", "iteration")]
+    "kind", ["bifurcation", *slow_cases("history", "lyapunov", "phase-portrait", "configuration", "iteration")]
 )
 def test_pictures_of_a_dataset_are_those_of_its_file(tmp_path, kind):
     orders = dict(trajectory={"periods": 2, "samples": 50}, start={"follow": "both"}, observe=["section", "lyapunov"])

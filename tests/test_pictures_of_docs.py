@@ -3,6 +3,7 @@
 import importlib.util
 import re
 
+import pytest
 from support import ROOT
 
 spec = importlib.util.spec_from_file_location("pictures", ROOT / "docs" / "pictures.py")
@@ -18,6 +19,7 @@ def test_it_makes_all_that_are_shown_and_no_others():
     assert {path.name for path in drawn} == set(pictures.PICTURES)
 
 
+@pytest.mark.slow
 def test_it_computes_and_draws(tmp_path, monkeypatch):
     few = tmp_path / "quickstart.yaml"
     few.write_text(pictures.SCENE.read_text().replace("step: 0.002", "step: 0.2"))

@@ -135,6 +135,7 @@ def test_limits_of_a_plane(files):
             assert (ax.get_xlim(), ax.get_ylim()) == ((6.2, 6.8), (0.72, 0.81))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("file", "arguments", "kind", "options"),
     [

@@ -5,7 +5,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from support import ROOT
+from support import ROOT, slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
@@ -108,6 +108,7 @@ def ends(windows) -> list:
     return [(one.lo, one.hi, one.period, one.itinerary) for one in windows]
 
 
+@pytest.mark.slow
 def test_windows_of_a_dataset_are_those_of_its_file(folder, tmp_path):
     expected = ends(vs.windows(folder / "sweep.h5"))
     with vs.open(folder / "sweep.h5") as data:
@@ -154,11 +155,13 @@ def test_what_is_not_a_sweep_has_no_windows(folder):
 
 OPTIONS = [
     ({}, []),
-    ({"xlim": (6.6, 6.8), "ylim": (-1, 1)}, ["--xlim", "6.6", "6.8", "--ylim", "-1", "1"]),
     ({"size": (5, 3), "dpi": 80}, ["--size", "5", "3", "--dpi", "80"]),
-    ({"width": 85, "variable": "v1"}, ["--width", "85", "--variable", "v1"]),
-    ({"windows": "sweep.windows.h5"}, ["--windows", "sweep.windows.h5"]),
     ({"kind": "iteration", "at": {"b": 6.7}}, ["--kind", "iteration", "--at", "b=6.7"]),
+    *slow_cases(
+        ({"xlim": (6.6, 6.8), "ylim": (-1, 1)}, ["--xlim", "6.6", "6.8", "--ylim", "-1", "1"]),
+        ({"width": 85, "variable": "v1"}, ["--width", "85", "--variable", "v1"]),
+        ({"windows": "sweep.windows.h5"}, ["--windows", "sweep.windows.h5"]),
+    ),
 ]
 
 

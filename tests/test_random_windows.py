@@ -38,6 +38,7 @@ def test_the_same_windows_of_all_sweeps(seeds, capsys):
     assert not [line for report in reports for line in report.wrong]
 
 
+@pytest.mark.slow
 def test_a_window_from_its_ends(few):  # noqa: F811
     """Also beside a fold or pitchfork: the run began on their other side, and the window was an unstable stretch."""
     windows = vs.windows(few)

@@ -23,6 +23,7 @@ PAGES = {
 SLOW = (
     "README.md",
     "docs/how/cluster.md",
+    "docs/how/explore.md",
     "docs/development/architecture.md",
 )
 NETWORK = "ip link set lo up\nip addr add dev lo 10.0.0.1\n"  # the address of docs/how/cluster.md

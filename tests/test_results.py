@@ -7,6 +7,7 @@ import sys
 
 import numpy as np
 import pytest
+from support import slow_cases
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.branches.branch import not_followed
@@ -262,7 +263,7 @@ def test_a_sweep_without_windows(tmp_path):
     check_html(windows)
 
 
-@pytest.mark.parametrize("cut", [{"b": slice(6.4, 6.5)}, {"omega": 0.63}])
+@pytest.mark.parametrize("cut", [{"omega": 0.63}, *slow_cases({"b": slice(6.4, 6.5)})])
 def test_windows_of_a_part_of_a_sweep(cut, tmp_path):
     """Of other shape than the sweep; a swept number of which one value is left is that of the windows."""
     axes = {"b": [6.4, 6.45, 6.5, 6.55], "omega": [0.6, 0.63]}

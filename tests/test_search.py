@@ -234,7 +234,7 @@ def hold(reports):
 
 def test_a_few_orbits():
     """The first, and some that once failed: M1 beyond a stop, M2 moved, while chatter is summed up."""
-    reports = [check(n) for n in (*range(4), 1783, 4019, 4025)]
+    reports = [check(n) for n in (*range(2), 1783, 4019, 4025)]
     hold(reports)
     assert max(report.get("beyond", 0.0) for report in reports) > 0  # x1 is not cut off at the stops
 

@@ -8,6 +8,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from support import slow_cases
 from support.drawn_stiff import drawn, positive
 from support.stiff_contacts import Flight, compared, errors_of_first, first_zero, judged, time_in_units
 
@@ -135,9 +136,10 @@ def on_the_other_stop(hits, i):
 @pytest.mark.parametrize(
     "wrong",
     [
-        lambda hits: without(hits, 0), lambda hits: without(hits, 2), lambda hits: without(hits, 5),
-        lambda hits: with_one_more(hits, 2, 1), lambda hits: with_one_more(hits, 2, -1),
-        lambda hits: on_the_other_stop(hits, 2),
+        lambda hits: without(hits, 2), lambda hits: with_one_more(hits, 2, 1), lambda hits: on_the_other_stop(hits, 2),
+        *slow_cases(
+            lambda hits: without(hits, 0), lambda hits: without(hits, 5), lambda hits: with_one_more(hits, 2, -1)
+        ),
     ],
 )  # fmt: skip
 def test_the_comparison_finds_a_missing_and_an_invented_impact(wrong):
@@ -148,7 +150,7 @@ def test_the_comparison_finds_a_missing_and_an_invented_impact(wrong):
     assert "defect" in judged(system, state, wrong(hits), 4, end)
 
 
-@pytest.mark.parametrize(("share", "counts"), [(1e-7, False), (1e-5, True), (1e-3, True)])
+@pytest.mark.parametrize(("share", "counts"), [(1e-7, False), (1e-5, True), *slow_cases((1e-3, True))])
 def test_the_comparison_counts_a_graze_only_where_the_data_decide_it(share, counts):
     """The stiff spring's rounding moves the turning point by 1e-7: the impact there is missed, and invented."""
     k, turning_point = 1e9, 0.85254776635

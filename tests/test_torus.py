@@ -6,6 +6,7 @@ from mpmath import mp
 from reference.normal_forms import SectionMap, jacobian, third_order
 from reference.shooting import Shooting
 from scipy.linalg import expm
+from support import slow_cases
 from support.branches import NUMBERS
 from support.oscillators import PAPER
 
@@ -17,7 +18,7 @@ from vibro_sweep.engine.continuation.problem import TORUS
 from vibro_sweep.engine.impulses.flow import flow
 
 
-@pytest.mark.parametrize("omega", [PAPER.omega, 0.62])
+@pytest.mark.parametrize("omega", [PAPER.omega, *slow_cases(0.62)])
 def test_coefficient_agrees_with_differences_of_the_map_in_50_digits(omega):
     """Of orbits with one impact: there q, of length 1 in the middle of the flight, is v moved back by half of it."""
     orbit = vs.periodic_orbit(PAPER.replace(b=4.2, omega=omega), itinerary="R")

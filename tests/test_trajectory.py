@@ -11,6 +11,7 @@ from vibro_sweep.engine import points
 from vibro_sweep.engine.one_system import points_of
 from vibro_sweep.engine.records import new_results
 from vibro_sweep.engine.trajectory import new_trajectories, run_trajectories
+from vibro_sweep.plotting import PlotOptions
 from vibro_sweep.scene import parse_scene
 
 PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8"
@@ -90,8 +91,8 @@ def test_samples_lie_between_the_stops_without_being_cut_there(orbits):
 def test_an_orbit_of_period_1_shows_one_dot(orbits):
     """Not one for each period, beside each other, as samples that do not meet the sections would."""
     path = orbits[1]
-    fig = plotting.figure(path, "phase-portrait")
-    dots = [line for line in fig.axes[2].lines if line.get_label() == r"$t = 0$ mod $T$"]
+    (ax,) = plotting.figure(path, "phase-portrait", PlotOptions(at={"b": 3})).axes
+    dots = [line for line in ax.lines if line.get_label() == r"$t = 0$ mod $T$"]
     (line,) = dots
     assert len(line.get_xdata()) == 5 and np.ptp(line.get_xydata(), axis=0).max() < 1e-9
     with h5py.File(path) as file:

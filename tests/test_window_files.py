@@ -111,6 +111,7 @@ def test_dask_makes_the_same_file(few, file, tmp_path):  # noqa: F811
     assert numbers(tmp_path / "w.h5") == numbers(file)
 
 
+@pytest.mark.slow
 def test_windows_are_found_without_xarray(few):  # noqa: F811
     """Its import takes as long as all other parts of the program together."""
     code = (
@@ -122,6 +123,7 @@ def test_windows_are_found_without_xarray(few):  # noqa: F811
     assert done.stdout.strip() == "[]"
 
 
+@pytest.mark.slow
 def test_commands(few, tmp_path, monkeypatch, capsys):  # noqa: F811
     monkeypatch.chdir(tmp_path)
     before = few.read_bytes()

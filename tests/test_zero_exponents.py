@@ -45,7 +45,7 @@ def test_without_losses_no_exponent_differs_from_zero():
     assert (exponents == 0.0).all() and np.all(exponents.error < 1e-12)
 
 
-@pytest.mark.parametrize("count", [3, *slow_cases(20), *soak(200)])
+@pytest.mark.parametrize("count", [1, *slow_cases(20), *soak(200)])
 def test_a_ball_at_rest_in_its_cavity_is_one_of_a_family(count, tmp_path):
     """Whatever is observed: period 1, exponent 0, and no window."""
     rng = np.random.default_rng(5)
@@ -147,7 +147,7 @@ def scatter(running, T):
     return np.sqrt(squares / (20 * 19) * (1 + c) / (1 - c))
 
 
-@pytest.mark.parametrize("count", [3, *slow_cases(40), *soak(500)])
+@pytest.mark.parametrize("count", [1, *slow_cases(40), *soak(500)])
 def test_chaos_is_told_from_zero_as_well_as_by_the_scatter_alone(count, capsys):
     """Of orbits whose lambda_1 > 0 is certain from a record 100 times as long."""
     certain = before = after = tried = seed = 0

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 
 import pytest
+from support import slow_cases
 from support.faults import TEXT, counted, failing_run
 from support.scenes import arrays_of, assert_same_bits
 
@@ -54,7 +55,7 @@ def test_disk_full_in_mid_run(small_disk, scene, path, whole):
     assert os.listdir(path.parent) == [path.name]
 
 
-@pytest.mark.parametrize("room", [0, 80_000, 400_000])
+@pytest.mark.parametrize("room", [80_000, *slow_cases(0, 400_000)])
 def test_disk_full_while_the_file_is_made(small_disk, scene, path, whole, capfd, room):
     """After the last block: HDF5 would say that all is well."""
 
@@ -82,7 +83,7 @@ def file_size_limit(size):
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-@pytest.mark.parametrize("size", [1_000, 30_000, 300_000, 800_000])
+@pytest.mark.parametrize("size", [1_000, 800_000, *slow_cases(30_000, 300_000)])
 def test_a_disk_that_takes_no_more(scene, path, whole, size):
     """At every stage: while the part is made, and in its blocks."""
     with file_size_limit(size):

@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+from support import slow_cases
 from support.faults import TEXT, counted
 
 import vibro_sweep as vs
@@ -15,21 +16,21 @@ from vibro_sweep.scene import parse_scene
 from vibro_sweep.store import StoreError, describe
 
 
-def test_two_runs_on_one_file(scene, path, tmp_path):
+@pytest.mark.parametrize("option", [[], *slow_cases(["--resume"], ["--overwrite"])])
+def test_two_runs_on_one_file(scene, path, tmp_path, option):
     """By the command line; HDF5's own locks are not needed."""
     text = tmp_path / "the_scene.yaml"
     text.write_text(TEXT)
     with store.writer(store.sweep_run(scene), path, "new"):
-        for option in ([], ["--resume"], ["--overwrite"]):
-            second = subprocess.run(
-                [sys.executable, "-m", "vibro_sweep", "run", text, "-o", path, *option],
-                capture_output=True,
-                text=True,
-                check=False,
-                env=os.environ | {"HDF5_USE_FILE_LOCKING": "FALSE"},
-            )
-            assert second.returncode == 2
-            assert second.stderr == f"vibro-sweep: error: {path}.part is being written by another run\n"
+        second = subprocess.run(
+            [sys.executable, "-m", "vibro_sweep", "run", text, "-o", path, *option],
+            capture_output=True,
+            text=True,
+            check=False,
+            env=os.environ | {"HDF5_USE_FILE_LOCKING": "FALSE"},
+        )
+        assert second.returncode == 2
+        assert second.stderr == f"vibro-sweep: error: {path}.part is being written by another run\n"
         assert counted(describe(f"{path}.part")) == (0, 400, 0)
     vs.run(scene, path, mode="resume")
     assert counted(describe(path)) == (400, 0, 0)
