@@ -177,7 +177,7 @@ def test_commands(here, file, arguments, kind, options):
         (["--xlim", "1", "b"], ["--xlim: 'b' is not a number"]),
         (["--xlim", "2", "1"], ["xlim: 2 1", "lower one first"]),
         (["--ylim", "nan", "1"], ["ylim: nan 1"]),
-        (["--xlim", "8", "9"], ["xlim", "no b from 8 to 9"]),
+        (["--xlim", "8", "9"], ["xlim", "no b from 8 to 9", "the sweep has b from 6.4 to 6.7"]),
         (["--size", "1", "4"], ["size: 1 4", "2 to 100 inches"]),
         (["--size", "inf", "4"], ["size: inf 4"]),
         (["--dpi", "0"], ["dpi: 0", "10 to 2400"]),
@@ -188,6 +188,22 @@ def test_commands(here, file, arguments, kind, options):
 def test_bad_values(here, tmp_path, capsys, arguments, words):
     refused(capsys, ["plot", here / "sweep.h5", *arguments], *words)
     assert not list(here.glob("*.png")) and not list(tmp_path.iterdir())
+
+
+def test_limits_of_a_frequency_are_said_in_hertz_too(tmp_path):
+    system = vs.Oscillator.named("one_mass", zeta=0.1, F=1, omega=6, R=0.5, b=1, units="SI")
+    data = vs.sweep(system, {"omega": [2 * np.pi, 4 * np.pi]}, transient=2, record=2)
+    with pytest.raises(PlotError, match=r"has omega from 6.28319 to 12.5664 \[rad/s\], which is 1 to 2 Hz"):
+        vs.plot(data, xlim=(1, 2))
+    with pytest.raises(PlotError, match=r"'Hz' is not swept; allowed: omega \[rad/s\]"):
+        vs.plot(data, "iteration", at={"Hz": 1})
+
+
+def test_a_single_orbit_does_not_replace_the_diagram(here, tmp_path):
+    assert main(["plot", str(here / "sweep.h5")]) == 0
+    diagram = Path("sweep.png").read_bytes()
+    assert main(["plot", str(here / "sweep.h5"), "--at", "b=6.6", "--kind", "poincare"]) == 0
+    assert Path("sweep.png").read_bytes() == diagram and Path("sweep-poincare.png").exists()
 
 
 def test_a_single_point_has_no_sweep_to_choose_from(files):

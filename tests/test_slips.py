@@ -73,6 +73,27 @@ SCENES = {
         physical(numbers=PHYSICAL.replace("Omega: 0.63", "f: 4.5")),
         ["physical.f = 4.5", "if it is in Hz write Omega: 28.27433388"],
     ),
+    "a frequency in Hz beyond all floats": (
+        physical(numbers=PHYSICAL.replace("Omega: 0.63", "f: 1" + 400 * "0")),
+        ["physical.f", "write Omega: inf"],
+    ),
+    "Hz swept in SI": (
+        f"system: {{type: chain, m: [1], k: [1, 0], force: [1], R: 1, b: 1, units: SI}}\n{ORBIT}\n"
+        "sweep: {Hz: {start: 20, stop: 30, num: 3}}",
+        ["sweep.Hz", "omega is swept, in rad/s: 20 Hz is omega = 125.664", "(line 4)"],
+    ),
+    "Hz swept of physical numbers": (
+        physical("sweep: {f: {values: [20]}}"),
+        ["omega is swept, here in units of 0.5 rad/s: 20 Hz is omega = 251.327"],
+    ),
+    "a mass of one_mass": (
+        f"system: {{type: one_mass, m: 2, zeta: 0, F: 1, omega: 1, R: 1, b: 1}}\n{ORBIT}",
+        ["system.m = 2", "the mass of one_mass is 1", "`vibro-sweep new one_mass_si`"],
+    ),
+    "one mass among physical numbers": (
+        physical(numbers=PHYSICAL.replace("M2: 10, ", "")),
+        ["one mass in kg and N/m is a chain of one"],
+    ),
     "gap among physical numbers": (physical(numbers=PHYSICAL.replace("B:", "gap:")), ["did you mean `B`?"]),
     "omega among physical numbers": (physical(numbers=PHYSICAL.replace("Omega", "omega")), ["did you mean `Omega`?"]),
     "Omega swept": (

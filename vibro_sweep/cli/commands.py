@@ -133,7 +133,10 @@ def plot_command(
     ] = None,
     at: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME=VALUE", help="Draw single orbits at this value of the sweep; may be repeated."),
+        typer.Option(
+            metavar="NAME=VALUE",
+            help="Draw single orbits at this value of the sweep, by default into FILE-KIND.png; may be repeated.",
+        ),
     ] = None,
     variable: Annotated[
         str | None,

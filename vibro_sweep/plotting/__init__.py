@@ -121,11 +121,13 @@ def plot(
     """Write pictures of the file; the paths written.
 
     `output` is FILE.png in the current folder unless given; its suffix (one of `SUFFIXES`) is the format. `kind` is
-    one of `kinds` (default: the first) or "all": then each goes to its own file, named FILE-kind.
+    one of `kinds` (default: the first) or "all": then each goes to its own file, named FILE-kind, and so do, by
+    default, pictures of single orbits, which `at` of the options asks for.
     Raises `PlotError` for a file, a kind or an output that will not do, and without `overwrite` for an output that
     exists, unless it is a picture that this function drew and nobody has changed since.
     """
     path = Path(path)
+    named_by_kind = kind == "all" or (output is None and options is not None and bool(options.at))
     output = Path(default_name(path)) if output is None else Path(output)
     kind = check_suffix(output, kind)
     beside = (options.windows, options.over) if options else ()
@@ -136,8 +138,7 @@ def plot(
         return [save(figure(data, kind, options), output, overwrite, inputs)]
     with Result(data, options) as result:
         chosen = _chosen(result, kind)
-        many = kind == "all"
-        places = [output.with_stem(f"{output.stem}-{one}") if many else output for one in chosen]
+        places = [output.with_stem(f"{output.stem}-{one}") if named_by_kind else output for one in chosen]
         for place in places:  # before the work of drawing
             check_output(place, overwrite, inputs)
         return [save(_draw(result, one), place, overwrite, inputs) for one, place in zip(chosen, places, strict=True)]

@@ -145,8 +145,8 @@ def equation(key, value) -> str:
 
 
 def in_formula(value: float, digits: int = 6) -> str:
-    """A number; with a power of ten in place of Python's e+04."""
-    mantissa, e, exponent = f"{value:.{digits}g}".partition("e")
+    """A number of so many digits; with a power of ten, from a million on, in place of Python's e+06."""
+    mantissa, e, exponent = f"{float(f'{value:.{digits}g}'):.6g}".partition("e")
     if not e:
         return mantissa
     factor = mantissa.removesuffix("1") if mantissa in ("1", "-1") else rf"{mantissa} \cdot "

@@ -80,13 +80,12 @@ class Result:
         names = list(self.sweep)
         for key, value in at.items():
             if key not in names:
-                allowed = ", ".join(names) or "nothing, it is one point"
+                allowed = ", ".join(name + self.unit(name) for name in names) or "nothing, it is one point"
                 raise PlotError(f"at: {shown(key)} is not swept; allowed: {allowed}")
             if number_of(value) is None or not np.isfinite(value):
                 raise PlotError(not_allowed(f"at.{key}", value, "a finite number"))
-            least, most = self.sweep[key].min(), self.sweep[key].max()
-            if not least <= value <= most:
-                raise PlotError(f"at: {key} = {value:g} is not allowed; the sweep has {key} from {least:g} to {most:g}")
+            if not self.sweep[key].min() <= value <= self.sweep[key].max():
+                raise PlotError(f"at: {key} = {value:g} is not allowed; {self.extent(key)}")
         return {names.index(key): int(np.argmin(np.abs(self.sweep[key] - value))) for key, value in at.items()}
 
     def __enter__(self):
@@ -111,6 +110,13 @@ class Result:
     def axis(self, key) -> str:
         """A swept number as an axis label."""
         return axis_name(key, self.unit(key))
+
+    def extent(self, key) -> str:
+        """From where to where a number is swept, in words; of a frequency in rad/s also in Hz."""
+        ends, unit = (self.sweep[key].min(), self.sweep[key].max()), self.unit(key)
+        hertz = "{:.5g} to {:.5g} Hz".format(*(end / (2 * np.pi) for end in ends))
+        also = f", which is {hertz}" if unit == " [rad/s]" else ""
+        return f"the sweep has {key} from {ends[0]:g} to {ends[1]:g}{unit}{also}"
 
     def coordinate(self, name) -> np.ndarray:
         """Values of a dimension."""

@@ -123,7 +123,7 @@ def in_range(result) -> np.ndarray:
         low, high = result.options.xlim
         order = order[(low <= values[order]) & (values[order] <= high)]
         if not len(order):
-            raise PlotError(f"xlim: the file has no {key} from {low:g} to {high:g}")
+            raise PlotError(f"xlim: the file has no {key} from {low:g} to {high:g}; {result.extent(key)}")
     return order
 
 

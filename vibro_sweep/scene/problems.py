@@ -102,7 +102,8 @@ def _line(item, form, data) -> str:
     keys = list(model.model_fields)
     if kind == "missing":
         both = path.startswith("sweep.") and path.endswith(".step")
-        return f"{path}: missing; {'step or num' if both else 'it'} must be given"
+        alone = f"; {slips.ONE_MASS}" if path == "system.physical.M2" else ""
+        return f"{path}: missing; {'step or num' if both else 'it'} must be given{alone}"
     if kind == "extra_forbidden":
         return problem(path, given, _unknown(item["loc"], keys, given, data))
     if kind == "literal_error":
@@ -140,6 +141,10 @@ def _unknown(loc, keys: list[str], given, data) -> str:
     if key in ("step", "num") and {"step", "num"} & set(keys):
         return f"step and num exclude each other; write {_AXIS_FORMS}"
     if place == "sweep" and len(loc) == 2 and (hint := slips.of_physical(key, data.get("system"))):
+        return f"unknown key; {hint}"
+    if place == "sweep" and len(loc) == 2 and (hint := slips.of_swept_frequency(key, given, data.get("system"))):
+        return f"unknown key; {hint}"
+    if place == "system" and (hint := slips.of_mass(key, data.get("system"))):
         return f"unknown key; {hint}"
     if "Omega" in keys and (hint := slips.of_frequency(key, given)):
         return f"unknown key; {hint}"

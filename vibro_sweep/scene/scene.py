@@ -1,6 +1,7 @@
 """From a YAML text to a Scene: everything that a computation needs to know, checked as a whole."""
 
 import math
+import textwrap
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
@@ -208,9 +209,11 @@ class Scene:
             + ", ".join(f"{value:g}" for value in state.values()),
         }
         section = "t = 0 mod T" if self.section.kind == "phase" else f"impacts on the {self.section.stop} stop"
+        if self.section.kind == "phase" and "omega" in self.sweep and self.system.numbers.get("tau") == "grazing":
+            section += ", at the extreme of the free motion; with tau: 0 at the same phase of the force for all omega"
         lines = [
             " x ".join(axes) or "one point",
-            f"  system    {kind}{system}",
+            textwrap.fill(f"  system    {kind}{system}", 88, subsequent_indent=12 * " ", break_long_words=False),
             f"  orbits    {starts[self.start.kind]}; {self.transient:,} + {self.record:,} forcing periods",
             f"  section   {section}",
             f"  observe   {', '.join(sorted(self.observe)) or 'nothing'}",

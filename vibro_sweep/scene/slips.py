@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from vibro_sweep.model.real import number_of
 from vibro_sweep.model.refusals import cut
 
 PHYSICAL = ("M1", "M2", "K1", "K2", "C1", "C2", "P1", "P2", "Omega", "B", "B0")
@@ -171,11 +172,42 @@ def of_physical(key: str, system: object) -> str | None:
     return f"nondimensional numbers are swept: {NONDIMENSIONAL}"
 
 
+HERTZ = ("f", "freq", "frequency", "hz")
+
+
 def of_frequency(key: str, given: object) -> str | None:
     """The hint for a frequency among physical quantities; None for another key."""
-    if key.lower() not in ("f", "freq", "frequency", "hz") or not isinstance(given, (int, float)):
+    hertz = number_of(given) if key.lower() in HERTZ else None
+    if hertz is None:
         return None
-    return f"if it is in Hz write Omega: {2 * math.pi * given:.10g}, which is 2 pi times as much"
+    return f"if it is in Hz write Omega: {2 * math.pi * hertz:.10g}, which is 2 pi times as much"
+
+
+def of_swept_frequency(key: str, given: object, system: object) -> str | None:
+    """The hint for a sweep in Hz of a system in physical units; None for another key or system."""
+    unit = _radian_per_second(system) if isinstance(system, Mapping) and key.lower() in HERTZ else None
+    if not unit:
+        return None
+    counted = "in rad/s" if unit == 1 else f"here in units of {1 / unit:.6g} rad/s"
+    first = number_of(given.get("start")) if isinstance(given, Mapping) else None
+    hertz = 20.0 if first is None or not math.isfinite(first) else first
+    return f"omega is swept, {counted}: {hertz:g} Hz is omega = {2 * math.pi * unit * hertz:.6g}"
+
+
+def _radian_per_second(system: Mapping[str, Any]) -> float | None:
+    """1 rad/s in the unit of omega; None where the system has no units."""
+    if isinstance(numbers := system.get("physical"), Mapping):
+        return _scales(numbers).get("Omega", (None, None, None))[2]
+    return 1.0 if system.get("units") == "SI" else None
+
+
+ONE_MASS = "one mass in kg and N/m is a chain of one, as `vibro-sweep new one_mass_si` writes it"
+
+
+def of_mass(key: str, system: object) -> str | None:
+    """The hint for the mass of a model in which it is 1; None for another key."""
+    kind = system.get("type") if isinstance(system, Mapping) else None
+    return f"the mass of one_mass is 1; {ONE_MASS}" if kind == "one_mass" and key in ("m", "M", "mass") else None
 
 
 def _scales(numbers: Mapping[str, Any]) -> dict[str, tuple[str, str, float]]:

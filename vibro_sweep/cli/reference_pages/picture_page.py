@@ -16,9 +16,11 @@ def page() -> Iterator[str]:
     )
     rows = ((f"`{kind}`", summary(one.draw), summary(one.shows)) for kind, one in KINDS.items())
     yield from table(("kind", "what it shows", "needs"), rows)
+    single = ", ".join(f"`{kind}`" for kind, one in KINDS.items() if one.of_orbits)
     yield (
-        "`--at NAME=VALUE` draws single orbits at that value of the sweep, `--variable NAME` another variable (a\n"
-        "wrong name lists those of the file), `--xlim LOW HIGH` and `--ylim LOW HIGH` a part, `--size WIDTH HEIGHT`\n"
+        f"`--at NAME=VALUE` draws single orbits at that value of the sweep, by default into FILE-KIND.png; the kinds\n"
+        f"{single}\n"
+        "show these. `--variable NAME` draws another variable (a wrong name lists those of the file), `--xlim LOW HIGH` and `--ylim LOW HIGH` a part, `--size WIDTH HEIGHT`\n"
         "(inches), `--width MM` (85: one column of a journal) and `--dpi N` set how large it is. All options are\n"
         "those of [the command](commands.md#vibro-sweep-plot)."
     )
