@@ -20,7 +20,8 @@ def page() -> Iterator[str]:
     yield (
         f"`--at NAME=VALUE` draws single orbits at that value of the sweep, by default into FILE-KIND.png; the kinds\n"
         f"{single}\n"
-        "show these. `--variable NAME` draws another variable (a wrong name lists those of the file), `--xlim LOW HIGH` and `--ylim LOW HIGH` a part, `--size WIDTH HEIGHT`\n"
-        "(inches), `--width MM` (85: one column of a journal) and `--dpi N` set how large it is. All options are\n"
+        "show these. `--variable NAME` draws another variable (a wrong name lists those of the file),\n"
+        "`--xlim LOW HIGH` and `--ylim LOW HIGH` a part, `--size WIDTH HEIGHT` (inches),\n"
+        "`--width MM` (85: one column of a journal) and `--dpi N` set how large it is. All options are\n"
         "those of [the command](commands.md#vibro-sweep-plot)."
     )
