@@ -186,8 +186,9 @@ def simulate(system: AnyOscillator, state: ArrayLike, periods: int, start_time: 
     state : (2N,), x1 v1 .. xN vN at `start_time`
     periods : forcing periods, counted from the first section t = 0 mod T at or after `start_time`
 
-    Raises TypeError where `system` is not a System; ValueError for a state that is not a state or is behind a stop, for
-    fewer than 0 periods, or for a start beyond 10^9 of them. `Orbit.status` says what goes wrong later.
+    Raises TypeError where `system` is not a System; ValueError for a state that is not a state or is behind a rigid
+    stop (behind a compliant one it presses it in), for fewer than 0 periods, or for a start beyond 10^9 of them.
+    `Orbit.status` says what goes wrong later.
 
     Examples
     --------
