@@ -287,5 +287,5 @@ def test_lists_of_numbers_in_a_title(tmp_path):
     whole = write(tmp_path / "b.h5", {"b": np.arange(6.0)}, quantities, settings=settings)
     swept = write(tmp_path / "m.h5", {"m1": np.arange(1.0, 7.0)}, quantities, settings=settings)
     whole, swept = (plotting.figure(file).get_suptitle() for file in (whole, swept))
-    assert "$m = 2, 8$, $k = 0, 2000, 10^{4}$" in whole
-    assert "$m_{2} = 8$" in swept and "$m =" not in swept and "$k = 0, 2000, 10^{4}$" in swept
+    assert "$m = 2, 8$, $k = 0, 2000, 10000$" in whole
+    assert "$m_{2} = 8$" in swept and "$m =" not in swept and "$k = 0, 2000, 10000$" in swept

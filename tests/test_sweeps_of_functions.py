@@ -68,7 +68,7 @@ def test_an_interrupted_sweep_of_a_function_is_continued_by_the_same_matrices(tm
     assert begun[0] > 0
     np.testing.assert_array_equal(data["x1"], whole["x1"])
     np.testing.assert_array_equal(vs.sweep(ball, axes, **given, output=output)["x1"], whole["x1"])  # it is complete
-    with pytest.raises(vs.StoreError, match="is not what this makes"):
+    with pytest.raises(vs.StoreError, match="holds something else than this run makes"):
         vs.sweep(other, axes, **given, output=output)
     with pytest.raises(ValueError, match="mode: 'resume' is not allowed; it must be 'new' without a file"):
         vs.sweep(ball, axes, **given, mode="resume")

@@ -154,8 +154,8 @@ _OF_ANY = (
     ),
     Variable(
         "restitution_mean", _CONTACTS, "mean restitution",
-        "mean of -v_release/v_touch over the contacts that ended in the recorded periods; NaN without any; above 1 where "
-        "slow contacts are thrown back",
+        "mean of -v_release/v_touch over the contacts that ended in the recorded periods; NaN without any; "
+        "above 1 where slow contacts are thrown back",
     ),
     Variable("sticking_time", _IMPACTS, "sticking time", "time at rest on a stop in the recorded periods", units="s"),
 )  # fmt: skip

@@ -30,7 +30,7 @@ def impact_counts(ax, result, values, order):
         curve(ax, values, shown, color=INK)
     else:
         shown = np.stack([{1: right, -1: left}[side] for side in result.sides])
-        wide = {"lw": 1.6, "alpha": 0.6} if len(result.sides) > 1 else {"lw": 0.8}
+        wide = {"lw": 2.8, "alpha": 0.5} if len(result.sides) > 1 else {"lw": 0.8}
         if 1 in result.sides:
             curve(ax, values, right, color=RIGHT, label="right", **wide)
             margin_note(ax, 0.75, "right", RIGHT, fontsize=8)

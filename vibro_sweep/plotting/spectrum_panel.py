@@ -38,12 +38,14 @@ def spectrum(ax, result, values, order):
 
 
 def _keep_the_leading_ones_legible(ax, exponents):
-    """An exponent many times further down than the first three (strong damping, little restitution) is cut off."""
+    """What lies many times further down than the first three exponents do is cut off: an exponent (strong damping,
+    little restitution), or a dip of one in a hundred values."""
     known = exponents[..., :3][np.isfinite(exponents[..., :3])]
     if known.size:
-        span = max(known.max(), 0.0) - known.min()
+        bottom = np.quantile(known, 0.01)
+        span = max(known.max(), 0.0) - bottom
         low, high = ax.get_ylim()
-        ax.set_ylim(bottom=max(low, known.min() - 1.5 * span) if span > 0 else low, top=high)
+        ax.set_ylim(bottom=max(low, bottom - 1.5 * span) if span > 0 else low, top=high)
 
 
 def _strips(ax, values, lost, colours):

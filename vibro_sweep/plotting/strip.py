@@ -13,6 +13,7 @@ from vibro_sweep.plotting.sweep_result import PlotError, Result
 
 HEIGHT = 1.5  # inches
 LANES = 6  # bars of windows that overlap lie above each other
+MANY = 30  # windows in a picture, of more the marks are smaller
 APART = 0.012  # of the axis: bars in one lane are so far apart at least
 HATCH, HATCHES = "/////", "#33475b"
 BAR, SYMMETRIC = "#9fd0ea", "#dcc9a0"
@@ -98,6 +99,7 @@ def _unvisited(ax, file, shown, lanes, limits) -> bool:
 
 def _ends(ax, file, shown, lanes, limits):
     types, found = file.types(), {}
+    size = 2.6 * min(1.0, (MANY / max(len(shown), 1)) ** 0.5)
     for w, lane in zip(shown, lanes, strict=True):
         for end, at in (("window_lower", "window_lo"), ("window_upper", "window_hi")):
             kind, value = types[file[end][w]], file[at][w]
@@ -105,7 +107,7 @@ def _ends(ax, file, shown, lanes, limits):
                 found.setdefault(kind, []).append((value, lane))
     for kind, places in found.items():
         x, y = np.transpose(places)
-        ax.plot(x, y, **special_mark(kind, 2.6))
+        ax.plot(x, y, **special_mark(kind, size))
 
 
 def _periods(ax, file, shown, lanes, lo, hi, least):
@@ -141,11 +143,12 @@ def _legend(ax, file, shown, unvisited, limits, reasons):
         Line2D([], [], label=f"{SPECIAL[k][0]} {SPECIAL[k][1]}", **special_mark(k)) for k in SPECIAL if k in there
     ]
     symmetric = file["window_symmetric"][shown].astype(bool)
-    colours = {"window": (BAR, ~symmetric), "symmetric orbit": (SYMMETRIC, symmetric)}
+    colours = {"window, with its period": (BAR, ~symmetric), "symmetric orbit": (SYMMETRIC, symmetric)}
     handles += [Patch(facecolor=colour, label=name) for name, (colour, who) in colours.items() if who.any()]
     if unvisited:
         handles.append(Patch(facecolor=BAR, edgecolor=HATCHES, linewidth=0, hatch=HATCH, label="missed by all starts"))
-    handles += [Patch(facecolor=REASON_COLOURS[name], label=name.replace("_", " ")) for name in reasons]
+    names = {name: name.replace("quasi_", "quasi-").replace("_", " ") for name in reasons}
+    handles += [Patch(facecolor=REASON_COLOURS[name], label=label) for name, label in names.items()]
     where = {"loc": "upper left", "bbox_to_anchor": (1.005, 1.05)}
     page = ax.figure
     narrow = getattr(page, "narrow", False)

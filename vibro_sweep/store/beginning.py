@@ -173,8 +173,8 @@ def _complete(run: Run, path: Path, mode: str) -> Complete | None:
     except StoreError as error:
         if mode == "resume":
             raise
-        told = f"{path} exists, and is not what this makes; `overwrite` replaces it, or name another file"
-        raise StoreError(f"{told}\n{error}") from None
+        told = f"{path} exists, and holds something else than this run makes"
+        raise StoreError(f"{told}; `overwrite` replaces it, or name another file\n{error}") from None
     except (OSError, RuntimeError, ValueError, KeyError, TypeError) as error:
         raise StoreError(f"{path} is damaged ({error})") from None
     return None
