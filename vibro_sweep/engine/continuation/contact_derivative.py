@@ -11,7 +11,8 @@ at the release, where z'_b and z'_p are the rates of change of E_c b and z_p. Ro
 import cmath
 import math
 
-from vibro_sweep.engine.continuation.compliant_contact import apply, begin_contact, copy_motion, press_on, put_rates
+from vibro_sweep.engine.continuation.compliant_contact import begin_contact, press_on
+from vibro_sweep.engine.continuation.contact_map import apply, copy_motion, put_rates
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.simd.jit import jit
 

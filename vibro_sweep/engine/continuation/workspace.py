@@ -139,7 +139,7 @@ def work_of(masses: int) -> np.dtype:
         ("image", float, (n, columns_of(2 * n - 1))),
         ("matrix", float, (n, n)),
         ("resting", float, (4, n, columns_of(n + PARAMETERS))),  # see constrained_gap.py and compliant_contact.py
-        ("pressing", float, (4, 1 + PARAMETERS, n + 3, columns_of(n + PARAMETERS))),  # see compliant_contact.py
+        ("pressing", float, (4, 1 + PARAMETERS, n + 3, columns_of(n + PARAMETERS))),  # see contact_map.py
         ("courses", float, (ORDER + 1, columns_of(n + PARAMETERS))),
         ("rates", float, (1 + PARAMETERS, n, n + 3)),
         ("varied", float, (6, n, columns_of(n + PARAMETERS))),  # see contact_derivative.py
