@@ -1,5 +1,7 @@
 """Taylor series of a contact, for eight orbits at once: of delta, w2, ... and of tangent vectors."""
 
+import math
+
 import numpy as np
 
 from vibro_sweep.engine.compliant.passage_tables import TERMS
@@ -8,6 +10,8 @@ from vibro_sweep.engine.simd.lanes import select
 from vibro_sweep.engine.simd.memory import put, row
 
 INVERSE = 1.0 / np.arange(1.0, TERMS + 2.0)  # of n + 1
+SIN = tuple((-1.0) ** n / math.factorial(2 * n + 1) for n in range(1, 12))  # from the third power of the angle on
+COS = tuple((-1.0) ** n / math.factorial(2 * n) for n in range(1, 12))  # from the second on
 
 
 @inline
@@ -18,13 +22,13 @@ def of_stop(rows, right):
 
 @inline
 def turn(angle):
-    """sin and cos of angles below pi/2, by their series."""
+    """sin and cos of angles below pi/2 in size, by their series."""
     square = angle * angle
-    sin, cos = INVERSE[20] * INVERSE[19] * square, INVERSE[21] * INVERSE[20] * square
-    for n in range(19, 1, -2):
-        sin = (1.0 - sin) * (INVERSE[n - 1] * INVERSE[n - 2] * square)
-        cos = (1.0 - cos) * (INVERSE[n] * INVERSE[n - 1] * square)
-    return angle * (1.0 - sin), 1.0 - (1.0 - cos) * (0.5 * square)
+    sin, cos = SIN[-1] + 0.0 * angle, COS[-1] + 0.0 * angle
+    for n in range(len(SIN) - 2, -1, -1):
+        sin = sin * square + SIN[n]
+        cos = cos * square + COS[n]
+    return angle + (angle * square) * sin, 1.0 + square * cos
 
 
 @inline
@@ -73,9 +77,9 @@ def load_passage(passage, sin, cos):
 
 
 @inline
-def at(c, first, u):
-    """The series whose coefficients begin in row `first`, at u. Even and odd terms go side by side."""
-    square, last = u * u, first + TERMS - 1
+def at(c, first, count, u):
+    """The series of `count` terms that begin in row `first`, at u. Even and odd terms go side by side."""
+    square, last = u * u, first + count - 1
     odd, even = row(c, last), row(c, last - 1)
     for n in range(last - 2, first, -2):
         odd = odd * square + row(c, n)
@@ -84,10 +88,10 @@ def at(c, first, u):
 
 
 @inline
-def derivatives_at(c, u):
-    """A series at u, its derivative, and half its second one."""
-    f, slope, curve = row(c, TERMS - 1), 0.0 * u, 0.0 * u
-    for n in range(TERMS - 2, -1, -1):
+def derivatives_at(c, first, count, u):
+    """The series of `count` terms that begin in row `first`, at u, its derivative, and half its second one."""
+    f, slope, curve = row(c, first + count - 1), 0.0 * u, 0.0 * u
+    for n in range(first + count - 2, first - 1, -1):
         curve = curve * u + slope
         slope = slope * u + f
         f = f * u + row(c, n)
@@ -120,5 +124,5 @@ def carry_vector(passage, damping, u, going):
         for m in range(1, masses):
             put(x, m * TERMS + n + 1, row(v, m * TERMS + n) * INVERSE[n])
     for m in range(masses):
-        put(passage.vector, 2 * m, select(going, at(x, m * TERMS, u), row(passage.vector, 2 * m)))
-        put(passage.vector, 2 * m + 1, select(going, at(v, m * TERMS, u), row(passage.vector, 2 * m + 1)))
+        put(passage.vector, 2 * m, select(going, at(x, m * TERMS, TERMS, u), row(passage.vector, 2 * m)))
+        put(passage.vector, 2 * m + 1, select(going, at(v, m * TERMS, TERMS, u), row(passage.vector, 2 * m + 1)))

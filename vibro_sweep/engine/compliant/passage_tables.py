@@ -19,6 +19,7 @@ import math
 
 import numpy as np
 
+from vibro_sweep.engine.compliant.slow_manifold import closed_fields, set_apart
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import record
@@ -38,7 +39,7 @@ def passages_of(masses: int, constant: bool = False) -> np.dtype:
     states, inputs, width = 2 * masses, inputs_of(masses, constant), width_of(masses, constant)
     fields = [
         # of the oscillator and its stops
-        ("series", float, (masses * inputs * economy.TERMS, LANES)),  # of x1, x2, ... in free flight, economised
+        ("series", float, ((masses - 1) * inputs * economy.TERMS, LANES)),  # of x2, ... in free flight, economised
         ("equations", float, (2 * masses * (states + 3), LANES)),  # as of `law_of`
         ("compliant", float, (2, LANES)),  # 1: compliant, 0: rigid
         ("ends", float, (2, LANES)),  # 1: contacts end by themselves, and are passed here
@@ -79,6 +80,7 @@ def passages_of(masses: int, constant: bool = False) -> np.dtype:
         ("parts", float, (LANES,)),  # series that this time takes
         ("crossed", float, (LANES,)),  # cells between the one of the touch and the one of the release
         ("vector", float, (states, LANES)),  # a tangent vector on its way
+        *closed_fields(masses),
         # of what is recorded
         ("watched", np.bool_),  # whether the peaks are wanted
         ("force", float, (TERMS, LANES)),  # the series of F/m_e
@@ -95,8 +97,8 @@ def set_passage(passage, i, contact, point, q):
     passage.omega[i] = q.omega
     for m in range(masses):
         passage.push[m, i] = contact.push[m]
-        for j in range(inputs):
-            economise(TO_TERMS, q, q.series[m, j], passage.series[:], (m * inputs + j) * economy.TERMS, i)
+        for j in range(inputs if m > 0 else 0):
+            economise(TO_TERMS, q, q.series[m, j], passage.series[:], ((m - 1) * inputs + j) * economy.TERMS, i)
     for n in range(2):
         for m in range(masses):
             for j in range(states + 3):
@@ -109,6 +111,7 @@ def set_passage(passage, i, contact, point, q):
         for m in range(1, masses):
             passage.trace[n, i] += contact.equations[n, m, 2 * m + 1]
         set_duration(passage, n, i, -contact.equations[n, 0, 0], -0.5 * contact.equations[n, 0, 1])
+        set_apart(passage, n, i, contact.equations[n], passage.damping[n, i], q.omega)
 
 
 @jit

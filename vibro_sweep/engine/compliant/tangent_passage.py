@@ -1,6 +1,6 @@
 """Tangent vectors through the contacts of eight orbits at once; what touch and release do: tangent_in_contact.py."""
 
-from vibro_sweep.engine.compliant.passage_series import carry_vector, of_stop
+from vibro_sweep.engine.compliant.passage_series import INVERSE, carry_vector, of_stop
 from vibro_sweep.engine.simd.jit import inline, noinline
 from vibro_sweep.engine.simd.lanes import bits, lanes_of, lowest, select
 from vibro_sweep.engine.simd.memory import put, row
@@ -27,11 +27,16 @@ def carry_through_contacts(passage, strikes, t, orbits, passed):
     touch, release = p / row(passage.speed, 0), p / row(passage.speed_after, 0)
     by_force, u = of_stop(passage.by_force, right) > 0.0, time / parts
     apply_flight(t, who)
+    closed = who & (row(passage.closed, 0) > 0.0)
+    if bits(closed) != 0:
+        set_slow_flight(passage, time)
     for j in range(size):
         to_contact(passage, t, side, j)
         vector = passage.vector
         put(vector, 1, row(vector, 1) - touch * row(vector, 0))
-        part, going = 0.0 * u, who
+        if bits(closed) != 0:
+            fly_closed(passage, c, closed)
+        part, going = 0.0 * u, who & ~closed
         while bits(going) != 0:
             carry_vector(passage, c, u, going)
             part = part + 1.0
@@ -51,6 +56,63 @@ def carry_through_contacts(passage, strikes, t, orbits, passed):
         crossed = int(passage.crossed[i])
         t.cell[i] = orbits[i].cell + crossed
         t.offset[i] = strikes.offset[i] + passage.time[i] - crossed * strikes.width[i]
+
+
+@noinline
+def set_slow_flight(passage, time):
+    """e^{S time} of w2, w2', ..., for contacts in closed form."""
+    others, slow, terms = len(passage.push) - 1, len(passage.chi), row(passage.terms, 0)
+    size, E, term = 2 * others, passage.slow_flight, passage.slow_term
+    for j in range(size):
+        for i in range(size):
+            put(term, i, 1.0 if i == j else 0.0)
+            put(E, i * size + j, 1.0 if i == j else 0.0)
+        for n in range(1, passage.most):
+            step = select(terms > float(n), time * INVERSE[n - 1], 0.0)
+            for m in range(others):
+                first = (passage.block * others + m) * slow
+                total = row(passage.slow, first) * row(term, 0)
+                for i in range(1, size):
+                    total = total + row(passage.slow, first + i) * row(term, i)
+                put(term, size + 2 * m, step * row(term, 2 * m + 1))
+                put(term, size + 2 * m + 1, step * total)
+            for i in range(size):
+                put(term, i, row(term, size + i))
+                put(E, i * size + j, row(E, i * size + j) + row(term, i))
+
+
+@inline
+def fly_closed(passage, c, who):
+    """Carry the tangent `vector` of these orbits on through a contact in closed form.
+
+    With J = (1, 0; c, 1), phi = J (phi, phi') here: f = phi + J L q, q = chi + H J^-1 phi (slow_manifold.py).
+    """
+    size, slow, vector = len(passage.slow_term) // 2, len(passage.chi), passage.vector
+    x, g, chi, E = row(passage.flight, 0), row(passage.flight, 1), passage.slow_term, passage.slow_flight
+    L, F, H = 2 * passage.block * slow, 10 * passage.block + 6, 2 * passage.block * size
+    phi, v = row(vector, 0), row(vector, 1)
+    for j in range(size):
+        place, speed = row(passage.manifold, L + j), row(passage.manifold, L + slow + j)
+        phi = phi - place * row(vector, j + 2)
+        v = v - (speed + c * place) * row(vector, j + 2)
+    for j in range(size):
+        h = row(passage.share, H + 2 * j + 1)
+        put(chi, j, row(vector, j + 2) - ((row(passage.share, H + 2 * j) - c * h) * phi + h * v))
+    phi, v = (
+        x * phi + g * (row(passage.fast, F) * phi + row(passage.fast, F + 1) * v),
+        x * v + g * (row(passage.fast, F + 2) * phi + row(passage.fast, F + 3) * v),
+    )
+    delta, speed = phi, v
+    for j in range(size):
+        h = row(passage.share, H + 2 * j + 1)
+        w = (row(passage.share, H + 2 * j) - c * h) * phi + h * v
+        for i in range(size):
+            w = w + row(E, j * size + i) * row(chi, i)
+        place, slope = row(passage.manifold, L + j), row(passage.manifold, L + slow + j)
+        delta, speed = delta + place * w, speed + (slope + c * place) * w
+        put(vector, j + 2, select(who, w, row(vector, j + 2)))
+    put(vector, 0, select(who, delta, row(vector, 0)))
+    put(vector, 1, select(who, speed, row(vector, 1)))
 
 
 @inline
