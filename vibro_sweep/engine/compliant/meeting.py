@@ -43,26 +43,26 @@ def meet_stops_of(law, strikes, waiting):
 def is_open(law, e, o, k, readings):
     """Whether an orbit may meet a stop together with others in its cell k."""
     if law is not None:
-        return is_open_to(law, e, o, k, readings)
+        alone = law.log.shape[1] > 0 or len(e.records.times) > 0 or e.records.impacts.shape[1] > 0
+        read = readings.parts > 0 and (o.done + 1) * readings.parts >= (o.read + 1) * o.periods
+        return not alone and is_open_to(law.orbits[o.lane], law.passage[0], o, k, e.strike[0].width[o.lane], read)
     return True
 
 
 @jit
-def is_open_to(law, e, o, k, readings):
-    """`is_open` where some stops are compliant: those that single contacts are kept of, or with stops that still relax,
-    go alone. Sets how long a contact may last: over the section, if nothing but the state is read there.
+def is_open_to(contact, passage, o, k, width, read):
+    """`is_open` where some stops are compliant: those with stops that still relax go alone, and those that single
+    contacts are kept of. Sets how long a contact may last: over the section, if nothing but the state is `read` there.
     """
-    contact, passage, i, records = law.orbits[o.lane], law.passage[0], o.lane, e.records
-    alone = law.log.shape[1] > 0 or len(records.times) > 0 or records.impacts.shape[1] > 0
+    i = o.lane
     if contact.relaxed[0] > 0.0 or contact.relaxed[1] > 0.0:
-        bring_stops(contact, o, k, 0.0, e.strike[0].width[i])
-    read = readings.parts > 0 and (o.done + 1) * readings.parts >= (o.read + 1) * o.periods
+        bring_stops(contact, o, k, 0.0, width)
     passage.watched = contact.watched
     passage.finer[i] = finer_at(o, k)
-    passage.close[i] = int(is_close_to_stop(contact, o, e.strike[0].width[i]))
+    passage.close[i] = int(is_close_to_stop(contact, o, width))
     passage.ahead[i] = o.cells - k
     passage.last[i] = passage.ahead[i] + (o.cells if o.done + 1 < o.goal and not read else 0)
-    return not (alone or contact.relaxed[0] > 0.0 or contact.relaxed[1] > 0.0)
+    return not (contact.relaxed[0] > 0.0 or contact.relaxed[1] > 0.0)
 
 
 @inline
@@ -71,16 +71,18 @@ def finish_meeting(law, e, o, f, passed, readings):
     and the section that lie within."""
     if law is not None:
         if passed:
-            finish_passage(law, e, o, f, readings)
+            finish_passage(law.orbits[o.lane], law.passage[0], e.strike[0], o)
+            if o.cell >= o.cells:
+                pass_section(law.passage[0], e, o, f, readings)
         else:
             o.finer[0] = 0.0
 
 
-@noinline
-def finish_passage(law, e, o, f, readings):
-    """`finish_meeting` of a contact."""
-    contact, passage, i, q = law.orbits[o.lane], law.passage[0], o.lane, f.oscillator[0]
-    n, crossed = 1 if e.strike[0].side[i] > 0.0 else 0, int(passage.crossed[i])
+@jit
+def finish_passage(contact, passage, strikes, o):
+    """`finish_meeting` of a contact, up to the section. The stop that it leaves begins to relax."""
+    i = o.lane
+    n, crossed = 1 if strikes.side[i] > 0.0 else 0, int(passage.crossed[i])
     contact.contacts[n] += 1
     contact.ended += 1
     contact.time += passage.time[i]
@@ -90,14 +92,18 @@ def finish_passage(law, e, o, f, readings):
         contact.peak_force = max(contact.peak_force, contact.mass * passage.strongest[i])
     o.pressed_time += passage.time[i]
     o.log_volume -= passage.damping[n, i] * passage.time[i]
-    k = o.cell + crossed
-    contact.close_until = o.period * o.cells + k + o.cells
+    o.cell += crossed
+    contact.close_until = o.period * o.cells + o.cell + o.cells
     if passage.place[i] > 0.0:
-        contact.left[n] = passage.place[i]
-        contact.relaxed[n] = passage.place[i]
+        contact.left[n] = contact.relaxed[n] = passage.place[i]
         contact.relaxed[n] = relaxed_after(contact, n, passage.rest[i])
-        contact.cell[n], contact.offset[n] = o.period * o.cells + k + 1, 0.0
-    if k >= o.cells:
-        end_period(e, o, q, f.nodes, row(passage.X, i), readings)
-        k -= q.cells
-    o.cell, o.finer[0] = k, passage.finer[i]
+        contact.cell[n], contact.offset[n] = o.period * o.cells + o.cell + 1, 0.0
+    o.finer[0] = passage.finer[i]
+
+
+@noinline
+def pass_section(passage, e, o, f, readings):
+    """Bring an orbit over the section that it crossed in contact."""
+    k, finer, q = o.cell, o.finer[0], f.oscillator[0]
+    end_period(e, o, q, f.nodes, row(passage.X, o.lane), readings)
+    o.cell, o.finer[0] = k - q.cells, finer

@@ -24,11 +24,14 @@ def of_stop(rows, right):
 def turn(angle):
     """sin and cos of angles below pi/2 in size, by their series."""
     square = angle * angle
-    sin, cos = SIN[-1] + 0.0 * angle, COS[-1] + 0.0 * angle
-    for n in range(len(SIN) - 2, -1, -1):
-        sin = sin * square + SIN[n]
-        cos = cos * square + COS[n]
-    return angle + (angle * square) * sin, 1.0 + square * cos
+    fourth, last = square * square, len(SIN) - 1
+    sin, sin_odd = SIN[last] + 0.0 * angle, SIN[last - 1] + 0.0 * angle
+    cos, cos_odd = COS[last] + 0.0 * angle, COS[last - 1] + 0.0 * angle
+    for n in range(last - 2, 0, -2):
+        sin, cos = sin * fourth + SIN[n], cos * fourth + COS[n]
+        sin_odd, cos_odd = sin_odd * fourth + SIN[n - 1], cos_odd * fourth + COS[n - 1]
+    sin, cos = sin * fourth + SIN[0], cos * fourth + COS[0]
+    return angle + (angle * square) * (sin + square * sin_odd), 1.0 + square * (cos + square * cos_odd)
 
 
 @inline
@@ -89,13 +92,20 @@ def at(c, first, count, u):
 
 @inline
 def derivatives_at(c, first, count, u):
-    """The series of `count` terms that begin in row `first`, at u, its derivative, and half its second one."""
-    f, slope, curve = row(c, first + count - 1), 0.0 * u, 0.0 * u
-    for n in range(first + count - 2, first - 1, -1):
-        curve = curve * u + slope
-        slope = slope * u + f
-        f = f * u + row(c, n)
-    return f, slope, curve
+    """The series of `count` terms that begin in row `first`, at u, its derivative, and half its second one.
+
+    Even and odd terms go side by side.
+    """
+    square, last = u * u, first + count - 1
+    odd, even = row(c, last), row(c, last - 1)
+    odd_slope = even_slope = odd_curve = even_curve = 0.0 * u
+    for n in range(last - 2, first, -2):
+        odd_curve, even_curve = odd_curve * square + odd_slope, even_curve * square + even_slope
+        odd_slope, even_slope = odd_slope * square + odd, even_slope * square + even
+        odd, even = odd * square + row(c, n), even * square + row(c, n - 1)
+    slope = odd + 2.0 * (u * even_slope + square * odd_slope)
+    curve = even_slope + 3.0 * (u * odd_slope) + 4.0 * square * (even_curve + u * odd_curve)
+    return even + u * odd, slope, curve
 
 
 @jit
