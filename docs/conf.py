@@ -85,3 +85,9 @@ html_theme_options = {
 }
 html_context = {"default_mode": "auto"}
 copybutton_exclude = ".linenos, .gp, .go"
+
+
+def setup(app):
+    """Pages are read in two processes; the extension that brings MathJax copies files at the end, and nothing else."""
+    app.extensions["sphinx-mathjax-offline"].parallel_read_safe = True
+    app.parallel = 2
