@@ -62,7 +62,7 @@ def test_both_motions_are_those_of_the_whole(masses, k):
         scale = np.diag([np.sqrt(k), 1.0, *[1.0] * size])
         error = scale @ (together @ flights @ apart - expm(A * u)) @ np.linalg.inv(scale)
         assert np.abs(error).max() < 1e-11 * max(1.0, np.sqrt(k) * u)
-    assert counted >= (8 if k >= 1e4 else 2)
+    assert counted >= (8 if k >= 1e4 else 1)
 
 
 @pytest.mark.parametrize("masses", [1, 2, 4])
