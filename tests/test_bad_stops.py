@@ -166,7 +166,10 @@ CALLS = {
     "a periodic orbit": (lambda: vs.periodic_orbit(soft().replace(release="force"), itinerary="R"), "displacement"),
     "orbits born at grazing": (lambda: vs.born_at_grazing(soft()), "rigid"),
     "the mapping": (lambda: vs.discontinuity_map(soft()), "rigid"),
-    "windows": (lambda: vs.windows(vs.sweep(soft(), {"b": [5, 6]}, transient=1, record=2)), "rigid"),
+    "windows": (
+        lambda: vs.windows(vs.sweep(soft().replace(release="force"), {"b": [5, 6]}, transient=1, record=2)),
+        "it must be displacement",
+    ),
 }  # fmt: skip
 
 

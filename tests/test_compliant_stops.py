@@ -389,7 +389,7 @@ def test_what_belongs_to_rigid_stops_says_so(call):
 
 def test_windows_of_stops_that_go_on_relaxing_are_refused():
     system = vs.System(**PAPER, b=5, k_stop=100, c_stop=1, release="force")
-    with pytest.raises(SourceError, match="it must be displacement, .* after its force a stop goes on relaxing"):
+    with pytest.raises(SourceError, match=r"it must be displacement, .* after its force a stop goes on relaxing"):
         vs.windows(vs.sweep(system, {"b": [5, 6]}, transient=10, record=10))
 
 

@@ -95,9 +95,9 @@ class FileResult(Result):
 
 def shows_force(kind: str | None) -> bool:
     """Whether the picture of an orbit that is asked for is that of forces. Raises ArgumentError for another word."""
-    if kind not in (None, "contact-force"):
-        raise ArgumentError(not_allowed("kind", kind, '"contact-force", or None'))
-    return kind is not None
+    if kind is None or (isinstance(kind, str) and kind == "contact-force"):
+        return kind is not None
+    raise ArgumentError(not_allowed("kind", kind, '"contact-force", or None'))
 
 
 def columns_of(records: np.ndarray) -> dict[str, np.ndarray]:
