@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, Strict, create_model
+from pydantic import BeforeValidator, FailFast, Field, Strict, create_model
 
 from vibro_sweep.model.bifurcations import CURVES, WAYS
 from vibro_sweep.model.parameters import Parameter
@@ -13,6 +13,7 @@ from .fields import Form, Whole
 
 ORIGINS = ("state", "itinerary", "sweep", "grazing", "free", "branches")  # keys of `from`, one of which is given
 PAIR: Any = {"json_schema_extra": {"minItems": 2, "maxItems": 2}}
+Numbers = Annotated[list[float], FailFast()]  # of a long list the first that is no number is enough
 
 
 def _free(value):
@@ -49,7 +50,7 @@ def continue_form(numbers: Iterable[Parameter], masses: int) -> type[Form]:
         "ParameterForm",
         __base__=Form,
         __doc__="The number that changes along branches, and its bounds; of two, curves, and branches in the first.",
-        **{one.name: (list[float], Field(default=None, description=one.text, **PAIR)) for one in numbers},
+        **{one.name: (Numbers, Field(default=None, description=one.text, **PAIR)) for one in numbers},
     )
     return create_model(
         "ContinueForm",
