@@ -102,9 +102,11 @@ def leave_stop(passage, strikes, leaving, crossing, side, end, sin, cos):
     masses, states, y, right = len(passage.push), len(passage.y), passage.y, side > 0.0
     k, c, p = of_stop(passage.stiffness, right), of_stop(passage.damping, right), of_stop(passage.preload, right)
     by_force, wall = of_stop(passage.by_force, right) > 0.0, select(right, row(strikes.right, 0), row(strikes.left, 0))
-    by_place = by_force & (c * c * k < k * k)  # of the place and the speed, that which is better conditioned
-    place = select(by_place, -(c * row(y, 1) + p) / k, select(by_force, row(y, 0), 0.0))
-    speed = select(by_force & ~by_place, -(k * place + p) / c, row(y, 1))
+    place, speed = select(by_force, row(y, 0), 0.0), row(y, 1)
+    if bits(leaving & by_force) != 0:
+        by_place = by_force & (c * c * k < k * k)  # of the place and the speed, that which is better conditioned
+        place = select(by_place, -(c * speed + p) / k, place)
+        speed = select(by_force & ~by_place, -(k * place + p) / c, speed)
     put(passage.place, 0, place)
     put(passage.speed_after, 0, speed)
     put(y, 0, place)
