@@ -59,9 +59,8 @@ def pytest_collection_modifyitems(items):
 
 
 def pytest_collection_finish():
-    """Looking for garbage, and through all modules and tests each time, would take an eighth of the time."""
+    """Looking for garbage among all modules and tests each time would take some per cent of the time."""
     gc.freeze()
-    gc.set_threshold(100_000)
 
 
 @pytest.fixture
