@@ -72,7 +72,7 @@ def test_special_points_of_branches_in_45_digits(name):
         if special.type not in ENDS:
             compare(special)
             compared += 1
-    assert compared >= 3
+    assert compared >= 2
 
 
 @pytest.mark.parametrize(
