@@ -154,7 +154,7 @@ def test_run_again(scene_folder, capsys):
 
 def test_file_of_another_version_is_kept(scene_folder, capsys, monkeypatch):
     with monkeypatch.context() as other:
-        other.setattr("vibro_sweep.code_hash.code_hash", lambda: "another")
+        other.setattr("vibro_sweep.driver.code_hash.code_hash", lambda: "another")
         assert main(["run", "good.yaml", "--quiet"]) == 0
     words = ["good.h5 exists", "other code", "--overwrite replaces it"]
     assert_refused(capsys, scene_folder, ["run", "good.yaml"], words)

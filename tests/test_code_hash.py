@@ -11,7 +11,7 @@ import pytest
 from support import slow_cases
 
 import vibro_sweep
-from vibro_sweep import code_hash
+from vibro_sweep.driver import code_hash
 from vibro_sweep.engine.simd import jit
 
 PACKAGE = Path(vibro_sweep.__file__).parent
@@ -21,8 +21,8 @@ COUNTED = {path.relative_to(PACKAGE).as_posix() for path in code_hash.sources()}
 # What is reached from the code that computes and makes no number: the store's reading and writing, and the version.
 NUMBERLESS = {
     "__init__.py",
-    "code_hash.py",
     "driver/__init__.py",
+    "driver/code_hash.py",
     "driver/cost.py",
     "store/__init__.py",
     "store/layout.py",
@@ -85,7 +85,10 @@ def test_the_libraries_that_compute_change_it(copy, monkeypatch, library):
 
 def test_all_that_the_numbers_of_a_run_reach_is_counted():
     """Everything that is imported on the way from a scene to the arrays of its file, and to its attributes."""
-    reached, todo = set(), {"driver/compute.py", "driver/attractor_ids.py", "store/numbers.py", "scene/scene.py"}
+    reached, todo = (
+        set(),
+        {"driver/compute.py", "driver/attractor_ids.py", "scene/resolved_numbers.py", "scene/scene.py"},
+    )
     while todo:
         name = todo.pop()
         reached.add(name)
@@ -138,7 +141,7 @@ def test_the_compiled_kernels_are_those_of_the_engine_alone(tmp_path):
 @pytest.mark.parametrize("setting", ["NUMBA_CPU_FEATURES=+avx2", *slow_cases("OPENBLAS_CORETYPE=Prescott")])
 def test_processors_that_round_otherwise_have_other_identities(setting):
     """One without fused multiply-adds, one for which BLAS adds in another order; told by a setting."""
-    code = "from vibro_sweep.code_hash import code_hash; print(code_hash())"
+    code = "from vibro_sweep.driver.code_hash import code_hash; print(code_hash())"
     name, _, value = setting.partition("=")
     run = subprocess.run([sys.executable, "-c", code], env=os.environ | {name: value}, capture_output=True, text=True)
     assert len(run.stdout.strip()) == 16 and run.stdout.strip() != code_hash.code_hash()

@@ -7,12 +7,12 @@ import h5py
 import numpy as np
 import pytest
 from support import slow_cases
-from support.files import EDITS, LINKS, SCENE, elsewhere, refused, seen
+from support.files import EDITS, LINKS, SCENE, described, elsewhere, refused, seen
 from support.scenes import arrays_of
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
-from vibro_sweep.store import StoreError, describe, parts
+from vibro_sweep.store import StoreError, parts
 from vibro_sweep.store.attributes import set_text, set_texts
 
 # What is not ours in a file
@@ -99,7 +99,7 @@ def test_a_missing_dataset_that_is_not_missed_by_the_file_itself(folder, capsys)
 def test_a_status_that_nobody_knows(folder, capsys):
     with h5py.File("x.h5", "a") as file:
         file["status"][3] = 99
-    assert "unknown_status_99: 1" in describe("x.h5")
+    assert "unknown_status_99: 1" in described("x.h5")
     assert main(["plot", "x.h5"]) == 0
     assert main(["run", "scene.yaml", "-o", "x.h5", "--resume"]) == 1
     assert "unknown_status_99 1" in capsys.readouterr().out

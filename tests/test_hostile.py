@@ -148,8 +148,8 @@ def test_killed_at_the_very_end(folder, monkeypatch, at):
 def test_without_fcntl(folder):
     """There is none on Windows."""
     code = (
-        "import sys; sys.modules['fcntl'] = None; import portalocker, vibro_sweep.store as s\n"
-        "print(s.describe('y.h5.part').count('9 of 12'))"
+        "import sys; sys.modules['fcntl'] = None; import portalocker, vibro_sweep.cli.info as s\n"
+        "print(s.examine('y.h5.part').text.count('9 of 12'))"
     )
     stand_in = "import sys, types; sys.modules['portalocker'] = types.ModuleType('portalocker')\n"
     done = subprocess.run([sys.executable, "-c", stand_in + code], capture_output=True, text=True, check=False)

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 from support import path_with
 
-from vibro_sweep import code_hash
-from vibro_sweep.driver import blocks, compute
+from vibro_sweep.driver import blocks, code_hash, compute
 from vibro_sweep.engine.simd import jit
 from vibro_sweep.scene import parse_scene
 

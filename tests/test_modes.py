@@ -4,10 +4,11 @@ import os
 
 import h5py
 import pytest
+from support.files import described
 from support.stored import SWEEP, broken_off, scene_of
 
 import vibro_sweep as vs
-from vibro_sweep.store import StoreError, describe
+from vibro_sweep.store import StoreError
 
 
 def test_new_refuses_what_is_there(path):
@@ -52,14 +53,14 @@ def test_resume_refuses_another_scene(path):
 
 def test_resume_refuses_other_code(path, monkeypatch):
     broken_off(scene_of(SWEEP), path)
-    monkeypatch.setattr("vibro_sweep.code_hash.code_hash", lambda: "0123456789abcdef")
+    monkeypatch.setattr("vibro_sweep.driver.code_hash.code_hash", lambda: "0123456789abcdef")
     with pytest.raises(StoreError, match="other code"):
         vs.run(scene_of(SWEEP), path, mode="resume")
 
 
 def test_resume_of_nothing_is_a_run(path):
     vs.run(scene_of(SWEEP), path, mode="resume")
-    assert "3 of 3" in describe(path)
+    assert "3 of 3" in described(path)
 
 
 def test_resume_of_a_complete_file_changes_nothing(path, monkeypatch):
@@ -100,4 +101,4 @@ def test_overwrite_keeps_the_old_file_until_the_new_one_is_complete(path):
 def test_overwrite_of_a_damaged_file(path):
     path.write_bytes(b"not HDF5")
     vs.run(scene_of(SWEEP), path, mode="overwrite")
-    assert "3 of 3" in describe(path)
+    assert "3 of 3" in described(path)

@@ -10,7 +10,7 @@ import vibro_sweep as vs
 from vibro_sweep import plotting
 from vibro_sweep.driver import blocks
 from vibro_sweep.model.parameters import NAMES
-from vibro_sweep.scene import load_scene, parse_scene
+from vibro_sweep.scene import load_scene, parse_scene, resolved_numbers
 from vibro_sweep.store import StoreError
 
 PAPER = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6.6"
@@ -126,14 +126,13 @@ def test_a_text_of_the_scene_that_says_something_else_is_not_asked(tmp_path):
 
 def test_every_example_has_its_numbers():
     """What a file would say of each scene that comes with the package."""
-    from vibro_sweep.store import numbers
-
     found = (ROOT / "configs").rglob("*.yaml")
     scenes = sorted(path for path in found if path.parent.name != "branches")
     assert len(scenes) > 10
     for path in scenes:
         scene = load_scene(path)
-        known = {*numbers.attributes(scene), *numbers.dimensions(scene), *numbers.matrices(scene), *scene.sweep}
+        found = (resolved_numbers.attributes, resolved_numbers.dimensions, resolved_numbers.matrices)
+        known = {name for numbers in found for name in numbers(scene)} | {*scene.sweep}
         told = {name for name, value in scene.system.numbers.items() if value not in (None, 0.0)}
         options = {name for name, value in scene.system.options.items() if value is not None} - {
             "units"

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
+from support.files import described
 from support.oscillators import PAPER
 from support.pictures import image, write
 
@@ -12,7 +13,6 @@ from vibro_sweep.cli.commands import main
 from vibro_sweep.model.exponents import sign_of
 from vibro_sweep.plotting import source
 from vibro_sweep.plotting.style import NEUTRAL
-from vibro_sweep.store import describe
 from vibro_sweep.store import opening as opening_of
 
 
@@ -68,7 +68,7 @@ def test_what_errors_do_not_tell_from_zero_has_the_neutral_colour(tmp_path):
     assert "within 2 standard errors of 0" in fig.legends[0].get_texts()[0].get_text()
     signs = sign_of(spectrum[..., 0], error[..., 0])
     assert (red_less_blue == signs.T).all()
-    assert "above zero by more than 2 errors: 3 of 10 orbits; not told from zero: 4" in describe(file)
+    assert "above zero by more than 2 errors: 3 of 10 orbits; not told from zero: 4" in described(file)
 
 
 @pytest.mark.parametrize("size", [40, 1300])

@@ -6,12 +6,13 @@ import h5py
 import numpy as np
 import pytest
 import xarray
+from support.files import described
 from support.stored import ALL, IMPACTS, LYAPUNOV, PLANE, SECTION, SWEEP, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep import store
 from vibro_sweep.model.status import STATUSES
-from vibro_sweep.store import StoreError, describe
+from vibro_sweep.store import StoreError
 from vibro_sweep.store.attributes import text
 
 TRAJECTORY = "trajectory: {periods: 2, samples: 5}\n"
@@ -144,7 +145,7 @@ def foreign(path):
 def test_foreign_files(foreign, name, words):
     path = foreign / name
     resume = [lambda: vs.run(scene_of(SWEEP), path, mode="resume")] if name != "none" else []
-    for read in (lambda: vs.open(path), lambda: describe(path), *resume):
+    for read in (lambda: vs.open(path), lambda: described(path), *resume):
         with pytest.raises(StoreError, match=words) as error:
             read()
         assert str(path) in str(error.value)

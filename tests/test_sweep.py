@@ -6,12 +6,12 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 from support import ROOT
+from support.files import described
 from support.scenes import ALL, PAPER, SCENES, arrays_of, assert_same_bits, run, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep.driver import blocks, compute
 from vibro_sweep.model.status import STATUSES, TOO_STIFF
-from vibro_sweep.store import describe
 
 CONFIGS = ROOT / "configs"
 COORDINATES = ("b", "omega", "R", "tau", "b_star", "start", "sample", "exponent", "t_over_T")
@@ -157,7 +157,7 @@ def test_a_point_that_cannot_be_computed_has_a_status(tmp_path):
     assert data["status"].tolist() == [3, 0, 0]
     assert (report.points, report.bad, report.statuses) == (3, 1, {"ok": 2, "rates_too_far_apart": 1})
     assert np.isnan(data["x1"][0]).all() and np.isfinite(data["x1"][1:]).all()
-    assert f"  rates_too_far_apart: 1\n    {STATUSES[TOO_STIFF].advice}\n" in describe(path)
+    assert f"  rates_too_far_apart: 1\n    {STATUSES[TOO_STIFF].advice}\n" in described(path)
 
 
 # What the oscillator does

@@ -44,7 +44,7 @@ def scene_of(observe, more=""):
 
 
 def skeleton(scene):
-    return h5py.File(io.BytesIO(skeleton_of(sweep_run(scene), b"0" * 16)), "r")
+    return h5py.File(io.BytesIO(skeleton_of(sweep_run(scene, {}), b"0" * 16)), "r")
 
 
 class TestTheTablesThemselves:

@@ -5,12 +5,13 @@ import subprocess
 import sys
 
 import pytest
+from support.files import described
 from support.stored import ALL, IMPACTS, LYAPUNOV, PLANE, SECTION, SWEEP, broken_off, scene_of
 
 import vibro_sweep as vs
 from vibro_sweep import store
 from vibro_sweep.driver import blocks, compute
-from vibro_sweep.store import describe
+from vibro_sweep.driver.provenance import provenance
 
 
 @pytest.mark.parametrize("part", [False, True])
@@ -26,10 +27,10 @@ def test_what_is_opened_can_be_copied_and_sent(path, part):
 
 def test_a_file_that_is_being_written_can_be_read(path):
     scene = scene_of(SWEEP)
-    with store.writer(store.sweep_run(scene), path, "new"):
+    with store.writer(store.sweep_run(scene, provenance()), path, "new"):
         part = f"{path}.part"
         assert "computed     0 of 3" in in_another_process(
-            f"from vibro_sweep.store import describe as d; print(d('{part}'))"
+            f"from vibro_sweep.cli.info import examine; print(examine('{part}').text)"
         )
         assert "{'b': 3, 'sample': 4}" in in_another_process(
             f"import vibro_sweep as v; print(dict(v.open('{part}').sizes))"
@@ -45,7 +46,7 @@ def in_another_process(code):
 def test_what_is_missing_and_what_is_done(path, starts):
     scene = scene_of(PLANE + f"start: {{random: {starts}}}\nobserve: [impacts]")
     (*_, last) = blocks.blocks(scene, points_per_block=2)
-    with store.writer(store.sweep_run(scene), path, "new") as file:
+    with store.writer(store.sweep_run(scene, provenance()), path, "new") as file:
         everything = (slice(None), slice(None))
         assert file.done() == 0 and file.missing(everything)
         file.write(*compute.compute(last))
@@ -57,9 +58,9 @@ def test_what_is_missing_and_what_is_done(path, starts):
 def test_describe_says_how_far_it_is(path):
     scene = scene_of(SWEEP + ALL)
     part = broken_off(scene, path)
-    assert "computed     1 of 3 orbits (33.33 %)" in describe(part)
+    assert "computed     1 of 3 orbits (33.33 %)" in described(part)
     vs.run(scene, path, mode="resume")
-    text = describe(path)
+    text = described(path)
     assert "computed     3 of 3 orbits (100 %)" in text and "complete" in text and "|sum of exponents" in text
     for name in SECTION | LYAPUNOV | IMPACTS | {"b"}:
         assert name in text

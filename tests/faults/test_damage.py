@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 from support import slow_cases
 from support.faults import TEXT, counted, failing_run
+from support.files import described
 from support.scenes import arrays_of, assert_same_bits
 
 import vibro_sweep as vs
 from vibro_sweep.cli import commands as cli
 from vibro_sweep.scene import parse_scene
-from vibro_sweep.store import StoreError, describe
+from vibro_sweep.store import StoreError
 
 
 def flip(path, name, bit=0, chunk=0):
@@ -38,7 +39,7 @@ def test_a_flipped_bit(scene, path, whole, name, capsys):
         file[name][()]
     with pytest.raises(StoreError, match=rf"damaged: {name} \(1 chunk\); `--resume`"):
         vs.open(path)
-    assert f"damaged      {name} (1 chunk)" in describe(path)
+    assert f"damaged      {name} (1 chunk)" in described(path)
     if name != "lyapunov":  # which the picture of the section does not need
         assert cli.main(["plot", str(path)]) == 2
         assert f"`{name}` cannot be read, it is damaged" in capsys.readouterr().err
@@ -46,8 +47,8 @@ def test_a_flipped_bit(scene, path, whole, name, capsys):
     vs.run(scene, path, mode="resume", progress=lambda done, _: computed.append(done))
     assert computed[0] == (400 if name == "b" else 400 - len(range(400)[box[0]]))
     assert_same_bits(arrays_of(path), whole)
-    assert f"damage found, to be computed again: {name} (1 chunk)" in describe(path)
-    assert "checksums    all hold" in describe(path) and os.listdir(path.parent) == [path.name]
+    assert f"damage found, to be computed again: {name} (1 chunk)" in described(path)
+    assert "checksums    all hold" in described(path) and os.listdir(path.parent) == [path.name]
 
 
 @pytest.mark.parametrize("name", ["status", *slow_cases("impacts_right", "impacts_left", "period")])
@@ -73,7 +74,7 @@ def test_a_damaged_file_of_other_code_is_left_alone(scene, path, monkeypatch):
     vs.run(scene, path)
     flip(path, "x1")
     before = path.read_bytes()
-    monkeypatch.setattr("vibro_sweep.code_hash.code_hash", lambda: "0123456789abcdef")
+    monkeypatch.setattr("vibro_sweep.driver.code_hash.code_hash", lambda: "0123456789abcdef")
     with pytest.raises(StoreError, match="other code, 0123456789abcdef, another numpy or numba, or a processor"):
         vs.run(scene, path, mode="resume")
     assert path.read_bytes() == before and os.listdir(path.parent) == [path.name]
@@ -83,7 +84,7 @@ def test_several_flipped_bits(scene, path, whole):
     vs.run(scene, path)
     for name, chunk in (("x1", 0), ("x1", 1), ("status", 0), ("b", 0)):
         flip(path, name, bit=3, chunk=chunk)
-    assert "damaged      status (1 chunk), b (1 chunk), x1 (2 chunks)" in describe(path)
+    assert "damaged      status (1 chunk), b (1 chunk), x1 (2 chunks)" in described(path)
     vs.run(scene, path, mode="resume")
     assert_same_bits(arrays_of(path), whole)
 
@@ -117,7 +118,7 @@ def test_one_orbit_is_checked_too(path):
     changed = bytearray(content)
     changed[content.index(number.tobytes())] ^= 1
     path.write_bytes(changed)
-    for read in (vs.open, describe):
+    for read in (vs.open, described):
         with pytest.raises(StoreError, match="damaged"):
             read(path)
 
@@ -126,7 +127,7 @@ def test_one_orbit_is_checked_too(path):
 def test_a_file_cut_off(scene, path, keep, capsys):
     vs.run(scene, path)
     os.truncate(path, int(keep * path.stat().st_size))
-    for read in (vs.open, describe, lambda path: vs.run(scene, path, mode="resume")):
+    for read in (vs.open, described, lambda path: vs.run(scene, path, mode="resume")):
         with pytest.raises(StoreError, match="not an HDF5 file, or it is damaged"):
             read(path)
     for command in ("info", "plot"):
@@ -158,11 +159,11 @@ def test_a_flipped_bit_in_a_part(scene, path, whole, where):
     with pytest.raises(ZeroDivisionError):
         vs.run(scene, path, workers=1, progress=lambda done, _: 1 / (done < 300))
     part = path.with_name(path.name + ".part")
-    before = counted(describe(part))[0]
+    before = counted(described(part))[0]
     content = bytearray(part.read_bytes())
     content[int(where * len(content))] ^= 4
     part.write_bytes(content)
-    assert "damaged      1 block of the run" in describe(part) and 0 < counted(describe(part))[0] < before
+    assert "damaged      1 block of the run" in described(part) and 0 < counted(described(part))[0] < before
     with pytest.raises(StoreError, match="is damaged: 1 block of the run"):
         vs.open(part)
     with pytest.raises(ZeroDivisionError):
@@ -170,7 +171,7 @@ def test_a_flipped_bit_in_a_part(scene, path, whole, where):
     vs.open(part).close()  # what was lost is there again
     vs.run(scene, path, mode="resume")
     assert_same_bits(arrays_of(path), whole)
-    assert "damage found, to be computed again: 1 block of the run" in describe(path)
+    assert "damage found, to be computed again: 1 block of the run" in described(path)
 
 
 def test_provenance_that_is_illegible(scene, path):
@@ -179,4 +180,4 @@ def test_provenance_that_is_illegible(scene, path):
         assert json.loads(file.attrs["provenance"])
         file.attrs["provenance"] = "{"
     with pytest.raises(StoreError, match="damaged"):
-        describe(path)
+        described(path)

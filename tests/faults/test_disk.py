@@ -9,12 +9,13 @@ import subprocess
 import pytest
 from support import slow_cases
 from support.faults import TEXT, counted, failing_run
+from support.files import described
 from support.scenes import arrays_of, assert_same_bits
 
 import vibro_sweep as vs
 from vibro_sweep.cli import commands as cli
 from vibro_sweep.scene import parse_scene
-from vibro_sweep.store import StoreError, describe
+from vibro_sweep.store import StoreError
 
 
 @pytest.fixture
@@ -48,7 +49,7 @@ def test_disk_full_in_mid_run(small_disk, scene, path, whole):
     assert "`resume` continues it" in message
     failing_run(scene, path, "No space left on device", after=-1, mode="resume")  # still full
     (path.parent / "other").unlink()
-    done, missing, failed = counted(describe(f"{path}.part"))
+    done, missing, failed = counted(described(f"{path}.part"))
     assert 0 < seen[3] <= done < 400 and missing == 400 - done and failed == 0
     vs.run(scene, path, mode="resume")
     assert_same_bits(arrays_of(path), whole)
@@ -89,7 +90,7 @@ def test_a_disk_that_takes_no_more(scene, path, whole, size):
     with file_size_limit(size):
         failing_run(scene, path, "File too large; make room|unable to|too large", after=-1)
     if size > 300_000:
-        assert 0 < counted(describe(f"{path}.part"))[0] < 400
+        assert 0 < counted(described(f"{path}.part"))[0] < 400
     vs.run(scene, path, mode="resume")
     assert_same_bits(arrays_of(path), whole)
     assert os.listdir(path.parent) == [path.name]
@@ -110,14 +111,14 @@ def test_disk_full_by_the_command_line(scene, path, tmp_path, capsys):
 def test_output_folder_removed(scene, path, whole):
     message, seen = failing_run(scene, path, "was removed during the run", fault=lambda: shutil.rmtree(path.parent))
     assert "it is there again, with all that was computed" in message
-    assert counted(describe(f"{path}.part"))[0] == seen[-1] > 0
+    assert counted(described(f"{path}.part"))[0] == seen[-1] > 0
     vs.run(scene, path, mode="resume")
     assert_same_bits(arrays_of(path), whole)
 
 
 def test_part_removed(scene, path, whole):
     _, seen = failing_run(scene, path, "was removed", fault=lambda: os.unlink(f"{path}.part"))
-    assert counted(describe(f"{path}.part"))[0] == seen[-1] > 0
+    assert counted(described(f"{path}.part"))[0] == seen[-1] > 0
     vs.run(scene, path, mode="resume")
     assert_same_bits(arrays_of(path), whole)
 

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from support import slow_cases
 from support.faults import TEXT, counted
+from support.files import described
 
 import vibro_sweep as vs
 from vibro_sweep import plotting, store
 from vibro_sweep.driver import blocks, compute
+from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.scene import parse_scene
-from vibro_sweep.store import StoreError, describe
+from vibro_sweep.store import StoreError
 
 
 @pytest.mark.parametrize("option", [[], *slow_cases(["--resume"], ["--overwrite"])])
@@ -21,7 +23,7 @@ def test_two_runs_on_one_file(scene, path, tmp_path, option):
     """By the command line; HDF5's own locks are not needed."""
     text = tmp_path / "the_scene.yaml"
     text.write_text(TEXT)
-    with store.writer(store.sweep_run(scene), path, "new"):
+    with store.writer(store.sweep_run(scene, provenance()), path, "new"):
         second = subprocess.run(
             [sys.executable, "-m", "vibro_sweep", "run", text, "-o", path, *option],
             capture_output=True,
@@ -31,14 +33,14 @@ def test_two_runs_on_one_file(scene, path, tmp_path, option):
         )
         assert second.returncode == 2
         assert second.stderr == f"vibro-sweep: error: {path}.part is being written by another run\n"
-        assert counted(describe(f"{path}.part")) == (0, 400, 0)
+        assert counted(described(f"{path}.part")) == (0, 400, 0)
     vs.run(scene, path, mode="resume")
-    assert counted(describe(path)) == (400, 0, 0)
+    assert counted(described(path)) == (400, 0, 0)
 
 
 def test_readers_of_a_running_run(scene, path):
     """They see what is computed, whole blocks only, and write nothing."""
-    with store.writer(store.sweep_run(scene), path, "new") as file:
+    with store.writer(store.sweep_run(scene, provenance()), path, "new") as file:
         part = path.with_name(path.name + ".part")
         first, second, *_ = blocks.blocks(scene, 40)
         file.write(*compute.compute(first))
@@ -48,7 +50,7 @@ def test_readers_of_a_running_run(scene, path):
             assert np.all(np.isnan(data["x1"][40:])) and np.all(data["status"][40:] == -1)
             file.write(*compute.compute(second))
             assert np.count_nonzero(data["status"] != -1) == 40  # as it was when it was opened
-        assert counted(describe(part))[0] == 80
+        assert counted(described(part))[0] == 80
         assert part.read_bytes()[: len(before[0])] == before[0] and os.listdir(path.parent) == [part.name]
 
 

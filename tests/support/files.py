@@ -11,6 +11,7 @@ import pytest
 
 import vibro_sweep as vs
 from vibro_sweep.cli.commands import main
+from vibro_sweep.cli.info import examine
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.attributes import set_text, set_texts
 
@@ -46,6 +47,11 @@ def folder(files, tmp_path, monkeypatch):
     shutil.copy(files / "whole.h5", "x.h5")
     shutil.copy(files / "half.h5.part", "y.h5.part")
     return tmp_path
+
+
+def described(path):
+    """What `info` prints of a file."""
+    return examine(path).text
 
 
 def seen(folder):

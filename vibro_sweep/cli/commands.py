@@ -198,7 +198,9 @@ def info(file: DataFile):
 
     Also how accurate it says it is.
     """
-    from vibro_sweep.store import StoreError, examine
+    from vibro_sweep.store import StoreError
+
+    from .info import examine
 
     with input_errors(StoreError):
         found = examine(file)

@@ -112,6 +112,6 @@ def compute_windows(computation: Computation, file: Path, parameter: str | None)
 
 def say_tables(output: Path) -> None:
     """Print what a file of branches, curves or windows holds."""
-    from vibro_sweep.store import tables
+    from .info import tables
 
     say("\n".join([f"{output}", *tables(output)]))

@@ -28,7 +28,7 @@ BUSY = 1.3  # times longer than alone, from which on it is said what else runs
 def grazing_of(scene: "Scene | Continuation") -> str:
     """The output of `grazing`: of a sweep of one number on which the graze depends the curve."""
     from vibro_sweep.scene import Scene
-    from vibro_sweep.store.numbers import depends_on
+    from vibro_sweep.scene.resolved_numbers import depends_on
 
     along, system = depends_on(scene) if isinstance(scene, Scene) else (), scene.system
     if len(along) == 1:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep import __version__
-from vibro_sweep.code_hash import code_hash
+from vibro_sweep.driver.code_hash import code_hash
 from vibro_sweep.engine import points
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.variational.spectrum import BATCHES

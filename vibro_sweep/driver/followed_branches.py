@@ -9,13 +9,13 @@ from vibro_sweep.analysis.branches.branch_arrays import SHAPES, Arrays
 from vibro_sweep.analysis.branches.branch_search import Branches, compute_branch
 from vibro_sweep.analysis.branches.search import Node
 from vibro_sweep.driver.jobs import computed
+from vibro_sweep.driver.joining import joined
 from vibro_sweep.driver.origins import seeds_of
 from vibro_sweep.driver.usable import is_branch
 from vibro_sweep.model.branch_file import BRANCHES, columns_of
 from vibro_sweep.model.column import Column
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
-from vibro_sweep.store.joining import joined
 from vibro_sweep.store.writing import Writer
 
 

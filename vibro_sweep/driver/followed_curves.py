@@ -16,6 +16,7 @@ from vibro_sweep.analysis.windows.edges import Plane
 from vibro_sweep.analysis.windows.explained import explain, probe
 from vibro_sweep.driver.followed_branches import where_met
 from vibro_sweep.driver.jobs import computed
+from vibro_sweep.driver.joining import joined
 from vibro_sweep.driver.origins import seeds_of, specials_of
 from vibro_sweep.driver.swept_plane import edges_in_file
 from vibro_sweep.driver.usable import is_branch, is_curve, is_probe
@@ -24,7 +25,6 @@ from vibro_sweep.model.column import Column
 from vibro_sweep.model.curve_columns import OF_EDGES
 from vibro_sweep.scene import Continuation
 from vibro_sweep.scene.continuation import BY_BRANCHES
-from vibro_sweep.store.joining import joined
 from vibro_sweep.store.writing import Writer
 
 

@@ -16,6 +16,7 @@ from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.unvisited import Unvisited
 from vibro_sweep.analysis.windows.window import Window, Windows
 from vibro_sweep.driver.any_file import first_bytes
+from vibro_sweep.driver.joining import part_of
 from vibro_sweep.driver.saved_results import ONE, Saved
 from vibro_sweep.driver.source_file import computed_from
 from vibro_sweep.model.branch_file import CHART, SWEEP, WINDOWS, columns_of
@@ -25,7 +26,6 @@ from vibro_sweep.scene import parse_continuation, parse_scene
 from vibro_sweep.store import StoreError
 from vibro_sweep.store.arrays import Contents
 from vibro_sweep.store.creating import Subject
-from vibro_sweep.store.joining import part_of
 from vibro_sweep.store.ragged_files import RaggedContents
 
 HDF5 = (b"\x89HDF", b"\x89vibro_sweep")  # with which such files, and the parts of runs, begin

@@ -23,6 +23,7 @@ from vibro_sweep.analysis.periodic.periodic_orbit import PeriodicOrbit, orbit_of
 from vibro_sweep.analysis.windows.members import solution_in
 from vibro_sweep.analysis.windows.rows import Row
 from vibro_sweep.analysis.windows.window_search import RowWindow, WindowSearch
+from vibro_sweep.driver.joining import part_of
 from vibro_sweep.driver.source_file import SourceError
 from vibro_sweep.driver.windows import rows_in, search_of
 from vibro_sweep.model.any_oscillator import AnyOscillator
@@ -32,7 +33,6 @@ from vibro_sweep.model.outcomes import ORBITS
 from vibro_sweep.model.refusals import cut, shown
 from vibro_sweep.scene import Continuation, parse_continuation, parse_scene
 from vibro_sweep.store.arrays import Contents
-from vibro_sweep.store.joining import part_of
 from vibro_sweep.store.writing import Writer
 
 

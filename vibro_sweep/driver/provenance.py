@@ -4,14 +4,17 @@ import platform
 from importlib.metadata import version
 from pathlib import Path
 
+from vibro_sweep import __version__
+from vibro_sweep.driver import code_hash
+
 PACKAGES = ("numpy", "numba", "llvmlite", "h5py")
 
 
 def provenance() -> dict:
-    from vibro_sweep import __version__
-
+    """The record; runs with equal `code` give equal numbers."""
     return {
         "vibro_sweep": __version__,
+        "code": code_hash.code_hash(),
         "python": platform.python_version(),
         **{name: version(name) for name in PACKAGES},
         "cpu": _cpu_name(),

@@ -38,7 +38,7 @@ def run_continuation(
         of_plane = plane_of(scene) if of_curves else None
         attributes = attributes_of(scene, source_of(scene))
         subject = Subject(CHART if of_curves else BRANCHES, scene.name, scene.text, attributes)
-        with store.writer(store.ragged_run(subject, scene.inputs), output, mode) as file:
+        with store.writer(store.ragged_run(subject, provenance(), scene.inputs), output, mode) as file:
             if isinstance(file, store.Complete):
                 return False
             with workers_of(workers, executor) as pool:
@@ -50,5 +50,5 @@ def run_continuation(
                 except NoOrbitError:
                     file.drop()
                     raise
-            file.finish(provenance(), RaggedContents(subject, *found).write)
+            file.finish(RaggedContents(subject, *found).write)
             return True

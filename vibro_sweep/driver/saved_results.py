@@ -14,6 +14,7 @@ from vibro_sweep.analysis.branches.branch import Branch
 from vibro_sweep.analysis.curves import curve_arrays
 from vibro_sweep.analysis.curves.bifurcation_curve import BifurcationCurve
 from vibro_sweep.analysis.windows.window import Windows
+from vibro_sweep.driver.joining import joined
 from vibro_sweep.driver.origins import Source, attributes_of
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.model.any_oscillator import AnyOscillator
@@ -26,7 +27,6 @@ from vibro_sweep.model.parameters import ParameterError
 from vibro_sweep.model.state import state
 from vibro_sweep.scene import Continuation
 from vibro_sweep.store.creating import Subject
-from vibro_sweep.store.joining import joined
 from vibro_sweep.store.ragged_files import RaggedContents
 
 if TYPE_CHECKING:
@@ -49,8 +49,8 @@ def save(result: Saved, path: str | Path) -> Path:
     path, contents = file_to_write("path", path), contents_of_file(result)
     if path.exists():
         raise ExistingFileError(path)
-    with store.writer(store.ragged_run(contents.subject), path, "new") as file:
-        file.finish(provenance(), contents.write)
+    with store.writer(store.ragged_run(contents.subject, provenance()), path, "new") as file:
+        file.finish(contents.write)
     return path
 
 

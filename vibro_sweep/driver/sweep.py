@@ -86,7 +86,7 @@ def run_sweep(
 ) -> RunReport:
     """Compute a sweep and write its file; arguments and errors as of `run`."""
     total = scene.n_points
-    with store.writer(store.sweep_run(scene), output, mode) as file:
+    with store.writer(store.sweep_run(scene, provenance()), output, mode) as file:
         if isinstance(file, store.Complete):
             if progress:
                 progress(total, total)
@@ -104,7 +104,7 @@ def run_sweep(
                         if tell:
                             tell(min(done, total), total)
         threads = (workers or available_cores()) if executor is None else None
-        made = file.finish(_made(scene, threads, executor), partial(_complete, scene))
+        made = file.finish(partial(_complete, scene), **_how(scene, threads, executor))
     return _report(total, *made, missing)
 
 
@@ -172,8 +172,8 @@ def _worker_count(pool: Executor, default: int) -> int:
     return getattr(pool, "num_workers", None) or getattr(pool, "_max_workers", None) or default
 
 
-def _made(scene: Scene, threads: int | None, executor: Executor | None) -> dict:
-    """The provenance of the file, as one JSON record."""
+def _how(scene: Scene, threads: int | None, executor: Executor | None) -> dict:
+    """How a sweep is computed, for the provenance of its file."""
     seed = scene.start.seed if scene.start.kind == "random" else None
     here = "threads" if executor is None else type(executor).__name__
-    return provenance() | {"executor": here, "threads": threads, "seed": seed}
+    return {"executor": here, "threads": threads, "seed": seed}

@@ -17,6 +17,7 @@ from vibro_sweep.analysis.windows.unvisited import unvisited_in
 from vibro_sweep.analysis.windows.window import Windows, in_file_order, windows_of
 from vibro_sweep.analysis.windows.window_search import WindowSearch
 from vibro_sweep.driver.jobs import computed, workers_of
+from vibro_sweep.driver.joining import joined
 from vibro_sweep.driver.progress import given_or_bar
 from vibro_sweep.driver.provenance import provenance
 from vibro_sweep.driver.sweep import check_how
@@ -32,7 +33,6 @@ from vibro_sweep.model.state import state
 from vibro_sweep.model.window_columns import UNVISITED
 from vibro_sweep.scene import parse_scene
 from vibro_sweep.store.creating import Subject
-from vibro_sweep.store.joining import joined
 from vibro_sweep.store.ragged_files import RaggedContents
 
 if TYPE_CHECKING:
@@ -110,14 +110,14 @@ def run_windows(
     with contents_of(data) as found:
         rows = rows_in(found, parameter)
         subject = _subject(found, rows[0].parameter)
-        with store.writer(store.ragged_run(subject, inputs), output, mode) as file:
+        with store.writer(store.ragged_run(subject, provenance(), inputs), output, mode) as file:
             if isinstance(file, store.Complete):
                 return None
             with workers_of(workers, executor) as pool:
                 search = search_of(rows, file, pool, progress)
             if progress:
                 progress(search.total, search.total)
-            file.finish(provenance(), _contents_of_file(subject, search).write)
+            file.finish(_contents_of_file(subject, search).write)
             return search
 
 

@@ -10,7 +10,7 @@ from vibro_sweep.model.refusals import cut
 from vibro_sweep.model.variable import Variable
 from vibro_sweep.model.wording import sentence
 
-# the attributes of a file that hold a number, or a word, for all points (`numbers.attributes`)
+# the attributes of a file that hold a number, or a word, for all points (scene/resolved_numbers.py)
 NUMBERS = (*catalogue.NUMBERS, "order", "expand_at", "transient", "record")
 WORDS = ("stops", "dynamics", "type", "section", "section_stop")
 MATRIX = ("row", "column")  # the dimensions of a matrix

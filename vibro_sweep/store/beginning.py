@@ -13,14 +13,14 @@ import h5py
 
 from vibro_sweep.model.refusals import cut, not_allowed
 from vibro_sweep.model.status import NOT_COMPUTED
+from vibro_sweep.scene.differences import differences
 from vibro_sweep.store import appending, checks, names, parts
 from vibro_sweep.store.appending import LockedPart
 from vibro_sweep.store.attributes import is_flat, quantities_of, text
 from vibro_sweep.store.creating import Run, skeleton_of
-from vibro_sweep.store.differences import differences
 from vibro_sweep.store.image import Index, frame_of
 from vibro_sweep.store.names import Stamp
-from vibro_sweep.store.opening import StoreError, blocks_lost, check_version, opened, skeleton
+from vibro_sweep.store.opening import StoreError, check_version, opened, skeleton
 from vibro_sweep.store.parts import PartError
 from vibro_sweep.store.ragged_checks import damage_of
 from vibro_sweep.store.writing import Complete, Writer, unfinished
@@ -69,7 +69,7 @@ def _writer(locked: LockedPart, path: Path, mends: bool) -> Writer:
     locked.go_on(head, index.end)
     result = Writer(locked, path, frame, index)
     if index.damaged:
-        result.remark(blocks_lost(index.damaged))
+        result.remark(checks.blocks_lost(index.damaged))
     if mends and frame.datasets:
         with opened(path) as (file, _):
             result.take_over(file, checks.damaged(file))
@@ -165,7 +165,7 @@ def _complete(run: Run, path: Path, mode: str) -> Complete | None:
             _check(run, file, path)
             lacking = _lacking(file, path)
             if mode == "new" or lacking:
-                check_version(file, path)
+                check_version(file, path, run.made_by)
             if not lacking:
                 return _read(file)
             if mode == "new":
@@ -204,7 +204,7 @@ def _continue(run: Run, locked: LockedPart, path: Path) -> Complete | None:
     head = parts.read_head(locked.file)
     with skeleton(locked.file, locked.path) as file:
         _check(run, file, locked.path)
-        check_version(file, locked.path)
+        check_version(file, locked.path, run.made_by)
     if finished := _published(path, locked, head.run_id):
         return finished
     if (found := names.stamp(path)) and found != head.replaces:

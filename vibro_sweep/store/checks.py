@@ -48,9 +48,16 @@ def damaged(file: h5py.File) -> list[tuple[str, Piece]]:
     return [(name, piece) for name in names for piece, values in _read(file[name]) if values is None]
 
 
-def damage(file: h5py.File) -> str:
-    """The damage of a file of any kind, in words; empty where all of it can be read."""
+def damage(file: h5py.File, lost: int = 0) -> str:
+    """The damage of a file, or of a part with so many `lost` blocks, in words; empty where there is none."""
+    if lost:
+        return blocks_lost(lost)
     return damage_of(file) if is_flat(file) else summary(damaged(file))
+
+
+def blocks_lost(count: int) -> str:
+    """Damaged blocks of a part, in words."""
+    return f"{count} block{'s' if count > 1 else ''} of the run"
 
 
 def _read(dataset: h5py.Dataset) -> Iterator[tuple[Piece, np.ndarray | None]]:

@@ -12,10 +12,9 @@ import numpy as np
 
 from vibro_sweep import __version__
 from vibro_sweep.model.branch_file import SWEEP
-from vibro_sweep.scene import Scene
-from vibro_sweep.store import datasets, heap, layout, numbers, parts
+from vibro_sweep.scene import Scene, resolved_numbers
+from vibro_sweep.store import datasets, heap, layout, parts
 from vibro_sweep.store.attributes import set_text, set_texts, set_value, text
-from vibro_sweep.store.opening import made_by
 from vibro_sweep.store.sink import LIBVER
 
 
@@ -40,6 +39,7 @@ class Run(NamedTuple):
     create : create(file) makes what is in the file before anything is computed
     size : bytes of the file, as far as known before
     inputs : files that the run reads, which it must not write
+    made_by : the versions of what computes it; a run is continued only by the same `code`
     """
 
     subject: Subject
@@ -47,24 +47,25 @@ class Run(NamedTuple):
     create: Callable[[h5py.File], None]
     size: int
     inputs: Collection[Path]
+    made_by: dict[str, Any]
 
 
-def sweep_run(scene: Scene) -> Run:
+def sweep_run(scene: Scene, made_by: dict[str, Any]) -> Run:
     """The run of a sweep."""
 
     def create(file: h5py.File) -> None:
         set_texts(file, "sweep_dimensions", list(scene.sweep))
-        for name, value in numbers.attributes(scene).items():
+        for name, value in resolved_numbers.attributes(scene).items():
             file.attrs[name] = value
         datasets.create(file, scene)
 
     subject = Subject(SWEEP, scene.name, scene.text, {})
-    return Run(subject, list(layout.quantities(scene)), create, layout.size(scene), scene.inputs)
+    return Run(subject, list(layout.quantities(scene)), create, layout.size(scene), scene.inputs, made_by)
 
 
-def ragged_run(subject: Subject, inputs: Collection[Path] = ()) -> Run:
+def ragged_run(subject: Subject, made_by: dict[str, Any], inputs: Collection[Path] = ()) -> Run:
     """The run of branches, curves or windows; `inputs` are files that it reads."""
-    return Run(subject, [], lambda file: set_texts(file, "sweep_dimensions", []), 0, inputs)
+    return Run(subject, [], lambda file: set_texts(file, "sweep_dimensions", []), 0, inputs, made_by)
 
 
 def skeleton_of(run: Run, run_id: bytes) -> memoryview:
@@ -78,7 +79,7 @@ def skeleton_of(run: Run, run_id: bytes) -> memoryview:
         set_text(file, "title", f"vibro_sweep: {subject.title}")
         set_text(file, "history", f"{now()} begun by vibro_sweep {__version__}")
         set_text(file, "scene", subject.scene)
-        set_text(file, "provenance", json.dumps(made_by()))
+        set_text(file, "provenance", json.dumps(run.made_by))
         set_texts(file, "quantities", [name for name in run.quantities if name != "status"])
         for name, value in subject.attributes.items():
             set_value(file, name, value)
@@ -94,11 +95,11 @@ def seal(image: BinaryIO) -> None:
         file.attrs["heap"] = np.array(found, np.uint64).reshape(-1)
 
 
-def complete(file: h5py.File, provenance: dict, notes: Collection[str] = ()) -> None:
-    """Write into the file how it was made, what its runs noted, and that it is complete."""
+def complete(file: h5py.File, how: dict[str, Any], notes: Collection[str] = ()) -> None:
+    """Write into the file how it was computed, what its runs noted, and that it is complete."""
     lines = (text(file, "history"), *notes, f"{now()} complete")
     set_text(file, "history", "\n".join(lines))
-    set_text(file, "provenance", json.dumps(provenance))
+    set_text(file, "provenance", json.dumps(json.loads(text(file, "provenance")) | how))
 
 
 def now() -> str:

@@ -14,8 +14,7 @@ from vibro_sweep.model.dimensions import Dimension
 from vibro_sweep.model.parameters import Parameter
 from vibro_sweep.model.units import unit_in
 from vibro_sweep.model.variable import Variable
-from vibro_sweep.scene import Scene
-from vibro_sweep.store import numbers
+from vibro_sweep.scene import Scene, resolved_numbers
 from vibro_sweep.store.attributes import MATRIX, describe, set_text, set_value
 from vibro_sweep.store.layout import chunk_shape, coordinates, dimensions, quantities
 
@@ -60,7 +59,7 @@ def create(file: h5py.File, scene: Scene) -> None:
 
 def _create_following(file: h5py.File, scene: Scene) -> tuple[str, ...]:
     """The numbers that follow from swept ones, as coordinates over these. Returns their names."""
-    found = numbers.dimensions(scene)
+    found = resolved_numbers.dimensions(scene)
     for name, lead in found.items():
         shape = tuple(len(scene.sweep[key]) for key in lead)
         chunk = chunk_shape(scene, shape, 8)
@@ -68,14 +67,14 @@ def _create_following(file: h5py.File, scene: Scene) -> tuple[str, ...]:
         _describe(dataset, AXES.get(name) or stored_names(scene.system.masses)[name], scene)
         for i, key in enumerate(lead):
             dataset.dims[i].attach_scale(file[key])
-    if len(numbers.depends_on(scene)) == 1:
+    if len(resolved_numbers.depends_on(scene)) == 1:
         write_following(file, scene)
     return tuple(found)
 
 
 def _create_matrices(file: h5py.File, scene: Scene) -> tuple[str, ...]:
     """Create the matrices of a system that is given by them. Returns their names."""
-    found = numbers.matrices(scene)
+    found = resolved_numbers.matrices(scene)
     for name, values in found.items():
         _create_compact(file, name, values.dtype, values.shape)
         file[name][...] = values
@@ -97,9 +96,9 @@ def create_length(file: h5py.File, name: str, length: int) -> None:
 
 def write_following(file: h5py.File, scene: Scene) -> None:
     """The numbers that follow from swept ones; over a plane they are many, and wait until the run is complete."""
-    found = numbers.dimensions(scene)
-    for box in numbers.slabs(scene) if found else ():
-        values = numbers.following(scene, box)
+    found = resolved_numbers.dimensions(scene)
+    for box in resolved_numbers.slabs(scene) if found else ():
+        values = resolved_numbers.following(scene, box)
         for name in found:
             file[name][box] = values[name]
 

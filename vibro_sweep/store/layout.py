@@ -10,8 +10,7 @@ from vibro_sweep.model.exponents import RUNNING, periods_read
 from vibro_sweep.model.observables import asked_for
 from vibro_sweep.model.trajectory_variables import TRAJECTORY
 from vibro_sweep.model.variable import Variable
-from vibro_sweep.scene import Scene
-from vibro_sweep.store import numbers
+from vibro_sweep.scene import Scene, resolved_numbers
 
 CHUNK_BYTES = 2**17  # read at once
 
@@ -56,7 +55,7 @@ def size(scene: Scene) -> int:
     """Bytes of the scene's file, but for its structure: some kilobytes, and 20 bytes a chunk."""
     extents = {name: len(values) for name, values in coordinates(scene).items()}
     stored = [(dimensions(scene, quantity), quantity.dtype) for quantity in quantities(scene).values()]
-    stored += [(lead, "f8") for lead in numbers.dimensions(scene).values()]
+    stored += [(lead, "f8") for lead in resolved_numbers.dimensions(scene).values()]
     total = 0
     for lead, dtype in stored:
         shape = tuple(extents[name] for name in lead)

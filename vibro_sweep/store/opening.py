@@ -249,24 +249,12 @@ def is_dataset(file: h5py.File, name: str) -> bool:
     return True
 
 
-def blocks_lost(count: int) -> str:
-    """Damaged blocks of a part, in words."""
-    return f"{count} block{'s' if count > 1 else ''} of the run"
-
-
-def check_version(file: h5py.File, path: Path) -> None:
-    """And by the same code."""
-    old, code = json.loads(text(file, "provenance")), made_by()["code"]
+def check_version(file: h5py.File, path: Path, made_by: dict) -> None:
+    """Raise StoreError where the code that began a file is not that of `made_by`."""
+    old, code = json.loads(text(file, "provenance")), made_by["code"]
     begun = f"{path} was begun by vibro_sweep {cut(str(old.get('vibro_sweep')))}"
     if old.get("code") != code:
         raise StoreError(
             f"{begun}, code {cut(str(old.get('code')))}, and this is vibro_sweep {__version__} with other code, "
             f"{code}, another numpy or numba, or a processor that rounds otherwise (README, Tested); overwrite it"
         )
-
-
-def made_by() -> dict:
-    """The versions that must be the same for a run to be continued."""
-    from vibro_sweep.code_hash import code_hash  # drawing a file must not wait for the engine
-
-    return {"vibro_sweep": __version__, "code": code_hash()}

@@ -24,12 +24,12 @@ class RaggedContents(NamedTuple):
     columns: list[Column]
     arrays: dict[str, np.ndarray]
 
-    def image(self, provenance: dict) -> io.BytesIO:
+    def image(self, made_by: dict[str, Any]) -> io.BytesIO:
         """An HDF5 file of them, in memory."""
-        image = io.BytesIO(skeleton_of(ragged_run(self.subject), new_run_id()))
+        image = io.BytesIO(skeleton_of(ragged_run(self.subject, made_by), new_run_id()))
         with h5py.File(image, "r+") as file:
             self.write(file)
-            complete(file, provenance)
+            complete(file, {})
         return image
 
     def write(self, file: h5py.File) -> None:

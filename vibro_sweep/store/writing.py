@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 import h5py
 import numpy as np
@@ -17,7 +17,7 @@ from vibro_sweep.store import checks, names, parts
 from vibro_sweep.store.appending import LockedPart, said
 from vibro_sweep.store.creating import complete, now, seal
 from vibro_sweep.store.image import Box, Frame, Index
-from vibro_sweep.store.opening import StoreError, made_by
+from vibro_sweep.store.opening import StoreError
 from vibro_sweep.store.sink import Sink, changing
 
 Arrays = dict[str, np.ndarray]
@@ -93,19 +93,19 @@ class Writer:
         with said(self._part.path):
             self._part.remove()
 
-    def finish(self, provenance: dict, last: Callable[[h5py.File], None]) -> Complete:
+    def finish(self, last: Callable[[h5py.File], None], **how: Any) -> Complete:
         """Make the file of the part, give it its name and remove the part.
 
         last : last(file) writes what is not in the blocks, once all of them are in the file
+        how : how it was computed, for the file's provenance
         """
         seconds = round(time.perf_counter() - self._began, 3)
-        made = made_by() | provenance | {"wall_time_s": seconds}
         new = unfinished(self._path, self._part.head.run_id)
         with said(self._part.path):
             new.unlink(missing_ok=True)  # of a run that was killed here
             try:
                 with open(new, "xb+") as file:
-                    statuses = self._make(file, made, last)
+                    statuses = self._make(file, last, how | {"wall_time_s": seconds})
                     file.flush()
                     os.fsync(file.fileno())
                 names.publish(new, self._path, self._part.head.replaces)
@@ -119,7 +119,7 @@ class Writer:
             self._part.remove()
         return Complete(statuses, seconds)
 
-    def _make(self, new: BinaryIO, provenance: dict, last: Callable[[h5py.File], None]) -> dict[int, int]:
+    def _make(self, new: BinaryIO, last: Callable[[h5py.File], None], how: dict) -> dict[int, int]:
         """Make the file in a thread of its own: Ctrl-C must not end HDF5 in the middle of a call."""
         index = Index(self._part.file, self._part.head, self._frame)
         if index.damaged:
@@ -129,7 +129,7 @@ class Writer:
         sink = Sink(image)
         with ThreadPoolExecutor(1) as thread:
             try:
-                statuses = thread.submit(self._fill, sink, index, provenance, last).result()
+                statuses = thread.submit(self._fill, sink, index, last, how).result()
             except BaseException as error:
                 sink.stop(error)
                 raise
@@ -138,11 +138,11 @@ class Writer:
             new.write(image.getbuffer())
         return statuses
 
-    def _fill(self, sink: Sink, index: Index, provenance: dict, last: Callable[[h5py.File], None]) -> dict[int, int]:
+    def _fill(self, sink: Sink, index: Index, last: Callable[[h5py.File], None], how: dict) -> dict[int, int]:
         with changing(sink) as file:
             index.fill(self._part.file, file, sink)
             last(file)
-            complete(file, provenance, index.notes)
+            complete(file, how, index.notes)
             return checks.statuses(file)
 
 

@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_info
 
 from vibro_sweep.engine.simd import jit
 
-HOME = Path(__file__).parent
+HOME = Path(__file__).parents[1]
 
 # All modules that a scene's text passes through to become numbers; what moves, stores or shows these is left out.
 SOURCES = (
@@ -30,7 +30,6 @@ SOURCES = (
     "driver/drawn_starts.py",
     "driver/trajectories.py",
     "driver/attractor_ids.py",
-    "store/numbers.py",
 )
 LIBRARIES = ("numpy", "numba", "llvmlite")
 
