@@ -47,10 +47,11 @@ class LockedPart:
 
     def append(self, key: Any, arrays: Mapping[str, np.ndarray]) -> None:
         """A record: once this returns, a kill does not lose it."""
+        text = {"key": key, "arrays": [[name, one.dtype.str, list(one.shape)] for name, one in arrays.items()]}
         data = [memoryview(np.ascontiguousarray(one).reshape(-1).view(np.uint8)) for one in arrays.values()]
         with said(self.path):
             self._check_unchanged()
-            self._write(parts.record(self.head.run_id, parts.text_of(key, arrays), data))
+            self._write(parts.record(self.head.run_id, text, data))
             if time.monotonic() - self._synced > SYNC_SECONDS:
                 os.fsync(self.file.fileno())
                 self._synced = time.monotonic()

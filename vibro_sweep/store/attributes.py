@@ -71,6 +71,11 @@ def quantities_of(file: h5py.File) -> list[str]:
     return [*texts(file, "quantities"), "status"]
 
 
+def scales_of(dataset: h5py.Dataset, first: int = 0) -> list[str]:
+    """Names of its dimensions from this one on."""
+    return [dataset.dims[i][0].name.removeprefix("/") for i in range(first, dataset.ndim)]
+
+
 def attributes(of: h5py.File | h5py.Dataset) -> dict:
     """All but those by which HDF5 joins datasets, as xarray has them."""
     return {name: _decoded(of.attrs[name]) for name in of.attrs if name not in SCALES}

@@ -24,6 +24,7 @@ from vibro_sweep.store.attributes import (
     check_own_dimensions,
     is_flat,
     quantities_of,
+    scales_of,
     text,
     texts,
 )
@@ -103,18 +104,16 @@ def open_file(path: Path, names: Collection[str] | None = None, content: bool = 
 
 def _from_part(raw: BinaryIO, path: Path, names: Collection[str] | None) -> Opened:
     """The part as HDF5, in memory or in a temporary file that has no name."""
-    head = parts.read_head(raw)
     image = tempfile.SpooledTemporaryFile(IN_MEMORY)
     try:
-        parts.copy_skeleton(raw, head, image)
-        with checked(image, path, image) as file:
+        with skeleton(raw, path, image) as file:
             if is_flat(file):
                 kind = cut(text(file, "kind"))
                 raise StoreError(
                     f"{path} is a run of {kind} that is not complete; where it is not being written, `--resume` "
                     "continues it"
                 )
-            index = Index(raw, head, frame_of(file))
+            index = Index(raw, parts.read_head(raw), frame_of(file))
         sink = Sink(image)
         with changing(sink) as file:
             index.fill(raw, file, sink, names)
@@ -123,9 +122,9 @@ def _from_part(raw: BinaryIO, path: Path, names: Collection[str] | None) -> Open
         raise StoreError(f"{path} cannot be read by way of {tempfile.gettempdir()}: {error}") from None
 
 
-def skeleton(raw: BinaryIO, path: Path) -> h5py.File:
-    """The empty file that a part begins with, in memory. Raises StoreError, PartError."""
-    image = io.BytesIO()
+def skeleton(raw: BinaryIO, path: Path, image: BinaryIO | None = None) -> h5py.File:
+    """The empty file that a part begins with, copied into `image` or into memory. Raises StoreError, PartError."""
+    image = image or io.BytesIO()
     parts.copy_skeleton(raw, parts.read_head(raw), image)
     return checked(image, path, image)
 
@@ -211,7 +210,7 @@ def _check(file: h5py.File) -> None:
 def dimensions_of(file: h5py.File) -> dict[str, list[str]]:
     """Names of each quantity's dimensions: those of the sweep, `start` if there is one, its own by their scales."""
     lead = _lead_of(file)
-    return {name: [*lead, *_scales_of(file[name], len(lead))] for name in quantities_of(file)}
+    return {name: [*lead, *scales_of(file[name], len(lead))] for name in quantities_of(file)}
 
 
 def _lead_of(file: h5py.File) -> list[str]:
@@ -220,11 +219,6 @@ def _lead_of(file: h5py.File) -> list[str]:
         return []
     lead = texts(file, "sweep_dimensions")
     return [*lead, *["start"] * (file["status"].ndim - len(lead))]
-
-
-def _scales_of(dataset: h5py.Dataset, first: int = 0) -> list[str]:
-    """Names of its dimensions from this one on."""
-    return [dataset.dims[i][0].name.removeprefix("/") for i in range(first, dataset.ndim)]
 
 
 def axes_of(file: h5py.File) -> list[str]:
@@ -237,7 +231,7 @@ def axes_of(file: h5py.File) -> list[str]:
 def following_of(file: h5py.File) -> dict[str, list[str]]:
     """The coordinates that follow from the axes (b_star, tau), in a file that has any, and over which axes they are."""
     names = text(file, "coordinates").split() if "coordinates" in file.attrs else []
-    return {name: _scales_of(file[name]) for name in names}
+    return {name: scales_of(file[name]) for name in names}
 
 
 def is_dataset(file: h5py.File, name: str) -> bool:

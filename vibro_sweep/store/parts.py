@@ -23,7 +23,7 @@ import secrets
 import stat
 import struct
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
@@ -78,11 +78,6 @@ def new_head(skeleton: bytes | memoryview, replaces: Stamp | None, run_id: bytes
 
 def new_run_id() -> bytes:
     return secrets.token_bytes(16)
-
-
-def text_of(key: Any, arrays: Mapping[str, np.ndarray]) -> dict:
-    """The text of a record."""
-    return {"key": key, "arrays": [[name, one.dtype.str, list(one.shape)] for name, one in arrays.items()]}
 
 
 def record(run_id: bytes, text: dict, data: list[memoryview]) -> list[bytes | memoryview]:

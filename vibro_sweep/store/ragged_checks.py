@@ -13,7 +13,7 @@ from vibro_sweep.model.branch_file import BRANCHES, CHART, RAGGED, WINDOWS, colu
 from vibro_sweep.model.column import Column
 from vibro_sweep.model.curve_columns import OF_EDGES
 from vibro_sweep.model.refusals import cut, shown
-from vibro_sweep.store.attributes import check_dataset, text, texts
+from vibro_sweep.store.attributes import check_dataset, quantities_of, scales_of, text, texts
 
 KINDS = (BRANCHES, WINDOWS, CHART)
 
@@ -30,10 +30,10 @@ def damage_of(file: h5py.File) -> str:
     if "status" not in file:  # a run that has not ended has no datasets
         return ""
     try:
-        names = [*texts(file, "quantities"), "status"]
+        names = quantities_of(file)
         for name in names:
             check_dataset(file, name)
-        found = {name: Stored(_dimensions(file[name]), _values(file, name)) for name in names}
+        found = {name: Stored(tuple(scales_of(file[name])), _values(file, name)) for name in names}
         check(text(file, "kind"), texts(file, "parameters"), found)
     except (OSError, RuntimeError, ValueError, KeyError, AttributeError) as error:
         return str(error)
@@ -76,10 +76,6 @@ def _check_column(column: Column, one: Stored, lengths: Mapping[str, int]) -> No
     wrong = one.values[~((one.values >= least) & (one.values <= most))]
     if wrong.size:
         raise ValueError(f"`{column.name}` has {wrong.flat[0]}; it must be from {least} to {most}")
-
-
-def _dimensions(dataset: h5py.Dataset) -> tuple[str, ...]:
-    return tuple(dimension[0].name.removeprefix("/") for dimension in dataset.dims)
 
 
 def _values(file: h5py.File, name: str) -> np.ndarray:
