@@ -3,6 +3,7 @@
 import gc
 import os
 import signal
+import sys
 from collections import Counter
 
 import pytest
@@ -22,8 +23,9 @@ from support.pictures import branches, plane, sweep, trajectory  # noqa: E402, F
 # Programs that tests start import the package that is tested, and not one in the current folder.
 os.environ["PYTHONSAFEPATH"] = "1"
 
-# They keep the package's bytecode, or each of them would compile it again.
+# They keep the package's bytecode, and so do workers, or each of them would compile it again.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # A job in the background is born deaf to Ctrl-C, and so would be the programs that tests start and interrupt.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
