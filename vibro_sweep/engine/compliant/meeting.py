@@ -3,6 +3,7 @@
 from vibro_sweep.engine.compliant.distance import finer_at, is_close_to_stop
 from vibro_sweep.engine.compliant.passage import pass_contacts
 from vibro_sweep.engine.compliant.passage_series import of_stop
+from vibro_sweep.engine.compliant.passed_contacts import count_passed
 from vibro_sweep.engine.compliant.relaxing import bring_stops, relaxed_after
 from vibro_sweep.engine.motion.section import end_period
 from vibro_sweep.engine.motion.strike import find_contact, gaps_at, rebound, strike
@@ -36,6 +37,7 @@ def meet_stops_of(law, strikes, waiting):
         put(strikes.side, 0, side)
         put(strikes.offset, 0, d)
         passed = pass_contacts(passage, strikes, z, compliant, side, d, v)
+        count_passed(passage, passed, side > 0.0)
     return bits(free), bits(struck | passed), bits(passed)
 
 
@@ -67,8 +69,8 @@ def is_open_to(contact, passage, o, k, width, read):
 
 @inline
 def finish_meeting(law, e, o, f, passed, readings):
-    """Finish what an orbit did at a stop: where it `passed` a contact, count that, and bring the orbit over the cells
-    and the section that lie within."""
+    """Finish what an orbit did at a stop: where it `passed` a contact, bring it over the cells and the section that lie
+    within."""
     if law is not None:
         if passed:
             finish_passage(law.orbits[o.lane], law.passage[0], e.strike[0], o)
@@ -82,19 +84,10 @@ def finish_meeting(law, e, o, f, passed, readings):
 def finish_passage(contact, passage, strikes, o):
     """`finish_meeting` of a contact, up to the section. The stop that it leaves begins to relax."""
     i = o.lane
-    n, crossed = 1 if strikes.side[i] > 0.0 else 0, int(passage.crossed[i])
-    contact.contacts[n] += 1
-    contact.ended += 1
-    contact.time += passage.time[i]
-    contact.restitutions -= passage.speed_after[i] / passage.speed[i]
-    if contact.watched:
-        contact.peak = max(contact.peak, passage.largest[i])
-        contact.peak_force = max(contact.peak_force, contact.mass * passage.strongest[i])
-    o.pressed_time += passage.time[i]
-    o.log_volume -= passage.damping[n, i] * passage.time[i]
-    o.cell += crossed
+    o.cell += int(passage.crossed[i])
     contact.close_until = o.period * o.cells + o.cell + o.cells
     if passage.place[i] > 0.0:
+        n = 1 if strikes.side[i] > 0.0 else 0
         contact.left[n] = contact.relaxed[n] = passage.place[i]
         contact.relaxed[n] = relaxed_after(contact, n, passage.rest[i])
         contact.cell[n], contact.offset[n] = o.period * o.cells + o.cell + 1, 0.0

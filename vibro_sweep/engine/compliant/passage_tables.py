@@ -86,6 +86,13 @@ def passages_of(masses: int, constant: bool = False) -> np.dtype:
         ("force", float, (TERMS, LANES)),  # the series of F/m_e
         ("largest", float, (LANES,)),  # delta in this contact, and
         ("strongest", float, (LANES,)),  # F/m_e
+        # of all contacts since `clear_passed` (passed_contacts.py)
+        ("passed", float, (2, LANES)),  # on the left and on the right
+        ("pressed_time", float, (LANES,)),
+        ("damped", float, (LANES,)),  # the integral of c
+        ("restitutions", float, (LANES,)),  # sum of -v_release/v_touch
+        ("peak", float, (LANES,)),  # delta, and
+        ("peak_force", float, (LANES,)),  # F/m_e
     ]
     return record(fields)
 

@@ -12,6 +12,7 @@ import numpy as np
 from vibro_sweep.engine.compliant.crossing import cross_cell_with_law
 from vibro_sweep.engine.compliant.distance import is_close
 from vibro_sweep.engine.compliant.meeting import finish_meeting, is_open, meet_stops
+from vibro_sweep.engine.compliant.passed_contacts import add_passed, clear_passed
 from vibro_sweep.engine.compliant.tangent_passage import carry_through
 from vibro_sweep.engine.motion.coast import fly_periods, is_clear
 from vibro_sweep.engine.motion.discontinuity import map_period
@@ -284,6 +285,7 @@ def carry(e, mapping, readings):
             load_constants(o, flight_of(e, o).oscillator[0])
             from_base |= o.from_base << i
     clear_counts(strikes)
+    clear_passed(e.law)
     if mapping is not None:
         for i in range(LANES):
             iterate(e, e.orbits[i], mapping, readings)
@@ -315,6 +317,7 @@ def carry(e, mapping, readings):
         waiting = finish_cells(e, waiting, free, struck, passed, readings)
     for i in range(LANES):
         add_count(e.orbits[i], strikes.hits[0, i], strikes.hits[1, i], strikes.slowest[i], strikes.miss[i])
+        add_passed(e.law, e.orbits[i])
 
 
 @noinline
