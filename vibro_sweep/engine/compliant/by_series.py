@@ -4,10 +4,13 @@ A contact takes two to four series, whose lengths follow from a guess of its tim
 guess may be bad: then the orbit is left alone. passage.py says when an end is the first one for certain.
 """
 
+from vibro_sweep.engine.compliant.damped_wave import peak, seek
 from vibro_sweep.engine.compliant.passage_series import (
     at,
-    derivatives_at,
+    changes_of,
+    expanded_at,
     load_passage,
+    load_sum,
     of_stop,
     turn,
 )
@@ -16,30 +19,8 @@ from vibro_sweep.engine.simd.jit import inline, noinline
 from vibro_sweep.engine.simd.lanes import bits, select
 from vibro_sweep.engine.simd.memory import put, row
 
-LOOKS = 4  # at the end, each followed by a step towards it
 FARTHER = 1.1  # how much longer than guessed the last series may be
-TOP_LOOKS = 6  # at a peak, of which the last ones change nothing
-CLOSE = 2.0**-54  # of the time, a third power: what a step of third order leaves
-MARGIN = 1.0 + 1e-9  # of bounds that rounding may have moved
-
-
-@inline
-def seek_end(c, u, farthest, rate, wanted):
-    """The zero of a series near u, where it falls, by Chebyshev's method. Returns it, and which lanes found it."""
-    found = wanted & ~wanted
-    for _ in range(LOOKS):
-        f, slope, curve = derivatives_at(c, 0, TERMS, u)
-        inverse = 1.0 / slope
-        newton = -f * inverse
-        after = u + (newton - curve * inverse * newton * newton)
-        wanted = wanted & (slope < 0.0) & (after > 0.0) & (after <= farthest)
-        u = select(wanted, after, u)
-        left = abs(newton) * rate
-        now = wanted & (left * left * left <= CLOSE * (u * rate))
-        found, wanted = found | now, wanted & ~now
-        if bits(wanted) == 0:
-            break
-    return u, found
+DRIVEN = TERMS - 3  # the last power of the series of L of what ends
 
 
 @inline
@@ -56,28 +37,6 @@ def load_end(passage, k, c, p, by_force):
     load_force(passage, passage.end, k, c, p)
     for n in range(TERMS):
         put(passage.end, n, select(by_force, row(passage.end, n), row(passage.x, n)))
-
-
-@inline
-def load_drive(passage, k, c, constant, by_force):
-    """L of it: a, or k a + c a' + K p."""
-    a = passage.drive
-    for n in range(TERMS - 2):
-        both = k * row(a, n) + c * ((n + 1.0) * row(a, n + 1))
-        if n == 0:
-            both = both + constant
-        put(a, n, select(by_force, both, row(a, n)))
-
-
-@inline
-def changes_of(c, u):
-    """By how much a series of so many terms changes at most within u, and its derivative."""
-    size, slope = abs(row(c, TERMS - 3)), (TERMS - 3.0) * abs(row(c, TERMS - 3))
-    for n in range(TERMS - 4, 0, -1):
-        size = size * u + abs(row(c, n))
-        if n > 1:
-            slope = slope * u + float(n) * abs(row(c, n))
-    return size * u * MARGIN, slope * u * MARGIN
 
 
 @inline
@@ -110,20 +69,20 @@ def pass_by_series(passage, ready, right, speed, about, sin, cos, to_section):
         last, length = going & (part >= parts), u
         if bits(last) != 0:
             load_end(passage, k, c, p, by_force)
-            end, ending = seek_end(passage.end, u, FARTHER * u, rate, last)
+            end, ending = seek(passage.end, TERMS, None, u, rate, FARTHER * u, last)
             found, length = found | ending, select(last, end, u)
         passing = going & (to_section >= time) & (to_section - time <= length)
         if bits(passing) != 0:
             crossing = crossing | passing
             keep_at(passage, passage.section, passing, to_section - time)
         if passage.watched:
-            watch_peaks(passage, going, length, k, c, p, part)
+            watch_peaks(passage, going, length, rate, k, c, p, part)
         if bits(going & preloaded) != 0:
-            change, bend = changes_of(passage.drive, length)
+            change, bend = changes_of(passage.drive, DRIVEN, length)
             into, away = keeps_sign(row(passage.drive, 0), change, going, into, away)
-        load_drive(passage, k, c, p * -row(passage.row, 0), by_force)
+        load_sum(passage.drive, passage.drive, TERMS - 1, k, c, p * -row(passage.row, 0), by_force)  # L of what ends
         begins, slope = row(passage.drive, 0), row(passage.drive, 1)
-        change, bend = changes_of(passage.drive, length)
+        change, bend = changes_of(passage.drive, DRIVEN, length)
         pressed, pulled = keeps_sign(begins, change, going, pressed, pulled)
         rising, falling = keeps_sign(slope, bend, going, rising, falling)
         largest = abs(begins) + change
@@ -145,12 +104,12 @@ def pass_by_series(passage, ready, right, speed, about, sin, cos, to_section):
 
 
 @noinline
-def watch_peaks(passage, going, length, k, c, p, part):
+def watch_peaks(passage, going, length, rate, k, c, p, part):
     """Keep the largest delta and F/m_e of the contact, over the time `length` of its series number `part`."""
     load_force(passage, passage.force, k, c, p)
     first = part <= 1.0
-    keep_larger(passage.largest, peak_within(passage.x, length), going, first)
-    keep_larger(passage.strongest, peak_within(passage.force, length), going, first)
+    keep_larger(passage.largest, peak_within(passage.x, length, rate), going, first)
+    keep_larger(passage.strongest, peak_within(passage.force, length, rate), going, first)
 
 
 @inline
@@ -160,18 +119,14 @@ def keep_larger(kept, found, going, first):
 
 
 @inline
-def peak_within(c, u):
+def peak_within(c, u, rate):
     """The largest value of a series on [0, u] that turns back there once, or not."""
-    first, (end, slope, _) = row(c, 0), derivatives_at(c, 0, TERMS, u)
+    first, (end, slope, _, _, _) = row(c, 0), expanded_at(c, 0, TERMS, u)
     largest, begins = select(end > first, end, first), row(c, 1)
-    turns = (begins > 0.0) & (slope < 0.0)
-    top = select(turns, u * begins / (begins - slope), 0.0 * u)
-    for _ in range(TOP_LOOKS):
-        f, slope, curve = derivatives_at(c, 0, TERMS, top)
-        largest = select(turns & (f > largest), f, largest)
-        after = top - 0.5 * slope / curve
-        top = select(turns & (curve < 0.0) & (after > 0.0) & (after < u), after, top)
-    return largest
+    turning = (begins > 0.0) & (slope < 0.0)
+    top = select(turning, u * begins / (begins - slope), 0.0 * u)
+    found = peak(c, TERMS, None, top, rate, u, turning)
+    return select(found > largest, found, largest)
 
 
 @inline

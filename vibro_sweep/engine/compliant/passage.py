@@ -14,7 +14,13 @@ import math
 
 from vibro_sweep.engine.compliant.by_series import pass_by_series
 from vibro_sweep.engine.compliant.closed_form import pass_in_closed_form
-from vibro_sweep.engine.compliant.passage_series import acceleration_of, choose_equations, of_stop, turn
+from vibro_sweep.engine.compliant.passage_series import (
+    acceleration_of,
+    choose_equations,
+    from_contact,
+    of_stop,
+    turn,
+)
 from vibro_sweep.engine.motion.strike import bound_third, derivatives, leaves_freely, load_x1
 from vibro_sweep.engine.simd.columns import put_transposed, rows_of, weigh
 from vibro_sweep.engine.simd.jit import inline, jit
@@ -41,7 +47,8 @@ def guess(speed, a, duration, lean, pull):
     y = (lean * a + pull) / speed
     size = abs(y)
     inner = select(size < 1.0, y, 1.0 / select(size < 1.0, 1.0, size))
-    angle = inner / (1.0 + 0.28 * inner * inner) * (2.0 / math.pi)
+    square = inner * inner
+    angle = inner * (15.0 + 4.0 * square) / (15.0 + 9.0 * square) * (2.0 / math.pi)
     return duration * select(size < 1.0, 1.0 + angle, select(y < 0.0, angle, 2.0 - angle))
 
 
@@ -111,9 +118,9 @@ def leave_stop(passage, strikes, leaving, crossing, side, end, sin, cos):
     put(passage.speed_after, 0, speed)
     put(y, 0, place)
     put(y, 1, speed)
-    to_masses_of(passage, passage.y, passage.release, side, wall)
+    from_contact(passage, passage.y, passage.release, side, wall)
     if bits(crossing) != 0:
-        to_masses_of(passage, passage.section, passage.landing, side, wall)
+        from_contact(passage, passage.section, passage.landing, side, wall)
         put_transposed(passage.X, passage.landing)
     put(passage.release, states, sin)
     put(passage.release, states + 1, cos)
@@ -148,13 +155,3 @@ def leave_stop(passage, strikes, leaving, crossing, side, end, sin, cos):
         put(strikes.landing, 2 * m + 1, select(leaving, v, row(strikes.landing, 2 * m + 1)))
     put_transposed(strikes.X, strikes.landing)
     return leaving
-
-
-@inline
-def to_masses_of(passage, y, to, side, wall):
-    """The coordinates and velocities x1, v1, ... from delta, delta', w2, ..."""
-    put(to, 0, wall + side * row(y, 0))
-    put(to, 1, side * row(y, 1))
-    for m in range(1, len(passage.push)):
-        put(to, 2 * m, row(y, 2 * m) + row(passage.push, m) * row(to, 0))
-        put(to, 2 * m + 1, row(y, 2 * m + 1) + row(passage.push, m) * row(to, 1))

@@ -12,6 +12,7 @@ from vibro_sweep.engine.simd.memory import put, row
 INVERSE = 1.0 / np.arange(1.0, TERMS + 2.0)  # of n + 1
 SIN = tuple((-1.0) ** n / math.factorial(2 * n + 1) for n in range(1, 12))  # from the third power of the angle on
 COS = tuple((-1.0) ** n / math.factorial(2 * n) for n in range(1, 12))  # from the second on
+MARGIN = 1.0 + 1e-9  # of bounds that rounding may have moved
 
 
 @inline
@@ -52,6 +53,16 @@ def acceleration_of(passage, sin, cos):
     return total
 
 
+@inline
+def add_pull(total, G, first, x, v, size, begin, end, n):
+    """Add what the coordinates from `begin` to `end` do, by the n-th terms of their series of `size` terms and the row
+    of equations that begins at `first`."""
+    for j in range(begin, end):
+        place, speed, term = row(G, first + 2 * j), row(G, first + 2 * j + 1), j * size + n
+        total = total + (place * row(x, term) + speed * row(v, term))
+    return total
+
+
 @jit
 def load_passage(passage, sin, cos):
     """Taylor series from y on, at the phase (sin, cos) of the force: of the motion, and of a."""
@@ -66,10 +77,7 @@ def load_passage(passage, sin, cos):
             total = row(G, first + states) * sin + row(G, first + states + 1) * cos
             if n == 0:
                 total = total + row(G, first + states + 2)
-            for j in range(1, masses):
-                total = total + (
-                    row(G, first + 2 * j) * row(x, j * TERMS + n) + row(G, first + 2 * j + 1) * row(v, j * TERMS + n)
-                )
+            total = add_pull(total, G, first, x, v, TERMS, 1, masses, n)
             if m == 0:
                 put(passage.drive, n, total)
             total = total + (row(G, first + 1) * row(v, n) + row(G, first) * row(x, n))
@@ -77,6 +85,16 @@ def load_passage(passage, sin, cos):
         for m in range(masses):
             put(x, m * TERMS + n + 1, row(v, m * TERMS + n) * INVERSE[n])
         sin, cos = omega * cos * INVERSE[n], -omega * sin * INVERSE[n]
+
+
+@inline
+def from_contact(passage, y, to, side, wall):
+    """The coordinates and velocities x1, v1, ... from delta, delta', w2, ..."""
+    put(to, 0, wall + side * row(y, 0))
+    put(to, 1, side * row(y, 1))
+    for m in range(1, len(passage.push)):
+        put(to, 2 * m, row(y, 2 * m) + row(passage.push, m) * row(to, 0))
+        put(to, 2 * m + 1, row(y, 2 * m + 1) + row(passage.push, m) * row(to, 1))
 
 
 @inline
@@ -91,21 +109,48 @@ def at(c, first, count, u):
 
 
 @inline
-def derivatives_at(c, first, count, u):
-    """The series of `count` terms that begin in row `first`, at u, its derivative, and half its second one.
+def expanded_at(c, first, count, u):
+    """Taylor coefficients at u, up to the fourth power, of the series of `count` terms that begin in row `first`.
 
-    Even and odd terms go side by side.
+    Even and odd terms go side by side: their sums are functions of u^2, of which the n-th derivative over n! is taken.
     """
     square, last = u * u, first + count - 1
     odd, even = row(c, last), row(c, last - 1)
-    odd_slope = even_slope = odd_curve = even_curve = 0.0 * u
+    odd1 = even1 = odd2 = even2 = odd3 = even3 = odd4 = even4 = 0.0 * u
     for n in range(last - 2, first, -2):
-        odd_curve, even_curve = odd_curve * square + odd_slope, even_curve * square + even_slope
-        odd_slope, even_slope = odd_slope * square + odd, even_slope * square + even
+        odd4, even4 = odd4 * square + odd3, even4 * square + even3
+        odd3, even3 = odd3 * square + odd2, even3 * square + even2
+        odd2, even2 = odd2 * square + odd1, even2 * square + even1
+        odd1, even1 = odd1 * square + odd, even1 * square + even
         odd, even = odd * square + row(c, n), even * square + row(c, n - 1)
-    slope = odd + 2.0 * (u * even_slope + square * odd_slope)
-    curve = even_slope + 3.0 * (u * odd_slope) + 4.0 * square * (even_curve + u * odd_curve)
-    return even + u * odd, slope, curve
+    return (
+        even + u * odd,
+        odd + 2.0 * (u * even1 + square * odd1),
+        even1 + 3.0 * (u * odd1) + 4.0 * square * (even2 + u * odd2),
+        odd1 + 4.0 * (u * even2) + 8.0 * square * (odd2 + u * even3 + square * odd3),
+        even2 + 5.0 * (u * odd2) + square * (12.0 * even3 + 20.0 * (u * odd3) + 16.0 * square * (even4 + u * odd4)),
+    )
+
+
+@inline
+def load_sum(to, of, count, k, c, p, who):
+    """The series of k f + c f' + p from that of f, for lanes that are not `who` of f itself; its last term is k f."""
+    last = count - 1
+    for n in range(last):
+        put(to, n, select(who, k * row(of, n) + c * ((n + 1.0) * row(of, n + 1)), row(of, n)))
+    put(to, last, select(who, k * row(of, last), row(of, last)))
+    put(to, 0, row(to, 0) + select(who, p, 0.0))
+
+
+@inline
+def changes_of(c, last, u):
+    """By how much a series up to the `last` power changes at most within u, and its derivative."""
+    size, slope = abs(row(c, last)), float(last) * abs(row(c, last))
+    for n in range(last - 1, 0, -1):
+        size = size * u + abs(row(c, n))
+        if n > 1:
+            slope = slope * u + float(n) * abs(row(c, n))
+    return size * u * MARGIN, slope * u * MARGIN
 
 
 @jit
@@ -125,10 +170,7 @@ def carry_vector(passage, damping, u, going):
             total = row(G, first + 1) * speed + row(G, first) * row(x, n)
             if m == 0:
                 total = total + damping * speed
-            for j in range(1, masses):
-                total = total + (
-                    row(G, first + 2 * j) * row(x, j * TERMS + n) + row(G, first + 2 * j + 1) * row(v, j * TERMS + n)
-                )
+            total = add_pull(total, G, first, x, v, TERMS, 1, masses, n)
             put(v, m * TERMS + n + 1, total * INVERSE[n])
         put(x, n + 1, speed * INVERSE[n])
         for m in range(1, masses):

@@ -12,14 +12,14 @@ ends where V h(u) + a H(u) + r = 0, with
 
 Without a and r that is at a time `duration` which V does not change; they move it, and the first guess is
 
-    duration (1 + (2/pi) y/(1 + 0.28 y^2)),   y = (lean a + pull)/V,   or the like where |y| > 1 (arctan)
+    duration (1 + (2/pi) arctan y),   y = (lean a + pull)/V,   arctan y = y (15 + 4 y^2)/(15 + 9 y^2) for |y| < 1
 """
 
 import math
 
 import numpy as np
 
-from vibro_sweep.engine.compliant.slow_manifold import closed_fields, set_apart
+from vibro_sweep.engine.compliant.slow_manifold import SLOW, closed_fields, set_apart
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import record
@@ -101,7 +101,10 @@ def passages_of(masses: int, constant: bool = False) -> np.dtype:
 def set_passage(passage, i, contact, point, q):
     """Give orbit i its stops."""
     masses, states, inputs = len(contact.push), len(contact.y), len(q.force)
-    passage.omega[i] = q.omega
+    passage.omega[i], power = q.omega, 1.0
+    for n in range(SLOW):
+        passage.powers[n, i] = power
+        power *= q.omega / (n + 1.0)
     for m in range(masses):
         passage.push[m, i] = contact.push[m]
         for j in range(inputs if m > 0 else 0):

@@ -24,6 +24,7 @@ from vibro_sweep.engine.simd.lanes import LANES
 
 SLOW = 16  # terms of a slow series at most, and
 SLOW_REACH = 0.6  # rate * time that they serve: the first term left out is below 2e-17; so it is for
+SLOW_ROWS = SLOW + 1  # of w2, ...: delta takes the velocity of w2 with its last term
 FEWER = ((8, 0.029), (12, 0.2))
 ROUNDS = 40  # of an iteration
 SAME = 2.0**-50  # between two rounds, of the size: the next one is as exact as it gets
@@ -38,26 +39,29 @@ def closed_fields(masses: int) -> list:
     slow = states + 1  # entries of chi
     return [
         ("reach", float, (2, LANES)),  # the longest contact that the closed form serves; 0: none
-        ("top", float, (2, LANES)),  # the part of its time after which delta is largest, about
+        ("top", float, (2, LANES)),  # the part of its time after which delta is largest, about, and
+        ("force_top", float, (2, LANES)),  # the force
         ("slow_rate", float, (2, LANES)),  # about how fast the slow motion is
         ("slow", float, (3 * (masses - 1) * slow, LANES)),  # S, its rows of w2', ...
         ("manifold", float, (3 * 2 * slow, LANES)),  # L
         ("share", float, (3 * 2 * (states - 2), LANES)),  # H, a row for each of w2, w2', ...
         ("fast", float, (3 * 10, LANES)),  # gamma, kd, M = (A - L C + gamma)/kd, J (A - L C + gamma) J^-1
         ("wiggle", float, (3 * 4, LANES)),  # sizes of B H and of B H (A - L C): what phi adds to a and to a'
+        ("powers", float, (SLOW, LANES)),  # omega^n/n!
         # of the contact
         ("chi", float, (slow, LANES)),
         ("phi", float, (4, LANES)),  # phi and M phi at the touch
-        ("waves", float, (2, LANES)),  # P and Q of delta
         ("slow_delta", float, (SLOW, LANES)),
-        ("slow_others", float, ((masses - 1) * SLOW, LANES)),
+        ("slow_others", float, ((masses - 1) * SLOW_ROWS, LANES)),  # of w2, ..., and
+        ("slow_speeds", float, ((masses - 1) * SLOW_ROWS, LANES)),  # of w2', ...
         ("slow_end", float, (SLOW, LANES)),  # the slow part of what is zero at the end
         ("slow_force", float, (SLOW, LANES)),  # of F/m_e
         ("slow_drive", float, (SLOW, LANES)),  # of a
-        ("most", np.int64),  # terms of the slow series, of the orbits together
-        ("closed", float, (LANES,)),  # 1 where the contact was passed in closed form
+        # of the contact, for tangent vectors
+        ("closed", float, (LANES,)),  # 1 where it was passed in closed form
         ("block", np.int64),  # of the tables
-        ("terms", float, (LANES,)),
+        ("terms", float, (LANES,)),  # of its slow series, and
+        ("most", np.int64),  # the most of any orbit
         ("flight", float, (2, LANES)),  # e^{-gamma u} cos kd u and e^{-gamma u} sin kd u/kd at its end
         ("slow_flight", float, ((states - 2) ** 2, LANES)),  # e^{S u} of w2, w2', ...
         ("slow_term", float, (2 * (states - 2), LANES)),
@@ -92,7 +96,9 @@ def set_apart(passage, n, i, G, c, omega):
     kd = math.sqrt(square)
     reach = min(SLOW_REACH / rate, TURN / kd)
     passage.reach[n, i] = min(reach, DECAY / gamma) if gamma > 0.0 else reach
-    passage.top[n, i] = math.atan2(kd, gamma) / (kd * passage.duration[n, i])
+    turn, top = kd * passage.duration[n, i], math.atan2(kd, gamma)
+    ahead = math.atan2(c * kd, passage.stiffness[n, i] - c * gamma)  # of delta the force is
+    passage.top[n, i], passage.force_top[n, i] = top / turn, max(top - ahead, 0.0) / turn
     F[0, 0], F[1, 1] = F[0, 0] + gamma, F[1, 1] + gamma
     first = 10 * n
     fast[first, i], fast[first + 1, i] = gamma, kd

@@ -1,6 +1,6 @@
 """Tangent vectors through the contacts of eight orbits at once; what touch and release do: tangent_in_contact.py."""
 
-from vibro_sweep.engine.compliant.passage_series import INVERSE, carry_vector, of_stop
+from vibro_sweep.engine.compliant.passage_series import INVERSE, carry_vector, from_contact, of_stop
 from vibro_sweep.engine.simd.jit import inline, noinline
 from vibro_sweep.engine.simd.lanes import bits, lanes_of, lowest, select
 from vibro_sweep.engine.simd.memory import put, row
@@ -46,7 +46,7 @@ def carry_through_contacts(passage, strikes, t, orbits, passed):
         for n in range(len(t.places) // size):
             chosen = who & (right if n == 1 else ~right)
             put(t.places, n * size + j, select(chosen, delta, row(t.places, n * size + j)))
-        from_contact(passage, t, side, j, who)
+        set_from_contact(passage, t, side, j, who)
     put(t.mixed, 0, select(who, 1.0, row(t.mixed, 0)))
     watch(t, who, exponential(of_stop(passage.trace, right) * time))
     left = passed
@@ -142,14 +142,10 @@ def to_contact(passage, t, side, j):
 
 
 @inline
-def from_contact(passage, t, side, j, who):
+def set_from_contact(passage, t, side, j, who):
     """Tangent vector j from (delta, delta', w2, ...)."""
     Z, frame, size, of = t.Z, t.to_frame, len(t.growth), passage.vector
-    put(of, 0, side * row(of, 0))
-    put(of, 1, side * row(of, 1))
-    for m in range(1, len(passage.push)):
-        put(of, 2 * m, row(of, 2 * m) + row(passage.push, m) * row(of, 0))
-        put(of, 2 * m + 1, row(of, 2 * m + 1) + row(passage.push, m) * row(of, 1))
+    from_contact(passage, of, of, side, 0.0 * side)
     for m in range(size):
         total = row(frame, size * m) * row(of, 0)
         for a in range(1, size):
