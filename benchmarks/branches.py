@@ -27,6 +27,7 @@ from vibro_sweep.analysis.periodic.solution import Solution
 GUESSES = 1000
 NEAR = 1e-4  # relative distance of a guess from its orbit
 ROUNDS = 5
+NUMBERS = {"b": (3.3, 4.3), "omega": (0.62, 0.64), "zeta": (0.048, 0.055)}  # in which branches are followed
 
 
 def least(job, rounds=ROUNDS) -> float:
@@ -67,18 +68,41 @@ def additions(solution: Solution) -> dict[str, float]:
     }
 
 
-def points(solution: Solution, name="b", bounds=(3.3, 4.3)) -> tuple[float, float]:
-    """Points per second with all tests and the certificate, and corrections for each."""
+def run_along(solution: Solution, name: str, bounds, counts: list):
+    """A job that takes steps along a branch, and appends how many points and corrections there were."""
     first = start_of_branch(branch_through(solution, name, bounds[1] - bounds[0], bounds)).backwards()
     length = LONGEST_STEP / 25  # so that a run has enough points to be timed
-    counts = []
 
     def job():
         stepper = CompiledStepper(first, 0, length)
         counts.append(stepper.record_steps(1)[1:])
 
-    seconds = least(job)
+    return job
+
+
+def points(solution: Solution, name="b", bounds=NUMBERS["b"]) -> tuple[float, float]:
+    """Points per second with all tests and the certificate, and corrections for each."""
+    counts = []
+    seconds = least(run_along(solution, name, bounds, counts))
     return counts[-1][0] / seconds, counts[-1][1] / counts[-1][0]
+
+
+def compare(count: int, name: str, bounds) -> None:
+    """Points of branches with so many contacts beside those with as many impacts: processor time, in turns."""
+    solutions, counts, spent = {"rigid": one_sided(count)}, [], {}
+    for k_stop in (1e2, 1e4):
+        system = PAPER.replace(b=4.0, R=None, k_stop=k_stop, c_stop=0.14 * k_stop**0.5)
+        solutions[k_stop] = vs.periodic_orbit(system, itinerary="R")._solution.repeated(count)
+    jobs = {key: run_along(solution, name, bounds, counts) for key, solution in solutions.items()}
+    for turn in range(2 * ROUNDS):
+        for key, job in jobs.items():
+            began = time.process_time()
+            job()
+            if turn:
+                spent[key] = min(spent.get(key, np.inf), (time.process_time() - began) / counts[-1][0])
+    for k_stop in (1e2, 1e4):
+        share = f"{spent['rigid'] / spent[k_stop]:.2f} of the rigid ones"
+        print(f"  {count:3d} contacts, k_stop = {k_stop:g}, in {name}: {1 / spent[k_stop]:8.0f} per second, {share}")
 
 
 def shooting(period_map, state) -> np.ndarray:
@@ -170,17 +194,13 @@ def main() -> None:
         times[count] = 1 / speed
         print(f"  {count:3d} impacts, in b: {speed:8.0f} per second, {corrections:.1f} corrections each")
     print(f"  a point with 100 impacts takes {times[100] / times[10]:.1f} times as long as one with 10")
-    for name, bounds in (("omega", (0.62, 0.64)), ("zeta", (0.048, 0.055))):
-        speed, corrections = points(solution, name, bounds)
+    for name in ("omega", "zeta"):
+        speed, corrections = points(solution, name, NUMBERS[name])
         print(f"    1 impact, in {name}: {speed:8.0f} per second, {corrections:.1f} corrections each")
-    print("The same with compliant stops, beside rigid ones with as many impacts:")
-    for count in (1, 4):
-        for k_stop in (1e2, 1e4):
-            system = PAPER.replace(b=4.0, R=None, k_stop=k_stop, c_stop=0.14 * k_stop**0.5)
-            pressed = vs.periodic_orbit(system, itinerary="R")._solution.repeated(count)
-            speed, _ = points(pressed)
-            share = f"{speed * times[count]:.2f} of the rigid ones"
-            print(f"  {count:3d} contacts, k_stop = {k_stop:g}, in b: {speed:8.0f} per second, {share}")
+    print("The same with compliant stops, and how that compares to rigid ones with as many impacts, in turns:")
+    for count in (1, 4, 10):
+        for name, bounds in NUMBERS.items():
+            compare(count, name, bounds)
 
 
 if __name__ == "__main__":

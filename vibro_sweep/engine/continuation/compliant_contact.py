@@ -96,9 +96,11 @@ def press_on(f, side, length, turn, work):
             by_length += (order - 1) * work.cell[order] * power
             power *= step
         apply(f, work.pressing[MEAN], turn, start, mean)
-    for k in range(parts):
-        apply(f, work.pressing[SUM], turn * cmath.exp(1j * step * k), state, other)
+    swing, ahead = turn, cmath.exp(1j * step)
+    for _ in range(parts):
+        apply(f, work.pressing[SUM], swing, state, other)
         copy_motion(other, state)
+        swing *= ahead
     if parts > 1:
         for place in range(0, n * state.shape[1], LANES):
             put_eight(mean, place, (eight(state, place) - eight(start, place)) * (1.0 / length))

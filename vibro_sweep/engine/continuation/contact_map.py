@@ -1,6 +1,7 @@
 """The motion in contact over a step, as a linear map of (z, cos, sin, 1) with its derivatives by the parameters.
 
-A step resolves the rates of the contact. The map is summed once as a Taylor series, and it leads through all steps.
+A step resolves the rates of the contact. The Taylor series of the map holds for all contacts with a stop, and is made
+anew where a number moves that it depends on; the place of the stop is a column of its own.
 """
 
 import math
@@ -11,7 +12,7 @@ from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import LANES
 from vibro_sweep.engine.simd.memory import eight, put_eight
 
-BEFORE, TERM, SUM, MEAN = range(4)  # of `work.pressing`
+SUM, MEAN = range(2)  # of `work.pressing`
 
 
 @jit
@@ -49,79 +50,110 @@ def apply(f, tables, swing, motion, out):
 
 @jit
 def put_rates(f, side, rates):
-    """rates (3, n, n + 3): omega times those of z by (z, cos, sin, 1), and their derivatives by the parameters."""
-    n, N, stop, law = f.A.shape[0], f.A.shape[0] // 2, HIGH if side > 0 else LOW, law_at(f, side)
-    forces = n * (n + 1)
+    """rates (3, n + 2, ..): omega times those of z by (z, cos, sin, 1), and their derivatives by the parameters."""
+    put_generator(f, side, rates)
+    take_stop(f, side, rates)
+
+
+@jit
+def put_generator(f, side, rates):
+    """The rates by time of (z, cos, sin) by (z, cos, sin, 1, stop), and their derivatives by the parameters."""
+    put_part(f, side, f.values, f.A, f.numbers[OMEGA], rates[0])
+    for j in range(f.parameters):
+        put_part(f, side, f.slopes[j], f.A_slopes[j], f.number_slopes[j, OMEGA], rates[1 + j])
+
+
+@jit
+def put_part(f, side, values, A, omega, out):
+    """out: the rates, of the numbers themselves or of their slopes."""
+    n, N, law = f.A.shape[0], f.A.shape[0] // 2, law_at(f, side)
     for r in range(n):
         for i in range(n):
-            rates[0, r, i] = f.A[r, i]
+            out[r, i] = A[r, i]
         for i in range(2):
-            rates[0, r, n + i] = f.values[forces + r - N + i * N] if r >= N else 0.0
-        rates[0, r, n + 2] = f.A[r, n] + f.A[r, 0] * f.numbers[stop]
+            out[r, n + i] = values[n * (n + 1) + r - N + i * N] if r >= N else 0.0
+        out[r, n + 2], out[r, n + 3] = A[r, n], A[r, 0]
+    out[N, 0] -= values[law]
+    out[N, N] -= values[law + 1]
+    out[N, n + 2] -= side * values[law + 2]
+    out[n, n + 1], out[n + 1, n] = -omega, omega
+
+
+@jit
+def take_stop(f, side, tables):
+    """Add the column of the stop, at its place, to that of 1."""
+    n, stop = f.A.shape[0], HIGH if side > 0 else LOW
+    for r in range(n):
+        by_stop = tables[0, r, n + 3]
+        tables[0, r, n + 2] += by_stop * f.numbers[stop]
         for j in range(f.parameters):
-            for i in range(n):
-                rates[1 + j, r, i] = f.A_slopes[j, r, i]
-            for i in range(2):
-                rates[1 + j, r, n + i] = f.slopes[j, forces + r - N + i * N] if r >= N else 0.0
-            rates[1 + j, r, n + 2] = f.A_slopes[j, r, n] + f.A_slopes[j, r, 0] * f.numbers[stop]
-            rates[1 + j, r, n + 2] += f.A[r, 0] * f.number_slopes[j, stop]
-    for i, column in enumerate((0, N, n + 2)):  # k d, c v, p
-        sign = -side if i == 2 else -1.0
-        rates[0, N, column] += sign * f.values[law + i]
-        for j in range(f.parameters):
-            rates[1 + j, N, column] += sign * f.slopes[j, law + i]
+            tables[1 + j, r, n + 2] += tables[1 + j, r, n + 3] * f.numbers[stop] + by_stop * f.number_slopes[j, stop]
 
 
 @jit
 def put_tables(f, side, step, work):
     """work.pressing: the map of (z, cos, sin, 1) over a step in phase and its mean rate of change, with derivatives;
     work.courses: Taylor coefficients of its gap."""
-    n, omega, tables, rates = f.A.shape[0], f.numbers[OMEGA], work.pressing, work.rates
-    wide, power = tables.shape[3], 1.0
-    put_rates(f, side, rates)
+    n, tables, k = f.A.shape[0], work.pressing, 1 if side > 0 else 0
+    put_generator(f, side, work.rates)
+    if differ(work.rates, work.generators[k]):
+        build_contact(f, work.generators[k], work.contact_series[k])
+    take_stop(f, side, work.rates)
     for j in range(f.parameters + 1):
-        for r in range(n + 3):
-            for i in range(wide):
-                tables[BEFORE, j, r, i] = tables[SUM, j, r, i] = 1.0 if j == 0 and r == i else 0.0
-                tables[MEAN, j, r, i] = 0.0
-    for i in range(wide):
-        work.courses[0, i] = tables[SUM, 0, 0, i]
-    for order in range(1, ORDER + 1):
-        put_term(f, rates, 1.0 / (order * omega), tables[BEFORE], tables[TERM])
-        for place in range(0, wide, LANES):
-            put_eight(work.courses, order * wide + place, eight(tables[TERM, 0], place))
-        for j in range(f.parameters + 1):
-            for place in range(0, n * wide, LANES):
-                value = eight(tables[TERM, j], place)
-                put_eight(tables[BEFORE, j], place, value)
-                put_eight(tables[MEAN, j], place, eight(tables[MEAN, j], place) + value * power)
-                put_eight(tables[SUM, j], place, eight(tables[SUM, j], place) + value * (power * step))
-        for place in range(n * wide, (n + 3) * wide, LANES):
-            put_eight(tables[BEFORE, 0], place, eight(tables[TERM, 0], place))
-        power *= step
+        put_polynomials(n, work.contact_series[k, j], step, tables[MEAN, j], tables[SUM, j])
+    take_stop(f, side, tables[MEAN])
+    take_stop(f, side, tables[SUM])
+    stop = f.numbers[HIGH if side > 0 else LOW]
+    for order in range(ORDER + 1):
+        for place in range(0, work.courses.shape[1], LANES):
+            put_eight(work.courses[order], place, eight(work.contact_series[k, 0, order], place))
+        work.courses[order, n + 2] += work.courses[order, n + 3] * stop
 
 
 @jit
-def put_term(f, rates, share, before, term):
-    """The Taylor coefficient of the map from that before it; share: 1/(order omega)."""
-    n, wide, omega = f.A.shape[0], before.shape[2], f.numbers[OMEGA]
-    for place in range(0, wide, LANES):
-        for r in range(n):
-            total = eight(before[0], place) * rates[0, r, 0]
-            for i in range(1, n + 3):
-                total = total + eight(before[0], i * wide + place) * rates[0, r, i]
-            put_eight(term[0], r * wide + place, total * share)
-            for j in range(1, f.parameters + 1):
-                slope = total * (-f.number_slopes[j - 1, OMEGA] / omega)
-                for i in range(n + 3):
-                    slope = slope + eight(before[0], i * wide + place) * rates[j, r, i]
-                for i in range(n):
-                    slope = slope + eight(before[j], i * wide + place) * rates[0, r, i]
-                put_eight(term[j], r * wide + place, slope * share)
-        cosine, sine = eight(before[0], n * wide + place), eight(before[0], (n + 1) * wide + place)
-        put_eight(term[0], n * wide + place, sine * (-share * omega))
-        put_eight(term[0], (n + 1) * wide + place, cosine * (share * omega))
-        put_eight(term[0], (n + 2) * wide + place, sine * 0.0)
+def differ(rates, kept):
+    """Whether two tables differ; `kept` becomes the other one."""
+    result, columns = False, rates.shape[2]
+    for j in range(rates.shape[0]):
+        for r in range(rates.shape[1]):
+            for c in range(columns):
+                if rates[j, r, c] != kept[j, r, c]:
+                    kept[j, r, c], result = rates[j, r, c], True
+    return result
+
+
+@jit
+def build_contact(f, rates, series):
+    """series (3, ORDER + 1, n, ..): Taylor coefficients by phase of z by (z, cos, sin, 1, stop), and derivatives."""
+    n, omega, wide = f.A.shape[0], f.numbers[OMEGA], rates.shape[2]
+    for r in range(n):
+        series[0, 0, r, r] = 1.0
+    for order in range(1, ORDER + 1):
+        share = 1.0 / (order * omega)
+        for place in range(0, wide, LANES):
+            for r in range(n):
+                value = eight(rates[0], place) * (share * series[0, order - 1, r, 0])
+                for i in range(1, n + 2):
+                    value = value + eight(rates[0], i * wide + place) * (share * series[0, order - 1, r, i])
+                put_eight(series[0, order], r * wide + place, value)
+                for j in range(1, f.parameters + 1):
+                    slope = value * (-f.number_slopes[j - 1, OMEGA] / omega)
+                    for i in range(n + 2):
+                        slope = slope + eight(rates[0], i * wide + place) * (share * series[j, order - 1, r, i])
+                        slope = slope + eight(rates[j], i * wide + place) * (share * series[0, order - 1, r, i])
+                    put_eight(series[j, order], r * wide + place, slope)
+
+
+@jit
+def put_polynomials(n, series, step, mean, total):
+    """mean, total (n, ..): sum_k series_k step^(k - 1) from k = 1 on, and sum_k series_k step^k."""
+    size = n * mean.shape[1]
+    for i in range(0, size, LANES):
+        value = eight(series, ORDER * size + i)
+        for k in range(ORDER - 1, 0, -1):
+            value = value * step + eight(series, k * size + i)
+        put_eight(mean, i, value)
+        put_eight(total, i, value * step + eight(series, i))
 
 
 @jit

@@ -139,9 +139,11 @@ def work_of(masses: int) -> np.dtype:
         ("image", float, (n, columns_of(2 * n - 1))),
         ("matrix", float, (n, n)),
         ("resting", float, (4, n, columns_of(n + PARAMETERS))),  # see constrained_gap.py and compliant_contact.py
-        ("pressing", float, (4, 1 + PARAMETERS, n + 3, columns_of(n + PARAMETERS))),  # see contact_map.py
-        ("courses", float, (ORDER + 1, columns_of(n + PARAMETERS))),
-        ("rates", float, (1 + PARAMETERS, n, n + 3)),
+        ("pressing", float, (2, 1 + PARAMETERS, n, columns_of(n + 3))),  # see contact_map.py
+        ("courses", float, (ORDER + 1, columns_of(n + 3))),
+        ("rates", float, (1 + PARAMETERS, n + 2, columns_of(n + 3))),
+        ("generators", float, (2, 1 + PARAMETERS, n + 2, columns_of(n + 3))),  # rates of which there are series
+        ("contact_series", float, (2, 1 + PARAMETERS, ORDER + 1, n, columns_of(n + 3))),
         ("varied", float, (6, n, columns_of(n + PARAMETERS))),  # see contact_derivative.py
         ("re", float, (n,)),
         ("im", float, (n,)),
