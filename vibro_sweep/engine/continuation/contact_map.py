@@ -9,7 +9,7 @@ import math
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, OMEGA, law_at
 from vibro_sweep.engine.impulses.taylor_orders import ORDER
 from vibro_sweep.engine.simd.jit import jit
-from vibro_sweep.engine.simd.lanes import LANES
+from vibro_sweep.engine.simd.lanes import LANES, bits
 from vibro_sweep.engine.simd.memory import eight, put_eight
 
 SUM, MEAN = range(2)  # of `work.pressing`
@@ -113,13 +113,12 @@ def put_tables(f, side, step, work):
 @jit
 def differ(rates, kept):
     """Whether two tables differ; `kept` becomes the other one."""
-    result, columns = False, rates.shape[2]
-    for j in range(rates.shape[0]):
-        for r in range(rates.shape[1]):
-            for c in range(columns):
-                if rates[j, r, c] != kept[j, r, c]:
-                    kept[j, r, c], result = rates[j, r, c], True
-    return result
+    found = 0
+    for place in range(0, rates.shape[0] * rates.shape[1] * rates.shape[2], LANES):
+        value = eight(rates, place)
+        found |= bits(abs(value - eight(kept, place)) > 0.0)
+        put_eight(kept, place, value)
+    return found != 0
 
 
 @jit

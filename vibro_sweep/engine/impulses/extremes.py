@@ -121,7 +121,7 @@ def extremes_of_cell(c, length, low, high, nearest, waiting):
             continue
         u = middle
         if monotone:
-            if (high - c[0] if curve < 0.0 else c[0] - low) - bound > nearest[0]:
+            if (high - c[0] if curve < 0.0 else c[0] - low) - bound >= nearest[0]:
                 continue
             fa, fb = slope_of(c, a), slope_of(c, b)
             if not ((fa > 0.0 and fb <= 0.0) or (fa < 0.0 and fb >= 0.0)):
