@@ -113,3 +113,28 @@ class ContactOrbit:
                 product += (after - before) * (self.gap * product) / (self.gap * before)[0]
         n = 2 * self.N
         return self.sigma * product[:n, :n]
+
+
+class ContactMap:
+    """The map over the period of a `ContactOrbit`, of states (x .., v ..) at its t = 0, by where its flights end."""
+
+    def __init__(self, orbit: ContactOrbit, state, times):
+        self.orbit, self.times = orbit, list(times)
+        self.centre = [mpf(a) for a in [*state[::2], *state[1::2]]]
+
+    def __call__(self, change):
+        """The change of the image."""
+        o, t = self.orbit, mpf(0)
+        y = o._begin([a + b for a, b in zip(self.centre, change, strict=True)])
+        for k, guess in enumerate(self.times):
+            pressed, stop = o.pressed[o.sides[k // 2]]
+            A, start = pressed if k % 2 else o.free, y
+            for _ in range(30):
+                y = mp.expm(A * (guess - t)) * start
+                step = ((o.gap * y)[0] - stop) / (o.gap * A * y)[0]
+                guess -= step
+                if abs(step) < mpf(10) ** (-mp.dps + 6):
+                    break
+            y, t = mp.expm(A * (guess - t)) * start, guess
+        y = mp.expm(o.free * (o.length - t)) * y
+        return mp.matrix([o.sigma * y[i] - a for i, a in enumerate(self.centre)])

@@ -107,4 +107,6 @@ if __name__ == "__main__":
         total += counted
         seeds += bool(wrong)
         print(*wrong, sep="\n", end="\n" * bool(wrong), flush=True)
+        if seed % 10 == 9:
+            print(f"to seed {seed}: {dict(total)}, {seeds} seeds with a disagreement", flush=True)
     print(f"{dict(total)}\n{seeds} seeds with a disagreement")

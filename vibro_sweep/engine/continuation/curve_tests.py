@@ -8,7 +8,7 @@ from vibro_sweep.engine.continuation.certificate import certify
 from vibro_sweep.engine.continuation.chatter_sum import REACH
 from vibro_sweep.engine.continuation.conditions import keep_null_vectors
 from vibro_sweep.engine.continuation.factors import factorise, solve_rows
-from vibro_sweep.engine.continuation.lasting import factor_of_grazes, is_watched
+from vibro_sweep.engine.continuation.lasting import factor_of_grazes, has_rests, is_watched
 from vibro_sweep.engine.continuation.moving_flow import OMEGA
 from vibro_sweep.engine.continuation.normal_form import coefficient
 from vibro_sweep.engine.continuation.problem import FLIP, FOLD, GRAZE, STICK, TORUS, is_critical
@@ -99,7 +99,7 @@ def examine_curve(f, c, place, b):
         tests[TEST.plus] = determinant(c, b, n, 1.0) / grazes
     if c.kind != FLIP and not watched:
         tests[TEST.minus] = determinant(c, b, n, -1.0) / grazes
-    if (c.kind == FLIP or c.kind == TORUS) and not np.any(c.rests):
+    if (c.kind == FLIP or c.kind == TORUS) and not has_rests(c):
         # det G(1) takes away the pole where the orbit has the multiplier 1 as well
         tests[TEST.normal] = coefficient(f, c, place, b) * tests[TEST.plus]
     if c.kind == GRAZE:

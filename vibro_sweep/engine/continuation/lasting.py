@@ -6,6 +6,7 @@
 from vibro_sweep.engine.continuation.compliant_contact import contact, least_depth, press_gap
 from vibro_sweep.engine.continuation.constrained_gap import constrain_gap, press, rest
 from vibro_sweep.engine.continuation.contact_derivative import differentiate_contact
+from vibro_sweep.engine.continuation.contact_power_series import press_series
 from vibro_sweep.engine.continuation.moving_flow import HIGH, LOW, law_at
 from vibro_sweep.engine.continuation.problem import GRAZE
 from vibro_sweep.engine.simd.jit import jit
@@ -65,6 +66,22 @@ def differentiate_last(f, compliant, side, x, e, through, work):
     """Add the terms of a contact to the derivative along a null vector; curves of orbits that rest are not followed."""
     if compliant is not None:
         differentiate_contact(f, side, x, e, through, work)
+
+
+@jit
+def last_series(f, compliant, side, x, e, y, work):
+    """The state y after a contact, and its rows, as power series."""
+    if compliant is not None:
+        press_series(f, side, x, e, y, work)
+
+
+@jit
+def has_rests(c):
+    """Whether the orbit rests on a rigid stop."""
+    for i in range(len(c.rests)):
+        if c.rests[i] and not is_contact(c.compliant, c.sides[i]):
+            return True
+    return False
 
 
 @jit

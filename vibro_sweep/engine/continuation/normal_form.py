@@ -17,31 +17,15 @@ import numpy as np
 
 from vibro_sweep.engine.continuation.conditions import expand, multiplier, put_matrix
 from vibro_sweep.engine.continuation.factors import factorise, square, substitute
+from vibro_sweep.engine.continuation.lasting import last_series
 from vibro_sweep.engine.continuation.moving_flow import OMEGA, ONE_PLUS_R_HIGH, ONE_PLUS_R_LOW
+from vibro_sweep.engine.continuation.power_series import MIRROR, POWERS, put_wave, steady, times
 from vibro_sweep.engine.continuation.problem import FLIP
 from vibro_sweep.engine.continuation.reflections import take_down
 from vibro_sweep.engine.continuation.workspace import TERMS
 from vibro_sweep.engine.simd.jit import jit
 
-POWERS = np.array([(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3)])  # j, k of z^j z*^k
-_PLACE = {tuple(power): place for place, power in enumerate(POWERS.tolist())}
-PRODUCTS = np.array([  # i, j, k: terms i and j make term k
-    (i, j, _PLACE[a + c, b + d])
-    for i, (a, b) in enumerate(POWERS.tolist())
-    for j, (c, d) in enumerate(POWERS.tolist())
-    if (a + c, b + d) in _PLACE
-])  # fmt: skip
-MIRROR = np.array([_PLACE[k, j] for j, k in POWERS.tolist()])  # of the complex conjugate
 LINEAR, SQUARE, MIXED, CUBE, RESONANT, OPPOSITE = 1, 3, 4, 6, 7, 9  # places of z, z^2, z z*, z^3, z^2 z*, z*^3
-
-
-@jit
-def times(a, b, out):
-    """out = a b, to third order."""
-    for i in range(TERMS):
-        out[i] = 0.0
-    for i in range(len(PRODUCTS)):
-        out[PRODUCTS[i, 2]] += a[PRODUCTS[i, 0]] * b[PRODUCTS[i, 1]]
 
 
 @jit
@@ -56,28 +40,14 @@ def factor_of(mu, m):
 
 
 @jit
-def meet(f, one_plus_R, e, D, series, y, power, other, left):
+def meet(f, one_plus_R, e, D, series, y, jets, left):
     """left (2, TERMS): rows 1 and 2 of an impact, for the state y (n, TERMS) before it at its own phase."""
     N, R1 = f.A.shape[0] // 2, f.numbers[one_plus_R]
-    shift, jump = series[0], series[1]
+    put_wave(e.turn, series[0], jets)
     for m in range(TERMS):
-        power[m], left[0, m], left[1, m] = 0.0, y[0, m], jump[m] + R1 * y[N, m]
+        left[0, m] = y[0, m] + steady(f.Z[0], jets, m)
+        left[1, m] = series[1, m] + R1 * (y[N, m] + steady(f.Z[N], jets, m))
     left[1, 0] += D
-    power[0] = 1.0
-    # Re(Z e^{i phi}) with e^{i dphi} = 1 + x + x^2/2 + x^3/6
-    back = e.turn.conjugate()
-    gap, speed = f.Z[0] * e.turn, f.Z[N] * e.turn
-    gap_back, speed_back = f.Z[0].conjugate() * back, f.Z[N].conjugate() * back
-    weight = 1.0 + 0j
-    for k in range(4):
-        sign = 1.0 if k % 2 == 0 else -1.0
-        for m in range(TERMS):
-            left[0, m] += 0.5 * (gap + sign * gap_back) * weight * power[m]
-            left[1, m] += 0.5 * R1 * (speed + sign * speed_back) * weight * power[m]
-        times(power, shift, other)
-        for m in range(TERMS):
-            power[m] = other[m]
-        weight *= 1j / (k + 1)
 
 
 @jit
@@ -134,11 +104,17 @@ def residuals(f, c, place, b, mu):
     for i in range(K):
         e, following = b.events[i], b.events[i + 1 if i + 1 < K else 0]
         one_plus_R, D = ONE_PLUS_R_HIGH if c.sides[i] > 0 else ONE_PLUS_R_LOW, place.x[i, n + 1]
-        meet(f, one_plus_R, e, D, e.series, y, power, other, e.left)
         for m in range(TERMS):
             delay[m] = following.series[0, m] * (1.0 if i + 1 < K else factor_of(mu, m)) - e.series[0, m]
-            y[N, m] += e.series[1, m]
-        y[N, 0] += D
+        if c.rests[i]:
+            last_series(f, c.compliant, c.sides[i], place.x[i], e, y, work)
+            for m in range(TERMS):
+                delay[m] -= e.series[1, m]
+        else:
+            meet(f, one_plus_R, e, D, e.series, y, work.jets, e.left)
+            for m in range(TERMS):
+                y[N, m] += e.series[1, m]
+            y[N, 0] += D
         delay[0] = 0.0
         fly_series(f, e, delay, y, landing, turned, power, other)
     for r in range(n):

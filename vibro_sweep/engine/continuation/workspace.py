@@ -166,7 +166,7 @@ def work_of(masses: int) -> np.dtype:
         ("first", complex, (n, TERMS)),  # power series of y_1, see normal_form.py
         ("closing", complex, (n, TERMS)),  # and of the last rows
         ("states", complex, (3, n, TERMS)),
-        ("jets", complex, (3, TERMS)),
+        ("jets", complex, (5, TERMS)),
     ])  # fmt: skip
 
 

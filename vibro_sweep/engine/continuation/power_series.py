@@ -1,0 +1,48 @@
+"""Power series in z and its conjugate z*, to third order: of the critical multiplier's invariant manifold."""
+
+import numpy as np
+
+from vibro_sweep.engine.continuation.workspace import TERMS
+from vibro_sweep.engine.simd.jit import jit
+
+POWERS = np.array([(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3)])  # j, k of z^j z*^k
+_PLACE = {tuple(power): place for place, power in enumerate(POWERS.tolist())}
+PRODUCTS = np.array([  # i, j, k: terms i and j make term k
+    (i, j, _PLACE[a + c, b + d])
+    for i, (a, b) in enumerate(POWERS.tolist())
+    for j, (c, d) in enumerate(POWERS.tolist())
+    if (a + c, b + d) in _PLACE
+])  # fmt: skip
+MIRROR = np.array([_PLACE[k, j] for j, k in POWERS.tolist()])  # of the complex conjugate
+
+
+@jit
+def times(a, b, out):
+    """out = a b, to third order."""
+    for i in range(TERMS):
+        out[i] = 0.0
+    for i in range(len(PRODUCTS)):
+        out[PRODUCTS[i, 2]] += a[PRODUCTS[i, 0]] * b[PRODUCTS[i, 1]]
+
+
+@jit
+def put_wave(turn, shift, jets):
+    """jets[3] and jets[4]: cos and sin of a phase plus a shift, a series; turn: e^{i phase}. jets[0], jets[1]: room."""
+    power, other, c, s = jets[0], jets[1], turn.real, turn.imag
+    for m in range(TERMS):
+        power[m] = 1.0 if m == 0 else 0.0
+        jets[3, m] = jets[4, m] = 0.0
+    for k in range(4):
+        for m in range(TERMS):
+            jets[3, m] += c * power[m]
+            jets[4, m] += s * power[m]
+        times(power, shift, other)
+        for m in range(TERMS):
+            power[m] = other[m] / (k + 1)
+        c, s = -s, c
+
+
+@jit
+def steady(Z, jets, m):
+    """Coefficient m of Re(Z e^{i phi}), of the phase of `put_wave`."""
+    return Z.real * jets[3, m] - Z.imag * jets[4, m]
