@@ -58,6 +58,16 @@ observe: [section, lyapunov, impacts]
             assert together[key][box].tobytes() == values.tobytes(), (box, key)
 
 
+@pytest.mark.parametrize("name", ["random", "compliant"])
+def test_a_trajectory_leaves_all_else_as_it_is(tmp_path, name):
+    text, *system = EVERY[name]
+    asked = "trajectory: {periods: 2, samples: 50}\n"
+    assert asked in text
+    found, alone = run(tmp_path, text, *system), run(tmp_path, text.replace(asked, ""), *system)
+    assert alone.keys() < found.keys()
+    assert_same_bits({key: found[key] for key in alone}, alone)
+
+
 @pytest.mark.parametrize("name", EVERY)
 def test_block_size_does_not_matter(tmp_path, name):
     scene, whole = scene_of(*EVERY[name]), run(tmp_path, *EVERY[name])

@@ -99,8 +99,8 @@ def _compute(block: Block) -> dict[str, np.ndarray]:
     mapping = Mapping(plan.order) if plan.order else None
     begins = np.stack([first, anew])
     points.run_points(
-        steps, begins, arrays["results"], arrays["sections"], arrays["phases"], arrays["running"], workspace, plan,
-        mapping,
+        steps, begins, arrays["results"], arrays["sections"], arrays["phases"], arrays["running"],
+        _without_samples(workspace), plan, mapping,
     )  # fmt: skip
     energies = energies_of(block, steps, kind, arrays["results"], begins) if "impact_power" in block.wanted else {}
     ends = {} if block.last else {CHAIN_ENDS: _ends(arrays["results"][-1], anew)}
@@ -144,6 +144,13 @@ def _workspace(block: Block, kind: Kind, cells: int, orbits: int) -> points.Work
         _local.workspace = points.new_workspace(block.plan, cells, block.samples, orbits, kind)
         _local.key, _local.cells, _local.orbits = key, cells, orbits
     return _local.workspace
+
+
+def _without_samples(workspace: points.Workspace) -> points.Workspace:
+    """The same workspace for motion that is not sampled: the times of a trajectory before it would be sampled again."""
+    ensemble = workspace.ensemble
+    records = ensemble.records._replace(times=ensemble.records.times[:0], samples=ensemble.records.samples[:0])
+    return workspace._replace(ensemble=ensemble._replace(records=records))
 
 
 def _attractors(results: np.ndarray, lead: tuple[int, ...]) -> dict[str, np.ndarray]:
