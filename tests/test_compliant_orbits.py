@@ -113,6 +113,7 @@ def test_a_pair_on_the_circle_and_a_graze_of_the_free_motion():
     assert vs.switch(last)[0].itinerary == "" and vs.switch(first)[0].itinerary == "LR"
 
 
+@pytest.mark.slow
 def test_branches_go_on_over_grazes_flips_and_pitchforks():
     found = vs.follow_branches(vs.periodic_orbit(paper(4, 1e4), itinerary="R"), "b", (1, 8), depth=2)
     assert all(one.branch.ok for one in found)
@@ -125,6 +126,7 @@ def test_a_branch_that_a_flip_begins():
     assert any(one.special is not None and one.special.type == "flip" for one in doubled)
 
 
+@pytest.mark.slow
 def test_a_preload_makes_a_graze_as_of_rigid_stops():
     """With a preload the speed is proportional to the distance from the graze, without it to its square root."""
     for preload, power in ((0.0, 0.5), (1.0, 1.0)):

@@ -48,13 +48,8 @@ def test_the_force_is_that_of_the_contacts(release):
 
 def test_kinds(data):
     assert {"contacts", "contact-force", "film", "history", "phase-portrait"} <= set(kinds(data))
-    rigid = vs.sweep(
-        system(k_stop=None, c_stop=None, R=0.8),
-        {"omega": [0.9]},
-        transient=5,
-        record=5,
-        trajectory={"periods": 1, "samples": 101},
-    )
+    paper = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    rigid = vs.sweep(paper, {"omega": [0.6]}, transient=5, record=5, trajectory={"periods": 1, "samples": 101})
     assert not {"contacts", "contact-force"} & set(kinds(rigid))
     with pytest.raises(PlotError, match="contact-force"):
         figure(rigid, "contact-force")

@@ -60,6 +60,7 @@ def test_without_damping():
     assert into_damping.begins.type == "boundary" and into_damping.begins.parameters["zeta"] == 0.0
 
 
+@pytest.mark.slow
 def test_without_damping_and_without_losses():
     """R = 1, zeta = 0: the map keeps volume, and no Neimark-Sacker point is reported."""
     system = PAPER.replace(zeta=0.0, tau=0.0, b=3.0, R=1.0)

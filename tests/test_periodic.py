@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 from reference.shooting import Shooting
+from support import slow_cases
 from support.oscillators import BALL, CAVITY, CHAIN, ONE_MASS, PAPER
 
 import vibro_sweep as vs
@@ -148,7 +149,7 @@ def test_bouncing_ball_in_closed_form(n, R):
     assert vs.periodic_orbit(ball, itinerary="L", periods=n).ok
 
 
-@pytest.mark.parametrize("family", [CAVITY, CHAIN, ONE_MASS.replace(F=0.5)])
+@pytest.mark.parametrize("family", [CAVITY, ONE_MASS.replace(F=0.5), *slow_cases(CHAIN)])
 def test_motion_obeys_the_equation_of_motion(family):
     """M x'' + C x' + K x = force along flights, by differences of `sample`; the impact law; periodicity."""
     q = family.linear

@@ -147,8 +147,8 @@ def test_a_plane_is_opened_twice_and_each_number_read_once(plane, tmp_path, monk
 
 
 def test_a_plane_of_energy_alone_shows_the_power():
-    system = vs.Oscillator.named("one_mass", zeta=0.02, base=True, F=0.5, omega=1, R=0.6, b=1, tau=0)
-    axes = {"omega": [1.2, 1.4, 1.6], "b": [0.5, 1.0]}
+    system = vs.System(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63, R=0.8, b=4)
+    axes = {"omega": [0.6, 0.63, 0.66], "b": [2.0, 4.0]}
     data = vs.sweep(system, axes, observe=["energy"], transient=50, record=20)
     fig = vs.plot(data)
     shown = image(fig.axes[0]).get_array()

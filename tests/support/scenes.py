@@ -44,8 +44,8 @@ observe: [attractors, section]""",
 }
 
 # of each law of contact, as (text, system): a scene with what it may observe
-SOFT = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, b: 4, k_stop: 400"
-SLOW = "mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, k_stop: 2, release: force, preload: 0.01"
+SOFT = "type: one_mass, zeta: 0.02, F: 2.4, omega: 0.8, b: 4, k_stop: 400"
+SLOW = "type: one_mass, zeta: 0.02, F: 2.4, omega: 0.8, k_stop: 2, release: force, preload: 0.01"
 CONTACTS = "observe: [section, lyapunov, multipliers, contacts]"
 COMPLIANT = {
     "compliant": (
