@@ -16,11 +16,11 @@ from vibro_sweep.model import status
 from vibro_sweep.model.arguments import checked_state
 from vibro_sweep.model.contact import is_far
 from vibro_sweep.model.errors import ArgumentError
+from vibro_sweep.model.invariant_planes import moved
 from vibro_sweep.model.linear import stacked
 from vibro_sweep.model.metric import ROUNDING
 from vibro_sweep.model.modes import modes
 from vibro_sweep.model.oscillator import System
-from vibro_sweep.model.pairs_of_roots import moved
 from vibro_sweep.model.parameters import NAMES, ParameterError
 
 IMPACT = np.dtype([("t", float), ("side", np.int8), ("v1", float), ("x2", float), ("v2", float)])

@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 
 from vibro_sweep.model.contact import Natural, flight_matrix
+from vibro_sweep.model.invariant_planes import NO_PLANES, UNOBSERVABLE, Planes, invariant_planes, moved
 from vibro_sweep.model.metric import Matrix, in_the_metric, parts
-from vibro_sweep.model.pairs_of_roots import NO_PLANES, UNVISITED, Planes, moved, planes_of_roots
 from vibro_sweep.model.stacks import diagonal, dot, finite, kron2, only, transposed
 
 CLASSICAL = 1e-13  # of the matrices: what may couple modes and be neglected
@@ -48,13 +48,13 @@ def frame_of(natural: Natural, omega: np.ndarray) -> Frame:
     planes, classical = _modes(root, K, C)
     if not classical.all():
         others = np.flatnonzero(~classical)
-        found = planes_of_roots(A[others], root[others], K.at(others), C.at(others), natural.normal[others])
+        found = invariant_planes(A[others], root[others], K.at(others), C.at(others), natural.normal[others])
         for known, more in zip(planes, found, strict=True):
             known[others] = more
     eta, square, seconds, rounding = planes
     effective = 1 / dot(natural.normal, natural.normal / natural.masses)
     share = np.abs((natural.normal[:, None] @ seconds[:, 1::2])[:, 0]) * np.sqrt(effective)[:, None]
-    order = np.argsort(share > UNVISITED, axis=-1, kind="stable")
+    order = np.argsort(share > UNOBSERVABLE, axis=-1, kind="stable")
     eta, square = (np.take_along_axis(one, order, -1) for one in (eta, square))
     seconds = np.take_along_axis(seconds, order[:, None], -1)
     product = square + eta**2

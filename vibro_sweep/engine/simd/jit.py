@@ -53,7 +53,7 @@ SHARED = "bifurcations.py", "exponents.py", "status.py"  # of the model: constan
 
 @functools.cache  # of the sources as they were imported
 def source_hash() -> str:
-    """Names the folder of compiled kernels; what all numbers depend on is said by vibro_sweep/code_hash.py."""
+    """Names the folder of compiled kernels; what all numbers depend on is said by driver/code_hash.py."""
     digest = hashlib.sha256()
     for source in [*sorted(ENGINE.rglob("*.py")), *(MODEL / name for name in SHARED)]:
         digest.update(source.read_bytes())

@@ -1,4 +1,4 @@
-"""Planes of pairs of roots of a flight, whatever the damping (see frame.py).
+"""Invariant planes of a flight, each of a pair of roots, whatever the damping (see frame.py).
 
 The oscillators of a stack are taken in groups in which the same things are there: so many modes that nothing holds, so
 many complex pairs, so many real roots that the contact sees.
@@ -13,7 +13,9 @@ from vibro_sweep.model.metric import ROUNDING, Matrix, forms, parts
 from vibro_sweep.model.stacks import columns, dot, finite, kron2, times, transposed
 
 NO_PLANES = 1e10  # condition from which on coordinates that part what is not coupled are tried
-UNVISITED = 1e-10  # share of the gap in a plane or a root, in the metric of the masses, that counts as zero
+UNOBSERVABLE = (
+    1e-10  # share of the gap in a plane or a root, in the metric of the masses, from which the contact sees it
+)
 NO_EASE = 1e6  # condition from which on planes of real roots are tried whose e2 has a part in y1
 MAY_BE_NONE = 1e-6  # of the largest root: one that may be 0
 NO_ROOT = 1e-12  # of the largest root: length of the first vector below which there is no plane
@@ -55,8 +57,8 @@ class _Flight(NamedTuple):
         return np.repeat(self.root, 2, axis=-1)
 
 
-def planes_of_roots(A: np.ndarray, root: np.ndarray, K: Matrix, C: Matrix, normal: np.ndarray) -> Planes:
-    """Planes of pairs of roots, whatever the damping.
+def invariant_planes(A: np.ndarray, root: np.ndarray, K: Matrix, C: Matrix, normal: np.ndarray) -> Planes:
+    """The invariant planes of a stack of oscillators, whatever the damping.
 
     Modes with neither stiffness nor damping are taken apart first: their two roots 0 have one eigenvector only.
     """
@@ -126,7 +128,7 @@ def _pairs(f: _Flight, to: np.ndarray, back: np.ndarray, space: np.ndarray) -> t
     gap = kron2(f.normal[..., None])[..., 0]
     sizes = np.sqrt(columns(np.abs(vectors * f.twice[..., None]) ** 2))
     effective = 1 / np.sqrt(dot(gap / f.twice, gap / f.twice))
-    seen = np.abs(gap[:, None] @ vectors)[:, 0] * effective[:, None] > UNVISITED * sizes
+    seen = np.abs(gap[:, None] @ vectors)[:, 0] * effective[:, None] > UNOBSERVABLE * sizes
     # in this order: of each complex pair one root, real roots from below, the other roots
     place = np.where(roots.imag > 0, 0, np.where(roots.imag == 0, 1, 2))
     order = np.lexsort((np.where(place == 1, roots.real, 0.0), place))
