@@ -149,7 +149,7 @@ def test_windows_need_release_by_displacement():
         vs.windows(data)
 
 
-@pytest.mark.parametrize("seeds", [range(1, 2), *slow_cases(range(12))])
+@pytest.mark.parametrize("seeds", [range(1, 2), *slow_cases(range(4)), pytest.param(range(12), marks=pytest.mark.soak)])
 def test_random_branches_from_several_starts(seeds):
     counted = 0
     for seed in seeds:

@@ -7,6 +7,7 @@ tests/data/compliant_contacts.log is what it printed.
 import sys
 
 import pytest
+from support import slow_cases
 from support.compliant_contacts import FIELDS, compared, drawn, error_of_sections, line, table
 
 COUNT = 1000
@@ -28,8 +29,7 @@ def test_contacts_of_one_mass_and_of_two():
     hold([compared(seed) for seed in FEW_MASSES])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seeds", [FEW_MASSES, range(60)])
+@pytest.mark.parametrize("seeds", [*slow_cases(FEW_MASSES, range(20)), pytest.param(range(60), marks=pytest.mark.soak)])
 def test_sections_of_sweeps(seeds):
     """Of eight orbits side by side, over six periods."""
     errors = [error for error in map(error_of_sections, seeds) if error is not None]

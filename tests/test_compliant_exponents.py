@@ -34,12 +34,12 @@ def test_exponents_against_eighty_digits(seed):
 
 
 @pytest.mark.slow
-def test_exponents_of_sixty_orbits(capsys):
-    reports = [compliant_exponents.compared(seed) for seed in range(66)]
+def test_exponents_of_twenty_orbits(capsys):
+    reports = [compliant_exponents.compared(seed) for seed in range(22)]
     with capsys.disabled():
         print("\n" + "\n".join(compliant_exponents.table(reports)))
     hold(reports)
-    assert sum(one.period > 0 and one.stated.max() < 1e-9 for one in reports) >= 50
+    assert sum(one.period > 0 and one.stated.max() < 1e-9 for one in reports) >= 18
 
 
 @pytest.mark.soak

@@ -13,9 +13,7 @@ from vibro_sweep.model.metric import ROUNDING, Matrix, forms, parts
 from vibro_sweep.model.stacks import columns, dot, finite, kron2, times, transposed
 
 NO_PLANES = 1e10  # condition from which on coordinates that part what is not coupled are tried
-UNOBSERVABLE = (
-    1e-10  # share of the gap in a plane or a root, in the metric of the masses, from which the contact sees it
-)
+UNOBSERVABLE = 1e-10  # largest share of the gap in a plane or a root, in the metric of the masses, that counts as zero
 NO_EASE = 1e6  # condition from which on planes of real roots are tried whose e2 has a part in y1
 MAY_BE_NONE = 1e-6  # of the largest root: one that may be 0
 NO_ROOT = 1e-12  # of the largest root: length of the first vector below which there is no plane
