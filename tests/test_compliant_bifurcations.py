@@ -3,12 +3,10 @@
 With `-m slow` all of BRANCHES and CURVES. What was found: tests/data/compliant_bifurcations.log.
 """
 
-import math
-
 import numpy as np
 import pytest
 from support import compliant_branches, slow_cases
-from support.compliant_bifurcations import CONDITIONS, distance_in_digits
+from support.compliant_bifurcations import BRANCHES, CONDITIONS, branch_of, distance_in_digits, one_mass
 
 import vibro_sweep as vs
 from vibro_sweep.analysis.continuation.first_point import first_place
@@ -16,29 +14,8 @@ from vibro_sweep.analysis.continuation.solution_curve import SolutionCurve
 from vibro_sweep.analysis.curves.curve_start import start_at
 from vibro_sweep.engine.continuation import stepper
 
-PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63)
 ENDS = ("boundary", "closed")
-
-
-def paper(b, k, z=0.07, **more):
-    return vs.System(**PAPER, b=b, k_stop=k, c_stop=2 * z * math.sqrt(k), **more)
-
-
-def one_mass(**numbers):
-    given = dict(k=1, zeta=0.05, F=0.5, omega=0.8, k_stop=29, b=1, stops="right", tau=0.0)
-    return vs.Oscillator.named("one_mass", **(given | numbers))
-
-
-# orbit, number, bounds; and of curves both numbers and bounds, and the types of special points from which they start
-BRANCHES = {
-    "one mass": (one_mass(), "R", "omega", (0.3, 3)),
-    "one mass, preloaded": (one_mass(preload=0.05, omega=0.75), "R", "omega", (0.3, 3)),
-    "one mass, damped stop": (one_mass(c_stop=0.5, preload=0.03), "R", "omega", (0.3, 3)),
-    "R": (paper(4, 1e2), "R", "b", (1, 7)),
-    "R, stiff": (paper(4, 1e4), "R", "b", (1, 7)),
-    "LR": (paper(2, 1e2), "LR", "b", (1, 7)),
-    "LR, preloaded": (paper(2, 1e2, preload=0.5), "LR", "b", (1, 7)),
-}
+# of curves: branch, type of the special point on it from which they start, numbers, bounds, types that are found
 CURVES = {
     "folds of one mass": ("one mass", "fold", ("omega", "F"), ((0.3, 3), (0.05, 1.5)), {"cusp"}),
     "folds over the stiffness": ("one mass", "fold", ("omega", "k_stop"), ((0.3, 3), (1, 100)), {"cusp"}),
@@ -49,11 +26,6 @@ CURVES = {
     ),
     "pitchforks": ("LR", "pitchfork", ("b", "omega"), ((0.2, 7), (0.4, 0.9)), {"fold_flip"}),
 }  # fmt: skip
-
-
-def branch_of(name):
-    system, itinerary, number, bounds = BRANCHES[name]
-    return vs.continue_orbit(vs.periodic_orbit(system, itinerary=itinerary), number, bounds)
 
 
 def compare(special):

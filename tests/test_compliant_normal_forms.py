@@ -7,7 +7,7 @@ from reference.compliant_orbits import ContactMap, ContactOrbit
 from reference.normal_forms import third_order
 from scipy.linalg import expm
 from support import slow_cases
-from test_compliant_bifurcations import branch_of
+from support.compliant_bifurcations import branch_of
 
 from vibro_sweep.analysis.branches.criticality import critical_angle, cubic_terms
 from vibro_sweep.analysis.periodic.linearised import Linearised

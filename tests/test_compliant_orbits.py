@@ -1,26 +1,14 @@
 """Periodic orbits with compliant stops, their multipliers and branches."""
 
-import math
-
 import numpy as np
 import pytest
 from reference.compliant_orbits import ContactOrbit
 from support import slow_cases
+from support.compliant_bifurcations import PAPER, one_mass, paper
 
 import vibro_sweep as vs
 from vibro_sweep.scene import SceneError
 from vibro_sweep.scene.continuation import parse_continuation
-
-PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63)
-
-
-def paper(b, k, z=0.07, **more):
-    return vs.System(**PAPER, b=b, k_stop=k, c_stop=2 * z * math.sqrt(k), **more)
-
-
-def one_mass(**numbers):
-    given = dict(k=1, zeta=0.05, F=0.5, omega=0.8, k_stop=29, b=1, stops="right", tau=0.0)
-    return vs.Oscillator.named("one_mass", **(given | numbers))
 
 
 def in_thirty_digits(orbit):

@@ -1,11 +1,36 @@
 """Special points of branches and curves with contacts, held against thirty digits."""
 
+import math
+
 import numpy as np
 from reference.compliant_bifurcations import Bifurcation
 
+import vibro_sweep as vs
 from vibro_sweep.analysis.branches.special import bare
 from vibro_sweep.model.linear import family_of
 
+PAPER = dict(mu_m=10, mu_k=5, zeta=0.05, f2=0, omega=0.63)
+
+
+def paper(b, k, z=0.07, **more):
+    return vs.System(**PAPER, b=b, k_stop=k, c_stop=2 * z * math.sqrt(k), **more)
+
+
+def one_mass(**numbers):
+    given = dict(k=1, zeta=0.05, F=0.5, omega=0.8, k_stop=29, b=1, stops="right", tau=0.0)
+    return vs.Oscillator.named("one_mass", **(given | numbers))
+
+
+# of branches: system, itinerary, number, bounds
+BRANCHES = {
+    "one mass": (one_mass(), "R", "omega", (0.3, 3)),
+    "one mass, preloaded": (one_mass(preload=0.05, omega=0.75), "R", "omega", (0.3, 3)),
+    "one mass, damped stop": (one_mass(c_stop=0.5, preload=0.03), "R", "omega", (0.3, 3)),
+    "R": (paper(4, 1e2), "R", "b", (1, 7)),
+    "R, stiff": (paper(4, 1e4), "R", "b", (1, 7)),
+    "LR": (paper(2, 1e2), "LR", "b", (1, 7)),
+    "LR, preloaded": (paper(2, 1e2, preload=0.5), "LR", "b", (1, 7)),
+}
 CONDITIONS = {
     "fold": ["fold"],
     "flip": ["flip"],
@@ -27,6 +52,11 @@ CONDITIONS = {
 }
 ANGLES = {"resonance_1_3": 2 * np.pi / 3, "resonance_1_4": np.pi / 2}
 NO_LENGTH = 1e-7  # of the period: a contact that short is a touch
+
+
+def branch_of(name):
+    system, itinerary, number, bounds = BRANCHES[name]
+    return vs.continue_orbit(vs.periodic_orbit(system, itinerary=itinerary), number, bounds)
 
 
 def distance_in_digits(special) -> tuple[np.ndarray, float]:
