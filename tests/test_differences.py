@@ -1,8 +1,7 @@
 """The lines in which two scenes differ, as a message shows them."""
 
-from vibro_sweep.store.differences import differences
-
 from vibro_sweep.model.refusals import LONGEST
+from vibro_sweep.scene.differences import differences
 
 SYSTEM = "system: {mu_m: 10, mu_k: 5, zeta: 0.05, f2: 0, omega: 0.63, R: 0.8, b: 6, tau: 0.5, stops: both}"
 
