@@ -8,10 +8,9 @@ import sys
 
 import pytest
 from support import slow_cases
-from support.compliant_contacts import FIELDS, compared, drawn, error_of_sections, line, table
+from support.compliant_contacts import FIELDS, LEAST, compared, drawn, error_of_sections, line, table
 
 COUNT = 1000
-LEAST = 10.0  # errors allowed, in units of what rounding the data does
 # Oscillators with larger ones, of those in the log: a mass that a small difference of large forces presses on for long
 # (126), and errors just beyond
 BEYOND = (93, 126, 196, 205)

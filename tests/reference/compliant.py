@@ -5,6 +5,7 @@ s+, s-), with s the places of stops that relax, obeys y' = A y between events, w
 or relaxes. An event is a proven root of a linear function of y.
 """
 
+import math
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -33,6 +34,7 @@ class Orbit(NamedTuple):
     section: list[list]
     places: list[tuple]  # at the sections: s of the right stop and of the left one
     taken: mpf  # the energy that stops have taken from the masses
+    given_up: bool  # the steps that were allowed did not reach the end
 
 
 class Flow:
@@ -168,14 +170,14 @@ def largest_within(c, u):
 NARROW = arb((1, -90))
 
 
-def simulate(q, state, contacts=None, periods=None, digits=40, until=None, places=(0, 0)):
+def simulate(q, state, contacts=None, periods=None, digits=40, until=None, places=(0, 0), steps=math.inf):
     """The orbit from the state (x1, v1, ..) at t = 0 until so many contacts have ended, or over so many periods, or
-    until a time. places: of the right stop and of the left one, from where they relax."""
+    until a time; for so many steps at most. places: of the right stop and of the left one, from where they relax."""
     before = ctx.prec
     with mp.workdps(digits + 20):
         ctx.prec = mp.prec
         try:
-            return Motion(Oscillator(q), q.tau, state, digits, places).go(contacts, periods, until)
+            return Motion(Oscillator(q), q.tau, state, digits, places).go(contacts, periods, until, steps)
         finally:
             ctx.prec = before
 
@@ -189,7 +191,7 @@ class Motion:
         self.y = arb_mat(o.size, 1, [to_ball(a) for a in state] + phase)
         self.pressed, self.relaxing = 0, {}  # of stops that relax: where they began
         self.left = 0  # the stop whose distance begins with a zero
-        self.kept, self.taken = Orbit([], [], [], [], mpf(0)), arb(0)
+        self.kept, self.taken = Orbit([], [], [], [], mpf(0), False), arb(0)
         for side, s in zip((1, -1), map(to_ball, places), strict=True):
             if s > 0:
                 self.relaxing[side] = s
@@ -240,12 +242,15 @@ class Motion:
                 first = root, what, side
         return first
 
-    def go(self, contacts, periods, until):
-        o = self.o
+    def go(self, contacts, periods, until, steps):
+        o, count = self.o, 0
         period = (2 * arb.pi() / o.omega).mid()
         end = arb.pos_inf() if periods is None else (periods * period).mid()
         end = end if until is None else to_ball(until)
         while self.t < end and (contacts is None or len(self.kept.contacts) < contacts):
+            if count >= steps:
+                return self.kept._replace(given_up=True)
+            count += 1
             flow = o.flow(self.pressed, self.relaxing)
             part, what, side = self.next_event(flow)
             u = part * flow.h

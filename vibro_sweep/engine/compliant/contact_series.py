@@ -26,25 +26,23 @@ STEPS = 60  # of Newton's method, or halvings, towards a peak
 @jit
 def enter(contact, o, stops, side):
     """Set delta, w2, ... from the orbit's state."""
-    X, y = o.X, contact.y
-    y[0] = delta_of(o, stops, side)
-    y[1] = side * X[1]
-    for j in range(1, len(contact.push)):
-        y[2 * j] = X[2 * j] - contact.push[j] * X[0]
-        y[2 * j + 1] = X[2 * j + 1] - contact.push[j] * X[1]
-    for j in range(len(y)):
-        contact.low[j] = 0.0
+    X, finer, y, low = o.X, o.finer, contact.y, contact.low
+    y[0], low[0] = delta_of(o, stops, side), 0.0
+    y[1], low[1] = side * X[1], side * finer[1]
+    for j in range(2, len(y)):
+        share, share_low = multiply(contact.push[j // 2], 0.0, X[j % 2], finer[j % 2])
+        y[j], low[j] = add(X[j], finer[j], -share, -share_low)
 
 
 @jit
 def leave(contact, o, stops, side):
     """Set the orbit's state from delta, w2, ..."""
-    X, y = o.X, contact.y
+    X, finer, y, low = o.X, o.finer, contact.y, contact.low
     set_delta(o, stops, side, y[0])
-    X[1] = side * y[1]
-    for j in range(1, len(contact.push)):
-        X[2 * j] = y[2 * j] + contact.push[j] * X[0]
-        X[2 * j + 1] = y[2 * j + 1] + contact.push[j] * X[1]
+    X[1], finer[1] = side * y[1], side * low[1]
+    for j in range(2, len(y)):
+        share, share_low = multiply(contact.push[j // 2], 0.0, X[j % 2], finer[j % 2])
+        X[j], finer[j] = add(y[j], low[j], share, share_low)
 
 
 @jit
@@ -224,9 +222,8 @@ def carry_matrix(contact, side, u):
             slope = now[1] - d * now[0]
             for i in range(0, states, 2):
                 then[i] = slope if i == 0 else now[i + 1]
-                total = G[i // 2, 0] * now[0] + G[i // 2, 1] * slope
-                if i == 0:
-                    total += d * slope
+                rate = G[0, 1] + d if i == 0 else G[i // 2, 1]  # of pi' the damper's own part is taken off
+                total = G[i // 2, 0] * now[0] + rate * slope
                 for j in range(2, states):
                     total += G[i // 2, j] * now[j]
                 then[i + 1] = total

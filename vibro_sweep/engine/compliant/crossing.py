@@ -7,7 +7,7 @@ series to its end, or to the end of the cell, and goes on in the next one.
 import numpy as np
 
 from vibro_sweep.engine.compliant.contact_series import leaves_by_force
-from vibro_sweep.engine.compliant.distance import advance_finely, delta_of, finer_at, set_delta
+from vibro_sweep.engine.compliant.distance import begin_finely, delta_of, set_delta
 from vibro_sweep.engine.compliant.force_phase import set_phase, turn_phase
 from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.compliant.pressing import begin_contact, stay_in_contact
@@ -20,7 +20,7 @@ from vibro_sweep.engine.motion.impacts import (
     impact,
     size_at,
 )
-from vibro_sweep.engine.motion.orbits import is_finite, take_samples, wall_of
+from vibro_sweep.engine.motion.orbits import advance_exactly, is_finite, round_off, take_samples, wall_of
 from vibro_sweep.engine.motion.rest import begin_rest, chatter, first_nonzero, stay_at_rest
 from vibro_sweep.engine.simd.jit import jit, noinline
 from vibro_sweep.engine.simd.memory import row
@@ -37,7 +37,7 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
     q, node, X, c1, contact = f.oscillator[0], f.nodes[k], o.X, o.c[0], law.orbits[o.lane]
     released, hit, leaving, order = False, 0.0, 0.0, 0
     if s == 0.0:
-        o.finer[0] = finer_at(o, k)
+        begin_finely(o, k)
     if contact.pressed == 0.0:
         set_phase(contact, node.z[2 * len(o.c)], node.z[2 * len(o.c) + 1])
         turn_phase(contact, q.omega, s)
@@ -51,6 +51,7 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
             if pressed:
                 d = stay_in_contact(law, f, stops, o, records, t, k, s)
             else:
+                round_off(o)
                 most = contact.preload[lane_of(side)] if contact.compliant[lane_of(side)] else np.inf
                 d = stay_at_rest(f, o, records, t, k, s, sin, cos, most)
             if d != d:
@@ -80,6 +81,7 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
         rigid = side != 0.0 and not contact.compliant[lane_of(side)]
         if rigid and side * X[1] > 0.0:
             impact(f, stops, o, records, t, k, s, side, sin, cos)
+            o.finer[1] = 0.0
         load(q.series, row(X, 0), sin, cos, o.c)
         reach, third = bounds(q, c1)
         if rigid:
@@ -109,7 +111,7 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
             return status.UNRESOLVED
         end = min(d, left)
         take_samples(o, records, k, s, s + end)
-        advance_finely(o, end)
+        advance_exactly(o, end)
         turn_phase(contact, q.omega, end)
         if d == np.inf and (last or not is_finite(o)):
             relax_by(contact, end, o.period * o.cells + k + 1, 0.0)
@@ -125,7 +127,7 @@ def cross_cell_with_law(law, f, stops, o, records, t, k, s):
         o.miss = max(o.miss, miss)
         set_delta(o, stops, side, place)
         if contact.relaxed[lane_of(side)] == 0.0 and side * X[1] <= 0.0:  # it touched without speed
-            X[1] = 0.0
+            X[1] = o.finer[1] = 0.0
             o.events += 1
     return status.EVENT_LIMIT
 
@@ -158,7 +160,7 @@ def meet(law, f, stops, o, records, t, k, s, side, hit, released):
         height = speed * speed / (2.0 * min(a, p - a))
         size = max(abs(wall_of(stops, side)), p / contact.stiffness[n])
         if relative > 0.0 and height < NEAR * size:
-            X[1] = relative = 0.0
+            X[1] = o.finer[1] = relative = 0.0
             o.chatters += 1
     if relative > 0.0:
         begin_contact(law, f, stops, o, t, k, s, side, not unrelaxed)

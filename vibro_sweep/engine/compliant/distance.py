@@ -1,13 +1,13 @@
-"""How far a mass is from a stop, in more digits than x1 has.
+"""How far a mass is from a stop, in more digits than x1 has, and the state beside it.
 
 A float holds x1 to an ulp of the place of the stop only, of which a short flight back to the same stop may be no higher
-than a few. From a contact on x1 is therefore X[0] + finer[0], the sum of two floats, as long as the flight goes from
-series to series; formed from the tables it is X[0] alone.
+than a few. What presses the mass on a preloaded stop that it bounces on may be as small a difference of large forces.
+From a contact on the state is therefore X + finer, a sum of two floats each, as long as the flight goes from series to
+series; formed from the tables it is X alone.
 """
 
-from vibro_sweep.engine.motion.orbits import advance, wall_of
+from vibro_sweep.engine.motion.orbits import round_off, wall_of
 from vibro_sweep.engine.simd.jit import inline, jit
-from vibro_sweep.engine.tables.products import change_within
 from vibro_sweep.engine.tables.twofold import add
 
 NEAR = 2.0**-5  # of the size of x1: a flight that goes no further away needs these digits
@@ -27,24 +27,23 @@ def set_delta(o, stops, side, delta):
 
 
 @jit
-def advance_finely(o, u):
-    """The state at offset u of the series."""
-    x, low, change = o.X[0], o.finer[0], change_within(o.c[0], u)[0]
-    advance(o, u)
-    o.X[0], o.finer[0] = add(x, low, change, 0.0)
-
-
-@jit
 def finer_at(o, k):
     """What x1 at node k has beside X[0]: nothing where the tables give it."""
     return o.finer[0] if k == o.base else 0.0
+
+
+@jit
+def begin_finely(o, k):
+    """The state at node k: nothing beside X where the tables give it."""
+    if k != o.base:
+        round_off(o)
 
 
 @inline
 def keep_finer(law, o, q):
     """At the section, which is node `cells` and then node 0."""
     if law is not None:
-        o.finer[0] = finer_at(o, q.cells)
+        begin_finely(o, q.cells)
 
 
 @inline

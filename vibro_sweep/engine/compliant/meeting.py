@@ -5,6 +5,7 @@ from vibro_sweep.engine.compliant.passage import pass_contacts
 from vibro_sweep.engine.compliant.passage_series import of_stop
 from vibro_sweep.engine.compliant.passed_contacts import count_passed
 from vibro_sweep.engine.compliant.relaxing import bring_stops, relaxed_after
+from vibro_sweep.engine.motion.orbits import round_off
 from vibro_sweep.engine.motion.section import end_period
 from vibro_sweep.engine.motion.strike import find_contact, gaps_at, rebound, strike
 from vibro_sweep.engine.simd.columns import transposed
@@ -77,7 +78,7 @@ def finish_meeting(law, e, o, f, passed, readings):
             if o.cell >= o.cells:
                 pass_section(law.passage[0], e, o, f, readings)
         else:
-            o.finer[0] = 0.0
+            round_off(o)
 
 
 @jit
@@ -91,6 +92,7 @@ def finish_passage(contact, passage, strikes, o):
         contact.left[n] = contact.relaxed[n] = passage.place[i]
         contact.relaxed[n] = relaxed_after(contact, n, passage.rest[i])
         contact.cell[n], contact.offset[n] = o.period * o.cells + o.cell + 1, 0.0
+    round_off(o)
     o.finer[0] = passage.finer[i]
 
 

@@ -167,10 +167,8 @@ def carry_vector(passage, damping, u, going):
         speed = row(v, n) - damping * row(x, n)  # delta'
         for m in range(masses):
             first = m * (states + 3)
-            total = row(G, first + 1) * speed + row(G, first) * row(x, n)
-            if m == 0:
-                total = total + damping * speed
-            total = add_pull(total, G, first, x, v, TERMS, 1, masses, n)
+            rate = row(G, 1) + damping if m == 0 else row(G, first + 1)  # of pi' the damper's own part is taken off
+            total = add_pull(rate * speed + row(G, first) * row(x, n), G, first, x, v, TERMS, 1, masses, n)
             put(v, m * TERMS + n + 1, total * INVERSE[n])
         put(x, n + 1, speed * INVERSE[n])
         for m in range(1, masses):

@@ -24,7 +24,7 @@ from vibro_sweep.engine.tables.flight import evaluate
 from vibro_sweep.engine.variational import tangent_flight
 
 # by how much one matrix may shrink vectors, as a logarithm: what shrinks more is lost beside what does not
-MOST_SHRUNK = 4.0
+MOST_SHRUNK = 2.0
 
 
 @jit
@@ -114,7 +114,7 @@ def end_contact(contact, o, k, s, side):
         if damping * math.sqrt(stiffness) < stiffness:  # what is better conditioned
             y[0] = -(damping * y[1] + preload) / stiffness
         else:
-            y[1] = -(stiffness * y[0] + preload) / damping
+            y[1], contact.low[1] = -(stiffness * y[0] + preload) / damping, 0.0
         contact.relaxed[n] = contact.left[n] = y[0]
         contact.cell[n], contact.offset[n] = o.period * o.cells + k, s
     else:

@@ -13,11 +13,12 @@ import math
 from vibro_sweep.engine.compliant.law import lane_of
 from vibro_sweep.engine.simd.jit import jit
 from vibro_sweep.engine.simd.lanes import alike
-from vibro_sweep.engine.variational.orthonormal import watch
+from vibro_sweep.engine.variational.orthonormal import orthonormalise, watch
 from vibro_sweep.engine.variational.tangent_at_rest import motion_in
 from vibro_sweep.engine.variational.tangent_flight import apply_flight, only
 
 CONTINUED, RELAXED, UNRELAXED = range(3)  # how a contact begins
+SHRUNK = 1.0  # as a logarithm: before a contact that shrinks vectors by more they are orthonormalised
 
 
 @jit
@@ -27,6 +28,8 @@ def carry_over_contact(t, i, contact, side, w, ended):
     Returns the logarithm of the determinant of a touch of a stop that still relaxes.
     """
     apply_flight(t, only(i))
+    if contact.damping[lane_of(side)] * w > SHRUNK:
+        orthonormalise(t, only(i))
     volume = touch_volume(t, i, contact, side) if contact.begun == UNRELAXED else 1.0
     n, size, before, after, Z, to = lane_of(side), len(t.growth), contact.before, contact.after, t.Z, t.to_frame
     d, p, rate = contact.damping[n], contact.preload[n], contact.equations[n, 0, 1]

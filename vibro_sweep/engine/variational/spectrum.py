@@ -141,7 +141,8 @@ def real_parts(q, spectrum):
 
 @jit
 def close_spectrum(e, o, w, plan, point, result):
-    """Floquet exponents in place of averages; the residual of the sum rule, which is part of the last one's error."""
+    """Floquet exponents in place of averages; the residual of the sum rule, which is part of the last one's error,
+    and of the last multiplier's."""
     q, spectrum, error = e.flights.oscillator[o.table, 0], result.lyapunov, result.lyapunov_error
     periods = result.period if result.period > 0 else w.section.shape[1]
     time = periods * period_of(e, o)
@@ -174,6 +175,17 @@ def close_spectrum(e, o, w, plan, point, result):
     result.lyapunov_residual = residual if residual > -np.inf else np.nan
     if residual > -np.inf:
         error[count - 1] = max(error[count - 1], abs(residual))
+        if result.period > 0:
+            widen_last(result, abs(residual) * time)
+
+
+@jit
+def widen_last(result, part):
+    """The smallest multiplier, and its conjugate, are not known to better than this part of it."""
+    re, im, error = result.multiplier_re, result.multiplier_im, result.multiplier_error
+    last = len(re) - 1
+    for j in range(last - 1 if im[last] != 0.0 else last, last + 1):
+        error[j] = max(error[j], part * math.hypot(re[j], im[j]))
 
 
 @jit
